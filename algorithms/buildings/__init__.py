@@ -1,0 +1,1 @@
+"""Which groups are buildings, and their outlines."""

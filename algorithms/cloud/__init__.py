@@ -1,0 +1,1 @@
+"""The point cloud: files, dimensions, classes, units, neighborhoods."""

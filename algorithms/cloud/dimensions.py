@@ -1,0 +1,71 @@
+"""Dimensions: their names in Python and on disk, dtypes and meanings, in one table.
+
+Stages name dimensions by the Python name, in positional arguments (read) and in
+``writes=``. A vector dimension (``normal``) is one array (n, 3) in Python and
+several dimensions on disk. Undefined is NaN in a float dimension and 0 in an id.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """One row of the table.
+
+    ``disk`` holds the names on disk (one per component), as QGIS and PDAL write
+    them; ``aliases`` are read as the same thing; ``description`` has at most 31
+    bytes, since LAS has 32 for it; ``standard`` ones are LAS fields.
+    """
+
+    name: str
+    disk: tuple[str, ...]
+    dtype: str
+    description: str
+    unit: str = ""
+    standard: bool = False
+    aliases: tuple[str, ...] = ()
+
+
+_STANDARD = (
+    Dimension("xyz", ("X", "Y", "Z"), "f8", "easting, northing, elevation", "m", standard=True),
+    Dimension("classification", ("Classification",), "u1", "ASPRS class", standard=True),
+    Dimension("return_number", ("ReturnNumber",), "u1", "number of this return, from 1", standard=True),
+    Dimension("number_of_returns", ("NumberOfReturns",), "u1", "returns of the pulse", standard=True),
+    Dimension("intensity", ("Intensity",), "u2", "strength of the return", standard=True),
+    Dimension("scan_angle", ("ScanAngleRank",), "f4", "angle of the beam to nadir", "°", standard=True),
+    Dimension("point_source_id", ("PointSourceId",), "u2", "flight line", standard=True),
+    Dimension("gps_time", ("GpsTime",), "f8", "time of the pulse", "s", standard=True),
+    Dimension("red", ("Red",), "u2", "red", standard=True),
+    Dimension("green", ("Green",), "u2", "green", standard=True),
+    Dimension("blue", ("Blue",), "u2", "blue", standard=True),
+)
+
+_WRITTEN = (
+    Dimension(
+        "height_above_ground",
+        ("HeightAboveGround",),
+        "f4",
+        "elevation minus ground",
+        "m",
+        aliases=("height above ground", "height_above_ground", "HAG"),
+    ),
+    Dimension("segment_id", ("SegmentID",), "i4", "segment, 0 is none", aliases=("segment_id",)),
+    Dimension("cluster_id", ("ClusterID",), "i4", "cluster, 0 is none", aliases=("cluster_id",)),
+    Dimension("linearity", ("Linearity",), "f4", "(l1 - l2) / l1"),
+    Dimension("planarity", ("Planarity",), "f4", "(l2 - l3) / l1"),
+    Dimension("scattering", ("Scattering",), "f4", "l3 / l1"),
+    Dimension("entropy", ("Entropy",), "f4", "Shannon entropy of L, P, S"),
+    Dimension("omnivariance", ("Omnivariance",), "f4", "(l1 l2 l3)^(1/3)", "m²"),
+    Dimension("anisotropy", ("Anisotropy",), "f4", "(l1 - l3) / l1"),
+    Dimension("eigenentropy", ("Eigenentropy",), "f4", "-sum e ln e, e = l / sum l"),
+    Dimension("eigenvalue_sum", ("EigenvalueSum",), "f4", "l1 + l2 + l3", "m²"),
+    Dimension("surface_variation", ("SurfaceVariation",), "f4", "l3 / (l1 + l2 + l3)"),
+    Dimension("verticality", ("Verticality",), "f4", "1 - |nz|"),
+    Dimension("normal", ("NormalX", "NormalY", "NormalZ"), "f4", "unit normal, upward"),
+    Dimension("cluster_entropy", ("ClusterEntropy",), "f4", "mean entropy of the cluster"),
+    Dimension("confidence", ("Confidence",), "f4", "0 unsure to 1 sure of building"),
+)
+
+DIMENSIONS = {dimension.name: dimension for dimension in (*_STANDARD, *_WRITTEN)}

@@ -1,0 +1,1 @@
+"""Local geometry of each point."""

@@ -1,0 +1,41 @@
+"""Third-party packages, imported when first used.
+
+QGIS on some systems comes without scipy, scikit-learn or laspy. The toolbox must
+then still show every algorithm and each must say what is missing, so nothing here
+is imported before a stage runs.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+from types import ModuleType
+
+# Import name -> name to install; the one list of what the plugin needs beside numpy.
+REQUIRED = {"scipy": "scipy", "sklearn": "scikit-learn", "laspy": "laspy"}
+
+
+class _Lazy(ModuleType):
+    """A module that imports itself when one of its names is asked for."""
+
+    def __getattr__(self, name: str):
+        # Python itself looks for dunders (doctest, inspect, copy); they are no use of the module.
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return getattr(importlib.import_module(self.__name__), name)
+
+
+def missing() -> list[str]:
+    """Return the packages that are not installed, by the names to install them."""
+    absent = [name for module, name in REQUIRED.items() if importlib.util.find_spec(module) is None]
+    if importlib.util.find_spec("lazrs") is None and importlib.util.find_spec("laszip") is None:
+        absent.append("lazrs")
+    return absent
+
+
+spatial = _Lazy("scipy.spatial")
+ndimage = _Lazy("scipy.ndimage")
+sparse = _Lazy("scipy.sparse")
+csgraph = _Lazy("scipy.sparse.csgraph")
+interpolate = _Lazy("scipy.interpolate")
+cluster = _Lazy("sklearn.cluster")

@@ -1,0 +1,91 @@
+"""Composites as data: which stage feeds which, and the same chains run in memory.
+
+The .model3 files under ``resources/models`` are generated from this module, so
+the graph that a user opens in the modeller and the chain that runs here can't differ.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Optional
+
+from .cloud.cloud import Cloud
+from .run import Outcome, run_stage
+from .stage import Monitor, Stage
+from .stages import STAGES
+
+
+@dataclass(frozen=True)
+class Step:
+    """One stage of a chain; it works on the cloud that the step before it made.
+
+    ``name`` prefixes the composite's parameters (``GROUND_CELL_SIZE``); ``tunables``
+    are the defaults that differ from the stage's own.
+    """
+
+    name: str
+    stage_name: str
+    tunables: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def stage(self) -> Stage:
+        """The stage that this step runs."""
+        return STAGES[self.stage_name]
+
+
+@dataclass(frozen=True)
+class Pipeline:
+    """A chain of stages that users meet as one algorithm.
+
+    The last step that writes a cloud gives the composite's OUTPUT; every layer of
+    every step is an output of its own.
+    """
+
+    name: str
+    title: str
+    group: str
+    tags: str
+    summary: str
+    description: str
+    references: str
+    steps: tuple[Step, ...]
+
+    @property
+    def id(self) -> str:
+        """Processing id, ``detectbuildings``."""
+        return self.name.replace("_", "")
+
+
+PIPELINES: dict[str, Pipeline] = {}
+
+
+def run_pipeline(pipeline: Pipeline, cloud: Cloud, monitor: Optional[Monitor] = None, **tunables: Any) -> Outcome:
+    """Run all steps on ``cloud``, in place, and return the cloud and every layer.
+
+    ``tunables`` are named ``<step>_<tunable>`` (``ground_cell_size``).
+
+    Raises
+    ------
+    ValueError
+        If a tunable is unknown or a step refuses its data.
+    """
+    monitor = monitor or Monitor()
+    chosen = _by_step(pipeline, tunables)
+    layers = {}
+    for i, step in enumerate(pipeline.steps):
+        part = monitor.part(i / len(pipeline.steps), (i + 1) / len(pipeline.steps))
+        outcome = run_stage(step.stage, cloud, monitor=part, **chosen[step.name])
+        layers.update(outcome.layers)
+    return Outcome(cloud, layers)
+
+
+def _by_step(pipeline: Pipeline, tunables: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    """Sort ``<step>_<tunable>`` values by step, over the pipeline's own defaults."""
+    names = {f"{step.name}_{tunable}": (step.name, tunable) for step in pipeline.steps for tunable in step.stage.tunables}
+    chosen = {step.name: dict(step.tunables) for step in pipeline.steps}
+    for name, value in tunables.items():
+        if name not in names:
+            raise ValueError(f"{pipeline.name} has no tunable {name!r}; it has {', '.join(names)}.")
+        step_name, tunable = names[name]
+        chosen[step_name][tunable] = value
+    return chosen

@@ -1,0 +1,1 @@
+"""Scanned towns with known truth."""
