@@ -47,7 +47,9 @@ def run_stage(
     if stage.creates:
         cloud = create_cloud({name: results.pop(0) for name in stage.creates})
     for name in stage.writes:
-        cloud.set(name, _whole(cloud, name, results.pop(0), used))
+        values = results.pop(0)
+        if values is not None:
+            cloud.set(name, _whole(cloud, name, values, used))
     layers = {layer.name: results.pop(0) for layer in stage.layers}
     return Outcome(cloud, layers, results.pop(0) if stage.measures else None)
 

@@ -331,8 +331,8 @@ def stage(
     """Declare a function as a stage.
 
     The function returns, in this order and bare when there is one thing only:
-    one array per name in ``writes`` (length n) or ``creates`` (a new cloud of any
-    length), one :class:`Features` per layer, and a :class:`Report` when there are
+    one array per name in ``writes`` (length n; None for one that the user did not
+    ask for) or ``creates`` (a new cloud of any length), one :class:`Features` per layer, and a :class:`Report` when there are
     measures. The decorated function checks its arrays and tunables on every call
     and carries its :class:`Stage` as ``function.stage``.
     """
