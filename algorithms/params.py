@@ -28,3 +28,35 @@ MinBuildingArea = Annotated[
     float,
     Param("Minimum building area", "Area of the smallest building to be found.", unit="m²", low=0.1, high=10_000),
 ]
+
+IgnoredClasses = Annotated[
+    str,
+    Param(
+        "Ignored classes",
+        "Points that have one of these classes in the reference are not counted: numbers and ranges, "
+        "separated by commas (7, 64-67); empty counts every point.",
+    ),
+]
+
+AssessmentCellSize = Annotated[
+    Optional[float],
+    Param(
+        "Cell size",
+        "Side of the cells that are compared from above.",
+        unit="m",
+        low=0.05,
+        high=100,
+        automatic="0.5 m where the cloud has more than 6 points per m² of its bounding rectangle, 1 m elsewhere.",
+    ),
+]
+
+MaxBuildingSize = Annotated[
+    float,
+    Param(
+        "Maximum building size",
+        "The shorter side of the largest building; smaller keeps more of narrow hilltops.",
+        unit="m",
+        low=1,
+        high=1000,
+    ),
+]

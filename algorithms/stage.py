@@ -107,7 +107,7 @@ class Tunable:
             return None
         try:
             value = self._converted(value)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             raise ValueError(self._refusal(_KINDS[self.type], value)) from None
         if not self._inside(value):
             raise ValueError(self._refusal(self.param.range, value))

@@ -2,6 +2,30 @@
 
 from __future__ import annotations
 
-_FUNCTIONS: tuple = ()
+from .buildings.buildings import classify_buildings
+from .buildings.complete import complete_buildings
+from .features.features import compute_features
+from .preparation.noise_histogram import classify_noise_histogram
+from .preparation.noise_statistical import classify_noise_statistical
+from .quality.buildings import assess_buildings
+from .quality.ground import assess_ground
+from .segmentation.regions import segment_regions
+from .segmentation.roofs import segment_roofs
+from .terrain.ground_tin import classify_ground_tin
+from .terrain.height import compute_height_above_ground
+
+_FUNCTIONS = (
+    classify_noise_histogram,
+    classify_noise_statistical,
+    classify_ground_tin,
+    compute_height_above_ground,
+    compute_features,
+    segment_regions,
+    segment_roofs,
+    classify_buildings,
+    complete_buildings,
+    assess_buildings,
+    assess_ground,
+)
 
 STAGES = {function.stage.name: function.stage for function in _FUNCTIONS}

@@ -1,0 +1,64 @@
+# What people do with this folder. On Debian and Ubuntu every command first brings what is missing.
+#
+#   PROFILE=folder   keep QGIS's settings and the plugin there instead of in your own profile
+#   TILE=path.laz    let "make demo" look for buildings in your own tile
+
+.DEFAULT_GOAL := help
+SHELL := /bin/bash
+
+# Debian's QGIS runs the system's Python, whatever python3 comes first on PATH.
+PYTHON := /usr/bin/python3
+VENV := .venv
+
+ifdef PROFILE
+export QGIS_CUSTOM_CONFIG_PATH := $(abspath $(PROFILE))
+endif
+
+ifneq ($(filter-out root,$(SUDO_USER)),)
+
+# Under "sudo make" only the system's packages are root's business: the rest goes on as the user who asked.
+Makefile: ;
+%:
+	scripts/install.sh system
+	sudo -u $(SUDO_USER) -H $(MAKE) $@ $(MAKEOVERRIDES)
+
+else
+
+.PHONY: help install demo test lint bench package clean
+
+help: ## this list
+	@sed -n 's/^\([a-z]*\):.* ## /  make \1\t/p' Makefile | expand -t 18
+
+install: ## QGIS, the Python packages and the plugin, where they are missing
+	@scripts/install.sh
+
+demo: install ## find the buildings of a simulated town, or of TILE, and draw them (in demo/)
+	@scripts/offscreen.sh $(PYTHON) scripts/demo.py $(if $(TILE),"$(TILE)")
+
+test: install $(VENV)/made lint ## check the code, then run every test
+	@scripts/offscreen.sh $(VENV)/bin/python -m pytest
+
+lint: $(VENV)/made ## ruff and mypy
+	@$(VENV)/bin/ruff check .
+	@$(VENV)/bin/ruff format --check --quiet .
+	@$(VENV)/bin/mypy
+	@$(PYTHON) scripts/metadata.py --check
+
+bench: install $(VENV)/made ## time and memory of every stage (a table, and benchmarks.json)
+	@scripts/offscreen.sh $(VENV)/bin/python -m tests.benchmarks
+
+package: ## the zip for QGIS's plugin repository (in dist/)
+	@$(PYTHON) scripts/metadata.py
+	@$(PYTHON) scripts/package.py
+
+clean: ## remove what these commands made in this folder
+	rm -rf $(VENV) demo dist benchmarks.json .hypothesis .mypy_cache .pytest_cache .ruff_cache .qgis-settings
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# The system's packages show through, so that the tests run on the numpy and the QGIS that users have.
+$(VENV)/made: requirements.txt requirements-dev.txt
+	$(PYTHON) -m venv --system-site-packages $(VENV)
+	$(VENV)/bin/python -m pip install --quiet -r requirements-dev.txt
+	@touch $@
+
+endif

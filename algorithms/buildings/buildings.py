@@ -1,0 +1,191 @@
+"""Which clusters are buildings: mean entropy and two means."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from ..cloud.density import point_density
+from ..features.eigen import neighborhood_eigenvalues, shannon_entropy_lps, symmetric_eigenvalues
+from ..packages import cluster
+from ..params import MinBuildingArea, PointDensity, Seed
+from ..stage import Monitor, Param, stage
+
+# Entropies that differ by less than this are alike.
+_ALIKE = 1e-3
+
+
+@stage(
+    "Classify buildings",
+    group="Buildings",
+    tags="building,entropy,k-means,unsupervised,classification",
+    writes=("classification", "entropy", "cluster_entropy", "confidence"),
+)
+def classify_buildings(
+    xyz,
+    classification,
+    cluster_id,
+    *,
+    min_area: MinBuildingArea = 4.0,
+    n_neighbors: Annotated[
+        Optional[int],
+        Param(
+            "Neighbors",
+            "Points of the neighborhood in which the entropy of a point is measured, itself among them (N).",
+            low=3,
+            high=10_000,
+            automatic="minimum building area times point density, as in the paper.",
+        ),
+    ] = None,
+    guard: Annotated[
+        bool,
+        Param(
+            "Guard against one kind only",
+            "Where both means lie on the same side of what planes and volumes have (no trees, or no buildings), "
+            "compare each cluster with that instead of splitting one kind in two.",
+        ),
+    ] = True,
+    density: PointDensity = None,
+    seed: Seed = 0,
+    monitor=None,
+):
+    """Find the buildings among clusters by their mean entropy.
+
+    Roofs are planar everywhere and have low entropy, crowns are not and have high entropy. Two-class K-means on
+    the mean entropies of the clusters separates them; the class with the lower mean is buildings (class 6).
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes.
+    cluster_id : ndarray of shape (n,), int32
+        Clusters from 1; points of 0 keep their class.
+
+    Returns
+    -------
+    classification : ndarray of shape (n,), uint8
+        Building clusters get 6; what was 6 and is not found again becomes 1.
+    entropy : ndarray of shape (n,), float32
+        Entropy of each clustered point, 0 to ln 3; NaN elsewhere.
+    cluster_entropy : ndarray of shape (n,), float32
+        Mean entropy of the point's cluster; NaN elsewhere.
+    confidence : ndarray of shape (n,), float32
+        How sure the cluster is a building, 0 to 1: the distance of its entropy from the upper mean over the sum of
+        its distances from both; 0.5 is undecided. NaN elsewhere.
+
+    Notes
+    -----
+    Equations 5 to 11 of the paper; the neighborhood is taken among the clustered points, with N = Ar_min d. A
+    single cluster, or clusters that are all alike, have nothing for K-means to separate; unless guarded, none is
+    then called a building, and the log says so. The guard knows what N random points on a disk and in a ball have
+    for mean entropy; where K-means' means lie on both sides of the middle, it changes nothing.
+
+    References
+    ----------
+    Santos, R. C. dos, Pessoa, G. G., Carrilho, A. C., Galo, M., 2019. Building detection from LiDAR data using
+    entropy and the k-means concept, section 2.4.
+    """
+    clustered = np.flatnonzero(cluster_id > 0)
+    density = point_density(xyz) if density is None else density
+    n_neighbors = max(3, round(min_area * density)) if n_neighbors is None else n_neighbors
+    monitor.resolved(density=density, n_neighbors=n_neighbors)
+
+    entropy = np.full(len(xyz), np.nan, np.float32)
+    cluster_entropy, confidence = entropy.copy(), entropy.copy()
+    result = np.where(classification == PointClass.BUILDING, np.uint8(PointClass.UNCLASSIFIED), classification)
+    if not len(clustered):
+        monitor.warn("There are no clusters, so no buildings were found.")
+        return result.astype(np.uint8), entropy, cluster_entropy, confidence
+
+    values = shannon_entropy_lps(neighborhood_eigenvalues(xyz[clustered], None, n_neighbors, monitor))
+    ids, position = np.unique(cluster_id[clustered], return_inverse=True)
+    means = _cluster_means(values, position, len(ids))
+    split = _split(means, n_neighbors, guard, seed, monitor)
+    monitor.resolved(building_entropy=split.building, other_entropy=split.other)
+
+    entropy[clustered] = values
+    cluster_entropy[clustered] = means[position]
+    confidence[clustered] = split.confidence(means)[position]
+    result[clustered[split.is_building(means)[position]]] = PointClass.BUILDING
+    return result.astype(np.uint8), entropy, cluster_entropy, confidence
+
+
+def _cluster_means(values: np.ndarray, position: np.ndarray, count: int) -> np.ndarray:
+    """Return the mean entropy of each cluster (equation 5), NaN where no point of it has one."""
+    defined = np.isfinite(values)
+    size = np.bincount(position[defined], minlength=count)
+    total = np.bincount(position[defined], values[defined], count)
+    return np.divide(total, size, out=np.full(count, np.nan), where=size > 0)
+
+
+@dataclass(frozen=True)
+class _Split:
+    """Two mean entropies, of buildings and of everything else; ``empty`` says that nothing is a building."""
+
+    building: float
+    other: float
+    empty: bool = False
+
+    def is_building(self, means: np.ndarray) -> np.ndarray:
+        """Return which clusters lie nearer to the buildings' mean."""
+        return (self.confidence(means) > 0.5) & (not self.empty)
+
+    def confidence(self, means: np.ndarray) -> np.ndarray:
+        """Return the distance to the others' mean over the sum of both distances."""
+        to_other, to_building = np.abs(means - self.other), np.abs(means - self.building)
+        both = to_other + to_building
+        # Beyond its own mean a cluster is no less sure.
+        outside = np.where(means <= self.building, 1.0, np.where(means >= self.other, 0.0, np.nan))
+        between = np.divide(to_other, both, out=np.full(len(means), 0.5), where=both > 0)
+        return np.where(np.isnan(outside) | (self.building == self.other), between, outside)
+
+
+def _split(means: np.ndarray, n_neighbors: int, guard: bool, seed: int, monitor: Monitor) -> _Split:
+    """Separate the clusters' mean entropies in two."""
+    known = means[np.isfinite(means)]
+    alike = len(known) < 2 or np.ptp(known) < _ALIKE
+    if alike and not guard:
+        one = "is only one cluster" if len(known) < 2 else "are only clusters of the same entropy"
+        monitor.warn(f"There {one}: nothing to separate, so nothing was called a building.")
+        same = float(known.mean()) if len(known) else np.nan
+        return _Split(same, same, empty=True)
+    if not alike:
+        two_means = cluster.KMeans(n_clusters=2, n_init=10, random_state=seed).fit(known[:, None])
+        low, high = sorted(two_means.cluster_centers_[:, 0].tolist())
+        plane, volume = reference_entropies(n_neighbors)
+        if not guard or low < (plane + volume) / 2 < high:
+            return _Split(low, high)
+    plane, volume = reference_entropies(n_neighbors)
+    monitor.warn(
+        "The entropies of the clusters don't form two groups; each cluster was compared "
+        f"with the entropy of planes ({plane:.2f}) and volumes ({volume:.2f}) instead."
+    )
+    return _Split(plane, volume)
+
+
+def reference_entropies(n_points: int, trials: int = 400) -> tuple[float, float]:
+    """Return the mean entropy of ``n_points`` random points on a disk and in a ball.
+
+    Fixed random numbers: the same count always gives the same two figures.
+    """
+    random = np.random.default_rng(0)
+    n_points = min(n_points, 500)  # beyond, the figures change by less than 0.01
+    directions = random.normal(size=(trials, n_points, 3))
+    ball = directions / np.linalg.norm(directions, axis=2, keepdims=True)
+    ball *= random.random((trials, n_points, 1)) ** (1 / 3)
+    angle = random.random((trials, n_points)) * 2 * np.pi
+    radius = np.sqrt(random.random((trials, n_points)))
+    disk = np.stack([radius * np.cos(angle), radius * np.sin(angle), np.zeros_like(angle)], axis=2)
+    return _mean_entropy(disk), _mean_entropy(ball)
+
+
+def _mean_entropy(points: np.ndarray) -> float:
+    offsets = points - points.mean(axis=1, keepdims=True)
+    products = np.einsum("tni,tnj->tij", offsets, offsets) / points.shape[1]
+    covariances = products[:, [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
+    return float(shannon_entropy_lps(symmetric_eigenvalues(covariances)).mean())

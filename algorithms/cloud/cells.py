@@ -1,0 +1,84 @@
+"""Square cells in plan: numbering points by them without ever holding the whole grid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..packages import csgraph, sparse
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Cells of ``size`` (m) from ``origin``, ``rows`` of them northward and ``columns`` eastward.
+
+    A cell's number is ``row * columns + column``. An empty border of one cell keeps the
+    neighbors of the outermost cells apart, so that numbers can be compared by their differences.
+    """
+
+    origin: tuple[float, float]
+    size: float
+    rows: int
+    columns: int
+
+    def number(self, xyz: np.ndarray) -> np.ndarray:
+        """Return the cell number (n,), int64, of points inside the grid."""
+        column = np.floor((xyz[:, 0] - self.origin[0]) / self.size).astype(np.int64) + 1
+        row = np.floor((xyz[:, 1] - self.origin[1]) / self.size).astype(np.int64) + 1
+        return row * self.columns + column
+
+    def center(self, number: np.ndarray) -> np.ndarray:
+        """Return easting and northing (m, 2) of the middle of cells."""
+        row, column = np.divmod(number, self.columns)
+        return np.column_stack([column - 0.5, row - 0.5]) * self.size + self.origin
+
+    @property
+    def around(self) -> tuple[int, ...]:
+        """Differences in number to the eight cells around a cell."""
+        return tuple(row * self.columns + column for row in (-1, 0, 1) for column in (-1, 0, 1) if row or column)
+
+
+def grid_over(xyz: np.ndarray, size: float) -> Grid:
+    """Return the grid of cells of ``size`` (m) whose first cell starts at the least easting and northing."""
+    low = xyz[:, :2].min(axis=0)
+    columns, rows = (np.floor((xyz[:, :2].max(axis=0) - low) / size).astype(np.int64) + 3).tolist()
+    return Grid((float(low[0]), float(low[1])), size, rows, columns)
+
+
+def connected_cells(grid: Grid, cells: np.ndarray) -> tuple[int, np.ndarray]:
+    """Group cells that touch by a side or a corner.
+
+    Parameters
+    ----------
+    grid : Grid
+        The grid that the numbers belong to.
+    cells : ndarray of shape (m,), int64
+        Cell numbers, ascending and each once.
+
+    Returns
+    -------
+    count : int
+        Number of groups.
+    group : ndarray of shape (m,), int32
+        Group of each cell, from 0.
+    """
+    if not len(cells):
+        return 0, np.zeros(0, np.int32)
+    here, there = [], []
+    # Four of the eight directions: the others are the same pairs seen from the other side.
+    for step in grid.around[4:]:
+        beside, found = find_cells(cells, cells + step)
+        here.append(np.flatnonzero(found))
+        there.append(beside[found])
+    rows, columns = np.concatenate(here), np.concatenate(there)
+    pairs = sparse.coo_matrix((np.ones(len(rows), bool), (rows, columns)), (len(cells), len(cells)))
+    return csgraph.connected_components(pairs, directed=False)
+
+
+def find_cells(cells: np.ndarray, wanted: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return where ``wanted`` numbers are in ``cells`` (ascending), and which of them are there."""
+    position = np.searchsorted(cells, wanted)
+    position[position == len(cells)] = 0
+    found = cells[position] == wanted if len(cells) else np.zeros(len(wanted), bool)
+    return position, found

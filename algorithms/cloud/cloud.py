@@ -1,0 +1,399 @@
+"""The point cloud in memory, and how it is read, made and written."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Optional, Union, cast
+
+import numpy as np
+
+from ..stage import Monitor
+from .copc import copc_header, write_copc
+from .dimensions import DIMENSIONS, Dimension
+from .formats import OF_COPC, WITH_WAVEFORMS, Layout
+from .header import COPC_HIERARCHY, COPC_INFO, LASZIP, Header, read_header
+from .las import open_header, read_points, write_points
+from .laz import check_compressible, need_lazrs
+from .outputs import COPC, LAS, LAZ, VPC, check_output, kind_of, replacing, same_file
+from .records import Records, find_extra, unit_factor
+from .units import Resolver, Units, crs_records, has_wkt, units_of, wkt_of
+from .vpc import read_tiles, tiles_of
+
+# What the header of every file written here says of the program that wrote it.
+SOFTWARE = b"LiDAR Buildings"
+_ORIGIN_STEP = 1000.0
+_NEW_SCALE = 0.001
+_LARGEST_INT = 2**31 - 1
+
+
+class Cloud:
+    """A point cloud: the records of a file, and what stages have set.
+
+    Memory: the records as they are in the file (20 to 67 bytes per point plus
+    extra bytes), plus each array that was set (1 to 12 bytes per point).
+    ``get("xyz")`` makes a new array of 24 bytes per point each time; keep it
+    no longer than needed.
+
+    Attributes
+    ----------
+    header : Header
+        Of the file, or as made for a new cloud.
+    points : structured array, (n,)
+        The records, laid out as ``header.layout``; never changed.
+    units : Units
+        Metres per unit of the file's coordinates.
+    wkt : str
+        WKT as in the file, else "EPSG:code", else "". It may be set to the full
+        WKT of that code: formats 6 to 10 and COPC, which know WKT only, are then
+        written with it.
+    origin : float64 array, (3,)
+        Metres; what ``get("xyz")`` is relative to. Set it to another cloud's
+        before comparing the two. Its z is 0: elevations stay elevations.
+    sources : list of Path
+        The files that were read.
+    """
+
+    def __init__(self, header: Header, points: np.ndarray, units: Units, sources: Optional[list[Path]] = None) -> None:
+        self.header, self.points, self.units = header, points, units
+        self.wkt = wkt_of(header)
+        self.sources = sources or []
+        self._changes: dict[str, np.ndarray] = {}
+        low = self._metres(np.array([points[axis].min() for axis in "XYZ"], float)[None])[0]
+        self.origin = np.append(np.floor(low[:2] / _ORIGIN_STEP) * _ORIGIN_STEP, 0.0)
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    @property
+    def withheld(self) -> np.ndarray:
+        """Points that the file says not to use, bool (n,)."""
+        return self.header.layout.get(self.points, "withheld").astype(bool)
+
+    @property
+    def _factors(self) -> np.ndarray:
+        return np.array([self.units.horizontal, self.units.horizontal, self.units.vertical])
+
+    def _metres(self, steps: np.ndarray, origin: Union[float, np.ndarray] = 0.0) -> np.ndarray:
+        """Return integer coordinates (m, 3) as metres from ``origin``."""
+        return steps * (self.header.scale * self._factors) + (self.header.offset * self._factors - origin)
+
+    def has(self, name: str) -> bool:
+        """Whether the cloud has the dimension of that Python name, read or set."""
+        dimension = _dimension(name)
+        if name == "xyz" or name in self._changes:
+            return True
+        if dimension.standard:
+            return name in self.header.layout.names
+        return all(find_extra(self.header.layout, dimension, i) is not None for i in range(len(dimension.disk)))
+
+    def get(self, name: str) -> np.ndarray:
+        """Return a dimension by its Python name, (n,) or (n, 3), in the dtype and unit of ``dimensions.py``.
+
+        ``xyz`` is float64, metres from ``origin``. What was set comes back as it
+        was set; the array may be a view, so don't change it. Heights and areas
+        that the file holds in its own unit (also under an alias, with its scale) come in metres.
+
+        Raises
+        ------
+        ValueError
+            If the cloud lacks it.
+        """
+        dimension = _dimension(name)
+        if name == "xyz":
+            return self._xyz()
+        if name in self._changes:
+            return self._changes[name]
+        if not self.has(name):
+            raise ValueError(f"The cloud has no {dimension.disk[0]} dimension.")
+        if dimension.standard:
+            return self.header.layout.get(self.points, name).astype(dimension.dtype, copy=False)
+        parts = [self._extra(dimension, i) for i in range(len(dimension.disk))]
+        return parts[0] if len(parts) == 1 else np.stack(parts, axis=1)
+
+    def _xyz(self) -> np.ndarray:
+        xyz = np.empty((len(self), 3))
+        scale = self.header.scale * self._factors
+        shift = self.header.offset * self._factors - self.origin
+        for i, axis in enumerate("XYZ"):
+            np.multiply(self.points[axis], scale[i], out=xyz[:, i])
+            xyz[:, i] += shift[i]
+        return xyz
+
+    def _extra(self, dimension: Dimension, component: int) -> np.ndarray:
+        at = cast(int, find_extra(self.header.layout, dimension, component))
+        values = self.header.layout.extras[at].decode(self.points[f"extra{at}"])
+        factor = unit_factor(dimension, self.units)
+        if values.dtype.kind == "f" and dimension.dtype[0] != "f":
+            values = np.nan_to_num(values)
+        return (values if factor == 1 else values * factor).astype(dimension.dtype)
+
+    def set(self, name: str, values: np.ndarray) -> None:
+        """Store a dimension by its Python name; it takes the place of one that the file has, also under an alias.
+
+        Parameters
+        ----------
+        name : str
+            Any of ``dimensions.py`` but ``xyz``.
+        values : array, (n,) or (n, 3)
+            In metres where it has a unit. Kept, not copied, where the dtype fits.
+
+        Raises
+        ------
+        ValueError
+            If the shape or a value does not fit, or the point format lacks the standard field.
+        """
+        dimension = _dimension(name)
+        if name == "xyz" or (dimension.standard and name not in self.header.layout.names):
+            raise ValueError(f"{dimension.disk[0]} can't be set in point format {self.header.layout.point_format}.")
+        self._changes[name] = _fitting(dimension, np.asarray(values), len(self))
+
+    def to_map(self, coordinates: np.ndarray) -> np.ndarray:
+        """Return local metres (m, 2 or 3) as float64 coordinates of the file, in its CRS and units."""
+        local = np.asarray(coordinates, float)
+        axes = local.shape[-1]
+        return (local + self.origin[:axes]) / self._factors[:axes]
+
+    def records(self, for_copc: bool = False) -> Records:
+        """Return what makes the output's records."""
+        convert = OF_COPC.__getitem__ if for_copc else int
+        return Records(self.points, self.header.layout, self._changes, self.units, convert)
+
+
+def _dimension(name: str) -> Dimension:
+    if name not in DIMENSIONS:
+        raise ValueError(f"There is no dimension {name!r}; dimensions.py lists those there are.")
+    return DIMENSIONS[name]
+
+
+def _fitting(dimension: Dimension, values: np.ndarray, n: int) -> np.ndarray:
+    """Return ``values`` in the dimension's dtype, or refuse what would be lost."""
+    shape = (n,) if len(dimension.disk) == 1 else (n, len(dimension.disk))
+    if values.shape != shape:
+        raise ValueError(f"{dimension.name} must have the shape {shape}, got {values.shape}.")
+    dtype = np.dtype(dimension.dtype)
+    if dtype.kind in "iu" and values.dtype != dtype and n:
+        low, high = values.min(), values.max()
+        limits = np.iinfo(dtype)
+        if not (limits.min <= low and high <= limits.max):
+            raise ValueError(f"{dimension.name} must be from {limits.min} to {limits.max}, got {low} to {high}.")
+    return values.astype(dtype, copy=False)
+
+
+def read_cloud(
+    path: Union[str, Path], monitor: Optional[Monitor] = None, crs_units: Optional[Resolver] = None
+) -> Cloud:
+    """Read a LAS, LAZ or COPC file, or all tiles of a virtual point cloud (VPC).
+
+    Parameters
+    ----------
+    path : str or Path
+        Its extension (.las, .laz, .vpc) says what it is.
+    monitor : Monitor, optional
+        Hears progress, and warnings about units.
+    crs_units : callable, optional
+        EPSG code -> (metres per horizontal unit, metres per vertical unit, whether
+        it is geographic), or None if unknown; asked when a file gives a code and no unit.
+
+    Raises
+    ------
+    ValueError
+        In one sentence, whatever is wrong with the file.
+    """
+    path, monitor = Path(path), monitor or Monitor()
+    try:
+        sources = _sources(path)
+        if len(sources) == 1:
+            header = open_header(sources[0])
+            units = units_of(header, crs_units)
+            points = read_points(sources[0], header, monitor)
+            header = header.without(LASZIP, COPC_INFO, COPC_HIERARCHY)
+        else:
+            units = units_of(open_header(sources[0]), crs_units)
+            header, points = read_tiles(sources, monitor)
+    except OSError as error:
+        raise ValueError(
+            f"{path} can't be read ({error.strerror or error}); check the file and its permissions."
+        ) from error
+    if units.warning:
+        monitor.warn(units.warning)
+    return Cloud(header, points, units, sources if sources == [path] else [*sources, path])
+
+
+def _sources(path: Path) -> list[Path]:
+    if path.is_dir():
+        raise ValueError(f"{path} is a folder; choose a point cloud file in it.")
+    kind = kind_of(path)
+    if not kind:
+        raise ValueError(
+            f"{path.name} is no point cloud that can be read; choose a .las, .laz, .copc.laz or .vpc file."
+        )
+    if not path.is_file():
+        raise ValueError(f"{path} does not exist; check the name.")
+    return tiles_of(path) if kind == VPC else [path]
+
+
+def create_cloud(arrays: dict[str, np.ndarray], wkt: str = "") -> Cloud:
+    """Make a cloud from dimensions: LAS 1.4, format 6 or, with colors, 7, scale 0.001.
+
+    Parameters
+    ----------
+    arrays : dict of str to array
+        By Python name; ``xyz`` (n, 3) in metres is needed.
+    wkt : str
+        WKT, "EPSG:code" or "": the cloud's CRS.
+
+    Returns
+    -------
+    Cloud
+        Its origin is 0, so that its local metres are those of ``xyz``.
+
+    Raises
+    ------
+    ValueError
+        If there are no points, or a coordinate is not finite or too large to store.
+    """
+    xyz = np.asarray(arrays["xyz"], float)
+    if not len(xyz) or not np.isfinite(xyz).all():
+        raise ValueError("A cloud needs points with finite coordinates; there are none or some are not.")
+    header = Header(software=SOFTWARE, count=len(xyz), layout=Layout(7 if "red" in arrays else 6))
+    header.vlrs, header.encoding = crs_records(wkt)
+    units = units_of(header)
+    coordinates = xyz / [units.horizontal, units.horizontal, units.vertical]
+    header.offset = np.floor(coordinates.min(axis=0) / _ORIGIN_STEP) * _ORIGIN_STEP
+    steps = np.rint((coordinates - header.offset) / _NEW_SCALE)
+    if steps.max() > _LARGEST_INT:
+        raise ValueError(
+            f"The cloud spans {np.ptp(xyz, axis=0).max():.0f} m, more than a file of millimetres can hold."
+        )
+    points = np.zeros(len(xyz), header.layout.dtype)
+    for i, axis in enumerate("XYZ"):
+        points[axis] = steps[:, i]
+    points["return_byte"] = 1 | 1 << 4
+    cloud = Cloud(header, points, units)
+    cloud.origin = np.zeros(3)
+    for name, values in arrays.items():
+        if name != "xyz":
+            cloud.set(name, values)
+    return cloud
+
+
+def write_cloud(
+    cloud: Cloud, path: Union[str, Path], monitor: Optional[Monitor] = None, copc_beside: bool = False
+) -> None:
+    """Write a cloud as LAS, LAZ or COPC, as ``path`` ends in .las, .laz or .copc.laz.
+
+    The file keeps point order (but in COPC), scale, offset, CRS, VLRs, EVLRs,
+    extra bytes, waveform references and every dimension that was not set. It
+    appears when it is complete; after a failure or cancel nothing is left.
+
+    QGIS with PDAL shows a file x.copc.laz in place of the x.las or x.laz beside it. An
+    old one that was written here is replaced or removed; anyone else's is left, with a warning.
+
+    Parameters
+    ----------
+    cloud : Cloud
+        Not changed.
+    path : str or Path
+        In an existing folder; none of the cloud's own sources.
+    monitor : Monitor, optional
+        Hears progress, and warnings about what the format changed.
+    copc_beside : bool
+        Also write x.copc.laz beside x.las or x.laz, for QGIS to show.
+
+    Raises
+    ------
+    ValueError
+        In one sentence, why the file can't be written.
+    """
+    path, monitor = Path(path), monitor or Monitor()
+    check_write(cloud, path, copc_beside)
+    if kind_of(path) == COPC:
+        _write_copc(cloud, path, monitor)
+        return
+    beside = copc_path(path)
+    _write_las(cloud, path, monitor.part(0.0, 0.4) if copc_beside else monitor)
+    if copc_beside:
+        _write_copc(cloud, beside, monitor.part(0.4, 1.0))
+    else:
+        _remove_stale(beside, cloud.sources, monitor)
+
+
+def check_write(cloud: Cloud, path: Union[str, Path], copc_beside: bool = False) -> None:
+    """Refuse what :func:`write_cloud` would refuse, before a long computation rather than after it.
+
+    Raises
+    ------
+    ValueError
+        If the path, or the one of the COPC beside it, can't be written or is a source of the cloud.
+    """
+    path = Path(path)
+    check_output(path, cloud.sources)
+    if kind_of(path) == COPC or copc_beside:
+        need_lazrs()
+    if kind_of(path) == LAZ:
+        check_compressible(cloud.records().layout.point_format)
+    if kind_of(path) != COPC and copc_beside:
+        check_output(copc_path(path), cloud.sources)
+
+
+def copc_path(path: Path) -> Path:
+    """Return the COPC file that QGIS looks for beside a LAS or LAZ file."""
+    return path.with_name(path.name[: -len(LAS)] + COPC)
+
+
+def _write_las(cloud: Cloud, path: Path, monitor: Monitor) -> None:
+    records = cloud.records()
+    header = _output_header(cloud, records)
+    if records.is_upgraded:
+        monitor.warn(
+            f"Classes over 31 don't fit point format {cloud.header.layout.point_format}; "
+            f"{path.name} is written in format {records.layout.point_format} (LAS 1.4)."
+        )
+    with replacing(path) as stream:
+        write_points(stream, header, lambda a, b: records.take(slice(a, b)), kind_of(path) == LAZ, monitor)
+
+
+def _write_copc(cloud: Cloud, path: Path, monitor: Monitor) -> None:
+    records = cloud.records(for_copc=True)
+    old, new = cloud.header.layout.point_format, records.layout.point_format
+    if old != new:
+        lost = "; its waveform references are left out" if old in WITH_WAVEFORMS else ""
+        monitor.warn(
+            f"COPC holds point formats 6 to 8 only: {path.name} is written in format {new} instead of {old}{lost}."
+        )
+    header = copc_header(_output_header(cloud, records))
+    with replacing(path) as stream:
+        write_copc(stream, header, cloud.points, records.take, monitor)
+
+
+def _output_header(cloud: Cloud, records: Records) -> Header:
+    header = replace(cloud.header, software=SOFTWARE)
+    if records.layout != header.layout:
+        header = header.with_layout(records.layout)
+    if header.layout.is_old:
+        return header
+    header = replace(header, minor=4)
+    if '"' in cloud.wkt and not has_wkt(header):
+        vlrs, bits = crs_records(cloud.wkt)
+        header = replace(header, vlrs=[*header.vlrs, *vlrs], encoding=header.encoding | bits)
+    return header
+
+
+def _remove_stale(beside: Path, sources: list[Path], monitor: Monitor) -> None:
+    """Remove an old COPC file that QGIS would show instead of the file just written."""
+    if not beside.is_file():
+        return
+    ours = not any(same_file(beside, source) for source in sources) and _is_ours(beside)
+    if ours:
+        beside.unlink()
+    else:
+        monitor.warn(f"{beside.name} lies beside the output, and QGIS may show it instead; move or remove it.")
+
+
+def _is_ours(path: Path) -> bool:
+    """Whether a file was written by :func:`write_cloud`; one that can't be read was not."""
+    try:
+        return read_header(path).software.split(b"\0")[0] == SOFTWARE
+    except (ValueError, OSError):
+        return False

@@ -1,0 +1,259 @@
+"""COPC files: LAZ whose chunks are the nodes of an octree (copc.io, specification 1.0)."""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass, replace
+from typing import BinaryIO, Callable
+
+import numpy as np
+
+from ..stage import Monitor
+from .header import COPC_HIERARCHY, COPC_INFO, LASZIP, WAVEFORMS, WKT_BIT, Header, Record
+from .las import AT_ONCE, Tally, finish
+from .laz import laszip_record, need_lazrs
+from .units import has_wkt
+
+# A node with no more points than this holds them all and has no children.
+_LEAF_POINTS = 65_536
+# Levels of the grid within a node: 2^7 = 128 cells along its side, one point of each is shown at the node's level.
+_GRID_LEVELS = 7
+# Bits per axis of a position in the root cube; three of them fill a 64-bit Morton code.
+_BITS = 21
+# Points are sorted within the cubes of the second level, one at a time.
+_TOP_BITS = 6
+_DEEPEST = _BITS - _GRID_LEVELS
+# center, halfsize, spacing, root hierarchy offset and size, GPS time range, reserved
+_INFO = struct.Struct("<3dddQQdd11Q")
+_ENTRY = np.dtype([("key", "<i4", 4), ("offset", "<u8"), ("size", "<i4"), ("count", "<i4")])
+_EVLR_HEAD = 60
+# Which points a level shows is drawn by lot, always the same one.
+_SEED = 0
+# The index of LAStools counts points in the order of the old file.
+_LAX = (b"LAStools", 30)
+_WAVEFORM_BITS = 2 | 4
+
+
+@dataclass(frozen=True)
+class Octree:
+    """Points by node: node i holds ``order[ends[i-1]:ends[i]]``.
+
+    Attributes
+    ----------
+    low : array, (3,)
+        Least corner of the root cube, in file coordinates.
+    side : float
+        Its side.
+    order : integer array, (n,)
+        Positions of the points, node after node.
+    keys : int array, (m, 4)
+        Level, x, y, z of each node.
+    ends : int array, (m,)
+        Where each node's points end in ``order``.
+    """
+
+    low: np.ndarray
+    side: float
+    order: np.ndarray
+    keys: np.ndarray
+    ends: np.ndarray
+
+    @property
+    def spacing(self) -> float:
+        """Distance of the points that the root shows."""
+        return self.side / 2**_GRID_LEVELS
+
+
+def build_octree(points: np.ndarray, header: Header, monitor: Monitor) -> Octree:
+    """Sort points into the nodes of an octree, coarse samples above, the rest below.
+
+    Each node takes one point, drawn by lot, of every occupied cell of its grid,
+    and passes the others on to its children; with 65 536 points or fewer it takes all.
+
+    Parameters
+    ----------
+    points : structured array, (n,)
+        With X, Y, Z.
+    header : Header
+        Gives their scale and offset.
+    monitor : Monitor
+        Hears progress.
+    """
+    low, side = _cube(points, header)
+    codes = np.empty(len(points), np.uint64)
+    for start in range(0, len(points), AT_ONCE):
+        monitor.progress(0.3 * start / len(points))
+        part = slice(start, start + AT_ONCE)
+        codes[part] = _morton(points[part], header, low, side)
+    order = _sorted(codes, monitor.part(0.3, 0.5))
+    codes = codes[order]
+    levels = _levels(codes, monitor.part(0.5, 1.0))
+    by_level = np.argsort(levels, kind="stable")
+    keys, ends = _nodes(codes[by_level], levels[by_level])
+    return Octree(low, side, order[by_level], keys, ends)
+
+
+def _cube(points: np.ndarray, header: Header) -> tuple[np.ndarray, float]:
+    ends = np.array([[points[axis].min(), points[axis].max()] for axis in "XYZ"], float).T
+    low, high = np.sort(ends * header.scale + header.offset, axis=0)
+    # One step wider, so that the largest coordinate lies inside the last cell.
+    return low, float((high - low).max() + np.abs(header.scale).max())
+
+
+def _morton(points: np.ndarray, header: Header, low: np.ndarray, side: float) -> np.ndarray:
+    """Return the cells of the finest grid in Morton order: x in the lowest of each three bits."""
+    code = np.zeros(len(points), np.uint64)
+    for i, axis in enumerate("XYZ"):
+        along = (points[axis] * header.scale[i] + (header.offset[i] - low[i])) * (2**_BITS / side)
+        code |= _spread(np.clip(along, 0, 2**_BITS - 1).astype(np.uint64)) << np.uint64(i)
+    return code
+
+
+def _sorted(codes: np.ndarray, monitor: Monitor) -> np.ndarray:
+    """Return the order of ``codes``, found cube by cube so that it can be cancelled."""
+    top = (codes >> np.uint64(3 * _BITS - _TOP_BITS)).astype(np.uint8)
+    order = np.argsort(top, kind="stable")
+    start = 0
+    for count in np.bincount(top):
+        monitor.progress(start / len(codes))
+        part = order[start : start + count]
+        part[:] = part[np.argsort(codes[part], kind="stable")]
+        start += count
+    return order
+
+
+_SPREAD = (
+    (32, 0x1F00000000FFFF),
+    (16, 0x1F0000FF0000FF),
+    (8, 0x100F00F00F00F00F),
+    (4, 0x10C30C30C30C30C3),
+    (2, 0x1249249249249249),
+)
+
+
+def _spread(cells: np.ndarray) -> np.ndarray:
+    """Put two zero bits between all bits of 21-bit numbers."""
+    for shift, mask in _SPREAD:
+        cells = (cells | cells << np.uint64(shift)) & np.uint64(mask)
+    return cells
+
+
+def _gathered(code: int, axis: int) -> int:
+    """Return the bits of one axis of a Morton code."""
+    return sum((code >> (3 * bit + axis) & 1) << bit for bit in range(_BITS))
+
+
+def _levels(codes: np.ndarray, monitor: Monitor) -> np.ndarray:
+    """Return the octree level of each point, uint8 (n,); ``codes`` is sorted."""
+    random = np.random.default_rng(_SEED)
+    levels = np.empty(len(codes), np.uint8)
+    left = np.arange(len(codes))
+    for level in range(_DEEPEST + 1):
+        monitor.progress(1 - len(left) / len(codes))
+        current = codes[left]
+        taken = _in_leaves(current >> np.uint64(3 * (_BITS - level)), level)
+        first = _starts(current >> np.uint64(3 * (_BITS - level - _GRID_LEVELS)))
+        lengths = np.diff(np.append(first, len(current)))
+        taken[first + (random.random(len(first)) * lengths).astype(np.int64)] = True
+        levels[left[taken]] = level
+        left = left[~taken]
+        if not len(left):
+            break
+    return levels
+
+
+def _in_leaves(nodes: np.ndarray, level: int) -> np.ndarray:
+    """Return which points lie in nodes that hold all that is left, bool (n,)."""
+    first = _starts(nodes)
+    counts = np.diff(np.append(first, len(nodes)))
+    return np.repeat((counts <= _LEAF_POINTS) | (level == _DEEPEST), counts)
+
+
+def _starts(values: np.ndarray) -> np.ndarray:
+    """Return where runs of equal values begin."""
+    return np.flatnonzero(np.concatenate(([True], values[1:] != values[:-1])))
+
+
+def _nodes(codes: np.ndarray, levels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return keys (m, 4) and ends (m,) of the nodes of points sorted by level and code."""
+    nodes = codes >> (np.uint64(3) * (np.uint64(_BITS) - levels.astype(np.uint64)))
+    changes = (nodes[1:] != nodes[:-1]) | (levels[1:] != levels[:-1])
+    first = np.flatnonzero(np.concatenate(([True], changes)))
+    keys = [(int(levels[i]), *(_gathered(int(nodes[i]), axis) for axis in range(3))) for i in first]
+    return np.array(keys, np.int32), np.append(first[1:], len(codes))
+
+
+def copc_header(header: Header) -> Header:
+    """Return ``header`` as COPC wants it: LAS 1.4, the info record first, nothing about waveforms and old orders."""
+    kept = header.without(LASZIP, COPC_INFO, COPC_HIERARCHY, WAVEFORMS, _LAX)
+    encoding = kept.encoding & ~_WAVEFORM_BITS | (WKT_BIT if has_wkt(kept) else 0)
+    info = Record(*COPC_INFO, bytes(_INFO.size), description=b"COPC info")
+    return replace(kept, minor=4, user_bytes=b"", gap=b"", waveforms_at=0, encoding=encoding, vlrs=[info, *kept.vlrs])
+
+
+def write_copc(
+    stream: BinaryIO, header: Header, points: np.ndarray, take: Callable[[np.ndarray], np.ndarray], monitor: Monitor
+) -> None:
+    """Write a whole COPC file to ``stream``; takes about 50 bytes of memory per point beside the cloud.
+
+    Parameters
+    ----------
+    stream : file
+        New and empty.
+    header : Header
+        From :func:`copc_header`, with the layout of what ``take`` gives.
+    points : structured array, (n,)
+        The cloud, for X, Y, Z.
+    take : callable
+        Gives the output's records of the points at positions (m,).
+    monitor : Monitor
+        Hears progress.
+
+    Raises
+    ------
+    ValueError
+        If lazrs is not installed.
+    """
+    lazrs = need_lazrs()
+    octree = build_octree(points, header, monitor.part(0.0, 0.2))
+    layout = header.layout
+    vlr = lazrs.LazVlr.new_for_compression(layout.point_format, layout.extra_size, True)
+    header.vlrs, header.is_compressed = [*header.vlrs, laszip_record(vlr)], True
+    header.write(stream)
+    tally, times = _write_nodes(lazrs.ParLasZipCompressor(stream, vlr), header, octree, take, monitor.part(0.2, 1.0))
+    stream.seek(header.points_at)
+    sizes = np.array([size for _, size in lazrs.read_chunk_table(stream, vlr)], np.int64)
+    _describe(stream, header, octree, sizes, times)
+    finish(stream, header, tally)
+    monitor.progress(1.0)
+
+
+def _write_nodes(zipper, header: Header, octree: Octree, take: Callable, monitor: Monitor) -> tuple[Tally, list[float]]:
+    """Compress node after node, as many at once as make a good portion of work."""
+    tally, times = Tally(), [np.inf, -np.inf]
+    start = first = 0
+    while first < len(octree.ends):
+        monitor.progress(start / len(octree.order))
+        last = max(first + 1, int(np.searchsorted(octree.ends, start + AT_ONCE, side="right")))
+        points = take(octree.order[start : octree.ends[last - 1]])
+        tally.add(points, header)
+        times = [min(times[0], points["gps_time"].min()), max(times[1], points["gps_time"].max())]
+        inner = np.split(points, octree.ends[first : last - 1] - start)
+        zipper.compress_chunks([np.ascontiguousarray(node).view(np.uint8) for node in inner])
+        start, first = int(octree.ends[last - 1]), last
+    zipper.done()
+    return tally, times
+
+
+def _describe(stream: BinaryIO, header: Header, octree: Octree, sizes: np.ndarray, times: list[float]) -> None:
+    """Fill in the info record and put the hierarchy before the other EVLRs."""
+    entries = np.zeros(len(sizes), _ENTRY)
+    entries["key"], entries["size"], entries["count"] = octree.keys, sizes, np.diff(octree.ends, prepend=0)
+    # The chunks begin behind the position of the chunk table.
+    entries["offset"] = header.points_at + 8 + np.cumsum(sizes) - sizes
+    hierarchy = Record(*COPC_HIERARCHY, entries.tobytes(), description=b"EPT hierarchy")
+    header.evlrs = [hierarchy, *header.evlrs]
+    at = stream.seek(0, 2) + _EVLR_HEAD
+    center = octree.low + octree.side / 2
+    info = _INFO.pack(*center, octree.side / 2, octree.spacing, at, len(hierarchy), *times, *(0,) * 11)
+    header.vlrs = [replace(header.vlrs[0], data=info), *header.vlrs[1:]]

@@ -1,0 +1,155 @@
+"""Virtual point clouds: a STAC collection in JSON that names the tiles of one cloud."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from ..stage import Monitor
+from .header import COPC_HIERARCHY, COPC_INFO, LASZIP, WAVEFORMS, Header, Record
+from .las import open_header, read_chunks
+from .outputs import COPC, LAS, LAZ, kind_of
+from .records import convert, merged_layout
+from .units import crs_identity, wkt_of
+
+_LARGEST_INT = 2**31 - 1
+_GPS_TIME_BIT = 1
+_DATA_ROLE = "data"
+
+
+def tiles_of(path: Path) -> list[Path]:
+    """Return the tiles that a virtual point cloud names, in its order.
+
+    Raises
+    ------
+    ValueError
+        If the file is no virtual point cloud, names no tiles, or one of them is missing.
+    """
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+        hrefs = [href for feature in content["features"] for href in _hrefs(feature["assets"])]
+    except (ValueError, KeyError, TypeError, AttributeError):
+        raise ValueError(
+            f"{path.name} is not a virtual point cloud: it is no STAC feature collection with assets."
+        ) from None
+    if not hrefs:
+        raise ValueError(f"{path.name} names no tiles; build it again.")
+    return [_tile(path, href) for href in hrefs]
+
+
+def _hrefs(assets: dict) -> list[str]:
+    """Return the point clouds of one feature; overviews repeat points of the tiles and are left out."""
+    data = [asset for asset in assets.values() if _DATA_ROLE in asset.get("roles", ())]
+    return [str(asset["href"]) for asset in (data or list(assets.values())[:1])]
+
+
+def _tile(path: Path, href: str) -> Path:
+    if "://" in href:
+        raise ValueError(
+            f"{path.name} names the tile {href}, which is not a local file; download it and build {path.name} again."
+        )
+    tile = path.parent / href
+    if kind_of(tile) not in (LAS, LAZ, COPC):
+        raise ValueError(f"{path.name} names the tile {href}, which is no LAS, LAZ or COPC file.")
+    if not tile.is_file():
+        raise ValueError(
+            f"{path.name} names the tile {href}, which is missing; put it back or build {path.name} again."
+        )
+    return tile
+
+
+def read_tiles(paths: list[Path], monitor: Monitor) -> tuple[Header, np.ndarray]:
+    """Return all tiles as one cloud, tile after tile: its header and its records.
+
+    The merged cloud has the finest scale of the tiles, all their dimensions and
+    the records (VLRs) of all, the first tile's first.
+
+    Raises
+    ------
+    ValueError
+        If tiles have different coordinate reference systems, or span more than their scale can store.
+    """
+    headers = [open_header(path) for path in paths]
+    _check_crs(paths, headers)
+    header = _merged_header(headers, monitor)
+    points = np.zeros(header.count, header.layout.dtype)
+    start = 0
+    for path, tile in zip(paths, headers):
+        part = monitor.part(start / header.count, (start + tile.count) / header.count)
+        for at, chunk in read_chunks(path, tile, part):
+            out = points[start + at : start + at + len(chunk)]
+            convert(chunk, tile.layout, header.layout, out)
+            _rescale(chunk, tile, header, out)
+        start += tile.count
+    return header, points
+
+
+def _check_crs(paths: list[Path], headers: list[Header]) -> None:
+    seen = [crs_identity(wkt_of(header)) for header in headers]
+    for path, one in zip(paths, seen):
+        if one != seen[0]:
+            raise ValueError(
+                f"The tiles {paths[0].name} and {path.name} have different coordinate reference systems "
+                f"({seen[0][:40] or 'none'}, {one[:40] or 'none'}); reproject them to one first."
+            )
+
+
+def _merged_header(headers: list[Header], monitor: Monitor) -> Header:
+    first = headers[0]
+    if any(header.find(WAVEFORMS) for header in headers):
+        monitor.warn("The waveforms of the tiles are not merged; their references are kept.")
+    if any((header.encoding ^ first.encoding) & _GPS_TIME_BIT for header in headers):
+        monitor.warn("The tiles count GPS time in different ways; the values are kept as they are.")
+    layout = merged_layout([header.layout for header in headers])
+    scale, offset = _grid(headers)
+    apart = [header.without(LASZIP, COPC_INFO, COPC_HIERARCHY, WAVEFORMS) for header in headers]
+    merged = replace(
+        apart[0],
+        minor=max(header.minor for header in headers),
+        count=sum(header.count for header in headers),
+        scale=scale,
+        offset=offset,
+        waveforms_at=0,
+        user_bytes=b"",
+        gap=b"",
+        vlrs=_union([header.vlrs for header in apart]),
+        evlrs=_union([header.evlrs for header in apart]),
+    )
+    return merged.with_layout(layout)
+
+
+def _union(lists: list[list[Record]]) -> list[Record]:
+    """Return the first list and, of the others, the records with a user and record id not seen before."""
+    records = list(lists[0])
+    for added in (record for others in lists[1:] for record in others):
+        if all(record.key != added.key for record in records):
+            records.append(added)
+    return records
+
+
+def _grid(headers: list[Header]) -> tuple[np.ndarray, np.ndarray]:
+    """Return scale and offset that hold all tiles: the first's offset if the finest scale reaches from there."""
+    scale = np.min([np.abs(header.scale) for header in headers], axis=0)
+    low = np.min([header.low for header in headers], axis=0)
+    high = np.max([header.high for header in headers], axis=0)
+    offset = headers[0].offset.copy()
+    far = np.maximum(np.abs(low - offset), np.abs(high - offset)) > scale * _LARGEST_INT
+    offset[far] = np.round((low + high)[far] / 2)
+    if (np.maximum(offset - low, high - offset) > scale * _LARGEST_INT).any():
+        raise ValueError(
+            f"The tiles span {(high - low).max():.0f} units, too far for their scale {scale.min():g}; take fewer."
+        )
+    return scale, offset
+
+
+def _rescale(chunk: np.ndarray, tile: Header, merged: Header, out: np.ndarray) -> None:
+    for i, axis in enumerate("XYZ"):
+        if tile.scale[i] == merged.scale[i] and tile.offset[i] == merged.offset[i]:
+            continue
+        steps = np.rint((chunk[axis] * tile.scale[i] + (tile.offset[i] - merged.offset[i])) / merged.scale[i])
+        if np.abs(steps).max() > _LARGEST_INT:
+            raise ValueError("A tile has points outside the bounds in its header; repair its header first.")
+        out[axis] = steps

@@ -1,0 +1,299 @@
+"""Eigenvalues of neighborhoods: the core that every covariance feature shares.
+
+Neighborhoods are gathered in chunks, so that the workspace stays small however
+many points there are, and the chunks are shared out among threads: the k-d tree
+and numpy both let go of the interpreter while they work. The result depends on
+neither the chunks nor the number of threads.
+"""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import Any, Callable, Optional, Union
+
+import numpy as np
+
+from ..packages import spatial
+from ..stage import Monitor
+
+# Neighbors gathered at once by one thread: 40 bytes each, so 20 MB, which also fits caches best.
+_CHUNK_NEIGHBORS = 500_000
+
+# Fewer points than this have no covariance worth the name.
+MIN_NEIGHBORS = 3
+
+# Order of the six numbers of a symmetric matrix: xx, yy, zz, xy, xz, yz.
+_PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+
+# A neighborhood larger than this on average is a radius chosen by mistake: it would run for days.
+_MAX_MEAN_NEIGHBORS = 20_000
+
+
+@dataclass(frozen=True)
+class Nearest:
+    """The ``count`` points nearest to a point, itself among them; all points where there are fewer."""
+
+    count: int
+
+    def rows_per_chunk(self, n_points: int) -> int:
+        """Return how many points are worked on at once."""
+        return max(1, _CHUNK_NEIGHBORS // min(self.count, n_points))
+
+    def covariances(self, columns: np.ndarray, tree: Any, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return covariances (m, 6) of the points ``rows`` with their neighbors, and neighbors counted (m,)."""
+        neighbors, _, covariances = self.moments(columns, tree, rows)
+        return covariances, np.full(len(rows), neighbors.shape[1])
+
+    def moments(
+        self, columns: np.ndarray, tree: Any, rows: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return neighbors (m, k), their centers (m, 3) and covariances (m, 6) of the points ``rows``."""
+        own = columns[:, rows]
+        count = min(self.count, columns.shape[1])
+        neighbors = tree.query(own.T, k=count)[1].reshape(len(rows), count)
+        # Offsets to the point itself are exact however large the coordinates are.
+        offsets = [np.take(column, neighbors) - start[:, None] for column, start in zip(columns, own)]
+        means = [offset.mean(axis=1) for offset in offsets]
+        products = [np.einsum("ij,ij->i", offsets[a], offsets[b]) / count - means[a] * means[b] for a, b in _PAIRS]
+        return neighbors, own.T + np.column_stack(means), np.column_stack(products)
+
+
+@dataclass(frozen=True)
+class Within:
+    """All points at most ``radius`` (m) from a point, itself among them."""
+
+    radius: float
+
+    def check(self, xyz: np.ndarray, tree: Any) -> None:
+        """Raise ValueError when the radius holds far more points than a local feature can mean."""
+        sample = xyz[:: max(1, len(xyz) // 100)]
+        mean = tree.query_ball_point(sample, self.radius, return_length=True).mean()
+        if mean > _MAX_MEAN_NEIGHBORS:
+            raise ValueError(
+                f"A radius of {self.radius:g} m holds {mean:,.0f} points on average, more than {_MAX_MEAN_NEIGHBORS:,}; "
+                "choose a smaller radius or thin the cloud first."
+            )
+
+    def rows_per_chunk(self, n_points: int) -> int:
+        """Return how many points are worked on at once."""
+        return 20_000
+
+    def covariances(self, columns: np.ndarray, tree: Any, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return covariances (m, 6) of the points ``rows`` with their neighbors, and neighbors counted (m,)."""
+        own = columns[:, rows].T
+        counts = tree.query_ball_point(own, self.radius, return_length=True)
+        # Dense spots get smaller parts, so that memory does not follow the densest place.
+        part = np.cumsum(counts) // _CHUNK_NEIGHBORS
+        starts = np.flatnonzero(np.diff(part, prepend=-1))
+        parts = [_ball_covariances(columns, tree, points, self.radius) for points in np.split(own, starts[1:])]
+        return np.concatenate(parts), counts
+
+
+def _ball_covariances(columns: np.ndarray, tree: Any, points: np.ndarray, radius: float) -> np.ndarray:
+    """Return the covariances (m, 6) of all points of ``tree`` within ``radius`` of each of ``points`` (m, 3)."""
+    pairs = spatial.cKDTree(points).sparse_distance_matrix(tree, radius, output_type="ndarray")
+    row, neighbor = pairs["i"], pairs["j"]
+    offsets = [np.take(column, neighbor) - np.take(start, row) for column, start in zip(columns, points.T)]
+    size = len(points)
+    count = np.bincount(row, minlength=size)
+    means = [np.bincount(row, offset, size) / count for offset in offsets]
+    products = [np.bincount(row, offsets[a] * offsets[b], size) / count - means[a] * means[b] for a, b in _PAIRS]
+    return np.column_stack(products)
+
+
+def reduce_neighborhoods(
+    xyz: np.ndarray,
+    neighborhood: Union[Nearest, Within],
+    reduce: Callable[[np.ndarray, np.ndarray, np.ndarray], None],
+    tree: Any = None,
+    monitor: Optional[Monitor] = None,
+) -> None:
+    """Call ``reduce(rows, covariances, counts)`` for all points, chunk by chunk, in threads.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Coordinates (m).
+    neighborhood : Nearest or Within
+        Which points belong to a point.
+    reduce : callable
+        Stores what it makes of the points ``rows`` (m,), their ``covariances`` (m, 6; xx, yy, zz,
+        xy, xz, yz; m²) and the ``counts`` (m,) of their neighbors. Chunks never share a row.
+    tree : scipy.spatial.cKDTree, optional
+        Tree of ``xyz``, built when absent.
+    monitor : Monitor, optional
+        Hears progress.
+
+    Raises
+    ------
+    ValueError
+        If a radius holds more than 20,000 points on average.
+    """
+    monitor = monitor or Monitor()
+    xyz = np.asarray(xyz, dtype=np.float64)
+    tree = spatial.cKDTree(xyz) if tree is None else tree
+    if isinstance(neighborhood, Within):
+        neighborhood.check(xyz, tree)
+    columns = np.ascontiguousarray(xyz.T)
+    # In the order of the tree's leaves the neighbors of one chunk lie together in memory.
+    size = neighborhood.rows_per_chunk(len(xyz))
+    chunks = [tree.indices[start : start + size] for start in range(0, len(xyz), size)]
+
+    def work(rows: np.ndarray) -> None:
+        reduce(rows, *neighborhood.covariances(columns, tree, rows))
+
+    pool = ThreadPoolExecutor(os.cpu_count() or 1)
+    try:
+        for done, _ in enumerate(pool.map(work, chunks), start=1):
+            monitor.progress(done / len(chunks))
+    finally:
+        # A cancelled run must not go on in the background.
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+def neighborhood_eigenvalues(
+    xyz: np.ndarray, tree: Any = None, n_neighbors: int = 50, monitor: Optional[Monitor] = None
+) -> np.ndarray:
+    """Return the eigenvalues of the covariance of each point with its nearest neighbors.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Coordinates (m), of any magnitude.
+    tree : scipy.spatial.cKDTree, optional
+        Tree of ``xyz``, built when absent.
+    n_neighbors : int
+        Points per neighborhood, the point itself among them.
+    monitor : Monitor, optional
+        Hears progress.
+
+    Returns
+    -------
+    ndarray of shape (n, 3), float64
+        l1 >= l2 >= l3 >= 0 (m²); NaN where there are fewer than three neighbors or all coincide.
+    """
+    eigenvalues = np.empty((len(xyz), 3))
+
+    def keep(rows: np.ndarray, covariances: np.ndarray, counts: np.ndarray) -> None:
+        eigenvalues[rows] = defined_eigenvalues(covariances, counts)
+
+    reduce_neighborhoods(xyz, Nearest(n_neighbors), keep, tree, monitor)
+    return eigenvalues
+
+
+def defined_eigenvalues(covariances: np.ndarray, counts: np.ndarray) -> np.ndarray:
+    """Return the eigenvalues (m, 3) of covariances (m, 6), NaN where a neighborhood has no extent or under 3 points."""
+    eigenvalues = symmetric_eigenvalues(covariances)
+    eigenvalues[(counts < MIN_NEIGHBORS) | (eigenvalues[:, 0] <= 0)] = np.nan
+    return eigenvalues
+
+
+def symmetric_eigenvalues(covariances: np.ndarray) -> np.ndarray:
+    """Return the eigenvalues of positive semidefinite 3 x 3 matrices, in closed form.
+
+    Parameters
+    ----------
+    covariances : ndarray of shape (m, 6)
+        xx, yy, zz, xy, xz, yz of each matrix.
+
+    Returns
+    -------
+    ndarray of shape (m, 3), float64
+        l1 >= l2 >= l3 >= 0, right to about 1e-13 of l1.
+
+    Notes
+    -----
+    The trigonometric solution of the characteristic polynomial. Where two eigenvalues are nearly equal the angle
+    loses half its digits, so those matrices go to LAPACK.
+    """
+    xx, yy, zz, xy, xz, yz = np.asarray(covariances, dtype=np.float64).T
+    mean = (xx + yy + zz) / 3
+    ax, ay, az = xx - mean, yy - mean, zz - mean
+    spread = np.sqrt((ax * ax + ay * ay + az * az + 2 * (xy * xy + xz * xz + yz * yz)) / 6)
+    determinant = ax * (ay * az - yz * yz) - xy * (xy * az - yz * xz) + xz * (xy * yz - ay * xz)
+    cubed = spread**3
+    cosine = np.divide(determinant, 2 * cubed, out=np.ones_like(mean), where=cubed > 0)
+    angle = np.arccos(np.clip(cosine, -1, 1)) / 3
+    largest = mean + 2 * spread * np.cos(angle)
+    smallest = mean + 2 * spread * np.cos(angle + 2 * np.pi / 3)
+    eigenvalues = np.column_stack([largest, 3 * mean - largest - smallest, smallest])
+    doubtful = np.flatnonzero(np.abs(cosine) > 1 - 1e-6)
+    if len(doubtful):
+        eigenvalues[doubtful] = np.linalg.eigvalsh(full_matrices(covariances[doubtful]))[:, ::-1]
+    # Rounding may leave a flat neighborhood a tiny negative extent.
+    return np.maximum(eigenvalues, 0, out=eigenvalues)
+
+
+def smallest_eigenvectors(covariances: np.ndarray, eigenvalues: np.ndarray) -> np.ndarray:
+    """Return the unit eigenvectors of the smallest eigenvalues, turned upward.
+
+    Parameters
+    ----------
+    covariances : ndarray of shape (m, 6)
+        xx, yy, zz, xy, xz, yz of each matrix.
+    eigenvalues : ndarray of shape (m, 3)
+        Those of the matrices, largest first; NaN gives NaN.
+
+    Returns
+    -------
+    ndarray of shape (m, 3), float64
+        Normals, n_z >= 0. On a line, where every direction across it would do, one of them.
+    """
+    # In units of l1, so that neither small nor large neighborhoods leave the range of floats.
+    largest = np.where(eigenvalues[:, 0] > 0, eigenvalues[:, 0], np.nan)
+    matrices = full_matrices(covariances / largest[:, None])
+    shifted = matrices - (eigenvalues[:, 2] / largest)[:, None, None] * np.eye(3)
+    # All rows of the shifted matrix lie across the eigenvector: two of them give it, the most independent two best.
+    crosses = np.cross(shifted[:, [0, 0, 1]], shifted[:, [1, 2, 2]])
+    sizes = np.einsum("ijk,ijk->ij", crosses, crosses)
+    best = np.argmax(sizes, axis=1)
+    every = np.arange(len(best))
+    normals, size = crosses[every, best], np.sqrt(sizes[every, best])
+    doubtful = np.flatnonzero(size < 1e-6)
+    if len(doubtful):
+        normals[doubtful] = np.linalg.eigh(matrices[doubtful])[1][:, :, 0]
+        size[doubtful] = 1.0
+    normals /= size[:, None]
+    return np.where(normals[:, 2:] < 0, -normals, normals)
+
+
+def full_matrices(covariances: np.ndarray) -> np.ndarray:
+    """Return (m, 3, 3) symmetric matrices from their six numbers (m, 6)."""
+    return np.asarray(covariances)[:, [0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(-1, 3, 3)
+
+
+def dimensionality(eigenvalues: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return linearity, planarity and scattering (n,) of eigenvalues (n, 3); they add up to 1."""
+    first, second, third = np.asarray(eigenvalues).T
+    return (first - second) / first, (second - third) / first, third / first
+
+
+def shannon_entropy(*shares: np.ndarray) -> np.ndarray:
+    """Return -sum s ln s of shares that add up to 1, with 0 ln 0 = 0; NaN stays NaN."""
+    total = np.zeros(len(shares[0]))
+    for share in shares:
+        total -= share * np.log(share, out=np.zeros(len(share)), where=~(share <= 0))
+    # Adding and subtracting zeros may leave -0.
+    return total + 0.0
+
+
+def shannon_entropy_lps(eigenvalues: np.ndarray) -> np.ndarray:
+    """Return the Shannon entropy of linearity, planarity and scattering.
+
+    Parameters
+    ----------
+    eigenvalues : ndarray of shape (n, 3)
+        l1 >= l2 >= l3 >= 0.
+
+    Returns
+    -------
+    ndarray of shape (n,), float64
+        E = -L ln L - P ln P - S ln S, from 0 (purely one of them) to ln 3; NaN where the eigenvalues are.
+
+    References
+    ----------
+    Santos et al. (2019), Building detection from LiDAR data using entropy and the k-means concept, equations 6-9.
+    """
+    return shannon_entropy(*dimensionality(eigenvalues))

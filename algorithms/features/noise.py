@@ -1,0 +1,61 @@
+"""How rough smooth surfaces look in a cloud: the noise that tolerances are tied to."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..packages import spatial
+from .eigen import Nearest, symmetric_eigenvalues
+
+# Points whose surroundings are looked at, about.
+_SAMPLE = 20_000
+
+_NEIGHBORS = 12
+
+# A fifth of the surroundings of any cloud with ground in it is open ground or roof.
+_SMOOTH_SHARE = 0.2
+
+# Coordinates are stored to a centimetre or a millimetre: no noise below that can be told.
+_LEAST_NOISE = 0.01
+
+
+def surface_noise(xyz: np.ndarray, tree: Any = None) -> float:
+    """Return the standard deviation of points across the smooth surfaces of a cloud.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points (m), n >= 1.
+    tree : scipy.spatial.cKDTree, optional
+        Tree of ``xyz``, built when absent.
+
+    Returns
+    -------
+    float
+        Noise (m), at least 0.01.
+
+    Notes
+    -----
+    The deviation from the plane of the 12 nearest points, unbiased for the three parameters of a
+    plane, at the smoothest fifth of the cloud: vegetation, edges and walls don't reach that far.
+    """
+    count = min(_NEIGHBORS, len(xyz))
+    if count <= 3:
+        return _LEAST_NOISE
+    tree = spatial.cKDTree(xyz) if tree is None else tree
+    covariances, _ = Nearest(count).covariances(np.ascontiguousarray(xyz.T), tree, _sample(xyz))
+    across = symmetric_eigenvalues(covariances)[:, 2] * count / (count - 3)
+    return max(float(np.sqrt(np.quantile(across, _SMOOTH_SHARE))), _LEAST_NOISE)
+
+
+def _sample(xyz: np.ndarray) -> np.ndarray:
+    """Return indices of about ``_SAMPLE`` points, chosen by where they lie, so that their order doesn't matter."""
+    step = len(xyz) // _SAMPLE
+    if step < 2:
+        return np.arange(len(xyz))
+    millimetres = np.rint((xyz - xyz.min(axis=0)) * 1000).astype(np.uint64)
+    # Three large odd numbers mix the coordinates; the high bits of the product are the well mixed ones.
+    mixed = (millimetres * np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.uint64)).sum(axis=1)
+    return np.flatnonzero((mixed >> np.uint64(40)) % np.uint64(step) == 0)

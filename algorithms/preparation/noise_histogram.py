@@ -1,0 +1,231 @@
+"""Noise far above or below everything else, from height histograms of cells."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..cloud.asprs import NOISE, PointClass
+from ..cloud.cells import Grid, grid_over
+from ..cloud.density import point_density
+from ..packages import spatial
+from ..stage import Monitor, Param, stage
+
+# Points per cell on average: with the eight cells around it some 4000 points make a histogram, whatever the density.
+_POINTS_PER_CELL = 450
+
+# Empty bins that part noise from the body: a chimney, a treetop or a rock face leaves no such gap.
+_GAP_BINS = 2
+
+# So many points close together are a thing, be it as thin as the head of a lamp; birds and stray returns come alone.
+_GROUP_SIZE = 3
+
+
+@stage(
+    "Classify noise by height histogram",
+    group="Preparation",
+    tags="noise,outliers,birds,low points,high points,multipath,histogram,clean",
+    writes=("classification",),
+)
+def classify_noise_histogram(
+    xyz,
+    classification,
+    *,
+    min_frequency: Annotated[
+        int,
+        Param(
+            "Minimum frequency",
+            "Points that a bin of the histogram needs to belong to the scene. More of them remove denser noise, "
+            "and thin things such as wires with it.",
+            low=1,
+            high=10_000,
+        ),
+    ] = 5,
+    cell_size: Annotated[
+        Optional[float],
+        Param(
+            "Cell size",
+            "Side of the cells whose heights are counted, each together with the eight cells around it.",
+            unit="m",
+            low=0.1,
+            high=10_000,
+            automatic="cells of 450 points on average.",
+            advanced=True,
+        ),
+    ] = None,
+    bin_height: Annotated[
+        Optional[float],
+        Param(
+            "Bin height",
+            "Height of the bins; noise is parted from the scene by at least two empty ones.",
+            unit="m",
+            low=0.01,
+            high=1000,
+            automatic="twice the point spacing, at least 1 m.",
+            advanced=True,
+        ),
+    ] = None,
+    max_clearance: Annotated[
+        float,
+        Param(
+            "Maximum clearance",
+            "Height over the scene, or depth under it, beyond which everything is noise, however many points it has: "
+            "clouds, aircraft, flocks. Cables over a deep valley may need more.",
+            unit="m",
+            low=1,
+            high=100_000,
+            advanced=True,
+        ),
+    ] = 200.0,
+    monitor: Optional[Monitor] = None,
+):
+    """Find points far above or below the scene, such as birds, clouds and multipath returns.
+
+    The heights of each cell and its neighbors make a histogram. From both ends inward, bins that hold few points and
+    are parted from the scene by a gap are noise: low noise (class 7) below it and high noise (class 18) above it.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Coordinates (m).
+    classification : ndarray of shape (n,)
+        Classes; points that are noise already stay so and are not counted.
+
+    Returns
+    -------
+    ndarray of shape (n,), uint8
+        The classes, 7 and 18 for the noise that was found, all others as they were.
+
+    Notes
+    -----
+    The histograms are walked in from both ends only: few points on a facade, between ground and roof, stay. What
+    adjoins the scene stays too (chimneys, masts, treetops, slopes), and so do three high points close together (a
+    lamp, a wire). A cell whose surroundings have no full bin borrows the range of the nearest one that has. Noise
+    between the heights that the scene reaches around a cell is not found; on steep ground that is a wide range.
+
+    References
+    ----------
+    Carrilho et al. (2018), Statistical outlier detection method for airborne LiDAR data.
+    Santos et al. (2019), Building detection from LiDAR data using entropy and the k-means concept, section 2.1.
+    """
+    made = classification.astype(np.uint8)
+    used = np.flatnonzero(~np.isin(made, NOISE))
+    if not len(used) or not np.ptp(xyz[used, :2], axis=0).any():
+        monitor.warn("No noise was looked for: the points that are not noise already have no extent in plan.")
+        return made
+    points = xyz[used]
+    density = point_density(points)
+    cell_size, bin_height = _automatic(cell_size, bin_height, density, monitor)
+    monitor.progress(0.2)
+
+    # 1. Which heights the scene reaches around each cell.
+    grid = grid_over(points, cell_size)
+    cell = grid.number(points)
+    level = np.floor((points[:, 2] - points[:, 2].min()) / bin_height).astype(np.int64)
+    histogram = _pooled_histogram(grid, cell, level)
+    monitor.progress(0.6)
+    cells, low, high = _scene_range(grid, histogram, min_frequency, max_clearance / bin_height)
+    if not len(cells):
+        monitor.warn(f"No noise was found: no bin of the histograms has {min_frequency} points.")
+        return made
+
+    # 2. What lies beyond is noise, but for groups of points that hang in the air.
+    at = np.searchsorted(cells, cell)
+    is_low, is_high = level < low[at], level > high[at]
+    hanging = np.flatnonzero(is_high & (level <= high[at] + max_clearance / bin_height))
+    is_high[hanging[_in_group(points[hanging], max(1.0, 3 / float(np.sqrt(density))))]] = False
+    made[used[is_low]] = PointClass.LOW_NOISE
+    made[used[is_high]] = PointClass.HIGH_NOISE
+    monitor.resolved(low_noise=int(is_low.sum()), high_noise=int(is_high.sum()))
+    monitor.progress(1.0)
+    return made
+
+
+def _automatic(
+    cell_size: Optional[float], bin_height: Optional[float], density: float, monitor: Monitor
+) -> tuple[float, float]:
+    """Return the cell size and bin height to use, and tell those that were not given."""
+    if cell_size is None:
+        cell_size = float(np.sqrt(_POINTS_PER_CELL / density))
+        monitor.resolved(cell_size=cell_size)
+    if bin_height is None:
+        # On a thin cloud a roof has few points; higher bins keep them together.
+        bin_height = max(1.0, 2 / float(np.sqrt(density)))
+        monitor.resolved(bin_height=bin_height)
+    return cell_size, bin_height
+
+
+@dataclass(frozen=True)
+class _Histogram:
+    """Occupied bins of all cells, by cell, then by level: number of the cell, level, points."""
+
+    cell: np.ndarray
+    level: np.ndarray
+    count: np.ndarray
+
+
+def _pooled_histogram(grid: Grid, cell: np.ndarray, level: np.ndarray) -> _Histogram:
+    """Return the histogram of each occupied cell, the points of the eight cells around it among them."""
+    levels = int(level.max()) + 1
+    own, count = np.unique(cell * levels + level, return_counts=True)
+    keys = np.concatenate([own + step * levels for step in (0, *grid.around)])
+    keys, which = np.unique(keys, return_inverse=True)
+    pooled = np.bincount(which, np.tile(count, 9)).astype(np.int64)
+    # Empty cells beside occupied ones have no points to judge.
+    occupied = np.isin(keys // levels, own // levels)
+    return _Histogram(*np.divmod(keys[occupied], levels), pooled[occupied])
+
+
+def _scene_range(
+    grid: Grid, histogram: _Histogram, min_frequency: int, max_clearance: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return all occupied cells, ascending, and the lowest and highest level of the scene in each.
+
+    ``max_clearance`` is in levels.
+    """
+    cells, start = np.unique(histogram.cell, return_index=True)
+    # Runs of bins without a gap: one full bin makes all bins of its run part of the scene.
+    is_break = np.diff(histogram.level, prepend=0) > _GAP_BINS
+    is_break[start] = True
+    run = np.cumsum(is_break) - 1
+    first = np.flatnonzero(is_break)
+    is_full = np.zeros(len(first), bool)
+    is_full[run[histogram.count >= min_frequency]] = True
+    run_cell = np.searchsorted(cells, histogram.cell[first])[is_full]
+    run_low = histogram.level[first][is_full]
+    run_high = histogram.level[np.append(first[1:], len(run)) - 1][is_full]
+
+    # The run with most points is what all others must be near to.
+    order = np.lexsort((np.bincount(run, histogram.count)[is_full], run_cell))
+    main = np.zeros(len(cells), np.int64)
+    main[run_cell[order]] = order
+    clearance = np.maximum(run_low - run_high[main[run_cell]], run_low[main[run_cell]] - run_high)
+    near = clearance <= max_clearance
+    low, high = np.full(len(cells), np.iinfo(np.int64).max), np.full(len(cells), -1)
+    np.minimum.at(low, run_cell[near], run_low[near])
+    np.maximum.at(high, run_cell[near], run_high[near])
+    return _borrowed(grid, cells, low, high)
+
+
+def _borrowed(
+    grid: Grid, cells: np.ndarray, low: np.ndarray, high: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Give cells without a range that of the nearest cell with one; without any, return no cells."""
+    has_range = high >= 0
+    if not has_range.any():
+        return cells[:0], low[:0], high[:0]
+    if not has_range.all():
+        lender = np.flatnonzero(has_range)
+        tree = spatial.cKDTree(grid.center(cells[lender]))
+        nearest = lender[tree.query(grid.center(cells[~has_range]))[1]]
+        low[~has_range], high[~has_range] = low[nearest] - _GAP_BINS, high[nearest] + _GAP_BINS
+    return cells, low, high
+
+
+def _in_group(points: np.ndarray, radius: float) -> np.ndarray:
+    """Return which points have at least ``_GROUP_SIZE`` points, themselves among them, within ``radius`` (m)."""
+    if len(points) < _GROUP_SIZE:
+        return np.zeros(len(points), bool)
+    return spatial.cKDTree(points).query(points, _GROUP_SIZE)[0][:, -1] <= radius

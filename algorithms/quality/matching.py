@@ -1,0 +1,130 @@
+"""Bringing two classifications of the same points together."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..packages import spatial
+
+# Files keep millimeters or centimeters, so equal points agree far better than this (m).
+_TOLERANCE = 1e-3
+
+
+def compared_points(
+    xyz: np.ndarray,
+    classification: np.ndarray,
+    reference_xyz: np.ndarray,
+    reference_classification: np.ndarray,
+    ignored: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return coordinates, classes and true classes of the points that count.
+
+    Parameters
+    ----------
+    xyz, classification : ndarrays of shape (n, 3) and (n,)
+        What is assessed.
+    reference_xyz, reference_classification : ndarrays of shape (m, 3) and (m,)
+        What it is compared with.
+    ignored : ndarray of int
+        Classes of the reference that don't count.
+
+    Raises
+    ------
+    ValueError
+        If a point is not in the reference, or none is left to compare.
+    """
+    true = reference_classification[match_points(xyz, reference_xyz)]
+    used = ~np.isin(true, ignored)
+    if not used.any():
+        classes = ", ".join(str(number) for number in np.unique(true))
+        raise ValueError(
+            f"All {len(xyz)} points have an ignored class in the reference ({classes}); ignore fewer classes."
+        )
+    return xyz[used], classification[used], true[used]
+
+
+def match_points(xyz: np.ndarray, reference_xyz: np.ndarray) -> np.ndarray:
+    """Return where each point is in the reference, which may hold the points in another order.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Coordinates (m).
+    reference_xyz : ndarray of shape (m, 3)
+        Coordinates (m) of the reference; points that are nowhere in ``xyz`` are allowed.
+
+    Returns
+    -------
+    ndarray of shape (n,), int64
+        ``reference_xyz[result]`` is ``xyz`` within 1 mm; no row is used twice. Of several points
+        at one place the first goes with the first, the second with the second.
+
+    Raises
+    ------
+    ValueError
+        If a point is not in the reference.
+    """
+    if xyz.shape == reference_xyz.shape and (np.abs(xyz - reference_xyz) <= _TOLERANCE).all():
+        return np.arange(len(xyz))
+    found = _match_rounded(xyz, reference_xyz)
+    _match_nearest(xyz, reference_xyz, found)
+    missing = np.flatnonzero(found < 0)
+    if len(missing):
+        x, y, z = xyz[missing[0]]
+        raise ValueError(
+            f"{len(missing)} of {len(xyz)} points are not in the reference, the first at {x:.3f}, {y:.3f}, {z:.3f}; "
+            "compare two classifications of the same points, in whatever order."
+        )
+    return found
+
+
+def _match_rounded(xyz: np.ndarray, reference_xyz: np.ndarray) -> np.ndarray:
+    """Return the reference row whose rounded coordinates are a point's, -1 where there is none."""
+    n = len(xyz)
+    both = np.concatenate([xyz, reference_xyz])
+    keys = np.rint((both - both.min(axis=0)) / _TOLERANCE).astype(np.int64)
+    # Stable: within a place the points of the input come first, each cloud in its own order.
+    order = np.lexsort(keys.T)
+    starts = np.flatnonzero((np.diff(keys[order], axis=0, prepend=-1) != 0).any(axis=1))
+    place = np.repeat(np.arange(len(starts)), np.diff(starts, append=len(both)))
+    of_input = order < n
+    mine, mine_place = order[of_input], place[of_input]
+    theirs, theirs_place = order[~of_input] - n, place[~of_input]
+    # The k-th point at a place goes with the k-th reference point there, if there is one.
+    rank = np.arange(n) - np.searchsorted(mine_place, mine_place)
+    position = np.searchsorted(theirs_place, mine_place) + rank
+    there = position < np.searchsorted(theirs_place, mine_place, side="right")
+    found = np.full(n, -1)
+    found[mine[there]] = theirs[position[there]]
+    return found
+
+
+def _match_nearest(xyz: np.ndarray, reference_xyz: np.ndarray, found: np.ndarray) -> None:
+    """Match in place what rounding has put on either side of a border."""
+    left = np.flatnonzero(found < 0)
+    is_free = np.ones(len(reference_xyz), bool)
+    is_free[found[found >= 0]] = False
+    free = np.flatnonzero(is_free)
+    if not len(left) or not len(free):
+        return
+    distance, nearest = spatial.cKDTree(reference_xyz[free]).query(xyz[left], distance_upper_bound=2 * _TOLERANCE)
+    near = np.flatnonzero(np.isfinite(distance))
+    _, first = np.unique(nearest[near], return_index=True)
+    found[left[near[first]]] = free[nearest[near[first]]]
+
+
+def parse_classes(text: str) -> np.ndarray:
+    """Return the class numbers of a text such as ``"7, 18, 64-67"``, ascending.
+
+    Raises
+    ------
+    ValueError
+        If the text is anything else than numbers from 0 to 255 and ranges of them.
+    """
+    classes: set[int] = set()
+    for part in filter(None, (piece.strip() for piece in text.split(","))):
+        ends = [end.strip() for end in part.split("-")]
+        if len(ends) > 2 or not all(end.isdecimal() and int(end) <= 255 for end in ends) or int(ends[0]) > int(ends[-1]):
+            raise ValueError(f"Ignored classes must be numbers from 0 to 255 and ranges such as 64-67, got {part!r}.")
+        classes.update(range(int(ends[0]), int(ends[-1]) + 1))
+    return np.array(sorted(classes), dtype=np.int64)

@@ -1,0 +1,119 @@
+"""The page that shows an assessment to a person: self-contained HTML with a map drawn in it."""
+
+from __future__ import annotations
+
+import base64
+import html
+import math
+import struct
+import zlib
+from dataclasses import dataclass
+
+import numpy as np
+
+# Told apart by people of any color vision and in gray (Tol's high-contrast scheme); the last is the paper.
+_COLORS = ((221, 221, 221), (0, 68, 136), (221, 170, 51), (187, 85, 102), (255, 255, 255))
+REST, HIT, MISS, FALSE, _EMPTY = range(5)
+
+# Longest side of the map, pixels.
+_MAP_SIDE = 800
+
+_STYLE = """
+body { font: 16px/1.5 sans-serif; color: #222; background: #fff; max-width: 60em; margin: 2em auto; padding: 0 1em }
+table { border-collapse: collapse; margin: 1em 0 }
+th, td { padding: .3em .8em; border-bottom: 1px solid #ccc; text-align: left; vertical-align: top }
+td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap }
+img { max-width: 100%; border: 1px solid #ccc; image-rendering: pixelated }
+.swatch { display: inline-block; width: .9em; height: .9em; margin: 0 .4em 0 1em; border: 1px solid #888 }
+"""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One figure: its name, its value as people read it, and a sentence that says what it means."""
+
+    name: str
+    value: str
+    meaning: str
+
+
+def percent(value: float) -> str:
+    """Return a percentage as people read it."""
+    return "undefined" if math.isnan(value) else f"{value:.1f} %"
+
+
+def outcome_of(predicted: np.ndarray, true: np.ndarray) -> np.ndarray:
+    """Return HIT, MISS, FALSE or REST for each point."""
+    return np.select([predicted & true, true, predicted], [HIT, MISS, FALSE], REST).astype(np.uint8)
+
+
+def build_page(title: str, lead: str, tables: dict[str, list[Row]], picture: str) -> str:
+    """Return a complete page.
+
+    Parameters
+    ----------
+    title, lead : str
+        Heading, and the result in a sentence or two.
+    tables : dict
+        Rows by the heading of their table.
+    picture : str
+        HTML of the map, from :func:`draw_map`.
+    """
+    parts = [f"<h1>{html.escape(title)}</h1>", f"<p>{html.escape(lead)}</p>"]
+    for heading, rows in tables.items():
+        parts.append(f"<h2>{html.escape(heading)}</h2>\n<table>")
+        for row in rows:
+            name, value, meaning = (html.escape(text) for text in (row.name, row.value, row.meaning))
+            parts.append(f'<tr><th scope="row">{name}</th><td class="number">{value}</td><td>{meaning}</td></tr>')
+        parts.append("</table>")
+    parts.append(picture)
+    head = f'<meta charset="utf-8"><title>{html.escape(title)}</title><style>{_STYLE}</style>'
+    return f'<!DOCTYPE html>\n<html lang="en"><head>{head}</head>\n<body>\n' + "\n".join(parts) + "\n</body></html>\n"
+
+
+def draw_map(xyz: np.ndarray, outcome: np.ndarray, names: tuple[str, str, str, str]) -> str:
+    """Return the HTML of a map, north up, of what came of the topmost point of each pixel.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Coordinates (m).
+    outcome : ndarray of shape (n,)
+        REST, HIT, MISS or FALSE.
+    names : tuple of str
+        What the legend calls these four.
+    """
+    low, extent = xyz[:, :2].min(axis=0), np.ptp(xyz[:, :2], axis=0)
+    # Four points per pixel on average leave few pixels empty.
+    size = max(float(extent.max()) / _MAP_SIDE, float(np.sqrt(4 * extent.prod() / len(xyz))), 1e-3)
+    column, row = np.floor((xyz[:, :2] - low) / size).astype(np.int64).T
+    image = np.full((int(row.max()) + 1, int(column.max()) + 1), _EMPTY, np.uint8)
+    order = np.argsort(xyz[:, 2], kind="stable")
+    # Of values that go to one pixel the last one stays, which is the highest.
+    image[row[order], column[order]] = outcome[order]
+    picture = base64.b64encode(_png(image[::-1])).decode()
+    legend = "".join(
+        f'<span class="swatch" style="background:rgb{_COLORS[code]}"></span>{html.escape(name)}'
+        for code, name in enumerate(names)
+    )
+    width = max(360, image.shape[1])
+    caption = f"The map is {extent[0]:,.0f} m wide and {extent[1]:,.0f} m high, north is up; one pixel is {size:.2g} m."
+    return (
+        f'<h2>Map</h2>\n<p>{legend}</p>\n<img alt="Map of the result" width="{width}" '
+        f'src="data:image/png;base64,{picture}">\n<p>{caption}</p>'
+    )
+
+
+def _png(image: np.ndarray) -> bytes:
+    """Return a PNG file of an image of color numbers (rows, columns)."""
+
+    def chunk(kind: bytes, data: bytes) -> bytes:
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    height, width = image.shape
+    # Each line of a PNG begins with the number of its filter; 0 is none.
+    lines = np.concatenate([np.zeros((height, 1), np.uint8), image], axis=1).tobytes()
+    header = struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0)
+    palette = bytes(value for color in _COLORS for value in color)
+    parts = (b"IHDR", header), (b"PLTE", palette), (b"IDAT", zlib.compress(lines, 9)), (b"IEND", b"")
+    return b"\x89PNG\r\n\x1a\n" + b"".join(chunk(kind, data) for kind, data in parts)

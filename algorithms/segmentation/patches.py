@@ -1,0 +1,160 @@
+"""Planar patches: points that lie on one smooth surface with their neighbors."""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import Callable
+
+import numpy as np
+
+from ..features.eigen import Nearest, smallest_eigenvectors, symmetric_eigenvalues
+from ..packages import csgraph, sparse, spatial
+from ..stage import Monitor
+
+# A plane can be told from fewer neighbors where points are precise, from more where they are noisy:
+# its neighborhood reaches eight times the noise, which holds its normal's error to a few degrees.
+_REACH_DEVIATIONS = 8.0
+_LEAST_NEIGHBORS, _MOST_NEIGHBORS = 8, 60
+
+# A point lies on a plane within this many deviations of the noise; the plane itself is smooth below this many.
+_ON_PLANE, _SMOOTH = 3.0, 1.5
+
+# Two planes are one surface when each holds the other's point within this many deviations and their normals agree.
+_SAME_SURFACE = 4.5
+_SAME_DIRECTION = np.cos(np.radians(15.0))
+
+# Links are looked for among so many neighbors.
+_LINKS = 8
+
+_CHUNK = 100_000
+
+
+@dataclass
+class LocalPlanes:
+    """The plane of each point and its neighbors: point ``center``, unit ``normal`` upward, ``deviation`` (m) across."""
+
+    center: np.ndarray
+    normal: np.ndarray
+    deviation: np.ndarray
+    neighbors: np.ndarray
+
+    def distance(self, points: np.ndarray, plane: np.ndarray) -> np.ndarray:
+        """Return the distance (m) of points (m, 3) to the planes numbered ``plane`` (m,)."""
+        return np.abs(np.einsum("ij,ij->i", points - self.center[plane], self.normal[plane]))
+
+
+def segment_patches(
+    xyz: np.ndarray, density: float, noise: float, max_slope: float, monitor: Monitor
+) -> tuple[np.ndarray, np.ndarray]:
+    """Group points that lie on smooth surfaces.
+
+    Each point takes the smoothest plane among those of its neighbors that hold it, so that
+    points at edges and ridges belong to the surface beside them and not to a plane across
+    the edge; points whose planes agree then make one patch.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points (m).
+    density : float
+        Points per square metre.
+    noise : float
+        Standard deviation of points across a smooth surface, m.
+    max_slope : float
+        Steepest patch, degrees.
+    monitor : Monitor
+        Hears progress.
+
+    Returns
+    -------
+    patch : ndarray of shape (n,), int32
+        Patch of each point from 0, -1 where it lies on no smooth surface.
+    normal : ndarray of shape (n, 3), float64
+        Normal of the plane that the point took; meaningless where patch is -1.
+    """
+    if len(xyz) < _LEAST_NEIGHBORS:
+        return np.full(len(xyz), -1, np.int32), np.zeros((len(xyz), 3))
+    planes = _local_planes(xyz, _neighbors_for(density, noise, len(xyz)), monitor.part(0, 0.6))
+    plane = _smoothest_plane(xyz, planes, noise, monitor.part(0.6, 0.8))
+    on_surface = (planes.deviation[plane] <= _SMOOTH * noise) & (plane >= 0)
+    on_surface &= planes.normal[plane, 2] >= np.cos(np.radians(max_slope))
+    component = _linked(xyz, planes, plane, on_surface, noise, monitor.part(0.8, 1))
+    return np.where(on_surface, component, -1).astype(np.int32), planes.normal[plane]
+
+
+def _neighbors_for(density: float, noise: float, n_points: int) -> int:
+    wanted = np.ceil(np.pi * (_REACH_DEVIATIONS * noise) ** 2 * density)
+    return int(min(max(wanted, _LEAST_NEIGHBORS), _MOST_NEIGHBORS, n_points))
+
+
+def _local_planes(xyz: np.ndarray, n_neighbors: int, monitor: Monitor) -> LocalPlanes:
+    tree = spatial.cKDTree(xyz)
+    columns = np.ascontiguousarray(xyz.T)
+    nearest = Nearest(n_neighbors)
+    planes = LocalPlanes(
+        np.empty((len(xyz), 3)), np.empty((len(xyz), 3)), np.empty(len(xyz)), np.empty((len(xyz), n_neighbors), np.int32)
+    )
+
+    def work(rows: np.ndarray) -> None:
+        neighbors, centers, covariances = nearest.moments(columns, tree, rows)
+        eigenvalues = symmetric_eigenvalues(covariances)
+        planes.neighbors[rows] = neighbors
+        planes.center[rows] = centers
+        planes.normal[rows] = smallest_eigenvectors(covariances, eigenvalues)
+        planes.deviation[rows] = np.sqrt(eigenvalues[:, 2])
+
+    _in_threads(work, tree.indices, nearest.rows_per_chunk(len(xyz)), monitor)
+    # Coincident neighbors have no normal and so no plane.
+    undefined = ~np.isfinite(planes.normal).all(axis=1)
+    planes.normal[undefined], planes.deviation[undefined] = 0.0, np.inf
+    return planes
+
+
+def _smoothest_plane(xyz: np.ndarray, planes: LocalPlanes, noise: float, monitor: Monitor) -> np.ndarray:
+    """Return the number (n,) of the smoothest plane that holds each point; -1 where none does."""
+    plane = np.full(len(xyz), -1, np.int64)
+
+    def work(rows: np.ndarray) -> None:
+        smoothest = np.full(len(rows), np.inf)
+        for candidate in planes.neighbors[rows].T:
+            better = planes.deviation[candidate] < smoothest
+            better[better] = planes.distance(xyz[rows[better]], candidate[better]) <= _ON_PLANE * noise
+            smoothest[better] = planes.deviation[candidate[better]]
+            plane[rows[better]] = candidate[better]
+
+    _in_threads(work, np.arange(len(xyz)), _CHUNK, monitor)
+    return plane
+
+
+def _linked(
+    xyz: np.ndarray, planes: LocalPlanes, plane: np.ndarray, on_surface: np.ndarray, noise: float, monitor: Monitor
+) -> np.ndarray:
+    """Return components (n,) of neighbors whose planes are one surface."""
+    here, there = [], []
+    for start in range(0, len(xyz), _CHUNK):
+        rows = np.arange(start, min(start + _CHUNK, len(xyz)))
+        for neighbor in planes.neighbors[rows, 1:_LINKS].T:
+            pair = on_surface[rows] & on_surface[neighbor]
+            a, b = rows[pair], neighbor[pair]
+            same = np.einsum("ij,ij->i", planes.normal[plane[a]], planes.normal[plane[b]]) >= _SAME_DIRECTION
+            same &= planes.distance(xyz[b], plane[a]) <= _SAME_SURFACE * noise
+            same &= planes.distance(xyz[a], plane[b]) <= _SAME_SURFACE * noise
+            here.append(a[same].astype(np.int32))
+            there.append(b[same])
+        monitor.progress(start / len(xyz))
+    rows, columns = np.concatenate(here), np.concatenate(there)
+    links = sparse.coo_matrix((np.ones(len(rows), bool), (rows, columns)), (len(xyz), len(xyz)))
+    return csgraph.connected_components(links, directed=False)[1]
+
+
+def _in_threads(work: Callable[[np.ndarray], None], rows: np.ndarray, size: int, monitor: Monitor) -> None:
+    """Call ``work`` with all rows in chunks, on all cores; the tree and numpy let go of the interpreter."""
+    chunks = [rows[start : start + size] for start in range(0, len(rows), size)]
+    pool = ThreadPoolExecutor(os.cpu_count() or 1)
+    try:
+        for done, _ in enumerate(pool.map(work, chunks), start=1):
+            monitor.progress(done / len(chunks))
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)

@@ -1,0 +1,158 @@
+"""Buildings on their plots: which roofs there are and how they are put together.
+
+A plot is a rectangle whose length runs along the street and whose right side is on it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from .relief import Relief
+from .scene import Scene
+from .solids import Rect, Solid, flat, gable, hip, inclined, lean_to
+
+# Eave over the floor of one and two storeys.
+_EAVES = (3.0, 5.7)
+
+# A roof never comes closer to the ground than this, on the uphill side.
+_LEAST_EAVE = 1.5
+
+
+class _Site:
+    """Where one building stands: it turns heights over the floor into elevations."""
+
+    def __init__(self, scene: Scene, rect: Rect, eave: float) -> None:
+        self.object_id = scene.new_id()
+        self.floor, self.bottom = _levels(scene.relief, rect, eave)
+
+    def solid(self, rect: Rect, tops: np.ndarray) -> Solid:
+        """Return a part of the building; ``tops`` are elevations."""
+        return Solid(rect, tops, self.bottom, PointClass.BUILDING, self.object_id)
+
+
+def _levels(relief: Relief, rect: Rect, eave: float) -> tuple[float, float]:
+    """Return the floor, and a bottom that is underground everywhere."""
+    x, y = np.concatenate([rect.corners(1.0), [(rect.x, rect.y)]]).T
+    z = relief.ground(x, y)
+    return float(max(z.mean(), z.max() + _LEAST_EAVE - eave)), float(z.min()) - 1.0
+
+
+def build_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
+    """Put a house, or a short row, on a plot; every second plot gets a shed in the garden."""
+    build = _KINDS[int(rng.choice(len(_KINDS), p=_SHARES))]
+    build(scene, plot, rng)
+    if rng.random() < 0.5:
+        _shed(scene, plot, rng)
+
+
+def _detached(plot: Rect, rng: np.random.Generator, length: tuple, width: tuple) -> Rect:
+    """Return the footprint of a house a few metres behind the street, not quite parallel to it."""
+    long, wide = rng.uniform(*length), rng.uniform(*width)
+    front = -plot.width / 2 + rng.uniform(2.0, 3.0)
+    return plot.part(rng.uniform(-0.5, 0.5), front + wide / 2, long, wide, np.deg2rad(rng.uniform(-4.0, 4.0)))
+
+
+def _gable_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
+    rect = _detached(plot, rng, (9.0, 12.0), (7.0, 9.0))
+    eave, pitch = rng.choice(_EAVES), np.tan(np.deg2rad(rng.uniform(28.0, 48.0)))
+    site = _Site(scene, rect, eave)
+    eave += site.floor
+    solids = [site.solid(rect, gable(rect, eave, pitch)), _chimney(site, rect, eave + pitch * rect.width / 2, rng)]
+    if pitch > 0.7:
+        places = rng.choice([-0.25, 0.0, 0.25], int(rng.integers(0, 3)), replace=False) * rect.length
+        solids += [_dormer(site, rect, eave, pitch, place, side) for place in places for side in (-1, 1)]
+    scene.add_building("gable", rect.corners(), solids)
+
+
+def _hip_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
+    rect = _detached(plot, rng, (9.5, 12.0), (7.5, 9.5))
+    eave, pitch = rng.choice(_EAVES), np.tan(np.deg2rad(rng.uniform(22.0, 38.0)))
+    site = _Site(scene, rect, eave)
+    eave += site.floor
+    solids = [site.solid(rect, hip(rect, eave, pitch)), _chimney(site, rect, eave + pitch * rect.width / 2, rng)]
+    scene.add_building("hip", rect.corners(), solids)
+
+
+def _flat_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
+    rect = _detached(plot, rng, (9.0, 12.5), (8.0, 10.5))
+    eave = rng.choice((3.2, 6.2, 9.2))
+    site = _Site(scene, rect, eave)
+    eave += site.floor
+    lift = rect.part(0.2 * rect.length, 0.1 * rect.width, 3.0, 2.5)
+    solids = [site.solid(rect, flat(rect, eave)), site.solid(lift, flat(lift, eave + 2.2))]
+    scene.add_building("flat", rect.corners(), solids)
+
+
+def _angled_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
+    """Build an L: a wing whose lower ridge runs into the roof of the main house."""
+    main = _detached(plot, rng, (11.0, 12.5), (6.5, 7.0))
+    eave, pitch = rng.choice(_EAVES), np.tan(np.deg2rad(rng.uniform(30.0, 45.0)))
+    site = _Site(scene, main, eave)
+    eave += site.floor
+    wide, reach = rng.uniform(4.8, 6.0), rng.uniform(3.0, 4.0)
+    # The wing starts under the main ridge, flush with one gable, and ends behind the house.
+    side = rng.choice((-1.0, 1.0))
+    long = main.width / 2 + reach
+    wing = main.part(side * (main.length - wide) / 2, long / 2, long, wide, np.pi / 2)
+    a, c, inner = main.length / 2, main.width / 2, main.length / 2 - wide
+    ring = [(-a, -c), (a, -c), (a, c + reach), (inner, c + reach), (inner, c), (-a, c)]
+    # Mirrored for a wing on the other end; the order keeps the ring counterclockwise.
+    ring = ring if side > 0 else [(-along, across) for along, across in reversed(ring)]
+    outline = np.array([main.at(along, across) for along, across in ring])
+    solids = [site.solid(main, gable(main, eave, pitch)), site.solid(wing, gable(wing, eave, pitch))]
+    solids.append(_chimney(site, main, eave + pitch * main.width / 2, rng))
+    scene.add_building("L", outline, solids)
+
+
+def _row(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
+    """Build two houses that share a wall and fill the plot, so that rows on neighboring plots join."""
+    depth = 10.0
+    for side in (-0.25, 0.25):
+        rect = plot.part(side * plot.length, -plot.width / 2 + 2.0 + depth / 2, plot.length / 2, depth)
+        eave, pitch = rng.choice((5.4, 6.0, 8.4)), np.tan(np.deg2rad(rng.uniform(25.0, 45.0)))
+        site = _Site(scene, rect, eave)
+        eave += site.floor
+        tops = flat(rect, eave + 1.0) if rng.random() < 0.15 else gable(rect, eave, pitch)
+        scene.add_building("row", rect.corners(), [site.solid(rect, tops)])
+
+
+def _shed(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
+    rect = plot.part(rng.choice((-1, 1)) * (plot.length / 2 - 2.2), plot.width / 2 - 1.7, *rng.uniform(2.2, 3.0, 2))
+    height = rng.uniform(2.0, 2.4)
+    site = _Site(scene, rect, height)
+    pitch = np.tan(np.deg2rad(rng.uniform(0.0, 15.0)))
+    scene.add_building("shed", rect.corners(), [site.solid(rect, lean_to(rect, site.floor + height, pitch))])
+
+
+def build_hall(scene: Scene, rect: Rect) -> None:
+    """Put a large hall with a slight gable and bands of skylights."""
+    eave, pitch = 8.0, np.tan(np.deg2rad(4.0))
+    site = _Site(scene, rect, eave)
+    eave += site.floor
+    solids = [site.solid(rect, gable(rect, eave, pitch))]
+    ridge = eave + pitch * rect.width / 2
+    for place in (-0.3, 0.0, 0.3):
+        light = rect.part(place * rect.length, 0.0, 3.0, 0.7 * rect.width)
+        solids.append(site.solid(light, flat(light, ridge + 0.8)))
+    scene.add_building("hall", rect.corners(), solids)
+
+
+def _chimney(site: _Site, rect: Rect, ridge: float, rng: np.random.Generator) -> Solid:
+    stack = rect.part(rng.uniform(-0.12, 0.12) * rect.length, rng.uniform(-1.0, 1.0), 0.7, 0.7)
+    return site.solid(stack, flat(stack, ridge + 0.8))
+
+
+def _dormer(site: _Site, rect: Rect, eave: float, pitch: float, along: float, side: int) -> Solid:
+    """Return a dormer whose nearly flat roof runs from over the front into the roof plane behind it."""
+    depth, back = 2.4, rect.width / 2 - 3.0
+    box = rect.part(along, side * (back + depth / 2), 1.9, depth)
+    behind = eave + pitch * (rect.width / 2 - back)
+    return site.solid(box, inclined(box, 0.0, side * -depth / 2, behind, 0.0, side * -0.08)[None])
+
+
+_Build = Callable[[Scene, Rect, np.random.Generator], None]
+_KINDS: tuple[_Build, ...] = (_gable_house, _hip_house, _flat_house, _angled_house, _row)
+_SHARES = (0.28, 0.16, 0.14, 0.16, 0.26)

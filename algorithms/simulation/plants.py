@@ -1,0 +1,113 @@
+"""Trees, bushes and hedges as ellipsoids of leaves, with stems."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from .scene import Scene
+from .solids import Rect, Solid, flat
+
+# Share of the trees outside the forest that stand in clumps, and how many do together.
+_CLUMP_SHARE = 0.4
+_CLUMP_SIZE = 4
+
+# Distance between the trees of the forest (m).
+_FOREST_SPACING = 5.0
+
+
+def plant_trees(scene: Scene, per_hectare: float, forest: float, rng: np.random.Generator) -> None:
+    """Plant single trees and clumps on open ground, and the forest."""
+    size = scene.size
+    n_trees = round(per_hectare * size**2 / 1e4 * (1 - forest))
+    n_alone = n_trees - round(_CLUMP_SHARE * n_trees) // _CLUMP_SIZE * _CLUMP_SIZE
+    open_ground = _open_places(scene, n_alone, forest, rng)
+    clumps = _open_places(scene, (n_trees - n_alone) // _CLUMP_SIZE, forest, rng)
+    clumps = np.repeat(clumps, _CLUMP_SIZE, axis=0) + rng.normal(0.0, 2.5, (len(clumps) * _CLUMP_SIZE, 2))
+    clumps = clumps[_is_free(scene, clumps)]
+    for x, y in np.concatenate([open_ground, clumps]):
+        _plant_tree(scene, x, y, rng)
+    if forest:
+        _plant_forest(scene, forest, rng)
+
+
+def in_forest(scene: Scene, x, y, share: float) -> np.ndarray:
+    """Which points (m) lie in the forest: the eastern ``share`` of the square, behind a wavy edge."""
+    size = scene.size
+    # The wave covers two whole periods, so that it takes nothing from the share; it is flat where there is no room.
+    wave = 0.2 * size * share * (1 - share) * np.sin(4 * np.pi * np.asarray(y) / size)
+    return np.asarray(x) > size * (1 - share) + wave
+
+
+def _plant_forest(scene: Scene, share: float, rng: np.random.Generator) -> None:
+    steps = np.arange(_FOREST_SPACING / 2, scene.size, _FOREST_SPACING)
+    places = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
+    places = places + rng.uniform(-0.35, 0.35, places.shape) * _FOREST_SPACING
+    places = places[in_forest(scene, *places.T, share) & _is_free(scene, places)]
+    for x, y in places:
+        kind = rng.random()
+        if kind < 0.9:
+            _plant_tree(scene, x, y, rng)
+        if kind > 0.7:
+            bush = rng.uniform(0.4, 1.0)
+            scene.crowns.add(x + 1.5, y, float(scene.relief.ground(x + 1.5, y)) + 0.6 * bush, bush, bush, 0.8, scene.new_id())
+
+
+def _open_places(scene: Scene, count: int, forest: float, rng: np.random.Generator) -> np.ndarray:
+    """Return up to ``count`` random places (m) where a tree can stand outside the forest."""
+    places = np.zeros((0, 2))
+    # A town that is all houses or all forest has no room: it then stays at what these tries found.
+    for _ in range(20):
+        tries = rng.uniform(0.0, scene.size, (count, 2))
+        free = _is_free(scene, tries) & ~in_forest(scene, *tries.T, forest)
+        places = np.concatenate([places, tries[free]])[:count]
+        if len(places) == count:
+            break
+    return places
+
+
+def _is_free(scene: Scene, places: np.ndarray) -> np.ndarray:
+    x, y = places.T
+    inside = (x > 0) & (y > 0) & (x < scene.size) & (y < scene.size)
+    return inside & ~scene.near_building(x, y, 1.5) & ~scene.near_water(x, y)
+
+
+def _plant_tree(scene: Scene, x: float, y: float, rng: np.random.Generator) -> None:
+    ground, number = float(scene.relief.ground(x, y)), scene.new_id()
+    height = rng.uniform(5.0, 16.0)
+    if rng.random() < 0.3:
+        _conifer(scene, (x, y, ground), height, number, rng)
+    else:
+        _broadleaf(scene, (x, y, ground), height, number, rng)
+    stem = Rect(x, y, 0.03 * height, 0.03 * height, 0.0)
+    top = flat(stem, ground + 0.6 * height)
+    scene.solids.append(Solid(stem, top, ground - 1.0, PointClass.HIGH_VEGETATION, number))
+
+
+def _conifer(scene: Scene, foot: tuple, height: float, number: int, rng: np.random.Generator) -> None:
+    x, y, ground = foot
+    radius = height * rng.uniform(0.14, 0.19)
+    for level in (0.28, 0.47, 0.65, 0.82):
+        scene.crowns.add(x, y, ground + level * height, 1.25 * radius * (1.05 - level), 0.18 * height, 0.9, number)
+
+
+def _broadleaf(scene: Scene, foot: tuple, height: float, number: int, rng: np.random.Generator) -> None:
+    """Plant a round crown of one large and some small ellipsoids, which make it lumpy."""
+    x, y, ground = foot
+    radius, middle = height * rng.uniform(0.22, 0.32), ground + 0.64 * height
+    scene.crowns.add(x, y, middle, 0.8 * radius, 0.3 * height, 1.7, number)
+    for _ in range(5):
+        turn, up = rng.uniform(0.0, 2 * np.pi), rng.uniform(-0.15, 0.22) * height
+        out = 0.6 * radius
+        scene.crowns.add(
+            x + out * np.cos(turn), y + out * np.sin(turn), middle + up, 0.45 * radius, 0.14 * height, 1.1, number
+        )
+
+
+def plant_hedge(scene: Scene, line: Rect, height: float) -> None:
+    """Plant a dense hedge along the length of a rectangle."""
+    number = scene.new_id()
+    for along in np.arange(-line.length / 2, line.length / 2, 0.5):
+        x, y = line.at(along, 0.0)
+        z = float(scene.relief.ground(x, y)) + height / 2
+        scene.crowns.add(float(x), float(y), z, line.width / 2, height / 2, 0.25, number)

@@ -1,0 +1,151 @@
+"""The ground of a made-up town: a slope with hills, terraces and a river valley, as a formula."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Optional
+
+import numpy as np
+
+# Half width of the level valley floor and of the channel in it, and its depth: a small regulated river.
+VALLEY = 16.0
+_CHANNEL_TOP = 9.6
+_CHANNEL_DEPTH = 4.5
+_BANK_SLOPE = 0.8
+_WATER_DEPTH = 1.5
+
+# Distance between terraces.
+_TERRACE_LENGTH = 45.0
+
+# Beams lean by at most 30°; with gradients below 1 / tan 30° each of them meets the ground exactly once.
+_STEEPEST = 1.7
+
+
+@dataclass(frozen=True)
+class Relief:
+    """Ground and water as functions of position.
+
+    Everything is told in the frame of the town, which is turned against east and north: *across* is the
+    direction in which the ground rises and the streets run, *along* that of the river, both from the town's center.
+
+    Parameters
+    ----------
+    size : float
+        Side of the town, a square from (0, 0) to (size, size), m.
+    angle : float
+        Direction of *across*, radians from east.
+    gradient : float
+        Rise per meter, tangent of the slope.
+    hills : float
+        Height between the deepest hollow and the highest hill, about, m.
+    terrace_height : float
+        Rise of the steps in the slope, m.
+    river : float, optional
+        Position of the river's axis across the town, m; None for no river.
+    waves : ndarray of shape (k, 3)
+        Hills: wave numbers across and along (rad/m) and phase (rad).
+    """
+
+    size: float
+    angle: float = 0.0
+    gradient: float = 0.0
+    hills: float = 0.0
+    terrace_height: float = 0.0
+    river: Optional[float] = None
+    waves: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
+
+    def local(self, x, y) -> tuple[np.ndarray, np.ndarray]:
+        """Return positions across and along the town (m) of points (m)."""
+        dx, dy = x - self.size / 2, y - self.size / 2
+        cos, sin = np.cos(self.angle), np.sin(self.angle)
+        return dx * cos + dy * sin, dy * cos - dx * sin
+
+    def world(self, across, along) -> tuple[np.ndarray, np.ndarray]:
+        """Return the points (m) at positions across and along the town (m)."""
+        cos, sin = np.cos(self.angle), np.sin(self.angle)
+        return self.size / 2 + across * cos - along * sin, self.size / 2 + across * sin + along * cos
+
+    def plane(self, x, y) -> np.ndarray:
+        """Elevation (m) of the plane that the ground follows on the whole."""
+        return self.gradient * (self.local(x, y)[0] - (self.river or 0.0))
+
+    @property
+    def plane_gradient(self) -> tuple[float, float]:
+        """Gradient of :meth:`plane` to the east and to the north."""
+        return self.gradient * float(np.cos(self.angle)), self.gradient * float(np.sin(self.angle))
+
+    @property
+    def spread(self) -> float:
+        """Height (m) that the ground never leaves :meth:`plane` by."""
+        return self.gradient * VALLEY + self.terrace_height + self.hills + _CHANNEL_DEPTH
+
+    @property
+    def water_level(self) -> float:
+        """Elevation of the river (m)."""
+        return _WATER_DEPTH - _CHANNEL_DEPTH
+
+    def ground(self, x, y) -> np.ndarray:
+        """Elevation (m) of the ground, under water that of the river bed."""
+        across, along = self.local(x, y)
+        distance = across if self.river is None else across - self.river
+        rise = distance
+        if self.river is not None:
+            rise = np.sign(distance) * np.maximum(np.abs(distance) - VALLEY, 0.0)
+        z = self.gradient * rise + self._terrace(rise) + self._hill(across, along, rise)
+        return z if self.river is None else z - _channel(distance)
+
+    def surface(self, x, y) -> np.ndarray:
+        """Elevation (m) of ground or water, whichever is higher."""
+        z = self.ground(x, y)
+        return z if self.river is None else np.where(self.is_water(x, y), self.water_level, z)
+
+    def is_water(self, x, y) -> np.ndarray:
+        """Where the river is."""
+        if self.river is None:
+            return np.zeros(np.shape(x), bool)
+        # The channel's profile decides: over level ground it is below the water this far from the axis.
+        return np.abs(self.local(x, y)[0] - self.river) < _CHANNEL_TOP - (_CHANNEL_DEPTH - _WATER_DEPTH) / _BANK_SLOPE
+
+    def tangent(self, x: float, y: float) -> np.ndarray:
+        """Return (a, b, c) of the plane z = a x + b y + c that touches the ground at a point (m)."""
+        step = 1.0
+        a = float(self.ground(x + step, y) - self.ground(x - step, y)) / (2 * step)
+        b = float(self.ground(x, y + step) - self.ground(x, y - step)) / (2 * step)
+        return np.array([a, b, float(self.ground(x, y)) - a * x - b * y])
+
+    def _terrace(self, rise):
+        """Steep steps with treads that fall slightly, so that on the whole nothing is gained."""
+        if not self.terrace_height:
+            return 0.0
+        riser = self.terrace_height / (min(1.0, _STEEPEST - self.gradient - 0.04 * self.hills))
+        at = np.mod(rise, _TERRACE_LENGTH)
+        return self.terrace_height * np.minimum(at / riser, (_TERRACE_LENGTH - at) / (_TERRACE_LENGTH - riser))
+
+    def _hill(self, across, along, rise):
+        if not self.hills:
+            return 0.0
+        total = sum(np.sin(kx * across + ky * along + phase) for kx, ky, phase in self.waves)
+        # The valley floor is level, or the river would not be.
+        fade = 1.0 if self.river is None else np.minimum(np.abs(rise) / 60.0, 1.0)
+        return self.hills / (2 * len(self.waves)) * total * fade
+
+
+def _channel(distance):
+    """Depth (m) of the river's trapezoidal channel, by distance (m) from its axis."""
+    return np.clip((_CHANNEL_TOP - np.abs(distance)) * _BANK_SLOPE, 0.0, _CHANNEL_DEPTH)
+
+
+def make_relief(
+    size: float, slope: float, hills: float, terrace_height: float, river: bool, rng: np.random.Generator
+) -> Relief:
+    """Draw the ground of a town: ``slope`` in degrees, the rest as in :class:`Relief`."""
+    angle = float(np.deg2rad(rng.uniform(10.0, 35.0)))
+    length = rng.uniform(80.0, 160.0, 4)
+    direction = rng.uniform(0.0, np.pi, 4)
+    phase = rng.uniform(0.0, 2 * np.pi, 4)
+    waves = np.stack([np.cos(direction), np.sin(direction), np.zeros(4)], axis=1) * (2 * np.pi / length)[:, None]
+    waves[:, 2] = phase
+    axis = float(rng.uniform(-0.3, -0.2) * size)
+    return Relief(
+        size, angle, float(np.tan(np.deg2rad(slope))), hills, terrace_height, axis if river else None, waves
+    )

@@ -1,0 +1,124 @@
+"""A scene with known truth: what stands where, before anything is scanned."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .relief import Relief
+from .solids import Solid
+
+
+@dataclass(frozen=True)
+class Building:
+    """One building: what it is, its outline, and the solids that it is made of.
+
+    Parameters
+    ----------
+    object_id : int
+        The ``segment_id`` of its points.
+    kind : str
+        "gable", "hip", "flat", "L", "row", "shed" or "hall".
+    outline : ndarray of shape (m, 2)
+        Closed ring of the walls, counterclockwise (m).
+    solids : tuple of Solid
+        Wings, dormers, chimneys; the roof is the highest of them.
+    """
+
+    object_id: int
+    kind: str
+    outline: np.ndarray
+    solids: tuple[Solid, ...]
+
+    def roof(self, x, y) -> np.ndarray:
+        """Elevation of the roof (m), NaN beside the building."""
+        x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
+        height = np.full(x.shape, -np.inf)
+        for solid in self.solids:
+            height = np.where(solid.rect.contains(x, y), np.maximum(height, solid.top(x, y)), height)
+        return np.where(np.isfinite(height), height, np.nan)
+
+    def contains(self, x, y) -> np.ndarray:
+        """Which points (m) lie over the building."""
+        return ~np.isnan(self.roof(x, y))
+
+    @property
+    def area(self) -> float:
+        """Area inside the outline (m²)."""
+        x, y = self.outline.T
+        return float(np.sum(x[:-1] * y[1:] - x[1:] * y[:-1])) / 2
+
+
+@dataclass
+class Crowns:
+    """Ellipsoids that a beam gets through in part: leaves and twigs.
+
+    Attributes
+    ----------
+    rows : list of tuple
+        x, y, z of the center, horizontal and vertical radius (m), mean way of a beam to the next leaf (m), object id.
+    """
+
+    rows: list[tuple] = field(default_factory=list)
+
+    def add(self, x: float, y: float, z: float, radius: float, half_height: float, path: float, object_id: int) -> None:
+        """Add one ellipsoid."""
+        self.rows.append((x, y, z, radius, half_height, path, object_id))
+
+    @property
+    def array(self) -> np.ndarray:
+        """The rows, (m, 7)."""
+        return np.array(self.rows, float).reshape(-1, 7)
+
+
+@dataclass
+class Scene:
+    """Everything that a scanner can see, and what is true of it.
+
+    Attributes
+    ----------
+    relief : Relief
+        Ground and water.
+    buildings : list of Building
+        The buildings; their object ids are unique among all objects.
+    solids : list of Solid
+        All solid things, those of the buildings too.
+    crowns : Crowns
+        Trees, bushes, hedges.
+    wires : list of tuple
+        Straight pieces: start and end (x, y, z each, m) and object id.
+    """
+
+    relief: Relief
+    buildings: list[Building] = field(default_factory=list)
+    solids: list[Solid] = field(default_factory=list)
+    crowns: Crowns = field(default_factory=Crowns)
+    wires: list[tuple] = field(default_factory=list)
+    objects: int = 0
+
+    @property
+    def size(self) -> float:
+        """Side of the square (m)."""
+        return self.relief.size
+
+    def new_id(self) -> int:
+        """Return the id of one more object."""
+        self.objects += 1
+        return self.objects
+
+    def add_building(self, kind: str, outline: np.ndarray, solids: list[Solid]) -> None:
+        """Add a building made of ``solids``, which carry its id; ``outline`` (m, 2) is open."""
+        building = Building(solids[0].object_id, kind, np.concatenate([outline, outline[:1]]), tuple(solids))
+        self.buildings.append(building)
+        self.solids.extend(solids)
+
+    def near_building(self, x, y, margin: float) -> np.ndarray:
+        """Which points (m) lie within a margin (m) of a building, about."""
+        found = np.zeros(np.shape(x), bool)
+        for building in self.buildings:
+            low, high = building.outline.min(axis=0) - margin, building.outline.max(axis=0) + margin
+            some = np.flatnonzero((x >= low[0]) & (x <= high[0]) & (y >= low[1]) & (y <= high[1]) & ~found)
+            for solid in building.solids:
+                found[some] |= solid.rect.contains(x[some], y[some], margin)
+        return found

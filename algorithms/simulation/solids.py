@@ -1,0 +1,165 @@
+"""Things with plane faces: oriented boxes under planes, and where a beam enters them.
+
+Houses, dormers, chimneys, cars, walls and bridge decks are all one shape: a rectangle on the map with vertical
+sides, a level bottom and, as its top, the lowest of up to four planes. Such a solid is convex, so that a beam
+meets it in closed form: it enters where it has crossed the last of the faces that it comes from the outside of.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+_MAX_TOPS = 4
+_FACES = 4 + 1 + _MAX_TOPS
+
+
+@dataclass(frozen=True)
+class Rect:
+    """A rectangle on the map: center (m), length and width (m), direction of the length (radians from east)."""
+
+    x: float
+    y: float
+    length: float
+    width: float
+    angle: float
+
+    def at(self, along, across) -> tuple:
+        """Return the point that lies so far (m) from the center along the length and to the left of it."""
+        cos, sin = np.cos(self.angle), np.sin(self.angle)
+        return self.x + along * cos - across * sin, self.y + along * sin + across * cos
+
+    def local(self, x, y) -> tuple:
+        """Return the positions (m) along and across the rectangle of points (m)."""
+        dx, dy = x - self.x, y - self.y
+        cos, sin = np.cos(self.angle), np.sin(self.angle)
+        return dx * cos + dy * sin, dy * cos - dx * sin
+
+    def part(self, along: float, across: float, length: float, width: float, turn: float = 0.0) -> Rect:
+        """Return a rectangle placed in the frame of this one."""
+        x, y = self.at(along, across)
+        return Rect(float(x), float(y), length, width, self.angle + turn)
+
+    def corners(self, margin: float = 0.0) -> np.ndarray:
+        """Return the corners (4, 2), counterclockwise, of the rectangle grown by a margin (m)."""
+        a, c = self.length / 2 + margin, self.width / 2 + margin
+        return np.stack(self.at(np.array([-a, a, a, -a]), np.array([-c, -c, c, c])), axis=1)
+
+    def contains(self, x, y, margin: float = 0.0) -> np.ndarray:
+        """Which points (m) lie in the rectangle grown by a margin (m)."""
+        along, across = self.local(x, y)
+        return (np.abs(along) <= self.length / 2 + margin) & (np.abs(across) <= self.width / 2 + margin)
+
+
+@dataclass(frozen=True)
+class Solid:
+    """A rectangle from its bottom to the lowest of its top planes.
+
+    Parameters
+    ----------
+    rect : Rect
+        The footprint.
+    tops : ndarray of shape (k, 3), k from 1 to 4
+        Planes z = a x + b y + c.
+    bottom : float
+        Elevation of the level underside (m).
+    classification, object_id : int
+        What the points on it are.
+    """
+
+    rect: Rect
+    tops: np.ndarray
+    bottom: float
+    classification: int
+    object_id: int
+
+    def top(self, x, y) -> np.ndarray:
+        """Elevation of the top (m), inside the rectangle or beyond."""
+        return np.min([a * x + b * y + c for a, b, c in self.tops], axis=0)
+
+
+def inclined(rect: Rect, along: float, across: float, z: float, rise_along: float, rise_across: float) -> np.ndarray:
+    """Return the plane that has elevation ``z`` at a place of ``rect`` and these rises per meter along and across it."""
+    cos, sin = np.cos(rect.angle), np.sin(rect.angle)
+    a, b = rise_along * cos - rise_across * sin, rise_along * sin + rise_across * cos
+    x, y = rect.at(along, across)
+    return np.array([a, b, z - a * x - b * y])
+
+
+def flat(rect: Rect, z: float) -> np.ndarray:
+    """Return the top of a flat roof."""
+    return inclined(rect, 0.0, 0.0, z, 0.0, 0.0)[None]
+
+
+def lean_to(rect: Rect, low: float, pitch: float) -> np.ndarray:
+    """Return the top of a roof of one plane, at ``low`` on the right side, ``pitch`` as a tangent."""
+    return inclined(rect, 0.0, -rect.width / 2, low, 0.0, pitch)[None]
+
+
+def gable(rect: Rect, eave: float, pitch: float) -> np.ndarray:
+    """Return the tops of a gable roof whose ridge runs along the length, ``pitch`` as a tangent."""
+    half = rect.width / 2
+    return np.array([inclined(rect, 0.0, side * half, eave, 0.0, -side * pitch) for side in (-1, 1)])
+
+
+def hip(rect: Rect, eave: float, pitch: float) -> np.ndarray:
+    """Return the tops of a hip roof with the same pitch (a tangent) on all sides."""
+    half = rect.length / 2
+    ends = [inclined(rect, side * half, 0.0, eave, -side * pitch, 0.0) for side in (-1, 1)]
+    return np.concatenate([gable(rect, eave, pitch), ends])
+
+
+@dataclass(frozen=True)
+class SolidArrays:
+    """Many solids as arrays: faces (m, 9, 4) with n·p <= d inside, and boxes around them (m, 3)."""
+
+    faces: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    classification: np.ndarray
+    object_id: np.ndarray
+
+    def enter(self, which: np.ndarray, origin: np.ndarray, direction: np.ndarray) -> np.ndarray:
+        """Return the ranges (n,) (m) at which beams enter the solids ``which``, inf where they miss."""
+        near = np.full(len(which), -np.inf)
+        far = np.full(len(which), np.inf)
+        for face in range(_FACES):
+            normal, offset = self.faces[which, face, :3], self.faces[which, face, 3]
+            speed = np.einsum("ij,ij->i", normal, direction)
+            left = offset - np.einsum("ij,ij->i", normal, origin)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                crossing = left / speed
+            near = np.where(speed < 0, np.maximum(near, crossing), near)
+            far = np.where(speed > 0, np.minimum(far, crossing), far)
+            # A beam parallel to a face, and on its wrong side, never comes in.
+            far = np.where((speed == 0) & (left < 0), -np.inf, far)
+        return np.where(near < far, near, np.inf)
+
+
+def stack(solids: Sequence[Solid]) -> SolidArrays:
+    """Return solids as arrays."""
+    count = len(solids)
+    low, high = np.zeros((count, 3)), np.zeros((count, 3))
+    # Faces that a solid doesn't have are (0, 0, 0, 1): every point is inside of them.
+    faces = np.zeros((count, _FACES, 4))
+    faces[:, :, 3] = 1.0
+    for i, solid in enumerate(solids):
+        corners = solid.rect.corners()
+        faces[i, :4] = _sides(solid.rect)
+        faces[i, 4] = (0.0, 0.0, -1.0, -solid.bottom)
+        for k, (a, b, c) in enumerate(solid.tops):
+            faces[i, 5 + k] = (-a, -b, 1.0, c)
+        low[i] = (*corners.min(axis=0), solid.bottom)
+        # A plane is highest at a corner, and the top is nowhere higher than the lowest of these.
+        high[i] = (*corners.max(axis=0), (corners @ solid.tops[:, :2].T + solid.tops[:, 2]).max(axis=0).min())
+    classes = np.array([solid.classification for solid in solids], np.uint8)
+    return SolidArrays(faces, low, high, classes, np.array([solid.object_id for solid in solids], np.int32))
+
+
+def _sides(rect: Rect) -> np.ndarray:
+    cos, sin = np.cos(rect.angle), np.sin(rect.angle)
+    normals = np.array([[cos, sin, 0.0], [-cos, -sin, 0.0], [-sin, cos, 0.0], [sin, -cos, 0.0]])
+    reach = np.array([rect.length, rect.length, rect.width, rect.width]) / 2
+    return np.column_stack([normals, normals @ [rect.x, rect.y, 0.0] + reach])

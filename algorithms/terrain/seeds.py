@@ -1,0 +1,184 @@
+"""Seeds of the terrain: points that are ground beyond doubt, from which a TIN can grow."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..packages import ndimage
+from ..stage import Monitor
+from .opening import open_surface
+
+# Step that terrain may make over any window, m: kerbs, ruts, tussocks.
+_STEP = 0.1
+
+# Slope that terrain may have beside the slope measured around it, and the share of that which it may add.
+_FLAT_SLOPE, _SLOPE_SHARE = 0.1, 0.3
+
+# Slope allowed while the terrain's own slope is not known yet.
+_FIRST_SLOPE = 0.2
+
+# A pit steeper than this on all sides is multipath, not terrain (5 m deep in a cell of 1 m).
+_PIT_SLOPE = 5.0
+
+# A region that was removed joins the terrain where a step at its edge is not steeper than this plus
+# this share of the local slope, and it is terrain when half of its edge does.
+_JOIN_SLOPE, _JOIN_SHARE, _JOINED = 0.3, 0.5, 0.5
+
+# Windows of the opening grow by this factor.
+_GROWTH = 1.25
+
+# Terrain slope is measured over about this distance, m.
+_SLOPE_SCALE = 4.0
+
+
+@dataclass
+class Lowest:
+    """The lowest point of each cell: ``index`` (rows, columns), -1 where empty, and the cell size (m)."""
+
+    index: np.ndarray
+    cell_size: float
+
+    def points(self, chosen: np.ndarray) -> np.ndarray:
+        """Return the indices of the points of the chosen, occupied cells."""
+        index = self.index[chosen]
+        return index[index >= 0]
+
+
+def lowest_points(xyz: np.ndarray, cell_size: float) -> Lowest:
+    """Return the lowest point of each square cell of ``cell_size`` (m)."""
+    cell = np.floor((xyz[:, :2] - xyz[:, :2].min(axis=0)) / cell_size).astype(np.int64)
+    index = np.full(cell.max(axis=0) + 1, -1, np.int64)
+    # Written from the highest to the lowest, the last one stays; ties go to the earlier point.
+    order = np.lexsort((-np.arange(len(xyz)), -xyz[:, 2]))
+    index[tuple(cell[order].T)] = order
+    return Lowest(index, cell_size)
+
+
+def seeds_by_opening(xyz: np.ndarray, cell_size: float, max_building_size: float, monitor: Monitor) -> np.ndarray:
+    """Find ground points by opening the lowest surface with growing windows.
+
+    What a window lifts off the surface by more than terrain of the local slope allows is an
+    object; what was removed but joins the terrain smoothly on half of its edge comes back.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points (m).
+    cell_size : float
+        Cell of the surface, m.
+    max_building_size : float
+        Least extent of the largest building, m: the last window.
+    monitor : Monitor
+        Hears progress.
+
+    Returns
+    -------
+    ndarray of shape (m,), int64
+        Indices of the seeds.
+
+    Notes
+    -----
+    Progressive opening after Pingel et al. (2013), with a threshold that follows the slope of a
+    first, coarser result; the return of smoothly joined regions is this project's.
+
+    References
+    ----------
+    Pingel, T. J., Clarke, K. C., McBride, W. A., 2013. An improved simple morphological filter for the terrain
+    classification of airborne LIDAR data. ISPRS Journal of Photogrammetry and Remote Sensing 77, 21-30.
+    """
+    lowest = lowest_points(xyz, cell_size)
+    surface, known = _surface(xyz, lowest)
+    windows = _windows(max_building_size / 2 / cell_size)
+    first = _objects(surface, windows, np.full(surface.shape, _FIRST_SLOPE), cell_size, monitor.part(0, 0.45))
+    slope = _slope(_interpolated(surface, first), cell_size)
+    objects = _objects(surface, windows, _FLAT_SLOPE + _SLOPE_SHARE * slope, cell_size, monitor.part(0.45, 0.9))
+    objects = _without_joined(objects, surface, slope, cell_size)
+    monitor.progress(1.0)
+    return lowest.points(known & ~objects)
+
+
+def seeds_by_lowest(xyz: np.ndarray, max_building_size: float) -> np.ndarray:
+    """Return the lowest point (its index) of each cell as large as the largest building, as Axelsson does."""
+    lowest = lowest_points(xyz, max_building_size)
+    return lowest.points(lowest.index >= 0)
+
+
+def _surface(xyz: np.ndarray, lowest: Lowest) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lowest surface without gaps and pits, and where it is a point's own height."""
+    empty = lowest.index < 0
+    surface = _nearest(np.where(empty, np.inf, xyz[lowest.index, 2]), empty)
+    pits = surface + open_surface(-surface, 1) < -_PIT_SLOPE * lowest.cell_size
+    unknown = empty | pits
+    return _nearest(surface, unknown), ~unknown
+
+
+def _nearest(surface: np.ndarray, unknown: np.ndarray) -> np.ndarray:
+    """Fill unknown cells with the value of the nearest known one."""
+    if not unknown.any():
+        return surface
+    row, column = ndimage.distance_transform_edt(unknown, return_distances=False, return_indices=True)
+    return surface[row, column]
+
+
+def _windows(largest: float) -> list[int]:
+    """Return radii in cells from 1 up to ``largest``, each a quarter larger than the one before."""
+    radii, last = [], max(1, int(np.ceil(largest)))
+    radius = 1
+    while radius < last:
+        radii.append(radius)
+        radius = max(radius + 1, round(radius * _GROWTH))
+    return [*radii, last]
+
+
+def _objects(
+    surface: np.ndarray, windows: list[int], slope: np.ndarray, cell_size: float, monitor: Monitor
+) -> np.ndarray:
+    """Return the cells that some window lifts off by more than terrain of ``slope`` allows."""
+    objects = np.zeros(surface.shape, bool)
+    opened = surface
+    for done, radius in enumerate(windows, start=1):
+        previous, opened = opened, open_surface(opened, radius)
+        objects |= previous - opened > _STEP + slope * radius * cell_size
+        monitor.progress(done / len(windows))
+    return objects
+
+
+def _interpolated(surface: np.ndarray, unknown: np.ndarray) -> np.ndarray:
+    """Fill unknown cells with means of the known ones around, over ever larger surroundings."""
+    filled = np.where(unknown, np.nan, surface)
+    weight = (~unknown).astype(float)
+    weighted = np.where(unknown, 0.0, surface)
+    scale, widest = 1.0, 4.0 * max(surface.shape)
+    while np.isnan(filled).any() and scale < widest:
+        share = ndimage.gaussian_filter(weight, scale, mode="nearest")
+        mean = ndimage.gaussian_filter(weighted, scale, mode="nearest")
+        now = np.isnan(filled) & (share > 1e-3)
+        filled[now] = mean[now] / share[now]
+        scale *= 2
+    return _nearest(filled, np.isnan(filled)) if np.isfinite(filled).any() else surface
+
+
+def _slope(surface: np.ndarray, cell_size: float) -> np.ndarray:
+    """Return the slope (rise over run) of the smoothed surface."""
+    smooth = ndimage.gaussian_filter(surface, _SLOPE_SCALE / cell_size, mode="nearest")
+    # A raster one cell wide has no gradient across.
+    gradients = [np.gradient(smooth, cell_size, axis=a) if smooth.shape[a] > 1 else np.zeros_like(smooth) for a in (0, 1)]
+    return np.hypot(*gradients)
+
+
+def _without_joined(objects: np.ndarray, surface: np.ndarray, slope: np.ndarray, cell_size: float) -> np.ndarray:
+    """Take regions of ``objects`` out that join the terrain smoothly on half of their edge."""
+    region, count = ndimage.label(objects)
+    edge, joined = np.zeros(count + 1), np.zeros(count + 1)
+    allowed = (_JOIN_SLOPE + _JOIN_SHARE * slope) * cell_size
+    for axis in (0, 1):
+        for inside, outside in ((slice(None, -1), slice(1, None)), (slice(1, None), slice(None, -1))):
+            here, there = (slice(None),) * axis + (inside,), (slice(None),) * axis + (outside,)
+            at_edge = objects[here] & ~objects[there]
+            smooth = at_edge & (surface[here] - surface[there] < allowed[here])
+            edge += np.bincount(region[here][at_edge], minlength=count + 1)
+            joined += np.bincount(region[here][smooth], minlength=count + 1)
+    terrain = joined >= _JOINED * np.maximum(edge, 1)
+    return objects & ~terrain[region]

@@ -1,0 +1,155 @@
+"""A triangulated surface over plan coordinates, and where points lie on it."""
+
+from __future__ import annotations
+
+from typing import Any, Optional
+
+import numpy as np
+
+from ..packages import spatial
+from ..stage import Monitor
+
+_CHUNK = 200_000
+
+# Far more steps than a walk from the nearest node takes.
+_MAX_STEPS = 100
+
+
+class Tin:
+    """Delaunay triangulation of ``nodes`` in plan, defined everywhere.
+
+    Four far corners, each as high as the node nearest to it, surround the nodes, so that every
+    point lies in a facet; ``is_extrapolated`` tells the facets that have such a corner.
+
+    Parameters
+    ----------
+    nodes : ndarray of shape (m, 3), float64
+        Nodes (m), m >= 1; of nodes at one place in plan, one counts.
+    """
+
+    def __init__(self, nodes: np.ndarray) -> None:
+        low, high = nodes[:, :2].min(axis=0), nodes[:, :2].max(axis=0)
+        # Qhull works in absolute coordinates: shifted ones keep their digits.
+        self.shift = np.append((low + high) / 2, 0.0)
+        self.n_nodes = len(nodes)
+        reach = 3 * float((high - low).max()) + 10.0
+        corners = np.array([[-reach, -reach], [reach, -reach], [reach, reach], [-reach, reach]])
+        self._node_tree = spatial.cKDTree(nodes[:, :2] - self.shift[:2])
+        heights = nodes[self._node_tree.query(corners)[1], 2]
+        self.nodes = np.vstack([nodes - self.shift, np.column_stack([corners, heights])])
+        self.delaunay = spatial.Delaunay(self.nodes[:, :2])
+
+    @property
+    def facets(self) -> np.ndarray:
+        """Node numbers (f, 3) of the facets."""
+        return self.delaunay.simplices
+
+    def is_extrapolated(self) -> np.ndarray:
+        """Return for each facet (f,) whether it lies outside the hull of the nodes."""
+        return (self.facets >= self.n_nodes).any(axis=1)
+
+    def locate(self, xyz: np.ndarray, monitor: Optional[Monitor] = None) -> np.ndarray:
+        """Return the facet (n,), int32, under each point.
+
+        Each point starts at a facet of its nearest node and walks from there, all points of a
+        chunk together: a step or two for nearly all of them.
+        """
+        monitor = monitor or Monitor()
+        plan = xyz[:, :2] - self.shift[:2]
+        found = np.empty(len(plan), np.int32)
+        for start in range(0, len(plan), _CHUNK):
+            monitor.progress(start / len(plan))
+            part = slice(start, start + _CHUNK)
+            found[part] = self._walk(plan[part])
+        return found
+
+    def _walk(self, plan: np.ndarray) -> np.ndarray:
+        nearest = self._node_tree.query(plan, workers=-1)[1]
+        facet = self.delaunay.vertex_to_simplex[nearest]
+        # A node that Qhull left out as a duplicate has no facet of its own.
+        facet[facet < 0] = 0
+        walking = np.arange(len(plan))
+        for _ in range(_MAX_STEPS):
+            across = self._leaving(plan[walking], facet[walking])
+            outside = across >= 0
+            walking, across = walking[outside], across[outside]
+            if not len(walking):
+                return facet
+            facet[walking] = self.delaunay.neighbors[facet[walking], across]
+        # Facets of nearly collinear nodes can send a point round in circles; Qhull's own search ends.
+        facet[walking] = self.delaunay.find_simplex(plan[walking], bruteforce=True)
+        return facet
+
+    def _leaving(self, plan: np.ndarray, facet: np.ndarray) -> np.ndarray:
+        """Return the side (0-2) by which each point lies outside its facet most, -1 where it lies inside."""
+        transform = self.delaunay.transform[facet]
+        offset = plan - transform[:, 2]
+        first = transform[:, 0, 0] * offset[:, 0] + transform[:, 0, 1] * offset[:, 1]
+        second = transform[:, 1, 0] * offset[:, 0] + transform[:, 1, 1] * offset[:, 1]
+        weights = np.stack([first, second, 1 - first - second])
+        side = np.argmin(weights, axis=0)
+        least = np.take_along_axis(weights, side[None], axis=0)[0]
+        return np.where(least < -1e-9, side, -1)
+
+    def elevation(self, xyz: np.ndarray, facet: np.ndarray) -> np.ndarray:
+        """Return the surface's elevation (n,) at points that lie in ``facet`` (n,)."""
+        slope, level = self._planes()
+        plan = xyz[:, :2] - self.shift[:2]
+        return np.einsum("ij,ij->i", slope[facet], plan) + level[facet]
+
+    def nearest_elevation(self, xyz: np.ndarray) -> np.ndarray:
+        """Return the elevation (n,) of the node nearest in plan to each point."""
+        return self.nodes[self._node_tree.query(xyz[:, :2] - self.shift[:2], workers=-1)[1], 2]
+
+    def steepness(self) -> np.ndarray:
+        """Return the cosine (f,) of each facet's slope, 1 where it is level."""
+        slope, _ = self._planes()
+        return 1.0 / np.sqrt(1.0 + np.einsum("ij,ij->i", slope, slope))
+
+    def longest_edge(self) -> np.ndarray:
+        """Return the longest edge (f,) of each facet in plan, m."""
+        corners = self.nodes[self.facets, :2]
+        return np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+
+    def _planes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return gradient (f, 2) and level at the shifted origin (f,) of each facet."""
+        a, b, c = np.swapaxes(self.nodes[self.facets], 0, 1)
+        u, v = b - a, c - a
+        area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+        # Facets of collinear nodes have no gradient; Qhull keeps them only at rounding's edge.
+        safe = np.where(np.abs(area) > 0, area, np.inf)
+        slope = np.column_stack(
+            [(u[:, 2] * v[:, 1] - v[:, 2] * u[:, 1]) / safe, (u[:, 0] * v[:, 2] - v[:, 0] * u[:, 2]) / safe]
+        )
+        return slope, a[:, 2] - np.einsum("ij,ij->i", slope, a[:, :2])
+
+
+def node_residuals(nodes: np.ndarray, n_neighbors: int = 8) -> np.ndarray:
+    """Return how far each node lies above the plane of its neighbors.
+
+    Parameters
+    ----------
+    nodes : ndarray of shape (m, 3), float64
+        Points of a surface (m), m > 3.
+    n_neighbors : int
+        Neighbors in plan that the plane is fitted to, the node itself left out.
+
+    Returns
+    -------
+    ndarray of shape (m,)
+        Residuals (m): measurement noise and what the surface bends within its own spacing.
+    """
+    count = min(n_neighbors, len(nodes) - 1)
+    tree: Any = spatial.cKDTree(nodes[:, :2])
+    neighbors = tree.query(nodes[:, :2], k=count + 1, workers=-1)[1][:, 1:]
+    offsets = nodes[neighbors] - nodes[:, None]
+    # The plane through offsets is level + slope . (x, y); a whisker on the diagonal keeps collinear neighbors solvable.
+    design = np.concatenate([offsets[..., :2], np.ones((*offsets.shape[:2], 1))], axis=2)
+    normal = np.einsum("nki,nkj->nij", design, design) + 1e-6 * np.eye(3)
+    right = np.einsum("nki,nk->ni", design, offsets[..., 2])
+    return -np.linalg.solve(normal, right[..., None])[:, 2, 0]
+
+
+def robust_deviation(residuals: np.ndarray, floor: float = 0.01) -> float:
+    """Return the standard deviation that the median of absolute residuals stands for, at least ``floor`` (m)."""
+    return max(1.4826 * float(np.median(np.abs(residuals))), floor)

@@ -1,0 +1,1 @@
+"""The only folder that knows QGIS: it turns every stage and pipeline into a Processing algorithm."""

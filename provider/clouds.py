@@ -1,0 +1,92 @@
+"""Point clouds as input: a path or a layer, also on builds of QGIS that can't open LAS and LAZ."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Optional
+
+from qgis.core import (
+    QgsMapLayer,
+    QgsPointCloudLayer,
+    QgsProcessingAlgorithm,
+    QgsProcessingContext,
+    QgsProcessingOutputLayerDefinition,
+    QgsProcessingParameterPointCloudLayer,
+    QgsProcessingUtils,
+    QgsProperty,
+    QgsProviderRegistry,
+)
+
+SUFFIXES = (".las", ".laz", ".vpc")
+_FILTER = "Point clouds (*.las *.LAS *.laz *.LAZ *.vpc *.VPC)"
+
+
+def reads_las() -> bool:
+    """Whether this build of QGIS opens LAS and LAZ files as layers (it has PDAL)."""
+    return "pdal" in QgsProviderRegistry.instance().providerList()
+
+
+class CloudParameter(QgsProcessingParameterPointCloudLayer):
+    """A point cloud layer, or the path of a file that QGIS itself may be unable to open."""
+
+    def clone(self) -> CloudParameter:
+        """Return a copy of this very type; the base class would return its own."""
+        copy = CloudParameter(self.name(), self.description(), self.defaultValue())
+        copy.setFlags(self.flags())
+        copy.setHelp(self.help())
+        copy.setMetadata(self.metadata())
+        return copy
+
+    def createFileFilter(self) -> str:  # noqa: N802 - QGIS asks for this name
+        """Return the filter of the browse dialog, LAS and LAZ first."""
+        return f"{_FILTER};;{super().createFileFilter()}"
+
+    def checkValueIsAcceptable(self, value: Any, context: Optional[QgsProcessingContext] = None) -> bool:  # noqa: N802
+        """Whether ``value`` may be a point cloud; what it really is, :func:`cloud_path` finds out."""
+        return isinstance(value, (QgsMapLayer, QgsProperty)) or bool(value)
+
+
+def cloud_path(algorithm: QgsProcessingAlgorithm, name: str, parameters: dict, context: QgsProcessingContext) -> Path:
+    """Return the file of the point cloud that a parameter gives as layer, layer id, layer name, source or path.
+
+    Raises
+    ------
+    ValueError
+        If there is no such file or layer, or it is no point cloud with a file.
+    """
+    title = algorithm.parameterDefinition(name).description()
+    value = _plain(algorithm, name, parameters, context)
+    if value is None or value == "":
+        raise ValueError(f"{title} ({name}) is missing; choose a point cloud.")
+    if isinstance(value, str) and Path(value).is_file():
+        return _known(title, Path(value))
+    layer = value if isinstance(value, QgsMapLayer) else QgsProcessingUtils.mapLayerFromString(value, context, False)
+    if layer is None:
+        raise ValueError(f"{title} ({name}) must be a point cloud file or layer; there is none at {value}.")
+    if not isinstance(layer, QgsPointCloudLayer):
+        raise ValueError(
+            f"{title} ({name}) must be a point cloud, got the layer {layer.name()!r}; choose a point cloud."
+        )
+    if not Path(layer.source()).is_file():
+        raise ValueError(
+            f"The layer {layer.name()!r} has no file on this computer ({layer.source()}); save it as LAZ first."
+        )
+    return _known(title, Path(layer.source()))
+
+
+def _known(title: str, path: Path) -> Path:
+    if path.suffix.lower() not in SUFFIXES:
+        raise ValueError(f"{title} must be a .las, .laz, .copc.laz or .vpc file, got {path.name}; convert it first.")
+    return path
+
+
+def _plain(algorithm: QgsProcessingAlgorithm, name: str, parameters: dict, context: QgsProcessingContext) -> Any:
+    """Return a parameter's value as a layer or text, whatever QGIS wrapped it in."""
+    value = parameters.get(name)
+    if isinstance(value, QgsProcessingOutputLayerDefinition):
+        value = value.sink
+    if isinstance(value, QgsProperty):
+        value = algorithm.parameterAsString({name: value}, name, context)
+    if value is not None and not isinstance(value, (str, QgsMapLayer)):
+        value = None if hasattr(value, "isNull") and value.isNull() else str(value)
+    return value

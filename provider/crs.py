@@ -1,0 +1,40 @@
+"""Coordinate reference systems, which only QGIS knows."""
+
+from __future__ import annotations
+
+from typing import Optional
+
+from qgis.core import Qgis, QgsCoordinateReferenceSystem, QgsUnitTypes
+
+_DISTANCES_UNKNOWN = (Qgis.DistanceUnit.Unknown, Qgis.DistanceUnit.Degrees)
+
+
+def crs_units(epsg: int) -> Optional[tuple[float, float, bool]]:
+    """Look an EPSG code up.
+
+    Returns
+    -------
+    (float, float, bool) or None
+        Metres per horizontal unit, metres per vertical unit, whether it is geographic; None if unknown.
+    """
+    crs = QgsCoordinateReferenceSystem.fromEpsgId(epsg)
+    if not crs.isValid():
+        return None
+    horizontal = _metres(crs)
+    vertical = _metres(crs.verticalCrs()) if crs.verticalCrs().isValid() else horizontal
+    return horizontal, vertical, crs.isGeographic()
+
+
+def _metres(crs: QgsCoordinateReferenceSystem) -> float:
+    unit = crs.mapUnits()
+    return 1.0 if unit in _DISTANCES_UNKNOWN else QgsUnitTypes.fromUnitToUnitFactor(unit, Qgis.DistanceUnit.Meters)
+
+
+def crs_of(wkt: str) -> QgsCoordinateReferenceSystem:
+    """Return the horizontal CRS that a cloud names as WKT or as "EPSG:n"; invalid when it names none."""
+    crs = QgsCoordinateReferenceSystem()
+    if wkt:
+        crs = QgsCoordinateReferenceSystem.fromWkt(wkt) if '"' in wkt else QgsCoordinateReferenceSystem(wkt)
+    # Layers hold heights as an attribute or in metres of the cloud's own vertical system, which GeoPackage can't name.
+    horizontal = crs.horizontalCrs()
+    return horizontal if horizontal.isValid() else crs

@@ -1,0 +1,27 @@
+"""The toolbox entry that opens a composite as a graph."""
+
+from __future__ import annotations
+
+from processing.gui.ContextAction import ContextAction
+
+from .models import PipelineAlgorithm
+
+
+class OpenInDesigner(ContextAction):
+    """Open a composite in the model designer, as a model of the user's own to look at and change."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.name = "Open in Model Designer…"
+
+    def isEnabled(self) -> bool:  # noqa: N802 - QGIS asks for this name
+        """Whether the entry under the mouse is a composite of this plugin."""
+        return isinstance(self.itemData, PipelineAlgorithm)
+
+    def execute(self) -> None:
+        """Show the graph."""
+        from processing.modeler.ModelerDialog import ModelerDialog
+
+        dialog = ModelerDialog.create(self.itemData.as_model())
+        dialog.show()
+        dialog.activate()

@@ -1,0 +1,42 @@
+"""What a running stage says, shown in QGIS's log and progress bar."""
+
+from __future__ import annotations
+
+from typing import Any, Optional
+
+from qgis.core import QgsProcessingFeedback
+
+from ..algorithms.stage import Cancelled, Monitor, Stage
+
+
+class FeedbackMonitor(Monitor):
+    """A monitor that speaks through a QgsProcessingFeedback and stops when the user cancels."""
+
+    def __init__(self, feedback: QgsProcessingFeedback, stage: Optional[Stage] = None) -> None:
+        super().__init__()
+        self._feedback, self._stage = feedback, stage
+
+    def progress(self, fraction: float) -> None:
+        """Move the progress bar, or raise :class:`Cancelled`."""
+        if self._feedback.isCanceled():
+            raise Cancelled
+        self._feedback.setProgress(100.0 * fraction)
+
+    def resolved(self, **values: Any) -> None:
+        """Log and keep the values that automatic tunables took."""
+        super().resolved(**values)
+        for name, value in values.items():
+            self._feedback.pushInfo(self._sentence(name, value))
+
+    def warn(self, sentence: str) -> None:
+        """Log and keep a warning."""
+        super().warn(sentence)
+        self._feedback.pushWarning(sentence)
+
+    def _sentence(self, name: str, value: Any) -> str:
+        tunable = self._stage.tunables.get(name) if self._stage else None
+        shown = f"{value:.6g}" if isinstance(value, float) else str(value)
+        if tunable is None:
+            return f"{name.replace('_', ' ').capitalize()}: {shown}"
+        unit = f" {tunable.param.unit}" if tunable.param.unit else ""
+        return f"{tunable.param.label}, automatic: {shown}{unit}"

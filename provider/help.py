@@ -1,0 +1,161 @@
+"""Help of an algorithm as HTML, from what its stage or pipeline declares. Knows nothing of QGIS."""
+
+from __future__ import annotations
+
+import html
+import re
+from typing import Optional
+
+from ..algorithms.cloud.dimensions import DIMENSIONS
+from ..algorithms.pipelines import Pipeline
+from ..algorithms.stage import REFERENCE_PREFIX, Field, Layer, Stage, Tunable
+
+
+def stage_help(stage: Stage) -> str:
+    """Return everything that is known of a stage, as HTML that QGIS's help pane shows."""
+    return "\n".join(
+        part
+        for part in (
+            paragraphs(stage.summary),
+            paragraphs(stage.description),
+            _dimensions(stage),
+            _list("Parameters", [tunable_help(tunable) for tunable in stage.tunables.values()]),
+            _list("Outputs", outputs(stage)),
+            _section("Notes", stage.section("Notes")),
+            _section("References", stage.section("References")),
+        )
+        if part
+    )
+
+
+def pipeline_help(pipeline: Pipeline) -> str:
+    """Return what a pipeline does, step by step, with the parameters of its steps."""
+    steps = [f"<b>{html.escape(step.stage.title)}</b>: {inline(step.stage.summary)}" for step in pipeline.steps]
+    parts = [paragraphs(pipeline.summary), paragraphs(pipeline.description), _list("Steps", steps, ordered=True)]
+    for step in pipeline.steps:
+        rows = [tunable_help(t, step.tunables.get(t.name, t.default)) for t in step.stage.tunables.values()]
+        parts.append(_list(f"Parameters of {step.stage.title.lower()}", rows))
+    last = [name for step in pipeline.steps for name in step.stage.writes]
+    made = [f"<b>OUTPUT</b>: the cloud with {_disk_names(last)}."] if last else []
+    made += [_layer_text(layer) for step in pipeline.steps for layer in step.stage.layers]
+    return "\n".join(
+        part for part in (*parts, _list("Outputs", made), _section("References", pipeline.references)) if part
+    )
+
+
+def page(title: str, body: str) -> str:
+    """Return a complete page around a help text."""
+    return (
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        f"<title>{html.escape(title)}</title>\n"
+        "<style>body{font-family:sans-serif;max-width:48em;margin:2em auto;line-height:1.5;padding:0 1em}</style>\n"
+        f"</head>\n<body>\n<h1>{html.escape(title)}</h1>\n{body}\n</body>\n</html>\n"
+    )
+
+
+_NOT_GIVEN = object()
+
+
+def tunable_help(tunable: Tunable, default: object = _NOT_GIVEN) -> str:
+    """Return one tunable's name, meaning, range and default as HTML."""
+    param = tunable.param
+    facts = [param.range] if param.range else []
+    facts.append(f"default {_default_text(tunable, tunable.default if default is _NOT_GIVEN else default)}")
+    automatic = f" Automatic: {inline(param.automatic)}" if tunable.is_automatic else ""
+    return (
+        f"<b>{html.escape(param.title)}</b>: {inline(param.help)}{automatic} <i>({html.escape('; '.join(facts))})</i>"
+    )
+
+
+def _default_text(tunable: Tunable, default: object) -> str:
+    if default is None:
+        return "automatic"
+    if isinstance(default, bool):
+        return "yes" if default else "no"
+    if isinstance(default, tuple):
+        return ", ".join(default) or "none"
+    unit = f" {tunable.param.unit}" if tunable.param.unit else ""
+    return f"{default:g}{unit}" if isinstance(default, float) else f"{default}{unit}"
+
+
+def outputs(stage: Stage) -> list:
+    """Return what a stage makes, one HTML text per output."""
+    made = []
+    if stage.creates:
+        made.append(f"<b>OUTPUT</b>: a new cloud with {_disk_names(stage.creates)}.")
+    if stage.writes:
+        made.append(
+            f"<b>OUTPUT</b>: the cloud with {_disk_names(stage.writes)}; everything else in it stays as it was."
+        )
+    made += [_layer_text(layer) for layer in stage.layers]
+    if stage.measures:
+        measures = ", ".join(f"{m.title} ({m.unit})" if m.unit else m.title for m in stage.measures)
+        made.append(f"<b>REPORT</b>: a page with {html.escape(measures)}; each is an output of its own too.")
+    used = [f"{t.name.upper()}_USED" for t in stage.tunables.values() if t.is_automatic and t.type in (int, float)]
+    if used:
+        made.append(f"<b>{', '.join(used)}</b>: the value that was used, given or automatic.")
+    return made
+
+
+def _layer_text(layer: Layer) -> str:
+    fields = "; ".join(_field_text(declared) for declared in layer.fields)
+    return f"<b>{layer.name.upper()}</b>: {html.escape(layer.title)}, with the attributes {fields}."
+
+
+def _field_text(declared: Field) -> str:
+    unit = f" ({declared.unit})" if declared.unit else ""
+    return html.escape(f"{declared.name}{unit}: {declared.help.rstrip('.')}")
+
+
+def _dimensions(stage: Stage) -> str:
+    own = [name for name in stage.reads if not name.startswith(REFERENCE_PREFIX)]
+    if_there = [name for name in stage.optional if not name.startswith(REFERENCE_PREFIX)]
+    compared = [name[len(REFERENCE_PREFIX) :] for name in stage.reads if name.startswith(REFERENCE_PREFIX)]
+    rows = [
+        f"<b>INPUT</b>: reads {_disk_names(own)}" + (f"; if there, {_disk_names(if_there)}" if if_there else "") + "."
+    ]
+    if compared:
+        rows.append(f"<b>REFERENCE</b>: reads {_disk_names(compared)}.")
+    return _list("Inputs", rows) if own or compared else ""
+
+
+def _disk_names(names) -> str:
+    return ", ".join(dict.fromkeys(disk for name in names for disk in DIMENSIONS[name].disk))
+
+
+def _list(title: str, rows: list, ordered: bool = False) -> str:
+    if not rows:
+        return ""
+    tag = "ol" if ordered else "ul"
+    return f"<h3>{html.escape(title)}</h3>\n<{tag}>\n" + "\n".join(f"<li>{row}</li>" for row in rows) + f"\n</{tag}>"
+
+
+def _section(title: str, text: str) -> str:
+    return f"<h3>{title}</h3>\n{paragraphs(text)}" if text else ""
+
+
+def paragraphs(text: str) -> str:
+    """Return reStructuredText as docstrings use it (paragraphs, lists, ``code``, *emphasis*) as HTML."""
+    blocks = [block for block in re.split(r"\n\s*\n", text.strip()) if block.strip()]
+    return "\n".join(_items(block) or f"<p>{inline(block)}</p>" for block in blocks)
+
+
+_ITEM = re.compile(r"^\s*(?:[*-]|\.\. \[\w+\]|(\d+)\.)\s+", re.MULTILINE)
+
+
+def _items(block: str) -> Optional[str]:
+    """Return a block as a list, None when it is none."""
+    first = _ITEM.match(block)
+    if first is None:
+        return None
+    tag = "ol" if first.group(1) else "ul"
+    items = [item for item in _ITEM.sub("\0", block).split("\0") if item.strip()]
+    return f"<{tag}>\n" + "\n".join(f"<li>{inline(item)}</li>" for item in items) + f"\n</{tag}>"
+
+
+def inline(text: str) -> str:
+    """Return one paragraph's text as HTML."""
+    text = html.escape(" ".join(text.split()), quote=False)
+    text = re.sub(r":\w+:`~?\.*([\w.]+)`", r"<code>\1</code>", text)
+    text = re.sub(r"``(.+?)``", r"<code>\1</code>", text)
+    return re.sub(r"(?<![\w*])\*(\S(?:.*?\S)?)\*(?![\w*])", r"<i>\1</i>", text)

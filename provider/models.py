@@ -1,0 +1,337 @@
+"""Pipelines as Processing models: written from ``pipelines.py``, shipped, and loaded as algorithms."""
+
+from __future__ import annotations
+
+import uuid
+from pathlib import Path
+from typing import Any, Optional
+
+from qgis.core import (
+    Qgis,
+    QgsProcessingContext,
+    QgsProcessingException,
+    QgsProcessingFeedback,
+    QgsProcessingModelAlgorithm,
+    QgsProcessingModelChildAlgorithm,
+    QgsProcessingModelChildParameterSource,
+    QgsProcessingModelGroupBox,
+    QgsProcessingModelOutput,
+    QgsProcessingModelParameter,
+    QgsProcessingOutputNumber,
+    QgsProcessingParameterDefinition,
+    QgsProcessingParameterPointCloudLayer,
+)
+from qgis.PyQt.QtCore import QPointF, QSizeF, QUrl
+from qgis.PyQt.QtGui import QColor, QIcon
+
+from ..algorithms.pipelines import Pipeline, Step
+from . import paths
+from .clouds import CloudParameter, cloud_path
+from .dependencies import missing_sentence
+from .errors import one_sentence
+from .help import pipeline_help
+from .outputs import check_targets, files_of, nothing_left_on_failure
+from .parameters import number_outputs, parameter, parameter_name, tunable_values
+from .stage_algorithm import INPUT, OUTPUT, StageAlgorithm
+
+PROVIDER = "lidarbuildings"
+
+
+def step_parameter_name(step: Step, name: str) -> str:
+    """Return the composite's name of a step's parameter or output, ``GROUND_CELL_SIZE``."""
+    return f"{step.name.upper()}_{name}"
+
+
+def step_parameters(step: Step) -> list[QgsProcessingParameterDefinition]:
+    """Return the parameters of a step, cloned from the stage's own definitions.
+
+    Names get the step's prefix, labels its title, defaults are the step's where it has its own.
+    """
+    definitions = []
+    for tunable in step.stage.tunables.values():
+        definition = parameter(tunable)
+        definition.setName(step_parameter_name(step, definition.name()))
+        definition.setDescription(f"{step.stage.title}: {_lower_first(definition.description())}")
+        if tunable.name in step.tunables:
+            default = step.tunables[tunable.name]
+            definition.setDefaultValue(list(default) if isinstance(default, tuple) else default)
+        definitions.append(definition)
+    return definitions
+
+
+def _lower_first(text: str) -> str:
+    return text[:1].lower() + text[1:] if text[1:2].islower() else text
+
+
+class _Layout:
+    """Where things are drawn: one band per step, its parameters on the left, its algorithm right of them."""
+
+    columns, cell, box = 3, QSizeF(250, 55), QSizeF(220, 40)
+    child = QSizeF(260, 50)
+    margin, gap = 40.0, 40.0
+
+    def __init__(self) -> None:
+        self.top = 150.0
+
+    def band(self, n_parameters: int) -> float:
+        """Return the height of a band with so many parameters."""
+        return max(2, -(-n_parameters // self.columns)) * self.cell.height() + 1.5 * self.margin
+
+    def parameter(self, i: int) -> QPointF:
+        """Return the center of the ``i``-th parameter of the band."""
+        row, column = divmod(i, self.columns)
+        x = self.margin + self.cell.width() * (column + 0.5)
+        return QPointF(x, self.top + self.margin + self.cell.height() * (row + 0.5))
+
+    @property
+    def right(self) -> float:
+        """Where the algorithms' column has its middle."""
+        return 2 * self.margin + self.columns * self.cell.width() + self.child.width() / 2
+
+    def middle(self, height: float) -> QPointF:
+        """Return the center of the band's algorithm."""
+        return QPointF(self.right, self.top + height / 2)
+
+    def frame(self, height: float) -> tuple[QPointF, QSizeF]:
+        """Return center and size of the box around the band."""
+        width = self.right + self.child.width() / 2 + self.margin
+        return QPointF(width / 2, self.top + height / 2), QSizeF(width, height)
+
+
+def build_model(pipeline: Pipeline) -> QgsProcessingModelAlgorithm:
+    """Return the model of a pipeline: steps in order, each fed by the last one that wrote a cloud."""
+    model = QgsProcessingModelAlgorithm(pipeline.title, pipeline.group, "")
+    layout = _Layout()
+    where = QgsProcessingModelParameter(INPUT)
+    where.setPosition(QPointF(layout.right, 60))
+    where.setSize(layout.box)
+    model.addModelParameter(QgsProcessingParameterPointCloudLayer(INPUT, "Point cloud"), where)
+    source = QgsProcessingModelChildParameterSource.fromModelParameter(INPUT)
+    last = [step for step in pipeline.steps if step.stage.writes][-1:]
+    for step in pipeline.steps:
+        _add_step(model, step, source, layout, gives_output=step in last)
+        if step.stage.writes:
+            source = QgsProcessingModelChildParameterSource.fromChildOutput(step.name, OUTPUT)
+    model.setHelpContent({"ALG_DESC": pipeline_help(pipeline), "SHORT_DESCRIPTION": pipeline.summary})
+    model.setParameterOrder([INPUT, *(d.name() for step in pipeline.steps for d in step_parameters(step))])
+    return model
+
+
+def _add_step(
+    model: QgsProcessingModelAlgorithm,
+    step: Step,
+    source: QgsProcessingModelChildParameterSource,
+    layout: _Layout,
+    gives_output: bool,
+) -> None:
+    child = QgsProcessingModelChildAlgorithm(f"{PROVIDER}:{step.stage.id}")
+    child.setChildId(step.name)
+    child.setDescription(step.stage.title)
+    child.addParameterSources(INPUT, [source])
+    definitions = step_parameters(step)
+    height = layout.band(len(definitions))
+    for i, (tunable, definition) in enumerate(zip(step.stage.tunables.values(), definitions)):
+        component = QgsProcessingModelParameter(definition.name())
+        component.setPosition(layout.parameter(i))
+        component.setSize(layout.box)
+        model.addModelParameter(definition, component)
+        sources = [QgsProcessingModelChildParameterSource.fromModelParameter(definition.name())]
+        child.addParameterSources(parameter_name(tunable), sources)
+    child.setPosition(layout.middle(height))
+    child.setSize(layout.child)
+    child.setModelOutputs(_model_outputs(step, layout.middle(height), gives_output))
+    model.addChildAlgorithm(child)
+    model.addGroupBox(_frame(step, layout, height))
+    layout.top += height + layout.gap
+
+
+def _model_outputs(step: Step, middle: QPointF, gives_output: bool) -> dict[str, QgsProcessingModelOutput]:
+    names = [OUTPUT] if gives_output else []
+    names += [layer.name.upper() for layer in step.stage.layers]
+    outputs = {}
+    for i, name in enumerate(names):
+        output = QgsProcessingModelOutput(name)
+        output.setChildId(step.name)
+        output.setChildOutputName(name)
+        output.setDescription(_destination(step, name).description())
+        output.setMandatory(name == OUTPUT)
+        output.setPosition(QPointF(middle.x() + 360, middle.y() + 70 * i))
+        output.setSize(QSizeF(240, 40))
+        outputs[name] = output
+    return outputs
+
+
+def _destination(step: Step, name: str) -> QgsProcessingParameterDefinition:
+    algorithm = StageAlgorithm(step.stage)
+    algorithm.initAlgorithm()
+    return algorithm.parameterDefinition(name).clone()
+
+
+def _frame(step: Step, layout: _Layout, height: float) -> QgsProcessingModelGroupBox:
+    box = QgsProcessingModelGroupBox(step.stage.title)
+    # QGIS draws a random id, which would make each generated file another.
+    facts = box.toVariant()
+    facts["uuid"] = "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, f"{PROVIDER}:{step.name}")) + "}"
+    box.loadVariant(facts)
+    position, size = layout.frame(height)
+    box.setPosition(position)
+    box.setSize(size)
+    box.setColor(QColor(235, 240, 245))
+    return box
+
+
+def model_file(pipeline: Pipeline) -> Path:
+    """Return where the model of a pipeline is shipped."""
+    return paths.MODELS / f"{pipeline.id}.model3"
+
+
+class PipelineAlgorithm(QgsProcessingModelAlgorithm):
+    """A shipped model with its pipeline's id and title.
+
+    A model loaded as it is has its title as id, refuses LAS and LAZ where QGIS has no PDAL,
+    ignores its own defaults and names its outputs by their titles; this class mends these and nothing else.
+    """
+
+    def __init__(self, pipeline: Pipeline) -> None:
+        super().__init__()
+        self.pipeline = pipeline
+        if not self.fromFile(str(model_file(pipeline))):
+            raise QgsProcessingException(
+                f"The model {model_file(pipeline).name} of the plugin can't be read; install it again."
+            )
+        self._mend_parameters()
+
+    def _mend_parameters(self) -> None:
+        """Let the input take any path, and name outputs by their names instead of their titles."""
+        mended = [self._mended(definition) for definition in self.parameterDefinitions()]
+        mended.sort(
+            key=lambda definition: (
+                definition.isDestination(),
+                definition.isDestination() and definition.name() != OUTPUT,
+            )
+        )
+        for definition in self.parameterDefinitions():
+            self.removeParameter(definition.name())
+        for definition in mended:
+            self.addParameter(definition)
+
+    def _mended(self, definition: QgsProcessingParameterDefinition) -> QgsProcessingParameterDefinition:
+        if definition.name() == INPUT:
+            mended = CloudParameter(INPUT, definition.description())
+            mended.setHelp("File or layer of the points.")
+            return mended
+        mended = definition.clone()
+        if definition.isDestination():
+            mended.setName(definition.metadata()["_modelChildOutputName"])
+            if mended.name() != OUTPUT:
+                mended.setFlags(mended.flags() | Qgis.ProcessingParameterFlag.Optional)
+        return mended
+
+    def as_model(self) -> QgsProcessingModelAlgorithm:
+        """Return the plain model, as the designer edits it."""
+        model = QgsProcessingModelAlgorithm()
+        model.fromFile(str(model_file(self.pipeline)))
+        model.setSourceFilePath("")
+        return model
+
+    def createInstance(self) -> PipelineAlgorithm:  # noqa: N802 - QGIS asks for these names
+        """Return a new algorithm of the same pipeline."""
+        return PipelineAlgorithm(self.pipeline)
+
+    def initAlgorithm(self, configuration: Optional[dict] = None) -> None:  # noqa: N802
+        """Declare the numbers of the steps (used values, measures) as outputs of the whole."""
+        for step in self.pipeline.steps:
+            for name, title in number_outputs(step.stage).items():
+                label = f"{step.stage.title}: {_lower_first(title)}"
+                self.addOutput(QgsProcessingOutputNumber(step_parameter_name(step, name), label))
+
+    def name(self) -> str:
+        """Return the id, frozen: saved models depend on it."""
+        return self.pipeline.id
+
+    def displayName(self) -> str:  # noqa: N802
+        """Return the title."""
+        return self.pipeline.title
+
+    def group(self) -> str:
+        """Return the group's title."""
+        return self.pipeline.group
+
+    def groupId(self) -> str:  # noqa: N802
+        """Return the group's id."""
+        return self.pipeline.group.lower().replace(" ", "")
+
+    def tags(self) -> list:
+        """Return words that the toolbox finds the pipeline by."""
+        return [tag.strip() for tag in self.pipeline.tags.split(",") if tag.strip()]
+
+    def icon(self) -> QIcon:
+        """Return the plugin's icon."""
+        return QIcon(str(paths.ICON))
+
+    def svgIconPath(self) -> str:  # noqa: N802
+        """Return the icon's file."""
+        return str(paths.ICON)
+
+    def shortDescription(self) -> str:  # noqa: N802
+        """Return what the pipeline is for."""
+        return self.pipeline.summary
+
+    def shortHelpString(self) -> str:  # noqa: N802
+        """Return the help that the dialog shows beside the parameters."""
+        return pipeline_help(self.pipeline)
+
+    def helpUrl(self) -> str:  # noqa: N802
+        """Return the help page, which comes with the plugin."""
+        return QUrl.fromLocalFile(str(paths.HELP / f"{self.pipeline.id}.html")).toString()
+
+    def canExecute(self) -> tuple[bool, str]:  # noqa: N802
+        """Whether all packages are there, and how to install what is missing."""
+        missing = missing_sentence()
+        return (False, missing) if missing else super().canExecute()
+
+    def checkParameterValues(self, parameters: dict, context: QgsProcessingContext) -> tuple[bool, str]:  # noqa: N802
+        """Refuse what can be refused before the run, in the words that the run would use."""
+        try:
+            self._check(parameters, context)
+        except ValueError as error:
+            return False, str(error)
+        return super().checkParameterValues(self._with_defaults(parameters), context)
+
+    def _check(self, parameters: dict, context: QgsProcessingContext) -> None:
+        missing = missing_sentence()
+        if missing:
+            raise ValueError(missing)
+        given = self._with_defaults(parameters)
+        for step in self.pipeline.steps:
+            tunable_values(self, step.stage, given, context, prefix=step_parameter_name(step, ""))
+        check_targets(self.destinationParameterDefinitions(), given, [cloud_path(self, INPUT, given, context)])
+
+    def _with_defaults(self, parameters: dict) -> dict:
+        """Return ``parameters`` with the model's defaults, where QGIS would take the child's."""
+        defaults = {
+            definition.name(): definition.defaultValue()
+            for definition in self.parameterDefinitions()
+            if not definition.isDestination() and definition.name() != INPUT
+        }
+        return {**defaults, **parameters}
+
+    def processAlgorithm(  # noqa: N802
+        self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ) -> dict:
+        """Run the graph; all or nothing."""
+        with one_sentence(), nothing_left_on_failure(self._target_files(parameters)):
+            self._check(parameters, context)
+            results = super().processAlgorithm(self._with_defaults(parameters), context, feedback)
+        return {**results, **self._numbers(results.get("CHILD_RESULTS", {}))}
+
+    def _target_files(self, parameters: dict) -> list:
+        definitions = self.destinationParameterDefinitions()
+        return [path for d in definitions for path in files_of(d, parameters.get(d.name()))]
+
+    def _numbers(self, child_results: dict[str, dict[str, Any]]) -> dict:
+        numbers = {}
+        for step in self.pipeline.steps:
+            for name in number_outputs(step.stage):
+                numbers[step_parameter_name(step, name)] = child_results.get(step.name, {}).get(name)
+        return numbers

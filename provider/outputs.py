@@ -1,0 +1,137 @@
+"""What algorithms write: checked before, complete or absent after, and shown in QGIS."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Optional
+
+from qgis.core import (
+    QgsProcessing,
+    QgsProcessingContext,
+    QgsProcessingOutputLayerDefinition,
+    QgsProcessingParameterPointCloudDestination,
+    QgsProperty,
+)
+
+from ..algorithms.cloud.cloud import Cloud, copc_path, write_cloud
+from ..algorithms.cloud.outputs import COPC, check_output, kind_of, same_file
+from ..algorithms.stage import Monitor
+from .clouds import reads_las
+
+# "memory:", "postgres://…", "ogr:dbname='x.gpkg' table=…": no files. A single letter is a drive.
+_NO_FILE = re.compile(r"^[A-Za-z]{2,}:")
+
+
+def target_path(value: Any) -> Optional[Path]:
+    """Return the file that an output parameter's value names; None for a temporary, skipped or database output."""
+    if isinstance(value, QgsProcessingOutputLayerDefinition):
+        value = value.sink
+    if isinstance(value, QgsProperty):
+        value = value.staticValue()
+    if not isinstance(value, str) or not value or value == QgsProcessing.TEMPORARY_OUTPUT or _NO_FILE.match(value):
+        return None
+    return Path(value)
+
+
+def files_of(definition, value: Any) -> list:
+    """Return the files that writing an output may touch."""
+    path = target_path(value)
+    if path is None:
+        return []
+    return [path, copc_path(path)] if _is_cloud(definition) and kind_of(path) else [path]
+
+
+def _is_cloud(definition) -> bool:
+    return isinstance(definition, QgsProcessingParameterPointCloudDestination)
+
+
+def check_targets(definitions: list, parameters: dict, inputs: list) -> None:
+    """Refuse outputs that can't be written, before any work.
+
+    Parameters
+    ----------
+    definitions : list of QgsProcessingDestinationParameter
+        The algorithm's outputs.
+    parameters : dict
+        Values as the algorithm was given them.
+    inputs : list of Path
+        Files that are read and so must not be written.
+
+    Raises
+    ------
+    ValueError
+        If an output has an unknown extension, is an input or another output, or its folder is absent or read-only.
+    """
+    seen: dict[Path, str] = {}
+    for definition in definitions:
+        value = parameters.get(definition.name())
+        path = target_path(value)
+        if path is None:
+            continue
+        _check_target(definition, value, path, inputs)
+        other = seen.setdefault(path.absolute(), definition.name())
+        if other != definition.name():
+            raise ValueError(f"{other} and {definition.name()} are the same file ({path}); give each its own.")
+
+
+def _check_target(definition, value: Any, path: Path, inputs: list) -> None:
+    if _is_cloud(definition):
+        check_output(path, inputs)
+        if kind_of(path) != COPC and _is_shown(value) and not reads_las():
+            check_output(copc_path(path), inputs)
+    folder = path.absolute().parent
+    if not folder.is_dir():
+        raise ValueError(f"The folder {folder} does not exist; make it or choose another one.")
+    if any(same_file(path, source) for source in inputs):
+        raise ValueError(f"The output {path} is also an input; choose another name.")
+    if not os.access(folder, os.W_OK) or (path.exists() and not os.access(path, os.W_OK)):
+        raise ValueError(f"{path} can't be written: it or its folder is read-only; choose another one.")
+
+
+def _is_shown(value: Any) -> bool:
+    return isinstance(value, QgsProcessingOutputLayerDefinition) and value.destinationProject is not None
+
+
+def _state(path: Path) -> Optional[tuple[int, int, int]]:
+    """Return what changes when a file is written; None when there is none."""
+    if not path.is_file():
+        return None
+    facts = path.stat()
+    return facts.st_mtime_ns, facts.st_size, facts.st_ino
+
+
+@contextmanager
+def nothing_left_on_failure(paths: list) -> Iterator[list]:
+    """Remove the files that the block wrote when it fails; files that it did not touch stay.
+
+    The block may append to the list what it is about to make under a name that it found itself.
+    """
+    before = {path: _state(path) for path in paths}
+    try:
+        yield paths
+    except BaseException:
+        for path in paths:
+            if path.is_file() and _state(path) != before.get(path):
+                path.unlink()
+        raise
+
+
+def write_for_qgis(cloud: Cloud, target: str, context: QgsProcessingContext, monitor: Monitor) -> str:
+    """Write ``cloud`` to ``target`` and return the file that QGIS is to load.
+
+    That is ``target``, or a COPC beside it where the result is to be loaded by a QGIS without PDAL.
+    """
+    path = Path(target)
+    needs_copc = kind_of(path) != COPC and context.willLoadLayerOnCompletion(target) and not reads_las()
+    write_cloud(cloud, path, monitor, copc_beside=needs_copc)
+    if not needs_copc:
+        return target
+    layers = context.layersToLoadOnCompletion()
+    shown = str(copc_path(path))
+    layers[shown] = layers.pop(target)
+    context.setLayersToLoadOnCompletion(layers)
+    return shown

@@ -1,0 +1,170 @@
+"""Tunables as Processing parameters: label, unit, bounds, choices, default and help from one declaration."""
+
+from __future__ import annotations
+
+from decimal import Decimal
+from typing import Any
+
+from qgis.core import (
+    Qgis,
+    QgsProcessingAlgorithm,
+    QgsProcessingContext,
+    QgsProcessingParameterBoolean,
+    QgsProcessingParameterDefinition,
+    QgsProcessingParameterEnum,
+    QgsProcessingParameterNumber,
+    QgsProcessingParameterString,
+)
+
+from ..algorithms.stage import Stage, Tunable
+
+_NUMBERS = {float: Qgis.ProcessingNumberParameterType.Double, int: Qgis.ProcessingNumberParameterType.Integer}
+
+
+def parameter_name(tunable: Tunable) -> str:
+    """Return the parameter's name, ``CELL_SIZE`` of ``cell_size``."""
+    return tunable.name.upper()
+
+
+def used_name(tunable: Tunable) -> str:
+    """Return the name of the output that tells which value an automatic tunable took, ``CELL_SIZE_USED``."""
+    return f"{parameter_name(tunable)}_USED"
+
+
+def label(tunable: Tunable) -> str:
+    """Return the label with its unit, and for automatic numbers how to ask for it."""
+    facts = [tunable.param.unit] if tunable.param.unit else []
+    if tunable.is_automatic:
+        facts.append("empty = automatic")
+    return f"{tunable.param.label} ({', '.join(facts)})" if facts else tunable.param.label
+
+
+def help_text(tunable: Tunable) -> str:
+    """Return the tooltip: what the tunable does, its range, what automatic means."""
+    parts = [tunable.param.help]
+    if tunable.param.range and not tunable.param.choices:
+        parts.append(f"Range: {tunable.param.range}.")
+    if tunable.is_automatic:
+        parts.append(f"Automatic: {tunable.param.automatic}")
+    return " ".join(parts)
+
+
+def parameter(tunable: Tunable) -> QgsProcessingParameterDefinition:
+    """Return the Processing parameter of a tunable."""
+    definition = _MAKERS[tunable.type](tunable)
+    if tunable.param.advanced:
+        definition.setFlags(definition.flags() | Qgis.ProcessingParameterFlag.Advanced)
+    definition.setHelp(help_text(tunable))
+    return definition
+
+
+def _number(tunable: Tunable) -> QgsProcessingParameterDefinition:
+    definition = QgsProcessingParameterNumber(
+        parameter_name(tunable), label(tunable), _NUMBERS[tunable.type], tunable.default, tunable.is_automatic
+    )
+    # QGIS knows inclusive bounds only: the dialog takes an open bound too, the core refuses it.
+    if tunable.param.low is not None:
+        definition.setMinimum(tunable.param.low)
+    if tunable.param.high is not None:
+        definition.setMaximum(tunable.param.high)
+    if tunable.type is float:
+        definition.setMetadata({"widget_wrapper": {"decimals": _decimals(tunable)}})
+    return definition
+
+
+def _decimals(tunable: Tunable) -> int:
+    """Return how many decimals the spin box needs for the default and the bounds, at least 3."""
+    numbers = (tunable.default, tunable.param.low, tunable.param.high)
+    return max(3, *(-Decimal(repr(float(number))).as_tuple().exponent for number in numbers if number is not None), 0)
+
+
+def _boolean(tunable: Tunable) -> QgsProcessingParameterDefinition:
+    return QgsProcessingParameterBoolean(parameter_name(tunable), label(tunable), tunable.default, tunable.is_automatic)
+
+
+def _word(tunable: Tunable) -> QgsProcessingParameterDefinition:
+    if tunable.param.choices:
+        return _enum(tunable, several=False)
+    return QgsProcessingParameterString(
+        parameter_name(tunable), label(tunable), tunable.default, optional=tunable.is_automatic
+    )
+
+
+def _words(tunable: Tunable) -> QgsProcessingParameterDefinition:
+    return _enum(tunable, several=True)
+
+
+def _enum(tunable: Tunable, several: bool) -> QgsProcessingParameterDefinition:
+    default = list(tunable.default) if several and tunable.default is not None else tunable.default
+    # Static strings: a saved model keeps the word, not its position in today's list.
+    return QgsProcessingParameterEnum(
+        parameter_name(tunable),
+        label(tunable),
+        list(tunable.param.choices),
+        allowMultiple=several,
+        defaultValue=default,
+        optional=tunable.is_automatic,
+        usesStaticStrings=True,
+    )
+
+
+_MAKERS = {float: _number, int: _number, bool: _boolean, str: _word, tuple: _words}
+
+
+def automatic_numbers(stage: Stage) -> list:
+    """Return the automatic tunables of a stage that are numbers."""
+    return [t for t in stage.tunables.values() if t.is_automatic and t.type in (int, float)]
+
+
+def number_outputs(stage: Stage) -> dict[str, str]:
+    """Return names and titles of the numbers that a run gives: measures, and what automatic tunables took."""
+    numbers = {}
+    for measure in stage.measures:
+        numbers[measure.name.upper()] = f"{measure.title} ({measure.unit})" if measure.unit else measure.title
+    for tunable in automatic_numbers(stage):
+        numbers[used_name(tunable)] = f"{tunable.param.title}, as used"
+    return numbers
+
+
+def tunable_values(
+    algorithm: QgsProcessingAlgorithm, stage: Stage, parameters: dict, context: QgsProcessingContext, prefix: str = ""
+) -> dict[str, Any]:
+    """Return the values of a stage's tunables in ``parameters``, checked.
+
+    Raises
+    ------
+    ValueError
+        In the words of the core, when a value is of the wrong kind or out of bounds.
+    """
+    return stage.check(
+        {
+            tunable.name: _value(algorithm, tunable, prefix + parameter_name(tunable), parameters, context)
+            for tunable in stage.tunables.values()
+        }
+    )
+
+
+def _value(
+    algorithm: QgsProcessingAlgorithm, tunable: Tunable, name: str, parameters: dict, context: QgsProcessingContext
+) -> Any:
+    raw = parameters.get(name)
+    # QGIS passes an empty number as None, as NULL or as empty text.
+    if raw is None or raw == "" or (hasattr(raw, "isNull") and raw.isNull()):
+        return tunable.default
+    if tunable.type is tuple:
+        words = (
+            raw if isinstance(raw, (list, tuple)) else algorithm.parameterAsString(parameters, name, context).split(",")
+        )
+        return tuple(str(word).strip() for word in words if str(word).strip())
+    if tunable.type is bool:
+        return algorithm.parameterAsBool(parameters, name, context)
+    text = str(raw) if isinstance(raw, (int, float)) else algorithm.parameterAsString(parameters, name, context)
+    return text if tunable.type is str else _number_of(text)
+
+
+def _number_of(text: str) -> Any:
+    """Return the number that ``text`` writes, or the text itself, which the core then refuses in its own words."""
+    try:
+        return float(text)
+    except ValueError:
+        return text

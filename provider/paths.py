@@ -1,0 +1,12 @@
+"""Where the plugin keeps its own files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+PLUGIN = Path(__file__).resolve().parent.parent
+RESOURCES = PLUGIN / "resources"
+ICON = RESOURCES / "icons" / "lidar_buildings.svg"
+STYLES = RESOURCES / "styles"
+MODELS = RESOURCES / "models"
+HELP = RESOURCES / "help"

@@ -1,0 +1,66 @@
+"""The Processing provider: every stage and every pipeline, whatever they are."""
+
+from __future__ import annotations
+
+from qgis.core import QgsProcessingProvider
+from qgis.PyQt.QtGui import QIcon
+
+from ..algorithms.pipelines import PIPELINES
+from ..algorithms.stages import STAGES
+from .dependencies import missing_sentence
+from .models import PipelineAlgorithm
+from .paths import ICON
+from .stage_algorithm import StageAlgorithm
+
+CLOUD_EXTENSIONS = ("las", "laz", "copc.laz")
+
+
+class Provider(QgsProcessingProvider):
+    """LiDAR Buildings in the Processing toolbox.
+
+    ``with_pipelines`` is False only where their models are about to be written.
+    """
+
+    def __init__(self, with_pipelines: bool = True) -> None:
+        super().__init__()
+        self._with_pipelines = with_pipelines
+
+    def loadAlgorithms(self) -> None:  # noqa: N802 - QGIS asks for this name
+        """Add one algorithm per stage and per pipeline."""
+        for stage in STAGES.values():
+            self.addAlgorithm(StageAlgorithm(stage))
+        # A model finds its outputs by asking its children, which have to be there.
+        for pipeline in PIPELINES.values() if self._with_pipelines else ():
+            self.addAlgorithm(PipelineAlgorithm(pipeline))
+
+    def id(self) -> str:
+        """Return the prefix of all algorithm ids; frozen, saved models depend on it."""
+        return "lidarbuildings"
+
+    def name(self) -> str:
+        """Return what the toolbox calls the provider."""
+        return "LiDAR Buildings"
+
+    def longName(self) -> str:  # noqa: N802 - QGIS asks for this name
+        """Return the name with what it is for."""
+        return "LiDAR Buildings (buildings from airborne laser scans)"
+
+    def icon(self) -> QIcon:
+        """Return the plugin's icon."""
+        return QIcon(str(ICON))
+
+    def svgIconPath(self) -> str:  # noqa: N802 - QGIS asks for this name
+        """Return the icon's file."""
+        return str(ICON)
+
+    def warningMessage(self) -> str:  # noqa: N802 - QGIS asks for this name
+        """Return the banner above the toolbox: which packages are missing, "" when none is."""
+        return missing_sentence()
+
+    def defaultPointCloudFileExtension(self) -> str:  # noqa: N802 - QGIS asks for this name
+        """Return the extension of temporary clouds: not compressed, since the next step reads them at once."""
+        return "las"
+
+    def supportedOutputPointCloudLayerExtensions(self) -> list:  # noqa: N802 - QGIS asks for this name
+        """Return the extensions that stages write."""
+        return list(CLOUD_EXTENSIONS)

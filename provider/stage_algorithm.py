@@ -1,0 +1,279 @@
+"""The one Processing algorithm that turns any stage into a dialog, a model child and a command."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Optional
+
+from qgis.core import (
+    QgsFeatureSink,
+    QgsProcessingAlgorithm,
+    QgsProcessingContext,
+    QgsProcessingException,
+    QgsProcessingFeedback,
+    QgsProcessingOutputNumber,
+    QgsProcessingParameterFeatureSink,
+    QgsProcessingParameterFileDestination,
+    QgsProcessingParameterPointCloudDestination,
+)
+from qgis.PyQt.QtCore import QUrl
+from qgis.PyQt.QtGui import QIcon
+
+from ..algorithms.cloud.cloud import Cloud, read_cloud
+from ..algorithms.cloud.dimensions import DIMENSIONS
+from ..algorithms.run import Outcome, run_stage
+from ..algorithms.stage import Features, Layer, Monitor, Stage
+from .clouds import CloudParameter, cloud_path
+from .crs import crs_of, crs_units
+from .dependencies import missing_sentence
+from .errors import one_sentence
+from .feedback import FeedbackMonitor
+from .help import stage_help
+from .outputs import check_targets, files_of, nothing_left_on_failure, write_for_qgis
+from .parameters import automatic_numbers, number_outputs, parameter, tunable_values, used_name
+from .paths import HELP, ICON
+from .styles import cloud_style, layer_style, style_on_load
+from .vectors import SOURCE_TYPES, fields_of, plain, qgis_features, wkb_type
+
+INPUT, REFERENCE, OUTPUT, REPORT = "INPUT", "REFERENCE", "OUTPUT", "REPORT"
+
+
+@dataclass
+class _Job:
+    """What a run needs of its parameters, found out before it starts."""
+
+    tunables: dict[str, Any]
+    clouds: dict[str, Path] = field(default_factory=dict)
+
+
+class StageAlgorithm(QgsProcessingAlgorithm):
+    """A stage as a Processing algorithm; everything it shows comes from the stage's declaration."""
+
+    def __init__(self, stage: Stage) -> None:
+        super().__init__()
+        self.stage = stage
+
+    def createInstance(self) -> StageAlgorithm:  # noqa: N802 - QGIS asks for these names
+        """Return a new algorithm of the same stage."""
+        return StageAlgorithm(self.stage)
+
+    def name(self) -> str:
+        """Return the id, frozen: saved models depend on it."""
+        return self.stage.id
+
+    def displayName(self) -> str:  # noqa: N802
+        """Return the title."""
+        return self.stage.title
+
+    def group(self) -> str:
+        """Return the group's title."""
+        return self.stage.group
+
+    def groupId(self) -> str:  # noqa: N802
+        """Return the group's id."""
+        return self.stage.group.lower().replace(" ", "")
+
+    def tags(self) -> list:
+        """Return words that the toolbox finds the stage by."""
+        return [tag.strip() for tag in self.stage.tags.split(",") if tag.strip()]
+
+    def icon(self) -> QIcon:
+        """Return the plugin's icon."""
+        return QIcon(str(ICON))
+
+    def svgIconPath(self) -> str:  # noqa: N802
+        """Return the icon's file."""
+        return str(ICON)
+
+    def shortDescription(self) -> str:  # noqa: N802
+        """Return the first paragraph of the docstring."""
+        return self.stage.summary
+
+    def shortHelpString(self) -> str:  # noqa: N802
+        """Return the help that the dialog shows beside the parameters."""
+        return stage_help(self.stage)
+
+    def helpUrl(self) -> str:  # noqa: N802
+        """Return the help page, which comes with the plugin."""
+        return QUrl.fromLocalFile(str(HELP / f"{self.stage.id}.html")).toString()
+
+    def initAlgorithm(self, configuration: Optional[dict] = None) -> None:  # noqa: N802
+        """Declare inputs, tunables and outputs."""
+        if self._reads_input:
+            self.addParameter(_helped(CloudParameter(INPUT, "Point cloud"), "File or layer of the points."))
+        if self.stage.reads_reference:
+            what = "File or layer to compare with: the same points with the true values."
+            self.addParameter(_helped(CloudParameter(REFERENCE, "Reference point cloud"), what))
+        for tunable in self.stage.tunables.values():
+            self.addParameter(parameter(tunable))
+        self._add_destinations()
+        self._add_numbers()
+
+    @property
+    def _reads_input(self) -> bool:
+        return not self.stage.creates
+
+    @property
+    def _makes_cloud(self) -> bool:
+        return bool(self.stage.creates or self.stage.writes)
+
+    def _add_destinations(self) -> None:
+        if self._makes_cloud:
+            self.addParameter(
+                _helped(
+                    QgsProcessingParameterPointCloudDestination(OUTPUT, _cloud_title(self.stage)),
+                    "A .las, .laz or .copc.laz file.",
+                )
+            )
+        for layer in self.stage.layers:
+            sink = QgsProcessingParameterFeatureSink(
+                layer.name.upper(), layer.title, SOURCE_TYPES[layer.geometry], optional=self._makes_cloud
+            )
+            self.addParameter(_helped(sink, "A GeoPackage or any other vector format that QGIS writes."))
+        if self.stage.measures:
+            page = QgsProcessingParameterFileDestination(REPORT, "Report", "HTML files (*.html)", optional=True)
+            self.addParameter(_helped(page, "A page that shows the numbers."))
+
+    def _add_numbers(self) -> None:
+        for name, title in number_outputs(self.stage).items():
+            self.addOutput(QgsProcessingOutputNumber(name, title))
+
+    def canExecute(self) -> tuple[bool, str]:  # noqa: N802
+        """Whether all packages are there, and how to install what is missing."""
+        missing = missing_sentence()
+        return not missing, missing
+
+    def checkParameterValues(self, parameters: dict, context: QgsProcessingContext) -> tuple[bool, str]:  # noqa: N802
+        """Refuse what can be refused before the run, in the words that the run would use."""
+        try:
+            self._job(parameters, context)
+        except ValueError as error:
+            return False, str(error)
+        return super().checkParameterValues(parameters, context)
+
+    def prepareAlgorithm(  # noqa: N802
+        self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ) -> bool:
+        """Find out files and values; layers may be asked only here, in the main thread.
+
+        Models and scripts come here without :meth:`checkParameterValues`, so everything is checked again.
+        """
+        with one_sentence():
+            self.job = self._job(parameters, context)
+        return True
+
+    def _job(self, parameters: dict, context: QgsProcessingContext) -> _Job:
+        missing = missing_sentence()
+        if missing:
+            raise ValueError(missing)
+        job = _Job(tunable_values(self, self.stage, parameters, context))
+        if self._reads_input:
+            job.clouds[INPUT] = cloud_path(self, INPUT, parameters, context)
+        if self.stage.reads_reference:
+            job.clouds[REFERENCE] = cloud_path(self, REFERENCE, parameters, context)
+        check_targets(self.destinationParameterDefinitions(), parameters, list(job.clouds.values()))
+        return job
+
+    def processAlgorithm(  # noqa: N802
+        self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ) -> dict:
+        """Read, run the stage, write; all or nothing."""
+        monitor = FeedbackMonitor(feedback, self.stage)
+        with one_sentence(), nothing_left_on_failure(self._target_files(parameters)) as written:
+            outcome = self._run(monitor)
+            results = self._numbers(outcome, monitor)
+            if self._makes_cloud:
+                results[OUTPUT] = self._write_cloud(
+                    outcome.cloud, parameters, context, monitor.part(0.8, 0.97), written
+                )
+            for layer in self.stage.layers:
+                features = outcome.layers[layer.name]
+                results.update(self._write_layer(layer, features, outcome.cloud, parameters, context, monitor))
+            if outcome.report is not None:
+                results.update(self._write_report(outcome.report.html, parameters, context))
+            monitor.progress(1.0)
+        return results
+
+    def _target_files(self, parameters: dict) -> list:
+        definitions = self.destinationParameterDefinitions()
+        return [path for d in definitions for path in files_of(d, parameters.get(d.name()))]
+
+    def _run(self, monitor: Monitor) -> Outcome:
+        share = 0.15 / max(1, len(self.job.clouds))
+        clouds = {}
+        for i, (name, path) in enumerate(self.job.clouds.items()):
+            clouds[name] = read_cloud(path, monitor.part(i * share, (i + 1) * share), crs_units)
+        return run_stage(
+            self.stage, clouds.get(INPUT), clouds.get(REFERENCE), monitor.part(0.15, 0.8), **self.job.tunables
+        )
+
+    def _numbers(self, outcome: Outcome, monitor: Monitor) -> dict:
+        numbers = {}
+        for tunable in automatic_numbers(self.stage):
+            given = self.job.tunables[tunable.name]
+            numbers[used_name(tunable)] = plain(monitor.values.get(tunable.name) if given is None else given)
+        if outcome.report is not None:
+            for measure in self.stage.measures:
+                numbers[measure.name.upper()] = plain(outcome.report.values[measure.name])
+        return numbers
+
+    def _write_cloud(
+        self, cloud: Cloud, parameters: dict, context: QgsProcessingContext, monitor: Monitor, written: list
+    ) -> str:
+        target = self.parameterAsOutputLayer(parameters, OUTPUT, context)
+        written += files_of(self.parameterDefinition(OUTPUT), target)
+        shown = write_for_qgis(cloud, target, context, monitor)
+        style_on_load(context, shown, cloud_style(self.stage))
+        return target
+
+    def _write_layer(
+        self,
+        layer: Layer,
+        features: Features,
+        cloud: Cloud,
+        parameters: dict,
+        context: QgsProcessingContext,
+        monitor: Monitor,
+    ) -> dict:
+        name = layer.name.upper()
+        if parameters.get(name) is None:
+            return {}
+        sink, target = self.parameterAsSink(
+            parameters, name, context, fields_of(layer), wkb_type(layer, features), crs_of(cloud.wkt)
+        )
+        if sink is None:
+            raise QgsProcessingException(self.invalidSinkError(parameters, name))
+        for row, feature in enumerate(qgis_features(layer, features, cloud.to_map)):
+            if row % 1000 == 0:
+                monitor.progress(0.97)
+            if not sink.addFeature(feature, QgsFeatureSink.Flag.FastInsert):
+                raise QgsProcessingException(self.writeFeatureError(sink, parameters, name))
+        # The file is closed with the sink, complete for the next step of a model.
+        sink.flushBuffer()
+        del sink
+        style_on_load(context, target, layer_style(layer))
+        return {name: target}
+
+    def _write_report(self, html: str, parameters: dict, context: QgsProcessingContext) -> dict:
+        target = self.parameterAsFileOutput(parameters, REPORT, context)
+        if not target:
+            return {}
+        Path(target).write_text(html, encoding="utf-8")
+        return {REPORT: target}
+
+
+def _helped(definition, text: str):
+    definition.setHelp(text)
+    return definition
+
+
+def _cloud_title(stage: Stage) -> str:
+    """Return what the resulting cloud is called, in the dialog and as a layer."""
+    if stage.creates:
+        return "Simulated point cloud"
+    if "classification" in stage.writes:
+        return "Classified point cloud"
+    if len(stage.writes) == 1:
+        return f"Point cloud with {DIMENSIONS[stage.writes[0]].disk[0]}"
+    return "Point cloud with new dimensions"

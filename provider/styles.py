@@ -1,0 +1,51 @@
+"""How results look when QGIS loads them."""
+
+from __future__ import annotations
+
+from typing import Optional
+
+from qgis.core import QgsProcessingContext, QgsProcessingLayerPostProcessorInterface
+from qgis.PyQt import sip
+
+from ..algorithms.stage import Layer, Stage
+from .paths import STYLES
+
+
+class Styler(QgsProcessingLayerPostProcessorInterface):
+    """Gives a loaded result the style of one file."""
+
+    def __init__(self, stem: str) -> None:
+        super().__init__()
+        self.stem = stem
+
+    def postProcessLayer(self, layer, context, feedback) -> None:  # noqa: N802 - QGIS asks for this name
+        """Load the style, and say so in the log when it can't be."""
+        message, loaded = layer.loadNamedStyle(str(STYLES / f"{self.stem}.qml"))
+        if not loaded:
+            feedback.pushWarning(f"The style {self.stem} can't be loaded: {message}")
+        layer.triggerRepaint()
+
+
+# QGIS deletes post processors with the run's context, but keeps no reference until then: one that Python forgets
+# is never called.
+_KEPT: list[Styler] = []
+
+
+def cloud_style(stage: Stage) -> Optional[str]:
+    """Return the style of a stage's cloud: that of the first dimension it writes that has one."""
+    return next((name for name in (*stage.writes, *stage.creates) if (STYLES / f"{name}.qml").is_file()), None)
+
+
+def layer_style(layer: Layer) -> Optional[str]:
+    """Return the style of a layer: the declared one, or that of its name."""
+    stem = layer.style or layer.name
+    return stem if (STYLES / f"{stem}.qml").is_file() else None
+
+
+def style_on_load(context: QgsProcessingContext, target: str, stem: Optional[str]) -> None:
+    """Have the result ``target`` styled when, and if, it is loaded."""
+    if stem is None or not context.willLoadLayerOnCompletion(target):
+        return
+    _KEPT[:] = [styler for styler in _KEPT if not sip.isdeleted(styler)]
+    _KEPT.append(Styler(stem))
+    context.layerToLoadOnCompletionDetails(target).setPostProcessor(_KEPT[-1])

@@ -1,0 +1,96 @@
+"""Layers that stages make, as QGIS features."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, Callable
+
+import numpy as np
+from qgis.core import (
+    Qgis,
+    QgsFeature,
+    QgsField,
+    QgsFields,
+    QgsGeometry,
+    QgsLineString,
+    QgsPoint,
+    QgsPolygon,
+    QgsWkbTypes,
+)
+from qgis.PyQt.QtCore import QMetaType
+
+from ..algorithms.stage import Features, Layer
+
+_TYPES = {int: QMetaType.Type.Int, float: QMetaType.Type.Double, str: QMetaType.Type.QString}
+_WKB = {"Polygon": Qgis.WkbType.Polygon, "LineString": Qgis.WkbType.LineString, "Point": Qgis.WkbType.Point}
+SOURCE_TYPES = {
+    "Polygon": Qgis.ProcessingSourceType.VectorPolygon,
+    "LineString": Qgis.ProcessingSourceType.VectorLine,
+    "Point": Qgis.ProcessingSourceType.VectorPoint,
+}
+
+
+def fields_of(layer: Layer) -> QgsFields:
+    """Return the fields of a layer."""
+    fields = QgsFields()
+    for declared in layer.fields:
+        fields.append(QgsField(declared.name, _TYPES[declared.type]))
+    return fields
+
+
+def wkb_type(layer: Layer, features: Features) -> Qgis.WkbType:
+    """Return the geometry type: with Z when the stage gave heights."""
+    flat = _WKB[layer.geometry]
+    return QgsWkbTypes.addZ(flat) if any(_width(geometry) == 3 for geometry in features.geometries[:1]) else flat
+
+
+def _width(geometry: Any) -> int:
+    return np.shape(geometry[0] if isinstance(geometry, (list, tuple)) else geometry)[-1]
+
+
+def qgis_features(layer: Layer, features: Features, to_map: Callable[[np.ndarray], np.ndarray]) -> Iterator[QgsFeature]:
+    """Yield the features of a layer, in the coordinates of the cloud's CRS.
+
+    Parameters
+    ----------
+    layer : Layer
+        What the features are.
+    features : Features
+        Their geometries, in local metres, and columns.
+    to_map : callable
+        Turns local metres (m, 2 or 3) into map coordinates.
+    """
+    fields = fields_of(layer)
+    make = _GEOMETRIES[layer.geometry]
+    columns = [features.columns[declared.name] for declared in layer.fields]
+    for row, geometry in enumerate(features.geometries):
+        feature = QgsFeature(fields)
+        feature.setGeometry(QgsGeometry(make(geometry, to_map)))
+        feature.setAttributes([plain(column[row]) for column in columns])
+        yield feature
+
+
+def plain(value: Any) -> Any:
+    """Return a numpy scalar as Python's own (QGIS shows others as empty), NaN as NULL."""
+    value = value.item() if isinstance(value, np.generic) else value
+    return None if isinstance(value, float) and np.isnan(value) else value
+
+
+def _line(coordinates: np.ndarray, to_map: Callable[[np.ndarray], np.ndarray]) -> QgsLineString:
+    return QgsLineString(*(column.tolist() for column in np.asarray(to_map(np.asarray(coordinates))).T))
+
+
+def _polygon(rings: list, to_map: Callable[[np.ndarray], np.ndarray]) -> QgsPolygon:
+    # One by one: rings given as a list stay Python's too, and are freed twice.
+    polygon = QgsPolygon()
+    polygon.setExteriorRing(_line(rings[0], to_map))
+    for hole in rings[1:]:
+        polygon.addInteriorRing(_line(hole, to_map))
+    return polygon
+
+
+def _point(coordinates: np.ndarray, to_map: Callable[[np.ndarray], np.ndarray]) -> QgsPoint:
+    return QgsPoint(*np.asarray(to_map(np.asarray(coordinates)[None]))[0].tolist())
+
+
+_GEOMETRIES = {"Polygon": _polygon, "LineString": _line, "Point": _point}

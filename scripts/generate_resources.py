@@ -1,0 +1,56 @@
+"""Write the generated files of the plugin: a help page per algorithm and a model per pipeline.
+
+Run with the Python of QGIS: ``QT_QPA_PLATFORM=offscreen python3 scripts/generate_resources.py``.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT))
+from qgis.core import QgsApplication  # noqa: E402
+
+import conftest  # noqa: E402, F401 - registers the checkout as the package lidar_buildings
+from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
+from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
+from lidar_buildings.provider import models  # noqa: E402
+from lidar_buildings.provider.help import page, pipeline_help, stage_help  # noqa: E402
+from lidar_buildings.provider.paths import HELP, MODELS  # noqa: E402
+from lidar_buildings.provider.provider import Provider  # noqa: E402
+
+
+def help_pages() -> dict[str, str]:
+    """Return the help pages by file name."""
+    pages = {f"{stage.id}.html": page(stage.title, stage_help(stage)) for stage in STAGES.values()}
+    pages.update({f"{p.id}.html": page(p.title, pipeline_help(p)) for p in PIPELINES.values()})
+    return pages
+
+
+def _replace(folder: Path, suffix: str, wanted: set) -> None:
+    folder.mkdir(parents=True, exist_ok=True)
+    for old in folder.glob(f"*{suffix}"):
+        if old.name not in wanted:
+            old.unlink()
+
+
+def main() -> None:
+    """Write all files and remove those of algorithms that are no more."""
+    pages = help_pages()
+    _replace(HELP, ".html", set(pages))
+    for name, text in pages.items():
+        (HELP / name).write_text(text, encoding="utf-8")
+    application = QgsApplication([], False)
+    QgsApplication.initQgis()
+    provider = Provider(with_pipelines=False)
+    QgsApplication.processingRegistry().addProvider(provider)
+    _replace(MODELS, ".model3", {models.model_file(p).name for p in PIPELINES.values()})
+    for pipeline in PIPELINES.values():
+        models.build_model(pipeline).toFile(str(models.model_file(pipeline)))
+    QgsApplication.exitQgis()
+    del application
+
+
+if __name__ == "__main__":
+    main()

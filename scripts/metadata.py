@@ -1,0 +1,50 @@
+#!/usr/bin/env python3
+"""Fill version and changelog of metadata.txt from CHANGELOG.md; with ``--check`` only say whether they fit."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+RELEASE = re.compile(r"^## (\d+\.\d+\.\d+)\b.*$", re.MULTILINE)
+
+
+def filled(metadata: str, changelog: str) -> str:
+    """Return the text of metadata.txt with the version and history that the text of CHANGELOG.md tells.
+
+    Raises
+    ------
+    ValueError
+        If the changelog has no heading of a version.
+    """
+    newest = RELEASE.search(changelog)
+    if newest is None:
+        raise ValueError("CHANGELOG.md has no heading like '## 1.2.3'; add one for the version to be released.")
+    # To the reader of metadata.txt a percent sign is special, "#" starts a comment, and only indented lines go on.
+    history = re.sub(r"^#+ ", "", changelog[newest.start() :], flags=re.MULTILINE).replace("%", "%%")
+    indented = "\n    ".join(line for line in history.splitlines() if line)
+    metadata = re.sub(r"^version=.*$", f"version={newest[1]}", metadata, flags=re.MULTILINE)
+    return re.sub(
+        r"^changelog=.*\Z", lambda _: f"changelog=\n    {indented}\n", metadata, flags=re.MULTILINE | re.DOTALL
+    )
+
+
+def main(arguments: list[str]) -> int:
+    """Write metadata.txt, or only compare; return the exit code."""
+    path = ROOT / "metadata.txt"
+    before = path.read_text(encoding="utf-8")
+    after = filled(before, (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"))
+    if before == after:
+        return 0
+    if "--check" in arguments:
+        print("metadata.txt doesn't tell what CHANGELOG.md does; run scripts/metadata.py and commit.", file=sys.stderr)
+        return 1
+    path.write_text(after, encoding="utf-8")
+    print("metadata.txt: version and changelog filled in from CHANGELOG.md")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

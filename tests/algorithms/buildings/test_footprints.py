@@ -1,0 +1,140 @@
+"""Footprints of simulated houses: where they are, what they say, and that they are valid."""
+
+import numpy as np
+import pytest
+from lidar_buildings.algorithms.buildings.footprints import extract_footprints
+from lidar_buildings.algorithms.buildings.outlines import signed_area
+from lidar_buildings.algorithms.stage import Monitor
+
+
+def roof(rng, west, south, width, depth, elevation, density=10):
+    n = int(width * depth * density)
+    plan = rng.uniform([west, south], [west + width, south + depth], (n, 2))
+    return np.column_stack([plan, np.full(n, elevation) + rng.normal(0, 0.02, n)])
+
+
+@pytest.fixture
+def village(rng):
+    """A house with walls below its eaves, a block around a courtyard, a shed that is too small, and a field."""
+    house = roof(rng, 0, 0, 10, 8, 6.0)
+    wall = np.column_stack([rng.uniform(0, 10, 150), rng.uniform(-0.1, 0.1, 150), rng.uniform(0.5, 5.9, 150)])
+    block = roof(rng, 30, 0, 24, 24, 9.0)
+    block = block[(np.abs(block[:, :2] - [42, 12]) > 6).any(axis=1)]
+    shed = roof(rng, 70, 0, 1.5, 1.5, 2.5)
+    field = roof(rng, 0, 40, 60, 10, 0.0, density=2)
+    parts = [house, wall, block, shed, field]
+    sizes = [len(part) for part in parts]
+    xyz = np.concatenate(parts)
+    return {
+        "xyz": xyz,
+        "classification": np.repeat([6, 6, 6, 6, 2], sizes),
+        "cluster_id": np.repeat([3, 3, 7, 9, 0], sizes),
+        "height_above_ground": (xyz[:, 2] + 1).astype(np.float32),
+        "cluster_entropy": np.repeat([0.4, 0.4, 0.5, 0.6, np.nan], sizes).astype(np.float32),
+        "confidence": np.repeat([0.9, 0.9, 0.8, 0.3, np.nan], sizes).astype(np.float32),
+    }
+
+
+@pytest.mark.parametrize("regularize", [True, False])
+def test_village(village, assert_valid, regularize):
+    found = extract_footprints(**village, regularize=regularize)
+    for rings in found.geometries:
+        assert_valid(rings)
+    table = found.columns
+    assert table["id"] == [1, 2]
+    assert table["cluster_id"] == [3, 7]
+    assert table["area"] == pytest.approx([80, 24 * 24 - 144], rel=0.08)
+    assert [len(rings) for rings in found.geometries] == [1, 2]
+    assert table["regularized"] == [int(regularize)] * 2
+    assert table["points"] == [(village["cluster_id"] == number).sum() for number in (3, 7)]
+    assert table["height"] == pytest.approx([7, 10], abs=0.02)
+    assert table["max_height"] == pytest.approx([7, 10], abs=0.1)
+    assert table["ground_elevation"] == pytest.approx([-1, -1], abs=1e-5)
+    assert table["entropy"] == pytest.approx([0.4, 0.5])
+    assert table["confidence"] == pytest.approx([0.9, 0.8])
+    if regularize:
+        assert [len(ring) - 1 for rings in found.geometries for ring in rings] == [4, 4, 4]
+        assert table["perimeter"] == pytest.approx([36, 96 + 48], rel=0.04)
+
+
+def test_walls_do_not_widen_the_outline(village, rng):
+    """Points down a wall that leans out by 20 cm count as points of the house and leave its outline alone."""
+    only_roof = {name: values[:800] for name, values in village.items()}
+    before = extract_footprints(**only_roof, regularize=False)
+    along = rng.uniform(1, 9, 400)
+    wall = np.column_stack([along, np.full(400, -0.2), rng.uniform(0.2, 4.5, 400)])
+    more = {name: np.concatenate([values, values[:400]]) for name, values in only_roof.items()}
+    more["xyz"] = np.concatenate([only_roof["xyz"], wall])
+    after = extract_footprints(**more, regularize=False)
+    assert after.columns["area"] == pytest.approx(before.columns["area"], rel=0.01)
+    assert after.columns["points"] == [1200]
+
+
+def test_small_holes_are_filled(village):
+    kept = extract_footprints(**village, min_hole_area=500.0)
+    assert [len(rings) for rings in kept.geometries] == [1, 1]
+
+
+def test_parts_of_a_cluster_are_separate_polygons_that_share_its_points(rng):
+    xyz = np.concatenate([roof(rng, 0, 0, 6, 6, 5.0), roof(rng, 12, 0, 6, 8, 5.0)])
+    found = extract_footprints(xyz, np.full(len(xyz), 6), np.ones(len(xyz), int))
+    assert found.columns["cluster_id"] == [1, 1]
+    assert sorted(found.columns["points"]) == [360, 480]
+
+
+def test_without_clusters_what_lies_together_is_a_building(village):
+    found = extract_footprints(village["xyz"], village["classification"])
+    assert sorted(found.columns["area"]) == pytest.approx([80, 432], rel=0.08)
+    assert np.isnan(found.columns["height"]).all()
+    assert np.isnan(found.columns["entropy"]).all()
+
+
+def test_minimum_area(village):
+    assert len(extract_footprints(**village, min_area=1.0)) == 3
+    assert len(extract_footprints(**village, min_area=100.0)) == 1
+
+
+def test_place_changes_nothing(village):
+    here = extract_footprints(**village)
+    moved = {**village, "xyz": village["xyz"] + [600_000.0, 5_000_000.0, 300.0]}
+    there = extract_footprints(**moved)
+    assert there.columns["area"] == pytest.approx(here.columns["area"], rel=0.02)
+    shift = there.geometries[0][0].mean(axis=0) - here.geometries[0][0].mean(axis=0)
+    assert shift == pytest.approx([600_000, 5_000_000], abs=0.2)
+
+
+def test_a_round_tower_keeps_its_traced_outline(rng, assert_valid):
+    angle, radius = rng.uniform(0, 2 * np.pi, 3000), 8 * np.sqrt(rng.uniform(0, 1, 3000))
+    xyz = np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(3000, 20.0)])
+    found = extract_footprints(xyz, np.full(3000, 6), np.ones(3000, int), tolerance=0.3)
+    assert found.columns["regularized"] == [0]
+    assert_valid(found.geometries[0])
+    assert signed_area(found.geometries[0][0]) == pytest.approx(np.pi * 64, rel=0.06)
+
+
+@pytest.mark.parametrize(
+    "xyz",
+    [
+        np.zeros((5, 3)),
+        np.column_stack([np.arange(9.0), np.zeros(9), np.zeros(9)]),
+        np.column_stack([np.zeros(9), np.zeros(9), np.arange(9.0)]),
+        [[0.0, 0, 0]],
+    ],
+)
+def test_buildings_without_area_give_no_polygon(xyz):
+    found = extract_footprints(np.asarray(xyz), np.full(len(xyz), 6), np.ones(len(xyz), int))
+    assert len(found) == 0
+
+
+def test_no_building_gives_an_empty_layer(village):
+    found = extract_footprints(village["xyz"], np.full(len(village["xyz"]), 2), village["cluster_id"])
+    assert found.geometries == []
+    assert set(found.columns) == {field.name for field in extract_footprints.stage.layers[0].fields}
+    assert all(len(values) == 0 for values in found.columns.values())
+
+
+def test_automatic_values_are_told(village):
+    monitor = Monitor()
+    extract_footprints(**village, monitor=monitor)
+    assert 0.5 < monitor.values["tolerance"] < 0.8
+    assert 1.0 < monitor.values["max_edge"] < 2.6

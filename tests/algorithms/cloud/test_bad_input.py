@@ -1,0 +1,185 @@
+"""Bad input: one sentence each, and no memory taken on the word of a header."""
+
+import json
+import struct
+import sys
+import tracemalloc
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.cloud import las
+from lidar_buildings.algorithms.cloud.cloud import create_cloud, read_cloud, write_cloud
+from lidar_buildings.algorithms.stage import Monitor
+
+from .conftest import vlr
+
+
+@pytest.fixture
+def good(tmp_path, rng):
+    """A sound file of each kind, as bytes."""
+    cloud = create_cloud({"xyz": rng.uniform(0, 100, (60_000, 3)), "intensity": rng.integers(0, 9, 60_000)})
+    found = {}
+    for kind in (".las", ".laz", ".copc.laz"):
+        write_cloud(cloud, tmp_path / f"good{kind}")
+        found[kind] = (tmp_path / f"good{kind}").read_bytes()
+    return found
+
+
+def refuse(path, message):
+    """Reading raises one ValueError, which says ``message`` and is one sentence, and takes little memory."""
+    tracemalloc.start()
+    try:
+        with pytest.raises(ValueError, match=message) as caught:
+            read_cloud(path)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert "\n" not in str(caught.value)
+    assert str(caught.value).endswith(".")
+    assert peak < 2e8
+
+
+def patched(raw, at, kind, value):
+    raw = bytearray(raw)
+    struct.pack_into(kind, raw, at, value)
+    return bytes(raw)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "message"),
+    [
+        ("a.las", b"", r"a.las is empty \(0 bytes\)"),
+        ("a.laz", b"", r"a.laz is empty \(0 bytes\)"),
+        ("a.las", b"x y z\n1 2 3\n" * 50, "a.las is not a LAS or LAZ file: it starts with b'x y '"),
+        ("a.las", b"LASF", "truncated"),
+        ("a.xyz", b"1 2 3", "a.xyz is no point cloud that can be read; choose a .las"),
+        ("a", b"1 2 3", "a is no point cloud that can be read"),
+    ],
+)
+def test_what_is_no_las(tmp_path, name, content, message):
+    (tmp_path / name).write_bytes(content)
+    refuse(tmp_path / name, message)
+
+
+def test_missing_file_and_folder(tmp_path):
+    refuse(tmp_path / "none.las", "none.las does not exist")
+    refuse(tmp_path, "is a folder")
+
+
+def test_no_points(make_las):
+    refuse(make_las(n=0), "made.las has no points")
+
+
+@pytest.mark.parametrize("kind", [".las", ".laz", ".copc.laz"])
+@pytest.mark.parametrize("part", [0.0005, 0.001, 0.01, 0.5, 0.99, 0.99999])
+def test_truncated(good, tmp_path, kind, part):
+    path = tmp_path / f"a{kind}"
+    path.write_bytes(good[kind][: int(len(good[kind]) * part)])
+    refuse(path, r"a\..*(is truncated|truncated or damaged)")
+
+
+@pytest.mark.parametrize("kind", [".las", ".laz", ".copc.laz"])
+@pytest.mark.parametrize("count", [10**12, 2**63, 120_000])
+def test_more_points_promised_than_there_are(good, tmp_path, kind, count):
+    path = tmp_path / f"a{kind}"
+    path.write_bytes(patched(good[kind], 247, "<Q", count))
+    refuse(path, "promises|decompressed")
+
+
+@pytest.mark.parametrize(
+    ("at", "kind", "value", "message"),
+    [
+        (131, "<d", np.nan, "no usable coordinates"),
+        (155, "<d", np.inf, "no usable coordinates"),
+        (139, "<d", 0.0, "no usable coordinates"),
+        (100, "<I", 2**31, "VLRs"),
+        (96, "<I", 2**31, "points should start at byte 2147483648"),
+        (104, "<B", 11, "has point format 11"),
+        (25, "<B", 9, "is LAS 1.9"),
+        (24, "<B", 2, "is LAS 2.4"),
+        (105, "<H", 3, "too few for point format"),
+        (243, "<I", 2**31, "EVLRs"),
+    ],
+)
+def test_damaged_header(good, tmp_path, at, kind, value, message):
+    path = tmp_path / "a.las"
+    path.write_bytes(patched(good[".las"], at, kind, value))
+    refuse(path, message)
+
+
+def test_vlr_that_runs_over_is_refused(make_las):
+    path = make_las(vlrs=(vlr("someone", 3, b"x" * 10),))
+    path.write_bytes(patched(path.read_bytes(), 375 + 20, "<H", 60_000))
+    refuse(path, "record someone 3 of 60000 bytes")
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_damaged_laz_is_refused_or_read_but_never_crashes(good, tmp_path, seed):
+    raw = bytearray(good[".laz"])
+    for at in np.random.default_rng(seed).integers(600, len(raw), 40):
+        raw[at] ^= 0xFF
+    path = tmp_path / "a.laz"
+    path.write_bytes(bytes(raw))
+    try:
+        said = f"{len(read_cloud(path))} points"
+    except ValueError as error:
+        said = str(error)
+    assert said == "60000 points" or "damaged" in said
+
+
+def test_laz_without_its_record(good, tmp_path):
+    path = tmp_path / "a.laz"
+    path.write_bytes(good[".laz"].replace(b"laszip encoded", b"laszip gone!!!"))
+    refuse(path, "LASzip record is missing")
+
+
+def test_no_laz_package(good, tmp_path, monkeypatch):
+    for name in ("lazrs", "laszip"):
+        monkeypatch.setitem(sys.modules, name, None)
+    refuse(tmp_path / "good.laz", "Python package lazrs, which is not installed")
+    cloud = read_cloud(tmp_path / "good.las")
+    for name in ("b.laz", "b.copc.laz"):
+        with pytest.raises(ValueError, match="lazrs, which is not installed"):
+            write_cloud(cloud, tmp_path / name)
+    write_cloud(cloud, tmp_path / "b.las")
+    assert not list(tmp_path.glob("*b.*laz*"))
+
+
+def test_not_enough_memory_is_said(make_las, monkeypatch):
+    def none_left(*_):
+        raise MemoryError
+
+    path = make_las()
+    monkeypatch.setattr(las.np, "empty", none_left)
+    refuse(path, "GB of memory")
+
+
+def test_degrees_are_refused(make_las):
+    refuse(make_las(vlrs=(vlr("LASF_Projection", 2112, b'GEOGCS["WGS 84",UNIT["degree",0.0174]]\0'),)), "degrees")
+
+
+def test_unreadable_file_is_said(make_las, monkeypatch):
+    path = make_las()
+
+    def closed(*_, **__):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(type(path), "open", closed)
+    refuse(path, r"can't be read \(Permission denied\)")
+
+
+def test_cancel_while_reading_passes_through(make_las):
+    class Stop(Monitor):
+        def progress(self, fraction):
+            raise InterruptedError if fraction > 2 else KeyError("cancelled")
+
+    with pytest.raises(KeyError, match="cancelled"):
+        read_cloud(make_las(), Stop())
+
+
+def test_vpc_tile_that_is_damaged_is_named(tmp_path, good):
+    (tmp_path / "bad.las").write_bytes(good[".las"][:1000])
+    features = [{"assets": {"data": {"href": name}}} for name in ("good.las", "bad.las")]
+    (tmp_path / "a.vpc").write_text(json.dumps({"features": features}))
+    refuse(tmp_path / "a.vpc", "bad.las (promises|is truncated)")

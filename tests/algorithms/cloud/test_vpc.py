@@ -1,0 +1,150 @@
+"""Virtual point clouds: tiles that are read as one cloud."""
+
+import json
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.cloud.cloud import create_cloud, read_cloud, write_cloud
+from lidar_buildings.algorithms.stage import Monitor
+
+from .conftest import descriptor, random_records, vlr
+
+RD = 'PROJCS["RD",UNIT["metre",1],AUTHORITY["EPSG","28992"]]'
+
+
+@pytest.fixture
+def make_vpc(tmp_path):
+    def make(*hrefs, roles=("data",)):
+        features = [{"type": "Feature", "assets": {"data": {"href": href, "roles": list(roles)}}} for href in hrefs]
+        path = tmp_path / "all.vpc"
+        path.write_text(json.dumps({"type": "FeatureCollection", "features": features}), encoding="utf-8")
+        return path
+
+    return make
+
+
+def crs(wkt):
+    return vlr("LASF_Projection", 2112, wkt.encode() + b"\0")
+
+
+def test_tiles_of_different_scale_offset_format_and_dimensions_become_one(make_las, make_vpc, laspy):
+    confidence = vlr("LASF_Spec", 4, descriptor("Confidence", 9))
+    cluster = vlr("LASF_Spec", 4, descriptor("ClusterID", 6) + descriptor("Mine", 3))
+    one = make_las("one.las", point_format=1, minor=2, extra=4, vlrs=(crs(RD), confidence), n=50)
+    records = random_records(7, 36 + 6, 70, seed=2)
+    two = make_las(
+        "two.las", point_format=7, extra=6, vlrs=(cluster, crs(RD), vlr("someone", 5, b"z")), records=records,
+        scale=(0.001, 0.01, 0.01), offset=(600_100.0, 5_000_000.5, 10.0),
+    )  # fmt: skip
+    cloud = read_cloud(make_vpc("./one.las", "two.las"))
+    a, b = laspy.read(one), laspy.read(two)
+    np.testing.assert_array_equal(cloud.header.scale, [0.001, 0.01, 0.001])
+    np.testing.assert_allclose(cloud.get("xyz") + cloud.origin, np.concatenate((a.xyz, b.xyz)), atol=1e-6)
+    assert cloud.header.layout.point_format == 7
+    for name in ("intensity", "classification", "return_number", "gps_time", "user_data"):
+        expected = np.concatenate((a[name], b[name]))
+        np.testing.assert_array_equal(cloud.header.layout.get(cloud.points, name), expected, err_msg=name)
+    np.testing.assert_array_equal(cloud.get("red"), np.concatenate((np.zeros(50), b.red)))
+    np.testing.assert_array_equal(cloud.get("cluster_id"), np.concatenate((np.zeros(50), b["ClusterID"])))
+    np.testing.assert_array_equal(cloud.get("confidence"), np.concatenate((a["Confidence"], np.full(70, np.nan))))
+    assert [record.key for record in cloud.header.vlrs] == [
+        (b"LASF_Projection", 2112), (b"LASF_Spec", 4), (b"someone", 5)
+    ]  # fmt: skip
+
+
+def test_a_merged_cloud_is_written_and_read(make_las, make_vpc, tmp_path):
+    make_las("one.las", point_format=6, n=50)
+    make_las("two.las", point_format=8, n=60)
+    cloud = read_cloud(make_vpc("one.las", "two.las"))
+    cloud.set("cluster_id", np.arange(110))
+    write_cloud(cloud, tmp_path / "b.laz")
+    again = read_cloud(tmp_path / "b.laz")
+    np.testing.assert_array_equal(again.get("xyz"), cloud.get("xyz"))
+    np.testing.assert_array_equal(again.get("cluster_id"), np.arange(110))
+
+
+def test_same_name_with_another_type_becomes_float64(make_las, make_vpc, laspy):
+    one = make_las("one.las", extra=2, vlrs=(vlr("LASF_Spec", 4, descriptor("Theirs", 3, options=8, scale=0.5)),))
+    two = make_las("two.las", extra=4, vlrs=(vlr("LASF_Spec", 4, descriptor("Theirs", 6)),))
+    cloud = read_cloud(make_vpc("one.las", "two.las"))
+    (field,) = cloud.header.layout.extras
+    assert (field.name, field.dtype) == ("Theirs", np.dtype("<f8"))
+    expected = np.concatenate((np.asarray(laspy.read(one)["Theirs"]), laspy.read(two)["Theirs"]))
+    np.testing.assert_array_equal(cloud.points["extra0"], expected)
+
+
+def test_copc_tiles_and_overviews(tmp_path, rng):
+    xyz = rng.uniform(0, 100, (1000, 3))
+    for name, part in (("a", xyz[:600]), ("b", xyz[600:]), ("overview", xyz[::10])):
+        write_cloud(create_cloud({"xyz": part}), tmp_path / f"{name}.copc.laz")
+    assets = {"overview": {"href": "overview.copc.laz", "roles": ["overview"]}}
+    features = [{"assets": {**assets, "data": {"href": f"{name}.copc.laz", "roles": ["data"]}}} for name in "ab"]
+    (tmp_path / "all.vpc").write_text(json.dumps({"features": features}))
+    cloud = read_cloud(tmp_path / "all.vpc")
+    assert len(cloud) == 1000
+    np.testing.assert_allclose(np.sort(cloud.get("xyz")[:, 0]), np.sort(xyz[:, 0]), atol=0.001)
+    write_cloud(cloud, tmp_path / "b.las")
+
+
+def test_far_tiles_get_an_offset_between_them(make_las, make_vpc, laspy):
+    one = make_las("one.las", offset=(0.0, 0.0, 0.0))
+    two = make_las("two.las", offset=(3_000_000.0, 0.0, 0.0), scale=(0.001, 0.01, 0.001))
+    for path, las in ((one, laspy.read(one)), (two, laspy.read(two))):
+        las.write(path)
+    cloud = read_cloud(make_vpc("one.las", "two.las"))
+    expected = np.concatenate((laspy.read(one).x, laspy.read(two).x))
+    np.testing.assert_allclose(cloud.get("xyz")[:, 0] + cloud.origin[0], expected, atol=1e-6)
+
+
+@pytest.mark.parametrize("wkt", ['PROJCS["UTM",UNIT["metre",1],AUTHORITY["EPSG","32631"]]', ""])
+def test_tiles_of_different_crs_are_refused(make_las, make_vpc, wkt):
+    make_las("one.las", vlrs=(crs(RD),))
+    make_las("two.las", vlrs=(crs(wkt),) if wkt else ())
+    with pytest.raises(ValueError, match=r"one.las and two.las have different coordinate .* \(EPSG:28992, "):
+        read_cloud(make_vpc("one.las", "two.las"))
+
+
+def test_waveforms_and_gps_times_that_do_not_merge_are_told(make_las, make_vpc):
+    from .conftest import evlr
+
+    packets = evlr("LASF_Spec", 65535, b"w" * 100)
+    make_las("one.las", point_format=9, waveforms=True, evlrs=(packets,), encoding=1)
+    make_las("two.las", point_format=9)
+    monitor = Monitor()
+    cloud = read_cloud(make_vpc("one.las", "two.las"), monitor)
+    assert cloud.header.evlrs == []
+    assert any("waveforms" in sentence for sentence in monitor.warnings)
+    assert any("GPS time" in sentence for sentence in monitor.warnings)
+
+
+@pytest.mark.parametrize(
+    ("href", "message"),
+    [
+        ("gone.laz", "names the tile gone.laz, which is missing"),
+        ("https://example.com/a.laz", "not a local file"),
+        ("a.xyz", "is no LAS, LAZ or COPC file"),
+    ],
+)
+def test_bad_tiles_are_named(make_las, make_vpc, href, message):
+    make_las("one.las")
+    with pytest.raises(ValueError, match=message):
+        read_cloud(make_vpc("one.las", href))
+
+
+@pytest.mark.parametrize(
+    "text", ["", "no json", "[]", "{}", '{"features": [1]}', '{"features": [{"assets": []}]}', '{"features": []}']
+)
+def test_what_is_no_collection_is_refused(tmp_path, text):
+    path = tmp_path / "a.vpc"
+    path.write_text(text)
+    with pytest.raises(ValueError, match="a.vpc (is not a virtual point cloud|names no tiles)"):
+        read_cloud(path)
+
+
+def test_output_may_not_be_a_tile(make_las, make_vpc, tmp_path):
+    make_las("one.las")
+    make_las("two.las")
+    cloud = read_cloud(make_vpc("one.las", "two.las"))
+    with pytest.raises(ValueError, match="is also an input"):
+        write_cloud(cloud, tmp_path / "two.las")

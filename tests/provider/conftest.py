@@ -1,0 +1,119 @@
+"""A QGIS without windows, with the provider and a few toy stages."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("qgis.core", reason="the provider runs inside QGIS")
+
+from qgis.core import QgsApplication, QgsProcessingContext, QgsProcessingFeedback, QgsProject
+
+from lidar_buildings.algorithms.cloud.cloud import create_cloud, write_cloud
+from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.stages import STAGES
+from lidar_buildings.provider import models, paths
+from lidar_buildings.provider.provider import Provider
+from lidar_buildings.tests.provider.toys import TOY_CHAIN, TOYS
+
+RD = "EPSG:28992"
+
+
+@pytest.fixture(scope="session")
+def qgis_application():
+    """The running QGIS; one that another plugin of pytest started is used as it is."""
+    application = QgsApplication.instance()
+    if application is None:
+        application = QgsApplication([], False)
+        QgsApplication.initQgis()
+    plugins = str(Path(QgsApplication.pkgDataPath()) / "python" / "plugins")
+    if plugins not in sys.path:
+        sys.path.append(plugins)
+    from processing.core.Processing import Processing
+
+    Processing.initialize()
+    return application
+
+
+@pytest.fixture(scope="session")
+def provider(qgis_application, tmp_path_factory):
+    """The provider in Processing's registry, with the toy stages and the toy chain beside the real ones."""
+    registry = QgsApplication.processingRegistry()
+    patch = pytest.MonkeyPatch()
+    for name, stage in TOYS.items():
+        patch.setitem(STAGES, name, stage)
+    provider = Provider()
+    registry.addProvider(provider)
+    folder = tmp_path_factory.mktemp("models")
+    for pipeline in (*PIPELINES.values(), TOY_CHAIN):
+        models.build_model(pipeline).toFile(str(folder / f"{pipeline.id}.model3"))
+    shipped = paths.MODELS
+    patch.setattr(paths, "MODELS", folder)
+    patch.setitem(PIPELINES, TOY_CHAIN.name, TOY_CHAIN)
+    provider.shipped_models = shipped
+    provider.refreshAlgorithms()
+    yield provider
+    registry.removeProvider(provider)
+    patch.undo()
+
+
+@pytest.fixture
+def context(provider):
+    """A context with the project, which is empty again afterwards."""
+    context = QgsProcessingContext()
+    context.setProject(QgsProject.instance())
+    yield context
+    QgsProject.instance().clear()
+
+
+class Log(QgsProcessingFeedback):
+    """Keeps what a run says."""
+
+    def __init__(self) -> None:
+        super().__init__(False)
+        self.infos, self.warnings, self.errors = [], [], []
+
+    def pushInfo(self, info: str) -> None:
+        self.infos.append(info)
+
+    def pushWarning(self, warning: str) -> None:
+        self.warnings.append(warning)
+
+    def reportError(self, error: str, fatalError: bool = False) -> None:
+        self.errors.append(error)
+
+
+@pytest.fixture
+def log():
+    """A feedback that keeps what it hears."""
+    return Log()
+
+
+@pytest.fixture(scope="session")
+def town():
+    """Arrays of a 20 m square: ground at 10 m, a building's roof at 16 m, in the Dutch grid."""
+    x, y = np.meshgrid(np.arange(20.0), np.arange(20.0))
+    roof = (np.abs(x - 10) < 4) & (np.abs(y - 10) < 4)
+    xyz = np.column_stack([85_000 + x.ravel(), 446_000 + y.ravel(), np.where(roof, 16.0, 10.0).ravel()])
+    return {"xyz": xyz, "classification": np.where(roof, 6, 2).ravel().astype(np.uint8)}
+
+
+@pytest.fixture
+def town_file(town, tmp_path):
+    """The square as a LAZ file in a folder of its own."""
+    folder = tmp_path / "input"
+    folder.mkdir()
+    path = folder / "town.laz"
+    write_cloud(create_cloud(town, wkt=RD), path)
+    return path
+
+
+@pytest.fixture
+def out(tmp_path):
+    """An empty folder for results."""
+    folder = tmp_path / "out"
+    folder.mkdir()
+    return folder

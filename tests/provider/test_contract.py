@@ -1,0 +1,151 @@
+"""Every stage, as it is declared, is what QGIS shows."""
+
+from __future__ import annotations
+
+import pytest
+from qgis.core import (
+    Qgis,
+    QgsProcessingOutputNumber,
+    QgsProcessingParameterBoolean,
+    QgsProcessingParameterEnum,
+    QgsProcessingParameterNumber,
+    QgsProcessingParameterString,
+)
+
+from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.stages import STAGES
+from lidar_buildings.provider.clouds import CloudParameter
+from lidar_buildings.provider.help import pipeline_help
+from lidar_buildings.tests.provider.toys import TOYS
+
+# Saved models and scripts hold these ids: one may be added, none may change.
+IDS = {
+    "assessbuildings",
+    "assessground",
+    "classifybuildings",
+    "classifygroundtin",
+    "classifynoisehistogram",
+    "classifynoisestatistical",
+    "computefeatures",
+    "computeheightaboveground",
+    "extractfootprints",
+    "segmentregions",
+    "simulatetown",
+}
+PIPELINE_IDS = {"detectbuildings", "detectbuildings2019"}
+ALL = {**STAGES, **TOYS}
+
+
+@pytest.fixture(params=ALL)
+def stage(request):
+    return ALL[request.param]
+
+
+@pytest.fixture
+def algorithm(stage, provider):
+    return provider.algorithm(stage.id).create()
+
+
+def test_ids_are_frozen():
+    assert {stage.id for name, stage in STAGES.items() if name not in TOYS} == IDS
+    assert {pipeline.id for pipeline in PIPELINES.values() if pipeline.group != "Toys"} == PIPELINE_IDS
+
+
+def test_the_toolbox_has_all_and_nothing_else(provider):
+    shown = {algorithm.name() for algorithm in provider.algorithms()}
+    assert shown == {stage.id for stage in ALL.values()} | {pipeline.id for pipeline in PIPELINES.values()}
+
+
+def test_the_algorithm_is_the_stage(stage, algorithm):
+    assert (algorithm.name(), algorithm.displayName(), algorithm.group()) == (stage.id, stage.title, stage.group)
+    assert algorithm.tags() == [tag.strip() for tag in stage.tags.split(",") if tag.strip()]
+    assert not algorithm.icon().isNull()
+
+
+def test_inputs_and_outputs_are_what_the_stage_reads_and_makes(stage, algorithm):
+    inputs = [d.name() for d in algorithm.parameterDefinitions() if isinstance(d, CloudParameter)]
+    assert inputs == ["INPUT"] * (not stage.creates) + ["REFERENCE"] * stage.reads_reference
+    destinations = [definition.name() for definition in algorithm.destinationParameterDefinitions()]
+    wanted = ["OUTPUT"] * bool(stage.writes or stage.creates)
+    wanted += [layer.name.upper() for layer in stage.layers] + ["REPORT"] * bool(stage.measures)
+    assert destinations == wanted
+    numbers = {
+        output.name() for output in algorithm.outputDefinitions() if isinstance(output, QgsProcessingOutputNumber)
+    }
+    automatic = {f"{t.name.upper()}_USED" for t in stage.tunables.values() if t.is_automatic and t.type in (int, float)}
+    assert numbers == automatic | {measure.name.upper() for measure in stage.measures}
+
+
+def test_every_tunable_is_a_parameter(stage, algorithm):
+    for tunable in stage.tunables.values():
+        definition = algorithm.parameterDefinition(tunable.name.upper())
+        default = list(tunable.default) if isinstance(tunable.default, tuple) else tunable.default
+        assert definition.defaultValue() == default
+        assert definition.description().startswith(tunable.param.label)
+        assert definition.help().startswith(tunable.param.help)
+        flags = definition.flags()
+        assert bool(flags & Qgis.ProcessingParameterFlag.Advanced) == tunable.param.advanced
+        assert bool(flags & Qgis.ProcessingParameterFlag.Optional) == tunable.is_automatic
+        if tunable.param.unit:
+            assert f"({tunable.param.unit}" in definition.description()
+        if tunable.is_automatic:
+            assert "empty = automatic" in definition.description()
+            assert tunable.param.automatic in definition.help()
+
+
+KINDS = {
+    float: QgsProcessingParameterNumber,
+    int: QgsProcessingParameterNumber,
+    bool: QgsProcessingParameterBoolean,
+    tuple: QgsProcessingParameterEnum,
+}
+
+
+def test_every_tunable_has_its_type_bounds_and_choices(stage, algorithm):
+    for tunable in stage.tunables.values():
+        definition = algorithm.parameterDefinition(tunable.name.upper())
+        words = QgsProcessingParameterEnum if tunable.param.choices else QgsProcessingParameterString
+        assert isinstance(definition, KINDS.get(tunable.type, words))
+        if isinstance(definition, QgsProcessingParameterEnum):
+            assert tuple(definition.options()) == tunable.param.choices
+            assert definition.usesStaticStrings()
+            assert definition.allowMultiple() == (tunable.type is tuple)
+        if isinstance(definition, QgsProcessingParameterNumber):
+            kind = Qgis.ProcessingNumberParameterType
+            assert definition.dataType() == (kind.Integer if tunable.type is int else kind.Double)
+            if tunable.param.low is not None:
+                assert definition.minimum() == tunable.param.low
+            if tunable.param.high is not None:
+                assert definition.maximum() == tunable.param.high
+
+
+def test_bounds_are_refused_in_the_words_of_the_core(stage, algorithm, context, town_file, out):
+    given = {"INPUT": str(town_file), "REFERENCE": str(town_file), "OUTPUT": str(out / "a.las")}
+    for tunable in stage.tunables.values():
+        if tunable.type not in (int, float) or tunable.param.high is None:
+            continue
+        high = tunable.param.high
+        beyond = high if tunable.param.open_high else high + 1
+        with pytest.raises(ValueError, match="must be") as refused:
+            tunable.check(float(beyond))
+        accepted, message = algorithm.checkParameterValues({**given, tunable.name.upper(): beyond}, context)
+        assert (accepted, message) == (False, str(refused.value))
+
+
+def test_help_tells_everything(stage, algorithm):
+    text = algorithm.shortHelpString()
+    assert stage.summary.split()[0] in text
+    for tunable in stage.tunables.values():
+        assert f"<b>{tunable.param.title}</b>".replace("<b>", "").replace("</b>", "").split("<")[0] in text
+    for name in ("Notes", "References"):
+        assert (f"<h3>{name}</h3>" in text) == bool(stage.section(name))
+    for definition in algorithm.parameterDefinitions():
+        assert definition.help(), definition.name()
+
+
+@pytest.mark.parametrize("name", PIPELINES)
+def test_composites_tell_their_steps(name, provider):
+    pipeline = PIPELINES[name]
+    text = pipeline_help(pipeline)
+    assert all(step.stage.title in text for step in pipeline.steps)
+    assert provider.algorithm(pipeline.id).create().shortHelpString() == text

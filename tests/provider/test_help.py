@@ -1,0 +1,57 @@
+"""Help pages: generated, complete, and not older than the stages."""
+
+from __future__ import annotations
+
+import importlib.util
+
+import pytest
+
+from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.stages import STAGES
+from lidar_buildings.provider.help import inline, page, paragraphs, pipeline_help, stage_help, tunable_help
+from lidar_buildings.provider.paths import HELP, PLUGIN
+from lidar_buildings.tests.provider.toys import TOYS
+
+
+@pytest.fixture(scope="module")
+def generator():
+    spec = importlib.util.spec_from_file_location("generate_resources", PLUGIN / "scripts" / "generate_resources.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_pages_are_what_the_stages_say(generator):
+    real = {f"{stage.id}.html": page(stage.title, stage_help(stage)) for n, stage in STAGES.items() if n not in TOYS}
+    real |= {f"{p.id}.html": page(p.title, pipeline_help(p)) for p in PIPELINES.values() if p.group != "Toys"}
+    shipped = {path.name: path.read_text(encoding="utf-8") for path in HELP.glob("*.html")}
+    assert shipped == real, "run scripts/generate_resources.py"
+    assert generator.help_pages().keys() >= real.keys()
+
+
+def test_help_of_a_stage_has_all_its_parts():
+    text = stage_help(TOYS["toy_lift"])
+    assert "<p>Lift every point.</p>" in text
+    assert "<p>A text in two parts, with <code>code</code> and <i>emphasis</i>.</p>" in text
+    assert "reads X, Y, Z, Classification" in text
+    assert "<ul>\n<li>One.</li>\n<li>Two.</li>\n</ul>" in text
+    assert "<h3>References</h3>\n<p>Nobody (2000), Nothing.</p>" in text
+
+
+def test_help_of_a_tunable_has_unit_range_default_and_automatic():
+    tunables = TOYS["toy_lift"].tunables
+    assert tunable_help(tunables["step"]) == (
+        "<b>Step (m)</b>: Added to all heights. <i>(greater than 0 m and at most 10 m; default 1.5 m)</i>"
+    )
+    assert "Automatic: the lowest point. <i>(at least 0 m; default automatic)</i>" in tunable_help(tunables["base"])
+    assert "default ground, building" in tunable_help(tunables["only"])
+    assert "default no" in tunable_help(tunables["flat"])
+
+
+def test_text_is_escaped():
+    assert inline("a < b & ``c > d``") == "a &lt; b &amp; <code>c &gt; d</code>"
+    assert inline("2 * 3 * 4") == "2 * 3 * 4"
+
+
+def test_numbered_lists_are_lists():
+    assert paragraphs("1. One\n   goes on\n2. Two") == "<ol>\n<li>One goes on</li>\n<li>Two</li>\n</ol>"

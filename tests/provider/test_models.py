@@ -1,0 +1,185 @@
+"""Composites: the model, the chain in memory and the stages one by one give the same; drift is a failure."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from qgis.core import (
+    Qgis,
+    QgsProcessing,
+    QgsProcessingException,
+    QgsProcessingModelAlgorithm,
+    QgsVectorLayer,
+)
+
+from lidar_buildings.algorithms.cloud.cloud import read_cloud
+from lidar_buildings.algorithms.cloud.dimensions import DIMENSIONS
+from lidar_buildings.algorithms.pipelines import PIPELINES, run_pipeline
+from lidar_buildings.provider import models
+from lidar_buildings.provider.outputs import nothing_left_on_failure
+from lidar_buildings.tests.provider.test_stage_algorithm import run
+from lidar_buildings.tests.provider.toys import TOY_CHAIN
+
+
+def same_clouds(one, other):
+    assert len(one) == len(other)
+    for name in DIMENSIONS:
+        assert one.has(name) == other.has(name), name
+        if one.has(name):
+            np.testing.assert_array_equal(one.get(name), other.get(name), err_msg=name)
+
+
+def test_model_memory_and_single_steps_agree(provider, context, log, town_file, out):
+    result = run(
+        "toychain",
+        {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz"), "FOOTPRINTS": str(out / "f.gpkg"), "SECOND_STEP": 0.5},
+        context,
+        log,
+    )
+    in_memory = run_pipeline(TOY_CHAIN, read_cloud(town_file), second_step=0.5)
+    same_clouds(read_cloud(out / "a.laz"), in_memory.cloud)
+
+    run(
+        "toylift",
+        {"INPUT": str(town_file), "OUTPUT": str(out / "1.las"), "STEP": 2.5, "ONLY": ["building"]},
+        context,
+        log,
+    )
+    run("toylift", {"INPUT": str(out / "1.las"), "OUTPUT": str(out / "2.las"), "TIMES": 3, "STEP": 0.5}, context, log)
+    run("toyoutline", {"INPUT": str(out / "2.las"), "FOOTPRINTS": str(out / "g.gpkg"), "MARGIN": 1.0}, context, log)
+    same_clouds(read_cloud(out / "2.las"), in_memory.cloud)
+
+    features = [next(QgsVectorLayer(str(out / name), "f", "ogr").getFeatures()) for name in ("f.gpkg", "g.gpkg")]
+    assert features[0].attributes() == features[1].attributes()
+    assert features[0].geometry().equals(features[1].geometry())
+    assert features[0]["height"] == pytest.approx(float(in_memory.layers["footprints"].columns["height"][0]))
+    assert features[0].geometry().boundingBox().xMinimum() == 84_999
+    assert result["FIRST_BASE_USED"] == 10.0
+    assert {"OUTPUT", "FOOTPRINTS"} <= set(result)
+
+
+def test_the_models_own_defaults_count(provider, context, log, town_file, out):
+    run(
+        "toychain",
+        {"INPUT": str(town_file), "OUTPUT": str(out / "a.las"), "FOOTPRINTS": QgsProcessing.TEMPORARY_OUTPUT},
+        context,
+        log,
+    )
+    same_clouds(read_cloud(out / "a.las"), run_pipeline(TOY_CHAIN, read_cloud(town_file)).cloud)
+
+
+def test_the_composite_shows_the_steps_parameters(provider):
+    algorithm = provider.algorithm("toychain").create()
+    names = [definition.name() for definition in algorithm.parameterDefinitions()]
+    assert names[:4] == ["INPUT", "FIRST_STEP", "FIRST_BASE", "FIRST_TIMES"]
+    assert names[-2:] == ["OUTPUT", "FOOTPRINTS"]
+    step = algorithm.parameterDefinition("FIRST_STEP")
+    assert (step.description(), step.defaultValue(), step.minimum(), step.maximum()) == (
+        "Toy lift: step (m)",
+        2.5,
+        0,
+        10,
+    )
+    assert algorithm.parameterDefinition("FIRST_ONLY").defaultValue() == ["building"]
+    assert algorithm.parameterDefinition("SECOND_TIMES").defaultValue() == 3
+    advanced = algorithm.parameterDefinition("FIRST_TIMES").flags()
+    assert advanced & algorithm.parameterDefinition("FIRST_TIMES").Flag.FlagAdvanced
+    assert {output.name() for output in algorithm.outputDefinitions()} >= {"OUTPUT", "FOOTPRINTS", "FIRST_BASE_USED"}
+    assert (algorithm.name(), algorithm.displayName(), algorithm.group()) == ("toychain", "Toy chain", "Toys")
+
+
+def test_the_composite_runs_without_its_layer(provider, context, log, town_file, out):
+    run("toychain", {"INPUT": str(town_file), "OUTPUT": str(out / "a.las")}, context, log)
+    assert [path.name for path in out.iterdir()] == ["a.las"]
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"SECOND_STEP": 0}, "Step (step) must be greater than 0 m and at most 10 m, got 0.0."),
+        ({"OUTPUT": "{input}"}, "is also an input"),
+        ({"INPUT": "nowhere.laz"}, "there is none at nowhere.laz"),
+        ({"OUTPUT": "a.doc"}, "extension"),
+    ],
+)
+def test_wrong_values_are_refused_at_once(provider, context, log, town_file, out, change, sentence):
+    given = {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz"), **change}
+    given = {k: v.format(input=town_file) if isinstance(v, str) else v for k, v in given.items()}
+    accepted, message = provider.algorithm("toychain").create().checkParameterValues(given, context)
+    assert not accepted
+    assert sentence in message
+
+
+@pytest.mark.parametrize("error", [ValueError, ZeroDivisionError])
+def test_a_step_that_fails_leaves_nothing(provider, context, log, town_file, out, monkeypatch, error):
+    """The first steps have written the cloud when the last one refuses."""
+    from lidar_buildings.provider import stage_algorithm
+
+    def refused(*args):
+        assert (out / "a.laz").is_file()
+        raise error("There is nothing to draw; look at the points first.")
+
+    monkeypatch.setattr(stage_algorithm.StageAlgorithm, "_write_layer", refused)
+    with pytest.raises(QgsProcessingException, match="nothing to draw"):
+        run(
+            "toychain",
+            {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz"), "FOOTPRINTS": str(out / "f.gpkg")},
+            context,
+            log,
+        )
+    assert list(out.iterdir()) == []
+
+
+def test_files_that_were_not_touched_stay_after_a_failure(tmp_path):
+    old, new = tmp_path / "old", tmp_path / "new"
+    old.write_text("older result")
+
+    def fail():
+        with nothing_left_on_failure([old, new]):
+            new.write_text("half")
+            raise KeyError
+
+    pytest.raises(KeyError, fail)
+    assert old.read_text() == "older result"
+    assert not new.exists()
+
+
+@pytest.fixture(params=[*PIPELINES, "toy_chain"])
+def pipeline(request, provider):
+    return PIPELINES[request.param]
+
+
+def test_shipped_models_are_what_the_pipelines_say(pipeline, provider):
+    if pipeline is TOY_CHAIN:
+        pytest.skip("it is not shipped")
+    shipped = QgsProcessingModelAlgorithm()
+    assert shipped.fromFile(str(provider.shipped_models / f"{pipeline.id}.model3")), "run scripts/generate_resources.py"
+    built = QgsProcessingModelAlgorithm()
+    built.loadVariant(models.build_model(pipeline).toVariant())
+    assert shipped.toVariant() == built.toVariant(), "run scripts/generate_resources.py"
+
+
+def test_the_graph_is_the_chain(pipeline):
+    model = models.build_model(pipeline)
+    children = model.childAlgorithms()
+    assert list(children) == sorted(step.name for step in pipeline.steps)
+    cloud = None
+    for step in pipeline.steps:
+        (source,) = children[step.name].parameterSources()["INPUT"]
+        if cloud is None:
+            assert source.source() == Qgis.ProcessingModelChildParameterSource.ModelParameter
+        else:
+            assert (source.outputChildId(), source.outputName()) == (cloud, "OUTPUT")
+        cloud = step.name if step.stage.writes else cloud
+        assert children[step.name].algorithm() is not None
+    assert model.validate()[0], model.validate()[1]
+
+
+def test_nothing_in_the_graph_overlaps(pipeline):
+    model = models.build_model(pipeline)
+    parts = [*model.parameterComponents().values(), *model.childAlgorithms().values()]
+    parts += [output for child in model.childAlgorithms().values() for output in child.modelOutputs().values()]
+    boxes = [(p.position().x(), p.position().y(), p.size().width(), p.size().height()) for p in parts]
+    for i, (x, y, width, height) in enumerate(boxes):
+        for u, v, other_width, other_height in boxes[:i]:
+            assert abs(x - u) >= (width + other_width) / 2 or abs(y - v) >= (height + other_height) / 2

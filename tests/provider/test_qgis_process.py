@@ -1,0 +1,130 @@
+"""The command line: exit codes, sentences and files, in a fresh profile."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.cloud.cloud import create_cloud, read_cloud, write_cloud
+from lidar_buildings.provider.paths import PLUGIN
+
+QGIS_PROCESS = shutil.which("qgis_process", path="/usr/bin:/bin") or shutil.which("qgis_process")
+pytestmark = pytest.mark.skipif(QGIS_PROCESS is None, reason="there is no qgis_process")
+
+STAGE = "lidarbuildings:classifynoisehistogram"
+
+
+class Profile:
+    """A profile of QGIS with the plugin enabled, in a folder of its own."""
+
+    def __init__(self, folder: Path, packages: tuple) -> None:
+        self.folder = folder
+        profile = folder / "config" / "profiles" / "default"
+        (profile / "QGIS").mkdir(parents=True)
+        (profile / "QGIS" / "QGIS3.ini").write_text("[PythonPlugins]\nlidar_buildings=true\n")
+        (profile / "python").mkdir()
+        for name in packages:
+            spec = importlib.util.find_spec(name)
+            if spec is not None:
+                (profile / "python" / name).symlink_to(Path(spec.origin).parent)
+        (folder / "plugins").mkdir()
+        (folder / "plugins" / "lidar_buildings").symlink_to(PLUGIN)
+        (folder / "run").mkdir(mode=0o700)
+
+    def __call__(self, *arguments: str, stdin: str = "") -> subprocess.CompletedProcess:
+        """Run ``qgis_process``."""
+        environment = {
+            # A Python of another installation on the path would give QGIS a wrong prefix.
+            "PATH": "/usr/bin:/bin",
+            "HOME": str(self.folder),
+            "LANG": "C.UTF-8",
+            "QT_QPA_PLATFORM": "offscreen",
+            "XDG_RUNTIME_DIR": str(self.folder / "run"),
+            "QGIS_CUSTOM_CONFIG_PATH": str(self.folder / "config"),
+            "QGIS_PLUGINPATH": str(self.folder / "plugins"),
+        }
+        return subprocess.run(
+            [QGIS_PROCESS, *arguments],
+            env=environment,
+            input=stdin,
+            capture_output=True,
+            text=True,
+            timeout=120,
+            check=False,
+        )
+
+
+@pytest.fixture(scope="module")
+def qgis_process(tmp_path_factory):
+    return Profile(tmp_path_factory.mktemp("profile"), ("laspy", "lazrs"))
+
+
+@pytest.fixture(scope="module")
+def field(tmp_path_factory):
+    """A field of 60 m with one bird."""
+    x, y = np.meshgrid(np.arange(0, 60, 0.7), np.arange(0, 60, 0.7))
+    xyz = np.column_stack([x.ravel(), y.ravel(), 0.05 * np.sin(x.ravel())]) + [85_000, 446_000, 0]
+    xyz[1000, 2] = 80
+    path = tmp_path_factory.mktemp("field") / "field.laz"
+    write_cloud(create_cloud({"xyz": xyz, "classification": np.ones(len(xyz), np.uint8)}, "EPSG:28992"), path)
+    return path
+
+
+def test_a_laz_goes_through(qgis_process, field, tmp_path):
+    target = tmp_path / "out.laz"
+    given = json.dumps({"inputs": {"INPUT": str(field), "OUTPUT": str(target)}})
+    done = qgis_process("--json", "run", STAGE, "-", stdin=given)
+    assert done.returncode == 0, done.stderr
+    results = json.loads(done.stdout)["results"]
+    assert results["OUTPUT"] == str(target)
+    assert isinstance(results["CELL_SIZE_USED"], (int, float))
+    assert read_cloud(target).get("classification")[1000] in (7, 18)
+    assert [path.name for path in tmp_path.iterdir()] == ["out.laz"]
+
+
+def test_help_names_every_parameter_and_output(qgis_process):
+    done = qgis_process("help", "lidarbuildings:detectbuildings")
+    assert done.returncode == 0, done.stderr
+    for name in ("INPUT: ", "OUTPUT: ", "FOOTPRINTS: ", "Outputs"):
+        assert name in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ({"OUTPUT": "{folder}/out.txt"}, "give it the extension .las, .laz or .copc.laz"),
+        ({"INPUT": "{folder}/text.las"}, "text.las"),
+    ],
+)
+def test_what_is_wrong_is_one_sentence_and_exit_code_1(qgis_process, field, tmp_path, given, sentence):
+    (tmp_path / "text.las").write_text("This is no point cloud, whatever its name says.")
+    values = {"INPUT": str(field), "OUTPUT": "{folder}/out.laz", **given}
+    arguments = [f"{name}={value.format(folder=tmp_path)}" for name, value in values.items()]
+    done = qgis_process("run", STAGE, "--", *arguments)
+    assert done.returncode == 1
+    said = done.stdout + done.stderr
+    assert sentence in said
+    assert "Traceback" not in said
+    assert [path.name for path in tmp_path.iterdir()] == ["text.las"]
+
+
+@pytest.mark.skipif(
+    Path("/usr/lib/python3/dist-packages/laspy").exists(), reason="laspy is part of the system and can't be missing"
+)
+def test_without_its_packages_it_says_how_to_get_them(tmp_path_factory, field, tmp_path):
+    bare = Profile(tmp_path_factory.mktemp("bare"), ())
+    shown = bare("list")
+    assert STAGE in shown.stdout
+    done = bare("run", STAGE, "--", f"INPUT={field}", f"OUTPUT={tmp_path / 'out.laz'}")
+    assert done.returncode == 1
+    said = done.stdout + done.stderr
+    assert "missing: laspy, lazrs" in said
+    assert "-m pip install --no-deps --target" in said
+    assert f"{bare.folder}/config/profiles/default/python laspy lazrs" in said
+    assert "Traceback" not in said

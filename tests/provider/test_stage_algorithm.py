@@ -1,0 +1,343 @@
+"""Any stage as an algorithm: run through Processing, with paths, layers, temporaries and errors."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from qgis.core import (
+    QgsFeatureRequest,
+    QgsPointCloudLayer,
+    QgsProcessingException,
+    QgsProcessingOutputLayerDefinition,
+    QgsProcessingUtils,
+    QgsProperty,
+    QgsVectorLayer,
+    QgsWkbTypes,
+)
+
+from lidar_buildings.algorithms import packages
+from lidar_buildings.algorithms.cloud.cloud import create_cloud, read_cloud, write_cloud
+from lidar_buildings.provider import clouds, outputs
+from lidar_buildings.provider.crs import crs_of, crs_units
+
+
+def run(name, parameters, context, log):
+    import processing
+
+    return processing.run(f"lidarbuildings:{name}", parameters, context=context, feedback=log, is_child_algorithm=True)
+
+
+def heights(path):
+    return sorted(set(read_cloud(path).get("height_above_ground").tolist()))
+
+
+@pytest.mark.parametrize("name", ["lifted.las", "lifted.laz", "lifted.copc.laz"])
+def test_a_path_goes_in_and_a_cloud_comes_out(provider, context, log, town_file, out, name):
+    result = run("toylift", {"INPUT": str(town_file), "OUTPUT": str(out / name)}, context, log)
+    assert result == {"OUTPUT": str(out / name), "BASE_USED": 10.0}
+    assert type(result["BASE_USED"]) is float
+    assert heights(out / name) == [3.0, 9.0]
+    assert [path.name for path in out.iterdir()] == [name]
+
+
+def test_the_log_tells_automatic_values(provider, context, log, town_file, out):
+    run("toylift", {"INPUT": str(town_file), "OUTPUT": str(out / "a.las")}, context, log)
+    assert "Base, automatic: 10 m" in log.infos
+
+
+def test_a_given_value_is_returned_and_not_called_automatic(provider, context, log, town_file, out):
+    result = run("toylift", {"INPUT": str(town_file), "BASE": 4, "OUTPUT": str(out / "a.las")}, context, log)
+    assert result["BASE_USED"] == 4.0
+    assert not [line for line in log.infos if "automatic" in line]
+    assert heights(out / "a.las") == [9.0, 15.0]
+
+
+def test_every_kind_of_tunable_arrives(provider, context, log, town_file, out):
+    given = {"STEP": 2, "TIMES": 1, "SIGN": "down", "ONLY": ["building"], "FLAT": False, "BASE": None}
+    run("toylift", {"INPUT": str(town_file), "OUTPUT": str(out / "a.las"), **given}, context, log)
+    assert heights(out / "a.las") == [0.0, 4.0]
+
+
+def test_values_as_text_and_expressions_arrive(provider, context, log, town_file, out):
+    given = {"STEP": "2", "TIMES": QgsProperty.fromExpression("3 - 2"), "ONLY": "building", "FLAT": "false", "BASE": ""}
+    run("toylift", {"INPUT": str(town_file), "OUTPUT": str(out / "a.las"), **given}, context, log)
+    assert heights(out / "a.las") == [0.0, 8.0]
+
+
+@pytest.fixture
+def layer(town_file, tmp_path, context):
+    """The square as a layer of the project (COPC, which every build of QGIS opens)."""
+    path = tmp_path / "input" / "layer.copc.laz"
+    write_cloud(read_cloud(town_file), path)
+    layer = QgsPointCloudLayer(str(path), "the square", "copc")
+    assert layer.isValid()
+    context.project().addMapLayer(layer)
+    return layer
+
+
+@pytest.mark.parametrize("how", ["object", "id", "name", "source", "expression"])
+def test_a_layer_goes_in_by_any_name(provider, context, log, layer, out, how):
+    given = {
+        "object": layer,
+        "id": layer.id(),
+        "name": layer.name(),
+        "source": layer.source(),
+        "expression": QgsProperty.fromExpression(f"'{layer.source()}'"),
+    }[how]
+    run("toylift", {"INPUT": given, "OUTPUT": str(out / "a.laz")}, context, log)
+    assert heights(out / "a.laz") == [3.0, 9.0]
+
+
+def test_a_virtual_point_cloud_goes_in(provider, context, log, town, tmp_path, out):
+    import json
+
+    features = []
+    for i, half in enumerate((town["xyz"][:, 0] < 85_010, town["xyz"][:, 0] >= 85_010)):
+        write_cloud(create_cloud({k: v[half] for k, v in town.items()}, wkt="EPSG:28992"), tmp_path / f"{i}.laz")
+        features.append({"type": "Feature", "assets": {"data": {"href": f"./{i}.laz"}}, "properties": {}})
+    vpc = tmp_path / "town.vpc"
+    vpc.write_text(json.dumps({"type": "FeatureCollection", "features": features}))
+    run("toylift", {"INPUT": str(vpc), "OUTPUT": str(out / "a.laz")}, context, log)
+    assert len(read_cloud(out / "a.laz")) == 400
+    assert heights(out / "a.laz") == [3.0, 9.0]
+
+
+def test_a_temporary_output_is_uncompressed_and_feeds_the_next_stage(provider, context, log, town_file):
+    first = run("toylift", {"INPUT": str(town_file), "OUTPUT": "TEMPORARY_OUTPUT"}, context, log)["OUTPUT"]
+    assert first.endswith(".las")
+    footprints = run("toyoutline", {"INPUT": first, "FOOTPRINTS": "TEMPORARY_OUTPUT"}, context, log)["FOOTPRINTS"]
+    layer = QgsProcessingUtils.mapLayerFromString(footprints, context)
+    assert next(layer.getFeatures())["height"] == pytest.approx((49 * 9 + 351 * 3) / 400)
+
+
+def test_footprints_have_geometry_fields_and_crs(provider, context, log, town_file, out):
+    target = out / "footprints.gpkg"
+    run("toyoutline", {"INPUT": str(town_file), "FOOTPRINTS": str(target)}, context, log)
+    layer = QgsVectorLayer(str(target), "footprints", "ogr")
+    assert layer.crs().authid() == "EPSG:28992"
+    assert layer.wkbType() == QgsWkbTypes.Type.Polygon
+    names = ["id", "height", "kind"]
+    feature = next(layer.getFeatures(QgsFeatureRequest()))
+    assert [feature[name] for name in names[::2]] == [7, "box"]
+    assert not feature["height"], "NaN is NULL in a layer"
+    geometry = feature.geometry()
+    assert geometry.isGeosValid()
+    assert geometry.area() == pytest.approx(19 * 19 * 0.75)
+    assert geometry.boundingBox().xMinimum() == 85_000
+    assert geometry.boundingBox().yMaximum() == 446_019
+
+
+def test_a_comparison_gives_a_page_and_plain_numbers(provider, context, log, town_file, town, tmp_path, out):
+    lower = tmp_path / "lower.las"
+    write_cloud(create_cloud({"xyz": town["xyz"] - [0, 0, 2]}), lower)
+    page = out / "page.html"
+    result = run("toycompare", {"INPUT": str(town_file), "REFERENCE": str(lower), "REPORT": str(page)}, context, log)
+    assert result["DIFFERENCE"] == pytest.approx(2.0)
+    assert (type(result["DIFFERENCE"]), type(result["POINTS"])) == (float, int)
+    assert "2.000" in page.read_text()
+
+
+def test_a_report_is_not_needed(provider, context, log, town_file):
+    result = run("toycompare", {"INPUT": str(town_file), "REFERENCE": str(town_file)}, context, log)
+    assert result == {"DIFFERENCE": 0.0, "POINTS": 400}
+
+
+def test_a_skipped_layer_is_not_written(provider, context, log, out):
+    result = run("toymake", {"OUTPUT": str(out / "made.laz")}, context, log)
+    assert set(result) == {"OUTPUT"}
+    assert [path.name for path in out.iterdir()] == ["made.laz"]
+    assert len(read_cloud(out / "made.laz")) == 10
+
+
+def test_a_made_cloud_has_its_layer(provider, context, log, out):
+    result = run("toymake", {"OUTPUT": str(out / "made.laz"), "TRUTH": str(out / "truth.gpkg")}, context, log)
+    layer = QgsVectorLayer(result["TRUTH"], "truth", "ogr")
+    assert QgsWkbTypes.hasZ(layer.wkbType())
+    assert next(layer.getFeatures()).geometry().asWkt(0) in ("Point Z (1 2 3)", "PointZ (1 2 3)")
+
+
+def wrong(**change):
+    return change
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (wrong(STEP=0), "Step (step) must be greater than 0 m and at most 10 m, got 0.0."),
+        (wrong(STEP=11), "Step (step) must be greater than 0 m and at most 10 m, got 11.0."),
+        (wrong(STEP="much"), "Step (step) must be a number, got 'much'."),
+        (wrong(TIMES=1.5), "Times (times) must be a whole number, got 1.5."),
+        (wrong(SIGN="left"), "Sign (sign) must be one of up, down, got 'left'."),
+        (wrong(INPUT=""), "Point cloud (INPUT) is missing; choose a point cloud."),
+        (
+            wrong(INPUT="nowhere.laz"),
+            "Point cloud (INPUT) must be a point cloud file or layer; there is none at nowhere.laz.",
+        ),
+        (wrong(OUTPUT="{input}"), "is also an input; choose another name."),
+        (
+            wrong(OUTPUT="{out}/a.txt"),
+            "a.txt can't be written as a point cloud: give it the extension .las, .laz or .copc.laz.",
+        ),
+        (wrong(OUTPUT="{out}/none/a.laz"), "does not exist; make it or choose another one."),
+    ],
+)
+def test_what_is_wrong_is_told_in_one_sentence_before_and_in_the_run(
+    provider, context, log, town_file, out, change, sentence
+):
+    parameters = {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz"), **change}
+    filled = {"input": town_file, "out": out}
+    parameters = {k: v.format(**filled) if isinstance(v, str) else v for k, v in parameters.items()}
+    algorithm = provider.algorithm("toylift").create()
+    accepted, message = algorithm.checkParameterValues(parameters, context)
+    assert not accepted
+    assert message.endswith(sentence)
+    # A model's child is run without that check.
+    results, ok = algorithm.run(parameters, context, log)
+    assert not ok
+    assert any(sentence in error for error in log.errors), log.errors
+    assert not any("Traceback" in error for error in log.errors)
+    assert list(out.iterdir()) == []
+
+
+def test_two_outputs_may_not_be_one_file(provider, context, out):
+    algorithm = provider.algorithm("toymake").create()
+    given = {"OUTPUT": str(out / "a.laz"), "TRUTH": str(out / "a.laz")}
+    accepted, message = algorithm.checkParameterValues(given, context)
+    assert (accepted, "same file" in message) == (False, True)
+
+
+def test_a_vector_layer_is_no_cloud(provider, context, out):
+    layer = QgsVectorLayer("Point", "dots", "memory")
+    context.project().addMapLayer(layer)
+    accepted, message = (
+        provider.algorithm("toylift")
+        .create()
+        .checkParameterValues({"INPUT": layer, "OUTPUT": str(out / "a.laz")}, context)
+    )
+    assert not accepted
+    assert "must be a point cloud, got the layer 'dots'" in message
+
+
+def test_an_error_of_the_core_is_its_sentence(provider, context, log, town_file, out):
+    with pytest.raises(QgsProcessingException, match=r"^The field is empty; choose another.$"):
+        run("toytrouble", {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz")}, context, log)
+    assert list(out.iterdir()) == []
+
+
+def test_a_fault_keeps_its_traceback(provider, context, log, town_file, out):
+    with pytest.raises(QgsProcessingException, match=r"(?s)Traceback.*toys.*ZeroDivisionError: a fault"):
+        run("toytrouble", {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz"), "KIND": "bug"}, context, log)
+    assert list(out.iterdir()) == []
+
+
+def test_a_cancelled_stage_is_an_error_and_leaves_nothing(provider, context, log, town_file, out):
+    with pytest.raises(QgsProcessingException, match="Cancelled; nothing was written"):
+        run("toytrouble", {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz"), "KIND": "cancel"}, context, log)
+    assert list(out.iterdir()) == []
+
+
+def test_cancel_while_writing_leaves_nothing_and_not_the_older_result_half(
+    provider, context, log, town_file, out, monkeypatch
+):
+    target = out / "a.laz"
+
+    def cancelled(*args, **kwargs):
+        write_cloud(*args, **kwargs)
+        log.cancel()
+
+    monkeypatch.setattr(outputs, "write_cloud", cancelled)
+    with pytest.raises(QgsProcessingException, match="Cancelled"):
+        run("toylift", {"INPUT": str(town_file), "OUTPUT": str(target)}, context, log)
+    assert list(out.iterdir()) == []
+
+
+def test_the_user_can_cancel(provider, context, log, town_file, out):
+    log.cancel()
+    with pytest.raises(QgsProcessingException, match="Cancelled"):
+        run("toylift", {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz")}, context, log)
+
+
+def shown(path, context):
+    definition = QgsProcessingOutputLayerDefinition(str(path), context.project())
+    definition.destinationName = "lifted"
+    return definition
+
+
+@pytest.mark.skipif(clouds.reads_las(), reason="this build of QGIS shows LAZ itself")
+@pytest.mark.parametrize("name", ["a.laz", "a.las"])
+def test_without_pdal_a_copc_is_shown_in_place_of_the_result(provider, context, log, town_file, out, name):
+    run("toylift", {"INPUT": str(town_file), "OUTPUT": shown(out / name, context)}, context, log)
+    loaded = context.layersToLoadOnCompletion()
+    assert list(loaded) == [str(out / "a.copc.laz")]
+    assert loaded[str(out / "a.copc.laz")].name == "lifted"
+    assert loaded[str(out / "a.copc.laz")].postProcessor() is not None, "its style comes along"
+    layer = QgsPointCloudLayer(str(out / "a.copc.laz"), "lifted", "copc")
+    assert layer.isValid()
+    assert layer.pointCount() == 400
+    assert heights(out / name) == heights(out / "a.copc.laz")
+
+
+@pytest.mark.skipif(clouds.reads_las(), reason="this build of QGIS shows LAZ itself")
+def test_the_copc_beside_the_result_may_not_be_the_input(provider, context, layer, log):
+    target = Path(layer.source()).with_name("layer.laz")
+    accepted, message = (
+        provider.algorithm("toylift")
+        .create()
+        .checkParameterValues({"INPUT": layer, "OUTPUT": shown(target, context)}, context)
+    )
+    assert not accepted
+    assert "also an input" in message
+
+
+def test_a_layer_is_styled_when_it_is_loaded(provider, context, log, town_file, out):
+    run("toyoutline", {"INPUT": str(town_file), "FOOTPRINTS": shown(out / "f.gpkg", context)}, context, log)
+    (path,) = context.layersToLoadOnCompletion()
+    layer = QgsVectorLayer(path, "f", "ogr")
+    context.layerToLoadOnCompletionDetails(path).postProcessor().postProcessLayer(layer, context, log)
+    assert layer.labelsEnabled()
+    assert not log.warnings
+
+
+def test_missing_packages_are_told_everywhere(provider, context, log, town_file, out, monkeypatch):
+    monkeypatch.setattr(packages, "missing", lambda: ["laspy", "lazrs"])
+    algorithm = provider.algorithm("toylift").create()
+    parameters = {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz")}
+    can, sentence = algorithm.canExecute()
+    assert not can
+    assert "missing: laspy, lazrs" in sentence
+    assert "-m pip install --no-deps --target" in sentence
+    assert sentence.endswith("python laspy lazrs")
+    assert provider.warningMessage() == sentence
+    assert algorithm.checkParameterValues(parameters, context) == (False, sentence)
+    results, ok = algorithm.run(parameters, context, log)
+    assert not ok
+    assert any(sentence in error for error in log.errors)
+    assert provider.algorithm("toylift") is not None
+
+
+def test_nothing_is_said_of_packages_that_are_there(provider):
+    assert provider.warningMessage() == ""
+    assert provider.algorithm("toylift").canExecute()[0]
+
+
+def test_units_of_codes_come_from_qgis():
+    assert crs_units(28992) == (1.0, 1.0, False)
+    assert crs_units(4326)[2]
+    assert crs_units(2277)[0] == pytest.approx(1200 / 3937)
+    assert crs_units(999_999) is None
+
+
+def test_crs_are_understood_as_wkt_and_code():
+    assert crs_of("EPSG:28992").authid() == "EPSG:28992"
+    assert crs_of(crs_of("EPSG:2154").toWkt()).authid() == "EPSG:2154"
+    assert crs_of("EPSG:7415").authid() == "EPSG:28992", "the horizontal part of a compound"
+    assert not crs_of("").isValid()
+
+
+def test_files_of_the_stage_are_gone_from_memory(provider, context, log, town_file, out):
+    """The result stays when the input is removed: it holds a copy, no reference."""
+    run("toylift", {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz")}, context, log)
+    Path(town_file).unlink()
+    assert np.isfinite(read_cloud(out / "a.laz").get("xyz")).all()

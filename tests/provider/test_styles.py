@@ -1,0 +1,57 @@
+"""Styles load without complaint and know every class."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from qgis.core import QgsPointCloudLayer, QgsVectorLayer
+
+from lidar_buildings.algorithms.cloud.asprs import PointClass
+from lidar_buildings.algorithms.cloud.cloud import create_cloud, write_cloud
+from lidar_buildings.algorithms.cloud.dimensions import DIMENSIONS
+from lidar_buildings.provider.paths import STYLES
+from lidar_buildings.provider.styles import cloud_style, layer_style
+from lidar_buildings.tests.provider.toys import TOYS
+
+OF_CLOUDS = sorted(path.stem for path in STYLES.glob("*.qml") if path.stem in DIMENSIONS)
+
+
+@pytest.fixture(scope="module")
+def cloud_file(town, tmp_path_factory):
+    arrays = dict(town)
+    for name in OF_CLOUDS:
+        arrays.setdefault(name, np.zeros(400, DIMENSIONS[name].dtype))
+    path = tmp_path_factory.mktemp("styles") / "all.copc.laz"
+    write_cloud(create_cloud(arrays, "EPSG:28992"), path)
+    return path
+
+
+@pytest.mark.parametrize("stem", OF_CLOUDS)
+def test_styles_of_clouds_load(stem, cloud_file, qgis_application):
+    layer = QgsPointCloudLayer(str(cloud_file), stem, "copc")
+    message, loaded = layer.loadNamedStyle(str(STYLES / f"{stem}.qml"))
+    assert loaded, message
+    assert layer.renderer().attribute() == DIMENSIONS[stem].disk[0]
+
+
+def test_every_class_has_a_color(cloud_file, qgis_application):
+    layer = QgsPointCloudLayer(str(cloud_file), "classes", "copc")
+    layer.loadNamedStyle(str(STYLES / "classification.qml"))
+    assert [category.value() for category in layer.renderer().categories()] == [int(code) for code in PointClass]
+    colors = [category.color().name() for category in layer.renderer().categories()]
+    assert len(set(colors)) == len(colors)
+
+
+def test_footprints_are_labeled(qgis_application):
+    layer = QgsVectorLayer("Polygon?field=id:int&field=height:double", "f", "memory")
+    message, loaded = layer.loadNamedStyle(str(STYLES / "footprints.qml"))
+    assert loaded, message
+    assert layer.labelsEnabled()
+
+
+def test_results_find_their_style():
+    assert cloud_style(TOYS["toy_lift"]) == "height_above_ground"
+    assert cloud_style(TOYS["toy_make"]) == "classification"
+    assert cloud_style(TOYS["toy_compare"]) is None
+    assert layer_style(TOYS["toy_outline"].layers[0]) == "footprints"
+    assert layer_style(TOYS["toy_make"].layers[0]) is None

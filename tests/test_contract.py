@@ -1,0 +1,472 @@
+"""Every stage keeps what it declares and what the house promises; a new stage is held to it by being in STAGES."""
+
+from __future__ import annotations
+
+import math
+import re
+from functools import cache, lru_cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms import STAGES
+from lidar_buildings.algorithms.cloud.asprs import PointClass
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.dimensions import DIMENSIONS
+from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.run import Outcome, run_stage
+from lidar_buildings.algorithms.stage import REFERENCE_PREFIX, Cancelled, Features, Monitor, Report, Stage, Tunable
+
+# Released ids: people's saved models and scripts call them. A new one is added, none is ever changed.
+STAGE_IDS = {
+    "classifynoisehistogram",
+    "classifynoisestatistical",
+    "classifygroundtin",
+    "computeheightaboveground",
+    "segmentregions",
+    "computefeatures",
+    "classifybuildings",
+    "extractfootprints",
+    "assessbuildings",
+    "assessground",
+    "simulatetown",
+}
+PIPELINE_IDS = {"detectbuildings", "detectbuildings2019"}
+
+VERBS = {"classify", "segment", "cluster", "compute", "extract", "regularize", "simplify", "assess", "simulate"}
+# Words that keep their capitals inside a title or label.
+NAMES = {"Gauss", "Delaunay", "Shannon"}
+# Tunables that are ratios, factors or counts per something, so that no unit fits.
+WITHOUT_UNIT: set[str] = {"deviations", "noise_factor"}
+# Our own, after no publication.
+WITHOUT_REFERENCES = {"simulate_town"}
+# Automatic tunables that matter only beside another setting.
+USED_WITH: dict[tuple[str, str], dict[str, Any]] = {("compute_features", "radius"): {"neighborhood": "radius"}}
+# Tunables at which a stage that makes its own data is quick.
+QUICK: dict[str, dict[str, Any]] = {}
+
+# As they are when tests are collected: tests of the provider add toys of their own while they run.
+ALL = dict(STAGES)
+ALL_PIPELINES = dict(PIPELINES)
+
+TUNABLES = [
+    pytest.param(stage, tunable, id=f"{stage.name}-{tunable.name}")
+    for stage in ALL.values()
+    for tunable in stage.tunables.values()
+]
+NUMBERS = [p for p in TUNABLES if p.values[1].type in (int, float)]
+AUTOMATIC = [p for p in TUNABLES if p.values[1].is_automatic]
+each_stage = pytest.mark.parametrize("stage", ALL.values(), ids=lambda stage: stage.name)
+each_reader = pytest.mark.parametrize(
+    "stage", [stage for stage in ALL.values() if not stage.creates], ids=lambda stage: stage.name
+)
+
+
+# --- A scene that every stage can work on: all dimensions that some stage reads, as they would be read from a file.
+
+
+def scanned(
+    rng: np.random.Generator, west: float, south: float, width: float, depth: float, density: float
+) -> np.ndarray:
+    """Return xy (n, 2) at random over a rectangle, in steps of 1/1024 m, so that shifts lose no digit."""
+    xy = rng.uniform((west, south), (west + width, south + depth), (round(width * depth * density), 2))
+    return np.round(xy * 1024) / 1024
+
+
+@lru_cache(maxsize=1)
+def scene() -> dict[str, np.ndarray]:
+    """Two flat-roofed houses, a crown and two stray points on a gentle slope, 40 m by 40 m, 6 points per m²."""
+    rng = np.random.default_rng(42)
+    ground = scanned(rng, 0, 0, 40, 40, 6)
+    houses = [scanned(rng, 5, 5, 12, 8, 6), scanned(rng, 22, 20, 9, 14, 6)]
+    crown = scanned(rng, 28, 6, 6, 6, 12)
+    for west, south, east, north in ((5, 5, 17, 13), (22, 20, 31, 34)):
+        ground = ground[~((ground >= (west, south)) & (ground <= (east, north))).all(axis=1)]
+    parts = [ground, *houses, crown, np.array([[10.0, 30.0], [30.0, 15.0]])]
+    sizes = [len(part) for part in parts]
+    xy = np.concatenate(parts)
+    height = np.repeat([0.0, 4.0, 6.0, 0.0, 0.0], sizes)
+    height[sum(sizes[:3]) : -2] = rng.uniform(2, 7, sizes[3])
+    height[-2:] = 60.0, -25.0
+    z = np.round((0.05 * xy[:, 0] + height + rng.normal(0, 0.02, len(xy))) * 1024) / 1024
+    kind = np.repeat([0, 1, 2, 3, 4], sizes)
+    classes = [
+        PointClass.GROUND,
+        PointClass.BUILDING,
+        PointClass.BUILDING,
+        PointClass.UNCLASSIFIED,
+        PointClass.HIGH_NOISE,
+    ]
+    is_first = rng.random(len(xy)) < 0.5
+    entropy = np.array([0.2, 0.3, 0.3, 0.9, 0.5])[kind] + rng.normal(0, 0.02, len(xy))
+    cluster_id = np.array([0, 1, 2, 3, 0])[kind]
+    return {
+        "xyz": np.column_stack([xy, z]),
+        "classification": np.array(classes, np.uint8)[kind],
+        "return_number": np.where((kind == 3) & ~is_first, 2, 1).astype(np.uint8),
+        "number_of_returns": np.where(kind == 3, 2, 1).astype(np.uint8),
+        "intensity": rng.integers(1, 1000, len(xy)).astype(np.uint16),
+        "height_above_ground": height.astype(np.float32),
+        "cluster_id": cluster_id.astype(np.int32),
+        "segment_id": cluster_id.astype(np.int32),
+        "entropy": entropy.astype(np.float32),
+        "cluster_entropy": np.array([np.nan, 0.3, 0.3, 0.9, np.nan], np.float32)[kind],
+        "confidence": np.array([np.nan, 0.9, 0.9, 0.1, np.nan], np.float32)[kind],
+    }
+
+
+def arrays_of(stage: Stage, dimensions: dict[str, np.ndarray]) -> list[np.ndarray]:
+    """Return copies of what the stage's positional arguments name, locked against writing."""
+    copies = []
+    for name in (*stage.reads, *stage.optional):
+        plain = name[len(REFERENCE_PREFIX) :] if name.startswith(REFERENCE_PREFIX) else name
+        assert plain in dimensions, f"{stage.name} reads {plain}: give scene() that dimension"
+        copies.append(dimensions[plain].copy())
+        copies[-1].flags.writeable = False
+    return copies
+
+
+def made_by(stage: Stage, dimensions: dict[str, np.ndarray] | None = None, **tunables: Any) -> tuple[list, Monitor]:
+    """Run the stage's function on the scene and return what it made, as a list, and what it told."""
+    monitor = Monitor()
+    arguments = {**QUICK.get(stage.name, {}), **tunables}
+    made = stage.function(*arrays_of(stage, dimensions or scene()), **arguments, monitor=monitor)
+    return (list(made) if isinstance(made, tuple) else [made]), monitor
+
+
+@cache
+def made_by_default(name: str) -> tuple[list, Monitor]:
+    return made_by(ALL[name])
+
+
+def assert_same(made: list, expected: list) -> None:
+    """Hold two results of a stage to each other, bit by bit."""
+    assert len(made) == len(expected)
+    for one, other in zip(made, expected):
+        if isinstance(one, Features):
+            assert one.columns.keys() == other.columns.keys()
+            for name, column in one.columns.items():
+                np.testing.assert_array_equal(np.asarray(column), np.asarray(other.columns[name]))
+            flat, flat_other = ([v for g in features.geometries for v in g] for features in (one, other))
+            assert len(flat) == len(flat_other)
+            for ring, other_ring in zip(flat, flat_other):
+                np.testing.assert_array_equal(ring, other_ring)
+        elif isinstance(one, Report):
+            np.testing.assert_equal(one.values, other.values)
+        elif one is None:
+            assert other is None
+        else:
+            np.testing.assert_array_equal(one, other)
+
+
+# --- The words.
+
+
+def is_sentence_case(text: str) -> bool:
+    """Whether only the first word has a capital, but for names and abbreviations (TIN, k-means, 3D)."""
+    first, *others = re.findall(r"[^\W\d_][\w-]*", text)
+    return text[0].isupper() and all(
+        word.islower() or word in NAMES or (len(word) > 1 and word.isupper()) for word in others
+    )
+
+
+def is_sentences(text: str) -> bool:
+    return text == text.strip() and (text[0].isupper() or not text[0].isalpha()) and text.endswith(".")
+
+
+def test_sentence_case_is_told_apart():
+    assert is_sentence_case("Classify ground points of a TIN")
+    assert not is_sentence_case("Classify Ground points")
+    assert not is_sentence_case("classify ground points")
+
+
+def test_ids_are_frozen():
+    assert {stage.id for stage in ALL.values()} == STAGE_IDS
+    assert {pipeline.id for pipeline in ALL_PIPELINES.values()} == PIPELINE_IDS
+
+
+@each_stage
+def test_name_is_a_verb_and_tells_what_is_set(stage):
+    verb = stage.name.split("_")[0]
+    assert verb in VERBS
+    assert (verb == "classify") == ("classification" in stage.writes)
+
+
+@each_stage
+def test_title_group_and_tags_are_there(stage):
+    assert is_sentence_case(stage.title)
+    assert is_sentence_case(stage.group)
+    assert [tag for tag in stage.tags.split(",") if tag.strip()]
+
+
+@pytest.mark.parametrize(("stage", "tunable"), TUNABLES)
+def test_tunable_is_labeled_and_explained(stage, tunable):
+    param = tunable.param
+    assert is_sentence_case(param.label)
+    assert not param.label.endswith((".", ":", ")"))
+    assert is_sentences(param.help)
+    assert bool(param.automatic) == tunable.is_automatic
+    assert not param.automatic or param.automatic.endswith(".")
+
+
+@pytest.mark.parametrize(("stage", "tunable"), NUMBERS)
+def test_number_has_bounds_and_a_unit_where_one_fits(stage, tunable):
+    assert tunable.param.low is not None, "say what the smallest value is that makes sense"
+    if tunable.type is float:
+        assert bool(tunable.param.unit) != (tunable.name in WITHOUT_UNIT)
+
+
+@each_stage
+def test_dimensions_are_those_of_the_table(stage):
+    for name in (*stage.reads, *stage.optional):
+        assert (name[len(REFERENCE_PREFIX) :] if name.startswith(REFERENCE_PREFIX) else name) in DIMENSIONS
+    assert set(stage.writes) | set(stage.creates) <= set(DIMENSIONS)
+    assert stage.writes or stage.creates or stage.layers or stage.measures, "the stage makes nothing"
+
+
+@each_stage
+def test_layers_and_measures_are_labeled(stage):
+    for layer in stage.layers:
+        assert layer.geometry in {"Polygon", "LineString", "Point"}
+        assert is_sentence_case(layer.title)
+        assert all(is_sentences(field.help) for field in layer.fields)
+        assert len({field.name for field in layer.fields}) == len(layer.fields)
+    assert len({measure.name for measure in stage.measures}) == len(stage.measures)
+    assert all(measure.title for measure in stage.measures)
+
+
+@each_stage
+def test_docstring_tells_what_comes_in_and_goes_out(stage):
+    assert is_sentences(stage.summary)
+    assert stage.section("Returns")
+    for name in (*stage.reads, *stage.optional):
+        assert re.search(rf"^(?:.*, )?{name}(?:, .*)? : .*shape", stage.section("Parameters"), re.MULTILINE), name
+    assert bool(stage.section("References")) != (stage.name in WITHOUT_REFERENCES)
+    for name in stage.tunables:
+        assert f"\n{name} : " in stage.function.__doc__
+
+
+# --- The bounds.
+
+
+def values_outside(tunable: Tunable) -> list:
+    """Return values that the declaration excludes."""
+    param = tunable.param
+    if tunable.type is bool:
+        return [1, "yes", None]
+    if param.choices:
+        wrong = "no such choice"
+        return [(wrong,), wrong] if tunable.type is tuple else [wrong, 3]
+    if tunable.type is str:
+        return [3, None]
+    outside: list = [math.nan, math.inf, -math.inf, "1", True, [1.0]]
+    step = 1 if tunable.type is int else 1e-6
+    if tunable.type is int:
+        outside.append(tunable.default + 0.5 if tunable.default is not None else 1.5)
+    if not tunable.is_automatic:
+        outside.append(None)
+    if param.low is not None:
+        outside.append(param.low if param.open_low else param.low - step)
+    if param.high is not None:
+        outside.append(param.high if param.open_high else param.high + step)
+    return outside
+
+
+@pytest.mark.parametrize(("stage", "tunable"), TUNABLES)
+def test_bounds_refuse_with_a_sentence_that_names_the_tunable(stage, tunable):
+    for value in values_outside(tunable):
+        with pytest.raises(ValueError, match=re.escape(f"{tunable.param.label} ({tunable.name}) must be ")) as refusal:
+            stage.check({tunable.name: value})
+        shown = float(value) if tunable.type is float and isinstance(value, int) and value is not True else value
+        assert str(refusal.value).endswith(f", got {shown!r}.")
+
+
+@pytest.mark.parametrize(("stage", "tunable"), TUNABLES)
+def test_function_refuses_like_the_declaration(stage, tunable):
+    value = values_outside(tunable)[-1]
+    with pytest.raises(ValueError, match=re.escape(f"({tunable.name}) must be ")):
+        stage.function(*arrays_of(stage, scene()), **{tunable.name: value})
+
+
+@pytest.mark.parametrize(("stage", "tunable"), TUNABLES)
+def test_default_and_closed_bounds_pass(stage, tunable):
+    param = tunable.param
+    assert tunable.check(tunable.default) == tunable.default
+    assert tunable.default is None or type(tunable.check(tunable.default)) is tunable.type
+    if param.low is not None and not param.open_low:
+        assert tunable.check(param.low) == param.low
+    if param.high is not None and not param.open_high:
+        assert tunable.check(param.high) == param.high
+
+
+@each_stage
+def test_unknown_tunable_is_refused_by_name(stage):
+    with pytest.raises(ValueError, match=rf"{stage.name} has no tunable 'no_such'; it has "):
+        stage.check({"no_such": 1})
+
+
+@each_reader
+def test_arrays_that_do_not_belong_together_are_refused(stage):
+    arrays = arrays_of(stage, scene())
+    flat, nowhere = arrays[0][:, :2], arrays[0].copy()
+    nowhere[3, 1] = np.nan
+    with pytest.raises(ValueError, match=r"must be of shape \(n, 3\), got \(\d+, 2\)"):
+        stage.function(flat, *arrays[1:])
+    with pytest.raises(ValueError, match=r"1 of \d+ points have coordinates that are not finite"):
+        stage.function(nowhere, *arrays[1:])
+    with pytest.raises(ValueError, match=r"The (point|reference) cloud has no points\."):
+        stage.function(*(array[:0] for array in arrays))
+    for i in range(1, len(arrays)):
+        with pytest.raises(ValueError, match=r"they must be of the same points\."):
+            stage.function(*arrays[:i], arrays[i][:-1], *arrays[i + 1 :])
+
+
+# --- The results.
+
+
+def promised_dtype(name: str) -> np.dtype:
+    return np.dtype(DIMENSIONS[name].dtype)
+
+
+@each_stage
+def test_results_have_the_promised_number_shape_and_dtype(stage):
+    made, _ = made_by_default(stage.name)
+    names = stage.creates or stage.writes
+    assert len(made) == len(names) + len(stage.layers) + bool(stage.measures)
+    n = len(made[0]) if stage.creates else len(scene()["xyz"])
+    for name, values in zip(names, made):
+        if values is None and not stage.creates:
+            continue  # a choice of the user: not asked for
+        components = len(DIMENSIONS[name].disk)
+        assert values.shape == ((n,) if components == 1 else (n, components)), name
+        assert np.can_cast(values.dtype, promised_dtype(name), "same_kind"), name
+    for layer, features in zip(stage.layers, made[len(names) :]):
+        assert isinstance(features, Features)
+        assert list(features.columns) == [field.name for field in layer.fields]
+        assert all(len(column) == len(features) for column in features.columns.values())
+        assert len(features) > 0, "the scene has something for every layer"
+    if stage.measures:
+        assert isinstance(made[-1], Report)
+        assert set(made[-1].values) == {measure.name for measure in stage.measures}
+        assert "<html" in made[-1].html
+        assert "</html>" in made[-1].html
+
+
+@each_stage
+def test_polygons_are_closed_and_turn_as_promised(stage):
+    made, _ = made_by_default(stage.name)
+    for layer, features in zip(stage.layers, made[len(stage.creates or stage.writes) :]):
+        if layer.geometry != "Polygon":
+            continue
+        for rings in features.geometries:
+            for i, ring in enumerate(rings):
+                assert len(ring) >= 4
+                np.testing.assert_array_equal(ring[0], ring[-1])
+                x, y = ring[:, 0], ring[:, 1]
+                doubled = float((x[:-1] * y[1:] - x[1:] * y[:-1]).sum())
+                assert (doubled > 0) == (i == 0), "exterior counterclockwise, holes clockwise"
+
+
+@each_stage
+def test_runner_stores_what_the_stage_makes(stage):
+    cloud = None if stage.creates else create_cloud(scene())
+    reference = create_cloud(scene()) if stage.reads_reference else None
+    # A file rounds coordinates to millimeters: the function has to see the same.
+    seen = scene() if cloud is None else {name: cloud.get(name) for name in scene()}
+    expected, _ = made_by(stage, seen)
+    outcome: Outcome = run_stage(stage, cloud, reference, **QUICK.get(stage.name, {}))
+    for name, values in zip(stage.creates or stage.writes, expected):
+        if name == "xyz":
+            np.testing.assert_allclose(outcome.cloud.to_map(outcome.cloud.get(name)), values, rtol=0, atol=0.0006)
+        elif values is not None:
+            stored = outcome.cloud.get(name)
+            assert stored.dtype == promised_dtype(name)
+            np.testing.assert_array_equal(stored, values.astype(promised_dtype(name)))
+    assert set(outcome.layers) == {layer.name for layer in stage.layers}
+    assert (outcome.report is not None) == bool(stage.measures)
+
+
+@pytest.mark.parametrize(("stage", "tunable"), AUTOMATIC)
+def test_automatic_value_is_reported_and_is_one_that_could_be_given(stage, tunable):
+    extra = USED_WITH.get((stage.name, tunable.name), {})
+    made, monitor = made_by(stage, **extra)
+    assert tunable.name in monitor.values
+    value = monitor.values[tunable.name]
+    assert value is not None
+    assert tunable.check(value) == value
+    again, _ = made_by(stage, **extra, **{tunable.name: value})
+    assert_same(again, made)
+
+
+@each_stage
+def test_same_input_gives_the_same_result(stage):
+    assert_same(made_by(stage)[0], made_by_default(stage.name)[0])
+
+
+class Listener(Monitor):
+    """Hears how far the stage is, and stops it at a given call."""
+
+    def __init__(self, stop_at: int | None = None) -> None:
+        super().__init__()
+        self.heard: list[float] = []
+        self.stop_at = stop_at
+
+    def progress(self, fraction: float) -> None:
+        self.heard.append(fraction)
+        if len(self.heard) == self.stop_at:
+            raise Cancelled
+
+
+@each_stage
+def test_progress_grows_from_0_to_1(stage):
+    listener = Listener()
+    stage.function(*arrays_of(stage, scene()), **QUICK.get(stage.name, {}), monitor=listener)
+    assert listener.heard, "a stage that tells nothing can't be stopped"
+    assert all(0 <= fraction <= 1 for fraction in listener.heard)
+    assert all(before <= after + 1e-9 for before, after in zip(listener.heard, listener.heard[1:]))
+
+
+@each_stage
+def test_stage_stops_when_it_is_cancelled(stage):
+    with pytest.raises(Cancelled):
+        stage.function(*arrays_of(stage, scene()), **QUICK.get(stage.name, {}), monitor=Listener(stop_at=1))
+
+
+# --- What must not matter.
+
+
+@each_reader
+def test_place_on_earth_does_not_matter(stage):
+    far = dict(scene())
+    far["xyz"] = far["xyz"] + (2.0**19, 2.0**22, 0.0)  # powers of two: the differences stay exactly the same
+    made, expected = made_by(stage, far)[0], made_by_default(stage.name)[0]
+    for name, values, wanted in zip(stage.writes, made, expected):
+        if values is not None:
+            np.testing.assert_allclose(values, wanted, rtol=1e-4, atol=1e-4, err_msg=name)
+    for features, wanted in zip(made[len(stage.writes) :], expected[len(stage.writes) :]):
+        if isinstance(features, Features):
+            assert len(features) == len(wanted)
+        else:
+            np.testing.assert_equal(features.values, wanted.values)
+
+
+@each_reader
+def test_order_of_points_does_not_matter(stage):
+    order = np.random.default_rng(7).permutation(len(scene()["xyz"]))
+    shuffled = {name: values[order] for name, values in scene().items()}
+    made, expected = made_by(stage, shuffled)[0], made_by_default(stage.name)[0]
+    for name, values, wanted in zip(stage.writes, made, expected):
+        if values is None:
+            continue
+        if name.endswith("_id"):
+            pairs = np.unique(np.column_stack([values, wanted[order]]), axis=0)
+            assert len(pairs) == len(np.unique(values)) == len(np.unique(wanted)), "the same groups under other numbers"
+            np.testing.assert_array_equal(values == 0, wanted[order] == 0)
+        else:
+            np.testing.assert_allclose(values, wanted[order], rtol=1e-4, atol=1e-4, err_msg=name)
+    for result, wanted in zip(made[len(stage.writes) :], expected[len(stage.writes) :]):
+        if isinstance(result, Features):
+            assert len(result) == len(wanted)
+        else:
+            np.testing.assert_equal(result.values, wanted.values)
