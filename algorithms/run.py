@@ -10,6 +10,7 @@ import numpy as np
 from .cloud.cloud import Cloud, create_cloud
 from .cloud.dimensions import DIMENSIONS
 from .stage import REFERENCE_PREFIX, Features, Monitor, Report, Stage
+from .stages import STAGES
 
 
 @dataclass
@@ -41,6 +42,9 @@ def run_stage(
         If a dimension is missing, a tunable is out of bounds, or the stage refuses its data.
     """
     arguments: dict[str, Any] = stage.check(tunables)
+    if cloud is not None and reference is not None:
+        # Coordinates of two clouds can be compared only from one origin.
+        reference.origin = cloud.origin
     used = None if cloud is None or not cloud.withheld.any() else ~cloud.withheld
     made = stage.function(*_dimensions(stage, cloud, reference, used), **arguments, monitor=monitor or Monitor())
     results = list(made) if isinstance(made, tuple) else [made]
@@ -64,9 +68,17 @@ def _dimensions(stage: Stage, cloud: Optional[Cloud], reference: Optional[Cloud]
         if source is None or (name in stage.optional and not source.has(dimension)):
             arrays.append(None)
             continue
-        values = source.get(dimension)
+        values = _present(source, dimension)
         arrays.append(values if of_reference or used is None else values[used])
     return arrays
+
+
+def _present(cloud: Cloud, name: str) -> np.ndarray:
+    """Return a dimension, or say which stage writes it."""
+    writers = [stage.title for stage in STAGES.values() if name in stage.writes]
+    if writers and not cloud.has(name):
+        raise ValueError(f"The cloud has no {DIMENSIONS[name].disk[0]} dimension; run '{writers[0]}' first.")
+    return cloud.get(name)
 
 
 def _whole(cloud: Cloud, name: str, values: np.ndarray, used: Optional[np.ndarray]) -> np.ndarray:

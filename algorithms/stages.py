@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from .buildings.buildings import classify_buildings
 from .buildings.complete import complete_buildings
+from .buildings.footprints import extract_footprints
 from .features.features import compute_features
 from .preparation.noise_histogram import classify_noise_histogram
 from .preparation.noise_statistical import classify_noise_statistical
@@ -24,6 +25,7 @@ _FUNCTIONS = (
     segment_roofs,
     classify_buildings,
     complete_buildings,
+    extract_footprints,
     assess_buildings,
     assess_ground,
 )

@@ -7,7 +7,7 @@ import re
 from typing import Optional
 
 from ..algorithms.cloud.dimensions import DIMENSIONS
-from ..algorithms.pipelines import Pipeline
+from ..algorithms.pipelines import Pipeline, Step
 from ..algorithms.stage import REFERENCE_PREFIX, Field, Layer, Stage, Tunable
 
 
@@ -30,17 +30,30 @@ def stage_help(stage: Stage) -> str:
 
 def pipeline_help(pipeline: Pipeline) -> str:
     """Return what a pipeline does, step by step, with the parameters of its steps."""
-    steps = [f"<b>{html.escape(step.stage.title)}</b>: {inline(step.stage.summary)}" for step in pipeline.steps]
+    steps = [
+        f"<b>{step_title(step)}</b> ({html.escape(step.stage.title)}): {inline(step.stage.summary)}"
+        for step in pipeline.steps
+    ]
     parts = [paragraphs(pipeline.summary), paragraphs(pipeline.description), _list("Steps", steps, ordered=True)]
     for step in pipeline.steps:
         rows = [tunable_help(t, step.tunables.get(t.name, t.default)) for t in step.stage.tunables.values()]
-        parts.append(_list(f"Parameters of {step.stage.title.lower()}", rows))
+        parts.append(_list(f"Parameters: {step_title(step)}", rows))
     last = [name for step in pipeline.steps for name in step.stage.writes]
     made = [f"<b>OUTPUT</b>: the cloud with {_disk_names(last)}."] if last else []
     made += [_layer_text(layer) for step in pipeline.steps for layer in step.stage.layers]
     return "\n".join(
         part for part in (*parts, _list("Outputs", made), _section("References", pipeline.references)) if part
     )
+
+
+def step_title(step: Step) -> str:
+    """Return what a composite calls a step, "Ground"."""
+    return step.name.replace("_", " ").capitalize()
+
+
+def lower_first(text: str) -> str:
+    """Return ``text`` as it goes on after a colon; an acronym keeps its capitals."""
+    return text[:1].lower() + text[1:] if text[1:2].islower() else text
 
 
 def page(title: str, body: str) -> str:

@@ -29,10 +29,10 @@ from . import paths
 from .clouds import CloudParameter, cloud_path
 from .dependencies import missing_sentence
 from .errors import one_sentence
-from .help import pipeline_help
+from .help import lower_first, pipeline_help, step_title
 from .outputs import check_targets, files_of, nothing_left_on_failure
 from .parameters import number_outputs, parameter, parameter_name, tunable_values
-from .stage_algorithm import INPUT, OUTPUT, StageAlgorithm
+from .stage_algorithm import INPUT, OUTPUT, cloud_title
 
 PROVIDER = "lidarbuildings"
 
@@ -42,16 +42,21 @@ def step_parameter_name(step: Step, name: str) -> str:
     return f"{step.name.upper()}_{name}"
 
 
+def step_label(step: Step, label: str) -> str:
+    """Return the composite's label of a step's parameter or output, "Ground: cell size (m)"."""
+    return f"{step_title(step)}: {lower_first(label)}"
+
+
 def step_parameters(step: Step) -> list[QgsProcessingParameterDefinition]:
     """Return the parameters of a step, cloned from the stage's own definitions.
 
-    Names get the step's prefix, labels its title, defaults are the step's where it has its own.
+    Names and labels begin with the step, defaults are the step's where it has its own.
     """
     definitions = []
     for tunable in step.stage.tunables.values():
         definition = parameter(tunable)
         definition.setName(step_parameter_name(step, definition.name()))
-        definition.setDescription(f"{step.stage.title}: {_lower_first(definition.description())}")
+        definition.setDescription(step_label(step, definition.description()))
         if tunable.name in step.tunables:
             default = step.tunables[tunable.name]
             definition.setDefaultValue(list(default) if isinstance(default, tuple) else default)
@@ -59,14 +64,10 @@ def step_parameters(step: Step) -> list[QgsProcessingParameterDefinition]:
     return definitions
 
 
-def _lower_first(text: str) -> str:
-    return text[:1].lower() + text[1:] if text[1:2].islower() else text
-
-
 class _Layout:
     """Where things are drawn: one band per step, its parameters on the left, its algorithm right of them."""
 
-    columns, cell, box = 3, QSizeF(250, 55), QSizeF(220, 40)
+    columns, cell, box = 3, QSizeF(250, 66), QSizeF(220, 52)
     child = QSizeF(260, 50)
     margin, gap = 40.0, 40.0
 
@@ -107,9 +108,10 @@ def build_model(pipeline: Pipeline) -> QgsProcessingModelAlgorithm:
     where.setSize(layout.box)
     model.addModelParameter(QgsProcessingParameterPointCloudLayer(INPUT, "Point cloud"), where)
     source = QgsProcessingModelChildParameterSource.fromModelParameter(INPUT)
-    last = [step for step in pipeline.steps if step.stage.writes][-1:]
+    writers = [step for step in pipeline.steps if step.stage.writes]
+    title = cloud_title((), [name for step in writers for name in step.stage.writes])
     for step in pipeline.steps:
-        _add_step(model, step, source, layout, gives_output=step in last)
+        _add_step(model, step, source, layout, title if step in writers[-1:] else "")
         if step.stage.writes:
             source = QgsProcessingModelChildParameterSource.fromChildOutput(step.name, OUTPUT)
     model.setHelpContent({"ALG_DESC": pipeline_help(pipeline), "SHORT_DESCRIPTION": pipeline.summary})
@@ -122,7 +124,7 @@ def _add_step(
     step: Step,
     source: QgsProcessingModelChildParameterSource,
     layout: _Layout,
-    gives_output: bool,
+    title: str,
 ) -> None:
     child = QgsProcessingModelChildAlgorithm(f"{PROVIDER}:{step.stage.id}")
     child.setChildId(step.name)
@@ -139,32 +141,27 @@ def _add_step(
         child.addParameterSources(parameter_name(tunable), sources)
     child.setPosition(layout.middle(height))
     child.setSize(layout.child)
-    child.setModelOutputs(_model_outputs(step, layout.middle(height), gives_output))
+    child.setModelOutputs(_model_outputs(step, layout.middle(height), title))
     model.addChildAlgorithm(child)
     model.addGroupBox(_frame(step, layout, height))
     layout.top += height + layout.gap
 
 
-def _model_outputs(step: Step, middle: QPointF, gives_output: bool) -> dict[str, QgsProcessingModelOutput]:
-    names = [OUTPUT] if gives_output else []
-    names += [layer.name.upper() for layer in step.stage.layers]
+def _model_outputs(step: Step, middle: QPointF, title: str) -> dict[str, QgsProcessingModelOutput]:
+    titles = {OUTPUT: title} if title else {}
+    titles.update({layer.name.upper(): layer.title for layer in step.stage.layers})
     outputs = {}
-    for i, name in enumerate(names):
-        output = QgsProcessingModelOutput(name)
+    for i, (name, shown) in enumerate(titles.items()):
+        # A layer that QGIS loads is called as the model's output.
+        output = QgsProcessingModelOutput(shown)
         output.setChildId(step.name)
         output.setChildOutputName(name)
-        output.setDescription(_destination(step, name).description())
+        output.setDescription(shown)
         output.setMandatory(name == OUTPUT)
         output.setPosition(QPointF(middle.x() + 360, middle.y() + 70 * i))
         output.setSize(QSizeF(240, 40))
-        outputs[name] = output
+        outputs[shown] = output
     return outputs
-
-
-def _destination(step: Step, name: str) -> QgsProcessingParameterDefinition:
-    algorithm = StageAlgorithm(step.stage)
-    algorithm.initAlgorithm()
-    return algorithm.parameterDefinition(name).clone()
 
 
 def _frame(step: Step, layout: _Layout, height: float) -> QgsProcessingModelGroupBox:
@@ -222,7 +219,9 @@ class PipelineAlgorithm(QgsProcessingModelAlgorithm):
             return mended
         mended = definition.clone()
         if definition.isDestination():
-            mended.setName(definition.metadata()["_modelChildOutputName"])
+            facts = definition.metadata()
+            output = self.childAlgorithm(facts["_modelChildId"]).modelOutput(facts["_modelChildOutputName"])
+            mended.setName(output.childOutputName())
             if mended.name() != OUTPUT:
                 mended.setFlags(mended.flags() | Qgis.ProcessingParameterFlag.Optional)
         return mended
@@ -242,8 +241,7 @@ class PipelineAlgorithm(QgsProcessingModelAlgorithm):
         """Declare the numbers of the steps (used values, measures) as outputs of the whole."""
         for step in self.pipeline.steps:
             for name, title in number_outputs(step.stage).items():
-                label = f"{step.stage.title}: {_lower_first(title)}"
-                self.addOutput(QgsProcessingOutputNumber(step_parameter_name(step, name), label))
+                self.addOutput(QgsProcessingOutputNumber(step_parameter_name(step, name), step_label(step, title)))
 
     def name(self) -> str:
         """Return the id, frozen: saved models depend on it."""

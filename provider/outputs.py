@@ -68,21 +68,19 @@ def check_targets(definitions: list, parameters: dict, inputs: list) -> None:
     """
     seen: dict[Path, str] = {}
     for definition in definitions:
-        value = parameters.get(definition.name())
-        path = target_path(value)
+        path = target_path(parameters.get(definition.name()))
         if path is None:
             continue
-        _check_target(definition, value, path, inputs)
+        _check_target(definition, path, inputs)
         other = seen.setdefault(path.absolute(), definition.name())
         if other != definition.name():
             raise ValueError(f"{other} and {definition.name()} are the same file ({path}); give each its own.")
 
 
-def _check_target(definition, value: Any, path: Path, inputs: list) -> None:
+def _check_target(definition, path: Path, inputs: list) -> None:
     if _is_cloud(definition):
         check_output(path, inputs)
-        if kind_of(path) != COPC and _is_shown(value) and not reads_las():
-            check_output(copc_path(path), inputs)
+        _check_beside(path, inputs)
     folder = path.absolute().parent
     if not folder.is_dir():
         raise ValueError(f"The folder {folder} does not exist; make it or choose another one.")
@@ -92,8 +90,17 @@ def _check_target(definition, value: Any, path: Path, inputs: list) -> None:
         raise ValueError(f"{path} can't be written: it or its folder is read-only; choose another one.")
 
 
-def _is_shown(value: Any) -> bool:
-    return isinstance(value, QgsProcessingOutputLayerDefinition) and value.destinationProject is not None
+def _check_beside(path: Path, inputs: list) -> None:
+    """Refuse x.laz where x.copc.laz is an input: the COPC beside a result is replaced or removed with it.
+
+    The last step of a model reads what the step before it wrote, so it can't know the first input itself.
+    """
+    for source in inputs:
+        if kind_of(path) != COPC and same_file(copc_path(path), source):
+            raise ValueError(
+                f"The output {path.name} would take the place of the input {source.name} beside it; "
+                "choose another name."
+            )
 
 
 def _state(path: Path) -> Optional[tuple[int, int, int]]:

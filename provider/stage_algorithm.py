@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Optional
@@ -120,12 +121,9 @@ class StageAlgorithm(QgsProcessingAlgorithm):
 
     def _add_destinations(self) -> None:
         if self._makes_cloud:
-            self.addParameter(
-                _helped(
-                    QgsProcessingParameterPointCloudDestination(OUTPUT, _cloud_title(self.stage)),
-                    "A .las, .laz or .copc.laz file.",
-                )
-            )
+            title = cloud_title(self.stage.creates, self.stage.writes)
+            cloud = QgsProcessingParameterPointCloudDestination(OUTPUT, title)
+            self.addParameter(_helped(cloud, "A .las, .laz or .copc.laz file."))
         for layer in self.stage.layers:
             sink = QgsProcessingParameterFeatureSink(
                 layer.name.upper(), layer.title, SOURCE_TYPES[layer.geometry], optional=self._makes_cloud
@@ -268,12 +266,12 @@ def _helped(definition, text: str):
     return definition
 
 
-def _cloud_title(stage: Stage) -> str:
+def cloud_title(creates: Sequence[str], writes: Sequence[str]) -> str:
     """Return what the resulting cloud is called, in the dialog and as a layer."""
-    if stage.creates:
+    if creates:
         return "Simulated point cloud"
-    if "classification" in stage.writes:
+    if "classification" in writes:
         return "Classified point cloud"
-    if len(stage.writes) == 1:
-        return f"Point cloud with {DIMENSIONS[stage.writes[0]].disk[0]}"
+    if len(writes) == 1:
+        return f"Point cloud with {DIMENSIONS[writes[0]].disk[0]}"
     return "Point cloud with new dimensions"

@@ -47,7 +47,9 @@ def simulated_town() -> Path:
 def assessed(cloud: Path, reference: Path) -> dict[str, float]:
     """Return the rates per point, in percent; empty where the reference has no buildings."""
     page = DEMO / "quality.html"
-    found = run("Comparing with the truth", "assessbuildings", INPUT=cloud, REFERENCE=reference, REPORT=page)
+    found = run(
+        "Comparing with the classes it came with", "assessbuildings", INPUT=cloud, REFERENCE=reference, REPORT=page
+    )
     if found["POINTS_HITS"] + found["POINTS_MISSES"] == 0:
         page.unlink()
         return {}

@@ -24,9 +24,11 @@ STAGE_IDS = {
     "classifynoisestatistical",
     "classifygroundtin",
     "computeheightaboveground",
-    "segmentregions",
     "computefeatures",
+    "segmentregions",
+    "segmentroofs",
     "classifybuildings",
+    "completebuildings",
     "extractfootprints",
     "assessbuildings",
     "assessground",
@@ -34,17 +36,18 @@ STAGE_IDS = {
 }
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019"}
 
-VERBS = {"classify", "segment", "cluster", "compute", "extract", "regularize", "simplify", "assess", "simulate"}
+CLASSIFYING = {"classify", "complete"}
+VERBS = CLASSIFYING | {"segment", "cluster", "compute", "extract", "regularize", "simplify", "assess", "simulate"}
 # Words that keep their capitals inside a title or label.
 NAMES = {"Gauss", "Delaunay", "Shannon"}
-# Tunables that are ratios, factors or counts per something, so that no unit fits.
-WITHOUT_UNIT: set[str] = {"deviations", "noise_factor"}
+# Shares (0 to 1) and multiples of what the data show.
+WITHOUT_UNIT = {"deviations", "forest", "max_penetration", "overlap"}
 # Our own, after no publication.
 WITHOUT_REFERENCES = {"simulate_town"}
 # Automatic tunables that matter only beside another setting.
 USED_WITH: dict[tuple[str, str], dict[str, Any]] = {("compute_features", "radius"): {"neighborhood": "radius"}}
 # Tunables at which a stage that makes its own data is quick.
-QUICK: dict[str, dict[str, Any]] = {}
+QUICK: dict[str, dict[str, Any]] = {"simulate_town": {"size": 80.0}}
 
 # As they are when tests are collected: tests of the provider add toys of their own while they run.
 ALL = dict(STAGES)
@@ -190,7 +193,7 @@ def test_ids_are_frozen():
 def test_name_is_a_verb_and_tells_what_is_set(stage):
     verb = stage.name.split("_")[0]
     assert verb in VERBS
-    assert (verb == "classify") == ("classification" in stage.writes)
+    assert (verb in CLASSIFYING) == ("classification" in stage.writes)
 
 
 @each_stage
@@ -230,7 +233,7 @@ def test_layers_and_measures_are_labeled(stage):
     for layer in stage.layers:
         assert layer.geometry in {"Polygon", "LineString", "Point"}
         assert is_sentence_case(layer.title)
-        assert all(is_sentences(field.help) for field in layer.fields)
+        assert all(field.help.strip() for field in layer.fields)
         assert len({field.name for field in layer.fields}) == len(layer.fields)
     assert len({measure.name for measure in stage.measures}) == len(stage.measures)
     assert all(measure.title for measure in stage.measures)

@@ -11,7 +11,7 @@ from ..cloud.cells import find_cells, grid_over
 from ..cloud.density import point_spacing
 from ..packages import spatial
 from ..params import MinBuildingArea
-from ..stage import Features, Field, Layer, Monitor, Param, stage
+from ..stage import Features, Field, Layer, Param, stage
 from .outlines import perimeter, signed_area, trace_outlines
 from .regularize import regularize_outline
 
@@ -47,7 +47,9 @@ def extract_footprints(
     min_area: MinBuildingArea = 4.0,
     min_hole_area: Annotated[
         float,
-        Param("Minimum hole area", "Smaller holes are filled, larger ones are courtyards.", unit="m²", low=0, high=10_000),
+        Param(
+            "Minimum hole area", "Smaller holes are filled, larger ones are courtyards.", unit="m²", low=0, high=10_000
+        ),
     ] = 5.0,
     max_edge: Annotated[
         Optional[float],
@@ -69,8 +71,8 @@ def extract_footprints(
         Optional[float],
         Param(
             "Tolerance",
-            "Wiggles of the traced outline that are taken for straight; an outline that would have to move by more than "
-            "twice that stays as traced.",
+            "Wiggles of the traced outline that are taken for straight; an outline that would have to move by more "
+            "than twice that stays as traced.",
             unit="m",
             low=0.01,
             high=100,
@@ -78,7 +80,7 @@ def extract_footprints(
             advanced=True,
         ),
     ] = None,
-    monitor: Optional[Monitor] = None,
+    monitor=None,
 ):
     """Outline each building as a polygon with its area, heights, entropy and confidence.
 
@@ -109,19 +111,20 @@ def extract_footprints(
 
     Notes
     -----
-    Points with another one more than a meter (or three spacings) higher beside them are walls: they count as points of the
-    building but don't widen its outline. The outline runs through the outermost points, which lie inside the eaves;
-    where it is regularized its walls are moved outward by half a point spacing to make up for that. Clusters whose points lie on one line have no area and give no polygon.
+    Points with another one more than a meter (or three spacings) higher beside them are walls: they count as points
+    of the building but don't widen its outline. The outline runs through the outermost points, which lie inside the
+    eaves; where it is regularized its walls are moved outward by half a point spacing to make up for that. Clusters
+    whose points lie on one line have no area and give no polygon.
 
     References
     ----------
-    Santos et al. (2019), Extraction of building roof boundaries from LiDAR data using an adaptive alpha-shape algorithm.
+    Santos et al. (2019), Extraction of building roof boundaries from LiDAR data using an adaptive alpha shape.
     Santos et al. (2019), Building detection from LiDAR data using entropy and the k-means concept.
     """
-    building = np.flatnonzero((classification == PointClass.BUILDING) & (True if cluster_id is None else cluster_id > 0))
-    columns: dict[str, list] = {field.name: [] for field in _FIELDS}
+    building = np.flatnonzero((classification == PointClass.BUILDING) & (cluster_id is None or cluster_id > 0))
+    found = Features([], {field.name: [] for field in _FIELDS})
     if not len(building) or not np.ptp(xyz[building, :2], axis=0).any():
-        return Features([], columns)
+        return found
     spacing = point_spacing(xyz[building])
     if tolerance is None:
         tolerance = max(0.3, 2 * spacing)
@@ -129,31 +132,26 @@ def extract_footprints(
 
     is_roof = _is_roof(xyz[building], spacing)
     measured = {"height": height_above_ground, "entropy": cluster_entropy, "confidence": confidence}
-    geometries: list = []
     edges = []
     clusters = _clusters(building, cluster_id)
     for done, (number, rows) in enumerate(clusters, start=1):
-        roof = is_roof[rows]
-        members = building[rows]
+        members, roof = building[rows], is_roof[rows]
         outlines = trace_outlines(xyz[members[roof], :2], spacing, max_edge)
-        edges.append(outlines.max_edge)
-        owner = _part_of_members(xyz[members, :2], roof, outlines.part_of_point)
+        edges += [outlines.max_edge] * bool(outlines.parts)
+        part_of_member = _part_of_members(xyz[members, :2], roof, outlines.part_of_point)
         for part, rings in enumerate(outlines.parts):
             traced = [rings[0], *(hole for hole in rings[1:] if -signed_area(hole) >= min_hole_area)]
             if sum(map(signed_area, traced)) < min_area:
                 continue
             straight = regularize_outline(traced, tolerance, spacing / 2) if regularize else None
-            shape = straight or traced
-            geometries.append(shape)
-            own = owner == part
+            own = part_of_member == part
             described = _attributes(xyz, members[own], members[own & roof], measured)
-            described.update(_measures(shape), id=len(geometries), cluster_id=number, regularized=int(straight is not None))
-            for name, values in columns.items():
-                values.append(described[name])
+            described.update(cluster_id=number, regularized=int(straight is not None))
+            _add(found, straight or traced, described)
         monitor.progress(done / len(clusters))
-    if max_edge is None:
+    if max_edge is None and edges:
         monitor.resolved(max_edge=float(np.median(edges)))
-    return Features(geometries, columns)
+    return found
 
 
 def _clusters(building: np.ndarray, cluster_id: Optional[np.ndarray]) -> list:
@@ -207,5 +205,9 @@ def _attributes(xyz: np.ndarray, members: np.ndarray, roof: np.ndarray, measured
     }
 
 
-def _measures(rings: list) -> dict:
-    return {"area": sum(map(signed_area, rings)), "perimeter": sum(map(perimeter, rings))}
+def _add(found: Features, rings: list, described: dict) -> None:
+    """Append a footprint to those found, with what its shape says of it."""
+    found.geometries.append(rings)
+    shape = {"area": sum(map(signed_area, rings)), "perimeter": sum(map(perimeter, rings))}
+    for name, value in {"id": len(found), **described, **shape}.items():
+        found.columns[name].append(value)

@@ -51,7 +51,7 @@ def trace_outlines(xy: np.ndarray, spacing: float, max_edge: Optional[float] = N
     References
     ----------
     Edelsbrunner et al. (1983), On the shape of a set of points in the plane.
-    Santos et al. (2019), Extraction of building roof boundaries from LiDAR data using an adaptive alpha-shape algorithm.
+    Santos et al. (2019), Extraction of building roof boundaries from LiDAR data using an adaptive alpha shape.
     """
     nowhere = np.full(len(xy), -1)
     if len(xy) < 3:
@@ -148,7 +148,9 @@ def _next_on_border(border: np.ndarray, is_border: np.ndarray, neighbors: np.nda
 
 def _simple_rings(points: list) -> list:
     """Split a closed walk at the points it visits twice, so that no ring touches itself."""
-    rings, walk, position = [], [], {}
+    rings: list = []
+    walk: list = []
+    position: dict = {}
     for point in [*points, points[0]]:
         if point in position:
             start = position[point]

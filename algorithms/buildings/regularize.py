@@ -15,8 +15,8 @@ _MAX_TURN = np.deg2rad(22.5)
 # Sine of the angle between walls that are taken for parallel, about a degree.
 _PARALLEL = 0.02
 
-# Below this share of the outline within 10° of the main directions there are none: a round tower, a crown.
-_MIN_SHARE = 0.5
+# Below this share of the outline within 10° of the main directions there are none; by chance 22 % of a circle is.
+_MIN_SHARE = 0.35
 
 # Pairs of segments or of points and segments that are compared at once.
 _PAIRS_AT_ONCE = 1_000_000
@@ -79,7 +79,7 @@ def simplify_ring(ring: np.ndarray, tolerance: float) -> np.ndarray:
 
 
 def main_direction(rings: list) -> Optional[float]:
-    """Return the direction (rad, in [0, pi/2)) that most of the outline has or is square to, None without one."""
+    """Return the direction (rad, in [0, pi/2)) that most walls have or are square to, None where there is none."""
     edges = np.concatenate([np.diff(ring, axis=0) for ring in rings])
     length, angle = np.hypot(*edges.T), np.arctan2(edges[:, 1], edges[:, 0])
     # Four times the angle is the same for walls that are parallel or square to each other.
@@ -98,7 +98,8 @@ def main_direction(rings: list) -> Optional[float]:
 
 def _straightened(ring: np.ndarray, direction: float, tolerance: float, outset: float) -> Optional[np.ndarray]:
     """Return a simplified ring with its walls turned to the main directions, None where nothing is left of it."""
-    walls = _merged([_wall(a, b, direction, tolerance) for a, b in zip(ring[:-1], ring[1:])], tolerance)
+    walls = [_wall(a, b, direction, tolerance) for a, b in zip(ring[:-1], ring[1:])]
+    walls = _merged(_without_cut_corners(walls, tolerance), tolerance)
     if len(walls) < 3:
         return None
     walls = [replace(wall, point=wall.point + outset * wall.outward) for wall in walls]
@@ -111,12 +112,13 @@ def _straightened(ring: np.ndarray, direction: float, tolerance: float, outset: 
 
 @dataclass(frozen=True)
 class _Wall:
-    """A straight line of the outline: its unit direction, a point on it, its length, and the vertex it comes from."""
+    """A line of the outline: unit direction, a point on it, length, the vertex it starts from, whether main."""
 
     direction: np.ndarray
     point: np.ndarray
     length: float
     start: np.ndarray
+    is_main: bool
 
     @property
     def outward(self) -> np.ndarray:
@@ -141,11 +143,20 @@ def _wall(start: np.ndarray, end: np.ndarray, direction: float, tolerance: float
     step = end - start
     length, angle = float(np.hypot(*step)), float(np.arctan2(step[1], step[0]))
     snapped = direction + np.round((angle - direction) / (np.pi / 2)) * np.pi / 2
-    moved = length / 2 * np.sin(abs(snapped - angle))
-    # A short diagonal is a corner that no point has hit.
-    if moved <= tolerance / 2 or (abs(snapped - angle) <= _MAX_TURN and moved <= tolerance):
-        angle = snapped
-    return _Wall(np.array([np.cos(angle), np.sin(angle)]), (start + end) / 2, length, start)
+    turn = abs(snapped - angle)
+    is_main = bool(turn <= _MAX_TURN and length / 2 * np.sin(turn) <= tolerance)
+    angle = snapped if is_main else angle
+    return _Wall(np.array([np.cos(angle), np.sin(angle)]), (start + end) / 2, length, start, is_main)
+
+
+def _without_cut_corners(walls: list, tolerance: float) -> list:
+    """Leave out short diagonals between walls that are square to each other: corners that no point has hit."""
+    kept = []
+    for before, here, after in zip([walls[-1], *walls], walls, [*walls[1:], walls[0]]):
+        is_corner = before.is_main and after.is_main and abs(before.direction @ after.direction) < _PARALLEL
+        if here.is_main or here.length > 2.5 * tolerance or not is_corner:
+            kept.append(here)
+    return kept
 
 
 def _merged(walls: list, tolerance: float) -> list:
@@ -158,7 +169,7 @@ def _merged(walls: list, tolerance: float) -> list:
             total = here.length + there.length
             point = (here.point * here.length + there.point * there.length) / total
             longer = here if here.length >= there.length else there
-            walls[i] = _Wall(longer.direction, point, total, here.start)
+            walls[i] = _Wall(longer.direction, point, total, here.start, longer.is_main)
             del walls[(i + 1) % len(walls)]
             i = max(i - 1, 0)
         else:

@@ -46,9 +46,7 @@ class Nearest:
         neighbors, _, covariances = self.moments(columns, tree, rows)
         return covariances, np.full(len(rows), neighbors.shape[1])
 
-    def moments(
-        self, columns: np.ndarray, tree: Any, rows: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def moments(self, columns: np.ndarray, tree: Any, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return neighbors (m, k), their centers (m, 3) and covariances (m, 6) of the points ``rows``."""
         own = columns[:, rows]
         count = min(self.count, columns.shape[1])
@@ -72,8 +70,8 @@ class Within:
         mean = tree.query_ball_point(sample, self.radius, return_length=True).mean()
         if mean > _MAX_MEAN_NEIGHBORS:
             raise ValueError(
-                f"A radius of {self.radius:g} m holds {mean:,.0f} points on average, more than {_MAX_MEAN_NEIGHBORS:,}; "
-                "choose a smaller radius or thin the cloud first."
+                f"A radius of {self.radius:g} m holds {mean:,.0f} points on average, more than "
+                f"{_MAX_MEAN_NEIGHBORS:,}; choose a smaller radius or thin the cloud first."
             )
 
     def rows_per_chunk(self, n_points: int) -> int:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Annotated, Optional, Union
 
 import numpy as np
 
@@ -76,7 +76,7 @@ def compute_features(
         tuple[str, ...],
         Param("Features", "What to compute; each becomes a dimension of the cloud.", choices=_FEATURES),
     ] = ("linearity", "planarity", "scattering", "entropy", "surface_variation", "verticality"),
-    monitor: Optional[Monitor] = None,
+    monitor=None,
 ):
     """Describe the shape of each point's neighborhood by the eigenvalues of its covariance.
 
@@ -128,9 +128,8 @@ def compute_features(
     """
     if not features:
         raise ValueError(f"No feature is chosen; choose at least one of {', '.join(_FEATURES)}.")
-    if neighborhood == "nearest":
-        around = Nearest(n_neighbors)
-    else:
+    around: Union[Nearest, Within] = Nearest(n_neighbors)
+    if neighborhood == "radius":
         around = Within(radius or _automatic_radius(xyz, n_neighbors, monitor))
     made = {name: np.empty((len(xyz), 3) if name == "normal" else len(xyz), np.float32) for name in features}
 
@@ -150,7 +149,6 @@ def features_of(names: tuple[str, ...], eigenvalues: np.ndarray, covariances: np
     """Return the named features of eigenvalues (m, 3) and the covariances (m, 6) they are of."""
     first, second, third = eigenvalues.T
     total = first + second + third
-    normal = smallest_eigenvectors(covariances, eigenvalues) if {"normal", "verticality"} & set(names) else None
     linearity, planarity, scattering = dimensionality(eigenvalues)
     computed = {
         "linearity": lambda: linearity,
@@ -162,10 +160,16 @@ def features_of(names: tuple[str, ...], eigenvalues: np.ndarray, covariances: np
         "eigenentropy": lambda: shannon_entropy(first / total, second / total, third / total),
         "eigenvalue_sum": lambda: total,
         "surface_variation": lambda: third / total,
-        "verticality": lambda: 1 - np.abs(normal[:, 2]),
-        "normal": lambda: normal,
     }
-    return {name: computed[name]() for name in names}
+    made = {name: computed[name]() for name in names if name in computed}
+    if {"normal", "verticality"} & set(names):
+        normal = smallest_eigenvectors(covariances, eigenvalues)
+        made.update({name: values for name, values in _of_normal(normal).items() if name in names})
+    return made
+
+
+def _of_normal(normal: np.ndarray) -> dict[str, np.ndarray]:
+    return {"verticality": 1 - normal[:, 2], "normal": normal}
 
 
 def _automatic_radius(xyz: np.ndarray, n_neighbors: int, monitor: Monitor) -> float:

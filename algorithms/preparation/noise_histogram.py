@@ -79,7 +79,7 @@ def classify_noise_histogram(
             advanced=True,
         ),
     ] = 200.0,
-    monitor: Optional[Monitor] = None,
+    monitor=None,
 ):
     """Find points far above or below the scene, such as birds, clouds and multipath returns.
 
@@ -175,7 +175,7 @@ def _pooled_histogram(grid: Grid, cell: np.ndarray, level: np.ndarray) -> _Histo
     pooled = np.bincount(which, np.tile(count, 9)).astype(np.int64)
     # Empty cells beside occupied ones have no points to judge.
     occupied = np.isin(keys // levels, own // levels)
-    return _Histogram(*np.divmod(keys[occupied], levels), pooled[occupied])
+    return _Histogram(keys[occupied] // levels, keys[occupied] % levels, pooled[occupied])
 
 
 def _scene_range(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Annotated
 
 import numpy as np
 
@@ -25,7 +25,10 @@ def classify_noise_statistical(
     classification,
     *,
     n_neighbors: Annotated[
-        int, Param("Neighbors", "Nearest points whose mean distance is taken, the point itself not counted.", low=1, high=200)
+        int,
+        Param(
+            "Neighbors", "Nearest points whose mean distance is taken, the point itself not counted.", low=1, high=200
+        ),
     ] = 8,
     deviations: Annotated[
         float,
@@ -37,12 +40,13 @@ def classify_noise_statistical(
             high=100,
         ),
     ] = 6.0,
-    monitor: Optional[Monitor] = None,
+    monitor=None,
 ):
     """Find isolated points: those whose nearest neighbors are much farther away than is usual in the cloud.
 
     Suits clouds of even density, such as photogrammetric and terrestrial ones. It takes sparse parts of the scene for
-    noise sooner than the height histogram does. Low noise (class 7) lies under its neighbors, high noise (class 18) over them.
+    noise sooner than the height histogram does. Low noise (class 7) lies under its neighbors, high noise (class 18)
+    over them.
 
     Parameters
     ----------
@@ -60,7 +64,8 @@ def classify_noise_statistical(
     -----
     A point is noise when the mean distance to its k nearest neighbors exceeds mean + m * standard deviation of all
     these means. Distances have a long tail wherever there are trees and walls: with m = 2 or 3, often seen elsewhere,
-    every hundredth point or more of a good airborne cloud is lost, with the default less than two in a thousand on most.
+    every hundredth point or more of a good airborne cloud is lost, with the default less than two in a thousand on
+    most.
     Points very far away raise the standard deviation and hide less distant ones; run the height histogram first.
 
     References

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Optional
-
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..cloud.cells import Grid, connected_cells, find_cells, grid_over
 from ..params import AssessmentCellSize, IgnoredClasses, MinBuildingArea
-from ..stage import Measure, Monitor, Report, stage
+from ..stage import Measure, Report, stage
 from .matching import compared_points, parse_classes
 from .page import Row, build_page, draw_map, outcome_of, percent
 
@@ -48,7 +46,7 @@ def assess_buildings(
     ignored_classes: IgnoredClasses = "7, 17, 18, 26, 64-67",
     cell_size: AssessmentCellSize = None,
     min_area: MinBuildingArea = 10.0,
-    monitor: Optional[Monitor] = None,
+    monitor=None,
 ):
     """Compare the buildings of a classification with those of a reference: completeness, correctness, F-score, quality.
 
@@ -154,8 +152,8 @@ def _covered(grid: Grid, of: np.ndarray, by: np.ndarray, min_area: float) -> tup
 
 def _page(xyz: np.ndarray, predicted: np.ndarray, true: np.ndarray, values: dict, min_area: float) -> str:
     lead = (
-        f"Of {len(xyz):,} points, {values['points_hits'] + values['points_misses']:,} are building in the reference and "
-        f"{values['points_hits'] + values['points_false']:,} in the classification that was assessed."
+        f"Of {len(xyz):,} points, {values['points_hits'] + values['points_misses']:,} are building in the reference "
+        f"and {values['points_hits'] + values['points_false']:,} in the classification that was assessed."
     )
     tables = {
         "Points": _rows(values, "points", "points"),
@@ -179,7 +177,11 @@ def _rows(values: dict, prefix: str, things: str) -> list[Row]:
             percent(values[f"{prefix}_correctness"]),
             f"So much of what was called building is building: {hits:,} of {hits + false:,} {things}.",
         ),
-        Row("F-score", percent(values[f"{prefix}_f"]), "Completeness and correctness in one figure, their harmonic mean."),
+        Row(
+            "F-score",
+            percent(values[f"{prefix}_f"]),
+            "Completeness and correctness in one figure, their harmonic mean.",
+        ),
         Row(
             "Quality",
             percent(values[f"{prefix}_quality"]),
@@ -193,11 +195,11 @@ def _object_rows(values: dict) -> list[Row]:
         Row(
             "Completeness",
             percent(values["objects_completeness"]),
-            f"So many of the reference's {values['objects_true']:,} buildings were found, by at least half of their area.",
+            f"So many of the reference's {values['objects_true']:,} buildings were found, by at least half.",
         ),
         Row(
             "Correctness",
             percent(values["objects_correctness"]),
-            f"So many of the {values['objects_predicted']:,} buildings found are buildings, by at least half of their area.",
+            f"So many of the {values['objects_predicted']:,} buildings found are true, by half of their area or more.",
         ),
     ]

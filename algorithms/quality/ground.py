@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Optional
-
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..params import IgnoredClasses
-from ..stage import Measure, Monitor, Report, stage
+from ..stage import Measure, Report, stage
 from .matching import compared_points, parse_classes
 from .page import Row, build_page, draw_map, outcome_of, percent
 
@@ -33,7 +31,7 @@ def assess_ground(
     reference_classification,
     *,
     ignored_classes: IgnoredClasses = "7, 9, 17, 18, 26, 64-67",
-    monitor: Optional[Monitor] = None,
+    monitor=None,
 ):
     """Compare the ground of a classification with that of a reference: type I, type II and total error, kappa.
 
@@ -64,7 +62,8 @@ def assess_ground(
     -----
     Type I is the share of the true ground that was called object, type II the share of the true objects that were
     called ground, total the share of all points that are wrong, and kappa the agreement beyond what chance gives.
-    Ignored by default are the reference's noise, water, bridges and what agencies keep for artefacts and virtual points.
+    Ignored by default are the reference's noise, water and bridges, and what agencies keep for artefacts and virtual
+    points.
 
     References
     ----------
@@ -110,7 +109,11 @@ def _page(xyz: np.ndarray, called: np.ndarray, ground: np.ndarray, values: dict)
             percent(values["type_2"]),
             f"Objects in the terrain: {taken:,} of {objects:,} other points were called ground.",
         ),
-        Row("Kappa", percent(values["kappa"]), "Agreement beyond what chance would give; 100 % is perfect, 0 % is chance."),
+        Row(
+            "Kappa",
+            percent(values["kappa"]),
+            "Agreement beyond what chance would give; 100 % is perfect, 0 % is chance.",
+        ),
     ]
     lead = f"{values['points']:,} points were compared with the reference, {values['ground_points']:,} of them ground."
     legend = ("object in both", "ground in both", "ground that was lost", "falsely called ground")

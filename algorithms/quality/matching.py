@@ -124,7 +124,11 @@ def parse_classes(text: str) -> np.ndarray:
     classes: set[int] = set()
     for part in filter(None, (piece.strip() for piece in text.split(","))):
         ends = [end.strip() for end in part.split("-")]
-        if len(ends) > 2 or not all(end.isdecimal() and int(end) <= 255 for end in ends) or int(ends[0]) > int(ends[-1]):
+        if (
+            len(ends) > 2
+            or not all(end.isdecimal() and int(end) <= 255 for end in ends)
+            or int(ends[0]) > int(ends[-1])
+        ):
             raise ValueError(f"Ignored classes must be numbers from 0 to 255 and ranges such as 64-67, got {part!r}.")
         classes.update(range(int(ends[0]), int(ends[-1]) + 1))
     return np.array(sorted(classes), dtype=np.int64)

@@ -136,7 +136,9 @@ def _roofs(
 ) -> np.ndarray:
     """Return for each patch whether it is large, high and solid enough for a roof."""
     member = patch >= 0
-    number, count = patch[member], int(patch.max(initial=-1)) + 1
+    if not member.any():
+        return np.zeros(0, bool)
+    number, count = patch[member], int(patch.max()) + 1
     size = np.maximum(np.bincount(number, minlength=count), 1)
     mean_height = np.bincount(number, height[member], count) / size
     area, penetration = _area_and_penetration(xyz, patch, density)
@@ -156,7 +158,7 @@ def _area_and_penetration(xyz: np.ndarray, patch: np.ndarray, density: float) ->
     pairs, position = np.unique(pair, return_inverse=True)
     bottom = ndimage.minimum(xyz[member, 2], position, np.arange(len(pairs)))
     owner, where = np.divmod(pairs, len(cells))
-    count = int(patch.max(initial=-1)) + 1
+    count = int(patch.max()) + 1
     occupied = np.bincount(owner, minlength=count)
     beneath = np.bincount(owner, lowest[where] < bottom - _BENEATH, count)
     return occupied * size**2, beneath / np.maximum(occupied, 1)

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from .relief import Relief
-from .scene import Scene
+from .scene import Building, Scene
 from .solids import Rect, Solid, flat, gable, hip, inclined, lean_to
 
 # Eave over the floor of one and two storeys.
@@ -43,9 +43,10 @@ def _levels(relief: Relief, rect: Rect, eave: float) -> tuple[float, float]:
 def build_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
     """Put a house, or a short row, on a plot; every second plot gets a shed in the garden."""
     build = _KINDS[int(rng.choice(len(_KINDS), p=_SHARES))]
+    before = len(scene.buildings)
     build(scene, plot, rng)
     if rng.random() < 0.5:
-        _shed(scene, plot, rng)
+        _shed(scene, plot, scene.buildings[before:], rng)
 
 
 def _detached(plot: Rect, rng: np.random.Generator, length: tuple, width: tuple) -> Rect:
@@ -119,11 +120,13 @@ def _row(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
         scene.add_building("row", rect.corners(), [site.solid(rect, tops)])
 
 
-def _shed(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
+def _shed(scene: Scene, plot: Rect, houses: list[Building], rng: np.random.Generator) -> None:
+    """Put a shed into a back corner of the garden, if the house doesn't reach so far."""
     rect = plot.part(rng.choice((-1, 1)) * (plot.length / 2 - 2.2), plot.width / 2 - 1.7, *rng.uniform(2.2, 3.0, 2))
-    height = rng.uniform(2.0, 2.4)
+    height, pitch = rng.uniform(2.0, 2.4), np.tan(np.deg2rad(rng.uniform(0.0, 15.0)))
+    if any(house.contains(*rect.corners(0.5).T).any() for house in houses):
+        return
     site = _Site(scene, rect, height)
-    pitch = np.tan(np.deg2rad(rng.uniform(0.0, 15.0)))
     scene.add_building("shed", rect.corners(), [site.solid(rect, lean_to(rect, site.floor + height, pitch))])
 
 

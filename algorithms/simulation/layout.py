@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import itertools
+from typing import Optional
 
 import numpy as np
 
 from ..cloud.asprs import PointClass
+from ..stage import Monitor
 from .houses import build_hall, build_house
 from .plants import in_forest, plant_hedge, plant_trees
 from .relief import VALLEY, make_relief
@@ -18,7 +20,7 @@ _STREETS = 40.0
 _STREET_WIDTH = 8.0
 _PLOT = (14.0, 16.0)
 _PLOTS_PER_BLOCK = 6
-_HALL = (44.0, 27.0)
+_HALL = (40.0, 27.0)
 
 # Plots on a hectare of streets and blocks: as many as can be built on.
 MAX_BUILDINGS = 34
@@ -36,6 +38,7 @@ def build_town(
     river: bool = True,
     clutter: bool = True,
     seed: int = 1,
+    monitor: Optional[Monitor] = None,
 ) -> Scene:
     """Make up a town. The tunables are those of :func:`.town.simulate_town`.
 
@@ -44,6 +47,7 @@ def build_town(
     Scene
         The same for the same arguments.
     """
+    monitor = monitor or Monitor()
     rng = np.random.default_rng([seed, 0])
     scene = Scene(make_relief(size, slope, relief, terrace_height, river, rng))
     plots = _plots(scene, forest)
@@ -54,13 +58,14 @@ def build_town(
             plots = [plot for plot in plots if not hall.contains(*plot.corners(-1.0).T).any()]
         # Every hectare of plots has the asked number of them built on, whatever river and forest leave.
         built = min(len(plots), round(len(plots) * buildings / MAX_BUILDINGS))
-        for i in np.sort(rng.permutation(len(plots))[:built]):
+        for k, i in enumerate(np.sort(rng.permutation(len(plots))[:built])):
             build_house(scene, plots[i], rng)
+            monitor.progress(0.4 * k / built)
     if river:
         _build_bridges(scene)
     if clutter:
-        _clutter(scene, plots, rng)
-    plant_trees(scene, trees, forest, rng)
+        _clutter(scene, plots, rng, monitor.part(0.4, 0.6))
+    plant_trees(scene, trees, forest, rng, monitor.part(0.6, 1.0))
     return scene
 
 
@@ -81,13 +86,13 @@ def _plots(scene: Scene, forest: float) -> list[Rect]:
         plot = Rect(float(x), float(y), *_PLOT, relief.angle + (0.0 if side > 0 else np.pi))
         on_river = relief.river is not None and abs(across - relief.river) < VALLEY + _PLOT[0] / 2
         corners = plot.corners()
-        if not on_river and corners.min() > 1.0 and corners.max() < scene.size - 1.0:
-            if not in_forest(scene, *plot.corners(3.0).T, forest).any():
-                found.append(plot)
+        inside = corners.min() > 1.0 and corners.max() < scene.size - 1.0
+        if inside and not on_river and not in_forest(scene, plot.corners(3.0), forest).any():
+            found.append(plot)
     return found
 
 
-def _hall_place(plots: list[Rect]) -> Rect | None:
+def _hall_place(plots: list[Rect]) -> Optional[Rect]:
     """Return room for a hall in the middle of a block of plots back to back, None without any."""
     for plot in plots:
         place = plot.part(0.0, plot.width / 2, *_HALL)
@@ -107,27 +112,28 @@ def _build_bridges(scene: Scene) -> None:
         deck = Rect(float(x), float(y), 2 * VALLEY - 8.0, 6.0, relief.angle)
         if np.abs(deck.corners() - scene.size / 2).max() > scene.size / 2:
             continue
-        number, top = scene.new_id(), 0.3
+        number, top = scene.new_id(), 0.15
         scene.solids.append(Solid(deck, flat(deck, top), top - 0.9, PointClass.BRIDGE_DECK, number))
         for side in (-1, 1):
             rail = deck.part(0.0, side * 2.9, deck.length, 0.2)
             scene.solids.append(Solid(rail, flat(rail, top + 1.0), top - 0.9, PointClass.UNCLASSIFIED, number))
 
 
-def _clutter(scene: Scene, plots: list[Rect], rng: np.random.Generator) -> None:
+def _clutter(scene: Scene, plots: list[Rect], rng: np.random.Generator, monitor: Monitor) -> None:
     """Put cars on the streets, hedges and walls between the plots, and wires along one street."""
-    for plot in plots:
-        car, border = rng.random(2)
+    lines = [plot.part(-plot.length / 2, 3.0, plot.width - 6.0, 0.9, np.pi / 2) for plot in plots]
+    corners = np.array([line.corners() for line in lines]).reshape(-1, 2)
+    is_free = ~scene.near_building(corners, 0.2).reshape(-1, 4).any(axis=1)
+    for i, (plot, line, free) in enumerate(zip(plots, lines, is_free)):
+        car, border, place = rng.random(3)
         if car < 0.5:
-            _park_car(scene, plot.part(rng.uniform(-4.0, 4.0), -plot.width / 2 - 1.4, 4.3, 1.8))
-        line = plot.part(-plot.length / 2, 3.0, plot.width - 6.0, 0.9, np.pi / 2)
-        if scene.near_building(*line.corners().T, 0.2).any():
-            continue
-        if border < 0.3:
+            _park_car(scene, plot.part(8.0 * place - 4.0, -plot.width / 2 - 1.4, 4.3, 1.8))
+        if free and border < 0.3:
             plant_hedge(scene, line, 1.7)
-        elif border < 0.5:
+        elif free and border < 0.5:
             wall = Rect(line.x, line.y, line.length, 0.3, line.angle)
             scene.solids.append(_follow_ground(scene, wall, 2.0, scene.new_id()))
+        monitor.progress(i / len(plots))
     _string_wires(scene)
 
 
@@ -163,8 +169,8 @@ def _string_wires(scene: Scene) -> None:
         top = flat(pole, foot[2] + height)
         scene.solids.append(Solid(pole, top, foot[2] - 1.0, PointClass.TRANSMISSION_TOWER, scene.new_id()))
     number, share = scene.new_id(), np.linspace(0.0, 1.0, 9)[:, None]
-    for start, end in itertools.pairwise(feet):
+    for start, end in zip(feet, feet[1:]):
         for offset in (-0.9, 0.0, 0.9):
             shift = [-offset * np.sin(relief.angle), offset * np.cos(relief.angle), height - 0.2]
             line = start + share * (end - start) + shift - 4 * sag * share * (1 - share) * [0.0, 0.0, 1.0]
-            scene.wires.extend((*p, *q, number) for p, q in itertools.pairwise(line))
+            scene.wires.extend((*p, *q, number) for p, q in zip(line, line[1:]))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..cloud.asprs import PointClass
+from ..stage import Monitor
 from .scene import Scene
 from .solids import Rect, Solid, flat
 
@@ -16,7 +17,7 @@ _CLUMP_SIZE = 4
 _FOREST_SPACING = 5.0
 
 
-def plant_trees(scene: Scene, per_hectare: float, forest: float, rng: np.random.Generator) -> None:
+def plant_trees(scene: Scene, per_hectare: float, forest: float, rng: np.random.Generator, monitor: Monitor) -> None:
     """Plant single trees and clumps on open ground, and the forest."""
     size = scene.size
     n_trees = round(per_hectare * size**2 / 1e4 * (1 - forest))
@@ -25,32 +26,39 @@ def plant_trees(scene: Scene, per_hectare: float, forest: float, rng: np.random.
     clumps = _open_places(scene, (n_trees - n_alone) // _CLUMP_SIZE, forest, rng)
     clumps = np.repeat(clumps, _CLUMP_SIZE, axis=0) + rng.normal(0.0, 2.5, (len(clumps) * _CLUMP_SIZE, 2))
     clumps = clumps[_is_free(scene, clumps)]
-    for x, y in np.concatenate([open_ground, clumps]):
-        _plant_tree(scene, x, y, rng)
-    if forest:
-        _plant_forest(scene, forest, rng)
+    feet = _feet(scene, np.concatenate([open_ground, clumps]))
+    for i, foot in enumerate(feet):
+        _plant_tree(scene, foot, rng)
+        monitor.progress((1 - forest) * i / len(feet))
+    _plant_forest(scene, forest, rng, monitor.part(1 - forest, 1.0))
 
 
-def in_forest(scene: Scene, x, y, share: float) -> np.ndarray:
-    """Which points (m) lie in the forest: the eastern ``share`` of the square, behind a wavy edge."""
+def in_forest(scene: Scene, places: np.ndarray, share: float) -> np.ndarray:
+    """Which points (n, 2) (m) lie in the forest: the eastern ``share`` of the square, behind a wavy edge."""
     size = scene.size
     # The wave covers two whole periods, so that it takes nothing from the share; it is flat where there is no room.
-    wave = 0.2 * size * share * (1 - share) * np.sin(4 * np.pi * np.asarray(y) / size)
-    return np.asarray(x) > size * (1 - share) + wave
+    wave = 0.2 * size * share * (1 - share) * np.sin(4 * np.pi * places[:, 1] / size)
+    return places[:, 0] > size * (1 - share) + wave
 
 
-def _plant_forest(scene: Scene, share: float, rng: np.random.Generator) -> None:
+def _plant_forest(scene: Scene, share: float, rng: np.random.Generator, monitor: Monitor) -> None:
     steps = np.arange(_FOREST_SPACING / 2, scene.size, _FOREST_SPACING)
     places = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
     places = places + rng.uniform(-0.35, 0.35, places.shape) * _FOREST_SPACING
-    places = places[in_forest(scene, *places.T, share) & _is_free(scene, places)]
-    for x, y in places:
+    places = places[in_forest(scene, places, share) & _is_free(scene, places)]
+    feet = _feet(scene, places)
+    for i, foot in enumerate(feet):
         kind = rng.random()
         if kind < 0.9:
-            _plant_tree(scene, x, y, rng)
+            _plant_tree(scene, foot, rng)
         if kind > 0.7:
-            bush = rng.uniform(0.4, 1.0)
-            scene.crowns.add(x + 1.5, y, float(scene.relief.ground(x + 1.5, y)) + 0.6 * bush, bush, bush, 0.8, scene.new_id())
+            _plant_bush(scene, foot, rng)
+        monitor.progress(i / len(feet))
+
+
+def _feet(scene: Scene, places: np.ndarray) -> list[tuple[float, float, float]]:
+    """Return x, y and elevation of the ground (m) at places (n, 2)."""
+    return [(float(x), float(y), float(z)) for (x, y), z in zip(places, scene.relief.ground(*places.T))]
 
 
 def _open_places(scene: Scene, count: int, forest: float, rng: np.random.Generator) -> np.ndarray:
@@ -59,7 +67,7 @@ def _open_places(scene: Scene, count: int, forest: float, rng: np.random.Generat
     # A town that is all houses or all forest has no room: it then stays at what these tries found.
     for _ in range(20):
         tries = rng.uniform(0.0, scene.size, (count, 2))
-        free = _is_free(scene, tries) & ~in_forest(scene, *tries.T, forest)
+        free = _is_free(scene, tries) & ~in_forest(scene, tries, forest)
         places = np.concatenate([places, tries[free]])[:count]
         if len(places) == count:
             break
@@ -67,21 +75,26 @@ def _open_places(scene: Scene, count: int, forest: float, rng: np.random.Generat
 
 
 def _is_free(scene: Scene, places: np.ndarray) -> np.ndarray:
-    x, y = places.T
-    inside = (x > 0) & (y > 0) & (x < scene.size) & (y < scene.size)
-    return inside & ~scene.near_building(x, y, 1.5) & ~scene.near_water(x, y)
+    inside = ((places > 0) & (places < scene.size)).all(axis=1)
+    return inside & ~scene.near_building(places, 1.5) & ~scene.near_water(*places.T)
 
 
-def _plant_tree(scene: Scene, x: float, y: float, rng: np.random.Generator) -> None:
-    ground, number = float(scene.relief.ground(x, y)), scene.new_id()
-    height = rng.uniform(5.0, 16.0)
+def _plant_tree(scene: Scene, foot: tuple[float, float, float], rng: np.random.Generator) -> None:
+    x, y, ground = foot
+    number, height = scene.new_id(), rng.uniform(5.0, 16.0)
     if rng.random() < 0.3:
-        _conifer(scene, (x, y, ground), height, number, rng)
+        _conifer(scene, foot, height, number, rng)
     else:
-        _broadleaf(scene, (x, y, ground), height, number, rng)
+        _broadleaf(scene, foot, height, number, rng)
     stem = Rect(x, y, 0.03 * height, 0.03 * height, 0.0)
     top = flat(stem, ground + 0.6 * height)
     scene.solids.append(Solid(stem, top, ground - 1.0, PointClass.HIGH_VEGETATION, number))
+
+
+def _plant_bush(scene: Scene, foot: tuple[float, float, float], rng: np.random.Generator) -> None:
+    x, y, ground = foot
+    radius = rng.uniform(0.4, 1.0)
+    scene.crowns.add(x, y, ground + 0.6 * radius, radius, radius, 0.8, scene.new_id())
 
 
 def _conifer(scene: Scene, foot: tuple, height: float, number: int, rng: np.random.Generator) -> None:
@@ -107,7 +120,6 @@ def _broadleaf(scene: Scene, foot: tuple, height: float, number: int, rng: np.ra
 def plant_hedge(scene: Scene, line: Rect, height: float) -> None:
     """Plant a dense hedge along the length of a rectangle."""
     number = scene.new_id()
-    for along in np.arange(-line.length / 2, line.length / 2, 0.5):
-        x, y = line.at(along, 0.0)
-        z = float(scene.relief.ground(x, y)) + height / 2
-        scene.crowns.add(float(x), float(y), z, line.width / 2, height / 2, 0.25, number)
+    line_of_bushes = np.column_stack(line.at(np.arange(-line.length / 2, line.length / 2, 0.5), 0.0))
+    for x, y, ground in _feet(scene, line_of_bushes):
+        scene.crowns.add(x, y, ground + height / 2, line.width / 2, height / 2, 0.25, number)

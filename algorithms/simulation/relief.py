@@ -9,7 +9,7 @@ import numpy as np
 
 # Half width of the level valley floor and of the channel in it, and its depth: a small regulated river.
 VALLEY = 16.0
-_CHANNEL_TOP = 9.6
+CHANNEL = 9.6
 _CHANNEL_DEPTH = 4.5
 _BANK_SLOPE = 0.8
 _WATER_DEPTH = 1.5
@@ -104,14 +104,14 @@ class Relief:
         if self.river is None:
             return np.zeros(np.shape(x), bool)
         # The channel's profile decides: over level ground it is below the water this far from the axis.
-        return np.abs(self.local(x, y)[0] - self.river) < _CHANNEL_TOP - (_CHANNEL_DEPTH - _WATER_DEPTH) / _BANK_SLOPE
+        return np.abs(self.local(x, y)[0] - self.river) < CHANNEL - (_CHANNEL_DEPTH - _WATER_DEPTH) / _BANK_SLOPE
 
     def tangent(self, x: float, y: float) -> np.ndarray:
         """Return (a, b, c) of the plane z = a x + b y + c that touches the ground at a point (m)."""
-        step = 1.0
-        a = float(self.ground(x + step, y) - self.ground(x - step, y)) / (2 * step)
-        b = float(self.ground(x, y + step) - self.ground(x, y - step)) / (2 * step)
-        return np.array([a, b, float(self.ground(x, y)) - a * x - b * y])
+        step = np.array([0.0, 1.0, -1.0, 0.0, 0.0])
+        z, east, west, north, south = self.ground(x + step, y + step[[0, 3, 4, 1, 2]])
+        a, b = (east - west) / 2, (north - south) / 2
+        return np.array([a, b, z - a * x - b * y])
 
     def _terrace(self, rise):
         """Steep steps with treads that fall slightly, so that on the whole nothing is gained."""
@@ -132,7 +132,7 @@ class Relief:
 
 def _channel(distance):
     """Depth (m) of the river's trapezoidal channel, by distance (m) from its axis."""
-    return np.clip((_CHANNEL_TOP - np.abs(distance)) * _BANK_SLOPE, 0.0, _CHANNEL_DEPTH)
+    return np.clip((CHANNEL - np.abs(distance)) * _BANK_SLOPE, 0.0, _CHANNEL_DEPTH)
 
 
 def make_relief(
@@ -146,6 +146,4 @@ def make_relief(
     waves = np.stack([np.cos(direction), np.sin(direction), np.zeros(4)], axis=1) * (2 * np.pi / length)[:, None]
     waves[:, 2] = phase
     axis = float(rng.uniform(-0.3, -0.2) * size)
-    return Relief(
-        size, angle, float(np.tan(np.deg2rad(slope))), hills, terrace_height, axis if river else None, waves
-    )
+    return Relief(size, angle, float(np.tan(np.deg2rad(slope))), hills, terrace_height, axis if river else None, waves)

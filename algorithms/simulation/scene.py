@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 
-from .relief import Relief
-from .solids import Solid
+from .pairs import in_boxes
+from .relief import CHANNEL, Relief
+from .solids import Rect, Solid, rectangles
 
 
 @dataclass(frozen=True)
@@ -113,12 +114,19 @@ class Scene:
         self.buildings.append(building)
         self.solids.extend(solids)
 
-    def near_building(self, x, y, margin: float) -> np.ndarray:
-        """Which points (m) lie within a margin (m) of a building, about."""
-        found = np.zeros(np.shape(x), bool)
-        for building in self.buildings:
-            low, high = building.outline.min(axis=0) - margin, building.outline.max(axis=0) + margin
-            some = np.flatnonzero((x >= low[0]) & (x <= high[0]) & (y >= low[1]) & (y <= high[1]) & ~found)
-            for solid in building.solids:
-                found[some] |= solid.rect.contains(x[some], y[some], margin)
+    def near_building(self, places: np.ndarray, margin: float) -> np.ndarray:
+        """Which points (n, 2) (m) lie within a margin (m) of a building."""
+        parts = rectangles([solid for building in self.buildings for solid in building.solids])
+        reach = np.hypot(parts.length, parts.width) / 2 + margin
+        center = np.column_stack([parts.x, parts.y])
+        place, part = in_boxes(places, center - reach[:, None], center + reach[:, None])
+        rows = Rect(*(getattr(parts, field.name)[part] for field in fields(Rect)))
+        found = np.zeros(len(places), bool)
+        found[place[rows.contains(places[place, 0], places[place, 1], margin)]] = True
         return found
+
+    def near_water(self, x, y) -> np.ndarray:
+        """Which points (m) lie in the channel of the river or on its banks."""
+        if self.relief.river is None:
+            return np.zeros(np.shape(x), bool)
+        return np.abs(self.relief.local(x, y)[0] - self.relief.river) < CHANNEL

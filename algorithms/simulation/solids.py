@@ -81,7 +81,7 @@ class Solid:
 
 
 def inclined(rect: Rect, along: float, across: float, z: float, rise_along: float, rise_across: float) -> np.ndarray:
-    """Return the plane that has elevation ``z`` at a place of ``rect`` and these rises per meter along and across it."""
+    """Return the plane of elevation ``z`` at a place of ``rect``, with these rises per meter along and across it."""
     cos, sin = np.cos(rect.angle), np.sin(rect.angle)
     a, b = rise_along * cos - rise_across * sin, rise_along * sin + rise_across * cos
     x, y = rect.at(along, across)
@@ -138,28 +138,35 @@ class SolidArrays:
         return np.where(near < far, near, np.inf)
 
 
+def rectangles(solids: Sequence[Solid]) -> Rect:
+    """Return the footprints of solids as one rectangle whose fields are arrays (m,)."""
+    rows = [(s.rect.x, s.rect.y, s.rect.length, s.rect.width, s.rect.angle) for s in solids]
+    return Rect(*np.array(rows, float).reshape(-1, 5).T)
+
+
 def stack(solids: Sequence[Solid]) -> SolidArrays:
     """Return solids as arrays."""
-    count = len(solids)
-    low, high = np.zeros((count, 3)), np.zeros((count, 3))
+    rects, bottom = rectangles(solids), np.array([solid.bottom for solid in solids], float)
     # Faces that a solid doesn't have are (0, 0, 0, 1): every point is inside of them.
-    faces = np.zeros((count, _FACES, 4))
+    faces = np.zeros((len(solids), _FACES, 4))
     faces[:, :, 3] = 1.0
-    for i, solid in enumerate(solids):
-        corners = solid.rect.corners()
-        faces[i, :4] = _sides(solid.rect)
-        faces[i, 4] = (0.0, 0.0, -1.0, -solid.bottom)
-        for k, (a, b, c) in enumerate(solid.tops):
-            faces[i, 5 + k] = (-a, -b, 1.0, c)
-        low[i] = (*corners.min(axis=0), solid.bottom)
+    cos, sin = np.cos(rects.angle), np.sin(rects.angle)
+    for i, (side, reach) in enumerate([(1, rects.length), (-1, rects.length), (1, rects.width), (-1, rects.width)]):
+        x, y = (side * cos, side * sin) if i < 2 else (-side * sin, side * cos)
+        faces[:, i] = np.column_stack([x, y, np.zeros(len(solids)), x * rects.x + y * rects.y + reach / 2])
+    faces[:, 4] = np.column_stack([np.tile([0.0, 0.0, -1.0], (len(solids), 1)), -bottom])
+    corners = rects.corners()
+    top = np.full(len(solids), np.inf)
+    for k in range(_MAX_TOPS):
+        has = np.array([len(solid.tops) > k for solid in solids], bool)
+        a, b, c = np.array([solid.tops[k] for solid in solids if len(solid.tops) > k], float).reshape(-1, 3).T
+        faces[has, 5 + k] = np.column_stack([-a, -b, np.ones(len(a)), c])
         # A plane is highest at a corner, and the top is nowhere higher than the lowest of these.
-        high[i] = (*corners.max(axis=0), (corners @ solid.tops[:, :2].T + solid.tops[:, 2]).max(axis=0).min())
-    classes = np.array([solid.classification for solid in solids], np.uint8)
-    return SolidArrays(faces, low, high, classes, np.array([solid.object_id for solid in solids], np.int32))
-
-
-def _sides(rect: Rect) -> np.ndarray:
-    cos, sin = np.cos(rect.angle), np.sin(rect.angle)
-    normals = np.array([[cos, sin, 0.0], [-cos, -sin, 0.0], [-sin, cos, 0.0], [sin, -cos, 0.0]])
-    reach = np.array([rect.length, rect.length, rect.width, rect.width]) / 2
-    return np.column_stack([normals, normals @ [rect.x, rect.y, 0.0] + reach])
+        top[has] = np.minimum(top[has], (a * corners[:, 0, has] + b * corners[:, 1, has] + c).max(axis=0))
+    return SolidArrays(
+        faces,
+        np.column_stack([*corners.min(axis=0), bottom]),
+        np.column_stack([*corners.max(axis=0), top]),
+        np.array([solid.classification for solid in solids], np.uint8),
+        np.array([solid.object_id for solid in solids], np.int32),
+    )

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
+import importlib.util
 import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-pytest.importorskip("qgis.core", reason="the provider runs inside QGIS")
-
-from qgis.core import QgsApplication, QgsProcessingContext, QgsProcessingFeedback, QgsProject
-
 from lidar_buildings.algorithms.cloud.cloud import create_cloud, write_cloud
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.stages import STAGES
-from lidar_buildings.provider import models, paths
-from lidar_buildings.provider.provider import Provider
 from lidar_buildings.tests.provider.toys import TOY_CHAIN, TOYS
+
+# The core is tested without QGIS too; so nothing of QGIS is imported before a fixture asks for it.
+collect_ignore_glob = [] if importlib.util.find_spec("qgis") else ["test_*.py"]
 
 RD = "EPSG:28992"
 
@@ -25,6 +23,8 @@ RD = "EPSG:28992"
 @pytest.fixture(scope="session")
 def qgis_application():
     """The running QGIS; one that another plugin of pytest started is used as it is."""
+    from qgis.core import QgsApplication
+
     application = QgsApplication.instance()
     if application is None:
         application = QgsApplication([], False)
@@ -41,6 +41,11 @@ def qgis_application():
 @pytest.fixture(scope="session")
 def provider(qgis_application, tmp_path_factory):
     """The provider in Processing's registry, with the toy stages and the toy chain beside the real ones."""
+    from qgis.core import QgsApplication
+
+    from lidar_buildings.provider import models, paths
+    from lidar_buildings.provider.provider import Provider
+
     registry = QgsApplication.processingRegistry()
     patch = pytest.MonkeyPatch()
     for name, stage in TOYS.items():
@@ -63,32 +68,33 @@ def provider(qgis_application, tmp_path_factory):
 @pytest.fixture
 def context(provider):
     """A context with the project, which is empty again afterwards."""
+    from qgis.core import QgsProcessingContext, QgsProject
+
     context = QgsProcessingContext()
     context.setProject(QgsProject.instance())
     yield context
     QgsProject.instance().clear()
 
 
-class Log(QgsProcessingFeedback):
-    """Keeps what a run says."""
-
-    def __init__(self) -> None:
-        super().__init__(False)
-        self.infos, self.warnings, self.errors = [], [], []
-
-    def pushInfo(self, info: str) -> None:
-        self.infos.append(info)
-
-    def pushWarning(self, warning: str) -> None:
-        self.warnings.append(warning)
-
-    def reportError(self, error: str, fatalError: bool = False) -> None:
-        self.errors.append(error)
-
-
 @pytest.fixture
 def log():
     """A feedback that keeps what it hears."""
+    from qgis.core import QgsProcessingFeedback
+
+    class Log(QgsProcessingFeedback):
+        def __init__(self):
+            super().__init__(False)
+            self.infos, self.warnings, self.errors = [], [], []
+
+        def pushInfo(self, info):
+            self.infos.append(info)
+
+        def pushWarning(self, warning):
+            self.warnings.append(warning)
+
+        def reportError(self, error, fatalError=False):
+            self.errors.append(error)
+
     return Log()
 
 

@@ -26,10 +26,12 @@ IDS = {
     "classifygroundtin",
     "classifynoisehistogram",
     "classifynoisestatistical",
+    "completebuildings",
     "computefeatures",
     "computeheightaboveground",
     "extractfootprints",
     "segmentregions",
+    "segmentroofs",
     "simulatetown",
 }
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019"}

@@ -12,7 +12,7 @@ from qgis.core import (
     QgsVectorLayer,
 )
 
-from lidar_buildings.algorithms.cloud.cloud import read_cloud
+from lidar_buildings.algorithms.cloud.cloud import create_cloud, read_cloud, write_cloud
 from lidar_buildings.algorithms.cloud.dimensions import DIMENSIONS
 from lidar_buildings.algorithms.pipelines import PIPELINES, run_pipeline
 from lidar_buildings.provider import models
@@ -58,6 +58,55 @@ def test_model_memory_and_single_steps_agree(provider, context, log, town_file, 
     assert {"OUTPUT", "FOOTPRINTS"} <= set(result)
 
 
+@pytest.fixture(scope="module")
+def village(tmp_path_factory):
+    """A slope of 44 m with a gable and a flat roof, two trees, a bird and withheld points, in a LAZ file."""
+    random = np.random.default_rng(5)
+    x, y = (axis.ravel() + random.uniform(0, 0.3, axis.size) for axis in np.meshgrid(*[np.arange(0, 44, 0.5)] * 2))
+    z = 12 + 0.02 * x
+    gable = (np.abs(x - 12) < 6) & (np.abs(y - 14) < 5)
+    z[gable] = 20 - 0.5 * np.abs(y - 14)[gable]
+    flat = (np.abs(x - 32) < 7) & (np.abs(y - 14) < 6)
+    z[flat] = 18.0
+    tree = np.minimum(np.hypot(x - 34, y - 34), np.hypot(x - 10, y - 34)) < 4
+    z[tree] += random.uniform(0, 9, tree.sum())
+    z += random.normal(0, 0.02, len(z))
+    z[77] = 150
+    xyz = np.column_stack([x + 85_000, y + 446_000, z])
+    path = tmp_path_factory.mktemp("village") / "village.laz"
+    cloud = create_cloud({"xyz": xyz, "classification": np.ones(len(z), np.uint8)}, "EPSG:28992")
+    cloud.header.layout.put(cloud.points, "withheld", np.arange(len(z)) < 50)
+    write_cloud(cloud, path)
+    return path
+
+
+@pytest.mark.parametrize("name", [name for name in PIPELINES if name != TOY_CHAIN.name])
+def test_shipped_composites_give_in_qgis_what_they_give_in_memory(name, provider, context, log, village, out):
+    pipeline = PIPELINES[name]
+    given = {"INPUT": str(village), "OUTPUT": str(out / "a.laz"), "FOOTPRINTS": str(out / "f.gpkg")}
+    result = run(pipeline.id, given, context, log)
+    in_memory = run_pipeline(pipeline, read_cloud(village))
+    same_clouds(read_cloud(out / "a.laz"), in_memory.cloud)
+
+    cloud = village
+    for i, step in enumerate(pipeline.steps):
+        given = {"INPUT": str(cloud), **{tunable.upper(): value for tunable, value in step.tunables.items()}}
+        given = {key: list(value) if isinstance(value, tuple) else value for key, value in given.items()}
+        if step.stage.writes:
+            cloud = out / f"{i}.las"
+            given["OUTPUT"] = str(cloud)
+        given.update({layer.name.upper(): str(out / f"{layer.name}.gpkg") for layer in step.stage.layers})
+        run(step.stage.id, given, context, log)
+    same_clouds(read_cloud(cloud), in_memory.cloud)
+
+    features = list(QgsVectorLayer(result["FOOTPRINTS"], "f", "ogr").getFeatures())
+    singly = list(QgsVectorLayer(str(out / "footprints.gpkg"), "f", "ogr").getFeatures())
+    assert len(features) == len(singly) == len(in_memory.layers["footprints"]) > 0
+    for one, other in zip(features, singly):
+        assert one.attributes() == other.attributes()
+        assert one.geometry().equals(other.geometry())
+
+
 def test_the_models_own_defaults_count(provider, context, log, town_file, out):
     run(
         "toychain",
@@ -75,7 +124,7 @@ def test_the_composite_shows_the_steps_parameters(provider):
     assert names[-2:] == ["OUTPUT", "FOOTPRINTS"]
     step = algorithm.parameterDefinition("FIRST_STEP")
     assert (step.description(), step.defaultValue(), step.minimum(), step.maximum()) == (
-        "Toy lift: step (m)",
+        "First: step (m)",
         2.5,
         0,
         10,

@@ -50,5 +50,5 @@ def check(rings):
 
 @pytest.fixture(scope="session")
 def assert_valid():
-    """Fail unless rings are a valid polygon: exterior counterclockwise, holes clockwise and inside, nothing crossing."""
+    """Fail unless rings are a valid polygon: exterior counterclockwise, holes clockwise and inside, no crossing."""
     return check

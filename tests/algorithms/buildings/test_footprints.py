@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from lidar_buildings.algorithms.buildings.footprints import extract_footprints
 from lidar_buildings.algorithms.buildings.outlines import signed_area
 from lidar_buildings.algorithms.stage import Monitor

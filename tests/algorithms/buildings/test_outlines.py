@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from lidar_buildings.algorithms.buildings.outlines import perimeter, signed_area, trace_outlines
 from scipy.spatial import Delaunay
+
+from lidar_buildings.algorithms.buildings.outlines import perimeter, signed_area, trace_outlines
 
 
 def even(west, south, width, depth, step=0.5):
@@ -78,7 +79,9 @@ def test_point_order_changes_nothing(rng):
     assert areas[0] == pytest.approx(areas[1])
 
 
-@pytest.mark.parametrize("points", [np.zeros((0, 2)), [[1, 2]], [[0, 0], [1, 1]], np.ones((9, 2)), [[0, 0], [1, 1], [2, 2]]])
+@pytest.mark.parametrize(
+    "points", [np.zeros((0, 2)), [[1, 2]], [[0, 0], [1, 1]], np.ones((9, 2)), [[0, 0], [1, 1], [2, 2]]]
+)
 def test_points_without_area_have_no_outline(points):
     outlines = trace_outlines(np.asarray(points, float).reshape(-1, 2), 0.5)
     assert outlines.parts == []

@@ -5,9 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from scipy.spatial import cKDTree
+
 from lidar_buildings.algorithms.features import eigen
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
-from scipy.spatial import cKDTree
 
 COVARIANCE_FACTORS = arrays(np.float64, (8, 3, 3), elements=st.floats(-100, 100).map(lambda number: round(number, 6)))
 

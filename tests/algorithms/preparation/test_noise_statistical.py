@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from lidar_buildings.algorithms.preparation import noise_statistical
 from lidar_buildings.algorithms.preparation.noise_statistical import classify_noise_statistical
 from lidar_buildings.algorithms.stage import Monitor
@@ -37,7 +38,8 @@ def test_place_and_point_order_change_nothing(rng):
 def test_fewer_deviations_find_more(rng):
     xyz = rng.normal(0, 5, (2000, 3))
     found = [
-        np.isin(classify_noise_statistical(xyz, np.ones(2000, np.uint8), deviations=m), (7, 18)) for m in (4.0, 2.0, 1.0)
+        np.isin(classify_noise_statistical(xyz, np.ones(2000, np.uint8), deviations=m), (7, 18))
+        for m in (4.0, 2.0, 1.0)
     ]
     assert (found[0] <= found[1]).all()
     assert (found[1] <= found[2]).all()

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from lidar_buildings.algorithms.cloud.cells import grid_over
 from lidar_buildings.algorithms.quality.buildings import assess_buildings, rates, topmost_points
 from lidar_buildings.algorithms.stage import Monitor

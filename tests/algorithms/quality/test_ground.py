@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from lidar_buildings.algorithms.quality.ground import assess_ground, ground_errors
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from lidar_buildings.algorithms.quality.matching import match_points, parse_classes
 
 
@@ -48,7 +49,9 @@ def test_a_reference_with_more_points_will_do(cloud, rng):
 def test_other_points_are_refused(cloud):
     moved = cloud.copy()
     moved[7, 2] += 0.01
-    with pytest.raises(ValueError, match=r"1 of 2500 points are not in the reference, the first at 6\d+\.\d{3}, .*order"):
+    with pytest.raises(
+        ValueError, match=r"1 of 2500 points are not in the reference, the first at 6\d+\.\d{3}, .*order"
+    ):
         match_points(moved, cloud)
     with pytest.raises(ValueError, match="1 of 2500 points are not in the reference"):
         match_points(cloud, cloud[1:])

@@ -7,6 +7,7 @@ import zlib
 from html.parser import HTMLParser
 
 import numpy as np
+
 from lidar_buildings.algorithms.quality.page import FALSE, HIT, MISS, REST, Row, build_page, draw_map, outcome_of
 
 NAMES = ("rest", "hit", "missed", "false")

@@ -1,0 +1,188 @@
+"""Beams and what they meet: ground, solids, leaves and wires, each in closed form or to a hundredth of a millimeter."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from .pairs import rank
+from .relief import Relief
+from .scene import Scene
+from .solids import SolidArrays, stack
+
+# A wire this near (m) to the middle of the beam sends something back.
+_WIRE_REACH = 0.1
+_WIRE_CHANCE = 0.7
+
+# Leaves on the way of a beam through one ellipsoid: more of them would come too late to be heard.
+_LEAVES = 8
+
+# Ranges are found to this precision (m).
+_PRECISION = 1e-5
+
+
+@dataclass(frozen=True)
+class Beams:
+    """Beams of one strip.
+
+    Parameters
+    ----------
+    pulse : ndarray of shape (n,)
+        The pulse that each belongs to.
+    origin, direction : ndarray of shape (n, 3)
+        Where they start (m), and unit vectors.
+    aim : ndarray of shape (n, 2)
+        Where they meet the plane that the ground follows (m).
+    """
+
+    pulse: np.ndarray
+    origin: np.ndarray
+    direction: np.ndarray
+    aim: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.aim)
+
+    def take(self, which: np.ndarray) -> Beams:
+        """Return some of the beams, by index or mask."""
+        return Beams(self.pulse[which], self.origin[which], self.direction[which], self.aim[which])
+
+    def at(self, which, ranges: np.ndarray) -> np.ndarray:
+        """Return the points (n, 3) of beams at ranges (m)."""
+        return self.origin[which] + ranges[:, None] * self.direction[which]
+
+    def echoes(self, which, ranges: np.ndarray, classification: np.ndarray, object_id: np.ndarray) -> Echoes:
+        """Return what beams meet at ranges (m)."""
+        numbers = object_id.astype(np.int32)
+        return Echoes(self.pulse[which], ranges, self.direction[which], classification.astype(np.uint8), numbers)
+
+
+@dataclass(frozen=True)
+class Echoes:
+    """Things on the way of pulses: number of the pulse, range (m), direction (n, 3), class and object id."""
+
+    pulse: np.ndarray
+    range: np.ndarray
+    direction: np.ndarray
+    classification: np.ndarray
+    object_id: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.pulse)
+
+    def take(self, which: np.ndarray) -> Echoes:
+        """Return some of them, by index or mask."""
+        return Echoes(*(getattr(self, field.name)[which] for field in fields(self)))
+
+
+def join(parts: Sequence[Echoes]) -> Echoes:
+    """Return echoes of several kinds as one."""
+    return Echoes(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Echoes)))
+
+
+class World:
+    """A scene as arrays, ready for beams."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.relief: Relief = scene.relief
+        self.solids: SolidArrays = stack(scene.solids)
+        self.crowns: np.ndarray = scene.crowns.array
+        self.wires: np.ndarray = np.array(scene.wires, float).reshape(-1, 7)
+
+    def boxes(self, kind: str) -> tuple[np.ndarray, np.ndarray]:
+        """Return lower and upper corners (m, 3) of the boxes around "solids", "crowns" or "wires"."""
+        if kind == "solids":
+            return self.solids.low, self.solids.high
+        if kind == "crowns":
+            reach = self.crowns[:, [3, 3, 4]]
+            return self.crowns[:, :3] - reach, self.crowns[:, :3] + reach
+        ends = self.wires[:, :6].reshape(-1, 2, 3)
+        return ends.min(axis=1) - _WIRE_REACH, ends.max(axis=1) + _WIRE_REACH
+
+    def surfaces(self, beams: Beams, beam: np.ndarray, solid: np.ndarray) -> Echoes:
+        """Return what ends each beam, in their order: ground, water or a solid that it may meet (pairs beam, solid)."""
+        ranges = self.ground(beams)
+        x, y, _ = beams.at(slice(None), ranges).T
+        classes = np.where(self.relief.is_water(x, y), PointClass.WATER, PointClass.GROUND)
+        objects = np.zeros(len(beams), np.int32)
+        entered = self.solids.enter(solid, beams.origin[beam], beams.direction[beam])
+        # The nearest solid of each beam, then whether it stands before the ground.
+        order = np.lexsort((entered, beam))
+        order = order[rank(beam[order]) == 0]
+        order = order[entered[order] < ranges[beam[order]]]
+        beam, solid = beam[order], solid[order]
+        ranges[beam] = entered[order]
+        classes[beam], objects[beam] = self.solids.classification[solid], self.solids.object_id[solid]
+        return beams.echoes(slice(None), ranges, classes, objects)
+
+    def ground(self, beams: Beams) -> np.ndarray:
+        """Return the ranges (n,) (m) at which beams meet ground or water, each exactly once.
+
+        The height of a beam over the ground falls all the way, so a bracket around the only zero shrinks by
+        regula falsi; the Illinois rule (halve the value at the end that stays) keeps it from creeping.
+        """
+        middle = np.linalg.norm(beams.aim - beams.origin[:, :2], axis=1)
+        middle = np.hypot(middle, beams.origin[:, 2] - self.relief.plane(*beams.aim.T))
+        margin = 3.0 * (self.relief.spread + 1.0)
+        found, active = np.zeros(len(beams)), np.arange(len(beams))
+        near, far = middle - margin, middle + margin
+        above, below = self._clearance(beams, active, near), self._clearance(beams, active, far)
+        while len(active):
+            t = (near * below - far * above) / (below - above)
+            value = self._clearance(beams, active, t)
+            is_above = value > 0
+            above = np.where(is_above, value, above / 2)
+            below = np.where(is_above, below / 2, value)
+            near, far = np.where(is_above, t, near), np.where(is_above, far, t)
+            found[active] = t
+            go_on = (np.abs(value) > _PRECISION) & (far - near > _PRECISION)
+            active, near, far = active[go_on], near[go_on], far[go_on]
+            above, below = above[go_on], below[go_on]
+        return found
+
+    def _clearance(self, beams: Beams, which: np.ndarray, ranges: np.ndarray) -> np.ndarray:
+        x, y, z = beams.at(which, ranges).T
+        return z - self.relief.surface(x, y)
+
+    def leaves(self, beams: Beams, beam: np.ndarray, crown: np.ndarray, rng: np.random.Generator) -> Echoes:
+        """Return the leaves on the way of beams through ellipsoids (pairs beam, crown): a Poisson process."""
+        center, radius = self.crowns[crown, :3], self.crowns[crown][:, [3, 3, 4]]
+        start, way = (beams.origin[beam] - center) / radius, beams.direction[beam] / radius
+        # |start + t way| = 1, a quadratic equation.
+        a, b = np.einsum("ij,ij->i", way, way), np.einsum("ij,ij->i", start, way)
+        inside = b * b - a * (np.einsum("ij,ij->i", start, start) - 1.0)
+        met = inside > 0
+        half = np.sqrt(inside[met]) / a[met]
+        enter, leave = -b[met] / a[met] - half, -b[met] / a[met] + half
+        beam, crown = beam[met], crown[met]
+        steps = rng.standard_exponential((len(beam), _LEAVES)) * self.crowns[crown, 5, None]
+        depth = enter[:, None] + np.cumsum(steps, axis=1)
+        which, leaf = np.nonzero(depth < leave[:, None])
+        beam, ranges, crown = beam[which], depth[which, leaf], crown[which]
+        x, y, z = beams.at(beam, ranges).T
+        height = z - self.relief.ground(x, y)
+        return beams.echoes(beam, ranges, vegetation_class(height), self.crowns[crown, 6])
+
+    def strands(self, beams: Beams, beam: np.ndarray, wire: np.ndarray, rng: np.random.Generator) -> Echoes:
+        """Return the wires that beams touch (pairs beam, wire)."""
+        start, along = self.wires[wire, :3], self.wires[wire, 3:6] - self.wires[wire, :3]
+        origin, direction = beams.origin[beam], beams.direction[beam]
+        # The common perpendicular of two lines: both ends of it from the two scalar products.
+        apart = start - origin
+        length2, lean = np.einsum("ij,ij->i", along, along), np.einsum("ij,ij->i", along, direction)
+        on_beam, on_wire = np.einsum("ij,ij->i", apart, direction), np.einsum("ij,ij->i", apart, along)
+        share = np.clip((lean * on_beam - on_wire) / (length2 - lean * lean), 0.0, 1.0)
+        ranges = on_beam + share * lean
+        gap = np.linalg.norm(apart + share[:, None] * along - ranges[:, None] * direction, axis=1)
+        met = (gap < _WIRE_REACH) & (rng.random(len(beam)) < _WIRE_CHANCE)
+        classes = np.full(met.sum(), PointClass.WIRE_CONDUCTOR)
+        return beams.echoes(beam[met], ranges[met], classes, self.wires[wire[met], 6])
+
+
+def vegetation_class(height: np.ndarray) -> np.ndarray:
+    """Return low (under 0.5 m), medium (under 2 m) or high vegetation by height over the ground (m)."""
+    steps = np.array([PointClass.LOW_VEGETATION, PointClass.MEDIUM_VEGETATION, PointClass.HIGH_VEGETATION], np.uint8)
+    return steps[np.searchsorted([0.5, 2.0], height, side="right")]

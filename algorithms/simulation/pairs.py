@@ -1,0 +1,54 @@
+"""Which points lie in which boxes, and other bookkeeping of one to many."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def in_boxes(points: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return all (point, box) with the point in the box, on the plane.
+
+    Parameters
+    ----------
+    points : ndarray of shape (n, 2)
+        Points.
+    low, high : ndarray of shape (m, 2)
+        Corners of the boxes.
+
+    Returns
+    -------
+    point, box : ndarray of shape (k,), int
+        Numbers of points and boxes.
+    """
+    if not len(points) or not len(low):
+        return np.zeros(0, np.int64), np.zeros(0, np.int64)
+    first, last = points.min(axis=0), points.max(axis=0)
+    box = np.flatnonzero((low <= last).all(axis=1) & (high >= first).all(axis=1))
+    # Cells of eight points: a column of cells within a box is one run of the sorted points.
+    cell = max(float(np.sqrt(np.prod(last - first + 0.1) * 8 / len(points))), 1e-3)
+    shape = ((last - first) // cell).astype(np.int64) + 1
+    at = ((points - first) // cell).astype(np.int64)
+    key = at[:, 0] * shape[1] + at[:, 1]
+    order = np.argsort(key, kind="stable")
+    starts = np.searchsorted(key[order], np.arange(shape[0] * shape[1] + 1))
+    start = np.clip((low[box] - first) // cell, 0, shape - 1).astype(np.int64)
+    end = np.clip((high[box] - first) // cell, 0, shape - 1).astype(np.int64)
+    which, column = _expand(end[:, 0] - start[:, 0] + 1)
+    run = (start[which, 0] + column) * shape[1]
+    begin, stop = starts[run + start[which, 1]], starts[run + end[which, 1] + 1]
+    again, offset = _expand(stop - begin)
+    point, box = order[begin[again] + offset], box[which[again]]
+    inside = ((points[point] >= low[box]) & (points[point] <= high[box])).all(axis=1)
+    return point[inside], box[inside]
+
+
+def _expand(counts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return, for each of ``counts[i]`` items of i, i and the item's number from 0."""
+    owner = np.repeat(np.arange(len(counts)), counts)
+    return owner, np.arange(len(owner)) - np.repeat(np.cumsum(counts) - counts, counts)
+
+
+def rank(owner: np.ndarray) -> np.ndarray:
+    """Return the number of each among those of its owner, from 0; ``owner`` (n,) is sorted."""
+    first = np.flatnonzero(np.diff(owner, prepend=-1))
+    return np.arange(len(owner)) - np.repeat(first, np.diff(first, append=len(owner)))

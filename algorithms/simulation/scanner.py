@@ -1,0 +1,300 @@
+"""An airborne scanner: strips, patterns of pulses, and the returns of each pulse."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Optional
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from ..stage import Monitor
+from .beams import Beams, Echoes, World, join
+from .pairs import in_boxes, rank
+from .relief import Relief
+from .scene import Scene
+
+PATTERNS = ("lines", "zigzag", "random")
+
+# Height over the ground (m) and speed (m/s) of a survey flight, and what a strip takes beside the way (s).
+_HEIGHT = 600.0
+_SPEED = 60.0
+_TURN = 300.0
+
+# Radius of the beam at the ground (m): 0.35 mrad from 600 m.
+_BEAM_RADIUS = 0.1
+
+# Pulses worked on at once, which bounds memory.
+_BLOCK = 50_000
+
+# The scanner tells echoes apart that are this far from one another (m), and hears five.
+_DEAD_ZONE = 0.7
+_MAX_RETURNS = 5
+
+# A leaf lets this share of the pulses on. Water sends back few, and hardly any at a slant.
+_THROUGH = 0.7
+_WATER_CHANCE = 0.25
+_WATER_SLANT = np.deg2rad(12.0)
+
+# Heights (m) of birds over and of multipath points under the ground.
+_BIRDS = (30.0, 120.0)
+_MULTIPATH = (2.0, 15.0)
+
+_LEAFY = (PointClass.LOW_VEGETATION, PointClass.MEDIUM_VEGETATION, PointClass.HIGH_VEGETATION)
+
+_REFLECTANCE = np.full(256, 0.3)
+_REFLECTANCE[[PointClass.GROUND, PointClass.BUILDING, PointClass.WATER]] = (0.35, 0.45, 0.06)
+_REFLECTANCE[[PointClass.LOW_NOISE, PointClass.HIGH_NOISE, PointClass.WIRE_CONDUCTOR]] = 0.05
+
+
+@dataclass(frozen=True)
+class Scan:
+    """The points of a scan, in the order of time, then of return.
+
+    ``pulse`` is the number of the pulse; the other arrays are dimensions as in ``dimensions.py``.
+    """
+
+    xyz: np.ndarray
+    classification: np.ndarray
+    return_number: np.ndarray
+    number_of_returns: np.ndarray
+    intensity: np.ndarray
+    scan_angle: np.ndarray
+    point_source_id: np.ndarray
+    gps_time: np.ndarray
+    segment_id: np.ndarray
+    pulse: np.ndarray
+
+
+@dataclass(frozen=True)
+class _Strip:
+    """One flight line: its number, where it runs (m north), and the part of the town that it scans."""
+
+    number: int
+    y: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class _Block:
+    """Some scan lines of a strip that are worked on at once: the first line, how many, and of which strip."""
+
+    strip: _Strip
+    line: int
+    n_lines: int
+    lines_of_strip: int
+    pulses_per_line: int
+
+    @property
+    def n_pulses(self) -> int:
+        return self.n_lines * self.pulses_per_line
+
+
+def scan(
+    scene: Scene,
+    *,
+    density: float = 8.0,
+    pattern: str = "lines",
+    max_scan_angle: float = 20.0,
+    overlap: float = 0.3,
+    range_noise: float = 0.02,
+    returns: bool = True,
+    noise_points: float = 10.0,
+    seed: int = 1,
+    monitor: Optional[Monitor] = None,
+) -> Scan:
+    """Scan a scene from the air. The tunables are those of :func:`.town.simulate_town`.
+
+    Returns
+    -------
+    Scan
+        The same for the same arguments.
+    """
+    monitor = monitor or Monitor()
+    rng = np.random.default_rng([seed, 1])
+    world = World(scene)
+    blocks = list(_blocks(_strips(scene.relief, max_scan_angle, overlap), scene.size, density))
+    firsts = np.cumsum([0] + [block.n_pulses for block in blocks])
+    noisy, heights = _noise(int(firsts[-1]), round(noise_points * scene.size**2 / 1e4), rng)
+    parts = []
+    for i, block in enumerate(blocks):
+        pulses, time = _pulses(world.relief, block, pattern, rng)
+        first, last = np.searchsorted(noisy, firsts[i : i + 2])
+        noise = _noise_echoes(world, pulses.take(noisy[first:last] - firsts[i]), heights[first:last])
+        echoes = _replaced(_heard(world, pulses, block.strip, returns, rng), noise)
+        # The noise of the range lies along the beam.
+        ranges = echoes.range + range_noise * rng.standard_normal(len(echoes))
+        part = _recorded(echoes, time, block.strip, returns, rng)
+        part["xyz"] = pulses.origin[echoes.pulse] + ranges[:, None] * echoes.direction
+        part["pulse"] += firsts[i]
+        parts.append(part)
+        monitor.progress((i + 1) / len(blocks))
+    return Scan(**{name: np.concatenate([part[name] for part in parts]) for name in parts[0]})
+
+
+def _strips(relief: Relief, max_scan_angle: float, overlap: float) -> list[_Strip]:
+    """Return the flight lines, from west to east and back, so that two of them meet in the middle of the town."""
+    tangent, rise = np.tan(np.deg2rad(max_scan_angle)), relief.plane_gradient[1]
+    # On a slope the swath is narrower uphill.
+    up, down = _HEIGHT * tangent / (1 + rise * tangent), _HEIGHT * tangent / (1 - rise * tangent)
+    spacing = (up + down) * (1 - overlap)
+    start = (relief.size + spacing + down - up) / 2
+    numbers = np.arange(np.floor(-(start + up) / spacing), np.ceil((relief.size + down - start) / spacing) + 1)
+    strips: list[_Strip] = []
+    for y in start + numbers * spacing:
+        low, high = max(0.0, y - down), min(relief.size, y + up)
+        if low < high:
+            strips.append(_Strip(len(strips) + 1, float(y), low, high))
+    return strips
+
+
+def _blocks(strips: list[_Strip], size: float, density: float) -> Iterator[_Block]:
+    """Cut strips into blocks; together they have ``density`` pulses per m² of the town."""
+    # Where strips overlap there are more pulses than elsewhere, as in every survey.
+    cell = sum(strip.high - strip.low for strip in strips) / size / density
+    for strip in strips:
+        width = strip.high - strip.low
+        per_line = max(1, round(width / np.sqrt(cell)))
+        n_lines = round(size * width / cell / per_line)
+        step = max(1, _BLOCK // per_line)
+        for line in range(0, n_lines, step):
+            yield _Block(strip, line, min(step, n_lines - line), n_lines, per_line)
+
+
+def _pulses(relief: Relief, block: _Block, pattern: str, rng: np.random.Generator) -> tuple[Beams, np.ndarray]:
+    """Return the beams of a block, aimed at the plane that the ground follows, and their times (s)."""
+    strip, size = block.strip, relief.size
+    line = np.repeat(np.arange(block.line, block.line + block.n_lines), block.pulses_per_line)
+    share = np.tile((np.arange(block.pulses_per_line) + 0.5) / block.pulses_per_line, block.n_lines)
+    ahead: np.ndarray = line + share
+    if pattern == "random":
+        forth = ahead = np.sort(block.line + block.n_lines * rng.random(len(line)))
+        across = rng.random(len(line))
+    elif pattern == "zigzag":
+        forth, across = ahead, np.where(line % 2 == 0, share, 1 - share)
+    else:  # "lines"
+        # Pulses of neighboring lines are not in step.
+        phase = np.repeat(rng.random(block.n_lines) - 0.5, block.pulses_per_line) / block.pulses_per_line
+        forth, across = line + 0.5, share + phase
+    way = ahead * size / block.lines_of_strip
+    x = forth * size / block.lines_of_strip
+    x = x if strip.number % 2 else size - x
+    aim = np.column_stack([x, strip.low + across * (strip.high - strip.low)])
+    time = (strip.number - 1) * (size / _SPEED + _TURN) + way / _SPEED
+    origin = np.column_stack([x, np.full(len(x), strip.y), relief.plane(x, strip.y) + _HEIGHT])
+    return _aimed(relief, np.arange(len(x)), origin, aim), time
+
+
+def _aimed(relief: Relief, pulse: np.ndarray, origin: np.ndarray, aim: np.ndarray) -> Beams:
+    """Return the beams from points (n, 3) to points (n, 2) of the plane."""
+    direction = np.column_stack([aim, relief.plane(*aim.T)]) - origin
+    return Beams(pulse, origin, direction / np.linalg.norm(direction, axis=1)[:, None], aim)
+
+
+def _beside(relief: Relief, beams: Beams, rng: np.random.Generator) -> Beams:
+    """Return for each beam a ray from elsewhere in its footprint."""
+    turn, out = rng.uniform(0.0, 2 * np.pi, len(beams)), _BEAM_RADIUS * np.sqrt(rng.random(len(beams)))
+    shift = np.column_stack([out * np.cos(turn), out * np.sin(turn)])
+    return _aimed(relief, beams.pulse, beams.origin, beams.aim + shift)
+
+
+def _met(world: World, kind: str, beams: Beams, strip: _Strip) -> tuple[np.ndarray, np.ndarray]:
+    """Return the pairs (beam, thing) that may meet: the beam is aimed into the shadow of the thing's box."""
+    low, high = world.boxes(kind)
+    corners = np.stack([low, high])
+    planes = world.relief.plane(corners[:, None, :, 0], corners[None, :, :, 1]).reshape(4, -1)
+    # Heights over the plane, and what the scanner, as a point of view, makes of them on the plane.
+    lift = np.stack([low[:, 2] - planes.max(axis=0), high[:, 2] - planes.min(axis=0)])
+    shadow = strip.y + (corners[:, None, :, 1] - strip.y) * _HEIGHT / (_HEIGHT - lift[None])
+    shadow = shadow.reshape(4, -1)
+    near = np.column_stack([low[:, 0], shadow.min(axis=0)]) - _BEAM_RADIUS
+    far = np.column_stack([high[:, 0], shadow.max(axis=0)]) + _BEAM_RADIUS
+    return in_boxes(beams.aim, near, far)
+
+
+def _heard(world: World, pulses: Beams, strip: _Strip, returns: bool, rng: np.random.Generator) -> Echoes:
+    """Return the echoes of ``pulses`` that the scanner records, by pulse, then by range."""
+    beam, solid = _met(world, "solids", pulses, strip)
+    ends = world.surfaces(pulses, beam, solid)
+    porous = join(
+        [
+            world.leaves(pulses, *_met(world, "crowns", pulses, strip), rng),
+            world.strands(pulses, *_met(world, "wires", pulses, strip), rng),
+        ]
+    )
+    porous = porous.take(porous.range < ends.range[porous.pulse])
+    # Near solids a second ray counts where it ends on something else: at the edge of a roof.
+    beside = _beside(world.relief, pulses.take(np.unique(beam)), rng)
+    others = world.surfaces(beside, *_met(world, "solids", beside, strip))
+    others = others.take(np.abs(others.range - ends.range[others.pulse]) > _DEAD_ZONE)
+    echoes = join([porous, ends, others])
+    echoes = echoes.take(np.lexsort((echoes.range, echoes.pulse)))
+    kept = _separate(echoes, len(pulses), rng) if returns else rank(echoes.pulse) == 0
+    # Water mirrors: what doesn't come from below is lost.
+    slant = np.arccos(-echoes.direction[:, 2])
+    lost = rng.random(len(echoes)) > _WATER_CHANCE * np.exp(-((slant / _WATER_SLANT) ** 2))
+    return echoes.take(kept & ~((echoes.classification == PointClass.WATER) & lost))
+
+
+def _separate(echoes: Echoes, n_pulses: int, rng: np.random.Generator) -> np.ndarray:
+    """Return which echoes, in order, a scanner tells apart before the pulse is used up."""
+    pulse = echoes.pulse
+    number = rank(pulse)
+    is_porous = np.isin(echoes.classification, _LEAFY)
+    goes_on = ~is_porous | (rng.random(len(echoes)) < _THROUGH)
+    kept = np.zeros(len(echoes), bool)
+    last, heard = np.full(n_pulses, -np.inf), np.zeros(n_pulses, np.int64)
+    for k in range(int(number.max()) + 1):
+        at = np.flatnonzero(number == k)
+        at = at[(echoes.range[at] - last[pulse[at]] > _DEAD_ZONE) & (heard[pulse[at]] < _MAX_RETURNS)]
+        kept[at] = True
+        heard[pulse[at]] += np.where(goes_on[at], 1, _MAX_RETURNS)
+        last[pulse[at]] = echoes.range[at]
+    return kept
+
+
+def _noise(n_pulses: int, n_noise: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """Return which pulses are noise, in order, and how far (m) over the ground: half birds, half multipath."""
+    which = np.sort(rng.choice(n_pulses, n_noise, replace=False, shuffle=False))
+    is_bird = rng.permutation(n_noise) % 2 == 0
+    return which, np.where(is_bird, rng.uniform(*_BIRDS, n_noise), -rng.uniform(*_MULTIPATH, n_noise))
+
+
+def _noise_echoes(world: World, pulses: Beams, height: np.ndarray) -> Echoes:
+    """Return the echoes of pulses that a bird or a detour answers, so far (m) over the ground."""
+    ranges = world.ground(pulses) + height / pulses.direction[:, 2]
+    classes = np.where(height > 0, PointClass.HIGH_NOISE, PointClass.LOW_NOISE)
+    return pulses.echoes(slice(None), ranges, classes, np.zeros(len(pulses)))
+
+
+def _replaced(echoes: Echoes, noise: Echoes) -> Echoes:
+    """Return the echoes with those of some pulses replaced."""
+    merged = join([echoes.take(~np.isin(echoes.pulse, noise.pulse)), noise])
+    return merged.take(np.argsort(merged.pulse, kind="stable"))
+
+
+def _recorded(
+    echoes: Echoes, time: np.ndarray, strip: _Strip, returns: bool, rng: np.random.Generator
+) -> dict[str, np.ndarray]:
+    """Return the dimensions of the echoes of a block but their place, ``pulse`` from 0."""
+    pulse, n = echoes.pulse, len(echoes)
+    count = np.bincount(pulse, minlength=len(time))[pulse]
+    _, dy, dz = echoes.direction.T
+    # To the left of the flight the angle is negative; odd strips are flown to the east.
+    angle = np.rad2deg(np.arctan2(dy, -dz)) * (-1 if strip.number % 2 else 1)
+    # Every roof has its own brightness; the pulse's energy is shared by its returns.
+    bright = _REFLECTANCE[echoes.classification] * (0.7 + 0.6 * np.modf(echoes.object_id * 0.618034)[0])
+    intensity = 60_000 * bright / count * (1 + 0.08 * rng.standard_normal(n))
+    return {
+        "classification": echoes.classification,
+        "return_number": (rank(pulse) + 1).astype(np.uint8) * np.uint8(returns),
+        "number_of_returns": count.astype(np.uint8) * np.uint8(returns),
+        "intensity": np.clip(intensity, 1, 65_535).astype(np.uint16),
+        "scan_angle": angle.astype(np.float32),
+        "point_source_id": np.full(n, strip.number, np.uint16),
+        "gps_time": time[pulse],
+        "segment_id": echoes.object_id,
+        "pulse": pulse,
+    }

@@ -1,0 +1,35 @@
+"""Density of occupied area, in clouds whose density is known."""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.cloud.density import point_density, point_spacing
+
+
+@pytest.mark.parametrize("density", [0.2, 2, 20, 200])
+def test_even_cloud(rng, density):
+    side = np.sqrt(40_000 / density)
+    xyz = rng.uniform(0, side, (40_000, 3)) + [600_000, 5_000_000, 0]
+    assert point_density(xyz) == pytest.approx(density, rel=0.03)
+    assert point_spacing(xyz) == pytest.approx(1 / np.sqrt(density), rel=0.02)
+
+
+def test_empty_ground_does_not_count(rng):
+    xyz = rng.uniform(0, 50, (20_000, 3))
+    xyz[10_000:, :2] += 500  # two squares of 2500 m² far apart, 4 points per m² in each
+    assert point_density(xyz) == pytest.approx(4, rel=0.08)
+
+
+def test_scales_with_area(rng):
+    xyz = rng.uniform(0, 50, (20_000, 3))
+    assert point_density(3 * xyz) == pytest.approx(point_density(xyz) / 9, rel=0.01)
+
+
+def test_points_on_a_line_have_a_finite_density():
+    xyz = np.column_stack([np.arange(100.0), np.zeros(100), np.zeros(100)])
+    assert 0.1 < point_density(xyz) < 2  # cells of five points are 5 m wide
+
+
+def test_points_at_one_place_are_refused():
+    with pytest.raises(ValueError, match="All 7 points lie at one place in plan, so they have no density; give"):
+        point_density(np.column_stack([np.ones(7), np.ones(7), np.arange(7)]))

@@ -1,0 +1,98 @@
+"""The fast opening against scipy's slow one with the same octagon, and what any opening must do."""
+
+import numpy as np
+import pytest
+from scipy import ndimage
+
+from lidar_buildings.algorithms.terrain.opening import open_surface
+
+RADII = [1, 3, 4, 5, 8, 12]
+
+
+def plate(radius):
+    """Return the plate (bool) that the opening slides under the surface: what it leaves of a needle's inverse."""
+    size = 4 * radius + 1
+    surface = np.zeros((size, size))
+    # One plate of height 1 is the union of all places that an opening of a plate this large can keep.
+    octagon = _octagon(radius, _corner(radius))
+    surface[radius : 3 * radius + 1, radius : 3 * radius + 1] = octagon
+    return surface, octagon
+
+
+def _octagon(radius, corner):
+    i, j = np.mgrid[-radius : radius + 1, -radius : radius + 1]
+    return abs(i) + abs(j) <= corner
+
+
+def _corner(radius):
+    """Return how far the diagonal sides lie out, |i| + |j|, in the octagon with these cells that is most regular."""
+    # The sides of a regular octagon lie at sqrt(2) radius; steps are two cells, as both ends of a diagonal are cut.
+    return min((abs(c - np.sqrt(2) * radius), c) for c in range(radius, 2 * radius + 1) if (c - 2 * radius) % 2 == 0)[1]
+
+
+@pytest.mark.parametrize("radius", RADII)
+def test_an_octagon_stays_and_one_without_its_rim_goes(radius):
+    surface, octagon = plate(radius)
+    np.testing.assert_array_equal(open_surface(surface, radius), surface)
+    for i, j in np.argwhere(octagon & ~ndimage.binary_erosion(octagon)):
+        dented = surface.copy()
+        dented[radius + i, radius + j] = 0
+        assert open_surface(dented, radius).max() == 0
+
+
+@pytest.mark.parametrize("radius", RADII)
+def test_inside_it_is_the_opening_of_scipy(radius, rng):
+    surface = rng.normal(size=(6 * radius + 15, 6 * radius + 10))
+    slow = ndimage.grey_opening(surface, footprint=_octagon(radius, _corner(radius)))
+    inside = (slice(2 * radius, -2 * radius),) * 2
+    np.testing.assert_array_equal(open_surface(surface, radius)[inside], slow[inside])
+
+
+@pytest.mark.parametrize("radius", RADII)
+def test_inside_it_never_rises_and_twice_is_once(radius, rng):
+    surface = rng.normal(size=(8 * radius + 15, 8 * radius + 10))
+    opened = open_surface(surface, radius)
+    inside = (slice(2 * radius, -2 * radius),) * 2
+    assert (opened <= surface)[inside].all()
+    deeper = (slice(4 * radius, -4 * radius),) * 2
+    np.testing.assert_array_equal(open_surface(opened, radius)[deeper], opened[deeper])
+
+
+@pytest.mark.parametrize("radius", RADII)
+@pytest.mark.parametrize("slopes", [(0.0, 0.0), (0.5, 0.0), (-0.3, 0.7)])
+def test_planes_stay_inside(radius, slopes):
+    i, j = np.mgrid[: 5 * radius + 10, : 5 * radius + 7]
+    plane = 10 + slopes[0] * i + slopes[1] * j
+    inside = (slice(2 * radius, -2 * radius),) * 2
+    np.testing.assert_allclose(open_surface(plane, radius)[inside], plane[inside], atol=1e-12)
+
+
+@pytest.mark.parametrize("radius", [1, 2, 3, 7])
+def test_objects_narrower_than_the_plate_go_and_pits_stay(radius):
+    surface = np.full((60, 50), 2.0)
+    surface[20 : 20 + 2 * radius, 5:45] = 9.0
+    surface[50, 25] = -3.0
+    opened = open_surface(surface, radius)
+    assert opened.max() == 2.0
+    assert opened[50, 25] == -3.0
+
+
+def test_a_building_at_the_border_goes_too():
+    surface = np.zeros((40, 40))
+    surface[:6, :6] = 8.0
+    assert open_surface(surface, 8).max() == 0
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 30), (30, 1), (2, 3)])
+def test_rasters_smaller_than_the_plate_become_level(shape, rng):
+    surface = rng.normal(size=shape)
+    opened = open_surface(surface, 40)
+    assert opened.shape == shape
+    np.testing.assert_array_equal(opened, surface.min())
+
+
+def test_the_surface_given_is_left_alone(rng):
+    surface = rng.normal(size=(20, 20))
+    before = surface.copy()
+    open_surface(surface, 3)
+    np.testing.assert_array_equal(surface, before)

@@ -1,0 +1,132 @@
+"""Seeds lie on the ground of scenes whose ground is known, and on enough of it."""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.algorithms.terrain.seeds import (
+    _windows,
+    lowest_points,
+    seeds_by_lowest,
+    seeds_by_opening,
+)
+
+
+def even(width, depth, step=0.7):
+    x, y = np.meshgrid(np.arange(0, width, step), np.arange(0, depth, step))
+    return np.column_stack([x.ravel(), y.ravel()])
+
+
+def raise_roofs(plan, ground, *roofs):
+    """Return elevations and which points are roof: (west, south, width, depth, elevation) each."""
+    z, is_roof = ground.copy(), np.zeros(len(plan), bool)
+    for west, south, width, depth, elevation in roofs:
+        inside = ((plan >= [west, south]) & (plan <= [west + width, south + depth])).all(axis=1)
+        z[inside] = elevation
+        is_roof |= inside
+    return z, is_roof
+
+
+def test_lowest_points_one_by_one(rng):
+    xyz = rng.uniform([5, -3, 0], [25, 9, 4], (500, 3))
+    lowest = lowest_points(xyz, 1.7)
+    expected = {}
+    for i, (x, y, z) in enumerate(xyz):
+        cell = (int((x - xyz[:, 0].min()) / 1.7), int((y - xyz[:, 1].min()) / 1.7))
+        if cell not in expected or z < xyz[expected[cell], 2]:
+            expected[cell] = i
+    found = {tuple(cell): lowest.index[tuple(cell)] for cell in np.argwhere(lowest.index >= 0).tolist()}
+    assert found == expected
+    assert sorted(lowest.points(lowest.index >= -1)) == sorted(expected.values())
+
+
+def test_of_equally_low_points_the_first_counts():
+    xyz = np.array([[0.5, 0.5, 3.0], [0.1, 0.1, 1.0], [0.2, 0.3, 1.0], [0.9, 0.9, 1.0]])
+    assert lowest_points(xyz, 2.0).index.tolist() == [[1]]
+
+
+def test_seeds_by_lowest_are_one_per_cell(rng):
+    xyz = rng.uniform([0, 0, 0], [90, 60, 5], (4000, 3))
+    seeds = seeds_by_lowest(xyz, 30.0)
+    assert len(seeds) == 6
+    for row in range(2):
+        for column in range(3):
+            low = np.array([column, row]) * 30 + xyz[:, :2].min(axis=0)
+            inside = np.flatnonzero(((xyz[:, :2] >= low) & (xyz[:, :2] < low + 30)).all(axis=1))
+            assert inside[np.argmin(xyz[inside, 2])] in seeds
+
+
+@pytest.mark.parametrize("largest", [0.3, 1, 1.2, 5, 30, 99.5])
+def test_windows_grow_from_one_to_the_largest(largest):
+    windows = _windows(largest)
+    assert windows[0] == 1
+    assert windows[-1] == max(1, np.ceil(largest))
+    assert all(a < b <= max(a + 1, 1.25 * a + 0.5) for a, b in zip(windows, windows[1:]))
+
+
+TERRAINS = {
+    "level": lambda x, y: np.zeros_like(x),
+    "slope": lambda x, y: 0.25 * x - 0.1 * y,
+    "hill": lambda x, y: 12 * np.exp(-((x - 60) ** 2 + (y - 60) ** 2) / (2 * 25**2)),
+    "valley": lambda x, y: 0.004 * (x - 60) ** 2,
+}
+
+
+@pytest.mark.parametrize("name", TERRAINS)
+def test_seeds_cover_terrain_and_no_roof(name, rng):
+    plan = even(120, 120) + rng.uniform(-0.3, 0.3, (len(even(120, 120)), 2))
+    ground = TERRAINS[name](*plan.T)
+    roofs = [(20, 20, 12, 9, 0), (70, 30, 30, 20, 0), (40, 80, 8, 30, 0)]
+    placed = []
+    for west, south, width, depth, _ in roofs:
+        under = ((plan >= [west, south]) & (plan <= [west + width, south + depth])).all(axis=1)
+        placed.append((west, south, width, depth, ground[under].max() + 4))
+    z, is_roof = raise_roofs(plan, ground + rng.normal(0, 0.03, len(plan)), *placed)
+    seeds = seeds_by_opening(np.column_stack([plan, z]), 1.0, 60.0, Monitor())
+    assert len(set(seeds.tolist())) == len(seeds)
+    assert not is_roof[seeds].any()
+    # Every open place of terrain has a seed within a few cells.
+    covered = {(int(x / 6), int(y / 6)) for x, y in plan[seeds]}
+    open_ground = {(int(x / 6), int(y / 6)) for x, y in plan[~is_roof]}
+    assert len(open_ground - covered) <= 0.03 * len(open_ground)
+
+
+def test_pits_are_no_seeds(rng):
+    plan = even(40, 40) + rng.uniform(-0.3, 0.3, (len(even(40, 40)), 2))
+    xyz = np.column_stack([plan, rng.normal(0, 0.02, len(plan))])
+    multipath = np.array([100, 1500, 2222])
+    xyz[multipath, 2] = -9.0
+    seeds = seeds_by_opening(xyz, 1.0, 30.0, Monitor())
+    assert not np.isin(multipath, seeds).any()
+    assert len(seeds) > 1000
+
+
+def test_gaps_without_points_change_nothing(rng):
+    """A lake returns nothing; its shores are still ground."""
+    plan = even(80, 80) + rng.uniform(-0.3, 0.3, (len(even(80, 80)), 2))
+    plan = plan[np.hypot(*(plan - 40).T) > 18]
+    seeds = seeds_by_opening(np.column_stack([plan, 0.05 * plan[:, 0]]), 1.0, 60.0, Monitor())
+    shore = np.hypot(*(plan[seeds] - 40).T) < 20
+    assert shore.sum() > 100
+
+
+def test_a_terrace_keeps_its_upper_level(rng):
+    """A step of 3 m across the whole scene is terrain on both sides: the upper side is wider than any window."""
+    plan = even(150, 60) + rng.uniform(-0.3, 0.3, (len(even(150, 60)), 2))
+    z = np.where(plan[:, 0] > 75, 3.0, 0.0) + rng.normal(0, 0.02, len(plan))
+    seeds = seeds_by_opening(np.column_stack([plan, z]), 1.0, 40.0, Monitor())
+    upper = plan[seeds, 0] > 76
+    assert upper.sum() > 0.9 * 74 * 60
+
+
+def test_progress_only_grows():
+    told = []
+
+    class Listening(Monitor):
+        def progress(self, fraction):
+            told.append(fraction)
+
+    plan = even(30, 30)
+    seeds_by_opening(np.column_stack([plan, np.zeros(len(plan))]), 1.0, 30.0, Listening())
+    assert told == sorted(told)
+    assert told[-1] == 1.0

@@ -1,0 +1,72 @@
+"""Layers of stages as QGIS features: every geometry, with and without heights, and none at all."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from qgis.core import Qgis
+
+from lidar_buildings.algorithms.stage import Features, Field, Layer
+from lidar_buildings.provider.vectors import fields_of, plain, qgis_features, wkb_type
+
+FIELDS = (Field("id", int, "Number."), Field("height", float, "Height.", "m"), Field("word", str, "Word."))
+SQUARE = np.array([[0, 0], [4, 0], [4, 4], [0, 4], [0, 0]], float)
+HOLE = np.array([[1, 1], [1, 2], [2, 2], [2, 1], [1, 1]], float)
+
+
+def raised(flat):
+    return np.column_stack([flat, np.full(len(flat), 5.0)])
+
+
+def shifted(coordinates):
+    return coordinates + np.array([100.0, 200.0, 0.0])[: coordinates.shape[1]]
+
+
+@pytest.mark.parametrize(
+    ("kind", "geometry", "wkb", "wkt"),
+    [
+        (
+            "Polygon",
+            [SQUARE, HOLE],
+            Qgis.WkbType.Polygon,
+            "Polygon ((100 200, 104 200, 104 204, 100 204, 100 200),(101 201, 101 202, 102 202, 102 201, 101 201))",
+        ),
+        ("Polygon", [raised(HOLE)], Qgis.WkbType.PolygonZ, "((101 201 5, 101 202 5, 102 202 5, 102 201 5, 101 201 5))"),
+        ("LineString", SQUARE[:2], Qgis.WkbType.LineString, "LineString (100 200, 104 200)"),
+        ("LineString", raised(SQUARE[:2]), Qgis.WkbType.LineStringZ, "(100 200 5, 104 200 5)"),
+        ("Point", np.array([1.0, 2.0]), Qgis.WkbType.Point, "Point (101 202)"),
+        ("Point", np.array([1.0, 2.0, 3.0]), Qgis.WkbType.PointZ, "(101 202 3)"),
+    ],
+)
+def test_geometries_come_out_in_map_coordinates(kind, geometry, wkb, wkt):
+    layer = Layer("things", "Things", kind, FIELDS)
+    features = Features([geometry], {"id": np.array([3], np.int32), "height": np.array([2.5], "f4"), "word": ["a"]})
+    (feature,) = qgis_features(layer, features, shifted)
+    assert feature.geometry().wkbType() == wkb == wkb_type(layer, features)
+    assert feature.geometry().asWkt(0).endswith(wkt)
+    assert feature.attributes() == [3, 2.5, "a"]
+    assert [type(value) for value in feature.attributes()] == [int, float, str]
+
+
+def test_nothing_found_is_an_empty_layer():
+    layer = Layer("things", "Things", "Polygon", FIELDS)
+    empty = Features([], {"id": [], "height": [], "word": []})
+    assert list(qgis_features(layer, empty, shifted)) == []
+    assert wkb_type(layer, empty) == Qgis.WkbType.Polygon
+    assert fields_of(layer).names() == ["id", "height", "word"]
+
+
+@pytest.mark.parametrize(
+    ("value", "wanted"),
+    [
+        (np.float32(0.5), 0.5),
+        (np.int64(7), 7),
+        (np.bool_(True), True),
+        (float("nan"), None),
+        (np.nan, None),
+        ("a", "a"),
+    ],
+)
+def test_values_are_pythons_own(value, wanted):
+    assert plain(value) == wanted
+    assert type(plain(value)) is type(wanted)
