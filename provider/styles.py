@@ -23,8 +23,6 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
         message, loaded = layer.loadNamedStyle(str(STYLES / f"{self.stem}.qml"))
         if not loaded:
             feedback.pushWarning(f"The style {self.stem} can't be loaded: {message}")
-        # The legend was drawn when the layer was made.
-        layer.legendChanged.emit()
         layer.triggerRepaint()
 
 

@@ -24,6 +24,7 @@ _CELL_SPACINGS, _LEAST_CELL = 1.5, 0.3
 
 # What lies at least so far beneath a patch lies under it and not on it, m.
 _BENEATH = 1.0
+_LOW=0.05
 
 
 @stage(
@@ -111,11 +112,12 @@ def segment_roofs(
     density = point_density(xyz) if density is None else density
     noise = max(surface_noise(xyz), _LEAST_ROUGHNESS) if noise is None else noise
     monitor.resolved(density=density, noise=noise)
-    raised = np.flatnonzero((height_above_ground >= min(min_height, 1.5)) & ~np.isin(classification, NOISE))
+    used = np.flatnonzero(~np.isin(classification, NOISE))
+    raised = used[height_above_ground[used] >= min(min_height, 1.5)]
 
-    patch, _ = segment_patches(xyz[raised], density, noise, max_slope, monitor.part(0, 0.8))
+    patch, _ = segment_patches(xyz[used], density, noise, max_slope, monitor.part(0, 0.8))
     whole = np.full(len(xyz), -1, np.int32)
-    whole[raised] = patch
+    whole[used] = patch
     is_roof = _roofs(xyz, whole, height_above_ground, density, min_height, min_area, max_penetration)
     segment_id = _renumbered(whole, is_roof)
     others = raised[segment_id[raised] == 0]
@@ -142,7 +144,8 @@ def _roofs(
     size = np.maximum(np.bincount(number, minlength=count), 1)
     mean_height = np.bincount(number, height[member], count) / size
     area, penetration = _area_and_penetration(xyz, patch, density)
-    return (area >= min_area) & (mean_height >= min_height) & (penetration <= max_penetration)
+    low = np.bincount(number, height[member] < 0.5, count) / size
+    return (area >= min_area) & (mean_height >= min_height) & (penetration <= max_penetration) & (low <= _LOW)
 
 
 def _area_and_penetration(xyz: np.ndarray, patch: np.ndarray, density: float) -> tuple[np.ndarray, np.ndarray]:

@@ -21,6 +21,7 @@ _STREET_WIDTH = 8.0
 _PLOT = (14.0, 16.0)
 _PLOTS_PER_BLOCK = 6
 _HALL = (40.0, 27.0)
+_HALL_STEP = 5.0
 
 # Plots on a hectare of streets and blocks: as many as can be built on.
 MAX_BUILDINGS = 34
@@ -52,7 +53,7 @@ def build_town(
     scene = Scene(make_relief(size, slope, relief, terrace_height, river, rng))
     plots = _plots(scene, forest)
     if buildings:
-        hall = _hall_place(plots)
+        hall = _hall_place(scene, plots)
         if hall is not None:
             build_hall(scene, hall)
             plots = [plot for plot in plots if not hall.contains(*plot.corners(-1.0).T).any()]
@@ -92,13 +93,13 @@ def _plots(scene: Scene, forest: float) -> list[Rect]:
     return found
 
 
-def _hall_place(plots: list[Rect]) -> Optional[Rect]:
-    """Return room for a hall in the middle of a block of plots back to back, None without any."""
+def _hall_place(scene: Scene, plots: list[Rect]) -> Optional[Rect]:
+    """Return room for a hall in the middle of a block of plots back to back, None without any that is level enough."""
     for plot in plots:
         place = plot.part(0.0, plot.width / 2, *_HALL)
         covered = [other for other in plots if place.contains(other.x, other.y)]
-        # Three plots deep on both sides, all of them free: the hall stands on plots only.
-        if len(covered) == 6:
+        # Three plots on both sides, all of them free: the hall stands on plots only.
+        if len(covered) == 6 and np.ptp(scene.relief.ground(*place.corners().T)) < _HALL_STEP:
             return place
     return None
 

@@ -14,7 +14,11 @@ _CLUMP_SHARE = 0.4
 _CLUMP_SIZE = 4
 
 # Distance between the trees of the forest (m).
-_FOREST_SPACING = 5.0
+_FOREST_SPACING = 4.5
+
+# Heights of trees (m) in gardens and in the forest.
+_GARDEN_TREES = (5.0, 16.0)
+_FOREST_TREES = (10.0, 22.0)
 
 
 def plant_trees(scene: Scene, per_hectare: float, forest: float, rng: np.random.Generator, monitor: Monitor) -> None:
@@ -28,7 +32,7 @@ def plant_trees(scene: Scene, per_hectare: float, forest: float, rng: np.random.
     clumps = clumps[_is_free(scene, clumps)]
     feet = _feet(scene, np.concatenate([open_ground, clumps]))
     for i, foot in enumerate(feet):
-        _plant_tree(scene, foot, rng)
+        _plant_tree(scene, foot, rng.uniform(*_GARDEN_TREES), rng)
         monitor.progress((1 - forest) * i / len(feet))
     _plant_forest(scene, forest, rng, monitor.part(1 - forest, 1.0))
 
@@ -50,7 +54,7 @@ def _plant_forest(scene: Scene, share: float, rng: np.random.Generator, monitor:
     for i, foot in enumerate(feet):
         kind = rng.random()
         if kind < 0.9:
-            _plant_tree(scene, foot, rng)
+            _plant_tree(scene, foot, rng.uniform(*_FOREST_TREES), rng)
         if kind > 0.7:
             _plant_bush(scene, foot, rng)
         monitor.progress(i / len(feet))
@@ -79,9 +83,9 @@ def _is_free(scene: Scene, places: np.ndarray) -> np.ndarray:
     return inside & ~scene.near_building(places, 1.5) & ~scene.near_water(*places.T)
 
 
-def _plant_tree(scene: Scene, foot: tuple[float, float, float], rng: np.random.Generator) -> None:
+def _plant_tree(scene: Scene, foot: tuple[float, float, float], height: float, rng: np.random.Generator) -> None:
     x, y, ground = foot
-    number, height = scene.new_id(), rng.uniform(5.0, 16.0)
+    number = scene.new_id()
     if rng.random() < 0.3:
         _conifer(scene, foot, height, number, rng)
     else:

@@ -32,7 +32,7 @@ class Tin:
         # Qhull works in absolute coordinates: shifted ones keep their digits.
         self.shift = np.append((low + high) / 2, 0.0)
         self.n_nodes = len(nodes)
-        reach = 3 * float((high - low).max()) + 10.0
+        self.reach = reach = 3 * float((high - low).max()) + 10.0
         corners = np.array([[-reach, -reach], [reach, -reach], [reach, reach], [-reach, reach]])
         self._node_tree = spatial.cKDTree(nodes[:, :2] - self.shift[:2])
         heights = nodes[self._node_tree.query(corners)[1], 2]
@@ -52,10 +52,11 @@ class Tin:
         """Return the facet (n,), int32, under each point.
 
         Each point starts at a facet of its nearest node and walks from there, all points of a
-        chunk together: a step or two for nearly all of them.
+        chunk together: a step or two for nearly all of them. Beyond the far corners the facet
+        is the one at the nearest place between them.
         """
         monitor = monitor or Monitor()
-        plan = xyz[:, :2] - self.shift[:2]
+        plan = np.clip(xyz[:, :2] - self.shift[:2], -0.99 * self.reach, 0.99 * self.reach)
         found = np.empty(len(plan), np.int32)
         for start in range(0, len(plan), _CHUNK):
             monitor.progress(start / len(plan))

@@ -10,29 +10,17 @@ RADII = [1, 3, 4, 5, 8, 12]
 
 
 def plate(radius):
-    """Return the plate (bool) that the opening slides under the surface: what it leaves of a needle's inverse."""
-    size = 4 * radius + 1
-    surface = np.zeros((size, size))
-    # One plate of height 1 is the union of all places that an opening of a plate this large can keep.
-    octagon = _octagon(radius, _corner(radius))
-    surface[radius : 3 * radius + 1, radius : 3 * radius + 1] = octagon
-    return surface, octagon
-
-
-def _octagon(radius, corner):
+    """Return the octagon of cells (bool) whose diagonal sides, |i| + |j|, come nearest to those of a regular one."""
     i, j = np.mgrid[-radius : radius + 1, -radius : radius + 1]
-    return abs(i) + abs(j) <= corner
-
-
-def _corner(radius):
-    """Return how far the diagonal sides lie out, |i| + |j|, in the octagon with these cells that is most regular."""
-    # The sides of a regular octagon lie at sqrt(2) radius; steps are two cells, as both ends of a diagonal are cut.
-    return min((abs(c - np.sqrt(2) * radius), c) for c in range(radius, 2 * radius + 1) if (c - 2 * radius) % 2 == 0)[1]
+    # A diagonal half as long as d cells takes 2 d of that sum away.
+    sides = [2 * radius - 2 * d for d in range(radius // 2 + 1)]
+    return abs(i) + abs(j) <= min(sides, key=lambda side: abs(side - np.sqrt(2) * radius))
 
 
 @pytest.mark.parametrize("radius", RADII)
 def test_an_octagon_stays_and_one_without_its_rim_goes(radius):
-    surface, octagon = plate(radius)
+    octagon = plate(radius)
+    surface = np.pad(octagon.astype(float), radius)
     np.testing.assert_array_equal(open_surface(surface, radius), surface)
     for i, j in np.argwhere(octagon & ~ndimage.binary_erosion(octagon)):
         dented = surface.copy()
@@ -43,7 +31,7 @@ def test_an_octagon_stays_and_one_without_its_rim_goes(radius):
 @pytest.mark.parametrize("radius", RADII)
 def test_inside_it_is_the_opening_of_scipy(radius, rng):
     surface = rng.normal(size=(6 * radius + 15, 6 * radius + 10))
-    slow = ndimage.grey_opening(surface, footprint=_octagon(radius, _corner(radius)))
+    slow = ndimage.grey_opening(surface, footprint=plate(radius))
     inside = (slice(2 * radius, -2 * radius),) * 2
     np.testing.assert_array_equal(open_surface(surface, radius)[inside], slow[inside])
 
@@ -83,7 +71,7 @@ def test_a_building_at_the_border_goes_too():
     assert open_surface(surface, 8).max() == 0
 
 
-@pytest.mark.parametrize("shape", [(1, 1), (1, 30), (30, 1), (2, 3)])
+@pytest.mark.parametrize("shape", [(1, 1), (2, 3), (9, 7)])
 def test_rasters_smaller_than_the_plate_become_level(shape, rng):
     surface = rng.normal(size=shape)
     opened = open_surface(surface, 40)

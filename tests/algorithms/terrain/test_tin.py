@@ -110,11 +110,11 @@ def test_nodes_on_a_line_interpolate_along_it():
 
 
 def test_steepness_and_longest_edge_of_a_roof():
-    # Two facets of slope 1 that meet in a ridge along y, 10 m long.
-    tin = Tin(np.array([[0.0, 0, 0], [4, 5, 4], [8, 0, 0], [4, -5, 4]]))
-    facet = tin.locate(np.array([[2.0, 0.1, 0], [6.0, 0.1, 0]]))
+    # Two facets of slope 1 that meet in a ridge along y, 6 m long, their longest edge.
+    tin = Tin(np.array([[0.0, 0, 0], [5, 3, 5], [10, 0, 0], [5, -3, 5]]))
+    facet = tin.locate(np.array([[2.0, 0.1, 0], [8.0, 0.1, 0]]))
     np.testing.assert_allclose(tin.steepness()[facet], np.sqrt(0.5))
-    np.testing.assert_allclose(tin.longest_edge()[facet], 10)
+    np.testing.assert_allclose(tin.longest_edge()[facet], 6)
 
 
 def test_empty_search(nodes):
