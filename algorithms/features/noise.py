@@ -14,6 +14,9 @@ _SAMPLE = 20_000
 
 _NEIGHBORS = 12
 
+# A neighborhood is two-dimensional when it is at least so wide for its length; 60 points always are.
+_LEAST_WIDTH, _MOST_NEIGHBORS = 0.45, 60
+
 # A fifth of the surroundings of any cloud with ground in it is open ground or roof.
 _SMOOTH_SHARE = 0.2
 
@@ -48,6 +51,40 @@ def surface_noise(xyz: np.ndarray, tree: Any = None) -> float:
     covariances, _ = Nearest(count).covariances(np.ascontiguousarray(xyz.T), tree, _sample(xyz))
     across = symmetric_eigenvalues(covariances)[:, 2] * count / (count - 3)
     return max(float(np.sqrt(np.quantile(across, _SMOOTH_SHARE))), _LEAST_NOISE)
+
+
+def surface_neighbors(xyz: np.ndarray, least: int, tree: Any = None) -> int:
+    """Return how many nearest points span a surface in both directions.
+
+    Scanners put points close together along a scan line and leave gaps between the lines. A
+    neighborhood that holds one line only has no plane.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points (m).
+    least : int
+        Where the count starts.
+    tree : scipy.spatial.cKDTree, optional
+        Tree of ``xyz``, built when absent.
+
+    Returns
+    -------
+    int
+        The least count, growing by half from ``least`` and at most 60, with which four fifths of the
+        smooth neighborhoods are at least 0.45 times as wide as long; at most n.
+    """
+    tree = spatial.cKDTree(xyz) if tree is None else tree
+    columns, rows = np.ascontiguousarray(xyz.T), _sample(xyz)
+    count = least
+    while count < min(_MOST_NEIGHBORS, len(xyz)):
+        eigenvalues = symmetric_eigenvalues(Nearest(count).covariances(columns, tree, rows)[0])
+        smooth = eigenvalues[:, 2] <= np.quantile(eigenvalues[:, 2], _SMOOTH_SHARE + 0.1)
+        width = np.sqrt(eigenvalues[smooth, 1] / np.maximum(eigenvalues[smooth, 0], 1e-12))
+        if np.quantile(width, 0.2) >= _LEAST_WIDTH:
+            break
+        count = int(np.ceil(count * 1.5))
+    return min(count, _MOST_NEIGHBORS, len(xyz))
 
 
 def _sample(xyz: np.ndarray) -> np.ndarray:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import Callable
+from typing import Any, Callable
 
 import numpy as np
 
 from ..features.eigen import Nearest, smallest_eigenvectors, symmetric_eigenvalues
+from ..features.noise import surface_neighbors
 from ..packages import csgraph, sparse, spatial
 from ..stage import Monitor
 
@@ -19,7 +20,7 @@ _REACH_DEVIATIONS = 8.0
 _LEAST_NEIGHBORS, _MOST_NEIGHBORS = 8, 60
 
 # A point lies on a plane within this many deviations of the noise; the plane itself is smooth below this many.
-_ON_PLANE, _SMOOTH = 3.0, 1.5
+_ON_PLANE, _SMOOTH = 3.0, 3.0
 
 # Two planes are one surface when each holds the other's point within this many deviations and their normals agree.
 _SAME_SURFACE = 4.5
@@ -76,7 +77,8 @@ def segment_patches(
     """
     if len(xyz) < _LEAST_NEIGHBORS:
         return np.full(len(xyz), -1, np.int32), np.zeros((len(xyz), 3))
-    planes = _local_planes(xyz, _neighbors_for(density, noise, len(xyz)), monitor.part(0, 0.6))
+    tree = spatial.cKDTree(xyz)
+    planes = _local_planes(xyz, tree, _neighbors_for(xyz, tree, density, noise), monitor.part(0, 0.6))
     plane = _smoothest_plane(xyz, planes, noise, monitor.part(0.6, 0.8))
     on_surface = (planes.deviation[plane] <= _SMOOTH * noise) & (plane >= 0)
     on_surface &= planes.normal[plane, 2] >= np.cos(np.radians(max_slope))
@@ -84,13 +86,14 @@ def segment_patches(
     return np.where(on_surface, component, -1).astype(np.int32), planes.normal[plane]
 
 
-def _neighbors_for(density: float, noise: float, n_points: int) -> int:
-    wanted = np.ceil(np.pi * (_REACH_DEVIATIONS * noise) ** 2 * density)
-    return int(min(max(wanted, _LEAST_NEIGHBORS), _MOST_NEIGHBORS, n_points))
+def _neighbors_for(xyz: np.ndarray, tree: Any, density: float, noise: float) -> int:
+    """Return the size of neighborhoods whose planes neither noise nor scan lines turn."""
+    against_noise = int(np.ceil(np.pi * (_REACH_DEVIATIONS * noise) ** 2 * density))
+    least = min(max(against_noise, _LEAST_NEIGHBORS), _MOST_NEIGHBORS)
+    return surface_neighbors(xyz, least, tree)
 
 
-def _local_planes(xyz: np.ndarray, n_neighbors: int, monitor: Monitor) -> LocalPlanes:
-    tree = spatial.cKDTree(xyz)
+def _local_planes(xyz: np.ndarray, tree: Any, n_neighbors: int, monitor: Monitor) -> LocalPlanes:
     columns = np.ascontiguousarray(xyz.T)
     nearest = Nearest(n_neighbors)
     planes = LocalPlanes(
@@ -132,10 +135,12 @@ def _linked(
     xyz: np.ndarray, planes: LocalPlanes, plane: np.ndarray, on_surface: np.ndarray, noise: float, monitor: Monitor
 ) -> np.ndarray:
     """Return components (n,) of neighbors whose planes are one surface."""
+    # Spread over the ranks, so that links cross from one scan line to the next.
+    linked = np.unique(np.linspace(1, planes.neighbors.shape[1] - 1, _LINKS - 1).astype(int))
     here, there = [], []
     for start in range(0, len(xyz), _CHUNK):
         rows = np.arange(start, min(start + _CHUNK, len(xyz)))
-        for neighbor in planes.neighbors[rows, 1:_LINKS].T:
+        for neighbor in planes.neighbors[rows][:, linked].T:
             pair = on_surface[rows] & on_surface[neighbor]
             a, b = rows[pair], neighbor[pair]
             same = np.einsum("ij,ij->i", planes.normal[plane[a]], planes.normal[plane[b]]) >= _SAME_DIRECTION

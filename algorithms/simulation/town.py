@@ -147,9 +147,9 @@ def simulate_town(
     xyz : ndarray of shape (n, 3), float64
         Coordinates (m), by time, then by return.
     classification : ndarray of shape (n,), uint8
-        The truth: 2 ground; 3, 4, 5 vegetation under 0.5 m, under 2 m and higher; 6 buildings with walls, chimneys and
-        dormers; 7 and 18 low and high noise; 9 water; 14 wires; 15 their poles; 17 bridge decks; 1 cars, walls and
-        the rails of bridges.
+        The truth: 2 ground; 3, 4, 5 vegetation under 0.5 m, under 2 m and higher (stems are 5); 6 buildings with walls,
+        chimneys and dormers; 7 and 18 low and high noise; 9 water; 14 wires; 15 their poles; 17 bridge decks; 1 cars,
+        walls and the rails of bridges.
     return_number, number_of_returns : ndarray of shape (n,), uint8
         Returns of a pulse, up to five; all 0 without ``returns``.
     intensity : ndarray of shape (n,), uint16
