@@ -2,6 +2,7 @@
 #
 #   PROFILE=folder   keep QGIS's settings and the plugin there instead of in your own profile
 #   TILE=path.laz    let "make demo" look for buildings in your own tile
+#   SIZES="0.1 1 10" million points that "make bench" measures (0.1 1); STAGES="…" only these stages
 
 .DEFAULT_GOAL := help
 SHELL := /bin/bash
@@ -45,14 +46,14 @@ lint: $(VENV)/made ## ruff and mypy
 	@$(PYTHON) scripts/metadata.py --check
 
 bench: install $(VENV)/made ## time and memory of every stage (a table, and benchmarks.json)
-	@scripts/offscreen.sh $(VENV)/bin/python -m tests.benchmarks
+	@scripts/offscreen.sh $(VENV)/bin/python tests/benchmarks/benchmark.py $(if $(SIZES),--sizes $(SIZES)) $(if $(STAGES),--stages $(STAGES))
 
 package: ## the zip for QGIS's plugin repository (in dist/)
 	@$(PYTHON) scripts/metadata.py
 	@$(PYTHON) scripts/package.py
 
 clean: ## remove what these commands made in this folder
-	rm -rf $(VENV) demo dist benchmarks.json .hypothesis .mypy_cache .pytest_cache .ruff_cache .qgis-settings
+	rm -rf $(VENV) demo dist benchmarks.json tests/benchmarks/.cache .hypothesis .mypy_cache .pytest_cache .ruff_cache .qgis-settings
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # The system's packages show through, so that the tests run on the numpy and the QGIS that users have.

@@ -80,7 +80,7 @@ _PIPELINES = (
             Step("ground", "classify_ground_tin"),
             Step("height", "compute_height_above_ground"),
             Step("roofs", "segment_roofs"),
-            Step("buildings", "classify_buildings", {"n_neighbors": 10}),
+            Step("buildings", "classify_buildings", {"n_neighbors": 10, "max_penetration": 0.4}),
             Step("complete", "complete_buildings"),
             Step("footprints", "extract_footprints"),
         ),

@@ -12,6 +12,7 @@ from .quality.buildings import assess_buildings
 from .quality.ground import assess_ground
 from .segmentation.regions import segment_regions
 from .segmentation.roofs import segment_roofs
+from .simulation.town import simulate_town
 from .terrain.ground_tin import classify_ground_tin
 from .terrain.height import compute_height_above_ground
 
@@ -28,6 +29,7 @@ _FUNCTIONS = (
     extract_footprints,
     assess_buildings,
     assess_ground,
+    simulate_town,
 )
 
 STAGES = {function.stage.name: function.stage for function in _FUNCTIONS}

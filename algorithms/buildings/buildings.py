@@ -12,6 +12,7 @@ from ..cloud.density import point_density
 from ..features.eigen import neighborhood_eigenvalues, shannon_entropy_lps, symmetric_eigenvalues
 from ..packages import cluster
 from ..params import MinBuildingArea, PointDensity, Seed
+from ..segmentation.extent import penetration
 from ..stage import Monitor, Param, stage
 
 # Entropies that differ by less than this are alike.
@@ -28,6 +29,8 @@ def classify_buildings(
     xyz,
     classification,
     cluster_id,
+    return_number=None,
+    number_of_returns=None,
     *,
     min_area: MinBuildingArea = 4.0,
     n_neighbors: Annotated[
@@ -48,6 +51,17 @@ def classify_buildings(
             "compare each cluster with that instead of splitting one kind in two.",
         ),
     ] = True,
+    max_penetration: Annotated[
+        float,
+        Param(
+            "Maximum penetration",
+            "How much of the beam may pass through a building (cells with points beneath, returns that are not the "
+            "last). Below 1 the penetration of a cluster counts as much as its entropy; 1 is the method as published.",
+            low=0,
+            high=1,
+            open_low=True,
+        ),
+    ] = 1.0,
     density: PointDensity = None,
     seed: Seed = 0,
     monitor=None,
@@ -65,6 +79,8 @@ def classify_buildings(
         ASPRS classes.
     cluster_id : ndarray of shape (n,), int32
         Clusters from 1; points of 0 keep their class.
+    return_number, number_of_returns : ndarray of shape (n,), uint8, optional
+        Used for penetration where given.
 
     Returns
     -------
@@ -107,12 +123,22 @@ def classify_buildings(
     means = _cluster_means(values, position, len(ids))
     split = _split(means, n_neighbors, guard, seed, monitor)
     monitor.resolved(building_entropy=split.building, other_entropy=split.other)
+    sure = split.confidence(means)
+    if max_penetration < 1:
+        sure = _with_solidity(sure, penetration(xyz, cluster_id - 1, density, return_number, number_of_returns)[ids - 1], max_penetration)
 
     entropy[clustered] = values
     cluster_entropy[clustered] = means[position]
-    confidence[clustered] = split.confidence(means)[position]
-    result[clustered[split.is_building(means)[position]]] = PointClass.BUILDING
+    confidence[clustered] = sure[position]
+    result[clustered[(sure > 0.5)[position]]] = PointClass.BUILDING
     return result.astype(np.uint8), entropy, cluster_entropy, confidence
+
+
+def _with_solidity(sure: np.ndarray, penetration: np.ndarray, most: float) -> np.ndarray:
+    """Return the mean of two confidences, that of the entropy and 1 … 0 as penetration goes from 0 to twice the most."""
+    solid = np.clip(1 - penetration / (2 * most), 0, 1)
+    both = (np.nan_to_num(sure, nan=0.5) + solid) / 2
+    return np.where(penetration <= most, both, np.minimum(both, 0.5))
 
 
 def _cluster_means(values: np.ndarray, position: np.ndarray, count: int) -> np.ndarray:
@@ -125,15 +151,10 @@ def _cluster_means(values: np.ndarray, position: np.ndarray, count: int) -> np.n
 
 @dataclass(frozen=True)
 class _Split:
-    """Two mean entropies, of buildings and of everything else; ``empty`` says that nothing is a building."""
+    """Two mean entropies, of buildings and of everything else; alike, they leave every cluster undecided."""
 
     building: float
     other: float
-    empty: bool = False
-
-    def is_building(self, means: np.ndarray) -> np.ndarray:
-        """Return which clusters lie nearer to the buildings' mean."""
-        return (self.confidence(means) > 0.5) & (not self.empty)
 
     def confidence(self, means: np.ndarray) -> np.ndarray:
         """Return the distance to the others' mean over the sum of both distances."""
@@ -153,7 +174,7 @@ def _split(means: np.ndarray, n_neighbors: int, guard: bool, seed: int, monitor:
         one = "is only one cluster" if len(known) < 2 else "are only clusters of the same entropy"
         monitor.warn(f"There {one}: nothing to separate, so nothing was called a building.")
         same = float(known.mean()) if len(known) else np.nan
-        return _Split(same, same, empty=True)
+        return _Split(same, same)
     if not alike:
         two_means = cluster.KMeans(n_clusters=2, n_init=10, random_state=seed).fit(known[:, None])
         low, high = sorted(two_means.cluster_centers_[:, 0].tolist())

@@ -48,7 +48,7 @@ class LocalPlanes:
 
 def segment_patches(
     xyz: np.ndarray, density: float, noise: float, max_slope: float, monitor: Monitor
-) -> tuple[np.ndarray, np.ndarray]:
+) -> np.ndarray:
     """Group points that lie on smooth surfaces.
 
     Each point takes the smoothest plane among those of its neighbors that hold it, so that
@@ -70,20 +70,18 @@ def segment_patches(
 
     Returns
     -------
-    patch : ndarray of shape (n,), int32
+    ndarray of shape (n,), int32
         Patch of each point from 0, -1 where it lies on no smooth surface.
-    normal : ndarray of shape (n, 3), float64
-        Normal of the plane that the point took; meaningless where patch is -1.
     """
     if len(xyz) < _LEAST_NEIGHBORS:
-        return np.full(len(xyz), -1, np.int32), np.zeros((len(xyz), 3))
+        return np.full(len(xyz), -1, np.int32)
     tree = spatial.cKDTree(xyz)
     planes = _local_planes(xyz, tree, _neighbors_for(xyz, tree, density, noise), monitor.part(0, 0.6))
     plane = _smoothest_plane(xyz, planes, noise, monitor.part(0.6, 0.8))
     on_surface = (planes.deviation[plane] <= _SMOOTH * noise) & (plane >= 0)
     on_surface &= planes.normal[plane, 2] >= np.cos(np.radians(max_slope))
     component = _linked(xyz, planes, plane, on_surface, noise, monitor.part(0.8, 1))
-    return np.where(on_surface, component, -1).astype(np.int32), planes.normal[plane]
+    return np.where(on_surface, component, -1).astype(np.int32)
 
 
 def _neighbors_for(xyz: np.ndarray, tree: Any, density: float, noise: float) -> int:

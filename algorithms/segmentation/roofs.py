@@ -7,24 +7,23 @@ from typing import Annotated, Optional
 import numpy as np
 
 from ..cloud.asprs import NOISE
-from ..cloud.cells import grid_over
 from ..cloud.density import point_density
 from ..features.noise import surface_noise
-from ..packages import ndimage
 from ..params import PointDensity
-from ..stage import Monitor, Param, stage
+from ..stage import Param, stage
 from .connectivity import connect, number_large
+from .extent import plan_areas
 from .patches import segment_patches
 
-# Roof tiles, gravel and gutters are rougher than the smoothest surfaces, by which the noise is measured.
-_LEAST_ROUGHNESS = 0.02
+# Roof tiles, gravel and gutters are rougher than the smoothest surfaces, by which the noise is measured,
+# and the more so the farther apart the points are (m; share of the point spacing).
+_LEAST_ROUGHNESS, _ROUGHNESS_OF_SPACING = 0.02, 0.05
 
-# Cells in which a patch's area and what lies beneath it are counted, in point spacings, and their least size (m).
-_CELL_SPACINGS, _LEAST_CELL = 1.5, 0.3
+# Points lower than this stand on the ground (kerbs, cars' bonnets, low plants), m.
+_RAISED = 1.5
 
-# What lies at least so far beneath a patch lies under it and not on it, m.
-_BENEATH = 1.0
-_LOW=0.05
+# A surface of which more than this share lies lower than this (m) goes on into the ground: a bridge, a ramp, a slope.
+_LOW_SHARE, _LOW = 0.05, 0.5
 
 
 @stage(
@@ -40,7 +39,7 @@ def segment_roofs(
     *,
     min_height: Annotated[
         float,
-        Param("Minimum height", "Mean height above ground of the lowest roof.", unit="m", low=0, high=100),
+        Param("Minimum height", "Mean height above ground of the lowest roof and of other clusters.", unit="m", low=0, high=100),
     ] = 2.0,
     min_area: Annotated[
         float,
@@ -50,16 +49,6 @@ def segment_roofs(
         float,
         Param("Maximum slope", "Slope of the steepest roof.", unit="°", low=0, high=90),
     ] = 75.0,
-    max_penetration: Annotated[
-        float,
-        Param(
-            "Maximum penetration",
-            "Share of a surface's cells with points well beneath it, from which it is taken for a canopy: "
-            "the beam passes through leaves and not through roofs.",
-            low=0,
-            high=1,
-        ),
-    ] = 0.5,
     noise: Annotated[
         Optional[float],
         Param(
@@ -69,7 +58,7 @@ def segment_roofs(
             low=0,
             high=10,
             open_low=True,
-            automatic="measured on the smoothest fifth of the cloud, at least 0.02 m.",
+            automatic="measured on the smoothest fifth of the cloud, at least 0.02 m, and a twentieth of the point spacing.",
             advanced=True,
         ),
     ] = None,
@@ -78,9 +67,9 @@ def segment_roofs(
 ):
     """Gather the points above the ground into roof surfaces and clusters of everything else.
 
-    A roof surface is a patch on which neighbors share a plane, that is large and high enough and that the beam
-    does not pass through. What is left above the ground (crowns, hedges, wires, roof edges) is clustered by
-    distance, so that both kinds can be told apart by their entropy afterwards.
+    A roof surface is a patch on which neighbors share a plane, that is large and high enough and does not go on
+    into the ground as bridges and ramps do. What is left above the ground (crowns, hedges, wires, roof edges) is
+    clustered by distance, so that both kinds can be told apart by their entropy afterwards.
 
     Parameters
     ----------
@@ -100,9 +89,8 @@ def segment_roofs(
 
     Notes
     -----
-    The noise and the density of the cloud set every tolerance: a plane's neighborhood, the distance at which a
-    point lies on it, and the cells in which area and penetration are counted. Penetration needs no return numbers.
-    This is the "more robust segmentation" that the paper names as future work.
+    The noise and the density of the cloud set every tolerance: a plane's neighborhood, and the distance at which
+    a point lies on it. This is the "more robust segmentation" that the paper names as future work.
 
     References
     ----------
@@ -110,70 +98,54 @@ def segment_roofs(
     entropy and the k-means concept, section 4. Sampath, A., Shan, J., 2007, as in "Segment regions".
     """
     density = point_density(xyz) if density is None else density
-    noise = max(surface_noise(xyz), _LEAST_ROUGHNESS) if noise is None else noise
+    noise = _roughness(xyz, density) if noise is None else noise
     monitor.resolved(density=density, noise=noise)
     used = np.flatnonzero(~np.isin(classification, NOISE))
-    raised = used[height_above_ground[used] >= min(min_height, 1.5)]
 
-    patch, _ = segment_patches(xyz[used], density, noise, max_slope, monitor.part(0, 0.8))
-    whole = np.full(len(xyz), -1, np.int32)
-    whole[used] = patch
-    is_roof = _roofs(xyz, whole, height_above_ground, density, min_height, min_area, max_penetration)
-    segment_id = _renumbered(whole, is_roof)
-    others = raised[segment_id[raised] == 0]
+    patch = np.full(len(xyz), -1, np.int32)
+    patch[used] = segment_patches(xyz[used], density, noise, max_slope, monitor.part(0, 0.8))
+    is_roof, is_terrain = _roofs(xyz, patch, height_above_ground, density, min_height, min_area)
+    segment_id = _renumbered(patch, is_roof)
+
+    is_other = (height_above_ground >= min(_RAISED, min_height)) & (segment_id == 0) & ~np.append(is_terrain, False)[patch]
+    others = used[is_other[used]]
+    reach = 2 / np.sqrt(density)
+    component = connect(xyz[others], reach, reach, monitor.part(0.8, 1))
+    ids = number_large(_high(component, height_above_ground[others], min_height), min_area * density)
     cluster_id = segment_id.copy()
-    ids = _other_clusters(xyz[others], density, min_area, monitor.part(0.8, 1))
     cluster_id[others] = np.where(ids > 0, ids + segment_id.max(initial=0), 0)
     return segment_id, cluster_id
 
 
+def _roughness(xyz: np.ndarray, density: float) -> float:
+    """Return how far points of one roof surface may lie off its plane (one standard deviation, m)."""
+    return float(np.hypot(max(surface_noise(xyz), _LEAST_ROUGHNESS), _ROUGHNESS_OF_SPACING / np.sqrt(density)))
+
+
 def _roofs(
-    xyz: np.ndarray,
-    patch: np.ndarray,
-    height: np.ndarray,
-    density: float,
-    min_height: float,
-    min_area: float,
-    max_penetration: float,
-) -> np.ndarray:
-    """Return for each patch whether it is large, high and solid enough for a roof."""
+    xyz: np.ndarray, patch: np.ndarray, height: np.ndarray, density: float, min_height: float, min_area: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return for each patch whether it is a roof, and whether it goes on into the ground."""
     member = patch >= 0
     if not member.any():
-        return np.zeros(0, bool)
-    number, count = patch[member], int(patch.max()) + 1
-    size = np.maximum(np.bincount(number, minlength=count), 1)
-    mean_height = np.bincount(number, height[member], count) / size
-    area, penetration = _area_and_penetration(xyz, patch, density)
-    low = np.bincount(number, height[member] < 0.5, count) / size
-    return (area >= min_area) & (mean_height >= min_height) & (penetration <= max_penetration) & (low <= _LOW)
+        return np.zeros(0, bool), np.zeros(0, bool)
+    number = patch[member]
+    size = np.maximum(np.bincount(number), 1)
+    mean_height = np.bincount(number, height[member]) / size
+    is_terrain = np.bincount(number, height[member] < _LOW) / size > _LOW_SHARE
+    area = plan_areas(xyz[member], number, density)
+    return (area >= min_area) & (mean_height >= min_height) & ~is_terrain, is_terrain
 
 
-def _area_and_penetration(xyz: np.ndarray, patch: np.ndarray, density: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the area (m²) of each patch seen from above, and the share of its cells with points well beneath it."""
-    size = max(_LEAST_CELL, _CELL_SPACINGS / np.sqrt(density))
-    grid = grid_over(xyz, size)
-    cell = grid.number(xyz)
-    cells, index = np.unique(cell, return_inverse=True)
-    lowest = ndimage.minimum(xyz[:, 2], index, np.arange(len(cells)))
-
-    member = np.flatnonzero(patch >= 0)
-    pair = patch[member].astype(np.int64) * len(cells) + index[member]
-    pairs, position = np.unique(pair, return_inverse=True)
-    bottom = ndimage.minimum(xyz[member, 2], position, np.arange(len(pairs)))
-    owner, where = np.divmod(pairs, len(cells))
-    count = int(patch.max()) + 1
-    occupied = np.bincount(owner, minlength=count)
-    beneath = np.bincount(owner, lowest[where] < bottom - _BENEATH, count)
-    return occupied * size**2, beneath / np.maximum(occupied, 1)
+def _high(component: np.ndarray, height: np.ndarray, min_height: float) -> np.ndarray:
+    """Return the components, -1 for those that are lower than ``min_height`` on the mean."""
+    if not len(component):
+        return component
+    mean = np.bincount(component, height) / np.bincount(component)
+    return np.where(mean[component] >= min_height, component, -1)
 
 
 def _renumbered(patch: np.ndarray, chosen: np.ndarray) -> np.ndarray:
     """Return ids (n,), int32, from 1 for the chosen patches, 0 elsewhere."""
     number = np.append(np.where(chosen, np.cumsum(chosen), 0), 0).astype(np.int32)
     return number[patch]
-
-
-def _other_clusters(xyz: np.ndarray, density: float, min_area: float, monitor: Monitor) -> np.ndarray:
-    """Return ids (n,) of clusters of points that are no roof: near in plan and in height alike."""
-    reach = 2 / np.sqrt(density)
-    return number_large(connect(xyz, reach, reach, monitor), min_area * density)

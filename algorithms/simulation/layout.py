@@ -62,8 +62,8 @@ def build_town(
         for k, i in enumerate(np.sort(rng.permutation(len(plots))[:built])):
             build_house(scene, plots[i], rng)
             monitor.progress(0.4 * k / built)
-    if river:
-        _build_bridges(scene)
+    if scene.relief.river is not None:
+        _build_bridges(scene, scene.relief.river)
     if clutter:
         _clutter(scene, plots, rng, monitor.part(0.4, 0.6))
     plant_trees(scene, trees, forest, rng, monitor.part(0.6, 1.0))
@@ -95,21 +95,20 @@ def _plots(scene: Scene, forest: float) -> list[Rect]:
 
 def _hall_place(scene: Scene, plots: list[Rect]) -> Optional[Rect]:
     """Return room for a hall in the middle of a block of plots back to back, None without any that is level enough."""
+    x, y = np.array([(plot.x, plot.y) for plot in plots]).reshape(-1, 2).T
     for plot in plots:
         place = plot.part(0.0, plot.width / 2, *_HALL)
-        covered = [other for other in plots if place.contains(other.x, other.y)]
         # Three plots on both sides, all of them free: the hall stands on plots only.
-        if len(covered) == 6 and np.ptp(scene.relief.ground(*place.corners().T)) < _HALL_STEP:
+        if place.contains(x, y).sum() == 6 and np.ptp(scene.relief.ground(*place.corners().T)) < _HALL_STEP:
             return place
     return None
 
 
-def _build_bridges(scene: Scene) -> None:
+def _build_bridges(scene: Scene, river: float) -> None:
     """Carry every street over the river."""
     relief = scene.relief
-    assert relief.river is not None
     for street in _street_lines(scene):
-        x, y = relief.world(relief.river, street)
+        x, y = relief.world(river, street)
         deck = Rect(float(x), float(y), 2 * VALLEY - 8.0, 6.0, relief.angle)
         if np.abs(deck.corners() - scene.size / 2).max() > scene.size / 2:
             continue

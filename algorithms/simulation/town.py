@@ -100,7 +100,13 @@ def simulate_town(
     ] = 20.0,
     overlap: Annotated[
         float,
-        Param("Strip overlap", "Share of a strip that the next one scans too.", low=0, high=0.8, advanced=True),
+        Param(
+            "Strip overlap",
+            "Share of a strip that the next one scans too. Without any, roofs and crowns at the seam are cut.",
+            low=0,
+            high=0.8,
+            advanced=True,
+        ),
     ] = 0.3,
     range_noise: Annotated[
         float,

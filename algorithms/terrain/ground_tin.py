@@ -23,6 +23,9 @@ _SWEEP_DEVIATIONS = 6.0
 _LEAST_GROWTH = 0.005
 _MAX_ROUNDS = 50
 
+# Coordinates are stored to a centimeter or finer: what deviates less from a line in plan is one, m.
+_LEAST_WIDTH = 0.01
+
 # Candidates farther than this from the first TIN (in iteration distances) never come near it later.
 _CANDIDATE_DISTANCES = 5.0
 
@@ -180,7 +183,7 @@ def _refuse_degenerate(points: np.ndarray) -> np.ndarray:
         raise ValueError(f"Ground needs at least 3 points that are not noise, got {len(points)}.")
     centered = points[:, :2] - points[:, :2].mean(axis=0)
     extent = np.linalg.svd(centered.T @ centered, compute_uv=False)
-    if extent[1] <= 1e-12 * extent[0]:
+    if extent[1] <= _LEAST_WIDTH**2 * len(points):
         raise ValueError(f"All {len(points)} points lie on one line or at one place in plan; ground needs an area.")
     return points
 

@@ -1,0 +1,95 @@
+"""Where groups of points lie in plan: their area, and whether the beam passes through them."""
+
+from __future__ import annotations
+
+from typing import Optional
+
+import numpy as np
+
+from ..cloud.cells import grid_over
+from ..packages import ndimage
+
+# Cells in which area and what lies beneath are counted, in point spacings, and their least size (m).
+_CELL_SPACINGS, _LEAST_CELL = 1.5, 0.3
+
+# What lies at least so far beneath a group lies under it and not on it, m.
+_BENEATH = 1.0
+
+
+def _cell_size(density: float) -> float:
+    return max(_LEAST_CELL, _CELL_SPACINGS / np.sqrt(density))
+
+
+def plan_areas(xyz: np.ndarray, group: np.ndarray, density: float) -> np.ndarray:
+    """Return the area (m²), seen from above, that each group of points occupies.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points (m), n >= 1.
+    group : ndarray of shape (n,), int
+        Group of each point from 0.
+    density : float
+        Points per square metre.
+
+    Returns
+    -------
+    ndarray of shape (group.max() + 1,)
+        Occupied cells times their area.
+    """
+    size = _cell_size(density)
+    grid = grid_over(xyz, size)
+    pairs = np.unique(group.astype(np.int64) * (grid.rows * grid.columns) + grid.number(xyz))
+    return np.bincount(pairs // (grid.rows * grid.columns), minlength=int(group.max()) + 1) * size**2
+
+
+def penetration(
+    xyz: np.ndarray,
+    group: np.ndarray,
+    density: float,
+    return_number: Optional[np.ndarray] = None,
+    number_of_returns: Optional[np.ndarray] = None,
+) -> np.ndarray:
+    """Return how much of the beam passes through each group of points, 0 to 1.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        All points of the cloud (m).
+    group : ndarray of shape (n,), int
+        Group of each point from 0, negative for none; at least one point has a group.
+    density : float
+        Points per square metre.
+    return_number, number_of_returns : ndarray of shape (n,), optional
+        Where the scanner numbered its returns.
+
+    Returns
+    -------
+    ndarray of shape (group.max() + 1,)
+        The share of a group's cells in which points lie well beneath it; where returns are numbered,
+        the mean of that and the share of its points that are not the last return of their pulse.
+
+    Notes
+    -----
+    The beam passes through leaves and not through roofs. Along edges there are points beneath a roof
+    too, so a roof has a small share and not none.
+    """
+    beneath = _share_with_points_beneath(xyz, group, density)
+    if return_number is None or number_of_returns is None or not number_of_returns.max(initial=0) > 1:
+        return beneath
+    member = group >= 0
+    size = np.maximum(np.bincount(group[member]), 1)
+    went_on = np.bincount(group[member], (return_number < number_of_returns)[member]) / size
+    return (beneath + went_on) / 2
+
+
+def _share_with_points_beneath(xyz: np.ndarray, group: np.ndarray, density: float) -> np.ndarray:
+    cell = grid_over(xyz, _cell_size(density)).number(xyz)
+    cells, index = np.unique(cell, return_inverse=True)
+    lowest = ndimage.minimum(xyz[:, 2], index, np.arange(len(cells)))
+    member = np.flatnonzero(group >= 0)
+    pairs, position = np.unique(group[member].astype(np.int64) * len(cells) + index[member], return_inverse=True)
+    bottom = ndimage.minimum(xyz[member, 2], position, np.arange(len(pairs)))
+    owner, where = np.divmod(pairs, len(cells))
+    occupied = np.bincount(owner)
+    return np.bincount(owner, lowest[where] < bottom - _BENEATH) / np.maximum(occupied, 1)

@@ -1,0 +1,253 @@
+"""The ground of scenes whose ground is known by formula."""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.algorithms.terrain.ground_tin import classify_ground_tin
+
+FAR = np.array([600_000.0, 5_000_000.0, 0.0])
+WIDTH = 80.0
+HOUSES = [(15, 15, 27, 25, 4), (45, 45, 68, 62, 6), (10, 50, 18, 70, 5)]  # west, south, east, north, height over ground
+
+TERRAINS = {
+    "level": lambda x, y: 0.0 * x,
+    "slope": lambda x, y: 0.3 * x - 0.1 * y,
+    "hill": lambda x, y: 10 * np.exp(-((x - 40) ** 2 + (y - 30) ** 2) / 600),
+    "steep": lambda x, y: 0.6 * x,
+    "terrace": lambda x, y: np.where(x > 35, 2.0, 0.0),
+    "bumpy": lambda x, y: np.sin(x / 5) * np.cos(y / 6),
+}
+
+
+def scan(rng, terrain, houses=(), density=1.5, noise=0.03):
+    """Return points (n, 3) of a terrain with flat houses on it, and which points are house."""
+    plan = rng.uniform(0, WIDTH, (int(WIDTH**2 * density), 2))
+    ground = terrain(*plan.T)
+    z, is_house = ground.copy(), np.zeros(len(plan), bool)
+    for west, south, east, north, height in houses:
+        inside = ((plan >= [west, south]) & (plan <= [east, north])).all(axis=1)
+        z[inside] = ground[inside].max() + height
+        is_house |= inside
+    return np.column_stack([plan, z + rng.normal(0, noise, len(plan))]), is_house
+
+
+def unclassified(xyz):
+    return np.ones(len(xyz), np.uint8)
+
+
+def errors(found, is_object):
+    """Return the share of ground that was missed and of objects that were taken for ground."""
+    return (found[~is_object] != 2).mean(), (found[is_object] == 2).mean()
+
+
+@pytest.mark.parametrize("name", TERRAINS)
+def test_houses_on_terrain(name, rng):
+    xyz, is_house = scan(rng, TERRAINS[name], HOUSES)
+    missed, wrong = errors(classify_ground_tin(xyz, unclassified(xyz)), is_house)
+    assert wrong == 0
+    assert missed < (0.03 if name in ("steep", "terrace") else 0.01)
+
+
+@pytest.mark.parametrize(("density", "noise"), [(0.5, 0.05), (8, 0.03), (3, 0.1)])
+def test_density_and_noise(density, noise, rng):
+    xyz, is_house = scan(rng, TERRAINS["slope"], HOUSES, density, noise)
+    missed, wrong = errors(classify_ground_tin(xyz, unclassified(xyz)), is_house)
+    assert wrong == 0
+    assert missed < 0.02
+
+
+def test_a_terrace_is_ground_on_both_levels_up_to_its_step(rng):
+    xyz, _ = scan(rng, TERRAINS["terrace"])
+    is_ground = classify_ground_tin(xyz, unclassified(xyz)) == 2
+    from_step = np.abs(xyz[:, 0] - 35)
+    assert is_ground[from_step > 2].mean() > 0.999
+    assert is_ground[from_step <= 2].mean() > 0.8
+
+
+def test_a_courtyard_is_ground(rng):
+    xyz, _ = scan(rng, TERRAINS["slope"])
+    from_middle = np.abs(xyz[:, :2] - 40).max(axis=1)
+    is_block = (from_middle > 10) & (from_middle < 22)
+    xyz[is_block, 2] += 9
+    found = classify_ground_tin(xyz, unclassified(xyz))
+    assert errors(found, is_block)[1] == 0
+    assert (found[from_middle < 9.5] == 2).mean() > 0.98
+
+
+def test_a_bridge_over_a_valley_is_not_ground_and_the_valley_is(rng):
+    xyz, _ = scan(rng, lambda x, y: -6 * np.exp(-(((y - 40) / 8) ** 4)))
+    on_deck = np.abs(xyz[:, 0] - 40) < 4
+    xyz[on_deck, 2] = rng.normal(0, 0.03, on_deck.sum())
+    is_ground = classify_ground_tin(xyz, unclassified(xyz)) == 2
+    hovering = on_deck & (np.abs(xyz[:, 1] - 40) < 8)
+    assert is_ground[hovering].mean() < 0.15  # its ends join the banks
+    assert is_ground[~on_deck].mean() > 0.99
+
+
+def test_low_things_are_not_ground(rng):
+    """A car, 1.5 m high, and a hedge of 1 m."""
+    xyz, is_low = scan(rng, TERRAINS["slope"], [(30, 30, 34.5, 32, 1.5), (10, 60, 40, 61, 1.0)], density=5)
+    missed, wrong = errors(classify_ground_tin(xyz, unclassified(xyz)), is_low)
+    assert wrong < 0.01
+    assert missed < 0.01
+
+
+def test_under_trees_the_last_returns_find_the_ground(rng):
+    """Above closed crowns one pulse in three reaches the ground; first returns stay in the leaves."""
+    ground, _ = scan(rng, TERRAINS["hill"])
+    crowns = ground[rng.random(len(ground)) < 0.7] + [0, 0, 8]
+    crowns[:, 2] += rng.uniform(-3, 3, len(crowns))
+    xyz = np.concatenate([ground, crowns])
+    number = np.concatenate([np.full(len(ground), 2), np.ones(len(crowns), int)])
+    found = classify_ground_tin(xyz, unclassified(xyz), number, np.full(len(xyz), 2))
+    missed, wrong = errors(found, np.arange(len(xyz)) >= len(ground))
+    assert wrong == 0
+    assert missed < 0.02
+
+
+def test_return_numbers_decide_where_the_surface_starts(rng):
+    """First returns far below, flagged as not last, must not pull the surface down."""
+    xyz, _ = scan(rng, TERRAINS["level"])
+    below = rng.random(len(xyz)) < 0.05
+    xyz[below, 2] -= 3
+    number, of = np.where(below, 1, 2), np.full(len(xyz), 2)
+    assert (classify_ground_tin(xyz, unclassified(xyz), number, of)[~below] == 2).mean() > 0.99
+    assert (classify_ground_tin(xyz, unclassified(xyz))[~below] == 2).mean() < 0.9
+
+
+def test_return_numbers_that_are_all_zero_are_unknown(rng):
+    xyz, _ = scan(rng, TERRAINS["slope"], HOUSES)
+    zero = np.zeros(len(xyz), np.uint8)
+    without = classify_ground_tin(xyz, unclassified(xyz))
+    np.testing.assert_array_equal(classify_ground_tin(xyz, unclassified(xyz), zero, zero), without)
+
+
+@pytest.mark.parametrize("number", [7, 18])
+def test_noise_is_not_used_and_keeps_its_class(number, rng):
+    xyz, _ = scan(rng, TERRAINS["slope"])
+    is_noise = rng.random(len(xyz)) < 0.1
+    xyz[is_noise, 2] -= 40
+    classification = np.where(is_noise, number, 1).astype(np.uint8)
+    found = classify_ground_tin(xyz, classification)
+    assert (found[is_noise] == number).all()
+    np.testing.assert_array_equal(found[~is_noise], classify_ground_tin(xyz[~is_noise], classification[~is_noise]))
+    assert (found[~is_noise] == 2).mean() > 0.99
+
+
+def test_what_was_ground_before_and_is_not_found_becomes_unclassified(rng):
+    xyz, is_house = scan(rng, TERRAINS["level"], HOUSES)
+    found = classify_ground_tin(xyz, np.full(len(xyz), 2))
+    assert found.dtype == np.uint8
+    assert (found[is_house] == 1).all()
+
+
+def test_other_classes_stay_where_no_ground_is_found(rng):
+    xyz, is_house = scan(rng, TERRAINS["level"], HOUSES)
+    found = classify_ground_tin(xyz, np.where(is_house, 6, 0))
+    assert (found[is_house] == 6).all()
+    assert set(found[~is_house]) <= {0, 2}
+
+
+@pytest.mark.parametrize("seeds", ["opening", "lowest"])
+def test_all_ground(seeds, rng):
+    xyz, _ = scan(rng, TERRAINS["level"])
+    assert (classify_ground_tin(xyz, unclassified(xyz), seeds=seeds) == 2).mean() > 0.995
+
+
+def test_lowest_seeds_keep_off_houses_smaller_than_their_cells(rng):
+    xyz, is_house = scan(rng, TERRAINS["level"], HOUSES)
+    missed, wrong = errors(classify_ground_tin(xyz, unclassified(xyz), seeds="lowest", max_building_size=40), is_house)
+    assert wrong == 0
+    assert missed < 0.01
+
+
+def test_a_building_wider_than_the_largest_is_taken_for_a_hill(rng):
+    """What the tunable means: with a larger one the same building is found."""
+    xyz, is_house = scan(rng, TERRAINS["level"], [(10, 10, 70, 70, 9)])
+    assert errors(classify_ground_tin(xyz, unclassified(xyz), max_building_size=20), is_house)[1] > 0.9
+    assert errors(classify_ground_tin(xyz, unclassified(xyz), max_building_size=75), is_house)[1] == 0
+
+
+def test_order_and_place_change_nothing(rng):
+    """True where no two points are equally low or equally good for a facet, which random ones never are."""
+    xyz, _ = scan(rng, TERRAINS["bumpy"], HOUSES)
+    found = classify_ground_tin(xyz, unclassified(xyz))
+    order = rng.permutation(len(xyz))
+    np.testing.assert_array_equal(classify_ground_tin(xyz[order], unclassified(xyz)), found[order])
+    np.testing.assert_array_equal(classify_ground_tin(xyz + FAR, unclassified(xyz)), found)
+    np.testing.assert_array_equal(classify_ground_tin(xyz + [0, 0, -55.5], unclassified(xyz)), found)
+
+
+def test_sweep_distance_is_the_width_of_the_ground(rng):
+    xyz, _ = scan(rng, TERRAINS["level"], noise=0.0)
+    above = rng.random(len(xyz)) < 0.2
+    xyz[above, 2] = rng.uniform(0.3, 1.0, above.sum())
+    found = classify_ground_tin(xyz, unclassified(xyz), sweep_distance=0.6, iteration_distance=0.1)
+    np.testing.assert_array_equal(found == 2, xyz[:, 2] <= 0.6)
+    nodes = classify_ground_tin(xyz, unclassified(xyz), sweep_distance=0.0, iteration_distance=0.1) == 2
+    assert 0.05 < nodes.mean() < 0.6
+    assert (xyz[nodes, 2] == 0).all()
+
+
+def test_automatic_values_follow_the_cloud(rng):
+    for density, noise in ((3, 0.03), (0.25, 0.1)):
+        xyz, _ = scan(rng, TERRAINS["level"], density=density, noise=noise)
+        monitor = Monitor()
+        classify_ground_tin(xyz, unclassified(xyz), monitor=monitor)
+        spacing = 1 / np.sqrt(density)
+        assert monitor.values["cell_size"] == pytest.approx(max(1.0, spacing), rel=0.1)
+        assert monitor.values["edge_length"] == pytest.approx(2 * monitor.values["cell_size"])
+        assert 4 * noise < monitor.values["iteration_distance"] < 12 * noise
+        assert 3 * noise < monitor.values["sweep_distance"] < 9 * noise
+
+
+def test_values_given_by_hand_are_used(rng):
+    xyz, _ = scan(rng, TERRAINS["level"], density=1)
+    monitor = Monitor()
+    given = {"cell_size": 2.5, "edge_length": 3.0, "iteration_distance": 0.7, "sweep_distance": 0.2}
+    classify_ground_tin(xyz, unclassified(xyz), **given, monitor=monitor)
+    assert monitor.values == given
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_too_few_points_are_refused(count):
+    xyz = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [5, 5, 5.0]])
+    classification = np.full(4, 7)
+    classification[:count] = 1
+    with pytest.raises(ValueError, match=rf"at least 3 points that are not noise, got {count}\.$"):
+        classify_ground_tin(xyz, classification)
+
+
+@pytest.mark.parametrize("digits", [12, 3, 2])
+def test_points_on_one_line_are_refused_also_when_the_file_rounds_them(digits):
+    x = np.linspace(0, 100, 300)
+    line = np.round(np.column_stack([x, 0.37 * x, np.sin(x)]) + FAR, digits)
+    with pytest.raises(ValueError, match="All 300 points lie on one line or at one place in plan; ground needs an area"):
+        classify_ground_tin(line, unclassified(line))
+
+
+def test_points_at_one_place_are_refused():
+    with pytest.raises(ValueError, match="one line or at one place"):
+        classify_ground_tin(np.column_stack([np.full((9, 2), 7.0), np.arange(9)]), np.ones(9))
+
+
+def test_progress_only_grows_and_a_cancel_gets_through(rng):
+    xyz, _ = scan(rng, TERRAINS["slope"], HOUSES, density=1)
+    told = []
+
+    class Listening(Monitor):
+        def progress(self, fraction):
+            told.append(fraction)
+
+    classify_ground_tin(xyz, unclassified(xyz), monitor=Listening())
+    assert told == sorted(told)
+    assert 0 <= told[0] <= told[-1] <= 1
+
+    class Stopping(Monitor):
+        def progress(self, fraction):
+            if fraction > 0.5:
+                raise Cancelled
+
+    with pytest.raises(Cancelled):
+        classify_ground_tin(xyz, unclassified(xyz), monitor=Stopping())

@@ -1,0 +1,104 @@
+#!/usr/bin/env python3
+"""Print how good the results on real clouds are: ``accuracy.py [buildings] [ground] [noise]``, all without a word.
+
+Each table comes as Markdown for people, and as the Python lines that the tests hold the program to.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+import numpy as np  # noqa: E402
+
+import conftest  # noqa: E402, F401 - registers the checkout as the package lidar_buildings
+from lidar_buildings.tests.real import test_buildings, test_ground, test_noise  # noqa: E402
+from lidar_buildings.tests.real.clouds import DATA, classified, detected, score  # noqa: E402
+
+CHAINS = {"detect_buildings": "default", "detect_buildings_2019": "2019"}
+
+
+def buildings() -> None:
+    """Print completeness, correctness and F of both chains, per point, cell and object."""
+    print("| cloud | chain | points: compl. | corr. | F | cells: compl. | corr. | F | objects: compl. | corr. | s |")
+    print("| --- | --- |" + " ---: |" * 9)
+    f_scores: dict[str, list[float]] = {}
+    for name in test_buildings.REACHED:
+        for pipeline, chain in CHAINS.items():
+            result = detected(name, pipeline)
+            found = score("buildings", name, result)
+            figures = [found[of][rate] for of in ("points", "cells") for rate in ("completeness", "correctness", "F")]
+            figures += [found["objects"]["completeness"], found["objects"]["correctness"], result.seconds]
+            print(row(name.split("/")[1], chain, *figures), flush=True)
+            f_scores.setdefault(name, []).append(found["points"]["F"])
+    print("\n| cloud without buildings | chain | called building, m² |\n| --- | --- | ---: |")
+    areas = {}
+    for name in test_buildings.REACHED_WITHOUT_BUILDINGS:
+        for pipeline, chain in CHAINS.items():
+            area = detected(name, pipeline).area
+            print(row(name.split("/")[1], chain, area), flush=True)
+            areas.setdefault(name, area)
+    paste("REACHED", {name: "(" + ", ".join(f"{f:.1f}" for f in both) + ")" for name, both in f_scores.items()})
+    paste("REACHED_WITHOUT_BUILDINGS", {name: f"{area:.1f}" for name, area in areas.items()})
+
+
+def ground() -> None:
+    """Print the errors of the ground filter."""
+    print("| cloud | type I | type II | total | kappa | s |\n| --- |" + " ---: |" * 5)
+    totals = {}
+    for name in (*test_ground.REACHED, *test_ground.REACHED_IN_TOWN):
+        result = classified(name, "classify_ground_tin")
+        found = score("ground", name, result)
+        figures = [found[measure] for measure in ("type_1", "type_2", "total", "kappa")]
+        print(row(name.split("/")[1], *figures, result.seconds), flush=True)
+        totals[name] = found["total"]
+    paste("REACHED", {name: f"{totals[name]:.1f}" for name in test_ground.REACHED})
+    print(f"REACHED_MEAN = {np.mean([totals[name] for name in test_ground.REACHED]):.2f}")
+    paste("REACHED_IN_TOWN", {name: f"{totals[name]:.1f}" for name in test_ground.REACHED_IN_TOWN})
+
+
+def noise() -> None:
+    """Print what of the rejected points each noise filter finds."""
+    print("| filter | completeness | correctness | F |\n| --- |" + " ---: |" * 3)
+    for stage in ("classify_noise_histogram", "classify_noise_statistical"):
+        found = score("noise", test_noise.NAME, classified(test_noise.NAME, stage))
+        print(row(stage, *(found[rate] for rate in ("completeness", "correctness", "F"))))
+        if stage == "classify_noise_histogram":
+            reached = found["completeness"]
+    print(f"\nREACHED = {reached:.1f}")
+
+
+def row(*cells: object) -> str:
+    """Return a row of a Markdown table, numbers with one decimal."""
+    return "| " + " | ".join(f"{cell:.1f}" if isinstance(cell, float) else str(cell) for cell in cells) + " |"
+
+
+def paste(name: str, values: dict[str, str]) -> None:
+    """Print a table of a test module."""
+    print(f"\n{name} = {{")
+    for key, value in values.items():
+        print(f'    "{key}": {value},')
+    print("}")
+
+
+TABLES = {"buildings": buildings, "ground": ground, "noise": noise}
+
+
+def main() -> None:
+    """Print the tables that are asked for."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tables", nargs="*", metavar="table", help=", ".join(TABLES))
+    wanted = parser.parse_args().tables or list(TABLES)
+    if set(wanted) - set(TABLES):
+        parser.error(f"there is no table {(set(wanted) - set(TABLES)).pop()!r}; there are {', '.join(TABLES)}")
+    if not DATA.is_dir():
+        parser.error(f"no real clouds in {DATA}; LIDAR_BUILDINGS_DATA names another folder")
+    for name in wanted:
+        print(f"\n## {name}\n")
+        TABLES[name]()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,135 @@
+"""One measurement in a process of its own: ``measured.py JOB``, a JSON object; the answer is a JSON object too.
+
+A process is started for every measurement, so that the memory that one stage took does not count for the next.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import resource
+import sys
+import time
+from pathlib import Path
+from typing import Any, Callable
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+import numpy as np  # noqa: E402
+
+import conftest  # noqa: E402, F401 - registers the checkout as the package lidar_buildings
+from lidar_buildings.algorithms import packages  # noqa: E402
+from lidar_buildings.algorithms.cloud.cloud import Cloud, create_cloud, read_cloud, write_cloud  # noqa: E402
+from lidar_buildings.algorithms.pipelines import PIPELINES, run_pipeline  # noqa: E402
+from lidar_buildings.algorithms.run import run_stage  # noqa: E402
+from lidar_buildings.algorithms.simulation.town import simulate_town  # noqa: E402
+from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
+
+NEIGHBORS = 16
+# Coordinates asked for at once in the pass over all neighborhoods.
+_CHUNK = 100_000
+
+# The kernel counts in kilobytes, but for Apple's, which counts in bytes.
+_PEAK_UNIT = 1 if sys.platform == "darwin" else 1024
+
+
+def main(job: dict[str, Any]) -> dict[str, Any]:
+    """Measure what the job says.
+
+    Parameters
+    ----------
+    job : dict
+        ``what``: "simulate", "read", "neighbors", "write", or the name of a stage or chain; ``cloud``: file; ``truth``:
+        array file with the true classes; ``states``: files with what the steps before left; ``state``: where to
+        leave what this one wrote; ``tunables``: of the stage.
+
+    Returns
+    -------
+    dict
+        ``points``; ``seconds`` on the wall; ``cpu_seconds`` over all cores; ``peak_bytes`` of the process and
+        ``base_bytes`` of it before the cloud was read.
+    """
+    load_packages()
+    base = _peak()
+    what, path = job["what"], Path(job["cloud"])
+    if what == "simulate":
+        return _simulated(job, base)
+    if what == "read":
+        found, cloud = _timed(lambda: read_cloud(path), base)
+        return {"points": len(cloud), **found}
+    cloud = _cloud(path, job["states"])
+    found, _ = _timed(_work(job, cloud), base)
+    if what in STAGES and job["state"]:
+        np.savez(job["state"], **{name: cloud.get(name) for name in STAGES[what].writes if cloud.has(name)})
+    return {"points": len(cloud), **found}
+
+
+def _work(job: dict[str, Any], cloud: Cloud) -> Callable[[], Any]:
+    """Return what is to be timed, with everything that it needs at hand."""
+    what = job["what"]
+    if what == "neighbors":
+        return lambda: query_all(cloud.get("xyz"))
+    if what == "write":
+        return lambda: write_cloud(cloud, Path(job["state"]))
+    if what in PIPELINES:
+        return lambda: run_pipeline(PIPELINES[what], cloud)
+    stage = STAGES[what]
+    reference = _reference(Path(job["cloud"]), job["truth"]) if stage.reads_reference else None
+    return lambda: run_stage(stage, cloud, reference, **job["tunables"])
+
+
+def load_packages() -> None:
+    """Import what stages import when they start: that is the interpreter's time and memory and not theirs."""
+    for name in ("cKDTree", "Delaunay"):
+        getattr(packages.spatial, name)
+    _ = packages.ndimage.label, packages.csgraph.connected_components, packages.cluster.KMeans
+
+
+def query_all(xyz: np.ndarray) -> None:
+    """Ask for the nearest neighbors of every point, with all cores: what any method on neighborhoods needs at least."""
+    tree = packages.spatial.cKDTree(xyz)
+    for start in range(0, len(xyz), _CHUNK):
+        tree.query(xyz[start : start + _CHUNK], k=NEIGHBORS, workers=-1)
+
+
+def _simulated(job: dict[str, Any], base: int) -> dict[str, Any]:
+    """Measure the simulator; leave its scan without classes as a file, and the classes as an array."""
+    found, scan = _timed(lambda: run_stage(simulate_town.stage, **job["tunables"]).cloud, base)
+    np.save(job["truth"], scan.get("classification"))
+    raw = ("xyz", "return_number", "number_of_returns", "intensity", "scan_angle", "point_source_id", "gps_time")
+    write_cloud(create_cloud({name: scan.get(name) for name in raw}), Path(job["cloud"]))
+    return {"points": len(scan), **found}
+
+
+def _cloud(path: Path, states: list[str]) -> Cloud:
+    """Return the cloud as the steps before left it."""
+    cloud = read_cloud(path)
+    for state in states:
+        with np.load(state) as arrays:
+            for name in arrays.files:
+                cloud.set(name, arrays[name])
+    return cloud
+
+
+def _reference(path: Path, truth: str) -> Cloud:
+    cloud = read_cloud(path)
+    cloud.set("classification", np.load(truth))
+    return cloud
+
+
+def _timed(work: Callable[[], Any], base: int) -> tuple[dict[str, Any], Any]:
+    """Return what ``work`` took, and what it made."""
+    start, start_cpu = time.perf_counter(), time.process_time()
+    made = work()
+    seconds, cpu = time.perf_counter() - start, time.process_time() - start_cpu
+    return {"seconds": seconds, "cpu_seconds": cpu, "peak_bytes": _peak(), "base_bytes": base}, made
+
+
+def _peak() -> int:
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * _PEAK_UNIT
+
+
+if __name__ == "__main__":
+    # Whatever else speaks meanwhile, speaks to the error stream.
+    with contextlib.redirect_stdout(sys.stderr):
+        answer = main(json.loads(sys.argv[1]))
+    print(json.dumps(answer))

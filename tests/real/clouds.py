@@ -1,0 +1,92 @@
+"""Real clouds with their truth, what the stages and chains make of them, and the scores."""
+
+from __future__ import annotations
+
+import functools
+import importlib.util
+import os
+import time
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+
+from lidar_buildings.algorithms.cloud.asprs import PointClass
+from lidar_buildings.algorithms.cloud.cloud import Cloud, read_cloud
+from lidar_buildings.algorithms.pipelines import PIPELINES, run_pipeline
+from lidar_buildings.algorithms.run import run_stage
+from lidar_buildings.algorithms.stage import Features
+from lidar_buildings.algorithms.stages import STAGES
+
+# A folder beside the checkout, or wherever the variable says: clouds with their truth, in folders by subject.
+DATA = Path(os.environ.get("LIDAR_BUILDINGS_DATA", Path(__file__).resolve().parents[3] / "shared" / "data"))
+SCORER = DATA.parent / "tools" / "score.py"
+
+# Cells in which the area that is called building is counted, m.
+_CELL = 0.5
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a stage or chain made of a cloud, with nothing set, and how long it took (s)."""
+
+    cloud: Cloud
+    layers: dict[str, Features]
+    seconds: float
+
+    @property
+    def classification(self) -> np.ndarray:
+        return self.cloud.get("classification")
+
+    @property
+    def area(self) -> float:
+        """Area (m²) of the cells with a point that is called building."""
+        plan = self.cloud.get("xyz")[self.classification == PointClass.BUILDING, :2]
+        return len(np.unique(np.floor(plan / _CELL), axis=0)) * _CELL**2
+
+
+def path_of(name: str) -> Path:
+    """Return the file of ``<folder>/<cloud>``."""
+    return DATA / f"{name}.laz"
+
+
+def truth(name: str) -> np.ndarray:
+    """Return the true classes, in the order of the points."""
+    with np.load(DATA / f"{name}.truth.npz") as arrays:
+        return arrays["classification"]
+
+
+@functools.cache
+def detected(name: str, pipeline: str = "detect_buildings") -> Result:
+    """Run a chain; once per session, since it takes its time. Don't change what it returns."""
+    cloud = read_cloud(path_of(name))
+    start = time.perf_counter()
+    outcome = run_pipeline(PIPELINES[pipeline], cloud)
+    return Result(cloud, outcome.layers, time.perf_counter() - start)
+
+
+@functools.cache
+def classified(name: str, stage: str) -> Result:
+    """Run a single stage; once per session. Don't change what it returns."""
+    cloud = read_cloud(path_of(name))
+    start = time.perf_counter()
+    outcome = run_stage(STAGES[stage], cloud)
+    return Result(cloud, outcome.layers, time.perf_counter() - start)
+
+
+def score(what: str, name: str, result: Result) -> dict:
+    """Return the scores (%) of "buildings", "ground" or "noise", by the program that lies with the data."""
+    return _scorer().SCORES[what](result.cloud.get("xyz"), result.classification, truth(name))
+
+
+@functools.cache
+def _scorer() -> ModuleType:
+    spec = importlib.util.spec_from_file_location("score_of_real_clouds", SCORER)
+    module = importlib.util.module_from_spec(spec)
+    with warnings.catch_warnings():
+        # It imports laspy, which imports pyproj, which may complain about its own installation.
+        warnings.simplefilter("ignore")
+        spec.loader.exec_module(module)
+    return module
