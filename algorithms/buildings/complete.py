@@ -10,13 +10,22 @@ from ..cloud.asprs import NOISE, PointClass
 from ..cloud.density import point_density
 from ..packages import ndimage
 from ..params import MinBuildingArea, PointDensity
-from ..stage import Monitor, Param, stage
+from ..stage import Param, stage
 
 # Cells hold at least a point where the roof was seen: this many point spacings, and no less than half a metre.
 _CELL_SPACINGS, _LEAST_CELL = 1.2, 0.5
 
 # Points lower than this stand on the ground (kerbs, plants, steps) and are no wall, m.
 _WALL_FOOT = 0.5
+
+# Gaps are closed over so many point spacings, and no less than so far (m).
+_GAP_SPACINGS, _LEAST_GAP = 4.0, 1.5
+
+# What stands on a roof is a chimney or dormer where it covers less than this share of the cells around.
+_SPARSE, _AROUND = 0.3, 7
+
+# Beside a roof, what is lower than this share of its height may be bushes.
+_BUSHES = 0.33
 
 _EIGHT = np.ones((3, 3), bool)
 
@@ -33,25 +42,37 @@ def complete_buildings(
     height_above_ground,
     *,
     gap: Annotated[
-        float,
+        Optional[float],
         Param(
             "Gap to close",
             "Gaps in a roof up to this wide are filled where no ground is seen in them (gutters, skylights, ridges).",
             unit="m",
             low=0,
             high=20,
+            automatic="four point spacings, at least 1.5 m.",
         ),
-    ] = 1.5,
+    ] = None,
     roof_clearance: Annotated[
         float,
         Param(
             "Clearance above the roof",
-            "Points up to this far above the roof belong to it (chimneys, dormers, railings); higher ones are trees.",
+            "Points up to this far above the roof belong to it.",
             unit="m",
             low=0,
             high=20,
         ),
     ] = 1.0,
+    structure_height: Annotated[
+        float,
+        Param(
+            "Structures on the roof",
+            "Points up to this far above the roof belong to it where they cover a small part of it only (chimneys, "
+            "dormers, masts); what covers more is a tree.",
+            unit="m",
+            low=0,
+            high=100,
+        ),
+    ] = 4.0,
     min_area: MinBuildingArea = 4.0,
     density: PointDensity = None,
     monitor=None,
@@ -59,7 +80,8 @@ def complete_buildings(
     """Add to each building what belongs to it beside its roof surfaces, and number the buildings.
 
     Buildings are decided in columns: where a roof was found, everything from the foot of the walls to just above
-    the roof is building. Small gaps between roof surfaces are closed where the ground does not show in them.
+    the roof is building, and so are chimneys and the walls along its edge. Small gaps between roof surfaces are
+    closed where the ground does not show in them.
 
     Parameters
     ----------
@@ -88,24 +110,61 @@ def complete_buildings(
     entropy and the k-means concept, section 4 (critical regions).
     """
     density = point_density(xyz) if density is None else density
-    monitor.resolved(density=density)
+    spacing = 1 / np.sqrt(density)
+    gap = max(_LEAST_GAP, _GAP_SPACINGS * spacing) if gap is None else gap
+    monitor.resolved(density=density, gap=gap)
     result = np.where(classification == PointClass.BUILDING, np.uint8(PointClass.UNCLASSIFIED), classification)
     cluster_id = np.zeros(len(xyz), np.int32)
     is_roof = classification == PointClass.BUILDING
     if not is_roof.any():
         return result.astype(np.uint8), cluster_id
 
-    cell_size = max(_LEAST_CELL, _CELL_SPACINGS / np.sqrt(density))
+    cell_size = max(_LEAST_CELL, _CELL_SPACINGS * spacing)
     cell = _cells(xyz, cell_size, margin=gap)
-    raised = (height_above_ground >= _WALL_FOOT) & ~np.isin(classification, NOISE)
-    covered = _covered(cell, is_roof, raised, gap, cell_size)
+    is_noise = np.isin(classification, NOISE)
+    raised = (height_above_ground >= _WALL_FOOT) & ~is_noise
+    # Multipath through a skylight is no ground that shows in it.
+    covered = _covered(cell, is_roof, ~raised & ~is_noise, gap, cell_size)
+    monitor.progress(0.3)
     building = _numbered(covered, min_area / cell_size**2)
-    top = _roof_top(cell, xyz[:, 2], is_roof, covered)
-    number = building[cell]
-    inside = raised & (number > 0) & (xyz[:, 2] <= top[cell] + roof_clearance)
-    result[inside] = PointClass.BUILDING
-    cluster_id[inside] = number[inside]
+    columns = _Columns(building, _roof_top(cell, xyz[:, 2], is_roof, covered))
+    monitor.progress(0.6)
+
+    above = xyz[:, 2] - columns.top[cell]
+    inside = raised & (building[cell] > 0)
+    belongs = inside & (above <= roof_clearance)
+    belongs |= inside & (above <= structure_height) & columns.is_sparse(cell, inside & (above > roof_clearance))[cell]
+    number = np.where(inside, building[cell], columns.beside[cell])
+    ground = xyz[:, 2] - height_above_ground
+    belongs |= raised & ~inside & (number > 0) & _is_wall(above, height_above_ground, columns.top[cell] - ground)
+    result[belongs] = PointClass.BUILDING
+    cluster_id[belongs] = number[belongs]
+    monitor.progress(1.0)
     return result.astype(np.uint8), cluster_id
+
+
+def _is_wall(above: np.ndarray, height: np.ndarray, eave: np.ndarray) -> np.ndarray:
+    """Return which points beside a roof lie under its edge and not in the bushes at the foot of the wall."""
+    return (above <= 0) & (height >= _BUSHES * eave)
+
+
+class _Columns:
+    """The cells of buildings: whose they are, whose roof they stand beside, and how high that roof is."""
+
+    def __init__(self, building: np.ndarray, top: np.ndarray) -> None:
+        self.building = building
+        self.top = top
+        beside = ndimage.grey_dilation(building, footprint=_EIGHT)
+        self.beside = np.where(building > 0, 0, beside)
+
+    def is_sparse(self, cell: tuple[np.ndarray, np.ndarray], stands_above: np.ndarray) -> np.ndarray:
+        """Return the cells around which the points that stand above the roof cover a small part of it."""
+        row, column = cell
+        standing = np.zeros(self.building.shape)
+        standing[row[stands_above], column[stands_above]] = 1
+        around = ndimage.uniform_filter(standing, _AROUND, mode="constant")
+        roof = ndimage.uniform_filter((self.building > 0).astype(float), _AROUND, mode="constant")
+        return around < _SPARSE * roof
 
 
 def _cells(xyz: np.ndarray, cell_size: float, margin: float) -> tuple[np.ndarray, np.ndarray]:
@@ -116,7 +175,7 @@ def _cells(xyz: np.ndarray, cell_size: float, margin: float) -> tuple[np.ndarray
 
 
 def _covered(
-    cell: tuple[np.ndarray, np.ndarray], is_roof: np.ndarray, raised: np.ndarray, gap: float, cell_size: float
+    cell: tuple[np.ndarray, np.ndarray], is_roof: np.ndarray, is_low: np.ndarray, gap: float, cell_size: float
 ) -> np.ndarray:
     """Return the cells (rows, columns) that roofs cover, gaps closed where the ground doesn't show."""
     row, column = cell
@@ -125,7 +184,7 @@ def _covered(
     roof = np.zeros(shape, bool)
     roof[row[is_roof], column[is_roof]] = True
     open_ground = np.zeros(shape, bool)
-    open_ground[row[~raised], column[~raised]] = True
+    open_ground[row[is_low], column[is_low]] = True
     closed = roof
     reach = round(gap / 2 / cell_size)
     if reach:

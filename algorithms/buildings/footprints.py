@@ -199,10 +199,16 @@ def _attributes(xyz: np.ndarray, members: np.ndarray, roof: np.ndarray, measured
         "height": undefined if height is None else float(np.median(height[roof])),
         "max_height": undefined if height is None else float(np.max(height[roof])),
         "ground_elevation": undefined if height is None else float(np.median(xyz[roof, 2] - height[roof])),
-        "entropy": undefined if entropy is None else float(np.mean(entropy[members], dtype=np.float64)),
-        "confidence": undefined if confidence is None else float(np.mean(confidence[members], dtype=np.float64)),
+        "entropy": undefined if entropy is None else _mean(entropy[members]),
+        "confidence": undefined if confidence is None else _mean(confidence[members]),
         "points": len(members),
     }
+
+
+def _mean(values: np.ndarray) -> float:
+    """Return the mean of the values that are defined: points that were added to a building later have none."""
+    defined = values[np.isfinite(values)]
+    return float(np.mean(defined, dtype=np.float64)) if len(defined) else float("nan")
 
 
 def _add(found: Features, rings: list, described: dict) -> None:

@@ -14,10 +14,13 @@ from .opening import open_surface
 _STEP = 0.1
 
 # Slope that terrain may have beside the slope measured around it, and the share of that which it may add.
-_FLAT_SLOPE, _SLOPE_SHARE = 0.1, 0.3
+_FLAT_SLOPE, _SLOPE_SHARE = 0.1, 0.5
 
-# Slope allowed while the terrain's own slope is not known yet.
-_FIRST_SLOPE = 0.2
+# Flat terrain may rise so far within a window of any size, m: less than the lowest of large buildings.
+_FLAT_RISE = 1.0
+
+# Slope allowed beside that while the terrain's own is not known yet.
+_FIRST_SLOPE = 0.1
 
 # A pit steeper than this on all sides is multipath, not terrain (5 m deep in a cell of 1 m).
 _PIT_SLOPE = 5.0
@@ -93,7 +96,7 @@ def seeds_by_opening(xyz: np.ndarray, cell_size: float, max_building_size: float
     windows = _windows(max_building_size / 2 / cell_size)
     first = _objects(surface, windows, np.full(surface.shape, _FIRST_SLOPE), cell_size, monitor.part(0, 0.45))
     slope = _slope(_interpolated(surface, first), cell_size)
-    objects = _objects(surface, windows, _FLAT_SLOPE + _SLOPE_SHARE * slope, cell_size, monitor.part(0.45, 0.9))
+    objects = _objects(surface, windows, _SLOPE_SHARE * slope, cell_size, monitor.part(0.45, 0.9))
     objects = _without_joined(objects, surface, slope, cell_size)
     monitor.progress(1.0)
     return lowest.points(known & ~objects)
@@ -140,7 +143,8 @@ def _objects(
     opened = surface
     for done, radius in enumerate(windows, start=1):
         previous, opened = opened, open_surface(opened, radius)
-        objects |= previous - opened > _STEP + slope * radius * cell_size
+        reach = radius * cell_size
+        objects |= previous - opened > _STEP + min(_FLAT_SLOPE * reach, _FLAT_RISE) + slope * reach
         monitor.progress(done / len(windows))
     return objects
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.cloud.cloud import Cloud, read_cloud
+from lidar_buildings.algorithms.cloud.density import point_density
 from lidar_buildings.algorithms.pipelines import PIPELINES, run_pipeline
 from lidar_buildings.algorithms.run import run_stage
 from lidar_buildings.algorithms.stage import Features
@@ -24,8 +25,8 @@ from lidar_buildings.algorithms.stages import STAGES
 DATA = Path(os.environ.get("LIDAR_BUILDINGS_DATA", Path(__file__).resolve().parents[3] / "shared" / "data"))
 SCORER = DATA.parent / "tools" / "score.py"
 
-# Cells in which the area that is called building is counted, m.
-_CELL = 0.5
+# Cells in which the area that is called building is counted (m): every roof cell should hold a point.
+_CELL, _SPARSE_CELL, _SPARSE_DENSITY = 0.5, 1.0, 6.0
 
 
 @dataclass(frozen=True)
@@ -43,8 +44,10 @@ class Result:
     @property
     def area(self) -> float:
         """Area (m²) of the cells with a point that is called building."""
-        plan = self.cloud.get("xyz")[self.classification == PointClass.BUILDING, :2]
-        return len(np.unique(np.floor(plan / _CELL), axis=0)) * _CELL**2
+        xyz = self.cloud.get("xyz")
+        cell = _CELL if point_density(xyz) > _SPARSE_DENSITY else _SPARSE_CELL
+        plan = xyz[self.classification == PointClass.BUILDING, :2]
+        return len(np.unique(np.floor(plan / cell), axis=0)) * cell**2
 
 
 def path_of(name: str) -> Path:
@@ -58,9 +61,13 @@ def truth(name: str) -> np.ndarray:
         return arrays["classification"]
 
 
-@functools.cache
 def detected(name: str, pipeline: str = "detect_buildings") -> Result:
     """Run a chain; once per session, since it takes its time. Don't change what it returns."""
+    return _detected(name, pipeline)
+
+
+@functools.cache
+def _detected(name: str, pipeline: str) -> Result:
     cloud = read_cloud(path_of(name))
     start = time.perf_counter()
     outcome = run_pipeline(PIPELINES[pipeline], cloud)

@@ -76,9 +76,10 @@ def test_both_distances_must_be_kept():
 
 
 def test_a_wall_and_a_stair():
-    steps = np.column_stack([np.arange(50) * 0.2, np.zeros(50), np.arange(50) * 0.2])
+    steps = np.column_stack([np.arange(50) * 0.25, np.zeros(50), np.arange(50) * 0.25])
     assert connect(steps, 0.3, 0.3, Monitor()).max() == 0
-    assert connect(steps, 0.3, 0.2, Monitor()).max() == 49
+    assert connect(steps, 0.3, 0.25, Monitor()).max() == 49
+    assert connect(steps * [0, 0, 1], 0.01, 0.3, Monitor()).max() == 0
 
 
 def test_one_point_many_at_one_place_and_none():

@@ -85,7 +85,7 @@ def test_the_published_steps_on_grids_full_of_ties(points, t_dxy, t_dh, t_np):
 def test_the_published_steps_on_random_clouds(seed):
     random = np.random.default_rng(seed)
     xyz = random.uniform(0, [12, 9, 2], (250, 3)) + (FAR if seed % 2 else 0)
-    t_dxy, t_dh = random.uniform(0.6, 1.4), random.uniform(0.2, 0.8)
+    t_dxy, t_dh = random.uniform(0.6, 1.0), random.uniform(0.2, 0.4)
     expected = literal_ids(xyz, t_dxy, t_dh, 4)
     np.testing.assert_array_equal(segment(xyz, t_dxy, t_dh, 4), expected)
     assert expected.max() > 2
@@ -116,9 +116,7 @@ def test_ground_noise_and_water_are_in_no_region_and_bridge_none():
     for number in left_out:
         classification = np.ones(10, int)
         classification[5] = number
-        ids = segment_regions(
-            xyz, classification, plan_distance=1.5, height_distance=1.0, min_area=2.0, density=1.0
-        )
+        ids = segment_regions(xyz, classification, plan_distance=1.5, height_distance=1.0, min_area=2.0, density=1.0)
         assert ids.tolist() == [1, 1, 1, 1, 1, 0, 2, 2, 2, 2]
     ids = segment_regions(
         xyz, [0, 1, 3, 4, 5, 6, 17, 19, 64, 255], plan_distance=1.5, height_distance=1.0, min_area=1.0, density=1.0
@@ -154,7 +152,8 @@ def test_two_houses_and_a_field_with_nothing_to_set(rng):
     field[((field[:, :2] > [25, 10]) & (field[:, :2] < [40, 30])).all(axis=1), 2] += 7
     house = np.where(field[:, 2] > 6, 2, np.where(field[:, 2] > 4, 1, 0))
     ids = segment_regions(field, np.where(house > 0, 1, 2))
-    assert set(zip(house.tolist(), ids.tolist())) - {(1, 0), (2, 0)} in ({(0, 0), (1, 1), (2, 2)}, {(0, 0), (1, 2), (2, 1)})
+    pairs = set(zip(house.tolist(), ids.tolist())) - {(1, 0), (2, 0)}
+    assert pairs in ({(0, 0), (1, 1), (2, 2)}, {(0, 0), (1, 2), (2, 1)})
     # Four points in a thousand have no neighbor within twice the spacing and the height threshold.
     assert (ids[house > 0] == 0).mean() < 0.01
 
@@ -167,18 +166,20 @@ def test_only_ground_gives_no_region(rng):
 
 def test_order_and_place_change_nothing(rng):
     xyz = rng.uniform(0, [20, 20, 3], (800, 3)).round(3)
-    ids = segment_regions(xyz, np.ones(800), min_area=1.0)
+    tunables = {"height_distance": 0.3, "min_area": 2.0}
+    ids = segment_regions(xyz, np.ones(800), **tunables)
+    assert ids.max() > 5
     order = rng.permutation(800)
-    shuffled = segment_regions(xyz[order], np.ones(800), min_area=1.0)
-    assert len(set(zip(ids[order].tolist(), shuffled.tolist()))) == ids.max() + 1
-    there = segment_regions((xyz + FAR).round(3), np.ones(800), min_area=1.0)
+    shuffled = segment_regions(xyz[order], np.ones(800), **tunables)
+    assert len(set(zip(ids[order].tolist(), shuffled.tolist()))) == ids.max() + 1 == shuffled.max() + 1
+    there = segment_regions((xyz + FAR).round(3), np.ones(800), **tunables)
     np.testing.assert_array_equal(there, ids)
 
 
 def test_memory_follows_the_points_and_not_their_neighbors(rng):
     """With everything within reach of everything else, pairs would grow sixteenfold where points grow fourfold."""
     peaks = []
-    for n in (10_000, 40_000):
+    for n in (4_000, 16_000):
         xyz = rng.uniform(0, [20, 20, 2], (n, 3))
         tracemalloc.start()
         ids = segment_regions(xyz, np.ones(n), plan_distance=10.0, height_distance=1.0, density=1.0)
@@ -186,4 +187,4 @@ def test_memory_follows_the_points_and_not_their_neighbors(rng):
         tracemalloc.stop()
         assert (ids == 1).all()
     assert peaks[1] < 4.5 * peaks[0]
-    assert peaks[1] < 200e6  # the 1.2e8 pairs within reach would take 2 GB
+    assert peaks[1] < 400e6  # the 6e7 pairs within reach would take 1 GB

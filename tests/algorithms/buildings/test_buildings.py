@@ -1,0 +1,298 @@
+"""Equations 5 to 11 of the published method by hand and by another route, its two means, its guard and its limits."""
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from lidar_buildings.algorithms.buildings.buildings import classify_buildings, reference_entropies
+from lidar_buildings.algorithms.stage import Cancelled, Monitor
+
+FAR = np.array([600_000.0, 5_000_000.0, 0.0])
+
+
+def roof(rng, west, south, width=10.0, depth=8.0, elevation=6.0, density=6.0, noise=0.02):
+    plan = rng.uniform([west, south], [west + width, south + depth], (int(width * depth * density), 2))
+    return np.column_stack([plan, elevation + rng.normal(0, noise, len(plan))])
+
+
+def crown(rng, x, y, radius=3.0, middle=7.0, count=400):
+    direction = rng.normal(size=(count, 3))
+    direction /= np.linalg.norm(direction, axis=1)[:, None]
+    return direction * radius * rng.random((count, 1)) ** (1 / 3) + [x, y, middle]
+
+
+def clusters(*parts):
+    return np.concatenate(parts), np.repeat(np.arange(1, len(parts) + 1), [len(part) for part in parts])
+
+
+def ones(values):
+    return np.ones(len(values), np.uint8)
+
+
+@pytest.fixture
+def garden(rng):
+    """Three roofs and three crowns: clusters 1 to 6."""
+    roofs = [roof(rng, 0, 0), roof(rng, 20, 0, 6, 6, 4), roof(rng, 40, 0, 20, 10, 9)]
+    crowns = [crown(rng, 5, 30), crown(rng, 25, 30, 4, 9, 900), crown(rng, 45, 30, 2.5, 5, 250)]
+    return clusters(*roofs, *crowns)
+
+
+# --- the equations ---------------------------------------------------------------------------------------------------
+
+
+def test_entropies_by_hand():
+    """Neighborhoods whose eigenvalues are plain to see: six points on the axes at +-a, +-b, +-c from nothing.
+
+    Their covariance (divisor 6) is diagonal: a²/3, b²/3, c²/3. With squares 4, 2, 1: L = 1/2, P = 1/4, S = 1/4.
+    """
+    cases = {
+        (2.0, np.sqrt(2), 1.0): 0.5 * np.log(2) + 2 * 0.25 * np.log(4),
+        (1.0, 1.0, 1.0): 0.0,  # all scattering
+        (1.0, 1.0, 0.0): 0.0,  # all planarity
+        (3.0, np.sqrt(6), np.sqrt(3)): np.log(3),  # a third of each
+    }
+    for (a, b, c), expected in cases.items():
+        axes = np.diag([a, b, c])
+        xyz = np.concatenate([axes, -axes]) + [7, 8, 9]
+        entropy = classify_buildings(xyz, np.ones(6), np.ones(6, int), n_neighbors=6, density=1.0)[1]
+        np.testing.assert_allclose(entropy, expected, atol=1e-6)
+
+
+def literal_entropies(points, n_neighbors):
+    """Return E_i of each point by equations 6 to 11, one point at a time, with numpy's covariance and eigenvalues."""
+    tree, entropies = cKDTree(points), []
+    for point in points:
+        near = points[tree.query(point, k=n_neighbors)[1]]  # the point itself is the first
+        covariance = np.cov(near.T, bias=True)  # N^-1 sum XX' - mm'
+        third, second, first = np.linalg.eigh(covariance)[0]
+        shares = np.array([first - second, second - third, max(third, 0.0)]) / first
+        entropies.append(-sum(share * np.log(share) for share in shares if share > 0))
+    return np.array(entropies)
+
+
+@pytest.mark.parametrize("shift", [0, 1])
+def test_entropies_and_cluster_means_by_another_route(garden, shift):
+    xyz, cluster_id = garden
+    xyz = xyz + shift * FAR
+    is_clustered = np.arange(len(xyz)) % 7 != 0
+    cluster_id = np.where(is_clustered, cluster_id, 0)
+    _, entropy, cluster_entropy, _ = classify_buildings(xyz, ones(xyz), cluster_id, n_neighbors=24)
+    # The points to find neighbors among are the clustered ones; local coordinates keep the digits.
+    expected = literal_entropies((xyz - shift * FAR)[is_clustered], 24)
+    np.testing.assert_allclose(entropy[is_clustered], expected, atol=2e-5)
+    assert np.isnan(entropy[~is_clustered]).all()
+    assert np.isnan(cluster_entropy[~is_clustered]).all()
+    for number in range(1, 7):
+        mean = expected[cluster_id[is_clustered] == number].mean()  # equation 5
+        np.testing.assert_allclose(cluster_entropy[cluster_id == number], mean, atol=2e-5)
+
+
+def test_the_result_is_that_of_the_best_split_in_two(rng):
+    """Two means in one dimension: try every place to part the sorted entropies, take the least sum of squares."""
+    for _ in range(12):
+        parts = [roof(rng, 20 * i, 0, 6, 6, noise=rng.uniform(0.01, 0.25)) for i in range(rng.integers(1, 5))]
+        parts += [crown(rng, 20 * i, 40, rng.uniform(2, 4), 7, 250) for i in range(rng.integers(1, 5))]
+        xyz, cluster_id = clusters(*parts)
+        monitor = Monitor()
+        tunables = {"guard": False, "n_neighbors": 20, "monitor": monitor}
+        found, _, cluster_entropy, _ = classify_buildings(xyz, ones(xyz), cluster_id, **tunables)
+        means = np.array([cluster_entropy[cluster_id == number][0] for number in range(1, len(parts) + 1)], float)
+        ordered = np.sort(means)
+        squares = [ordered[:k].var() * k + ordered[k:].var() * (len(ordered) - k) for k in range(1, len(ordered))]
+        lower = int(np.argmin(squares)) + 1
+        expected = means <= ordered[lower - 1]
+        np.testing.assert_array_equal(found == 6, expected[cluster_id - 1])
+        assert monitor.values["building_entropy"] == pytest.approx(ordered[:lower].mean(), abs=1e-5)
+        assert monitor.values["other_entropy"] == pytest.approx(ordered[lower:].mean(), abs=1e-5)
+
+
+@pytest.mark.parametrize(("min_area", "density", "expected"), [(4.0, 12.5, 50), (4.0, 4.0, 16), (0.1, 2.0, 3)])
+def test_neighbors_are_area_times_density(garden, min_area, density, expected):
+    """The paper's 50 and 16; never fewer than three, which a covariance needs."""
+    monitor = Monitor()
+    xyz, cluster_id = garden
+    by_density = classify_buildings(xyz, ones(xyz), cluster_id, min_area=min_area, density=density, monitor=monitor)
+    assert monitor.values["n_neighbors"] == expected
+    by_hand = classify_buildings(xyz, ones(xyz), cluster_id, n_neighbors=expected)
+    np.testing.assert_array_equal(by_density[1], by_hand[1])
+
+
+# --- what is found ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("guard", [True, False])
+def test_roofs_are_buildings_and_crowns_are_not(garden, guard):
+    xyz, cluster_id = garden
+    found, _, _, confidence = classify_buildings(xyz, ones(xyz), cluster_id, guard=guard)
+    np.testing.assert_array_equal(found == 6, cluster_id <= 3)
+    assert found.dtype == np.uint8
+    assert (confidence[cluster_id <= 3] > 0.8).all()
+    assert (confidence[cluster_id > 3] < 0.2).all()
+    assert confidence.min() >= 0
+    assert confidence.max() <= 1
+
+
+def test_where_both_kinds_are_there_the_guard_changes_nothing(garden):
+    xyz, cluster_id = garden
+    guarded = classify_buildings(xyz, ones(xyz), cluster_id, n_neighbors=24)
+    published = classify_buildings(xyz, ones(xyz), cluster_id, n_neighbors=24, guard=False)
+    for one, other in zip(guarded, published):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_other_points_keep_their_class_and_old_buildings_do_not(garden):
+    xyz, cluster_id = garden
+    classification = np.resize([1, 2, 6, 9, 17, 5], len(xyz)).astype(np.uint8)
+    cluster_id = np.where(np.arange(len(xyz)) % 2, cluster_id, 0)
+    found = classify_buildings(xyz, classification, cluster_id)[0]
+    is_building = (cluster_id > 0) & (cluster_id <= 3)
+    assert (found[is_building] == 6).all()
+    expected = np.where(classification == 6, 1, classification)
+    np.testing.assert_array_equal(found[~is_building], expected[~is_building])
+
+
+def test_cluster_numbers_may_have_gaps(garden):
+    xyz, cluster_id = garden
+    numbers = np.array([0, 900, 7, 31, 2, 100_000, 15])[cluster_id]
+    for tunables in ({}, {"max_penetration": 0.4}):
+        expected = classify_buildings(xyz, ones(xyz), cluster_id, **tunables)
+        for one, other in zip(classify_buildings(xyz, ones(xyz), numbers, **tunables), expected):
+            np.testing.assert_array_equal(one, other)
+
+
+# --- one kind only ---------------------------------------------------------------------------------------------------
+
+
+def test_a_lone_flat_roof_is_found_by_the_guard_only(rng):
+    xyz, cluster_id = clusters(roof(rng, 0, 0))
+    monitor = Monitor()
+    assert (classify_buildings(xyz, ones(xyz), cluster_id, monitor=monitor)[0] == 6).all()
+    assert "compared with the entropy of planes" in monitor.warnings[0]
+
+    monitor = Monitor()
+    found, _, _, confidence = classify_buildings(xyz, ones(xyz), cluster_id, guard=False, monitor=monitor)
+    assert not (found == 6).any()
+    assert (confidence == 0.5).all()
+    assert monitor.warnings == ["There is only one cluster: nothing to separate, so nothing was called a building."]
+
+
+@pytest.mark.parametrize("guard", [True, False])
+def test_a_lone_tree_is_never_a_building(rng, guard):
+    xyz, cluster_id = clusters(crown(rng, 0, 0))
+    assert not (classify_buildings(xyz, ones(xyz), cluster_id, guard=guard)[0] == 6).any()
+
+
+def test_a_town_without_trees_keeps_all_its_roofs_and_a_forest_gets_none(rng):
+    """K-means would part each in two; that is what the guard is for."""
+    town = clusters(*[roof(rng, 20 * i, 0, noise=0.01 + 0.01 * i) for i in range(6)])
+    forest = clusters(*[crown(rng, 20 * i, 0, 2 + 0.4 * i) for i in range(6)])
+    for (xyz, cluster_id), expected in ((town, True), (forest, False)):
+        guarded = classify_buildings(xyz, ones(xyz), cluster_id)[0] == 6
+        assert (guarded == expected).all()
+        published = classify_buildings(xyz, ones(xyz), cluster_id, guard=False)[0] == 6
+        assert 0 < published.mean() < 1
+
+
+@pytest.mark.parametrize("copies", [2, 5])
+def test_clusters_that_are_all_alike_are_said_to_be(rng, copies):
+    one = crown(rng, 0, 0)
+    xyz, cluster_id = clusters(*[one + [50.0 * i, 0, 0] for i in range(copies)])
+    monitor = Monitor()
+    found = classify_buildings(xyz, ones(xyz), cluster_id, guard=False, monitor=monitor)[0]
+    assert not (found == 6).any()
+    assert len(monitor.warnings) == 1
+    assert "only clusters of the same entropy" in monitor.warnings[0]
+    assert not (classify_buildings(xyz, ones(xyz), cluster_id)[0] == 6).any()
+
+
+def test_without_clusters_nothing_is_found_and_the_log_says_so(rng):
+    xyz = roof(rng, 0, 0)
+    monitor = Monitor()
+    found, *measures = classify_buildings(xyz, np.full(len(xyz), 6), np.zeros(len(xyz), int), monitor=monitor)
+    assert (found == 1).all()
+    assert all(np.isnan(measure).all() for measure in measures)
+    assert monitor.warnings == ["There are no clusters, so no buildings were found."]
+
+
+@pytest.mark.parametrize("guard", [True, False])
+@pytest.mark.parametrize("count", [1, 2, 9])
+def test_clusters_without_extent_have_no_entropy_and_are_no_building(count, guard):
+    xyz = np.concatenate([np.zeros((count, 3)), [[5.0, 5, 0]]])
+    cluster_id = np.append(np.ones(count, int), 0)
+    found, entropy, _, confidence = classify_buildings(xyz, ones(xyz), cluster_id, guard=guard)
+    assert not (found == 6).any()
+    assert np.isnan(entropy).all()
+    assert np.isnan(confidence[-1])
+
+
+# --- penetration -----------------------------------------------------------------------------------------------------
+
+
+def test_a_planar_cluster_with_ground_beneath_is_no_building(rng):
+    """A canopy as flat as a roof: its entropy says building, the points beneath it say leaves."""
+    solid, canopy = roof(rng, 0, 0, 12, 12), roof(rng, 30, 0, 12, 12)
+    ground = roof(rng, 30, 0, 12, 12, elevation=0.0)
+    xyz, part = clusters(solid, canopy, crown(rng, 20, 40), ground)
+    cluster_id = np.where(part == 4, 0, part)
+    published = classify_buildings(xyz, ones(xyz), cluster_id)[0]
+    assert (published[cluster_id == 2] == 6).all()
+    found, _, _, confidence = classify_buildings(xyz, ones(xyz), cluster_id, max_penetration=0.4)
+    assert (found[cluster_id == 1] == 6).all()
+    assert not (found[cluster_id > 1] == 6).any()
+    assert (confidence[cluster_id == 2] <= 0.5).all()
+
+
+def test_returns_that_are_not_the_last_tell_penetration_too(rng):
+    """The same points, once returned in one piece and once the first of two."""
+    xyz, cluster_id = clusters(roof(rng, 0, 0, 12, 12), roof(rng, 30, 0, 12, 12), crown(rng, 20, 40))
+    single, several = np.ones(len(xyz), int), np.where(cluster_id == 2, 2, 1)
+    tunables = {"max_penetration": 0.4, "n_neighbors": 12}
+    for of_pulse, expected in ((single, True), (several, False)):
+        found = classify_buildings(xyz, ones(xyz), cluster_id, single, of_pulse, **tunables)[0]
+        assert (found[cluster_id == 1] == 6).all()
+        assert (found[cluster_id == 2] == 6).all() == expected
+
+
+# --- properties ------------------------------------------------------------------------------------------------------
+
+
+def test_order_place_and_numbers_change_nothing(garden, rng):
+    xyz, cluster_id = garden
+    found, entropy, cluster_entropy, confidence = classify_buildings(xyz, ones(xyz), cluster_id, n_neighbors=24)
+    order = rng.permutation(len(xyz))
+    for place in (0, FAR):
+        other = classify_buildings(xyz[order] + place, ones(xyz), 7 - cluster_id[order], n_neighbors=24)
+        np.testing.assert_array_equal(other[0], found[order])
+        np.testing.assert_allclose(other[1], entropy[order], atol=1e-5)
+        np.testing.assert_allclose(other[2], cluster_entropy[order], atol=1e-5)
+        np.testing.assert_allclose(other[3], confidence[order], atol=1e-4)
+
+
+def test_scale_changes_nothing(garden):
+    """Entropy has no unit: a scene twice as large has the same."""
+    xyz, cluster_id = garden
+    small = classify_buildings(xyz, ones(xyz), cluster_id, n_neighbors=24)
+    large = classify_buildings(xyz * 2, ones(xyz), cluster_id, n_neighbors=24)
+    np.testing.assert_allclose(large[1], small[1], atol=1e-6)
+    np.testing.assert_array_equal(large[0], small[0])
+
+
+def test_entropies_of_planes_and_volumes_are_those_of_large_samples(rng):
+    plane, volume = reference_entropies(40)
+    assert reference_entropies(40) == (plane, volume)
+    cube = rng.uniform(-1, 1, (4000, 3))
+    disk = cube[np.hypot(cube[:, 0], cube[:, 1]) < 1] * [1, 1, 0]
+    ball = cube[np.linalg.norm(cube, axis=1) < 1]
+    for points, expected in ((disk, plane), (ball, volume)):
+        drawn = [literal_entropies(rng.permutation(points)[:40], 40)[0] for _ in range(100)]
+        assert expected == pytest.approx(np.mean(drawn), abs=4 * np.std(drawn) / 10)
+
+
+def test_cancel_gets_through(garden):
+    class Stopping(Monitor):
+        def progress(self, fraction):
+            raise Cancelled
+
+    xyz, cluster_id = garden
+    with pytest.raises(Cancelled):
+        classify_buildings(xyz, ones(xyz), cluster_id, monitor=Stopping())

@@ -1,0 +1,252 @@
+"""What belongs to a building beside its roof surfaces, in scenes where each point's part is known."""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.buildings.complete import complete_buildings
+from lidar_buildings.algorithms.stage import Monitor
+
+FAR = np.array([600_000.0, 5_000_000.0, 0.0])
+SIDE = 40.0
+
+
+class Scene:
+    """A field with roofs; what is added is not classified yet."""
+
+    def __init__(self, rng, density=10):
+        self.rng = rng
+        plan = rng.uniform(0, SIDE, (int(SIDE**2 * density), 2))
+        self.xyz = np.column_stack([plan, np.zeros(len(plan))])
+        self.classification = np.full(len(plan), 2, np.uint8)
+
+    def roof(self, west, south, east, north, elevation):
+        """Lift the field to a roof that the stages before have found, and return its mask."""
+        inside = self.within(west, south, east, north)
+        self.xyz[inside, 2] = elevation(self.xyz[inside, 0]) if callable(elevation) else elevation
+        self.classification[inside] = 6
+        return inside
+
+    def within(self, west, south, east, north):
+        return ((self.xyz[:, :2] >= [west, south]) & (self.xyz[:, :2] <= [east, north])).all(axis=1)
+
+    def remove(self, mask):
+        self.xyz, self.classification = self.xyz[~mask], self.classification[~mask]
+
+    def add(self, xyz, classification=1):
+        """Add points and return their indices."""
+        xyz = np.atleast_2d(np.asarray(xyz, float))
+        self.xyz = np.concatenate([self.xyz, xyz])
+        self.classification = np.append(self.classification, np.full(len(xyz), classification, np.uint8))
+        return np.arange(len(self.xyz) - len(xyz), len(self.xyz))
+
+    def box(self, low, high, count, classification=1):
+        return self.add(self.rng.uniform(low, high, (count, 3)), classification)
+
+    def complete(self, **tunables):
+        return complete_buildings(self.xyz, self.classification, self.xyz[:, 2].astype(np.float32), **tunables)
+
+
+@pytest.fixture
+def scene(rng):
+    return Scene(rng)
+
+
+def gable(x):
+    return 8 - 0.7 * np.abs(x - 15)
+
+
+def test_a_house_gets_its_chimney_walls_and_what_stands_on_it(scene):
+    scene.roof(10, 10, 20, 22, gable)
+    chimney = scene.box([16, 15, 7.2], [16.6, 15.6, 7.7], 8)
+    walls = np.concatenate([scene.box([10, 10, 0.6], [10.2, 22, 4], 60), scene.box([10, 21.8, 0.6], [20, 22, 4], 60)])
+    inside = scene.box([12, 12, 1], [18, 20, 4], 30)
+    found, number = scene.complete()
+    for part in (chimney, walls, inside):
+        assert (found[part] == 6).all()
+        assert (number[part] == 1).all()
+    assert found.dtype == np.uint8
+    assert number.dtype == np.int32
+
+
+def test_roofs_stay_and_the_field_stays(scene):
+    roof = scene.roof(10, 10, 20, 22, gable)
+    found, number = scene.complete()
+    np.testing.assert_array_equal(found, scene.classification)
+    np.testing.assert_array_equal(number, roof.astype(int))
+
+
+def test_the_foot_of_a_wall_is_ground(scene):
+    scene.roof(10, 10, 20, 20, 5.0)
+    kerb, wall = scene.add([15, 15, 0.45]), scene.add([15, 15, 0.55])
+    found, _ = scene.complete()
+    assert (found[kerb], found[wall]) == (1, 6)
+
+
+@pytest.mark.parametrize(("clearance", "expected"), [(1.0, False), (3.0, True)])
+def test_a_tree_above_the_roof_is_left_out_by_its_clearance(scene, clearance, expected):
+    scene.roof(10, 10, 20, 20, 5.0)
+    crown = scene.box([12, 12, 6.5], [18, 18, 7.9], 80)
+    found, number = scene.complete(roof_clearance=clearance)
+    assert (found[crown] == 6).all() == expected
+    assert (number[crown] > 0).all() == expected
+    assert (found[crown] == 6).any() == expected
+
+
+def test_a_tree_beside_the_house_is_left_out(scene):
+    scene.roof(10, 10, 20, 20, 5.0)
+    crown = scene.box([21.5, 12, 2], [25, 18, 5], 200)
+    assert not (scene.complete()[0][crown] == 6).any()
+
+
+def test_a_narrow_alley_in_which_the_ground_shows_is_not_closed(scene):
+    """Two row houses a metre apart: what hangs in the alley over the ground that shows is no building."""
+    scene.roof(5, 10, 14.5, 20, 6.0)
+    scene.roof(15.5, 10, 25, 20, 6.0)
+    alley = np.flatnonzero(scene.within(14.6, 11, 15.4, 19))
+    cable = scene.add(scene.xyz[alley] + [0, 0, 4.2])
+    found, _ = scene.complete()
+    assert (found[alley] == 2).all()
+    assert (found[cable] == 6).mean() < 0.25  # cells at the walls hold roof too
+
+
+def test_houses_farther_apart_than_the_gap_stay_two(scene):
+    scene.roof(5, 10, 13, 20, 6.0)
+    scene.roof(16, 10, 25, 20, 6.0)
+    assert scene.complete()[1].max() == 2
+
+
+def test_the_same_alley_without_ground_is_a_gutter_and_is_closed(scene):
+    scene.roof(5, 10, 14.5, 20, 6.0)
+    scene.roof(15.5, 10, 25, 20, 6.0)
+    scene.remove(scene.within(14.4, 9, 15.6, 21) & (scene.xyz[:, 2] == 0))
+    gutter = scene.box([14.6, 11, 5.2], [15.4, 19, 5.6], 20)
+    found, number = scene.complete()
+    assert (found[gutter] == 6).all()
+    assert number.max() == 1
+    assert scene.complete(gap=0.0)[1].max() == 2
+
+
+@pytest.mark.parametrize("noise", [None, -6.0, 1.0, 60.0])
+def test_a_skylight_is_closed_also_when_multipath_shows_in_it(scene, noise):
+    """Noise points, which have class 7 or 18, are no ground that shows."""
+    scene.roof(10, 10, 22, 22, 6.0)
+    scene.remove(scene.within(15.5, 15.5, 16.5, 16.5))
+    frame = scene.box([15.6, 15.6, 5.9], [16.4, 16.4, 6.2], 6)
+    if noise is not None:
+        x, y = np.meshgrid([15.7, 16.0, 16.3], [15.7, 16.0, 16.3])
+        scene.add(np.column_stack([x.ravel(), y.ravel(), np.full(9, noise)]), 7 if noise < 6 else 18)
+    found, number = scene.complete()
+    assert (found[frame] == 6).all()
+    assert number.max() == 1
+
+
+def test_a_courtyard_stays_open(scene):
+    scene.roof(5, 5, 35, 35, 9.0)
+    yard = scene.within(14, 14, 26, 26)
+    scene.xyz[yard, 2], scene.classification[yard] = 0.0, 2
+    tree = scene.box([18, 18, 2], [22, 22, 7], 100)
+    found, number = scene.complete()
+    assert not (found[np.flatnonzero(yard)] == 6).any()
+    assert not (found[tree] == 6).any()
+    assert number.max() == 1
+
+
+def test_a_courtyard_without_points_stays_open_too(scene):
+    """A pond returns nothing; a crown over it is still no building."""
+    scene.roof(5, 5, 35, 35, 9.0)
+    scene.remove(scene.within(14, 14, 26, 26))
+    tree = scene.box([18, 18, 2], [22, 22, 7], 100)
+    assert not (scene.complete()[0][tree] == 6).any()
+
+
+def test_small_buildings_are_dropped(scene):
+    large, small = scene.roof(5, 5, 15, 15, 5.0), scene.roof(25, 25, 27, 27, 3.0)
+    found, number = scene.complete(min_area=12)
+    assert (found[large] == 6).all()
+    assert (found[small] == 1).all()
+    assert (number[small] == 0).all()
+    assert (scene.complete(min_area=2)[0][small] == 6).all()
+
+
+def test_roofs_that_touch_are_one_building_and_others_are_numbered_from_the_south_west(scene):
+    parts = [scene.roof(2, 2, 10, 8, 4), scene.roof(20, 2, 28, 8, 4), scene.roof(28, 2, 34, 8, 7)]
+    north = scene.roof(2, 30, 10, 36, 4)
+    number = scene.complete()[1]
+    for part, expected in zip([*parts, north], [1, 2, 2, 3]):
+        assert (number[part] == expected).all()
+
+
+def test_noise_on_the_roof_keeps_its_class_and_has_no_building(scene):
+    scene.roof(10, 10, 20, 20, 5.0)
+    noise = np.append(scene.box([12, 12, 5.1], [18, 18, 5.5], 5, 18), scene.box([12, 12, 1], [18, 18, 3], 5, 7))
+    found, number = scene.complete()
+    assert found[noise].tolist() == [18] * 5 + [7] * 5
+    assert not number[noise].any()
+
+
+def test_no_roof_gives_no_building(scene):
+    found, number = scene.complete()
+    np.testing.assert_array_equal(found, scene.classification)
+    assert not number.any()
+    assert number.dtype == np.int32
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_a_few_roof_points_are_no_building(count):
+    xyz = np.column_stack([np.arange(count + 1.0), np.zeros(count + 1), np.full(count + 1, 5.0)])
+    classification = [6] * count + [1]
+    found, number = complete_buildings(xyz, classification, xyz[:, 2], density=4.0)
+    assert found.tolist() == [1] * (count + 1)
+    assert not number.any()
+
+
+def test_all_roof(rng):
+    xyz = np.column_stack([rng.uniform(0, 20, (2000, 2)), np.full(2000, 5.0)])
+    found, number = complete_buildings(xyz, np.full(2000, 6), xyz[:, 2])
+    assert (found == 6).all()
+    assert (number == 1).all()
+
+
+@pytest.mark.parametrize(("density", "least"), [(2, 0.7), (25, 1.0)])
+def test_any_density(rng, density, least):
+    scene = Scene(rng, density)
+    roof = scene.roof(8, 8, 24, 20, gable)
+    walls = scene.box([8.05, 8, 0.6], [8.2, 20, 3], 20)
+    found, number = scene.complete()
+    # Beside the outermost roof points of a thin cloud a cell may hold none.
+    assert (found[walls] == 6).mean() >= least
+    assert (found[np.flatnonzero(roof)] == 6).all()
+    assert number.max() == 1
+    assert (found[~np.isin(np.arange(len(found)), walls) & (scene.xyz[:, 2] == 0)] == 2).all()
+
+
+def test_order_and_place_change_nothing(scene, rng):
+    scene.roof(10, 10, 20, 22, gable)
+    scene.roof(25, 5, 36, 14, 4.0)
+    scene.box([10, 10, 0.6], [12, 22, 4], 60)
+    scene.xyz = scene.xyz.round(3)
+    found, number = scene.complete()
+    order = rng.permutation(len(scene.xyz))
+    shuffled = complete_buildings(scene.xyz[order], scene.classification[order], scene.xyz[order, 2])
+    moved = complete_buildings((scene.xyz + FAR).round(3), scene.classification, scene.xyz[:, 2])
+    np.testing.assert_array_equal(shuffled[0], found[order])
+    np.testing.assert_array_equal(shuffled[1], number[order])
+    # Cells start at the least coordinates, where rounding may take a point to the cell beside.
+    assert (moved[0] == found).mean() > 0.999
+    assert (moved[1] == number).mean() > 0.999
+
+
+def test_twice_is_once(scene):
+    scene.roof(10, 10, 20, 22, gable)
+    scene.box([10, 10, 0.6], [10.2, 22, 4], 60)
+    found, number = scene.complete()
+    scene.classification = found
+    again = scene.complete()
+    assert (again[0] != found).sum() == 0
+    np.testing.assert_array_equal(again[1], number)
+
+
+def test_density_is_told(scene):
+    monitor = Monitor()
+    scene.complete(monitor=monitor)
+    assert monitor.values["density"] == pytest.approx(10, rel=0.05)

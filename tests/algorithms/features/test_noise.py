@@ -1,0 +1,94 @@
+"""The noise of smooth surfaces, put there by construction."""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.features import noise as module
+from lidar_buildings.algorithms.features.noise import surface_neighbors, surface_noise
+
+FAR = np.array([600_000.0, 5_000_000.0, 0.0])
+
+
+def plane(rng, deviation, slope=0.0, count=4000, side=30.0):
+    """Return points whose deviation across a plane of that slope (rise over run) is known."""
+    plan = rng.uniform(0, side, (count, 2))
+    across = rng.normal(0, deviation, count) * np.hypot(1, slope)
+    return np.column_stack([plan, slope * plan[:, 0] + across])
+
+
+@pytest.mark.parametrize("deviation", [0.02, 0.05, 0.2])
+@pytest.mark.parametrize("slope", [0.0, 1.0])
+def test_noise_of_a_plane(deviation, slope, rng):
+    """The smoothest fifth of equally rough surroundings looks a quarter smoother than they are."""
+    assert 0.65 * deviation < surface_noise(plane(rng, deviation, slope)) < 1.05 * deviation
+
+
+def test_twice_the_noise_is_twice_the_figure(rng):
+    here = plane(rng, 0.05)
+    assert surface_noise(here * [1, 1, 2]) == pytest.approx(2 * surface_noise(here), rel=0.05)
+
+
+def test_no_noise_is_a_centimeter(rng):
+    assert surface_noise(plane(rng, 0.0)) == 0.01
+
+
+def test_the_plane_of_twelve_points_by_hand(rng):
+    """Twelve points have one neighborhood: the figure is its least squares across, for 12 - 3 degrees of freedom."""
+    xyz = rng.normal(size=(12, 3)) * [3, 2, 0.3]
+    least = np.linalg.svd(xyz - xyz.mean(axis=0), compute_uv=False)[2]
+    assert surface_noise(xyz) == pytest.approx(np.sqrt(least**2 / 9))
+
+
+def test_trees_over_two_thirds_of_the_ground_do_not_count(rng):
+    open_ground = plane(rng, 0.03, side=30, count=3000)
+    crowns = rng.uniform([0, 30, 2], [30, 90, 12], (6000, 3))
+    assert surface_noise(np.concatenate([open_ground, crowns])) == pytest.approx(0.03, rel=0.35)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_a_handful_of_points_has_the_least_noise(count):
+    assert surface_noise(np.arange(3.0 * count).reshape(-1, 3)) == 0.01
+
+
+def test_points_at_one_place_have_the_least_noise():
+    assert surface_noise(np.zeros((50, 3))) == 0.01
+
+
+def test_order_and_place_change_nothing(rng):
+    xyz = plane(rng, 0.04).round(3)
+    expected = surface_noise(xyz)
+    assert surface_noise(rng.permutation(xyz)) == pytest.approx(expected, rel=1e-9)
+    assert surface_noise((xyz + FAR).round(3)) == pytest.approx(expected, rel=1e-4)
+
+
+def test_a_sample_is_enough_and_is_chosen_by_place(rng, monkeypatch):
+    xyz = plane(rng, 0.04, count=12_000, side=50).round(3)
+    whole = surface_noise(xyz)
+    monkeypatch.setattr(module, "_SAMPLE", 2000)
+    rows = module._sample(xyz)
+    assert 1500 < len(rows) < 2500
+    order = rng.permutation(len(xyz))
+    np.testing.assert_array_equal(np.sort(order[module._sample(xyz[order])]), rows)
+    assert surface_noise(xyz) == pytest.approx(whole, rel=0.05)
+    # Chosen evenly: no quarter of the area is left out.
+    quarter = (xyz[rows, 0] > 25).astype(int) * 2 + (xyz[rows, 1] > 25)
+    assert np.bincount(quarter).min() > 0.2 * len(rows)
+
+
+def test_scattered_points_need_no_more_neighbors_than_asked_for(rng):
+    assert surface_neighbors(plane(rng, 0.02), 12) in (12, 18)
+
+
+def test_points_along_scan_lines_need_neighbors_on_several_lines(rng):
+    """Points every 10 cm on lines 1 m apart: 12 nearest points are one line, which has no plane."""
+    x, y = np.meshgrid(np.arange(0, 30, 0.1), np.arange(0, 30, 1.0))
+    lines = np.column_stack([x.ravel(), y.ravel(), rng.normal(0, 0.02, x.size)])
+    count = surface_neighbors(lines, 12)
+    assert 25 <= count <= 60
+
+
+def test_neighbors_are_at_most_sixty_and_all_points():
+    line = np.outer(np.arange(200.0), [1, 0, 0])
+    assert surface_neighbors(line, 8) == 60
+    assert surface_neighbors(line[:20], 8) == 20
+    assert surface_neighbors(line[:5], 8) == 5

@@ -1,0 +1,163 @@
+"""Roofs are told from terrain, crowns and clutter in scenes whose truth is known by construction."""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.buildings.buildings import classify_buildings
+from lidar_buildings.algorithms.segmentation.roofs import segment_roofs
+from lidar_buildings.algorithms.stage import Monitor
+
+FAR = np.array([600_000.0, 5_000_000.0, 0.0])
+FIELD, EAST, WEST, FLAT = range(4)
+SIDE = 30.0
+
+
+def village(rng, density=8.0, noise=0.02, slope=40.0):
+    """Return points, heights and truth of a gable house of 12 m by 16 m and a flat one of 6 m by 8 m in a field."""
+    plan = rng.uniform(0, SIDE, (int(SIDE**2 * density), 2))
+    truth, height = np.full(len(plan), FIELD), np.zeros(len(plan))
+    house = (np.abs(plan[:, 0] - 15) < 6) & (np.abs(plan[:, 1] - 15) < 8)
+    truth[house] = np.where(plan[house, 0] > 15, EAST, WEST)
+    height[house] = 3 + (6 - np.abs(plan[house, 0] - 15)) * np.tan(np.radians(slope))
+    flat = (plan > [24, 0]).all(axis=1) & (plan[:, 1] < 8)
+    truth[flat], height[flat] = FLAT, 2.8
+    return np.column_stack([plan, height + rng.normal(0, noise, len(plan))]), height, truth
+
+
+def ones(values):
+    return np.ones(len(values), np.uint8)
+
+
+def with_tree(rng, xyz, height, at, radius=3.0, crown=7.0, count=600):
+    """Add a ball of leaves over the field."""
+    direction = rng.normal(size=(count, 3))
+    ball = direction / np.linalg.norm(direction, axis=1)[:, None] * radius * rng.random((count, 1)) ** (1 / 3)
+    ball += [*at, crown]
+    return np.concatenate([xyz, ball]), np.concatenate([height, ball[:, 2]]), np.arange(len(xyz) + count) >= len(xyz)
+
+
+@pytest.mark.parametrize("density", [2, 6, 20, 50])
+@pytest.mark.parametrize("noise", [0.01, 0.03, 0.06])
+def test_roofs_at_any_density_and_noise_with_nothing_to_set(density, noise, rng):
+    xyz, height, truth = village(rng, density, noise)
+    segment, cluster = segment_roofs(xyz, ones(xyz), height)
+    assert not cluster[truth == FIELD].any()
+    for roof in (EAST, WEST, FLAT):
+        # Where neighborhoods are smallest for their noise, normals scatter and a third of the points stay alone.
+        assert (segment[truth == roof] > 0).mean() > (0.8 if noise < 0.05 else 0.6)
+        assert (cluster[truth == roof] > 0).mean() > 0.8
+    assert (segment[truth > 0] > 0).mean() > (0.9 if noise < 0.05 else 0.75)
+
+
+def test_the_sides_of_a_gable_and_the_flat_roof_are_three_surfaces(rng):
+    xyz, height, truth = village(rng)
+    segment, cluster = segment_roofs(xyz, ones(xyz), height)
+    assert segment.dtype == cluster.dtype == np.int32
+    numbers = [np.bincount(segment[truth == roof]).argmax() for roof in (EAST, WEST, FLAT)]
+    assert len(set(numbers)) == 3
+    assert 0 not in numbers
+    for roof, number in zip((EAST, WEST, FLAT), numbers):
+        assert (segment[truth == roof] == number).mean() > 0.95
+        assert (truth[segment == number] == roof).mean() > 0.97
+
+
+def test_roofs_keep_their_numbers_as_clusters_and_the_rest_follows(rng):
+    xyz, height, _ = village(rng)
+    xyz, height, is_leaf = with_tree(rng, xyz, height, (4, 4))
+    segment, cluster = segment_roofs(xyz, ones(xyz), height)
+    np.testing.assert_array_equal(cluster[segment > 0], segment[segment > 0])
+    assert sorted(set(segment[segment > 0])) == list(range(1, segment.max() + 1))
+    assert sorted(set(cluster[cluster > 0])) == list(range(1, cluster.max() + 1))
+    assert (segment[is_leaf] > 0).mean() < 0.05
+    crown = np.bincount(cluster[is_leaf]).argmax()
+    assert crown > segment.max()
+    assert (cluster[is_leaf] == crown).mean() > 0.9
+    assert is_leaf[cluster == crown].all()
+
+
+def test_low_and_small_surfaces_are_no_roofs(rng):
+    xyz, height, truth = village(rng)
+    is_flat = truth == FLAT
+    assert not segment_roofs(xyz, ones(xyz), height, min_height=3.2)[0][is_flat].any()
+    assert (segment_roofs(xyz, ones(xyz), height, min_height=2.5)[0][is_flat] > 0).mean() > 0.9
+    assert not segment_roofs(xyz, ones(xyz), height, min_area=60)[0][is_flat].any()
+    assert (segment_roofs(xyz, ones(xyz), height, min_area=35)[0][is_flat] > 0).mean() > 0.9
+
+
+def test_what_goes_on_into_the_ground_is_no_roof(rng):
+    """A ramp that climbs from the ground to 6 m."""
+    plan = rng.uniform(0, 40, (9600, 2))
+    is_ramp = np.abs(plan[:, 1] - 20) < 5
+    height = np.where(is_ramp, 0.15 * plan[:, 0], 0.0)
+    xyz = np.column_stack([plan, height + rng.normal(0, 0.02, 9600)])
+    assert not segment_roofs(xyz, ones(xyz), height)[0].any()
+
+
+def test_noise_is_in_no_cluster(rng):
+    xyz, height, truth = village(rng)
+    classification = np.where(truth == FLAT, 7, np.where(truth == EAST, 18, 1)).astype(np.uint8)
+    segment, cluster = segment_roofs(xyz, classification, height)
+    assert not segment[truth != WEST].any()
+    assert not cluster[truth != WEST].any()
+    assert (segment[truth == WEST] > 0).mean() > 0.9
+
+
+def test_a_porous_canopy_is_planar_but_no_building(rng):
+    """A pergola of leaves, flat as a roof: half of the beams go through it. A solid roof beside it is found."""
+    plan = rng.uniform(0, 40, (16_000, 2))
+    over, solid = ((np.abs(plan - middle) < 5).all(axis=1) for middle in ([10, 20], [30, 20]))
+    caught = rng.random(len(plan)) < 0.5
+    height = np.where(solid | (over & caught), 4.0, 0.0)
+    xyz = np.column_stack([plan, height + rng.normal(0, 0.02, len(plan))])
+    cluster = segment_roofs(xyz, ones(xyz), height)[1]
+    found = classify_buildings(xyz, ones(xyz), cluster, n_neighbors=10, max_penetration=0.4)[0]
+    assert (found[over] != 6).all()
+    assert (found[solid] == 6).mean() > 0.95
+
+
+def test_nothing_above_the_ground_gives_no_cluster(rng):
+    plan = rng.uniform(0, 30, (3000, 2))
+    xyz = np.column_stack([plan, rng.normal(0, 0.02, 3000)])
+    segment, cluster = segment_roofs(xyz, ones(xyz), xyz[:, 2])
+    assert not segment.any()
+    assert not cluster.any()
+
+
+def test_only_a_tree_gives_no_roof(rng):
+    """Where no surface is left at all, nothing may break either."""
+    xyz, height, _ = with_tree(rng, np.empty((0, 3)), np.empty(0), (10, 10), radius=2)
+    segment, cluster = segment_roofs(xyz, ones(xyz), height, noise=0.02)
+    assert (segment > 0).mean() < 0.1
+    assert cluster.any()
+
+
+@pytest.mark.parametrize("classification", [7, 1])
+@pytest.mark.parametrize("count", [2, 5])
+def test_a_few_points_do_no_harm(count, classification):
+    xyz = np.column_stack([np.arange(count), np.zeros(count), np.full(count, 5.0)])
+    segment, cluster = segment_roofs(xyz, np.full(count, classification), xyz[:, 2])
+    assert segment.tolist() == [0] * count
+    assert len(cluster) == count
+    assert not (classification == 7 and cluster.any())
+
+
+def test_order_and_place_change_nothing(rng):
+    xyz, height, _ = village(rng, 5)
+    xyz, height, _ = with_tree(rng, xyz, height, (4, 4))
+    xyz = xyz.round(3)
+    cluster = segment_roofs(xyz, ones(xyz), height)[1]
+    order = rng.permutation(len(xyz))
+    shuffled = segment_roofs(xyz[order], ones(xyz), height[order])[1]
+    moved = segment_roofs((xyz + FAR).round(3), ones(xyz), height)[1]
+    for other, of in ((shuffled, cluster[order]), (moved, cluster)):
+        assert ((other > 0) == (of > 0)).mean() > 0.999
+        common = (other > 0) & (of > 0)
+        assert len(set(zip(other[common].tolist(), of[common].tolist()))) == cluster.max() == other.max()
+
+
+def test_automatic_values_are_told(rng):
+    monitor = Monitor()
+    xyz, height, _ = village(rng, 8, 0.04)
+    segment_roofs(xyz, ones(xyz), height, monitor=monitor)
+    assert monitor.values["density"] == pytest.approx(8, rel=0.06)
+    assert 0.02 < monitor.values["noise"] < 0.05

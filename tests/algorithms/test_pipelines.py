@@ -1,0 +1,232 @@
+"""Chains of stages in memory: what they find, how their tunables are named, what they tell, how they stop."""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms import pipelines as module
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.pipelines import PIPELINES, Pipeline, Step, run_pipeline
+from lidar_buildings.algorithms.run import run_stage
+from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.algorithms.stages import STAGES
+
+FIELD, HOUSE, SHED, CROWN, BIRD = range(5)
+
+
+def hamlet(seed=5, density=4):
+    """Return points and truth: a gable house, a flat house and two trees on a slope, and a bird above."""
+    random = np.random.default_rng(seed)
+    plan = random.uniform(0, 60, (60 * 60 * density, 2))
+    ground = 0.08 * plan[:, 0]
+    z, truth = ground.copy(), np.full(len(plan), FIELD)
+    house = ((plan > [10, 10]) & (plan < [22, 26])).all(axis=1)
+    z[house], truth[house] = 4.5 + 4 + (6 - np.abs(plan[house, 0] - 16)) * 0.8, HOUSE
+    shed = ((plan > [35, 12]) & (plan < [47, 20])).all(axis=1)
+    z[shed], truth[shed] = 8.0, SHED
+    crowns = []
+    for x, y, radius in ((20, 45, 4.0), (42, 42, 3.0)):
+        direction = random.normal(size=(int(30 * radius**3 / 3), 3))
+        direction *= radius / np.linalg.norm(direction, axis=1)[:, None]
+        crowns.append(direction * random.random((len(direction), 1)) ** (1 / 3) + [x, y, 0.08 * x + 3 + radius])
+    leaves = np.concatenate(crowns)
+    xyz = np.concatenate([np.column_stack([plan, z + random.normal(0, 0.02, len(plan))]), leaves, [[30.0, 30.0, 90.0]]])
+    return xyz, np.concatenate([truth, np.full(len(leaves), CROWN), [BIRD]])
+
+
+def made():
+    xyz, truth = hamlet()
+    return create_cloud({"xyz": xyz + [600_000.0, 5_000_000.0, 0.0]}), truth
+
+
+@pytest.fixture(scope="module")
+def detected():
+    """The default chain's result on the hamlet."""
+    cloud, truth = made()
+    outcome = run_pipeline(PIPELINES["detect_buildings"], cloud)
+    return outcome, truth
+
+
+def test_the_default_chain_finds_the_hamlet(detected):
+    outcome, truth = detected
+    classes = outcome.cloud.get("classification")
+    assert (classes[truth == FIELD] == 2).mean() > 0.98
+    assert (classes[(truth == HOUSE) | (truth == SHED)] == 6).mean() > 0.98
+    assert not (classes[truth == CROWN] == 6).any()
+    assert classes[truth == BIRD].tolist() == [18]
+
+
+def test_the_footprints_are_those_of_the_houses(detected):
+    footprints = detected[0].layers["footprints"]
+    assert len(footprints) == 2
+    assert sorted(footprints.columns["area"]) == pytest.approx([12 * 8, 12 * 16], rel=0.08)
+    # Also where points were added that have no entropy of their own.
+    assert min(footprints.columns["confidence"]) > 0.8
+    assert max(footprints.columns["entropy"]) < 0.75
+    centers = [detected[0].cloud.to_map(rings[0][:-1].mean(axis=0)) for rings in footprints.geometries]
+    expected = np.array([[600_016, 5_000_018], [600_041, 5_000_016]])
+    for center in centers:
+        assert np.linalg.norm(expected - center, axis=1).min() < 0.5
+
+
+def test_every_step_leaves_its_dimensions(detected):
+    cloud = detected[0].cloud
+    for step in PIPELINES["detect_buildings"].steps:
+        for name in step.stage.writes:
+            assert cloud.has(name), name
+
+
+def test_the_published_chain_finds_the_houses_too():
+    """Its regions keep to a height difference of ten noises, which parts a steep gable: it is found in pieces."""
+    cloud, truth = made()
+    outcome = run_pipeline(PIPELINES["detect_buildings_2019"], cloud, ground_max_building_size=20.0)
+    classes = cloud.get("classification")
+    assert (classes[truth == SHED] == 6).mean() > 0.9
+    assert 0.3 < (classes[truth == HOUSE] == 6).mean() < 0.95
+    assert (classes[truth == CROWN] == 6).mean() < 0.1
+    assert len(outcome.layers["footprints"]) >= 2
+    assert not cloud.has("height_above_ground")
+
+
+def test_a_chain_is_its_stages_one_after_the_other(detected):
+    cloud, _ = made()
+    for step in PIPELINES["detect_buildings"].steps:
+        last = run_stage(step.stage, cloud, **step.tunables)
+    theirs = detected[0].cloud
+    for name in ("classification", "cluster_id", "segment_id", "height_above_ground", "entropy", "confidence"):
+        np.testing.assert_array_equal(cloud.get(name), theirs.get(name))
+    for name, values in last.layers["footprints"].columns.items():
+        np.testing.assert_array_equal(values, detected[0].layers["footprints"].columns[name])
+
+
+def test_the_same_cloud_gives_the_same_result(detected):
+    cloud, _ = made()
+    run_pipeline(PIPELINES["detect_buildings"], cloud)
+    np.testing.assert_array_equal(cloud.get("classification"), detected[0].cloud.get("classification"))
+    np.testing.assert_array_equal(cloud.get("confidence"), detected[0].cloud.get("confidence"))
+
+
+@pytest.mark.parametrize(
+    ("name", "slope"), [("detect_buildings", 0.0), ("detect_buildings", 0.3), ("detect_buildings_2019", 0.0)]
+)
+def test_a_field_without_buildings_is_valid_and_has_none(name, slope, rng):
+    plan = rng.uniform(0, 40, (2400, 2))
+    cloud = create_cloud({"xyz": np.column_stack([plan, slope * plan[:, 1] + rng.normal(0, 0.02, 2400)])})
+    outcome = run_pipeline(PIPELINES[name], cloud)
+    assert (cloud.get("classification") == 2).mean() > 0.99
+    assert not (cloud.get("classification") == 6).any()
+    assert len(outcome.layers["footprints"]) == 0
+
+
+# --- tunables --------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def calls(monkeypatch):
+    """What each stage of a chain is called with, without running it."""
+    called = []
+
+    def record(stage, cloud, monitor=None, **tunables):
+        called.append((stage.name, tunables))
+        return module.Outcome(cloud)
+
+    monkeypatch.setattr(module, "run_stage", record)
+    return called
+
+
+def test_tunables_go_to_the_step_that_their_name_begins_with(calls):
+    tunables = {"ground_cell_size": 2.0, "footprints_min_area": 9.0, "complete_min_area": 7.0}
+    run_pipeline(PIPELINES["detect_buildings"], None, **tunables)
+    called = dict(calls)
+    assert called["classify_ground_tin"] == {"cell_size": 2.0}
+    assert called["extract_footprints"] == {"min_area": 9.0}
+    assert called["complete_buildings"] == {"min_area": 7.0}
+    assert called["classify_noise_histogram"] == {}
+    assert [name for name, _ in calls] == [step.stage_name for step in PIPELINES["detect_buildings"].steps]
+
+
+def test_the_chains_own_defaults_hold_until_something_else_is_given(calls):
+    own = {step.name: dict(step.tunables) for step in PIPELINES["detect_buildings"].steps}
+    run_pipeline(PIPELINES["detect_buildings"], None)
+    assert dict(calls)["classify_buildings"] == own["buildings"]
+    calls.clear()
+    run_pipeline(PIPELINES["detect_buildings"], None, buildings_n_neighbors=33)
+    assert dict(calls)["classify_buildings"] == {**own["buildings"], "n_neighbors": 33}
+    # Nothing of a run stays behind for the next.
+    assert {step.name: dict(step.tunables) for step in PIPELINES["detect_buildings"].steps} == own
+
+
+def test_one_stage_may_be_in_a_chain_twice(calls):
+    twice = Pipeline(
+        "twice", "Twice", "Toys", "", "", "", "",
+        (Step("first", "segment_regions", {"min_area": 1.0}), Step("second", "segment_regions")),
+    )  # fmt: skip
+    run_pipeline(twice, None, second_min_area=3.0)
+    assert calls == [("segment_regions", {"min_area": 1.0}), ("segment_regions", {"min_area": 3.0})]
+
+
+@pytest.mark.parametrize("name", ["cell_size", "ground_cellsize", "classify_ground_tin_cell_size", "ground"])
+def test_an_unknown_tunable_is_refused_before_anything_runs(calls, name):
+    with pytest.raises(ValueError, match=f"^detect_buildings has no tunable '{name}'; it has .*ground_cell_size"):
+        run_pipeline(PIPELINES["detect_buildings"], None, **{name: 1})
+    assert calls == []
+
+
+def test_tunables_are_checked_by_their_stage():
+    cloud, _ = made()
+    with pytest.raises(ValueError, match="Maximum building size"):
+        run_pipeline(PIPELINES["detect_buildings"], cloud, ground_max_building_size=-5.0)
+
+
+def test_the_steps_own_tunables_are_ones_that_their_stages_take():
+    for pipeline in PIPELINES.values():
+        for step in pipeline.steps:
+            step.stage.check(step.tunables)
+            assert step.stage is STAGES[step.stage_name]
+
+
+# --- what is told meanwhile ------------------------------------------------------------------------------------------
+
+
+class Listening(Monitor):
+    """Keeps the fractions, and stops the run at one of them."""
+
+    def __init__(self, stop_at=2.0):
+        super().__init__()
+        self.told, self.stop_at = [], stop_at
+
+    def progress(self, fraction):
+        self.told.append(fraction)
+        if fraction >= self.stop_at:
+            raise Cancelled
+
+
+@pytest.mark.parametrize("name", PIPELINES)
+def test_progress_only_grows_and_every_step_is_heard_of(name):
+    monitor = Listening()
+    run_pipeline(PIPELINES[name], made()[0], monitor)
+    assert monitor.told == sorted(monitor.told)
+    assert monitor.told[0] >= 0
+    assert monitor.told[-1] <= 1
+    steps = len(PIPELINES[name].steps)
+    # Completing is over in no time and tells nothing.
+    assert len({min(int(fraction * steps), steps - 1) for fraction in monitor.told}) >= steps - 1
+
+
+@pytest.mark.parametrize("stop_at", [0.01, 0.3, 0.5, 0.65])
+def test_a_cancel_gets_through_at_once(stop_at):
+    monitor = Listening(stop_at)
+    with pytest.raises(Cancelled):
+        run_pipeline(PIPELINES["detect_buildings"], made()[0], monitor)
+    assert sum(fraction >= stop_at for fraction in monitor.told) == 1
+
+
+def test_automatic_values_and_warnings_of_all_steps_come_together():
+    monitor = Monitor()
+    run_pipeline(PIPELINES["detect_buildings"], made()[0], monitor)
+    assert {"iteration_distance", "density", "noise", "building_entropy"} <= set(monitor.values)
+
+
+def test_a_refusal_of_a_step_gets_through():
+    cloud = create_cloud({"xyz": np.outer(np.arange(50.0), [1, 0, 0])})
+    with pytest.raises(ValueError, match="lie on one line"):
+        run_pipeline(PIPELINES["detect_buildings"], cloud)
