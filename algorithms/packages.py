@@ -1,6 +1,6 @@
 """Third-party packages, imported when first used.
 
-QGIS on some systems comes without scipy, scikit-learn or laspy. The toolbox must
+QGIS on some systems comes without scipy, scikit-learn or lazrs. The toolbox must
 then still show every algorithm and each must say what is missing, so nothing here
 is imported before a stage runs.
 """
@@ -12,7 +12,7 @@ import importlib.util
 from types import ModuleType
 
 # Import name -> name to install; the one list of what the plugin needs beside numpy.
-REQUIRED = {"scipy": "scipy", "sklearn": "scikit-learn", "laspy": "laspy"}
+REQUIRED = {"scipy": "scipy", "sklearn": "scikit-learn"}
 
 
 class _Lazy(ModuleType):

@@ -8,7 +8,13 @@ from .stage import Param
 
 Seed = Annotated[
     int,
-    Param("Seed", "Start of the random numbers: the same seed gives the same result.", low=0, high=2**31 - 1, advanced=True),
+    Param(
+        "Seed",
+        "Start of the random numbers: the same seed gives the same result.",
+        low=0,
+        high=2**31 - 1,
+        advanced=True,
+    ),
 ]
 
 PointDensity = Annotated[

@@ -57,9 +57,9 @@ class Pipeline:
 
 
 _SANTOS = (
-    "Santos, R. C. dos, Pessoa, G. G., Carrilho, A. C., Galo, M., 2019. Building detection from LiDAR data using entropy "
-    "and the k-means concept. International Archives of the Photogrammetry, Remote Sensing and Spatial Information "
-    "Sciences XLII-2/W13."
+    "Santos, R. C. dos, Pessoa, G. G., Carrilho, A. C., Galo, M., 2019. Building detection from LiDAR data using "
+    "entropy and the k-means concept. International Archives of the Photogrammetry, Remote Sensing and Spatial "
+    "Information Sciences XLII-2/W13."
 )
 
 _PIPELINES = (
@@ -132,7 +132,9 @@ def run_pipeline(pipeline: Pipeline, cloud: Cloud, monitor: Optional[Monitor] = 
 
 def _by_step(pipeline: Pipeline, tunables: dict[str, Any]) -> dict[str, dict[str, Any]]:
     """Sort ``<step>_<tunable>`` values by step, over the pipeline's own defaults."""
-    names = {f"{step.name}_{tunable}": (step.name, tunable) for step in pipeline.steps for tunable in step.stage.tunables}
+    names = {
+        f"{step.name}_{tunable}": (step.name, tunable) for step in pipeline.steps for tunable in step.stage.tunables
+    }
     chosen = {step.name: dict(step.tunables) for step in pipeline.steps}
     for name, value in tunables.items():
         if name not in names:

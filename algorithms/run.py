@@ -52,7 +52,7 @@ def run_stage(
         cloud = create_cloud({name: results.pop(0) for name in stage.creates})
     for name in stage.writes:
         values = results.pop(0)
-        if values is not None:
+        if values is not None and cloud is not None:
             cloud.set(name, _whole(cloud, name, values, used))
     layers = {layer.name: results.pop(0) for layer in stage.layers}
     return Outcome(cloud, layers, results.pop(0) if stage.measures else None)
@@ -60,7 +60,7 @@ def run_stage(
 
 def _dimensions(stage: Stage, cloud: Optional[Cloud], reference: Optional[Cloud], used: Optional[np.ndarray]) -> list:
     """Return the arrays that the stage's positional arguments name; None where an optional one is absent."""
-    arrays = []
+    arrays: list[Optional[np.ndarray]] = []
     for name in (*stage.reads, *stage.optional):
         of_reference = name.startswith(REFERENCE_PREFIX)
         source = reference if of_reference else cloud

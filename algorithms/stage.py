@@ -332,9 +332,9 @@ def stage(
 
     The function returns, in this order and bare when there is one thing only:
     one array per name in ``writes`` (length n; None for one that the user did not
-    ask for) or ``creates`` (a new cloud of any length), one :class:`Features` per layer, and a :class:`Report` when there are
-    measures. The decorated function checks its arrays and tunables on every call
-    and carries its :class:`Stage` as ``function.stage``.
+    ask for) or ``creates`` (a new cloud of any length), one :class:`Features` per
+    layer, and a :class:`Report` when there are measures. The decorated function
+    checks its arrays and tunables on every call and carries its :class:`Stage` as ``function.stage``.
     """
 
     def declare(function: Callable) -> Callable:
@@ -405,7 +405,7 @@ def _check_coordinates(name: str, array: np.ndarray) -> None:
         raise ValueError(f"{name} must be of shape (n, 3), got {array.shape}.")
     if array.dtype.kind == "f" and not np.isfinite(array).all():
         bad = int((~np.isfinite(array).all(axis=1)).sum())
-        raise ValueError(f"{bad} of {len(array)} points have coordinates that are not finite numbers; remove them first.")
+        raise ValueError(f"{bad} of {len(array)} points have coordinates that are not finite; remove them first.")
 
 
 _HEADINGS = ("Parameters", "Returns", "Raises", "Other Parameters", "Notes", "References", "Examples", "See Also")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from .buildings.buildings import classify_buildings
 from .buildings.complete import complete_buildings
 from .buildings.footprints import extract_footprints
@@ -16,7 +18,7 @@ from .simulation.town import simulate_town
 from .terrain.ground_tin import classify_ground_tin
 from .terrain.height import compute_height_above_ground
 
-_FUNCTIONS = (
+_FUNCTIONS: tuple[Any, ...] = (
     classify_noise_histogram,
     classify_noise_statistical,
     classify_ground_tin,

@@ -125,7 +125,9 @@ def classify_buildings(
     monitor.resolved(building_entropy=split.building, other_entropy=split.other)
     sure = split.confidence(means)
     if max_penetration < 1:
-        sure = _with_solidity(sure, penetration(xyz, cluster_id - 1, density, return_number, number_of_returns)[ids - 1], max_penetration)
+        sure = _with_solidity(
+            sure, penetration(xyz, cluster_id - 1, density, return_number, number_of_returns)[ids - 1], max_penetration
+        )
 
     entropy[clustered] = values
     cluster_entropy[clustered] = means[position]
@@ -135,7 +137,7 @@ def classify_buildings(
 
 
 def _with_solidity(sure: np.ndarray, penetration: np.ndarray, most: float) -> np.ndarray:
-    """Return the mean of two confidences, that of the entropy and 1 … 0 as penetration goes from 0 to twice the most."""
+    """Return the mean of the entropy's confidence and one that falls to 0 at twice the penetration allowed."""
     solid = np.clip(1 - penetration / (2 * most), 0, 1)
     both = (np.nan_to_num(sure, nan=0.5) + solid) / 2
     return np.where(penetration <= most, both, np.minimum(both, 0.5))

@@ -204,7 +204,7 @@ def _small(mask: np.ndarray, most: float) -> np.ndarray:
 
 
 def _numbered(covered: np.ndarray, least: float) -> np.ndarray:
-    """Number the regions of at least ``least`` cells from 1, from the south-west; 0 elsewhere."""
+    """Return numbers from 1 for the regions of at least ``least`` cells, from the south-west; 0 elsewhere."""
     region, count = ndimage.label(covered, _EIGHT)
     large = np.bincount(region.ravel(), minlength=count + 1) >= least
     large[0] = False
@@ -214,7 +214,7 @@ def _numbered(covered: np.ndarray, least: float) -> np.ndarray:
 def _roof_top(
     cell: tuple[np.ndarray, np.ndarray], elevation: np.ndarray, is_roof: np.ndarray, covered: np.ndarray
 ) -> np.ndarray:
-    """Return the elevation (rows, columns) of the highest roof point of each cell, that of the nearest where it has none."""
+    """Return the elevation (rows, columns) of the highest roof point of each cell, or of the nearest such cell."""
     row, column = cell
     top = np.full(covered.shape, -np.inf)
     np.maximum.at(top, (row[is_roof], column[is_roof]), elevation[is_roof])

@@ -94,5 +94,7 @@ def _sample(xyz: np.ndarray) -> np.ndarray:
         return np.arange(len(xyz))
     millimetres = np.rint((xyz - xyz.min(axis=0)) * 1000).astype(np.uint64)
     # Three large odd numbers mix the coordinates; the high bits of the product are the well mixed ones.
-    mixed = (millimetres * np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.uint64)).sum(axis=1)
+    mixed = (millimetres * np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.uint64)).sum(
+        axis=1
+    )
     return np.flatnonzero((mixed >> np.uint64(40)) % np.uint64(step) == 0)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Iterator
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -14,7 +14,7 @@ _PAIRS_AT_ONCE = 2_000_000
 
 
 def connect(xyz: np.ndarray, plan_distance: float, height_distance: float, monitor: Monitor) -> np.ndarray:
-    """Number the components of "closer in plan and closer in height", transitively.
+    """Find the components of "closer in plan and closer in height", transitively.
 
     Parameters
     ----------
@@ -80,9 +80,7 @@ class _Boxes:
         here = np.flatnonzero(self.keys[there] == wanted)
         return here, there[here]
 
-    def touching(
-        self, here: np.ndarray, there: np.ndarray, plan_distance: float, height_distance: float
-    ) -> np.ndarray:
+    def touching(self, here: np.ndarray, there: np.ndarray, plan_distance: float, height_distance: float) -> np.ndarray:
         """Return which of the pairs of boxes hold a pair of points that is linked."""
         touching = np.zeros(len(here), bool)
         for pair, a, b in self._point_pairs(here, there):

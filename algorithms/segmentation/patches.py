@@ -46,9 +46,7 @@ class LocalPlanes:
         return np.abs(np.einsum("ij,ij->i", points - self.center[plane], self.normal[plane]))
 
 
-def segment_patches(
-    xyz: np.ndarray, density: float, noise: float, max_slope: float, monitor: Monitor
-) -> np.ndarray:
+def segment_patches(xyz: np.ndarray, density: float, noise: float, max_slope: float, monitor: Monitor) -> np.ndarray:
     """Group points that lie on smooth surfaces.
 
     Each point takes the smoothest plane among those of its neighbors that hold it, so that
@@ -95,7 +93,10 @@ def _local_planes(xyz: np.ndarray, tree: Any, n_neighbors: int, monitor: Monitor
     columns = np.ascontiguousarray(xyz.T)
     nearest = Nearest(n_neighbors)
     planes = LocalPlanes(
-        np.empty((len(xyz), 3)), np.empty((len(xyz), 3)), np.empty(len(xyz)), np.empty((len(xyz), n_neighbors), np.int32)
+        np.empty((len(xyz), 3)),
+        np.empty((len(xyz), 3)),
+        np.empty(len(xyz)),
+        np.empty((len(xyz), n_neighbors), np.int32),
     )
 
     def work(rows: np.ndarray) -> None:

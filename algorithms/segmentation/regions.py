@@ -122,6 +122,8 @@ def _candidates(classification: np.ndarray, height_above_ground: Optional[np.nda
     is_candidate = ~np.isin(classification, left_out)
     if min_height > 0:
         if height_above_ground is None:
-            raise ValueError("A minimum height needs HeightAboveGround; run 'Height above ground' first or set it to 0.")
+            raise ValueError(
+                "A minimum height needs HeightAboveGround; run 'Height above ground' first or set it to 0."
+            )
         is_candidate &= height_above_ground >= min_height
     return np.flatnonzero(is_candidate)

@@ -39,11 +39,19 @@ def segment_roofs(
     *,
     min_height: Annotated[
         float,
-        Param("Minimum height", "Mean height above ground of the lowest roof and of other clusters.", unit="m", low=0, high=100),
+        Param(
+            "Minimum height",
+            "Mean height above ground of the lowest roof and of other clusters.",
+            unit="m",
+            low=0,
+            high=100,
+        ),
     ] = 2.0,
     min_area: Annotated[
         float,
-        Param("Minimum roof area", "Area of the smallest roof surface, seen from above.", unit="m²", low=0.1, high=10_000),
+        Param(
+            "Minimum roof area", "Area of the smallest roof surface, seen from above.", unit="m²", low=0.1, high=10_000
+        ),
     ] = 2.0,
     max_slope: Annotated[
         float,
@@ -58,7 +66,7 @@ def segment_roofs(
             low=0,
             high=10,
             open_low=True,
-            automatic="measured on the smoothest fifth of the cloud, at least 0.02 m, and a twentieth of the point spacing.",
+            automatic="measured on the smoothest fifth of the cloud, at least 0.02 m; 0.05 point spacings on top.",
             advanced=True,
         ),
     ] = None,
@@ -107,7 +115,9 @@ def segment_roofs(
     is_roof, is_terrain = _roofs(xyz, patch, height_above_ground, density, min_height, min_area)
     segment_id = _renumbered(patch, is_roof)
 
-    is_other = (height_above_ground >= min(_RAISED, min_height)) & (segment_id == 0) & ~np.append(is_terrain, False)[patch]
+    is_other = (
+        (height_above_ground >= min(_RAISED, min_height)) & (segment_id == 0) & ~np.append(is_terrain, False)[patch]
+    )
     others = used[is_other[used]]
     reach = 2 / np.sqrt(density)
     component = connect(xyz[others], reach, reach, monitor.part(0.8, 1))

@@ -54,5 +54,8 @@ def compute_height_above_ground(xyz, classification, *, monitor=None):
     outside = tin.is_extrapolated()[facet] & ~is_ground
     if outside.any():
         height[outside] = xyz[outside, 2] - tin.nearest_elevation(xyz[outside])
-        monitor.warn(f"{int(outside.sum())} of {len(xyz)} points lie outside the ground; the nearest ground point gave their height.")
+        monitor.warn(
+            f"{int(outside.sum())} of {len(xyz)} points lie outside the ground; "
+            "the nearest ground point gave their height."
+        )
     return height.astype(np.float32)

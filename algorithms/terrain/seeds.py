@@ -168,8 +168,9 @@ def _slope(surface: np.ndarray, cell_size: float) -> np.ndarray:
     """Return the slope (rise over run) of the smoothed surface."""
     smooth = ndimage.gaussian_filter(surface, _SLOPE_SCALE / cell_size, mode="nearest")
     # A raster one cell wide has no gradient across.
-    gradients = [np.gradient(smooth, cell_size, axis=a) if smooth.shape[a] > 1 else np.zeros_like(smooth) for a in (0, 1)]
-    return np.hypot(*gradients)
+    axes = [axis for axis in (0, 1) if smooth.shape[axis] > 1]
+    gradients = [np.gradient(smooth, cell_size, axis=axis) for axis in axes]
+    return np.sqrt(sum((gradient**2 for gradient in gradients), np.zeros_like(smooth)))
 
 
 def _without_joined(objects: np.ndarray, surface: np.ndarray, slope: np.ndarray, cell_size: float) -> np.ndarray:

@@ -89,13 +89,13 @@ def test_packages_of_another_installer_are_found_and_forgotten(provider, tmp_pat
 @pytest.mark.parametrize(
     ("missing", "is_debian", "wanted"),
     [
-        (["laspy"], True, "{python} -m pip install --no-deps --target {profile}/python laspy"),
+        (["lazrs"], True, "{python} -m pip install --no-deps --target {profile}/python lazrs"),
         (["scipy", "scikit-learn"], True, "sudo apt-get install -y python3-scipy python3-sklearn"),
         (
-            ["scikit-learn", "laspy"],
+            ["scikit-learn", "lazrs"],
             True,
             "sudo apt-get install -y python3-sklearn && "
-            "{python} -m pip install --no-deps --target {profile}/python laspy",
+            "{python} -m pip install --no-deps --target {profile}/python lazrs",
         ),
         (
             ["scikit-learn"],
@@ -113,7 +113,7 @@ def test_one_command_mends_it(qgis_application, monkeypatch, missing, is_debian,
 def test_names_with_spaces_are_quoted(monkeypatch):
     monkeypatch.setattr(dependencies, "_is_debian", lambda: False)
     monkeypatch.setattr(QgsApplication, "qgisSettingsDirPath", staticmethod(lambda: "/home/a user/p"))
-    assert "--target '/home/a user/p/python' laspy" in dependencies.command(["laspy"])
+    assert "--target '/home/a user/p/python' lazrs" in dependencies.command(["lazrs"])
 
 
 def test_python_is_never_qgis_itself(monkeypatch, tmp_path):
@@ -126,4 +126,4 @@ def test_python_is_never_qgis_itself(monkeypatch, tmp_path):
 
 def test_packages_are_looked_up_by_import(monkeypatch):
     monkeypatch.setattr(packages.importlib.util, "find_spec", lambda name: None)
-    assert packages.missing() == ["scipy", "scikit-learn", "laspy", "lazrs"]
+    assert packages.missing() == ["scipy", "scikit-learn", "lazrs"]
