@@ -216,8 +216,8 @@ def _grow(
         tin = Tin(nodes)
         if candidates is None:
             candidates = _near(tin, points, _CANDIDATE_DISTANCES * distance, monitor.part(0, 0.5))
-        candidates = candidates[~is_node[candidates]]
-        joining = _joining(tin, points, candidates, distance, max_angle, edge_length)
+            candidates = candidates[~is_node[candidates]]
+        candidates, joining = _joining(tin, points, candidates, distance, max_angle, edge_length)
         is_node[joining] = True
         monitor.progress(0.5 + 0.5 * (step + 1) / _MAX_ROUNDS)
         if len(joining) <= _LEAST_GROWTH * len(nodes):
@@ -233,31 +233,29 @@ def _near(tin: Tin, points: np.ndarray, distance: float, monitor: Monitor) -> np
 
 def _joining(
     tin: Tin, points: np.ndarray, candidates: np.ndarray, max_distance: float, max_angle: float, edge_length: float
-) -> np.ndarray:
-    """Return the indices of the points, one per facet, that may join the surface."""
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the candidates that are left for later rounds, and those that join now, one per facet."""
     facet = tin.locate(points[candidates])
-    open_facet = tin.longest_edge() > edge_length
-    candidates, facet = candidates[open_facet[facet]], facet[open_facet[facet]]
+    # Small facets only get smaller, and a point beside a node makes a sliver and tells nothing new.
+    is_open = tin.longest_edge()[facet] > edge_length
+    candidates, facet = candidates[is_open], facet[is_open]
+    nearest = _to_nearest_node(tin, facet, points[candidates])
+    apart = nearest > edge_length / 4
+    candidates, facet, nearest = candidates[apart], facet[apart], nearest[apart]
     here = points[candidates]
     distance = np.abs(here[:, 2] - tin.elevation(here, facet)) * tin.steepness()[facet]
-    close = distance <= max_distance
-    candidates, facet, here, distance = candidates[close], facet[close], here[close], distance[close]
-    angle, nearest = _angle_to_nodes(tin, facet, here, distance)
-    # A point beside a node makes a sliver and tells nothing new.
-    fits = (angle <= max_angle) & (nearest > edge_length / 4)
-    order = np.lexsort((candidates[fits], angle[fits], facet[fits]))
+    angle = np.degrees(np.arcsin(np.clip(distance / np.maximum(nearest, 1e-9), 0, 1)))
+    fits = (distance <= max_distance) & (angle <= max_angle)
+    # Ties go to the south-west, so that the points' order doesn't matter.
+    order = np.lexsort((here[fits, 1], here[fits, 0], angle[fits], facet[fits]))
     first = np.unique(facet[fits][order], return_index=True)[1]
-    return candidates[fits][order][first]
+    joining = candidates[fits][order][first]
+    return np.setdiff1d(candidates, joining, assume_unique=True), joining
 
 
-def _angle_to_nodes(
-    tin: Tin, facet: np.ndarray, here: np.ndarray, distance: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the largest angle (°) between facet and line to a node, and the distance (m) to the nearest node."""
-    to_nodes = np.linalg.norm(tin.nodes[tin.facets[facet]] - (here - tin.shift)[:, None], axis=2)
-    nearest = to_nodes.min(axis=1)
-    sine = np.clip(distance / np.maximum(nearest, 1e-9), 0, 1)
-    return np.degrees(np.arcsin(sine)), nearest
+def _to_nearest_node(tin: Tin, facet: np.ndarray, here: np.ndarray) -> np.ndarray:
+    """Return the distance (m) to the nearest node of each point's facet: the largest angle is there."""
+    return np.linalg.norm(tin.nodes[tin.facets[facet]] - (here - tin.shift)[:, None], axis=2).min(axis=1)
 
 
 def _sweep(

@@ -53,8 +53,8 @@ def lowest_points(xyz: np.ndarray, cell_size: float) -> Lowest:
     """Return the lowest point of each square cell of ``cell_size`` (m)."""
     cell = np.floor((xyz[:, :2] - xyz[:, :2].min(axis=0)) / cell_size).astype(np.int64)
     index = np.full(cell.max(axis=0) + 1, -1, np.int64)
-    # Written from the highest to the lowest, the last one stays; ties go to the earlier point.
-    order = np.lexsort((-np.arange(len(xyz)), -xyz[:, 2]))
+    # Written from the highest to the lowest, the last one stays; ties go to the south-west, whatever the order.
+    order = np.lexsort((-xyz[:, 1], -xyz[:, 0], -xyz[:, 2]))
     index[tuple(cell[order].T)] = order
     return Lowest(index, cell_size)
 

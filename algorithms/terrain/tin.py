@@ -12,7 +12,7 @@ from ..stage import Monitor
 _CHUNK = 200_000
 
 # Far more steps than a walk from the nearest node takes.
-_MAX_STEPS = 100
+_MAX_STEPS = 1000
 
 
 class Tin:
@@ -38,6 +38,11 @@ class Tin:
         heights = nodes[self._node_tree.query(corners)[1], 2]
         self.nodes = np.vstack([nodes - self.shift, np.column_stack([corners, heights])])
         self.delaunay = spatial.Delaunay(self.nodes[:, :2])
+        self._weights = self._barycentric()
+        # Qhull leaves out nodes at the place of another, and names a facet for them that may be far off.
+        self._start = self.delaunay.vertex_to_simplex.copy()
+        twin, _, kept = self.delaunay.coplanar.T
+        self._start[twin] = self._start[kept]
 
     @property
     def facets(self) -> np.ndarray:
@@ -65,10 +70,7 @@ class Tin:
         return found
 
     def _walk(self, plan: np.ndarray) -> np.ndarray:
-        nearest = self._node_tree.query(plan, workers=-1)[1]
-        facet = self.delaunay.vertex_to_simplex[nearest]
-        # A node that Qhull left out as a duplicate has no facet of its own.
-        facet[facet < 0] = 0
+        facet = self._start[self._node_tree.query(plan, workers=-1)[1]]
         walking = np.arange(len(plan))
         for _ in range(_MAX_STEPS):
             across = self._leaving(plan[walking], facet[walking])
@@ -83,14 +85,23 @@ class Tin:
 
     def _leaving(self, plan: np.ndarray, facet: np.ndarray) -> np.ndarray:
         """Return the side (0-2) by which each point lies outside its facet most, -1 where it lies inside."""
-        transform = self.delaunay.transform[facet]
-        offset = plan - transform[:, 2]
-        first = transform[:, 0, 0] * offset[:, 0] + transform[:, 0, 1] * offset[:, 1]
-        second = transform[:, 1, 0] * offset[:, 0] + transform[:, 1, 1] * offset[:, 1]
+        to_weights = self._weights[facet]
+        offset = plan - to_weights[:, 4:]
+        first = to_weights[:, 0] * offset[:, 0] + to_weights[:, 1] * offset[:, 1]
+        second = to_weights[:, 2] * offset[:, 0] + to_weights[:, 3] * offset[:, 1]
         weights = np.stack([first, second, 1 - first - second])
         side = np.argmin(weights, axis=0)
         least = np.take_along_axis(weights, side[None], axis=0)[0]
         return np.where(least < -1e-9, side, -1)
+
+    def _barycentric(self) -> np.ndarray:
+        """Return what turns plan coordinates into weights of a facet's first two nodes (f, 6): 2 x 2 and origin."""
+        a, b, c = np.swapaxes(self.nodes[self.facets, :2], 0, 1)
+        u, v = a - c, b - c
+        area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+        # Facets of collinear nodes have no inside: NaN never lies outside either, and Qhull's neighbors end the walk.
+        scale = np.divide(1.0, area, out=np.full(len(area), np.nan), where=area != 0)
+        return np.column_stack([v[:, 1] * scale, -v[:, 0] * scale, -u[:, 1] * scale, u[:, 0] * scale, c])
 
     def elevation(self, xyz: np.ndarray, facet: np.ndarray) -> np.ndarray:
         """Return the surface's elevation (n,) at points that lie in ``facet`` (n,)."""

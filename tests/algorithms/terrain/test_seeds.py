@@ -91,6 +91,16 @@ def test_seeds_cover_terrain_and_no_roof(name, rng):
     assert len(open_ground - covered) <= 0.03 * len(open_ground)
 
 
+def test_a_dike_is_terrain_though_windows_lift_it_off(rng):
+    """It is narrower than any building, but its sides join the terrain smoothly."""
+    plan = rng.uniform(0, 100, (30_000, 2))
+    z = 4 * np.exp(-((plan[:, 0] - 50) ** 2) / (2 * 5**2))
+    seeds = seeds_by_opening(np.column_stack([plan, z + rng.normal(0, 0.02, len(plan))]), 1.0, 60.0, Monitor())
+    upper_half = {tuple(cell) for cell in np.floor(plan[z > 2]).astype(int).tolist()}
+    seeded = {tuple(cell) for cell in np.floor(plan[seeds][z[seeds] > 2]).astype(int).tolist()}
+    assert len(seeded) > 0.88 * len(upper_half)
+
+
 def test_pits_are_no_seeds(rng):
     plan = even(40, 40) + rng.uniform(-0.3, 0.3, (len(even(40, 40)), 2))
     xyz = np.column_stack([plan, rng.normal(0, 0.02, len(plan))])
