@@ -11,7 +11,7 @@ from typing import Any, Optional
 
 from .cloud.cloud import Cloud
 from .run import Outcome, run_stage
-from .stage import Monitor, Stage
+from .stage import Monitor, Stage, Tunable
 from .stages import STAGES
 
 
@@ -38,7 +38,10 @@ class Pipeline:
     """A chain of stages that users meet as one algorithm.
 
     The last step that writes a cloud gives the composite's OUTPUT; every layer of
-    every step is an output of its own.
+    every step is an output of its own. ``shared`` names tunables that are one parameter
+    of the composite and go to all the steps beside them; they have the same declaration
+    and default there. ``shown`` are the parameters that users meet first, in this order;
+    all others are folded away.
     """
 
     name: str
@@ -49,6 +52,21 @@ class Pipeline:
     description: str
     references: str
     steps: tuple[Step, ...]
+    shared: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    shown: tuple[str, ...] = ()
+
+    def parameter(self, step: Step, tunable: str) -> str:
+        """Return what the composite calls a step's tunable: ``ground_cell_size``, shared ``min_area``."""
+        return tunable if step.name in self.shared.get(tunable, ()) else f"{step.name}_{tunable}"
+
+    @property
+    def parameters(self) -> dict[str, tuple[Step, Tunable]]:
+        """Every parameter once, by name, with the first step that takes it; shown ones first."""
+        found: dict[str, tuple[Step, Tunable]] = {}
+        for step in self.steps:
+            for tunable in step.stage.tunables.values():
+                found.setdefault(self.parameter(step, tunable.name), (step, tunable))
+        return {name: found[name] for name in (*self.shown, *(name for name in found if name not in self.shown))}
 
     @property
     def id(self) -> str:
@@ -80,10 +98,15 @@ _PIPELINES = (
             Step("ground", "classify_ground_tin"),
             Step("height", "compute_height_above_ground"),
             Step("roofs", "segment_roofs"),
-            Step("buildings", "classify_buildings", {"n_neighbors": 10, "max_penetration": 0.4}),
+            Step("buildings", "classify_buildings", {"neighborhood": "surface", "max_penetration": 0.4}),
             Step("complete", "complete_buildings"),
             Step("footprints", "extract_footprints"),
         ),
+        shared={
+            "min_area": ("buildings", "complete", "footprints"),
+            "density": ("roofs", "buildings", "complete"),
+        },
+        shown=("min_area", "roofs_min_height", "ground_max_building_size", "footprints_regularize"),
     ),
     Pipeline(
         name="detect_buildings_2019",
@@ -104,6 +127,8 @@ _PIPELINES = (
             Step("buildings", "classify_buildings", {"guard": False}),
             Step("footprints", "extract_footprints"),
         ),
+        shared={"min_area": ("regions", "buildings", "footprints"), "density": ("regions", "buildings")},
+        shown=("min_area", "ground_max_building_size", "regions_plan_distance", "regions_height_distance"),
     ),
 )
 
@@ -113,7 +138,8 @@ PIPELINES = {pipeline.name: pipeline for pipeline in _PIPELINES}
 def run_pipeline(pipeline: Pipeline, cloud: Cloud, monitor: Optional[Monitor] = None, **tunables: Any) -> Outcome:
     """Run all steps on ``cloud``, in place, and return the cloud and every layer.
 
-    ``tunables`` are named ``<step>_<tunable>`` (``ground_cell_size``).
+    ``tunables`` are named ``<step>_<tunable>`` (``ground_cell_size``), and so are the monitor's values;
+    what steps share is named ``<tunable>``.
 
     Raises
     ------
@@ -124,21 +150,21 @@ def run_pipeline(pipeline: Pipeline, cloud: Cloud, monitor: Optional[Monitor] = 
     chosen = _by_step(pipeline, tunables)
     layers = {}
     for i, step in enumerate(pipeline.steps):
-        part = monitor.part(i / len(pipeline.steps), (i + 1) / len(pipeline.steps))
+        part = monitor.part(i / len(pipeline.steps), (i + 1) / len(pipeline.steps), f"{step.name}_")
         outcome = run_stage(step.stage, cloud, monitor=part, **chosen[step.name])
         layers.update(outcome.layers)
     return Outcome(cloud, layers)
 
 
 def _by_step(pipeline: Pipeline, tunables: dict[str, Any]) -> dict[str, dict[str, Any]]:
-    """Sort ``<step>_<tunable>`` values by step, over the pipeline's own defaults."""
-    names = {
-        f"{step.name}_{tunable}": (step.name, tunable) for step in pipeline.steps for tunable in step.stage.tunables
-    }
+    """Sort the composite's parameters by step, over the pipeline's own defaults."""
+    unknown = [name for name in tunables if name not in pipeline.parameters]
+    if unknown:
+        raise ValueError(f"{pipeline.name} has no tunable {unknown[0]!r}; it has {', '.join(pipeline.parameters)}.")
     chosen = {step.name: dict(step.tunables) for step in pipeline.steps}
-    for name, value in tunables.items():
-        if name not in names:
-            raise ValueError(f"{pipeline.name} has no tunable {name!r}; it has {', '.join(names)}.")
-        step_name, tunable = names[name]
-        chosen[step_name][tunable] = value
+    for step in pipeline.steps:
+        for tunable in step.stage.tunables:
+            name = pipeline.parameter(step, tunable)
+            if name in tunables:
+                chosen[step.name][tunable] = tunables[name]
     return chosen

@@ -78,13 +78,17 @@ class Param:
         """Allowed values in words, empty when there is no bound."""
         if self.choices:
             return "one of " + ", ".join(self.choices)
-        unit = f" {self.unit}" if self.unit else ""
         low = high = ""
         if self.low is not None:
-            low = f"{'greater than' if self.open_low else 'at least'} {self.low:g}{unit}"
+            low = f"{'greater than' if self.open_low else 'at least'} {self.written(self.low)}"
         if self.high is not None:
-            high = f"{'less than' if self.open_high else 'at most'} {self.high:g}{unit}"
+            high = f"{'less than' if self.open_high else 'at most'} {self.written(self.high)}"
         return " and ".join(part for part in (low, high) if part)
+
+    def written(self, number: float) -> str:
+        """Return a number with the unit, as people write it: 4 m², 20°."""
+        digits = f"{number:d}" if isinstance(number, int) else f"{number:g}"
+        return digits + self.unit if self.unit == "°" else f"{digits} {self.unit}".rstrip()
 
 
 @dataclass(frozen=True)
@@ -241,23 +245,23 @@ class Monitor:
         """Keep a sentence that the user should read."""
         self.warnings.append(sentence)
 
-    def part(self, start: float, end: float) -> Monitor:
-        """Return a monitor whose 0 to 1 is ``start`` to ``end`` of this one."""
-        return _Part(self, start, end)
+    def part(self, start: float, end: float, prefix: str = "") -> Monitor:
+        """Return a monitor whose 0 to 1 is ``start`` to ``end`` of this one, and whose values get a prefix here."""
+        return _Part(self, start, end, prefix)
 
 
 class _Part(Monitor):
     """A stretch of another monitor's progress; everything else goes straight through."""
 
-    def __init__(self, whole: Monitor, start: float, end: float) -> None:
-        self.whole, self.start, self.end = whole, start, end
+    def __init__(self, whole: Monitor, start: float, end: float, prefix: str) -> None:
+        self.whole, self.start, self.end, self.prefix = whole, start, end, prefix
         self.values, self.warnings = whole.values, whole.warnings
 
     def progress(self, fraction: float) -> None:
         self.whole.progress(self.start + (self.end - self.start) * fraction)
 
     def resolved(self, **values: Any) -> None:
-        self.whole.resolved(**values)
+        self.whole.resolved(**{self.prefix + name: value for name, value in values.items()})
 
     def warn(self, sentence: str) -> None:
         self.whole.warn(sentence)

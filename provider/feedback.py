@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Optional
 
-from qgis.core import QgsProcessingFeedback
+from qgis.core import QgsProcessingFeedback, QgsProcessingMultiStepFeedback
 
 from ..algorithms.stage import Cancelled, Monitor, Stage
 
@@ -40,3 +40,23 @@ class FeedbackMonitor(Monitor):
             return f"{name.replace('_', ' ').capitalize()}: {shown}"
         unit = f" {tunable.param.unit}" if tunable.param.unit else ""
         return f"{tunable.param.label}, automatic: {shown}{unit}"
+
+
+class ChainFeedback(QgsProcessingMultiStepFeedback):
+    """Passes everything on, but says a warning once however many steps of a chain come upon it."""
+
+    def __init__(self, feedback: QgsProcessingFeedback) -> None:
+        super().__init__(1, feedback)
+        self._said: set = set()
+
+    def pushWarning(self, warning: str) -> None:  # noqa: N802 - QGIS asks for this name
+        """Log a warning that was not said yet."""
+        if warning not in self._said:
+            self._said.add(warning)
+            super().pushWarning(warning)
+
+
+def announce(title: str, feedback: QgsProcessingFeedback) -> None:
+    """Log which step a chain has come to; where the algorithm runs alone, its dialog says it."""
+    if isinstance(feedback, QgsProcessingMultiStepFeedback):
+        feedback.setProgressText(title)

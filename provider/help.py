@@ -35,9 +35,11 @@ def pipeline_help(pipeline: Pipeline) -> str:
         for step in pipeline.steps
     ]
     parts = [paragraphs(pipeline.summary), paragraphs(pipeline.description), _list("Steps", steps, ordered=True)]
-    for step in pipeline.steps:
-        rows = [tunable_help(t, step.tunables.get(t.name, t.default)) for t in step.stage.tunables.values()]
-        parts.append(_list(f"Parameters: {step_title(step)}", rows))
+    rows: dict[str, list] = {"Parameters": [], **{f"Parameters: {step_title(step)}": [] for step in pipeline.steps}}
+    for name, (step, tunable) in pipeline.parameters.items():
+        section = "Parameters" if name in pipeline.shared else f"Parameters: {step_title(step)}"
+        rows[section].append(tunable_help(tunable, step.tunables.get(tunable.name, tunable.default)))
+    parts += [_list(title, items) for title, items in rows.items() if items]
     last = [name for step in pipeline.steps for name in step.stage.writes]
     made = [f"<b>OUTPUT</b>: the cloud with {_disk_names(last)}."] if last else []
     made += [_layer_text(layer) for step in pipeline.steps for layer in step.stage.layers]
@@ -87,8 +89,7 @@ def _default_text(tunable: Tunable, default: object) -> str:
         return "yes" if default else "no"
     if isinstance(default, tuple):
         return ", ".join(default) or "none"
-    unit = f" {tunable.param.unit}" if tunable.param.unit else ""
-    return f"{default:g}{unit}" if isinstance(default, float) else f"{default}{unit}"
+    return tunable.param.written(default) if isinstance(default, (int, float)) else str(default)
 
 
 def outputs(stage: Stage) -> list:

@@ -29,6 +29,7 @@ from . import paths
 from .clouds import CloudParameter, cloud_path
 from .dependencies import missing_sentence
 from .errors import one_sentence
+from .feedback import ChainFeedback
 from .help import lower_first, pipeline_help, step_title
 from .outputs import check_targets, files_of, nothing_left_on_failure
 from .parameters import number_outputs, parameter, parameter_name, tunable_values
@@ -37,8 +38,8 @@ from .stage_algorithm import INPUT, OUTPUT, cloud_title
 PROVIDER = "lidarbuildings"
 
 
-def step_parameter_name(step: Step, name: str) -> str:
-    """Return the composite's name of a step's parameter or output, ``GROUND_CELL_SIZE``."""
+def step_output_name(step: Step, name: str) -> str:
+    """Return the composite's name of a step's output, ``GROUND_CELL_SIZE_USED``."""
     return f"{step.name.upper()}_{name}"
 
 
@@ -47,20 +48,25 @@ def step_label(step: Step, label: str) -> str:
     return f"{step_title(step)}: {lower_first(label)}"
 
 
-def step_parameters(step: Step) -> list[QgsProcessingParameterDefinition]:
-    """Return the parameters of a step, cloned from the stage's own definitions.
+def pipeline_parameters(pipeline: Pipeline) -> dict[str, QgsProcessingParameterDefinition]:
+    """Return the parameters of a composite by name, made from the stages' own definitions.
 
-    Names and labels begin with the step, defaults are the step's where it has its own.
+    Names and labels begin with the step unless steps share them, defaults are the step's
+    where it has its own, and all are advanced but those that the pipeline shows.
     """
-    definitions = []
-    for tunable in step.stage.tunables.values():
+    definitions = {}
+    for name, (step, tunable) in pipeline.parameters.items():
         definition = parameter(tunable)
-        definition.setName(step_parameter_name(step, definition.name()))
-        definition.setDescription(step_label(step, definition.description()))
+        definition.setName(name.upper())
+        if name not in pipeline.shared:
+            definition.setDescription(step_label(step, definition.description()))
         if tunable.name in step.tunables:
             default = step.tunables[tunable.name]
             definition.setDefaultValue(list(default) if isinstance(default, tuple) else default)
-        definitions.append(definition)
+        advanced = Qgis.ProcessingParameterFlag.Advanced
+        flags = definition.flags()
+        definition.setFlags(flags & ~advanced if name in pipeline.shown else flags | advanced)
+        definitions[definition.name()] = definition
     return definitions
 
 
@@ -76,7 +82,11 @@ class _Layout:
 
     def band(self, n_parameters: int) -> float:
         """Return the height of a band with so many parameters."""
-        return max(2, -(-n_parameters // self.columns)) * self.cell.height() + 1.5 * self.margin
+        return self.rows(n_parameters) * self.cell.height() + 1.5 * self.margin
+
+    def rows(self, n_parameters: int) -> int:
+        """Return the rows of cells for so many parameters."""
+        return max(2, -(-n_parameters // self.columns))
 
     def parameter(self, i: int) -> QPointF:
         """Return the center of the ``i``-th parameter of the band."""
@@ -110,17 +120,45 @@ def build_model(pipeline: Pipeline) -> QgsProcessingModelAlgorithm:
     source = QgsProcessingModelChildParameterSource.fromModelParameter(INPUT)
     writers = [step for step in pipeline.steps if step.stage.writes]
     title = cloud_title((), [name for step in writers for name in step.stage.writes])
+    definitions = pipeline_parameters(pipeline)
     for step in pipeline.steps:
-        _add_step(model, step, source, layout, title if step in writers[-1:] else "")
+        _add_parameters(model, pipeline, step, definitions, layout)
+        _add_step(model, pipeline, step, source, layout, title if step in writers[-1:] else "")
         if step.stage.writes:
             source = QgsProcessingModelChildParameterSource.fromChildOutput(step.name, OUTPUT)
     model.setHelpContent({"ALG_DESC": pipeline_help(pipeline), "SHORT_DESCRIPTION": pipeline.summary})
-    model.setParameterOrder([INPUT, *(d.name() for step in pipeline.steps for d in step_parameters(step))])
+    model.setParameterOrder([INPUT, *definitions])
     return model
+
+
+def _first_taken(pipeline: Pipeline, step: Step) -> list[str]:
+    """Return the names of the parameters that ``step`` is the first to take."""
+    return [name.upper() for name, (first, _) in pipeline.parameters.items() if first is step]
+
+
+def _add_parameters(
+    model: QgsProcessingModelAlgorithm,
+    pipeline: Pipeline,
+    step: Step,
+    definitions: dict[str, QgsProcessingParameterDefinition],
+    layout: _Layout,
+) -> None:
+    names = _first_taken(pipeline, step)
+    last = layout.rows(len(names)) * layout.columns - 1
+    own = [name for name in names if name.lower() not in pipeline.shared]
+    cells = {name: i for i, name in enumerate(own)}
+    # What goes on to other steps stands at the lower right, where its lines cross the fewest boxes.
+    cells.update({name: last - i for i, name in enumerate(name for name in names if name not in own)})
+    for name, cell in cells.items():
+        component = QgsProcessingModelParameter(name)
+        component.setPosition(layout.parameter(cell))
+        component.setSize(layout.box)
+        model.addModelParameter(definitions[name], component)
 
 
 def _add_step(
     model: QgsProcessingModelAlgorithm,
+    pipeline: Pipeline,
     step: Step,
     source: QgsProcessingModelChildParameterSource,
     layout: _Layout,
@@ -130,14 +168,10 @@ def _add_step(
     child.setChildId(step.name)
     child.setDescription(step.stage.title)
     child.addParameterSources(INPUT, [source])
-    definitions = step_parameters(step)
-    height = layout.band(len(definitions))
-    for i, (tunable, definition) in enumerate(zip(step.stage.tunables.values(), definitions)):
-        component = QgsProcessingModelParameter(definition.name())
-        component.setPosition(layout.parameter(i))
-        component.setSize(layout.box)
-        model.addModelParameter(definition, component)
-        sources = [QgsProcessingModelChildParameterSource.fromModelParameter(definition.name())]
+    height = layout.band(len(_first_taken(pipeline, step)))
+    for tunable in step.stage.tunables.values():
+        name = pipeline.parameter(step, tunable.name).upper()
+        sources = [QgsProcessingModelChildParameterSource.fromModelParameter(name)]
         child.addParameterSources(parameter_name(tunable), sources)
     child.setPosition(layout.middle(height))
     child.setSize(layout.child)
@@ -241,7 +275,7 @@ class PipelineAlgorithm(QgsProcessingModelAlgorithm):
         """Declare the numbers of the steps (used values, measures) as outputs of the whole."""
         for step in self.pipeline.steps:
             for name, title in number_outputs(step.stage).items():
-                self.addOutput(QgsProcessingOutputNumber(step_parameter_name(step, name), step_label(step, title)))
+                self.addOutput(QgsProcessingOutputNumber(step_output_name(step, name), step_label(step, title)))
 
     def name(self) -> str:
         """Return the id, frozen: saved models depend on it."""
@@ -302,7 +336,8 @@ class PipelineAlgorithm(QgsProcessingModelAlgorithm):
             raise ValueError(missing)
         given = self._with_defaults(parameters)
         for step in self.pipeline.steps:
-            tunable_values(self, step.stage, given, context, prefix=step_parameter_name(step, ""))
+            named = {name: self.pipeline.parameter(step, name).upper() for name in step.stage.tunables}
+            tunable_values(self, step.stage, given, context, named)
         check_targets(self.destinationParameterDefinitions(), given, [cloud_path(self, INPUT, given, context)])
 
     def _with_defaults(self, parameters: dict) -> dict:
@@ -320,7 +355,7 @@ class PipelineAlgorithm(QgsProcessingModelAlgorithm):
         """Run the graph; all or nothing."""
         with one_sentence(), nothing_left_on_failure(self._target_files(parameters)):
             self._check(parameters, context)
-            results = super().processAlgorithm(self._with_defaults(parameters), context, feedback)
+            results = super().processAlgorithm(self._with_defaults(parameters), context, ChainFeedback(feedback))
         return {**results, **self._numbers(results.get("CHILD_RESULTS", {}))}
 
     def _target_files(self, parameters: dict) -> list:
@@ -331,5 +366,5 @@ class PipelineAlgorithm(QgsProcessingModelAlgorithm):
         numbers = {}
         for step in self.pipeline.steps:
             for name in number_outputs(step.stage):
-                numbers[step_parameter_name(step, name)] = child_results.get(step.name, {}).get(name)
+                numbers[step_output_name(step, name)] = child_results.get(step.name, {}).get(name)
         return numbers

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from decimal import Decimal
-from typing import Any
+from typing import Any, Optional
 
 from qgis.core import (
     Qgis,
@@ -127,9 +127,13 @@ def number_outputs(stage: Stage) -> dict[str, str]:
 
 
 def tunable_values(
-    algorithm: QgsProcessingAlgorithm, stage: Stage, parameters: dict, context: QgsProcessingContext, prefix: str = ""
+    algorithm: QgsProcessingAlgorithm,
+    stage: Stage,
+    parameters: dict,
+    context: QgsProcessingContext,
+    named: Optional[dict[str, str]] = None,
 ) -> dict[str, Any]:
-    """Return the values of a stage's tunables in ``parameters``, checked.
+    """Return the values of a stage's tunables in ``parameters``, checked; ``named`` tells other parameters' names.
 
     Raises
     ------
@@ -138,8 +142,8 @@ def tunable_values(
     """
     return stage.check(
         {
-            tunable.name: _value(algorithm, tunable, prefix + parameter_name(tunable), parameters, context)
-            for tunable in stage.tunables.values()
+            name: _value(algorithm, tunable, named[name] if named else parameter_name(tunable), parameters, context)
+            for name, tunable in stage.tunables.items()
         }
     )
 

@@ -29,7 +29,7 @@ from .clouds import CloudParameter, cloud_path
 from .crs import crs_of, crs_units
 from .dependencies import missing_sentence
 from .errors import one_sentence
-from .feedback import FeedbackMonitor
+from .feedback import FeedbackMonitor, announce
 from .help import stage_help
 from .outputs import check_targets, files_of, nothing_left_on_failure, write_for_qgis
 from .parameters import automatic_numbers, number_outputs, parameter, tunable_values, used_name
@@ -177,6 +177,7 @@ class StageAlgorithm(QgsProcessingAlgorithm):
         self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ) -> dict:
         """Read, run the stage, write; all or nothing."""
+        announce(self.stage.title, feedback)
         monitor = FeedbackMonitor(feedback, self.stage)
         with one_sentence(), nothing_left_on_failure(self._target_files(parameters)) as written:
             outcome = self._run(monitor)

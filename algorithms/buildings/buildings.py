@@ -10,6 +10,7 @@ import numpy as np
 from ..cloud.asprs import PointClass
 from ..cloud.density import point_density
 from ..features.eigen import neighborhood_eigenvalues, shannon_entropy_lps, symmetric_eigenvalues
+from ..features.noise import surface_neighbors, surface_noise
 from ..packages import cluster
 from ..params import MinBuildingArea, PointDensity, Seed
 from ..segmentation.extent import penetration
@@ -40,9 +41,19 @@ def classify_buildings(
             "Points of the neighborhood in which the entropy of a point is measured, itself among them (N).",
             low=3,
             high=10_000,
-            automatic="minimum building area times point density, as in the paper.",
+            automatic="as the neighborhood says.",
         ),
     ] = None,
+    neighborhood: Annotated[
+        str,
+        Param(
+            "Neighborhood",
+            "How large automatic neighborhoods are: 'published' holds the points of the minimum building area; "
+            "'surface' is the smallest in which neither noise nor scan lines blur a plane, for clusters that are "
+            "narrow or single roof surfaces.",
+            choices=("published", "surface"),
+        ),
+    ] = "published",
     guard: Annotated[
         bool,
         Param(
@@ -101,6 +112,10 @@ def classify_buildings(
     then called a building, and the log says so. The guard knows what N random points on a disk and in a ball have
     for mean entropy; where K-means' means lie on both sides of the middle, it changes nothing.
 
+    Penetration is this project's: a roof stops the beam and a crown lets it through. A cluster's confidence is
+    then the geometric mean of what its entropy and its penetration say, and none with more penetration than the
+    maximum is a building.
+
     References
     ----------
     Santos, R. C. dos, Pessoa, G. G., Carrilho, A. C., Galo, M., 2019. Building detection from LiDAR data using
@@ -108,7 +123,8 @@ def classify_buildings(
     """
     clustered = np.flatnonzero(cluster_id > 0)
     density = point_density(xyz) if density is None else density
-    n_neighbors = max(3, round(min_area * density)) if n_neighbors is None else n_neighbors
+    if n_neighbors is None:
+        n_neighbors = _neighbors(xyz, density, min_area, neighborhood)
     monitor.resolved(density=density, n_neighbors=n_neighbors)
 
     entropy = np.full(len(xyz), np.nan, np.float32)
@@ -136,10 +152,19 @@ def classify_buildings(
     return result.astype(np.uint8), entropy, cluster_entropy, confidence
 
 
+def _neighbors(xyz: np.ndarray, density: float, min_area: float, neighborhood: str) -> int:
+    """Return the size of neighborhoods: the points of the smallest building, or the fewest that show a plane."""
+    if neighborhood == "published":
+        return max(3, round(min_area * density))
+    # An entropy needs half as many again as a plane: three shares come from it and not one direction.
+    return round(1.5 * surface_neighbors(xyz, density, surface_noise(xyz)))
+
+
 def _with_solidity(sure: np.ndarray, penetration: np.ndarray, most: float) -> np.ndarray:
-    """Return the mean of the entropy's confidence and one that falls to 0 at twice the penetration allowed."""
+    """Return the geometric mean of the entropy's confidence and of solidity, 0 at twice the penetration allowed."""
     solid = np.clip(1 - penetration / (2 * most), 0, 1)
-    both = (np.nan_to_num(sure, nan=0.5) + solid) / 2
+    # Geometric, so that neither makes up for the other: a dense crown stops the beam and is no roof.
+    both = np.sqrt(np.nan_to_num(sure, nan=0.5) * solid)
     return np.where(penetration <= most, both, np.minimum(both, 0.5))
 
 

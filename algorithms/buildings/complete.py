@@ -74,6 +74,16 @@ def complete_buildings(
         ),
     ] = 4.0,
     min_area: MinBuildingArea = 4.0,
+    min_width: Annotated[
+        float,
+        Param(
+            "Minimum building width",
+            "What is narrower everywhere is a wall, a railing or a wire and no building.",
+            unit="m",
+            low=0,
+            high=100,
+        ),
+    ] = 1.5,
     density: PointDensity = None,
     monitor=None,
 ):
@@ -95,7 +105,7 @@ def complete_buildings(
     Returns
     -------
     classification : ndarray of shape (n,), uint8
-        Buildings 6; roofs of less than the minimum building area become 1.
+        Buildings 6; roofs of less than the minimum area or width become 1.
     cluster_id : ndarray of shape (n,), int32
         Buildings from 1, from the south-west northward; 0 is none.
 
@@ -126,7 +136,7 @@ def complete_buildings(
     # Multipath through a skylight is no ground that shows in it.
     covered = _covered(cell, is_roof, ~raised & ~is_noise, gap, cell_size)
     monitor.progress(0.3)
-    building = _numbered(covered, min_area / cell_size**2)
+    building = _numbered(covered, min_area, min_width, cell_size)
     columns = _Columns(building, _roof_top(cell, xyz[:, 2], is_roof, covered))
     monitor.progress(0.6)
 
@@ -203,12 +213,15 @@ def _small(mask: np.ndarray, most: float) -> np.ndarray:
     return mask & (size <= most)[region]
 
 
-def _numbered(covered: np.ndarray, least: float) -> np.ndarray:
-    """Return numbers from 1 for the regions of at least ``least`` cells, from the south-west; 0 elsewhere."""
+def _numbered(covered: np.ndarray, min_area: float, min_width: float, cell_size: float) -> np.ndarray:
+    """Return numbers from 1 for regions that are large and wide enough, from the south-west; 0 elsewhere."""
     region, count = ndimage.label(covered, _EIGHT)
-    large = np.bincount(region.ravel(), minlength=count + 1) >= least
-    large[0] = False
-    return np.where(large, np.cumsum(large), 0).astype(np.int32)[region]
+    kept = np.bincount(region.ravel(), minlength=count + 1) * cell_size**2 >= min_area
+    # The distance to the nearest cell outside is 1 in a strip of one or two cells, 2 in one of three or four.
+    inward = ndimage.maximum(ndimage.distance_transform_edt(covered), region, np.arange(count + 1))
+    kept &= (2 * inward - 1) * cell_size >= min_width
+    kept[0] = False
+    return np.where(kept, np.cumsum(kept), 0).astype(np.int32)[region]
 
 
 def _roof_top(

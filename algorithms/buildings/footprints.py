@@ -65,7 +65,9 @@ def extract_footprints(
     ] = None,
     regularize: Annotated[
         bool,
-        Param("Regularize", "Make walls straight and, where they nearly are, parallel or square to each other."),
+        Param(
+            "Regularize outlines", "Make walls straight and, where they nearly are, parallel or square to each other."
+        ),
     ] = True,
     tolerance: Annotated[
         Optional[float],

@@ -39,7 +39,7 @@ _PLANE = ("PROJCS", "PROJCRS", "PROJECTEDCRS", "LOCAL_CS", "ENGCRS", "ENGINEERIN
 _ON_ELLIPSOID = ("GEOGCS", "GEOGCRS", "GEOGRAPHICCRS", "GEODCRS", "GEODETICCRS", "GEOCCS")
 _HEIGHT = ("VERT_CS", "VERTCS", "VERTCRS", "VERTICALCRS")
 
-UNKNOWN = "The file names no coordinate reference system; its coordinates are taken as metres."
+UNKNOWN = "The file names no coordinate reference system; its coordinates are taken as meters."
 
 
 @dataclass(frozen=True)
@@ -164,7 +164,7 @@ def _refuse_ellipsoid(root: _Node) -> None:
 def _not_plane(name: str, geocentric: bool) -> ValueError:
     what = "geocentric" if geocentric else "degrees"
     return ValueError(
-        f"The coordinates are {what} ({name}); reproject the cloud to a projected system in metres or feet first."
+        f"The coordinates are {what} ({name}); reproject the cloud to a projected system in meters or feet first."
     )
 
 
@@ -257,7 +257,7 @@ def _linear_units(keys: dict[int, Any], crs_units: Optional[Resolver]) -> Units:
         return Units(horizontal, vertical)
     code = keys.get(_PROJECTED, 0)
     named = 0 < code < _USER_DEFINED
-    unlooked = f"The file gives EPSG:{code} and no unit; its coordinates are taken as metres."
+    unlooked = f"The file gives EPSG:{code} and no unit; its coordinates are taken as meters."
     return Units(horizontal, vertical, unlooked if named else UNKNOWN)
 
 

@@ -10,14 +10,9 @@ from typing import Any, Callable
 import numpy as np
 
 from ..features.eigen import Nearest, smallest_eigenvectors, symmetric_eigenvalues
-from ..features.noise import surface_neighbors
+from ..features.noise import LEAST_NEIGHBORS, surface_neighbors
 from ..packages import csgraph, sparse, spatial
 from ..stage import Monitor
-
-# A plane can be told from fewer neighbors where points are precise, from more where they are noisy:
-# its neighborhood reaches eight times the noise, which holds its normal's error to a few degrees.
-_REACH_DEVIATIONS = 8.0
-_LEAST_NEIGHBORS, _MOST_NEIGHBORS = 8, 60
 
 # A point lies on a plane within this many deviations of the noise; the plane itself is smooth below this many.
 _ON_PLANE, _SMOOTH = 3.0, 3.0
@@ -71,22 +66,15 @@ def segment_patches(xyz: np.ndarray, density: float, noise: float, max_slope: fl
     ndarray of shape (n,), int32
         Patch of each point from 0, -1 where it lies on no smooth surface.
     """
-    if len(xyz) < _LEAST_NEIGHBORS:
+    if len(xyz) < LEAST_NEIGHBORS:
         return np.full(len(xyz), -1, np.int32)
     tree = spatial.cKDTree(xyz)
-    planes = _local_planes(xyz, tree, _neighbors_for(xyz, tree, density, noise), monitor.part(0, 0.6))
+    planes = _local_planes(xyz, tree, surface_neighbors(xyz, density, noise, tree), monitor.part(0, 0.6))
     plane = _smoothest_plane(xyz, planes, noise, monitor.part(0.6, 0.8))
     on_surface = (planes.deviation[plane] <= _SMOOTH * noise) & (plane >= 0)
     on_surface &= planes.normal[plane, 2] >= np.cos(np.radians(max_slope))
     component = _linked(xyz, planes, plane, on_surface, noise, monitor.part(0.8, 1))
     return np.where(on_surface, component, -1).astype(np.int32)
-
-
-def _neighbors_for(xyz: np.ndarray, tree: Any, density: float, noise: float) -> int:
-    """Return the size of neighborhoods whose planes neither noise nor scan lines turn."""
-    against_noise = int(np.ceil(np.pi * (_REACH_DEVIATIONS * noise) ** 2 * density))
-    least = min(max(against_noise, _LEAST_NEIGHBORS), _MOST_NEIGHBORS)
-    return surface_neighbors(xyz, least, tree)
 
 
 def _local_planes(xyz: np.ndarray, tree: Any, n_neighbors: int, monitor: Monitor) -> LocalPlanes:

@@ -23,7 +23,7 @@ _LEAST_ROUGHNESS, _ROUGHNESS_OF_SPACING = 0.02, 0.05
 _RAISED = 1.5
 
 # A surface of which more than this share lies lower than this (m) goes on into the ground: a bridge, a ramp, a slope.
-_LOW_SHARE, _LOW = 0.05, 0.5
+_LOW_SHARE, _LOW = 0.1, 0.5
 
 
 @stage(

@@ -22,7 +22,7 @@ def open_surface(surface: np.ndarray, radius: int) -> np.ndarray:
     Returns
     -------
     ndarray of shape (rows, columns)
-        Nowhere above ``surface``; planes stay as they are away from the border.
+        Away from the border nowhere above ``surface``, and planes stay as they are.
 
     Notes
     -----

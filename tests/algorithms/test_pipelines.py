@@ -134,14 +134,31 @@ def calls(monkeypatch):
 
 
 def test_tunables_go_to_the_step_that_their_name_begins_with(calls):
-    tunables = {"ground_cell_size": 2.0, "footprints_min_area": 9.0, "complete_min_area": 7.0}
+    tunables = {"ground_cell_size": 2.0, "footprints_max_edge": 9.0, "roofs_min_area": 7.0}
     run_pipeline(PIPELINES["detect_buildings"], None, **tunables)
     called = dict(calls)
     assert called["classify_ground_tin"] == {"cell_size": 2.0}
-    assert called["extract_footprints"] == {"min_area": 9.0}
-    assert called["complete_buildings"] == {"min_area": 7.0}
+    assert called["extract_footprints"] == {"max_edge": 9.0}
+    assert called["segment_roofs"] == {"min_area": 7.0}
+    assert "min_area" not in called["complete_buildings"]
     assert called["classify_noise_histogram"] == {}
     assert [name for name, _ in calls] == [step.stage_name for step in PIPELINES["detect_buildings"].steps]
+
+
+def test_shared_tunables_go_to_the_steps_that_share_them(calls):
+    run_pipeline(PIPELINES["detect_buildings"], None, min_area=20.0)
+    given = {name for name, tunables in calls if tunables.get("min_area") == 20.0}
+    assert given == {"classify_buildings", "complete_buildings", "extract_footprints"}
+
+
+@pytest.mark.parametrize("pipeline", PIPELINES.values(), ids=lambda pipeline: pipeline.name)
+def test_what_steps_share_means_the_same_in_each(pipeline):
+    steps = {step.name: step for step in pipeline.steps}
+    for name, sharing in pipeline.shared.items():
+        tunables = [steps[step].stage.tunables[name] for step in sharing]
+        assert len({id(tunable.param) for tunable in tunables}) == 1
+        assert len({steps[step].tunables.get(name, tunable.default) for step, tunable in zip(sharing, tunables)}) == 1
+    assert set(pipeline.shown) <= set(pipeline.parameters)
 
 
 def test_the_chains_own_defaults_hold_until_something_else_is_given(calls):
@@ -223,7 +240,13 @@ def test_a_cancel_gets_through_at_once(stop_at):
 def test_automatic_values_and_warnings_of_all_steps_come_together():
     monitor = Monitor()
     run_pipeline(PIPELINES["detect_buildings"], made()[0], monitor)
-    assert {"iteration_distance", "density", "noise", "building_entropy"} <= set(monitor.values)
+    assert {
+        "ground_iteration_distance",
+        "roofs_density",
+        "buildings_density",
+        "roofs_noise",
+        "buildings_building_entropy",
+    } <= set(monitor.values)
 
 
 def test_a_refusal_of_a_step_gets_through():

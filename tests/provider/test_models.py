@@ -120,7 +120,7 @@ def test_the_models_own_defaults_count(provider, context, log, town_file, out):
 def test_the_composite_shows_the_steps_parameters(provider):
     algorithm = provider.algorithm("toychain").create()
     names = [definition.name() for definition in algorithm.parameterDefinitions()]
-    assert names[:4] == ["INPUT", "FIRST_STEP", "FIRST_BASE", "FIRST_TIMES"]
+    assert names[:6] == ["INPUT", "SECOND_STEP", "SIGN", "FIRST_STEP", "FIRST_BASE", "FIRST_TIMES"]
     assert names[-2:] == ["OUTPUT", "FOOTPRINTS"]
     step = algorithm.parameterDefinition("FIRST_STEP")
     assert (step.description(), step.defaultValue(), step.minimum(), step.maximum()) == (
@@ -131,10 +131,31 @@ def test_the_composite_shows_the_steps_parameters(provider):
     )
     assert algorithm.parameterDefinition("FIRST_ONLY").defaultValue() == ["building"]
     assert algorithm.parameterDefinition("SECOND_TIMES").defaultValue() == 3
-    advanced = algorithm.parameterDefinition("FIRST_TIMES").flags()
-    assert advanced & algorithm.parameterDefinition("FIRST_TIMES").Flag.FlagAdvanced
+    advanced = Qgis.ProcessingParameterFlag.Advanced
+    shown = [d.name() for d in algorithm.parameterDefinitions() if not d.flags() & advanced and not d.isDestination()]
+    assert shown == ["INPUT", "SECOND_STEP", "SIGN"]
+    assert algorithm.parameterDefinition("SIGN").description() == "Sign"
     assert {output.name() for output in algorithm.outputDefinitions()} >= {"OUTPUT", "FOOTPRINTS", "FIRST_BASE_USED"}
     assert (algorithm.name(), algorithm.displayName(), algorithm.group()) == ("toychain", "Toy chain", "Toys")
+
+
+def test_what_steps_share_goes_to_all_of_them(provider, context, log, town_file, out):
+    given = {"INPUT": str(town_file), "OUTPUT": str(out / "a.las"), "SIGN": "down"}
+    run("toychain", given, context, log)
+    in_memory = run_pipeline(TOY_CHAIN, read_cloud(town_file), sign="down")
+    same_clouds(read_cloud(out / "a.las"), in_memory.cloud)
+    assert (in_memory.cloud.get("height_above_ground") < 0).any()
+
+
+def test_each_step_is_announced_and_no_warning_is_repeated(provider, context, log, town, out):
+    path = out / "nowhere.las"
+    write_cloud(create_cloud(town), path)
+    said = []
+    log.setProgressText = said.append
+    run("toychain", {"INPUT": str(path), "OUTPUT": str(out / "a.las")}, context, log)
+    assert said == ["Toy lift", "Toy lift", "Toy outline"]
+    assert len(log.warnings) == 1
+    assert "no coordinate reference system" in log.warnings[0]
 
 
 def test_the_composite_runs_without_its_layer(provider, context, log, town_file, out):

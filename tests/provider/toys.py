@@ -130,6 +130,8 @@ TOY_CHAIN = Pipeline(
         Step("second", "toy_lift", {"times": 3}),
         Step("outline", "toy_outline", {"margin": 1.0}),
     ),
+    shared={"sign": ("first", "second")},
+    shown=("second_step", "sign"),
 )
 
 TOY_FAILURE = Pipeline(

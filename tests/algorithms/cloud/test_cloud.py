@@ -206,7 +206,7 @@ def test_a_cloud_too_wide_for_its_steps_is_refused():
 def test_unknown_units_are_warned_of_and_known_ones_not(make_las):
     monitor = Monitor()
     read_cloud(make_las("a.las"), monitor)
-    assert any("taken as metres" in sentence for sentence in monitor.warnings)
+    assert any("taken as meters" in sentence for sentence in monitor.warnings)
     monitor = Monitor()
     read_cloud(make_las("b.las", vlrs=(wkt_vlr(IN_FEET),)), monitor)
     assert monitor.warnings == []

@@ -75,20 +75,24 @@ def test_a_sample_is_enough_and_is_chosen_by_place(rng, monkeypatch):
     assert np.bincount(quarter).min() > 0.2 * len(rows)
 
 
-def test_scattered_points_need_no_more_neighbors_than_asked_for(rng):
-    assert surface_neighbors(plane(rng, 0.02), 12) in (12, 18)
+def test_scattered_precise_points_need_few_neighbors(rng):
+    assert surface_neighbors(plane(rng, 0.02), 4.4, 0.02) in (8, 12)
+
+
+def test_noisy_points_need_as_many_as_reach_eight_times_the_noise(rng):
+    """8 times 15 cm is a circle of 4.5 m², which holds 20 points."""
+    assert surface_neighbors(plane(rng, 0.15), 4.4, 0.15) == int(np.ceil(np.pi * 1.2**2 * 4.4))
 
 
 def test_points_along_scan_lines_need_neighbors_on_several_lines(rng):
     """Points every 10 cm on lines 1 m apart: 12 nearest points are one line, which has no plane."""
     x, y = np.meshgrid(np.arange(0, 30, 0.1), np.arange(0, 30, 1.0))
     lines = np.column_stack([x.ravel(), y.ravel(), rng.normal(0, 0.02, x.size)])
-    count = surface_neighbors(lines, 12)
-    assert 25 <= count <= 60
+    assert 25 <= surface_neighbors(lines, 10.0, 0.02) <= 60
 
 
 def test_neighbors_are_at_most_sixty_and_all_points():
     line = np.outer(np.arange(200.0), [1, 0, 0])
-    assert surface_neighbors(line, 8) == 60
-    assert surface_neighbors(line[:20], 8) == 20
-    assert surface_neighbors(line[:5], 8) == 5
+    assert surface_neighbors(line, 1.0, 0.01) == 60
+    assert surface_neighbors(line[:20], 1.0, 0.01) == 20
+    assert surface_neighbors(line[:5], 1.0, 0.01) == 5
