@@ -58,5 +58,6 @@ class ChainFeedback(QgsProcessingMultiStepFeedback):
 
 def announce(title: str, feedback: QgsProcessingFeedback) -> None:
     """Log which step a chain has come to; where the algorithm runs alone, its dialog says it."""
-    if isinstance(feedback, QgsProcessingMultiStepFeedback):
+    # By its Qt class: QGIS hands it to Python as a plain feedback.
+    if feedback.inherits("QgsProcessingMultiStepFeedback"):
         feedback.setProgressText(title)

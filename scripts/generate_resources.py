@@ -5,9 +5,12 @@ Run with the Python of QGIS: ``QT_QPA_PLATFORM=offscreen python3 scripts/generat
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 
+# Qt shuffles the attributes of XML unless it is told not to, before it starts: each model would be a new file.
+os.environ["QT_HASH_SEED"] = "0"
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 from qgis.core import QgsApplication  # noqa: E402

@@ -14,11 +14,9 @@ import traceback
 from pathlib import Path
 
 import processing
-from lidar_buildings.provider.paths import PLUGIN
 from processing.modeler.ModelerDialog import ModelerDialog
 from qgis.core import (
     QgsApplication,
-    QgsCoordinateReferenceSystem,
     QgsProcessing,
     QgsProcessingOutputLayerDefinition,
     QgsProject,
@@ -28,6 +26,8 @@ from qgis.PyQt.QtGui import QImage, QPainter
 from qgis.PyQt.QtWidgets import QDockWidget, QTreeView
 from qgis.utils import iface
 
+from lidar_buildings.provider.paths import PLUGIN
+
 FOLDER = Path(PLUGIN).resolve() / "resources" / "readme"
 WINDOW = QSize(1400, 900)
 GRAPH_WIDTH = 1300  # pixels
@@ -36,8 +36,6 @@ REDRAW = 4000  # milliseconds until the map is drawn
 
 def found_town() -> None:
     """Scan a town, find its buildings and load both results, as from the dialogs."""
-    # The town is nowhere on earth; a project in degrees would show absurd scales.
-    QgsProject.instance().setCrs(QgsCoordinateReferenceSystem())
     town = processing.run("lidarbuildings:simulatetown", {"OUTPUT": QgsProcessing.TEMPORARY_OUTPUT})["OUTPUT"]
     project = QgsProject.instance()
     targets = {
@@ -52,6 +50,8 @@ def arranged_window() -> None:
     window = iface.mainWindow()
     window.resize(WINDOW)
     window.findChild(QDockWidget, "Browser").hide()
+    # The town is nowhere on earth: the scale that QGIS shows there is absurd.
+    window.statusBar().hide()
     toolbox = window.findChild(QDockWidget, "ProcessingToolbox")
     toolbox.show()
     window.resizeDocks([window.findChild(QDockWidget, "Layers"), toolbox], [240, 270], Qt.Orientation.Horizontal)

@@ -13,12 +13,12 @@ from lidar_buildings.tests.real.clouds import detected, path_of, score
 
 # F-score per point (%): detect_buildings, and the chain of 2019 on the same cloud.
 REACHED = {
-    "buildings/ahn3-delft": (94.8, 69.4),
-    "buildings/ahn3-delft-4": (88.3, 61.4),
-    "buildings/ign-stbarth": (86.2, 69.9),
-    "buildings/ign-stbarth-4": (88.9, 64.9),
-    "buildings/ahn-amsterdam-1": (91.1, 67.5),
-    "buildings/ign-chalet": (90.1, 81.6),
+    "buildings/ahn3-delft": (95.5, 69.4),
+    "buildings/ahn3-delft-4": (94.0, 61.0),
+    "buildings/ign-stbarth": (86.7, 75.9),
+    "buildings/ign-stbarth-4": (89.6, 65.3),
+    "buildings/ahn-amsterdam-1": (94.7, 67.1),
+    "buildings/ign-chalet": (88.2, 82.5),
 }
 # Area (m²) called building where there is none, in cells of 0.5 m.
 REACHED_WITHOUT_BUILDINGS = {
