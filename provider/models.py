@@ -24,9 +24,11 @@ from qgis.core import (
 from qgis.PyQt.QtCore import QPointF, QSizeF, QUrl
 from qgis.PyQt.QtGui import QColor, QIcon
 
+from ..algorithms.cloud.cloud import check_readable
 from ..algorithms.pipelines import Pipeline, Step
 from . import paths
 from .clouds import CloudParameter, cloud_path
+from .crs import crs_units
 from .dependencies import missing_sentence
 from .errors import one_sentence
 from .feedback import ChainFeedback
@@ -338,7 +340,10 @@ class PipelineAlgorithm(QgsProcessingModelAlgorithm):
         for step in self.pipeline.steps:
             named = {name: self.pipeline.parameter(step, name).upper() for name in step.stage.tunables}
             tunable_values(self, step.stage, given, context, named)
-        check_targets(self.destinationParameterDefinitions(), given, [cloud_path(self, INPUT, given, context)])
+        source = cloud_path(self, INPUT, given, context)
+        check_targets(self.destinationParameterDefinitions(), given, [source])
+        # Now, as QGIS opens the input of a model as a layer too, and a damaged COPC can hang it.
+        check_readable(source, crs_units)
 
     def _with_defaults(self, parameters: dict) -> dict:
         """Return ``parameters`` with the model's defaults, where QGIS would take the child's."""

@@ -17,8 +17,9 @@ from qgis.core import (
     QgsProperty,
 )
 
-from ..algorithms.cloud.cloud import Cloud, copc_path, write_cloud
+from ..algorithms.cloud.cloud import Cloud, write_cloud
 from ..algorithms.cloud.outputs import COPC, check_output, kind_of, same_file
+from ..algorithms.cloud.views import check_place, copc_path
 from ..algorithms.stage import Monitor
 from .clouds import reads_las
 
@@ -80,7 +81,9 @@ def check_targets(definitions: list, parameters: dict, inputs: list) -> None:
 def _check_target(definition, path: Path, inputs: list) -> None:
     if _is_cloud(definition):
         check_output(path, inputs)
-        _check_beside(path, inputs)
+        # The last step of a model reads what the step before it wrote, so it can't know the first input itself.
+        if kind_of(path) != COPC:
+            check_place(path, inputs)
     folder = path.absolute().parent
     if not folder.is_dir():
         raise ValueError(f"The folder {folder} does not exist; make it or choose another one.")
@@ -88,19 +91,6 @@ def _check_target(definition, path: Path, inputs: list) -> None:
         raise ValueError(f"The output {path} is also an input; choose another name.")
     if not os.access(folder, os.W_OK) or (path.exists() and not os.access(path, os.W_OK)):
         raise ValueError(f"{path} can't be written: it or its folder is read-only; choose another one.")
-
-
-def _check_beside(path: Path, inputs: list) -> None:
-    """Refuse x.laz where x.copc.laz is an input: the COPC beside a result is replaced or removed with it.
-
-    The last step of a model reads what the step before it wrote, so it can't know the first input itself.
-    """
-    for source in inputs:
-        if kind_of(path) != COPC and same_file(copc_path(path), source):
-            raise ValueError(
-                f"The output {path.name} would take the place of the input {source.name} beside it; "
-                "choose another name."
-            )
 
 
 def _state(path: Path) -> Optional[tuple[int, int, int]]:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import Optional, Union, cast
+from typing import BinaryIO, Optional, Union, cast
 
 import numpy as np
 
@@ -12,12 +14,13 @@ from ..stage import Monitor
 from .copc import copc_header, write_copc
 from .dimensions import DIMENSIONS, Dimension
 from .formats import OF_COPC, WITH_WAVEFORMS, Layout
-from .header import COPC_HIERARCHY, COPC_INFO, LASZIP, Header, read_header
-from .las import open_header, read_points, write_points
+from .header import COPC_HIERARCHY, COPC_INFO, LASZIP, Header
+from .las import check_points, open_header, read_points, write_points
 from .laz import check_compressible, need_lazrs
-from .outputs import COPC, LAS, LAZ, VPC, check_output, kind_of, replacing, same_file
+from .outputs import COPC, LAZ, VPC, check_output, kind_of, replacing
 from .records import Records, find_extra, unit_factor
 from .units import Resolver, Units, crs_records, has_wkt, units_of, wkt_of
+from .views import VIEW_SOFTWARE, check_place, copc_path, seal
 from .vpc import read_tiles, tiles_of
 
 # What the header of every file written here says of the program that wrote it.
@@ -201,7 +204,7 @@ def read_cloud(
         In one sentence, whatever is wrong with the file.
     """
     path, monitor = Path(path), monitor or Monitor()
-    try:
+    with _readable(path):
         sources = _sources(path)
         if len(sources) == 1:
             header = open_header(sources[0])
@@ -211,13 +214,35 @@ def read_cloud(
         else:
             units = units_of(open_header(sources[0]), crs_units)
             header, points = read_tiles(sources, monitor)
+    if units.warning:
+        monitor.warn(units.warning)
+    return Cloud(header, points, units, sources if sources == [path] else [*sources, path])
+
+
+def check_readable(path: Union[str, Path], crs_units: Optional[Resolver] = None) -> None:
+    """Refuse what :func:`read_cloud` would refuse, as far as headers and chunk tables tell.
+
+    Raises
+    ------
+    ValueError
+        In one sentence, what is wrong with the file or with a tile of it.
+    """
+    path = Path(path)
+    with _readable(path):
+        for source in _sources(path):
+            header = open_header(source)
+            units_of(header, crs_units)
+            check_points(source, header)
+
+
+@contextmanager
+def _readable(path: Path) -> Iterator[None]:
+    try:
+        yield
     except OSError as error:
         raise ValueError(
             f"{path} can't be read ({error.strerror or error}); check the file and its permissions."
         ) from error
-    if units.warning:
-        monitor.warn(units.warning)
-    return Cloud(header, points, units, sources if sources == [path] else [*sources, path])
 
 
 def _sources(path: Path) -> list[Path]:
@@ -287,8 +312,9 @@ def write_cloud(
     extra bytes, waveform references and every dimension that was not set. It
     appears when it is complete; after a failure or cancel nothing is left.
 
-    QGIS with PDAL shows a file x.copc.laz in place of the x.las or x.laz beside it. An
-    old one that was written here is replaced or removed; anyone else's is left, with a warning.
+    QGIS with PDAL shows a file x.copc.laz in place of the x.las or x.laz beside it. One that
+    was written with the very file that is replaced is replaced or removed with it; beside any
+    other, nothing is written.
 
     Parameters
     ----------
@@ -311,12 +337,12 @@ def write_cloud(
     if kind_of(path) == COPC:
         _write_copc(cloud, path, monitor)
         return
-    beside = copc_path(path)
-    _write_las(cloud, path, monitor.part(0.0, 0.4) if copc_beside else monitor)
-    if copc_beside:
-        _write_copc(cloud, beside, monitor.part(0.4, 1.0))
-    else:
-        _remove_stale(beside, cloud.sources, monitor)
+    with replacing(path) as stream:
+        _write_las(cloud, path, stream, monitor.part(0.0, 0.4) if copc_beside else monitor)
+        if copc_beside:
+            _write_copc(cloud, copc_path(path), monitor.part(0.4, 1.0), shown=stream)
+    if not copc_beside:
+        copc_path(path).unlink(missing_ok=True)
 
 
 def check_write(cloud: Cloud, path: Union[str, Path], copc_beside: bool = False) -> None:
@@ -325,7 +351,7 @@ def check_write(cloud: Cloud, path: Union[str, Path], copc_beside: bool = False)
     Raises
     ------
     ValueError
-        If the path, or the one of the COPC beside it, can't be written or is a source of the cloud.
+        If the path can't be written or is a source of the cloud, or QGIS would show another file in its place.
     """
     path = Path(path)
     check_output(path, cloud.sources)
@@ -333,16 +359,11 @@ def check_write(cloud: Cloud, path: Union[str, Path], copc_beside: bool = False)
         need_lazrs()
     if kind_of(path) == LAZ:
         check_compressible(cloud.records().layout.point_format)
-    if kind_of(path) != COPC and copc_beside:
-        check_output(copc_path(path), cloud.sources)
+    if kind_of(path) != COPC:
+        check_place(path, cloud.sources)
 
 
-def copc_path(path: Path) -> Path:
-    """Return the COPC file that QGIS looks for beside a LAS or LAZ file."""
-    return path.with_name(path.name[: -len(LAS)] + COPC)
-
-
-def _write_las(cloud: Cloud, path: Path, monitor: Monitor) -> None:
+def _write_las(cloud: Cloud, path: Path, stream: BinaryIO, monitor: Monitor) -> None:
     records = cloud.records()
     header = _output_header(cloud, records)
     if records.is_upgraded:
@@ -350,11 +371,11 @@ def _write_las(cloud: Cloud, path: Path, monitor: Monitor) -> None:
             f"Classes over 31 don't fit point format {cloud.header.layout.point_format}; "
             f"{path.name} is written in format {records.layout.point_format} (LAS 1.4)."
         )
-    with replacing(path) as stream:
-        write_points(stream, header, lambda a, b: records.take(slice(a, b)), kind_of(path) == LAZ, monitor)
+    write_points(stream, header, lambda a, b: records.take(slice(a, b)), kind_of(path) == LAZ, monitor)
 
 
-def _write_copc(cloud: Cloud, path: Path, monitor: Monitor) -> None:
+def _write_copc(cloud: Cloud, path: Path, monitor: Monitor, shown: Optional[BinaryIO] = None) -> None:
+    """Write a COPC file, as the view of the complete file in the stream ``shown`` if there is one."""
     records = cloud.records(for_copc=True)
     old, new = cloud.header.layout.point_format, records.layout.point_format
     if old != new:
@@ -363,8 +384,12 @@ def _write_copc(cloud: Cloud, path: Path, monitor: Monitor) -> None:
             f"COPC holds point formats 6 to 8 only: {path.name} is written in format {new} instead of {old}{lost}."
         )
     header = copc_header(_output_header(cloud, records))
+    if shown is not None:
+        header = replace(header, software=VIEW_SOFTWARE)
     with replacing(path) as stream:
         write_copc(stream, header, cloud.points, records.take, monitor)
+        if shown is not None:
+            seal(stream, shown)
 
 
 def _output_header(cloud: Cloud, records: Records) -> Header:
@@ -378,22 +403,3 @@ def _output_header(cloud: Cloud, records: Records) -> Header:
         vlrs, bits = crs_records(cloud.wkt)
         header = replace(header, vlrs=[*header.vlrs, *vlrs], encoding=header.encoding | bits)
     return header
-
-
-def _remove_stale(beside: Path, sources: list[Path], monitor: Monitor) -> None:
-    """Remove an old COPC file that QGIS would show instead of the file just written."""
-    if not beside.is_file():
-        return
-    ours = not any(same_file(beside, source) for source in sources) and _is_ours(beside)
-    if ours:
-        beside.unlink()
-    else:
-        monitor.warn(f"{beside.name} lies beside the output, and QGIS may show it instead; move or remove it.")
-
-
-def _is_ours(path: Path) -> bool:
-    """Whether a file was written by :func:`write_cloud`; one that can't be read was not."""
-    try:
-        return read_header(path).software.split(b"\0")[0] == SOFTWARE
-    except (ValueError, OSError):
-        return False

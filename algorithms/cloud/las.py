@@ -44,6 +44,19 @@ def open_header(path: Path) -> Header:
     return header
 
 
+def check_points(path: Path, header: Header) -> None:
+    """Refuse a file whose points can't be read from the start on, without reading them.
+
+    Raises
+    ------
+    ValueError
+        If it is LAZ and its record or chunk table is damaged, or the package for it is missing.
+    """
+    if header.is_compressed:
+        with path.open("rb") as stream:
+            Decompressor(path, header, stream)
+
+
 def read_chunks(path: Path, header: Header, monitor: Monitor) -> Iterator[tuple[int, np.ndarray]]:
     """Yield (position of the first point, records) until all points are read; the array is used again."""
     buffer = np.empty(min(AT_ONCE, header.count), header.layout.dtype)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,6 +29,9 @@ _PIT_SLOPE = 5.0
 # A region that was removed joins the terrain where a step at its edge is not steeper than this plus
 # this share of the local slope, and it is terrain when half of its edge does.
 _JOIN_SLOPE, _JOIN_SHARE, _JOINED = 0.3, 0.5, 0.5
+
+# Windows over this share of the largest lift off spits and hilltops rather than houses.
+_LARGE_WINDOW = 0.5
 
 # Windows of the opening grow by this factor.
 _GROWTH = 1.25
@@ -94,10 +98,10 @@ def seeds_by_opening(xyz: np.ndarray, cell_size: float, max_building_size: float
     lowest = lowest_points(xyz, cell_size)
     surface, known = _surface(xyz, lowest)
     windows = _windows(max_building_size / 2 / cell_size)
-    first = _objects(surface, windows, np.full(surface.shape, _FIRST_SLOPE), cell_size, monitor.part(0, 0.45))
-    slope = _slope(_interpolated(surface, first), cell_size)
-    objects = _objects(surface, windows, _SLOPE_SHARE * slope, cell_size, monitor.part(0.45, 0.9))
-    objects = _without_joined(objects, surface, slope, cell_size)
+    coarse = _lifted(surface, windows, np.full(surface.shape, _FIRST_SLOPE), cell_size, monitor.part(0, 0.45))
+    slope = _slope(_interpolated(surface, coarse > 0), cell_size)
+    lifted = _lifted(surface, windows, _SLOPE_SHARE * slope, cell_size, monitor.part(0.45, 0.9))
+    objects = _without_joined(lifted, windows[-1], surface, slope, cell_size)
     monitor.progress(1.0)
     return lowest.points(known & ~objects)
 
@@ -135,18 +139,19 @@ def _windows(largest: float) -> list[int]:
     return [*radii, last]
 
 
-def _objects(
+def _lifted(
     surface: np.ndarray, windows: list[int], slope: np.ndarray, cell_size: float, monitor: Monitor
 ) -> np.ndarray:
-    """Return the cells that some window lifts off by more than terrain of ``slope`` allows."""
-    objects = np.zeros(surface.shape, bool)
+    """Return the radius of the first window that lifts a cell off by more than terrain of ``slope`` allows, or 0."""
+    lifted = np.zeros(surface.shape, np.int32)
     opened = surface
     for done, radius in enumerate(windows, start=1):
         previous, opened = opened, open_surface(opened, radius)
         reach = radius * cell_size
-        objects |= previous - opened > _STEP + min(_FLAT_SLOPE * reach, _FLAT_RISE) + slope * reach
+        off = previous - opened > _STEP + min(_FLAT_SLOPE * reach, _FLAT_RISE) + slope * reach
+        lifted[off & (lifted == 0)] = radius
         monitor.progress(done / len(windows))
-    return objects
+    return lifted
 
 
 def _interpolated(surface: np.ndarray, unknown: np.ndarray) -> np.ndarray:
@@ -173,17 +178,33 @@ def _slope(surface: np.ndarray, cell_size: float) -> np.ndarray:
     return np.sqrt(sum((gradient**2 for gradient in gradients), np.zeros_like(smooth)))
 
 
-def _without_joined(objects: np.ndarray, surface: np.ndarray, slope: np.ndarray, cell_size: float) -> np.ndarray:
-    """Take regions of ``objects`` out that join the terrain smoothly on half of their edge."""
-    region, count = ndimage.label(objects)
-    edge, joined = np.zeros(count + 1), np.zeros(count + 1)
+def _without_joined(
+    lifted: np.ndarray, largest: int, surface: np.ndarray, slope: np.ndarray, cell_size: float
+) -> np.ndarray:
+    """Return the lifted cells but for regions that join the terrain smoothly on half of their edge.
+
+    What smaller windows and what larger windows lifted off make regions of their own: a house stays
+    lifted off, though the spit of land on which it stands comes back.
+    """
     allowed = (_JOIN_SLOPE + _JOIN_SHARE * slope) * cell_size
-    for axis in (0, 1):
-        for inside, outside in ((slice(None, -1), slice(1, None)), (slice(1, None), slice(None, -1))):
-            here, there = (slice(None),) * axis + (inside,), (slice(None),) * axis + (outside,)
-            at_edge = objects[here] & ~objects[there]
+    objects = lifted > 0
+    is_large = lifted > _LARGE_WINDOW * largest
+    for group in (objects & ~is_large, is_large):
+        region, count = ndimage.label(group)
+        edge, joined = np.zeros(count + 1), np.zeros(count + 1)
+        for here, there in _beside(surface.ndim):
+            at_edge = (region[here] > 0) & ~objects[there]
             smooth = at_edge & (surface[here] - surface[there] < allowed[here])
             edge += np.bincount(region[here][at_edge], minlength=count + 1)
             joined += np.bincount(region[here][smooth], minlength=count + 1)
-    terrain = joined >= _JOINED * np.maximum(edge, 1)
-    return objects & ~terrain[region]
+        terrain = joined >= _JOINED * np.maximum(edge, 1)
+        terrain[0] = False
+        objects &= ~terrain[region]
+    return objects
+
+
+def _beside(dimensions: int) -> Iterator[tuple[tuple[slice, ...], tuple[slice, ...]]]:
+    """Yield the slices of an array and of itself moved by one cell, along each axis, both ways."""
+    for axis in range(dimensions):
+        for inside, outside in ((slice(None, -1), slice(1, None)), (slice(1, None), slice(None, -1))):
+            yield (slice(None),) * axis + (inside,), (slice(None),) * axis + (outside,)

@@ -158,6 +158,26 @@ def test_each_step_is_announced_and_no_warning_is_repeated(provider, context, lo
     assert "no coordinate reference system" in log.warnings[0]
 
 
+def test_a_damaged_input_is_refused_before_qgis_opens_it(provider, context, town_file, out):
+    """As a model's input QGIS opens it as a layer too, and a truncated COPC can hang it."""
+    broken = out / "broken.copc.laz"
+    write_cloud(read_cloud(town_file), broken)
+    broken.write_bytes(broken.read_bytes()[:2000])
+    given = {"INPUT": str(broken), "OUTPUT": str(out / "a.laz")}
+    accepted, message = provider.algorithm("toychain").create().checkParameterValues(given, context)
+    assert not accepted
+    assert message.startswith("broken.copc.laz is truncated")
+
+
+def test_a_copc_that_is_not_the_results_view_is_kept(provider, context, town_file, out):
+    write_cloud(read_cloud(town_file), out / "a.copc.laz")
+    given = {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz")}
+    accepted, message = provider.algorithm("toychain").create().checkParameterValues(given, context)
+    assert not accepted
+    assert "a.copc.laz lies beside the output a.laz" in message
+    assert (out / "a.copc.laz").is_file()
+
+
 def test_the_composite_runs_without_its_layer(provider, context, log, town_file, out):
     run("toychain", {"INPUT": str(town_file), "OUTPUT": str(out / "a.las")}, context, log)
     assert [path.name for path in out.iterdir()] == ["a.las"]

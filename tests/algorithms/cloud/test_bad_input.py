@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.cloud import las
-from lidar_buildings.algorithms.cloud.cloud import create_cloud, read_cloud, write_cloud
+from lidar_buildings.algorithms.cloud.cloud import check_readable, create_cloud, read_cloud, write_cloud
 from lidar_buildings.algorithms.stage import Monitor
 
 from .conftest import vlr
@@ -38,6 +38,22 @@ def refuse(path, message):
     assert "\n" not in str(caught.value)
     assert str(caught.value).endswith(".")
     assert peak < 2e8
+
+
+@pytest.mark.parametrize("kind", [".las", ".laz", ".copc.laz"])
+def test_a_look_at_the_header_finds_what_is_wrong(good, tmp_path, kind):
+    """Before a model starts: QGIS opens its input too, and a truncated COPC can hang it."""
+    path = tmp_path / f"a{kind}"
+    path.write_bytes(good[kind])
+    check_readable(path)
+    path.write_bytes(good[kind][: len(good[kind]) // 2])
+    with pytest.raises(ValueError, match=r"a\..*truncated"):
+        check_readable(path)
+    path.write_bytes(patched(good[kind], 247, "<Q", 10**12))
+    with pytest.raises(ValueError, match="promises"):
+        check_readable(path)
+    with pytest.raises(ValueError, match="does not exist"):
+        check_readable(tmp_path / "none.las")
 
 
 def patched(raw, at, kind, value):

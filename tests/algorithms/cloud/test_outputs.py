@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.cloud import outputs
-from lidar_buildings.algorithms.cloud.cloud import check_write, copc_path, create_cloud, read_cloud, write_cloud
+from lidar_buildings.algorithms.cloud.cloud import check_write, create_cloud, read_cloud, write_cloud
+from lidar_buildings.algorithms.cloud.views import copc_path
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 
 KINDS = [".las", ".laz", ".copc.laz"]
@@ -119,42 +120,79 @@ def test_copc_beside(cloud, folder):
 
 
 @pytest.mark.parametrize("name", ["a.las", "a.laz"])
-def test_own_stale_copc_beside_is_removed(cloud, folder, name):
-    write_cloud(cloud, folder / "a.copc.laz")
-    monitor = Monitor()
-    write_cloud(cloud, folder / name, monitor)
-    assert [path.name for path in folder.iterdir()] == [name]
-    assert monitor.warnings == []
+@pytest.mark.parametrize("again", [False, True])
+def test_the_view_of_what_is_replaced_goes_with_it(cloud, folder, name, again):
+    write_cloud(cloud, folder / name, copc_beside=True)
+    cloud.set("classification", np.full(len(cloud), 6, np.uint8))
+    write_cloud(cloud, folder / name, copc_beside=again)
+    left = sorted(path.name for path in folder.iterdir())
+    assert left == (["a.copc.laz", name] if again else [name])
+    for path in folder.iterdir():
+        assert (read_cloud(path).get("classification") == 6).all()
 
 
-def test_copc_of_someone_else_is_left_and_told(cloud, folder):
+def test_statistics_that_qgis_adds_leave_a_view_a_view(cloud, folder):
+    write_cloud(cloud, folder / "a.laz", copc_beside=True)
+    with (folder / "a.copc.laz").open("ab") as file:
+        file.write(b"statistics")
+    write_cloud(cloud, folder / "a.laz")
+    assert not (folder / "a.copc.laz").exists()
+
+
+def _own(cloud, folder):
+    """A result that was written under that name for its own sake."""
     write_cloud(cloud, folder / "a.copc.laz")
+
+
+def _view_of_another(cloud, folder):
+    write_cloud(cloud, folder / "a.laz", copc_beside=True)
+    cloud.set("classification", np.full(len(cloud), 6, np.uint8))
+    write_cloud(cloud, folder / "b.laz")
+    (folder / "b.laz").replace(folder / "a.laz")
+
+
+def _only_copy(cloud, folder):
+    write_cloud(cloud, folder / "a.laz", copc_beside=True)
+    (folder / "a.laz").unlink()
+
+
+def _edited_view(cloud, folder):
+    write_cloud(cloud, folder / "a.laz", copc_beside=True)
     raw = bytearray((folder / "a.copc.laz").read_bytes())
-    raw[58:90] = b"someone else".ljust(32, b"\0")
+    raw[len(raw) // 2] ^= 0xFF
     (folder / "a.copc.laz").write_bytes(raw)
-    monitor = Monitor()
-    write_cloud(cloud, folder / "a.laz", monitor)
-    assert (folder / "a.copc.laz").read_bytes() == raw
-    assert any("a.copc.laz lies beside" in sentence for sentence in monitor.warnings)
 
 
-def test_copc_that_is_the_input_is_neither_removed_nor_replaced(cloud, folder):
-    write_cloud(cloud, folder / "a.copc.laz")
-    source = read_cloud(folder / "a.copc.laz")
-    with pytest.raises(ValueError, match="is also an input"):
-        write_cloud(source, folder / "a.laz", copc_beside=True)
-    monitor = Monitor()
-    write_cloud(source, folder / "a.laz", monitor)
-    assert (folder / "a.copc.laz").is_file()
-    assert len(monitor.warnings) == 1
-
-
-def test_a_damaged_copc_beside_is_left(cloud, folder):
+def _damaged(cloud, folder):
     (folder / "a.copc.laz").write_bytes(b"LASF and no more")
-    monitor = Monitor()
-    write_cloud(cloud, folder / "a.laz", monitor)
-    assert (folder / "a.copc.laz").read_bytes() == b"LASF and no more"
-    assert len(monitor.warnings) == 1
+
+
+@pytest.mark.parametrize("found", [_own, _view_of_another, _only_copy, _edited_view, _damaged])
+@pytest.mark.parametrize("copc_beside", [False, True])
+def test_any_other_copc_beside_is_kept_and_the_output_refused(cloud, folder, found, copc_beside):
+    found(cloud, folder)
+    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+    for attempt in (check_write, write_cloud):
+        with pytest.raises(ValueError, match=r"a\.copc\.laz lies beside the output a\.laz"):
+            attempt(cloud, folder / "a.laz", copc_beside=copc_beside)
+    assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
+
+
+def test_a_cancelled_view_leaves_the_old_pair(cloud, folder):
+    write_cloud(cloud, folder / "a.laz", copc_beside=True)
+    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+    with pytest.raises(Cancelled):
+        write_cloud(cloud, folder / "a.laz", Stop(), copc_beside=True)
+    assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
+
+
+@pytest.mark.parametrize("copc_beside", [False, True])
+def test_a_copc_that_is_the_input_is_neither_removed_nor_replaced(cloud, folder, copc_beside):
+    write_cloud(cloud, folder / "a.laz", copc_beside=True)
+    source = read_cloud(folder / "a.copc.laz")
+    with pytest.raises(ValueError, match=r"take the place of the input a\.copc\.laz"):
+        write_cloud(source, folder / "a.laz", copc_beside=copc_beside)
+    assert len(read_cloud(folder / "a.copc.laz")) == len(cloud)
 
 
 def test_writing_twice_gives_the_same_bytes(cloud, folder):

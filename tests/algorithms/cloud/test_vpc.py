@@ -84,7 +84,9 @@ def test_copc_tiles_and_overviews(tmp_path, rng):
     cloud = read_cloud(tmp_path / "all.vpc")
     assert len(cloud) == 1000
     np.testing.assert_allclose(np.sort(cloud.get("xyz")[:, 0]), np.sort(xyz[:, 0]), atol=0.001)
-    write_cloud(cloud, tmp_path / "b.las")
+    with pytest.raises(ValueError, match="take the place of the input b.copc.laz"):
+        write_cloud(cloud, tmp_path / "b.las")
+    write_cloud(cloud, tmp_path / "c.las")
 
 
 def test_far_tiles_get_an_offset_between_them(make_las, make_vpc, laspy):
