@@ -46,6 +46,8 @@ def run_stage(
         # Coordinates of two clouds can be compared only from one origin.
         reference.origin = cloud.origin
     used = None if cloud is None or not cloud.withheld.any() else ~cloud.withheld
+    if used is not None and not used.any():
+        raise ValueError(f"All {len(used)} points are marked as withheld, so none may be used; choose another cloud.")
     made = stage.function(*_dimensions(stage, cloud, reference, used), **arguments, monitor=monitor or Monitor())
     results = list(made) if isinstance(made, tuple) else [made]
     if stage.creates:

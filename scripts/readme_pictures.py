@@ -31,7 +31,7 @@ from lidar_buildings.provider.paths import PLUGIN
 FOLDER = Path(PLUGIN).resolve() / "resources" / "readme"
 WINDOW = QSize(1400, 900)
 GRAPH_WIDTH = 1300  # pixels
-REDRAW = 4000  # milliseconds until the map is drawn
+REDRAW = 20000  # milliseconds until the map is drawn
 
 
 def found_town() -> None:

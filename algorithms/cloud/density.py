@@ -37,7 +37,7 @@ def point_density(xyz: np.ndarray) -> float:
     extent = np.ptp(xyz[:, :2], axis=0)
     if not extent.any():
         raise ValueError(
-            f"All {len(xyz)} points lie at one place in plan, so they have no density; give a cloud with some extent."
+            f"The cloud has no extent in plan (points: {len(xyz)}), so it has no density; choose a larger cloud."
         )
     # A line of points has no area either: it is taken as wide as its points are apart.
     area = max(float(extent.prod()), float(extent.max()) ** 2 / len(xyz))

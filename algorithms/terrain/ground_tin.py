@@ -180,11 +180,16 @@ def classify_ground_tin(
 def _refuse_degenerate(points: np.ndarray) -> np.ndarray:
     """Return ``points`` if they span an area in plan."""
     if len(points) < 3:
-        raise ValueError(f"Ground needs at least 3 points that are not noise, got {len(points)}.")
+        raise ValueError(
+            f"Ground needs at least 3 points that are not noise, got {len(points)}; choose a larger cloud."
+        )
     centered = points[:, :2] - points[:, :2].mean(axis=0)
     extent = np.linalg.svd(centered.T @ centered, compute_uv=False)
     if extent[1] <= _LEAST_WIDTH**2 * len(points):
-        raise ValueError(f"All {len(points)} points lie on one line or at one place in plan; ground needs an area.")
+        raise ValueError(
+            f"All {len(points)} points lie on one line or at one place in plan; ground needs an area, "
+            "choose a larger cloud."
+        )
     return points
 
 
