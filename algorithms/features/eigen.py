@@ -8,8 +8,6 @@ neither the chunks nor the number of threads.
 
 from __future__ import annotations
 
-import os
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any, Callable, Optional, Union
 
@@ -17,6 +15,7 @@ import numpy as np
 
 from ..packages import spatial
 from ..stage import Monitor
+from ..threads import in_chunks
 
 # Neighbors gathered at once by one thread: 40 bytes each, so 20 MB, which also fits caches best.
 _CHUNK_NEIGHBORS = 500_000
@@ -135,20 +134,12 @@ def reduce_neighborhoods(
     if isinstance(neighborhood, Within):
         neighborhood.check(xyz, tree)
     columns = np.ascontiguousarray(xyz.T)
-    # In the order of the tree's leaves the neighbors of one chunk lie together in memory.
-    size = neighborhood.rows_per_chunk(len(xyz))
-    chunks = [tree.indices[start : start + size] for start in range(0, len(xyz), size)]
 
     def work(rows: np.ndarray) -> None:
         reduce(rows, *neighborhood.covariances(columns, tree, rows))
 
-    pool = ThreadPoolExecutor(os.cpu_count() or 1)
-    try:
-        for done, _ in enumerate(pool.map(work, chunks), start=1):
-            monitor.progress(done / len(chunks))
-    finally:
-        # A cancelled run must not go on in the background.
-        pool.shutdown(wait=True, cancel_futures=True)
+    # In the order of the tree's leaves the neighbors of one chunk lie together in memory.
+    in_chunks(work, tree.indices, neighborhood.rows_per_chunk(len(xyz)), monitor)
 
 
 def neighborhood_eigenvalues(

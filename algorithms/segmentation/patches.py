@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import os
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import Any, Callable
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +11,7 @@ from ..features.eigen import Nearest, smallest_eigenvectors, symmetric_eigenvalu
 from ..features.noise import LEAST_NEIGHBORS, surface_neighbors
 from ..packages import csgraph, sparse, spatial
 from ..stage import Monitor
+from ..threads import in_chunks
 
 # A point lies on a plane within this many deviations of the noise; the plane itself is smooth below this many.
 _ON_PLANE, _SMOOTH = 3.0, 3.0
@@ -95,7 +94,7 @@ def _local_planes(xyz: np.ndarray, tree: Any, n_neighbors: int, monitor: Monitor
         planes.normal[rows] = smallest_eigenvectors(covariances, eigenvalues)
         planes.deviation[rows] = np.sqrt(eigenvalues[:, 2])
 
-    _in_threads(work, tree.indices, nearest.rows_per_chunk(len(xyz)), monitor)
+    in_chunks(work, tree.indices, nearest.rows_per_chunk(len(xyz)), monitor)
     # Coincident neighbors have no normal and so no plane.
     undefined = ~np.isfinite(planes.normal).all(axis=1)
     planes.normal[undefined], planes.deviation[undefined] = 0.0, np.inf
@@ -114,7 +113,7 @@ def _smoothest_plane(xyz: np.ndarray, planes: LocalPlanes, noise: float, monitor
             smoothest[better] = planes.deviation[candidate[better]]
             plane[rows[better]] = candidate[better]
 
-    _in_threads(work, np.arange(len(xyz)), _CHUNK, monitor)
+    in_chunks(work, np.arange(len(xyz)), _CHUNK, monitor)
     return plane
 
 
@@ -139,14 +138,3 @@ def _linked(
     rows, columns = np.concatenate(here), np.concatenate(there)
     links = sparse.coo_matrix((np.ones(len(rows), bool), (rows, columns)), (len(xyz), len(xyz)))
     return csgraph.connected_components(links, directed=False)[1]
-
-
-def _in_threads(work: Callable[[np.ndarray], None], rows: np.ndarray, size: int, monitor: Monitor) -> None:
-    """Call ``work`` with all rows in chunks, on all cores; the tree and numpy let go of the interpreter."""
-    chunks = [rows[start : start + size] for start in range(0, len(rows), size)]
-    pool = ThreadPoolExecutor(os.cpu_count() or 1)
-    try:
-        for done, _ in enumerate(pool.map(work, chunks), start=1):
-            monitor.progress(done / len(chunks))
-    finally:
-        pool.shutdown(wait=True, cancel_futures=True)
