@@ -103,7 +103,7 @@ def classify_buildings(
         Mean entropy of the point's cluster; NaN elsewhere.
     confidence : ndarray of shape (n,), float32
         How sure the cluster is a building, 0 to 1: the distance of its entropy from the upper mean over the sum of
-        its distances from both; 0.5 is undecided. NaN elsewhere.
+        its distances from both (and solidity, see Notes); 0.5 is undecided. NaN elsewhere.
 
     Notes
     -----
