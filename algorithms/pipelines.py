@@ -116,8 +116,9 @@ _PIPELINES = (
         summary="Find the buildings in a point cloud exactly as the paper of 2019 does.",
         description=(
             "The published chain with the paper's rules and nothing else: cell histogram filter, progressive TIN "
-            "densification from the lowest point of each cell of the largest building's size (with a final sweep, as the "
-            "paper's tool for it has), region growing, mean entropy per cluster and two-class K-means. For comparisons; 'Detect buildings' finds more and errs less."
+            "densification from the lowest point of each cell of the largest building's size (with a final sweep, as "
+            "the paper's tool for it has), region growing, mean entropy per cluster and two-class K-means. For "
+            "comparisons; 'Detect buildings' finds more and errs less."
         ),
         references=_SANTOS,
         steps=(
