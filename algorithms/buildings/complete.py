@@ -7,6 +7,7 @@ from typing import Annotated, Optional
 import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
+from ..cloud.cells import refuse_sparse
 from ..cloud.density import point_density
 from ..packages import ndimage
 from ..params import MinBuildingArea, PointDensity
@@ -109,6 +110,11 @@ def complete_buildings(
     cluster_id : ndarray of shape (n,), int32
         Buildings from 1, from the south-west northward; 0 is none.
 
+    Raises
+    ------
+    ValueError
+        If the points are spread so thinly that the cloud is nearly empty.
+
     Notes
     -----
     This stage is no part of the published method, whose clusters are roofs and lose what is not planar or not
@@ -130,6 +136,7 @@ def complete_buildings(
         return result.astype(np.uint8), cluster_id
 
     cell_size = max(_LEAST_CELL, _CELL_SPACINGS * spacing)
+    refuse_sparse(xyz, cell_size)
     cell = _cells(xyz, cell_size, margin=gap)
     is_noise = np.isin(classification, NOISE)
     raised = (height_above_ground >= _WALL_FOOT) & ~is_noise

@@ -8,6 +8,9 @@ import numpy as np
 
 from ..packages import csgraph, sparse
 
+# A raster larger than this, in cells and in cells for each point, is a mistake in the coordinates.
+_MOST_CELLS, _MOST_CELLS_PER_POINT = 10_000_000, 20
+
 
 @dataclass(frozen=True)
 class Grid:
@@ -44,6 +47,29 @@ def grid_over(xyz: np.ndarray, size: float) -> Grid:
     low = xyz[:, :2].min(axis=0)
     columns, rows = (np.floor((xyz[:, :2].max(axis=0) - low) / size).astype(np.int64) + 3).tolist()
     return Grid((float(low[0]), float(low[1])), size, rows, columns)
+
+
+def refuse_sparse(xyz: np.ndarray, size: float) -> None:
+    """Refuse points that lie so far apart that a raster of cells over them would hold next to nothing.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 2 or 3)
+        Points (m), n >= 1.
+    size : float
+        Side of a cell, m.
+
+    Raises
+    ------
+    ValueError
+        If the raster had more than ten million cells and more than twenty for each point.
+    """
+    width, height = np.ptp(xyz[:, :2], axis=0)
+    if (width / size + 1) * (height / size + 1) > max(_MOST_CELLS, _MOST_CELLS_PER_POINT * len(xyz)):
+        raise ValueError(
+            f"The {len(xyz)} points are spread over {width:,.0f} m by {height:,.0f} m, which is nearly empty; "
+            "remove points that lie far off in plan, or cut the cloud into pieces."
+        )
 
 
 def connected_cells(grid: Grid, cells: np.ndarray) -> tuple[int, np.ndarray]:

@@ -138,7 +138,8 @@ def classify_ground_tin(
     Raises
     ------
     ValueError
-        If fewer than three points are left to look for ground in, or all lie on one line.
+        If fewer than three points are left to look for ground in, all lie on one line, or they are spread so thinly
+        that the cloud is nearly empty.
 
     Notes
     -----

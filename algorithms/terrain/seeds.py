@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..cloud.cells import refuse_sparse
 from ..packages import ndimage
 from ..stage import Monitor
 from .opening import open_surface
@@ -54,7 +55,8 @@ class Lowest:
 
 
 def lowest_points(xyz: np.ndarray, cell_size: float) -> Lowest:
-    """Return the lowest point of each square cell of ``cell_size`` (m)."""
+    """Return the lowest point of each square cell of ``cell_size`` (m); refuse points that are spread too thinly."""
+    refuse_sparse(xyz, cell_size)
     cell = np.floor((xyz[:, :2] - xyz[:, :2].min(axis=0)) / cell_size).astype(np.int64)
     index = np.full(cell.max(axis=0) + 1, -1, np.int64)
     # Written from the highest to the lowest, the last one stays; ties go to the south-west, whatever the order.

@@ -140,3 +140,10 @@ def test_progress_only_grows():
     seeds_by_opening(np.column_stack([plan, np.zeros(len(plan))]), 1.0, 30.0, Listening())
     assert told == sorted(told)
     assert told[-1] == 1.0
+
+
+def test_a_point_far_off_is_refused_instead_of_filling_memory(rng):
+    """A raster from here to a point 300 km away would have 90 thousand million cells."""
+    xyz = np.vstack([rng.uniform(0, 50, (500, 3)), [[300_000.0, 300_000.0, 0.0]]])
+    with pytest.raises(ValueError, match="501 points are spread over 300,000 m by 300,000 m, which is nearly empty"):
+        lowest_points(xyz, 1.0)
