@@ -140,7 +140,7 @@ def classify_buildings(
     split = _split(means, n_neighbors, guard, seed, monitor)
     monitor.resolved(building_entropy=split.building, other_entropy=split.other)
     sure = split.confidence(means)
-    if max_penetration < 1:
+    if max_penetration < 1 and split.separates:
         sure = _with_solidity(
             sure, penetration(xyz, cluster_id - 1, density, return_number, number_of_returns)[ids - 1], max_penetration
         )
@@ -164,7 +164,7 @@ def _with_solidity(sure: np.ndarray, penetration: np.ndarray, most: float) -> np
     """Return the geometric mean of the entropy's confidence and of solidity, 0 at twice the penetration allowed."""
     solid = np.clip(1 - penetration / (2 * most), 0, 1)
     # Geometric, so that neither makes up for the other: a dense crown stops the beam and is no roof.
-    both = np.sqrt(np.nan_to_num(sure, nan=0.5) * solid)
+    both = np.sqrt(sure * solid)
     return np.where(penetration <= most, both, np.minimum(both, 0.5))
 
 
@@ -182,6 +182,11 @@ class _Split:
 
     building: float
     other: float
+
+    @property
+    def separates(self) -> bool:
+        """Whether there are two means and not one."""
+        return self.building < self.other
 
     def confidence(self, means: np.ndarray) -> np.ndarray:
         """Return the distance to the others' mean over the sum of both distances."""

@@ -296,3 +296,25 @@ def test_cancel_gets_through(garden):
     xyz, cluster_id = garden
     with pytest.raises(Cancelled):
         classify_buildings(xyz, ones(xyz), cluster_id, monitor=Stopping())
+
+
+def test_solid_clusters_are_undecided_where_nothing_tells_them_apart(rng):
+    """A roof lets nothing through, but the log says that none was called a building: so none is."""
+    xyz, cluster_id = clusters(roof(rng, 0, 0))
+    monitor = Monitor()
+    found, _, _, confidence = classify_buildings(
+        xyz, ones(xyz), cluster_id, guard=False, max_penetration=0.4, monitor=monitor
+    )
+    assert "nothing was called a building" in monitor.warnings[0]
+    assert not (found == 6).any()
+    assert (confidence == 0.5).all()
+
+
+def test_solid_clusters_without_entropy_are_no_buildings(garden):
+    """Thirty points at one place stop the beam and are no roof."""
+    xyz, cluster_id = garden[0], garden[1]
+    xyz = np.concatenate([xyz, np.full((30, 3), 500.0)])
+    cluster_id = np.append(cluster_id, np.full(30, cluster_id.max() + 1))
+    found = classify_buildings(xyz, ones(xyz), cluster_id, n_neighbors=24, max_penetration=0.4)[0]
+    assert (found == 6).any()
+    assert not (found[-30:] == 6).any()
