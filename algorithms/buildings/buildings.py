@@ -141,9 +141,9 @@ def classify_buildings(
     monitor.resolved(building_entropy=split.building, other_entropy=split.other)
     sure = split.confidence(means)
     if max_penetration < 1 and split.separates:
-        sure = _with_solidity(
-            sure, penetration(xyz, cluster_id - 1, density, return_number, number_of_returns)[ids - 1], max_penetration
-        )
+        through = penetration(xyz, cluster_id - 1, density, return_number, number_of_returns)[ids - 1]
+        # A cluster without entropy stays undecided, however solid it is.
+        sure = np.where(np.isfinite(means), _with_solidity(sure, through, max_penetration), sure)
 
     entropy[clustered] = values
     cluster_entropy[clustered] = means[position]
