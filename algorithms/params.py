@@ -35,6 +35,17 @@ MinBuildingArea = Annotated[
     Param("Minimum building area", "Area of the smallest building to be found.", unit="m²", low=0.1, high=10_000),
 ]
 
+MinClusterHeight = Annotated[
+    float,
+    Param(
+        "Minimum height",
+        "Only points at least this high above the ground are clustered, where heights are known.",
+        unit="m",
+        low=0,
+        high=100,
+    ),
+]
+
 IgnoredClasses = Annotated[
     str,
     Param(

@@ -12,6 +12,7 @@ from .preparation.noise_histogram import classify_noise_histogram
 from .preparation.noise_statistical import classify_noise_statistical
 from .quality.buildings import assess_buildings
 from .quality.ground import assess_ground
+from .segmentation.clusters import segment_clusters
 from .segmentation.regions import segment_regions
 from .segmentation.roofs import segment_roofs
 from .simulation.town import simulate_town
@@ -26,6 +27,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     compute_features,
     segment_regions,
     segment_roofs,
+    segment_clusters,
     classify_buildings,
     complete_buildings,
     extract_footprints,

@@ -27,6 +27,7 @@ STAGE_IDS = {
     "computefeatures",
     "segmentregions",
     "segmentroofs",
+    "segmentclusters",
     "classifybuildings",
     "completebuildings",
     "extractfootprints",

@@ -6,11 +6,11 @@ from typing import Annotated, Optional
 
 import numpy as np
 
-from ..cloud.asprs import NOISE, PointClass
 from ..cloud.density import point_density
 from ..features.noise import surface_noise
-from ..params import MinBuildingArea, PointDensity
+from ..params import MinBuildingArea, MinClusterHeight, PointDensity
 from ..stage import Param, stage
+from .candidates import candidates
 from .connectivity import connect, number_large
 
 # The paper takes T_Dh = 0.2 m and 0.3 m for scanners whose ranges are good to 2-3 cm.
@@ -53,16 +53,7 @@ def segment_regions(
         ),
     ] = None,
     min_area: MinBuildingArea = 4.0,
-    min_height: Annotated[
-        float,
-        Param(
-            "Minimum height",
-            "Only points at least this high above the ground are clustered, where heights are known.",
-            unit="m",
-            low=0,
-            high=100,
-        ),
-    ] = 0.0,
+    min_height: MinClusterHeight = 0.0,
     density: PointDensity = None,
     monitor=None,
 ):
@@ -104,7 +95,7 @@ def segment_regions(
     entropy and the k-means concept, section 2.3. Sampath, A., Shan, J., 2007. Building boundary tracing and
     regularization from airborne LiDAR point clouds. Photogrammetric Engineering and Remote Sensing 73 (7), 805-812.
     """
-    candidates = _candidates(classification, height_above_ground, min_height)
+    used = candidates(classification, height_above_ground, min_height)
     density = point_density(xyz) if density is None else density
     spacing = 1 / np.sqrt(density)
     plan_distance = 2 * spacing if plan_distance is None else plan_distance
@@ -112,18 +103,5 @@ def segment_regions(
     monitor.resolved(density=density, plan_distance=plan_distance, height_distance=height_distance)
 
     component = np.full(len(xyz), -1, np.int32)
-    component[candidates] = connect(xyz[candidates], plan_distance, height_distance, monitor)
+    component[used] = connect(xyz[used], plan_distance, height_distance, monitor)
     return number_large(component, min_area * density)
-
-
-def _candidates(classification: np.ndarray, height_above_ground: Optional[np.ndarray], min_height: float) -> np.ndarray:
-    """Return the indices of the points that may be in a cluster."""
-    left_out = (PointClass.GROUND, PointClass.WATER, PointClass.IGNORED_GROUND, *NOISE)
-    is_candidate = ~np.isin(classification, left_out)
-    if min_height > 0:
-        if height_above_ground is None:
-            raise ValueError(
-                "A minimum height needs HeightAboveGround; run 'Height above ground' first or set it to 0."
-            )
-        is_candidate &= height_above_ground >= min_height
-    return np.flatnonzero(is_candidate)

@@ -30,6 +30,7 @@ IDS = {
     "computefeatures",
     "computeheightaboveground",
     "extractfootprints",
+    "segmentclusters",
     "segmentregions",
     "segmentroofs",
     "simulatetown",

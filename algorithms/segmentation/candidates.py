@@ -1,0 +1,29 @@
+"""Points that segments and clusters are looked for among."""
+
+from __future__ import annotations
+
+from typing import Optional
+
+import numpy as np
+
+from ..cloud.asprs import NOISE, PointClass
+
+_LEFT_OUT = (PointClass.GROUND, PointClass.WATER, PointClass.IGNORED_GROUND, *NOISE)
+
+
+def candidates(classification: np.ndarray, height_above_ground: Optional[np.ndarray], min_height: float) -> np.ndarray:
+    """Return the indices of the points that are neither ground, water nor noise, and high enough.
+
+    Raises
+    ------
+    ValueError
+        If a minimum height is asked for and heights are missing.
+    """
+    is_candidate = ~np.isin(classification, _LEFT_OUT)
+    if min_height > 0:
+        if height_above_ground is None:
+            raise ValueError(
+                "A minimum height needs HeightAboveGround; run 'Height above ground' first or set it to 0."
+            )
+        is_candidate &= height_above_ground >= min_height
+    return np.flatnonzero(is_candidate)
