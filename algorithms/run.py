@@ -2,77 +2,99 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, Optional
+from typing import Any, Optional, Union
 
 import numpy as np
 
 from .cloud.cloud import Cloud, create_cloud
 from .cloud.dimensions import DIMENSIONS
-from .stage import REFERENCE_PREFIX, Features, Monitor, Report, Stage
+from .cloud.merging import merge_records
+from .stage import DIMENSION, REFERENCE_PREFIX, VALUES, Features, Made, Monitor, Report, Stage, Surface
 from .stages import STAGES
 
 
 @dataclass
 class Outcome:
-    """What a stage made: the cloud with its new dimensions, its layers by name, its report."""
+    """What a stage made: the cloud with its new dimensions, its layers and rasters by name, its report."""
 
     cloud: Optional[Cloud]
     layers: dict[str, Features] = field(default_factory=dict)
     report: Optional[Report] = None
+    rasters: dict[str, Surface] = field(default_factory=dict)
 
 
 def run_stage(
     stage: Stage,
-    cloud: Optional[Cloud] = None,
+    cloud: Union[Cloud, Sequence[Cloud], None] = None,
     reference: Optional[Cloud] = None,
     monitor: Optional[Monitor] = None,
+    sources: Optional[dict[str, Optional[Features]]] = None,
     **tunables: Any,
 ) -> Outcome:
     """Run ``stage`` and return what it made.
 
-    ``cloud`` is changed in place: the dimensions that the stage writes are stored
-    in it. Withheld points are not shown to the stage; in its result they keep
-    their classification and are undefined in everything else. Coordinates of layers come back in
-    metres relative to the cloud's origin, as the stage gave them.
+    ``cloud`` is several clouds for a stage that merges; they get the origin of the first.
+    A cloud is changed in place: the dimensions that the stage writes are stored in it. Withheld
+    points are not shown to the stage; in its result they keep their classification and are
+    undefined in everything else. A stage that selects or merges makes a new cloud instead, in
+    which withheld points are not. Coordinates of ``sources`` and of layers and rasters made are
+    metres relative to the cloud's origin.
 
     Raises
     ------
     ValueError
-        If a dimension is missing, a tunable is out of bounds, or the stage refuses its data.
+        If a dimension or layer is missing, a tunable is out of bounds, or the stage refuses its data.
     """
     arguments: dict[str, Any] = stage.check(tunables)
-    if cloud is not None and reference is not None:
+    clouds = [cloud] if isinstance(cloud, Cloud) else list(cloud or ())
+    for other in (*clouds[1:], *([reference] if reference is not None and clouds else [])):
         # Coordinates of two clouds can be compared only from one origin.
-        reference.origin = cloud.origin
-    used = None if cloud is None or not cloud.withheld.any() else ~cloud.withheld
-    if used is not None and not used.any():
-        raise ValueError(f"All {len(used)} points are marked as withheld, so none may be used; choose another cloud.")
-    made = stage.function(*_dimensions(stage, cloud, reference, used), **arguments, monitor=monitor or Monitor())
-    results = list(made) if isinstance(made, tuple) else [made]
-    if stage.creates:
-        cloud = create_cloud({name: results.pop(0) for name in stage.creates})
-    for name in stage.writes:
-        values = results.pop(0)
-        if values is not None and cloud is not None:
-            cloud.set(name, _whole(cloud, name, values, used))
-    layers = {layer.name: results.pop(0) for layer in stage.layers}
-    return Outcome(cloud, layers, results.pop(0) if stage.measures else None)
+        other.origin = clouds[0].origin
+    used = [_used(one) for one in clouds]
+    arrays = [_argument(stage, name, clouds, reference, used, arguments) for name in (*stage.reads, *stage.optional)]
+    layers = _layers(stage, sources or {})
+    made = stage.sorted(stage.function(*arrays, **layers, **arguments, monitor=monitor or Monitor()))
+    return Outcome(_result(stage, clouds, used, made), made.layers, made.report, made.rasters)
 
 
-def _dimensions(stage: Stage, cloud: Optional[Cloud], reference: Optional[Cloud], used: Optional[np.ndarray]) -> list:
-    """Return the arrays that the stage's positional arguments name; None where an optional one is absent."""
-    arrays: list[Optional[np.ndarray]] = []
-    for name in (*stage.reads, *stage.optional):
-        of_reference = name.startswith(REFERENCE_PREFIX)
-        source = reference if of_reference else cloud
-        dimension = name[len(REFERENCE_PREFIX) :] if of_reference else name
-        if source is None or (name in stage.optional and not source.has(dimension)):
-            arrays.append(None)
-            continue
-        values = _present(source, dimension)
-        arrays.append(values if of_reference or used is None else values[used])
-    return arrays
+def _used(cloud: Cloud) -> Optional[np.ndarray]:
+    """Return which points stages may see, None when it is all of them."""
+    withheld = cloud.withheld
+    if withheld.all():
+        raise ValueError(
+            f"All {len(withheld)} points are marked as withheld, so none may be used; choose another cloud."
+        )
+    return ~withheld if withheld.any() else None
+
+
+def _argument(
+    stage: Stage,
+    name: str,
+    clouds: list[Cloud],
+    reference: Optional[Cloud],
+    used: list[Optional[np.ndarray]],
+    tunables: dict[str, Any],
+) -> Any:
+    """Return the array that a positional argument names, or one per cloud; None where an optional one is absent."""
+    if name.startswith(REFERENCE_PREFIX):
+        dimension = name[len(REFERENCE_PREFIX) :]
+        if reference is None or (name in stage.optional and not reference.has(dimension)):
+            return None
+        return _present(reference, dimension)
+    if name == VALUES:
+        if name in stage.optional and not tunables[DIMENSION]:
+            return None
+        arrays = [cloud.named(tunables[DIMENSION]) for cloud in clouds]
+    elif name in stage.optional and not all(cloud.has(name) for cloud in clouds):
+        return None
+    else:
+        arrays = [_present(cloud, name) for cloud in clouds]
+    arrays = [array if points is None else array[points] for array, points in zip(arrays, used)]
+    if stage.merges:
+        return arrays
+    return arrays[0] if arrays else None
 
 
 def _present(cloud: Cloud, name: str) -> np.ndarray:
@@ -81,6 +103,42 @@ def _present(cloud: Cloud, name: str) -> np.ndarray:
     if writers and not cloud.has(name):
         raise ValueError(f"The cloud has no {DIMENSIONS[name].disk[0]} dimension; run '{writers[0]}' first.")
     return cloud.get(name)
+
+
+def _layers(stage: Stage, sources: dict[str, Optional[Features]]) -> dict[str, Optional[Features]]:
+    """Return a layer, or None, for each source of the stage."""
+    names = [source.name for source in stage.sources]
+    unknown = [name for name in sources if name not in names]
+    if unknown:
+        raise ValueError(f"{stage.name} reads no layer {unknown[0]!r}; it reads {', '.join(names) or 'none'}.")
+    return {name: sources.get(name) for name in names}
+
+
+def _result(stage: Stage, clouds: list[Cloud], used: list[Optional[np.ndarray]], made: Made) -> Optional[Cloud]:
+    """Return the cloud with what the stage made of it: the same one, or a new one."""
+    if stage.creates:
+        return create_cloud({name: values for name, values in made.dimensions.items() if values is not None})
+    if not clouds:
+        return None
+    if stage.merges:
+        seen = [cloud if points is None else cloud.take(np.flatnonzero(points)) for cloud, points in zip(clouds, used)]
+        cloud, points = merge_records(seen, made.dimensions.pop("xyz", None)), None
+    elif stage.selects:
+        cloud, points = _selected(stage, clouds[0], used[0], made.selected), None
+    else:
+        cloud, points = clouds[0], used[0]
+    for name, values in made.dimensions.items():
+        if values is not None:
+            cloud.set(name, _whole(cloud, name, values, points))
+    return cloud
+
+
+def _selected(stage: Stage, cloud: Cloud, used: Optional[np.ndarray], selected: Optional[np.ndarray]) -> Cloud:
+    """Return a cloud of the points that the stage chose of those that it saw."""
+    chosen = np.asarray(selected)
+    if not len(chosen):
+        raise ValueError(f"{stage.title} leaves none of the points; choose wider limits.")
+    return cloud.take(chosen if used is None else np.flatnonzero(used)[chosen])
 
 
 def _whole(cloud: Cloud, name: str, values: np.ndarray, used: Optional[np.ndarray]) -> np.ndarray:

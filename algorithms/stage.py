@@ -4,11 +4,22 @@ A stage is an ordinary function with a declaration beside it:
 
 * positional arguments name the dimensions it reads (``dimensions.py``); one
   with the default None is read only where the cloud has it, and the prefix
-  ``reference_`` means the second cloud of a comparison;
+  ``reference_`` means the second cloud of a comparison. ``values`` is the
+  dimension that the tunable ``dimension`` names, whichever the file has;
+* positional arguments after them are the vector layers that it reads, each
+  declared as a :class:`Source`; a stage that reads layers only has no cloud;
 * keyword-only arguments are tunables, each ``Annotated[type, Param(...)]``
   with its default; ``Optional`` types with the default None are *automatic*:
   the stage derives the value from the data and tells it to the monitor;
 * ``monitor`` (a :class:`Monitor`) hears how far the stage is.
+
+It returns values for the points it was given (``writes``), a new cloud
+(``creates``), vector layers (``layers``), rasters (``rasters``), numbers with a
+page (``measures``), or several of these. Two kinds make a cloud of other points:
+one that ``selects`` says first which points its result has, and in which order;
+one that ``merges`` reads several clouds, each argument a list with one array per
+cloud, and its result has the points of all. Both may write ``xyz``, and both
+leave withheld points out.
 
 Everything a user sees of a stage (dialog, tooltip, help, bounds, composite
 parameters) is derived from this declaration and written nowhere else. This
@@ -28,6 +39,8 @@ from typing import Any, Callable, Optional
 import numpy as np
 
 REFERENCE_PREFIX = "reference_"
+# The positional argument that is whichever dimension a tunable names, and that tunable.
+VALUES, DIMENSION = "values", "dimension"
 
 
 class Cancelled(Exception):
@@ -181,14 +194,33 @@ class Layer:
     style: str = ""
 
 
+@dataclass(frozen=True)
+class Source:
+    """A vector layer that a stage reads.
+
+    ``name`` is the positional argument and the input (``OLD_MAP``), ``geometry`` is one of
+    ``"Polygon"``, ``"LineString"`` and ``"Point"``. The stage is given :class:`Features` with
+    all attributes of the layer, or None where an ``optional`` one is not given. Parts of a
+    multipart geometry come one by one, each with the attributes of the whole.
+    """
+
+    name: str
+    title: str
+    geometry: str
+    help: str
+    optional: bool = False
+
+
 @dataclass
 class Features:
-    """The content of a :class:`Layer`: geometries and one column per field.
+    """The content of a :class:`Layer` or :class:`Source`: geometries and one column per field.
 
     ``geometries`` holds, per feature of a polygon layer, a list of rings (float64
     (m, 2) or (m, 3), metres, first the exterior counterclockwise, then the holes
     clockwise, closed: last vertex equals first); for lines one (m, 2 or 3) array; for points one (2 or 3,) array.
-    ``columns`` maps each field's name to a sequence of the same length.
+    Coordinates are relative to the cloud's origin, or, where a stage reads no cloud, to one that all its sources share.
+    ``columns`` maps each field's name to a sequence of the same length; those of a source are
+    arrays of int64 or float64 (NaN is NULL), or lists, with None for NULL.
     """
 
     geometries: list
@@ -196,6 +228,34 @@ class Features:
 
     def __len__(self) -> int:
         return len(self.geometries)
+
+
+@dataclass(frozen=True)
+class Raster:
+    """A raster that a stage makes.
+
+    ``name`` becomes the output's name (``DTM``), ``style`` is the stem of a file in
+    ``resources/styles``, ``unit`` that of the values.
+    """
+
+    name: str
+    title: str
+    style: str = ""
+    unit: str = ""
+
+
+@dataclass
+class Surface:
+    """The content of a :class:`Raster`.
+
+    ``values`` is float32 (rows, columns), the northernmost row first, NaN where there is nothing;
+    ``west`` and ``north`` are the outer edges (m, from the cloud's origin), ``cell_size`` the side of a cell (m).
+    """
+
+    values: np.ndarray
+    west: float
+    north: float
+    cell_size: float
 
 
 @dataclass(frozen=True)
@@ -217,6 +277,17 @@ class Report:
 
     values: dict[str, float]
     html: str
+
+
+@dataclass
+class Made:
+    """What a stage's function returned, each thing under its name; see :meth:`Stage.sorted`."""
+
+    selected: Optional[np.ndarray] = None
+    dimensions: dict[str, Optional[np.ndarray]] = field(default_factory=dict)
+    layers: dict[str, Features] = field(default_factory=dict)
+    rasters: dict[str, Surface] = field(default_factory=dict)
+    report: Optional[Report] = None
 
 
 class Monitor:
@@ -277,12 +348,16 @@ class Stage:
     tags: str
     reads: tuple[str, ...]
     optional: tuple[str, ...]
-    writes: tuple[str, ...]
-    creates: tuple[str, ...]
-    layers: tuple[Layer, ...]
-    measures: tuple[Measure, ...]
     tunables: dict[str, Tunable] = field(repr=False)
     doc: str = field(repr=False)
+    writes: tuple[str, ...] = ()
+    creates: tuple[str, ...] = ()
+    layers: tuple[Layer, ...] = ()
+    measures: tuple[Measure, ...] = ()
+    sources: tuple[Source, ...] = ()
+    rasters: tuple[Raster, ...] = ()
+    selects: bool = False
+    merges: bool = False
 
     @property
     def name(self) -> str:
@@ -310,6 +385,16 @@ class Stage:
         return _sections(self.doc).get(title, "")
 
     @property
+    def reads_cloud(self) -> bool:
+        """Whether it works on a cloud, or on several."""
+        return any(not name.startswith(REFERENCE_PREFIX) for name in (*self.reads, *self.optional))
+
+    @property
+    def makes_cloud(self) -> bool:
+        """Whether a cloud is among its results."""
+        return bool(self.writes or self.creates or self.selects or self.merges)
+
+    @property
     def reads_reference(self) -> bool:
         """Whether a second cloud is compared with."""
         return any(name.startswith(REFERENCE_PREFIX) for name in (*self.reads, *self.optional))
@@ -321,6 +406,17 @@ class Stage:
             raise ValueError(f"{self.name} has no tunable {unknown[0]!r}; it has {', '.join(self.tunables) or 'none'}.")
         return {name: t.check(tunables[name]) if name in tunables else t.default for name, t in self.tunables.items()}
 
+    def sorted(self, returned: Any) -> Made:
+        """Give what the function returned its names."""
+        results = list(returned) if isinstance(returned, tuple) else [returned]
+        return Made(
+            selected=results.pop(0) if self.selects else None,
+            dimensions={name: results.pop(0) for name in self.creates or self.writes},
+            layers={layer.name: results.pop(0) for layer in self.layers},
+            rasters={raster.name: results.pop(0) for raster in self.rasters},
+            report=results.pop(0) if self.measures else None,
+        )
+
 
 def stage(
     title: str,
@@ -331,24 +427,43 @@ def stage(
     creates: tuple[str, ...] = (),
     layers: tuple[Layer, ...] = (),
     measures: tuple[Measure, ...] = (),
+    sources: tuple[Source, ...] = (),
+    rasters: tuple[Raster, ...] = (),
+    selects: bool = False,
+    merges: bool = False,
 ) -> Callable[[Callable], Callable]:
     """Declare a function as a stage.
 
     The function returns, in this order and bare when there is one thing only:
-    one array per name in ``writes`` (length n; None for one that the user did not
-    ask for) or ``creates`` (a new cloud of any length), one :class:`Features` per
-    layer, and a :class:`Report` when there are measures. The decorated function
-    checks its arrays and tunables on every call and carries its :class:`Stage` as ``function.stage``.
+    with ``selects`` the positions of the points that its result has, int64 (m,);
+    one array per name in ``writes`` (length n, with ``selects`` m, with ``merges`` that of all
+    clouds together; None for one that the user did not ask for) or ``creates`` (a new
+    cloud of any length), one :class:`Features` per layer, one :class:`Surface` per raster,
+    and a :class:`Report` when there are measures. A stage that merges and writes nothing
+    returns None for the cloud that it makes. The decorated function checks its arrays
+    and tunables on every call and carries its :class:`Stage` as ``function.stage``.
     """
+    makes = {
+        "writes": writes,
+        "creates": creates,
+        "layers": layers,
+        "measures": measures,
+        "sources": sources,
+        "rasters": rasters,
+        "selects": selects,
+        "merges": merges,
+    }
 
     def declare(function: Callable) -> Callable:
-        declared = _declared(function, title, group, tags, writes, creates, layers, measures)
+        declared = _declared(function, title, group, tags, makes)
+        _check_declaration(declared)
         signature = inspect.signature(function)
 
         @functools.wraps(function)
         def checked(*args: Any, **kwargs: Any) -> Any:
             bound = signature.bind(*args, **kwargs)
             _check_arrays(bound.arguments, declared)
+            _check_sources(bound.arguments, declared)
             for name, tunable in declared.tunables.items():
                 if name in bound.arguments:
                     bound.arguments[name] = tunable.check(bound.arguments[name])
@@ -363,21 +478,38 @@ def stage(
     return declare
 
 
-def _declared(function: Callable, title, group, tags, writes, creates, layers, measures) -> Stage:
+def _declared(function: Callable, title: str, group: str, tags: str, makes: dict[str, Any]) -> Stage:
     hints = typing.get_type_hints(function, include_extras=True)
-    reads, optional, tunables = [], [], {}
+    reads: list[str] = []
+    optional: list[str] = []
+    tunables = {}
+    layers = {source.name for source in makes["sources"]}
     for name, parameter in inspect.signature(function).parameters.items():
         if parameter.kind is parameter.KEYWORD_ONLY:
             if name != "monitor":
                 tunables[name] = _tunable(name, hints[name], parameter.default)
-        elif parameter.default is parameter.empty:
-            reads.append(name)
-        else:
-            optional.append(name)
+        elif name not in layers:
+            (reads if parameter.default is parameter.empty else optional).append(name)
     doc = inspect.cleandoc(function.__doc__ or "")
-    return Stage(
-        function, title, group, tags, tuple(reads), tuple(optional), writes, creates, layers, measures, tunables, doc
-    )
+    return Stage(function, title, group, tags, tuple(reads), tuple(optional), tunables, doc, **makes)
+
+
+def _check_declaration(declared: Stage) -> None:
+    """Refuse what no run could keep to."""
+    arguments = inspect.signature(declared.function).parameters
+    absent = [source.name for source in declared.sources if source.name not in arguments]
+    if absent:
+        raise TypeError(f"{declared.name} declares the source {absent[0]!r} and has no argument of that name.")
+    if declared.creates and (declared.reads or declared.optional or declared.sources):
+        raise TypeError(f"{declared.name} creates a cloud, so it can't read anything.")
+    if (declared.selects or declared.merges) and not declared.reads:
+        raise TypeError(f"{declared.name} makes a cloud of the points it reads, so it must read some.")
+    if declared.selects and declared.merges:
+        raise TypeError(f"{declared.name} selects and merges; make it two stages.")
+    if "xyz" in declared.writes and not (declared.selects or declared.merges):
+        raise TypeError(f"{declared.name} moves points, so it must select them: withheld points would stay behind.")
+    if VALUES in (*declared.reads, *declared.optional) and DIMENSION not in declared.tunables:
+        raise TypeError(f"{declared.name} reads {VALUES!r} and has no tunable {DIMENSION!r} that names them.")
 
 
 def _tunable(name: str, hint: Any, default: Any) -> Tunable:
@@ -393,15 +525,36 @@ def _check_arrays(arguments: dict[str, Any], declared: Stage) -> None:
     for name in (*declared.reads, *declared.optional):
         if arguments.get(name) is None:
             continue
-        array = arguments[name] = np.asarray(arguments[name])
-        if name.endswith("xyz"):
-            _check_coordinates(name, array)
-        cloud = "reference" if name.startswith(REFERENCE_PREFIX) else "input"
-        first, length = lengths.setdefault(cloud, (name, len(array)))
-        if len(array) != length:
-            raise ValueError(f"{name} has {len(array)} values, {first} has {length}; they must be of the same points.")
-        if length == 0:
-            raise ValueError(f"The {'reference' if cloud == 'reference' else 'point'} cloud has no points.")
+        if declared.merges:
+            arrays = arguments[name] = [np.asarray(array) for array in arguments[name]]
+            if len(arrays) < 2:
+                raise ValueError(f"{declared.title} needs at least two point clouds, got {len(arrays)}; add another.")
+        else:
+            arrays = [np.asarray(arguments[name])]
+            arguments[name] = arrays[0]
+        clouds = ["reference cloud"] if name.startswith(REFERENCE_PREFIX) else _clouds(declared, len(arrays))
+        for cloud, array in zip(clouds, arrays):
+            _check_array(name, array, cloud, lengths)
+
+
+def _clouds(declared: Stage, n: int) -> list[str]:
+    return [f"point cloud {i}" for i in range(1, n + 1)] if declared.merges else ["point cloud"]
+
+
+def _check_array(name: str, array: np.ndarray, cloud: str, lengths: dict[str, tuple[str, int]]) -> None:
+    if name.endswith("xyz"):
+        _check_coordinates(name, array)
+    first, length = lengths.setdefault(cloud, (name, len(array)))
+    if len(array) != length:
+        raise ValueError(f"{name} has {len(array)} values, {first} has {length}; they must be of the same points.")
+    if length == 0:
+        raise ValueError(f"The {cloud} has no points.")
+
+
+def _check_sources(arguments: dict[str, Any], declared: Stage) -> None:
+    for source in declared.sources:
+        if arguments.get(source.name) is None and not source.optional:
+            raise ValueError(f"{source.title} ({source.name}) is missing; choose a layer.")
 
 
 def _check_coordinates(name: str, array: np.ndarray) -> None:

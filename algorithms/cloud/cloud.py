@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import BinaryIO, Optional, Union, cast
+from typing import BinaryIO, Callable, Optional, Union, cast
 
 import numpy as np
 
@@ -43,7 +44,8 @@ class Cloud:
     header : Header
         Of the file, or as made for a new cloud.
     points : structured array, (n,)
-        The records, laid out as ``header.layout``; never changed.
+        The records, laid out as ``header.layout``. The array is never changed; moving
+        points puts another in its place.
     units : Units
         Metres per unit of the file's coordinates.
     wkt : str
@@ -137,7 +139,7 @@ class Cloud:
         Parameters
         ----------
         name : str
-            Any of ``dimensions.py`` but ``xyz``.
+            Any of ``dimensions.py``. ``xyz``, metres from ``origin``, is rounded to the scale of the file.
         values : array, (n,) or (n, 3)
             In metres where it has a unit. Kept, not copied, where the dtype fits.
 
@@ -147,15 +149,109 @@ class Cloud:
             If the shape or a value does not fit, or the point format lacks the standard field.
         """
         dimension = _dimension(name)
-        if name == "xyz" or (dimension.standard and name not in self.header.layout.names):
+        fitting = _fitting(dimension, np.asarray(values), len(self))
+        if name == "xyz":
+            self.points = self._moved(fitting)
+            return
+        if dimension.standard and name not in self.header.layout.names:
             raise ValueError(f"{dimension.disk[0]} can't be set in point format {self.header.layout.point_format}.")
-        self._changes[name] = _fitting(dimension, np.asarray(values), len(self))
+        self._changes[name] = fitting
+
+    def _moved(self, xyz: np.ndarray) -> np.ndarray:
+        """Return the records with other coordinates (m, from ``origin``), in steps of the file's scale."""
+        points = self.points.copy()
+        step = self.header.scale * self._factors
+        for i, axis in enumerate("XYZ"):
+            steps = np.rint((xyz[:, i] + (self.origin[i] - self.header.offset[i] * self._factors[i])) / step[i])
+            if not np.abs(steps).max() <= _LARGEST_INT:
+                raise ValueError(
+                    f"Points are moved too far for the file, which reaches {_LARGEST_INT * abs(step[i]):.0f} m from "
+                    f"its offset in {axis} at a scale of {abs(step[i]):g} m; check the coordinates."
+                )
+            points[axis] = steps
+        return points
+
+    def take(self, index: np.ndarray) -> Cloud:
+        """Return a cloud of the points at ``index``, int (m,), m >= 1, in that order, with all their dimensions.
+
+        Header, units, CRS, origin and sources are those of this cloud, which is not changed.
+        """
+        taken = Cloud(replace(self.header, count=len(index)), self.points[index], self.units, self.sources)
+        taken.wkt, taken.origin = self.wkt, self.origin
+        taken._changes = {name: values[index] for name, values in self._changes.items()}
+        return taken
+
+    def copy(self) -> Cloud:
+        """Return a cloud of the same points that can be changed apart from this one; arrays are shared."""
+        copy = Cloud.__new__(Cloud)
+        copy.__dict__.update(self.__dict__)
+        copy._changes = dict(self._changes)
+        return copy
+
+    def named(self, name: str) -> np.ndarray:
+        """Return any dimension that the cloud has, (n,), by the name that people know it by.
+
+        Parameters
+        ----------
+        name : str
+            On disk (``HeightAboveGround``, ``NormalX``, or what only this file has) or in
+            Python (``height_above_ground``, ``user_data``), in upper or lower case.
+
+        Returns
+        -------
+        array, (n,)
+            As from :meth:`get`; but X and Y are not relative to ``origin``.
+
+        Raises
+        ------
+        ValueError
+            If there is none of that name; says which there are.
+        """
+        known = self._known()
+        wanted = name.strip().lower()
+        if wanted in known:
+            return known[wanted][1]()
+        names = dict.fromkeys(shown for shown, _ in known.values())
+        raise ValueError(f"The cloud has no dimension {name!r}; it has {', '.join(names)}.")
+
+    def _known(self) -> dict[str, tuple[str, Callable[[], np.ndarray]]]:
+        """Return for every name of a dimension, in lower case, how it is shown and what gives its values."""
+        layout = self.header.layout
+        known: dict[str, tuple[str, Callable[[], np.ndarray]]] = {}
+        for dimension in (one for one in DIMENSIONS.values() if self.has(one.name)):
+            for i, disk in enumerate(dimension.disk):
+                known[disk.lower()] = disk, partial(self._component, dimension, i)
+            for alias in (dimension.name, *dimension.aliases) if len(dimension.disk) == 1 else ():
+                known[alias.lower()] = known[dimension.disk[0].lower()]
+        for at, extra in enumerate(layout.extras):
+            if extra.is_scalar and extra.name:
+                known.setdefault(extra.name.lower(), (extra.name, partial(self._decoded, at)))
+        for name in layout.names:
+            disk = "".join(word.capitalize() for word in name.split("_"))
+            value = known.get(name.lower()) or (disk, partial(layout.get, self.points, name))
+            known.setdefault(name.lower(), value)
+            known.setdefault(disk.lower(), value)
+        return known
+
+    def _component(self, dimension: Dimension, i: int) -> np.ndarray:
+        values = self.get(dimension.name)
+        values = values if values.ndim == 1 else values[:, i]
+        return values + self.origin[i] if dimension.name == "xyz" else values
+
+    def _decoded(self, extra: int) -> np.ndarray:
+        return self.header.layout.extras[extra].decode(self.points[f"extra{extra}"])
 
     def to_map(self, coordinates: np.ndarray) -> np.ndarray:
         """Return local metres (m, 2 or 3) as float64 coordinates of the file, in its CRS and units."""
         local = np.asarray(coordinates, float)
         axes = local.shape[-1]
         return (local + self.origin[:axes]) / self._factors[:axes]
+
+    def from_map(self, coordinates: np.ndarray) -> np.ndarray:
+        """Return coordinates (m, 2 or 3) of the file's CRS as float64 local metres; the inverse of :meth:`to_map`."""
+        there = np.asarray(coordinates, float)
+        axes = there.shape[-1]
+        return there * self._factors[:axes] - self.origin[:axes]
 
     def records(self, for_copc: bool = False) -> Records:
         """Return what makes the output's records."""

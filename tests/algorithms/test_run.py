@@ -9,7 +9,19 @@ import pytest
 
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.run import run_stage
-from lidar_buildings.algorithms.stage import Features, Field, Layer, Measure, Monitor, Param, Report, stage
+from lidar_buildings.algorithms.stage import (
+    Features,
+    Field,
+    Layer,
+    Measure,
+    Monitor,
+    Param,
+    Raster,
+    Report,
+    Source,
+    Surface,
+    stage,
+)
 from lidar_buildings.algorithms.stages import STAGES
 
 
@@ -60,6 +72,58 @@ def assess_toy(xyz, classification, reference_xyz, reference_classification, *, 
     """Measure how far two clouds are apart."""
     same = np.array_equal(classification, reference_classification)
     return Report({"distance": float(np.abs(xyz - reference_xyz).max()), "same": same}, "")
+
+
+@stage("Keep toy", group="Toys", writes=("xyz", "cluster_id"), selects=True)
+def filter_toy(
+    xyz,
+    values=None,
+    *,
+    dimension: Annotated[str, Param("Dimension", "What is looked at.")] = "",
+    low: Annotated[float, Param("Low", "Lower values go.", low=-1e9)] = 2.0,
+    step: Annotated[float, Param("Step", "Moved east.", unit="m", low=0)] = 0.0,
+    monitor=None,
+):
+    """Keep what is high, the last point first, and move it east."""
+    kept = np.flatnonzero((xyz[:, 2] if values is None else values) >= low)[::-1]
+    return kept, xyz[kept] + [step, 0, 0], np.arange(1, len(kept) + 1)
+
+
+@stage("Merge toy", group="Toys", writes=("xyz", "point_source_id"), merges=True)
+def merge_toy(
+    xyz,
+    classification,
+    cluster_id=None,
+    *,
+    lift: Annotated[float, Param("Lift", "How far later clouds are lifted.", unit="m", low=0)] = 0.0,
+    monitor=None,
+):
+    """Put clouds together, each higher than the one before."""
+    monitor.resolved(sizes=[len(one) for one in xyz], has_ids=cluster_id is not None, classes=len(classification))
+    moved = [one + [0, 0, lift * i] for i, one in enumerate(xyz)]
+    return np.concatenate(moved) if lift else None, np.repeat(np.arange(1, len(xyz) + 1), [len(one) for one in xyz])
+
+
+@stage(
+    "Toy raster",
+    group="Toys",
+    sources=(Source("area", "Area", "Polygon", "Where."), Source("spots", "Spots", "Point", "What.", optional=True)),
+    rasters=(Raster("low", "Lowest"), Raster("high", "Highest")),
+    measures=(Measure("spots", "Spots"),),
+)
+def rasterize_toy(xyz, intensity=None, area=None, spots=None, *, monitor=None):
+    """Say how low and how high the points are."""
+    lowest, highest = (np.full((1, 2), height, np.float32) for height in (xyz[:, 2].min(), xyz[:, 2].max()))
+    report = Report({"spots": -1 if spots is None else len(spots), "areas": len(area)}, "")
+    return Surface(lowest, 0.0, 1.0, 1.0), Surface(highest, 0.0, 1.0, 1.0), report
+
+
+@stage(
+    "Toy map", group="Toys", sources=(Source("old", "Old map", "Polygon", "Before."),), measures=(Measure("n", "N"),)
+)
+def compare_toy(old, *, monitor=None):
+    """Count polygons."""
+    return Report({"n": len(old)}, "")
 
 
 @pytest.fixture
@@ -205,3 +269,175 @@ def test_a_failing_stage_changes_nothing(cloud):
     with pytest.raises(ValueError, match="one line"):
         run_stage(STAGES["classify_ground_tin"], cloud)
     assert cloud.get("classification").tolist() == before
+
+
+# --- a selection ------------------------------------------------------------------------------------------------------
+
+
+def test_a_selection_is_a_new_cloud_with_everything_of_the_points_kept(cloud):
+    cloud.set("intensity", np.arange(10, 15))
+    cloud.set("entropy", np.arange(5) / 10)
+    outcome = run_stage(filter_toy.stage, cloud)
+    assert len(cloud) == 5
+    kept = outcome.cloud
+    assert kept.get("intensity").tolist() == [14, 13, 12]
+    assert kept.get("classification").tolist() == [1, 1, 5]
+    assert kept.get("cluster_id").tolist() == [1, 2, 3]
+    np.testing.assert_array_equal(kept.get("entropy"), np.float32([0.4, 0.3, 0.2]))
+    np.testing.assert_allclose(kept.to_map(kept.get("xyz")), 600_004 - np.arange(3)[:, None] + [0, 4.4e6, -6e5])
+    np.testing.assert_array_equal(kept.origin, cloud.origin)
+    assert kept.header.count == 3
+
+
+def test_kept_points_may_be_moved_and_the_cloud_they_come_from_is_not(cloud):
+    before = cloud.get("xyz").copy()
+    moved = run_stage(filter_toy.stage, cloud, step=0.25).cloud
+    np.testing.assert_allclose(moved.get("xyz"), before[[4, 3, 2]] + [0.25, 0, 0], atol=1e-6)
+    np.testing.assert_array_equal(cloud.get("xyz"), before)
+
+
+def test_withheld_points_are_left_out_of_a_selection(cloud):
+    cloud.set("intensity", np.arange(10, 15))
+    withhold(cloud, 0, 3)
+    kept = run_stage(filter_toy.stage, cloud).cloud
+    assert kept.get("intensity").tolist() == [14, 12]
+    assert not kept.withheld.any()
+
+
+def test_a_selection_of_nothing_is_refused(cloud):
+    with pytest.raises(ValueError, match=r"^Keep toy leaves none of the points; choose wider limits\.$"):
+        run_stage(filter_toy.stage, cloud, low=99.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "low", "kept"),
+    [
+        ("Classification", 5, [12]),
+        ("classification", 5, [12]),
+        ("HEIGHTABOVEGROUND", 3, [14, 13]),
+        ("height_above_ground", 3, [14, 13]),
+        ("X", 600_003, [14, 13]),
+        ("z", 4, [14]),
+        ("NormalZ", 0.5, [14, 13, 12, 11, 10]),
+        ("UserData", 7, [11]),
+        ("user_data", 7, [11]),
+    ],
+)
+def test_values_are_those_of_the_dimension_that_is_named(cloud, name, low, kept):
+    cloud.set("intensity", np.arange(10, 15))
+    cloud.set("height_above_ground", np.arange(5, dtype="f4"))
+    cloud.set("normal", np.tile([0, 0, 1.0], (5, 1)))
+    cloud.points["user_data"][1] = 7
+    assert run_stage(filter_toy.stage, cloud, dimension=name, low=low).cloud.get("intensity").tolist() == kept
+
+
+def test_an_unknown_dimension_names_those_there_are(cloud):
+    cloud.set("entropy", np.zeros(5))
+    with pytest.raises(ValueError, match=r"^The cloud has no dimension 'Hight'; it has X, Y, Z, .*Entropy.*UserData"):
+        run_stage(filter_toy.stage, cloud, dimension="Hight")
+
+
+# --- several clouds ---------------------------------------------------------------------------------------------------
+
+
+def parted(cloud):
+    return cloud.take(np.array([0, 1])), cloud.take(np.array([2, 3, 4]))
+
+
+def test_clouds_are_merged_one_after_the_other(cloud):
+    monitor = Monitor()
+    clouds = parted(cloud)
+    merged = run_stage(merge_toy.stage, clouds, monitor=monitor).cloud
+    assert monitor.values == {"sizes": [2, 3], "has_ids": False, "classes": 2}
+    np.testing.assert_array_equal(merged.get("xyz"), cloud.get("xyz"))
+    assert merged.get("classification").tolist() == [1, 1, 5, 1, 1]
+    assert merged.get("point_source_id").tolist() == [1, 1, 2, 2, 2]
+    assert [len(one) for one in clouds] == [2, 3]
+
+
+def test_merged_clouds_share_one_origin_and_may_be_moved(cloud):
+    first, second = parted(cloud)
+    second.origin = np.array([599_000.0, 0.0, 0.0])
+    merged = run_stage(merge_toy.stage, [first, second], lift=2.0).cloud
+    wanted = cloud.to_map(cloud.get("xyz")) + np.array([0, 0, 2, 2, 2])[:, None] * [0, 0, 1]
+    np.testing.assert_allclose(merged.to_map(merged.get("xyz")), wanted, atol=1e-6)
+    np.testing.assert_array_equal(merged.origin, first.origin)
+
+
+def test_withheld_points_are_left_out_of_merged_clouds(cloud):
+    first, second = parted(cloud)
+    withhold(second, 1)
+    merged = run_stage(merge_toy.stage, [first, second], lift=1.0).cloud
+    assert merged.get("point_source_id").tolist() == [1, 1, 2, 2]
+    assert merged.get("classification").tolist() == [1, 1, 5, 1]
+
+
+def test_an_optional_dimension_is_merged_where_all_clouds_have_it(cloud):
+    cloud.set("cluster_id", np.arange(5))
+    monitor = Monitor()
+    merged = run_stage(merge_toy.stage, parted(cloud), monitor=monitor).cloud
+    assert monitor.values["has_ids"]
+    assert merged.get("cluster_id").tolist() == [0, 1, 2, 3, 4]
+
+
+def test_one_cloud_can_not_be_merged(cloud):
+    with pytest.raises(ValueError, match=r"^Merge toy needs at least two point clouds, got 1; add another\.$"):
+        run_stage(merge_toy.stage, [cloud])
+
+
+def test_an_empty_cloud_is_told_by_its_number():
+    xyz, classes = np.zeros((2, 3)), np.zeros(2)
+    with pytest.raises(ValueError, match=r"^The point cloud 2 has no points\.$"):
+        merge_toy([xyz, xyz[:0]], [classes, classes[:0]])
+
+
+# --- layers that are read, rasters ------------------------------------------------------------------------------------
+
+SQUARE = Features([[np.array([[0, 0], [1, 0], [1, 1], [0, 0]], float)]], {"id": [1]})
+
+
+def test_layers_reach_the_stage_and_rasters_come_back_by_name(cloud):
+    outcome = run_stage(rasterize_toy.stage, cloud, sources={"area": SQUARE})
+    assert outcome.report.values == {"spots": -1, "areas": 1}
+    assert list(outcome.rasters) == ["low", "high"]
+    assert outcome.rasters["low"].values.tolist() == [[0, 0]]
+    assert outcome.rasters["high"].values.tolist() == [[4, 4]]
+    spots = Features([np.zeros(2)] * 3, {})
+    report = run_stage(rasterize_toy.stage, cloud, sources={"area": SQUARE, "spots": spots}).report
+    assert report.values["spots"] == 3
+
+
+def test_a_missing_or_unknown_layer_is_told(cloud):
+    with pytest.raises(ValueError, match=r"^Area \(area\) is missing; choose a layer\.$"):
+        run_stage(rasterize_toy.stage, cloud, sources={"spots": SQUARE})
+    with pytest.raises(ValueError, match=r"^rasterize_toy reads no layer 'hole'; it reads area, spots\.$"):
+        run_stage(rasterize_toy.stage, cloud, sources={"area": SQUARE, "hole": SQUARE})
+
+
+def test_a_stage_of_layers_needs_no_cloud():
+    assert not compare_toy.stage.reads_cloud
+    outcome = run_stage(compare_toy.stage, sources={"old": SQUARE})
+    assert outcome.cloud is None
+    assert outcome.report.values == {"n": 1}
+
+
+# --- declarations that no run could keep to ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("declared", "sentence"),
+    [
+        ({"sources": (Source("map", "Map", "Point", ""),)}, "has no argument of that name"),
+        ({"creates": ("xyz",)}, "can't read anything"),
+        ({"selects": True, "merges": True}, "make it two stages"),
+        ({"writes": ("xyz",)}, "it must select them"),
+    ],
+)
+def test_what_can_not_be_kept_is_refused_when_it_is_declared(declared, sentence):
+    with pytest.raises(TypeError, match=sentence):
+        stage("Toy", group="Toys", **declared)(lambda xyz, monitor=None: None)
+
+
+def test_values_need_the_tunable_that_names_them():
+    with pytest.raises(TypeError, match="has no tunable 'dimension'"):
+        stage("Toy", group="Toys", selects=True)(lambda xyz, values: None)

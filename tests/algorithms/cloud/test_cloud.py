@@ -183,7 +183,7 @@ def test_absent_dimension_is_named(make_las):
         ("classification", np.full(100, 256), "must be from 0 to 255, got 256"),
         ("classification", np.full(100, -1), "must be from 0 to 255, got -1"),
         ("cluster_id", np.full(100, np.nan), "must be from"),
-        ("xyz", np.zeros((100, 3)), "can't be set"),
+        ("xyz", np.zeros((100, 2)), "must have the shape"),
         ("red", np.zeros(100), "Red can't be set in point format 6"),
     ],
 )
@@ -239,3 +239,82 @@ def test_progress_is_told_in_order(make_las, tmp_path, monkeypatch, name):
         assert len(heard.fractions) > 10
         assert heard.fractions == sorted(heard.fractions)
         assert heard.fractions[-1] == 1
+
+
+# --- other points, other places ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["a.las", "a.laz", "a.copc.laz"])
+def test_points_taken_are_written_with_all_that_they_have(town, tmp_path, name):
+    town["intensity"] = np.arange(500, dtype="u2")
+    write_cloud(create_cloud(town, IN_FEET), tmp_path / "whole.las")
+    whole = read_cloud(tmp_path / "whole.las")
+    whole.set("entropy", np.arange(500) / 500)
+    index = np.array([400, 3, 77, 3])
+    part = whole.take(index)
+    np.testing.assert_array_equal(part.get("xyz"), whole.get("xyz")[index])
+    write_cloud(part, tmp_path / name)
+    back = read_cloud(tmp_path / name)
+    order = np.argsort(back.get("intensity"), kind="stable")
+    assert back.get("intensity")[order].tolist() == [3, 3, 77, 400]
+    assert back.wkt == IN_FEET
+    for dimension in ("classification", "gps_time", "cluster_id", "normal", "entropy"):
+        np.testing.assert_array_equal(back.get(dimension)[order], whole.get(dimension)[[3, 3, 77, 400]])
+
+
+def test_moved_points_are_rounded_to_the_scale_of_the_file(make_las):
+    records = random_records(1, 28, 50)
+    path = make_las(records=records, point_format=1, vlrs=(wkt_vlr(IN_FEET),))
+    cloud = read_cloud(path)
+    before, read = cloud.get("xyz"), cloud.points
+    cloud.set("xyz", before + [12.3456, -7.0, 100.0])
+    # The made file has steps of 0.01 and, in z, 0.001 survey feet.
+    np.testing.assert_allclose(cloud.get("xyz"), before + [12.3456, -7.0, 100.0], atol=0.0051 * SURVEY_FOOT)
+    assert np.abs(cloud.get("xyz")[:, 2] - before[:, 2] - 100).max() <= 0.00051 * SURVEY_FOOT
+    np.testing.assert_array_equal(read_cloud(path).points, read)
+    assert cloud.points is not read
+
+
+@pytest.mark.parametrize("far", [3e6, np.nan])
+def test_points_moved_out_of_the_file_are_refused(town, far):
+    cloud = create_cloud(town)
+    before = cloud.points
+    xyz = cloud.get("xyz")
+    xyz[3, 1] += far
+    with pytest.raises(ValueError, match=r"^Points are moved too far for the file, which reaches 2147484 m .* in Y "):
+        cloud.set("xyz", xyz)
+    assert cloud.points is before
+
+
+def test_a_copy_is_changed_apart(town):
+    cloud = create_cloud(town)
+    copy = cloud.copy()
+    copy.set("classification", np.full(500, 9))
+    copy.set("xyz", cloud.get("xyz") + 1)
+    np.testing.assert_array_equal(cloud.get("classification"), town["classification"])
+    np.testing.assert_allclose(cloud.get("xyz"), town["xyz"], atol=0.000_501)
+
+
+def test_from_map_is_the_inverse_of_to_map(make_las):
+    cloud = read_cloud(make_las(vlrs=(wkt_vlr(HEIGHT_IN_FEET),)))
+    xyz = cloud.get("xyz")
+    np.testing.assert_allclose(cloud.from_map(cloud.to_map(xyz)), xyz, atol=1e-6)
+    np.testing.assert_allclose(cloud.from_map(cloud.to_map(xyz)[:, :2]), xyz[:, :2], atol=1e-6)
+
+
+def test_any_dimension_goes_by_the_name_it_has_in_the_file(make_las):
+    extras = vlr(
+        "LASF_Spec", 4, descriptor("Amplitude [dB]", 3, options=8, scale=0.01) + descriptor("height above ground", 9)
+    )
+    records = random_records(7, 36 + 6, 20)
+    records[:, 36:38] = np.arange(100, 120, dtype="<u2").view("u1").reshape(-1, 2)
+    records[:, 38:42] = np.arange(20, dtype="<f4").view("u1").reshape(-1, 4)
+    cloud = read_cloud(make_las(records=records, point_format=7, extra=6, vlrs=(extras,)))
+    np.testing.assert_allclose(cloud.named("amplitude [db]"), np.arange(100, 120) / 100)
+    np.testing.assert_array_equal(cloud.named("HeightAboveGround"), np.arange(20))
+    np.testing.assert_array_equal(cloud.named("height above ground"), np.arange(20))
+    np.testing.assert_array_equal(cloud.named(" Red "), cloud.get("red"))
+    np.testing.assert_array_equal(cloud.named("ScannerChannel"), cloud.points["flag_byte"] >> 4 & 3)
+    np.testing.assert_allclose(cloud.named("x"), cloud.points["X"] * 0.01 + 600_000)
+    with pytest.raises(ValueError, match=r"no dimension 'Nir'; it has X, Y, Z, .*Amplitude \[dB\]"):
+        cloud.named("Nir")
