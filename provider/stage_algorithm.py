@@ -124,9 +124,11 @@ class StageAlgorithm(QgsProcessingAlgorithm):
             title = cloud_title(self.stage.creates, self.stage.writes)
             cloud = QgsProcessingParameterPointCloudDestination(OUTPUT, title)
             self.addParameter(_helped(cloud, "A .las, .laz or .copc.laz file."))
+        # Who wants the cloud or the numbers may do without the layers.
+        optional = bool(self._makes_cloud or self.stage.measures)
         for layer in self.stage.layers:
             sink = QgsProcessingParameterFeatureSink(
-                layer.name.upper(), layer.title, SOURCE_TYPES[layer.geometry], optional=self._makes_cloud
+                layer.name.upper(), layer.title, SOURCE_TYPES[layer.geometry], optional=optional
             )
             self.addParameter(_helped(sink, "A GeoPackage or any other vector format that QGIS writes."))
         if self.stage.measures:

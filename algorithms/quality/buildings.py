@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..cloud.cells import Grid, connected_cells, find_cells, grid_over
 from ..params import AssessmentCellSize, IgnoredClasses, MinBuildingArea
-from ..stage import Measure, Report, stage
+from ..stage import Features, Field, Layer, Measure, Report, stage
+from .cell_outlines import outline_cells
 from .matching import compared_points, parse_classes
 from .page import Row, build_page, draw_map, outcome_of, percent
 
@@ -25,9 +28,33 @@ _MEASURES = (
     *(Measure(f"cells_{name}", f"Cells: {title}", unit) for name, title, unit in _RATES),
     Measure("objects_completeness", "Objects: completeness", "%"),
     Measure("objects_correctness", "Objects: correctness", "%"),
+    Measure("objects_f", "Objects: F-score", "%"),
+    Measure("objects_misses", "Objects: missed"),
+    Measure("objects_false", "Objects: falsely called building"),
     Measure("objects_true", "Objects in the reference"),
     Measure("objects_predicted", "Objects in the input"),
     Measure("cell_size", "Cell size", "m"),
+)
+
+# What an object of the layer is, by what came of it.
+FOUND, MISSED, INVENTED, MISSED_PART, INVENTED_PART = "found", "missed", "invented", "missed part", "invented part"
+_OBJECTS = Layer(
+    "objects",
+    "Found, missed and invented buildings",
+    "Polygon",
+    (
+        Field("id", int, "number of the object, from 1"),
+        Field(
+            "kind",
+            str,
+            f"{FOUND} or {MISSED}: a building of the reference; {INVENTED}: one of the input that is not true; "
+            f"{MISSED_PART}, {INVENTED_PART}: what a building that was found lacks or has too much",
+        ),
+        Field("area", float, "area seen from above", "m²"),
+        Field("points", int, "building points in it, of the side that it belongs to"),
+        Field("covered", float, "share that is building on the other side too, 0 to 1"),
+    ),
+    style="objects",
 )
 
 
@@ -35,6 +62,7 @@ _MEASURES = (
     "Assess buildings",
     group="Quality",
     tags="accuracy,completeness,correctness,F-score,F1,quality,evaluation,reference,validation",
+    layers=(_OBJECTS,),
     measures=_MEASURES,
 )
 def assess_buildings(
@@ -51,7 +79,8 @@ def assess_buildings(
     """Compare the buildings of a classification with those of a reference: completeness, correctness, F-score, quality.
 
     Counted three ways: per point; per cell, by the topmost point, which is blind to walls (some references call them
-    building, some don't); and per object, a building being found when at least half of it is.
+    building, some don't); and per object, a building being found when at least half of it is. A layer shows which
+    buildings were found, missed and invented.
 
     Parameters
     ----------
@@ -66,7 +95,10 @@ def assess_buildings(
 
     Returns
     -------
-    Report
+    objects : Features
+        Polygons of the buildings of the reference, found or missed; of those of the input that are not true; and of
+        what buildings that were found lack or have too much.
+    report : Report
         Percentages and counts, and a page with a map. A percentage of nothing is NaN.
 
     Raises
@@ -80,7 +112,8 @@ def assess_buildings(
     TP / (TP + FN), correctness TP / (TP + FP), quality TP / (TP + FN + FP), and F the harmonic mean of the first two.
     Ignored by default are the reference's noise (7, 18), bridges (17; 26 in the Netherlands) and what other agencies
     keep for artefacts, civil works and virtual points (64-67). Objects are groups of building cells that touch by a
-    side or a corner.
+    side or a corner. Parts are told from ragged edges by their size: they have the minimum area and are three cells
+    wide somewhere.
 
     References
     ----------
@@ -101,8 +134,12 @@ def assess_buildings(
     values = {f"points_{name}": value for name, value in rates(predicted, true).items()}
     values.update({f"cells_{name}": value for name, value in rates(predicted[top], true[top]).items()})
     monitor.progress(0.6)
-    values.update(_objects(grid, cell[top], predicted[top], true[top], min_area), cell_size=cell_size)
-    return Report(values, _page(xyz, predicted, true, values, min_area))
+    reference = _side(grid, cell[top], true[top], predicted[top], min_area)
+    result = _side(grid, cell[top], predicted[top], true[top], min_area)
+    values.update(_object_rates(reference, result), cell_size=cell_size)
+    objects = _objects(grid, (reference, cell[true]), (result, cell[predicted]), min_area)
+    monitor.progress(0.9)
+    return objects, Report(values, _page(xyz, predicted, true, values, min_area))
 
 
 def rates(predicted: np.ndarray, true: np.ndarray) -> dict[str, float]:
@@ -129,25 +166,94 @@ def _share(part: float, whole: float) -> float:
     return 100.0 * part / whole if whole else float("nan")
 
 
-def _objects(grid: Grid, cells: np.ndarray, predicted: np.ndarray, true: np.ndarray, min_area: float) -> dict:
+@dataclass(frozen=True)
+class _Side:
+    """The building cells (ascending) of one of two classifications, the object of each, and what objects count.
+
+    ``shared`` says which cells are building in the other classification too, ``covered`` (0 to 1) how much of each
+    object is.
+    """
+
+    cells: np.ndarray
+    group: np.ndarray
+    shared: np.ndarray
+    covered: np.ndarray
+    counts: np.ndarray
+
+    @property
+    def agreed(self) -> np.ndarray:
+        """Which objects count and lie by half in the other classification's buildings."""
+        return self.counts & (self.covered >= 0.5)
+
+
+def _side(grid: Grid, cells: np.ndarray, own: np.ndarray, other: np.ndarray, min_area: float) -> _Side:
+    """Return the objects of the cells that are ``own``, and how they look from the ``other`` classification."""
+    count, group = connected_cells(grid, cells[own])
+    size = np.bincount(group, minlength=count)
+    covered = np.bincount(group, other[own], count) / np.maximum(size, 1)
+    return _Side(cells[own], group, other[own], covered, size * grid.size**2 >= min_area)
+
+
+def _object_rates(reference: _Side, result: _Side) -> dict[str, float]:
     """Return the share of the objects of each side that the other one covers by half, and their numbers."""
-    completeness, n_true = _covered(grid, cells[true], cells[predicted], min_area)
-    correctness, n_predicted = _covered(grid, cells[predicted], cells[true], min_area)
+    found, true = int(reference.agreed.sum()), int(reference.counts.sum())
+    correct, predicted = int(result.agreed.sum()), int(result.counts.sum())
+    completeness, correctness = _share(found, true), _share(correct, predicted)
     return {
         "objects_completeness": completeness,
         "objects_correctness": correctness,
-        "objects_true": n_true,
-        "objects_predicted": n_predicted,
+        "objects_f": _share(2 * completeness * correctness / 100, completeness + correctness),
+        "objects_true": true,
+        "objects_predicted": predicted,
+        "objects_misses": true - found,
+        "objects_false": predicted - correct,
     }
 
 
-def _covered(grid: Grid, of: np.ndarray, by: np.ndarray, min_area: float) -> tuple[float, int]:
-    """Return the share of the groups of cells ``of`` that lie by half in the cells ``by``, and their number."""
-    count, group = connected_cells(grid, of)
+def _objects(
+    grid: Grid, reference: tuple[_Side, np.ndarray], result: tuple[_Side, np.ndarray], min_area: float
+) -> Features:
+    """Return the layer of what was found, missed and invented, from both sides and the cells of their points."""
+    (true, _), (predicted, _) = reference, result
+    kinds = (
+        (FOUND, reference, true.agreed[true.group]),
+        (MISSED, reference, (true.counts & ~true.agreed)[true.group]),
+        (INVENTED, result, (predicted.counts & ~predicted.agreed)[predicted.group]),
+        (MISSED_PART, reference, _parts(grid, true, min_area)),
+        (INVENTED_PART, result, _parts(grid, predicted, min_area)),
+    )
+    layer = Features([], {field.name: [] for field in _OBJECTS.fields})
+    for kind, (side, point_cells), chosen in kinds:
+        _add(layer, kind, grid, side, chosen, point_cells)
+    return layer
+
+
+def _parts(grid: Grid, side: _Side, min_area: float) -> np.ndarray:
+    """Return which cells of agreed objects lie in large, wide groups that the other classification lacks."""
+    rows = np.flatnonzero(side.agreed[side.group] & ~side.shared)
+    cells = side.cells[rows]
+    count, group = connected_cells(grid, cells)
+    # Ragged edges are one or two cells wide; a wide part has a cell with all eight around it.
+    inner = np.logical_and.reduce([find_cells(cells, cells + step)[1] for step in grid.around])
+    wide = np.bincount(group, inner, count) > 0
+    large = np.bincount(group, minlength=count) * grid.size**2 >= min_area
+    chosen = np.zeros(len(side.cells), bool)
+    chosen[rows] = (wide & large)[group]
+    return chosen
+
+
+def _add(layer: Features, kind: str, grid: Grid, side: _Side, chosen: np.ndarray, point_cells: np.ndarray) -> None:
+    """Append the groups of the chosen cells of a side to the layer."""
+    cells = side.cells[chosen]
+    count, group = connected_cells(grid, cells)
+    position, inside = find_cells(cells, point_cells)
     size = np.bincount(group, minlength=count)
-    hit = np.bincount(group[find_cells(by, of)[1]], minlength=count)
-    large = size * grid.size**2 >= min_area
-    return _share(int((hit[large] >= 0.5 * size[large]).sum()), int(large.sum())), int(large.sum())
+    layer.columns["id"] += range(len(layer) + 1, len(layer) + 1 + count)
+    layer.columns["kind"] += [kind] * count
+    layer.columns["area"] += (size * grid.size**2).tolist()
+    layer.columns["points"] += np.bincount(group[position[inside]], minlength=count).tolist()
+    layer.columns["covered"] += (np.bincount(group, side.shared[chosen], count) / size).tolist()
+    layer.geometries += outline_cells(grid, cells, group)
 
 
 def _page(xyz: np.ndarray, predicted: np.ndarray, true: np.ndarray, values: dict, min_area: float) -> str:
@@ -195,11 +301,18 @@ def _object_rows(values: dict) -> list[Row]:
         Row(
             "Completeness",
             percent(values["objects_completeness"]),
-            f"So many of the reference's {values['objects_true']:,} buildings were found, by at least half.",
+            f"So many of the reference's {values['objects_true']:,} buildings were found, by at least half; "
+            f"{values['objects_misses']:,} were missed.",
         ),
         Row(
             "Correctness",
             percent(values["objects_correctness"]),
-            f"So many of the {values['objects_predicted']:,} buildings found are true, by half of their area or more.",
+            f"So many of the {values['objects_predicted']:,} buildings found are true, by half of their area or more; "
+            f"{values['objects_false']:,} were invented.",
+        ),
+        Row(
+            "F-score",
+            percent(values["objects_f"]),
+            "Completeness and correctness in one figure; the layer of objects shows each of them.",
         ),
     ]

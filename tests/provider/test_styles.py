@@ -9,6 +9,7 @@ from qgis.core import QgsPointCloudLayer, QgsVectorLayer
 from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.cloud.cloud import create_cloud, write_cloud
 from lidar_buildings.algorithms.cloud.dimensions import DIMENSIONS
+from lidar_buildings.algorithms.quality.buildings import FOUND, INVENTED, INVENTED_PART, MISSED, MISSED_PART
 from lidar_buildings.provider.paths import STYLES
 from lidar_buildings.provider.styles import cloud_style, layer_style
 from lidar_buildings.tests.provider.toys import TOYS
@@ -47,6 +48,14 @@ def test_footprints_are_labeled(qgis_application):
     message, loaded = layer.loadNamedStyle(str(STYLES / "footprints.qml"))
     assert loaded, message
     assert layer.labelsEnabled()
+
+
+def test_every_kind_of_object_has_a_style(qgis_application):
+    layer = QgsVectorLayer("Polygon?field=kind:string", "o", "memory")
+    message, loaded = layer.loadNamedStyle(str(STYLES / "objects.qml"))
+    assert loaded, message
+    styled = {category.value() for category in layer.renderer().categories()}
+    assert styled == {FOUND, MISSED, INVENTED, MISSED_PART, INVENTED_PART}
 
 
 def test_results_find_their_style():
