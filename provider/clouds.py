@@ -6,11 +6,13 @@ from pathlib import Path
 from typing import Any, Optional
 
 from qgis.core import (
+    Qgis,
     QgsMapLayer,
     QgsPointCloudLayer,
     QgsProcessingAlgorithm,
     QgsProcessingContext,
     QgsProcessingOutputLayerDefinition,
+    QgsProcessingParameterMultipleLayers,
     QgsProcessingParameterPointCloudLayer,
     QgsProcessingUtils,
     QgsProperty,
@@ -46,6 +48,30 @@ class CloudParameter(QgsProcessingParameterPointCloudLayer):
         return isinstance(value, (QgsMapLayer, QgsProperty)) or bool(value)
 
 
+class CloudsParameter(QgsProcessingParameterMultipleLayers):
+    """Two or more point clouds, each a layer or the path of a file that QGIS itself may be unable to open."""
+
+    def __init__(self, name: str, description: str) -> None:
+        super().__init__(name, description, Qgis.ProcessingSourceType.PointCloud)
+        self.setMinimumNumberInputs(2)
+
+    def clone(self) -> CloudsParameter:
+        """Return a copy of this very type; the base class would return its own."""
+        copy = CloudsParameter(self.name(), self.description())
+        copy.setFlags(self.flags())
+        copy.setHelp(self.help())
+        copy.setMetadata(self.metadata())
+        return copy
+
+    def createFileFilter(self) -> str:  # noqa: N802 - QGIS asks for this name
+        """Return the filter of the browse dialog, LAS and LAZ first."""
+        return f"{_FILTER};;{super().createFileFilter()}"
+
+    def checkValueIsAcceptable(self, value: Any, context: Optional[QgsProcessingContext] = None) -> bool:  # noqa: N802
+        """Whether ``value`` may be point clouds; what they really are, :func:`cloud_paths` finds out."""
+        return isinstance(value, (QgsMapLayer, QgsProperty)) or bool(value)
+
+
 def cloud_path(algorithm: QgsProcessingAlgorithm, name: str, parameters: dict, context: QgsProcessingContext) -> Path:
     """Return the file of the point cloud that a parameter gives as layer, layer id, layer name, source or path.
 
@@ -55,9 +81,32 @@ def cloud_path(algorithm: QgsProcessingAlgorithm, name: str, parameters: dict, c
         If there is no such file or layer, or it is no point cloud with a file.
     """
     title = algorithm.parameterDefinition(name).description()
-    value = _plain(algorithm, name, parameters, context)
+    value = _plain(algorithm, name, parameters.get(name), context)
     if value is None or value == "":
         raise ValueError(f"{title} ({name}) is missing; choose a point cloud.")
+    return _path(title, name, value, context)
+
+
+def cloud_paths(
+    algorithm: QgsProcessingAlgorithm, name: str, parameters: dict, context: QgsProcessingContext
+) -> list[Path]:
+    """Return the files of the point clouds that a parameter gives, see :func:`cloud_path`; at least two."""
+    title = algorithm.parameterDefinition(name).description()
+    values = [_plain(algorithm, name, value, context) for value in _flat(parameters.get(name))]
+    paths = [_path(title, name, value, context) for value in values if value is not None and value != ""]
+    if len(paths) < 2:
+        raise ValueError(f"{title} ({name}) must be at least two, got {len(paths)}; choose another.")
+    return paths
+
+
+def _flat(value: Any) -> list:
+    """Return single values: a model gives lists of lists, the command line a list or one path."""
+    if isinstance(value, (list, tuple)):
+        return [one for part in value for one in _flat(part)]
+    return [value]
+
+
+def _path(title: str, name: str, value: Any, context: QgsProcessingContext) -> Path:
     if isinstance(value, str) and Path(value).is_file():
         return _known(title, Path(value))
     layer = value if isinstance(value, QgsMapLayer) else QgsProcessingUtils.mapLayerFromString(value, context, False)
@@ -80,9 +129,8 @@ def _known(title: str, path: Path) -> Path:
     return path
 
 
-def _plain(algorithm: QgsProcessingAlgorithm, name: str, parameters: dict, context: QgsProcessingContext) -> Any:
+def _plain(algorithm: QgsProcessingAlgorithm, name: str, value: Any, context: QgsProcessingContext) -> Any:
     """Return a parameter's value as a layer or text, whatever QGIS wrapped it in."""
-    value = parameters.get(name)
     if isinstance(value, QgsProcessingOutputLayerDefinition):
         value = value.sink
     if isinstance(value, QgsProperty):

@@ -20,9 +20,13 @@ def crs_units(epsg: int) -> Optional[tuple[float, float, bool]]:
     crs = QgsCoordinateReferenceSystem.fromEpsgId(epsg)
     if not crs.isValid():
         return None
+    return (*metres_per_unit(crs), crs.isGeographic())
+
+
+def metres_per_unit(crs: QgsCoordinateReferenceSystem) -> tuple[float, float]:
+    """Return metres per horizontal and per vertical unit; heights have the unit of the plane where none is named."""
     horizontal = _metres(crs)
-    vertical = _metres(crs.verticalCrs()) if crs.verticalCrs().isValid() else horizontal
-    return horizontal, vertical, crs.isGeographic()
+    return horizontal, _metres(crs.verticalCrs()) if crs.verticalCrs().isValid() else horizontal
 
 
 def _metres(crs: QgsCoordinateReferenceSystem) -> float:

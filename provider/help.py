@@ -8,7 +8,7 @@ from typing import Optional
 
 from ..algorithms.cloud.dimensions import DIMENSIONS
 from ..algorithms.pipelines import Pipeline, Step
-from ..algorithms.stage import REFERENCE_PREFIX, Field, Layer, Stage, Tunable
+from ..algorithms.stage import REFERENCE_PREFIX, VALUES, Field, Layer, Raster, Source, Stage, Tunable
 
 
 def stage_help(stage: Stage) -> str:
@@ -94,14 +94,9 @@ def _default_text(tunable: Tunable, default: object) -> str:
 
 def outputs(stage: Stage) -> list:
     """Return what a stage makes, one HTML text per output."""
-    made = []
-    if stage.creates:
-        made.append(f"<b>OUTPUT</b>: a new cloud with {_disk_names(stage.creates)}.")
-    if stage.writes:
-        made.append(
-            f"<b>OUTPUT</b>: the cloud with {_disk_names(stage.writes)}; everything else in it stays as it was."
-        )
+    made = [f"<b>OUTPUT</b>: {_cloud_text(stage)}."] if stage.makes_cloud else []
     made += [_layer_text(layer) for layer in stage.layers]
+    made += [_raster_text(raster) for raster in stage.rasters]
     if stage.measures:
         measures = ", ".join(f"{m.title} ({m.unit})" if m.unit else m.title for m in stage.measures)
         made.append(f"<b>REPORT</b>: a page with {html.escape(measures)}; each is an output of its own too.")
@@ -109,6 +104,22 @@ def outputs(stage: Stage) -> list:
     if used:
         made.append(f"<b>{', '.join(used)}</b>: the value that was used, given or automatic.")
     return made
+
+
+def _cloud_text(stage: Stage) -> str:
+    written = f" with {_disk_names(stage.writes)}" if stage.writes else ""
+    if stage.creates:
+        return f"a new cloud with {_disk_names(stage.creates)}"
+    if stage.merges:
+        return f"the points of all clouds in one{written}; withheld points are left out"
+    if stage.selects:
+        return f"a cloud of the points selected{written}; everything else of them stays, withheld points are left out"
+    return f"the cloud{written}; everything else in it stays as it was"
+
+
+def _raster_text(raster: Raster) -> str:
+    unit = f" ({raster.unit})" if raster.unit else ""
+    return f"<b>{raster.name.upper()}</b>: {html.escape(raster.title + unit)}, a raster."
 
 
 def _layer_text(layer: Layer) -> str:
@@ -125,16 +136,26 @@ def _dimensions(stage: Stage) -> str:
     own = [name for name in stage.reads if not name.startswith(REFERENCE_PREFIX)]
     if_there = [name for name in stage.optional if not name.startswith(REFERENCE_PREFIX)]
     compared = [name[len(REFERENCE_PREFIX) :] for name in stage.reads if name.startswith(REFERENCE_PREFIX)]
-    rows = [
-        f"<b>INPUT</b>: reads {_disk_names(own)}" + (f"; if there, {_disk_names(if_there)}" if if_there else "") + "."
-    ]
+    rows = []
+    if own:
+        optional = f"; if there, {_disk_names(if_there)}" if if_there else ""
+        rows.append(f"<b>{'INPUTS' if stage.merges else 'INPUT'}</b>: reads {_disk_names(own)}{optional}.")
     if compared:
         rows.append(f"<b>REFERENCE</b>: reads {_disk_names(compared)}.")
-    return _list("Inputs", rows) if own or compared else ""
+    return _list("Inputs", rows + [source_text(source) for source in stage.sources])
+
+
+def source_text(source: Source) -> str:
+    """Return what a vector layer that is read is for, as HTML."""
+    needed = "; may be left empty" if source.optional else ""
+    what = {"Polygon": "polygons", "LineString": "lines", "Point": "points"}[source.geometry]
+    title = f"<b>{source.name.upper()}</b>: {html.escape(source.title)}, a layer of {what}{needed}."
+    return f"{title} {inline(source.help)}"
 
 
 def _disk_names(names) -> str:
-    return ", ".join(dict.fromkeys(disk for name in names for disk in DIMENSIONS[name].disk))
+    disk = {VALUES: ("the dimension named",), **{name: DIMENSIONS[name].disk for name in names if name != VALUES}}
+    return ", ".join(dict.fromkeys(shown for name in names for shown in disk[name]))
 
 
 def _list(title: str, rows: list, ordered: bool = False) -> str:

@@ -121,7 +121,7 @@ def build_model(pipeline: Pipeline) -> QgsProcessingModelAlgorithm:
     model.addModelParameter(QgsProcessingParameterPointCloudLayer(INPUT, "Point cloud"), where)
     source = QgsProcessingModelChildParameterSource.fromModelParameter(INPUT)
     writers = [step for step in pipeline.steps if step.stage.writes]
-    title = cloud_title((), [name for step in writers for name in step.stage.writes])
+    title = cloud_title([step.stage for step in writers])
     definitions = pipeline_parameters(pipeline)
     for step in pipeline.steps:
         _add_parameters(model, pipeline, step, definitions, layout)

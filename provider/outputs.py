@@ -14,6 +14,7 @@ from qgis.core import (
     QgsProcessingContext,
     QgsProcessingOutputLayerDefinition,
     QgsProcessingParameterPointCloudDestination,
+    QgsProcessingParameterRasterDestination,
     QgsProperty,
 )
 
@@ -22,6 +23,7 @@ from ..algorithms.cloud.outputs import COPC, check_output, kind_of, same_file
 from ..algorithms.cloud.views import check_place, copc_path
 from ..algorithms.stage import Monitor
 from .clouds import reads_las
+from .rasters import check_raster
 
 # "memory:", "postgres://…", "ogr:dbname='x.gpkg' table=…": no files. A single letter is a drive.
 _NO_FILE = re.compile(r"^[A-Za-z]{2,}:")
@@ -84,6 +86,8 @@ def _check_target(definition, path: Path, inputs: list) -> None:
         # The last step of a model reads what the step before it wrote, so it can't know the first input itself.
         if kind_of(path) != COPC:
             check_place(path, inputs)
+    elif isinstance(definition, QgsProcessingParameterRasterDestination):
+        check_raster(path)
     folder = path.absolute().parent
     if not folder.is_dir():
         raise ValueError(f"The folder {folder} does not exist; make it or choose another one.")

@@ -86,7 +86,7 @@ def _word(tunable: Tunable) -> QgsProcessingParameterDefinition:
     if tunable.param.choices:
         return _enum(tunable, several=False)
     return QgsProcessingParameterString(
-        parameter_name(tunable), label(tunable), tunable.default, optional=tunable.is_automatic
+        parameter_name(tunable), label(tunable), tunable.default, optional=not tunable.default
     )
 
 

@@ -10,6 +10,7 @@ from ..algorithms.stages import STAGES
 from .dependencies import missing_sentence
 from .models import PipelineAlgorithm
 from .paths import ICON
+from .rasters import EXTENSIONS as RASTER_EXTENSIONS
 from .stage_algorithm import StageAlgorithm
 
 CLOUD_EXTENSIONS = ("las", "laz", "copc.laz")
@@ -64,3 +65,11 @@ class Provider(QgsProcessingProvider):
     def supportedOutputPointCloudLayerExtensions(self) -> list:  # noqa: N802 - QGIS asks for this name
         """Return the extensions that stages write."""
         return list(CLOUD_EXTENSIONS)
+
+    def defaultRasterFileExtension(self) -> str:  # noqa: N802 - QGIS asks for this name
+        """Return the extension of temporary rasters."""
+        return RASTER_EXTENSIONS[0]
+
+    def supportedOutputRasterLayerExtensions(self) -> list:  # noqa: N802 - QGIS asks for this name
+        """Return the extensions of rasters that stages write."""
+        return list(RASTER_EXTENSIONS)

@@ -14,9 +14,11 @@ from qgis.core import (
     QgsProcessingException,
     QgsProcessingFeedback,
     QgsProcessingOutputNumber,
+    QgsProcessingParameterDefinition,
     QgsProcessingParameterFeatureSink,
     QgsProcessingParameterFileDestination,
     QgsProcessingParameterPointCloudDestination,
+    QgsProcessingParameterRasterDestination,
 )
 from qgis.PyQt.QtCore import QUrl
 from qgis.PyQt.QtGui import QIcon
@@ -24,9 +26,9 @@ from qgis.PyQt.QtGui import QIcon
 from ..algorithms.cloud.cloud import Cloud, read_cloud
 from ..algorithms.cloud.dimensions import DIMENSIONS
 from ..algorithms.run import Outcome, run_stage
-from ..algorithms.stage import Features, Layer, Monitor, Stage
-from .clouds import CloudParameter, cloud_path
-from .crs import crs_of, crs_units
+from ..algorithms.stage import Features, Layer, Monitor, Raster, Stage, Surface
+from .clouds import CloudParameter, CloudsParameter, cloud_path, cloud_paths
+from .crs import crs_units
 from .dependencies import missing_sentence
 from .errors import one_sentence
 from .feedback import FeedbackMonitor, announce
@@ -34,10 +36,13 @@ from .help import stage_help
 from .outputs import check_targets, files_of, nothing_left_on_failure, write_for_qgis
 from .parameters import automatic_numbers, number_outputs, parameter, tunable_values, used_name
 from .paths import HELP, ICON
+from .places import Place, place_of_cloud, place_of_layers
+from .rasters import write_raster
+from .sources import find_source, read_source, source_files, source_parameter
 from .styles import cloud_style, layer_style, style_on_load
 from .vectors import SOURCE_TYPES, fields_of, plain, qgis_features, wkb_type
 
-INPUT, REFERENCE, OUTPUT, REPORT = "INPUT", "REFERENCE", "OUTPUT", "REPORT"
+INPUT, INPUTS, REFERENCE, OUTPUT, REPORT = "INPUT", "INPUTS", "REFERENCE", "OUTPUT", "REPORT"
 
 
 @dataclass
@@ -45,7 +50,13 @@ class _Job:
     """What a run needs of its parameters, found out before it starts."""
 
     tunables: dict[str, Any]
-    clouds: dict[str, Path] = field(default_factory=dict)
+    inputs: list[Path] = field(default_factory=list)
+    reference: Optional[Path] = None
+
+    @property
+    def paths(self) -> list[Path]:
+        """All clouds that are read, the reference last."""
+        return [*self.inputs, *([self.reference] if self.reference else [])]
 
 
 class StageAlgorithm(QgsProcessingAlgorithm):
@@ -101,36 +112,34 @@ class StageAlgorithm(QgsProcessingAlgorithm):
 
     def initAlgorithm(self, configuration: Optional[dict] = None) -> None:  # noqa: N802
         """Declare inputs, tunables and outputs."""
-        if self._reads_input:
-            self.addParameter(_helped(CloudParameter(INPUT, "Point cloud"), "File or layer of the points."))
+        if self.stage.reads_cloud:
+            self.addParameter(input_parameter(self.stage.merges))
         if self.stage.reads_reference:
             what = "File or layer to compare with: the same points with the true values."
             self.addParameter(_helped(CloudParameter(REFERENCE, "Reference point cloud"), what))
+        for source in self.stage.sources:
+            self.addParameter(source_parameter(source))
         for tunable in self.stage.tunables.values():
             self.addParameter(parameter(tunable))
         self._add_destinations()
         self._add_numbers()
 
-    @property
-    def _reads_input(self) -> bool:
-        return not self.stage.creates
-
-    @property
-    def _makes_cloud(self) -> bool:
-        return bool(self.stage.creates or self.stage.writes)
-
     def _add_destinations(self) -> None:
-        if self._makes_cloud:
-            title = cloud_title(self.stage.creates, self.stage.writes)
-            cloud = QgsProcessingParameterPointCloudDestination(OUTPUT, title)
+        stage = self.stage
+        if stage.makes_cloud:
+            cloud = QgsProcessingParameterPointCloudDestination(OUTPUT, cloud_title([stage]))
             self.addParameter(_helped(cloud, "A .las, .laz or .copc.laz file."))
         # Who wants the cloud or the numbers may do without the layers.
-        optional = bool(self._makes_cloud or self.stage.measures)
-        for layer in self.stage.layers:
+        optional = bool(stage.makes_cloud or stage.measures)
+        for layer in stage.layers:
             sink = QgsProcessingParameterFeatureSink(
                 layer.name.upper(), layer.title, SOURCE_TYPES[layer.geometry], optional=optional
             )
             self.addParameter(_helped(sink, "A GeoPackage or any other vector format that QGIS writes."))
+        optional = optional or len((*stage.layers, *stage.rasters)) > 1
+        for raster in stage.rasters:
+            image = QgsProcessingParameterRasterDestination(raster.name.upper(), raster.title, optional=optional)
+            self.addParameter(_helped(image, "A GeoTIFF, tiled and compressed."))
         if self.stage.measures:
             page = QgsProcessingParameterFileDestination(REPORT, "Report", "HTML files (*.html)", optional=True)
             self.addParameter(_helped(page, "A page that shows the numbers."))
@@ -168,11 +177,12 @@ class StageAlgorithm(QgsProcessingAlgorithm):
         if missing:
             raise ValueError(missing)
         job = _Job(tunable_values(self, self.stage, parameters, context))
-        if self._reads_input:
-            job.clouds[INPUT] = cloud_path(self, INPUT, parameters, context)
+        if self.stage.reads_cloud:
+            job.inputs = input_paths(self, self.stage.merges, parameters, context)
         if self.stage.reads_reference:
-            job.clouds[REFERENCE] = cloud_path(self, REFERENCE, parameters, context)
-        check_targets(self.destinationParameterDefinitions(), parameters, list(job.clouds.values()))
+            job.reference = cloud_path(self, REFERENCE, parameters, context)
+        read = [*job.paths, *source_files(self, self.stage.sources, parameters, context)]
+        check_targets(self.destinationParameterDefinitions(), parameters, read)
         return job
 
     def processAlgorithm(  # noqa: N802
@@ -182,15 +192,18 @@ class StageAlgorithm(QgsProcessingAlgorithm):
         announce(self.stage.title, feedback)
         monitor = FeedbackMonitor(feedback, self.stage)
         with one_sentence(), nothing_left_on_failure(self._target_files(parameters)) as written:
-            outcome = self._run(monitor)
+            outcome, place = self._run(parameters, context, monitor)
             results = self._numbers(outcome, monitor)
-            if self._makes_cloud:
+            if self.stage.makes_cloud:
                 results[OUTPUT] = self._write_cloud(
                     outcome.cloud, parameters, context, monitor.part(0.8, 0.97), written
                 )
             for layer in self.stage.layers:
                 features = outcome.layers[layer.name]
-                results.update(self._write_layer(layer, features, outcome.cloud, parameters, context, monitor))
+                results.update(self._write_layer(layer, features, place, parameters, context, monitor))
+            for raster in self.stage.rasters:
+                surface = outcome.rasters[raster.name]
+                results.update(self._write_raster(raster, surface, place, parameters, context, monitor, written))
             if outcome.report is not None:
                 results.update(self._write_report(outcome.report.html, parameters, context))
             monitor.progress(1.0)
@@ -200,14 +213,22 @@ class StageAlgorithm(QgsProcessingAlgorithm):
         definitions = self.destinationParameterDefinitions()
         return [path for d in definitions for path in files_of(d, parameters.get(d.name()))]
 
-    def _run(self, monitor: Monitor) -> Outcome:
-        share = 0.15 / max(1, len(self.job.clouds))
-        clouds = {}
-        for i, (name, path) in enumerate(self.job.clouds.items()):
-            clouds[name] = read_cloud(path, monitor.part(i * share, (i + 1) * share), crs_units)
-        return run_stage(
-            self.stage, clouds.get(INPUT), clouds.get(REFERENCE), monitor.part(0.15, 0.8), **self.job.tunables
-        )
+    def _run(self, parameters: dict, context: QgsProcessingContext, monitor: Monitor) -> tuple[Outcome, Place]:
+        paths = self.job.paths
+        share = 0.15 / max(1, len(paths))
+        clouds = [read_cloud(path, monitor.part(i * share, (i + 1) * share), crs_units) for i, path in enumerate(paths)]
+        reference = clouds.pop() if self.job.reference else None
+        found = {source: find_source(self, source, parameters, context) for source in self.stage.sources}
+        given = {source: layer for source, layer in found.items() if layer is not None}
+        place = place_of_cloud(clouds[0]) if clouds else place_of_layers(given, monitor)
+        sources = {
+            source.name: read_source(source, layer, place, context, monitor.part(0.15, 0.15))
+            for source, layer in given.items()
+        }
+        cloud = clouds if self.stage.merges else clouds[0] if clouds else None
+        tunables = self.job.tunables
+        outcome = run_stage(self.stage, cloud, reference, monitor.part(0.15, 0.8), sources, **tunables)
+        return outcome, place_of_cloud(outcome.cloud) if outcome.cloud is not None else place
 
     def _numbers(self, outcome: Outcome, monitor: Monitor) -> dict:
         numbers = {}
@@ -232,7 +253,7 @@ class StageAlgorithm(QgsProcessingAlgorithm):
         self,
         layer: Layer,
         features: Features,
-        cloud: Cloud,
+        place: Place,
         parameters: dict,
         context: QgsProcessingContext,
         monitor: Monitor,
@@ -241,11 +262,11 @@ class StageAlgorithm(QgsProcessingAlgorithm):
         if parameters.get(name) is None:
             return {}
         sink, target = self.parameterAsSink(
-            parameters, name, context, fields_of(layer), wkb_type(layer, features), crs_of(cloud.wkt)
+            parameters, name, context, fields_of(layer), wkb_type(layer, features), place.crs
         )
         if sink is None:
             raise QgsProcessingException(self.invalidSinkError(parameters, name))
-        for row, feature in enumerate(qgis_features(layer, features, cloud.to_map)):
+        for row, feature in enumerate(qgis_features(layer, features, place.to_map)):
             if row % 1000 == 0:
                 monitor.progress(0.97)
             if not sink.addFeature(feature, QgsFeatureSink.Flag.FastInsert):
@@ -254,6 +275,25 @@ class StageAlgorithm(QgsProcessingAlgorithm):
         sink.flushBuffer()
         del sink
         style_on_load(context, target, layer_style(layer))
+        return {name: target}
+
+    def _write_raster(
+        self,
+        raster: Raster,
+        surface: Surface,
+        place: Place,
+        parameters: dict,
+        context: QgsProcessingContext,
+        monitor: Monitor,
+        written: list,
+    ) -> dict:
+        name = raster.name.upper()
+        if parameters.get(name) is None:
+            return {}
+        target = self.parameterAsOutputLayer(parameters, name, context)
+        written += files_of(self.parameterDefinition(name), target)
+        write_raster(raster, surface, place, Path(target), monitor.part(0.97, 0.97))
+        style_on_load(context, target, layer_style(raster))
         return {name: target}
 
     def _write_report(self, html: str, parameters: dict, context: QgsProcessingContext) -> dict:
@@ -269,10 +309,31 @@ def _helped(definition, text: str):
     return definition
 
 
-def cloud_title(creates: Sequence[str], writes: Sequence[str]) -> str:
-    """Return what the resulting cloud is called, in the dialog and as a layer."""
-    if creates:
+def input_parameter(several: bool) -> QgsProcessingParameterDefinition:
+    """Return the parameter of the cloud, or of the clouds, that a stage or chain works on."""
+    if several:
+        return _helped(CloudsParameter(INPUTS, "Point clouds"), "Two or more files or layers of points.")
+    return _helped(CloudParameter(INPUT, "Point cloud"), "File or layer of the points.")
+
+
+def input_paths(
+    algorithm: QgsProcessingAlgorithm, several: bool, parameters: dict, context: QgsProcessingContext
+) -> list[Path]:
+    """Return the file of the cloud, or the files of the clouds, that an algorithm works on."""
+    if several:
+        return cloud_paths(algorithm, INPUTS, parameters, context)
+    return [cloud_path(algorithm, INPUT, parameters, context)]
+
+
+def cloud_title(stages: Sequence[Stage]) -> str:
+    """Return what the cloud is called that these stages make one after the other, in the dialog and as a layer."""
+    writes = [name for stage in stages for name in stage.writes if name != "xyz"]
+    if any(stage.creates for stage in stages):
         return "Simulated point cloud"
+    if all(stage.merges for stage in stages):
+        return "Merged point cloud"
+    if all(stage.selects for stage in stages):
+        return "Selected points"
     if "classification" in writes:
         return "Classified point cloud"
     if len(writes) == 1:

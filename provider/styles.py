@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Optional
+from typing import Optional, Union
 
 from qgis.core import QgsProcessingContext, QgsProcessingLayerPostProcessorInterface
 from qgis.PyQt import sip
 
-from ..algorithms.stage import Layer, Stage
+from ..algorithms.stage import Layer, Raster, Stage
 from .paths import STYLES
 
 
@@ -36,8 +36,8 @@ def cloud_style(stage: Stage) -> Optional[str]:
     return next((name for name in (*stage.writes, *stage.creates) if (STYLES / f"{name}.qml").is_file()), None)
 
 
-def layer_style(layer: Layer) -> Optional[str]:
-    """Return the style of a layer: the declared one, or that of its name."""
+def layer_style(layer: Union[Layer, Raster]) -> Optional[str]:
+    """Return the style of a layer or raster: the declared one, or that of its name."""
     stem = layer.style or layer.name
     return stem if (STYLES / f"{stem}.qml").is_file() else None
 

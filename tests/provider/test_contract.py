@@ -8,14 +8,16 @@ from qgis.core import (
     QgsProcessingOutputNumber,
     QgsProcessingParameterBoolean,
     QgsProcessingParameterEnum,
+    QgsProcessingParameterFeatureSource,
     QgsProcessingParameterNumber,
     QgsProcessingParameterString,
 )
 
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.stages import STAGES
-from lidar_buildings.provider.clouds import CloudParameter
+from lidar_buildings.provider.clouds import CloudParameter, CloudsParameter
 from lidar_buildings.provider.help import pipeline_help
+from lidar_buildings.provider.vectors import SOURCE_TYPES
 from lidar_buildings.tests.provider.toys import TOYS
 
 # Saved models and scripts hold these ids: one may be added, none may change.
@@ -66,11 +68,17 @@ def test_the_algorithm_is_the_stage(stage, algorithm):
 
 
 def test_inputs_and_outputs_are_what_the_stage_reads_and_makes(stage, algorithm):
-    inputs = [d.name() for d in algorithm.parameterDefinitions() if isinstance(d, CloudParameter)]
-    assert inputs == ["INPUT"] * (not stage.creates) + ["REFERENCE"] * stage.reads_reference
+    clouds = [d.name() for d in algorithm.parameterDefinitions() if isinstance(d, (CloudParameter, CloudsParameter))]
+    own = "INPUTS" if stage.merges else "INPUT"
+    assert clouds == [own] * bool("xyz" in stage.reads) + ["REFERENCE"] * stage.reads_reference
+    layers = [d for d in algorithm.parameterDefinitions() if isinstance(d, QgsProcessingParameterFeatureSource)]
+    assert [layer.name() for layer in layers] == [source.name.upper() for source in stage.sources]
+    for layer, source in zip(layers, stage.sources):
+        assert layer.dataTypes() == [SOURCE_TYPES[source.geometry].value]
+        assert bool(layer.flags() & Qgis.ProcessingParameterFlag.Optional) == source.optional
     destinations = [definition.name() for definition in algorithm.destinationParameterDefinitions()]
-    wanted = ["OUTPUT"] * bool(stage.writes or stage.creates)
-    wanted += [layer.name.upper() for layer in stage.layers] + ["REPORT"] * bool(stage.measures)
+    wanted = ["OUTPUT"] * bool(stage.writes or stage.creates or stage.selects or stage.merges)
+    wanted += [made.name.upper() for made in (*stage.layers, *stage.rasters)] + ["REPORT"] * bool(stage.measures)
     assert destinations == wanted
     numbers = {
         output.name() for output in algorithm.outputDefinitions() if isinstance(output, QgsProcessingOutputNumber)
@@ -88,7 +96,7 @@ def test_every_tunable_is_a_parameter(stage, algorithm):
         assert definition.help().startswith(tunable.param.help)
         flags = definition.flags()
         assert bool(flags & Qgis.ProcessingParameterFlag.Advanced) == tunable.param.advanced
-        assert bool(flags & Qgis.ProcessingParameterFlag.Optional) == tunable.is_automatic
+        assert bool(flags & Qgis.ProcessingParameterFlag.Optional) == (tunable.is_automatic or default == "")
         if tunable.param.unit:
             assert f"({tunable.param.unit}" in definition.description()
         if tunable.is_automatic:
@@ -124,6 +132,7 @@ def test_every_tunable_has_its_type_bounds_and_choices(stage, algorithm):
 
 def test_bounds_are_refused_in_the_words_of_the_core(stage, algorithm, context, town_file, out):
     given = {"INPUT": str(town_file), "REFERENCE": str(town_file), "OUTPUT": str(out / "a.las")}
+    given["INPUTS"] = [str(town_file), str(town_file)]
     for tunable in stage.tunables.values():
         if tunable.type not in (int, float) or tunable.param.high is None:
             continue

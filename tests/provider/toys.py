@@ -7,7 +7,19 @@ from typing import Annotated, Optional
 import numpy as np
 
 from lidar_buildings.algorithms.pipelines import Pipeline, Step
-from lidar_buildings.algorithms.stage import Cancelled, Features, Field, Layer, Measure, Param, Report, stage
+from lidar_buildings.algorithms.stage import (
+    Cancelled,
+    Features,
+    Field,
+    Layer,
+    Measure,
+    Param,
+    Raster,
+    Report,
+    Source,
+    Surface,
+    stage,
+)
 
 
 @stage("Toy lift", group="Toys", writes=("height_above_ground",), tags="toy, lift")
@@ -115,7 +127,102 @@ def toy_trouble(
     raise {"value": ValueError("The field is empty; choose another."), "bug": ZeroDivisionError("a fault")}[kind]
 
 
-TOYS = {function.stage.name: function.stage for function in (toy_lift, toy_outline, toy_compare, toy_make, toy_trouble)}
+@stage("Toy keep", group="Toys", writes=("xyz", "cluster_id"), selects=True)
+def toy_keep(
+    xyz,
+    values=None,
+    *,
+    dimension: Annotated[str, Param("Dimension", "What is looked at; heights, if empty.")] = "",
+    low: Annotated[float, Param("Low", "Points with less go.", low=-1e9)] = 12.0,
+    sink: Annotated[float, Param("Sink", "How far the others go down.", unit="m", low=0)] = 0.0,
+    monitor=None,
+):
+    """Keep what is high, and number it."""
+    kept = np.flatnonzero((xyz[:, 2] if values is None else values) >= low)
+    return kept, xyz[kept] - [0, 0, sink] if sink else None, np.arange(1, len(kept) + 1)
+
+
+@stage("Toy merge", group="Toys", writes=("xyz", "point_source_id"), merges=True)
+def toy_merge(
+    xyz, *, apart: Annotated[float, Param("Apart", "Each cloud higher than the last.", low=0)] = 0.0, monitor=None
+):
+    """Put clouds together and number them."""
+    sizes = [len(one) for one in xyz]
+    number = np.repeat(np.arange(len(xyz)), sizes)
+    return np.concatenate(xyz) + apart * np.outer(number, [0, 0, 1]) if apart else None, number + 1
+
+
+@stage(
+    "Toy mask",
+    group="Toys",
+    writes=("cluster_id",),
+    sources=(Source("areas", "Areas", "Polygon", "Boxes of these number the points.", optional=True),),
+)
+def toy_mask(xyz, areas=None, *, monitor=None):
+    """Number the points by the box they are in, with the attribute ``id`` of its polygon."""
+    cluster_id = np.zeros(len(xyz), np.int32)
+    for (box, *_), number in zip(areas.geometries, areas.columns["id"]) if areas else ():
+        inside = ((xyz[:, :2] >= box[:, :2].min(axis=0)) & (xyz[:, :2] <= box[:, :2].max(axis=0))).all(axis=1)
+        cluster_id[inside] = number
+    return cluster_id
+
+
+@stage(
+    "Toy arrows",
+    group="Toys",
+    sources=(
+        Source("old", "Old map", "Polygon", "What it was."),
+        Source("new", "New map", "Polygon", "What it is."),
+        Source("extra", "Extra", "Point", "Anything.", optional=True),
+    ),
+    layers=(Layer("arrows", "Arrows", "LineString", (Field("length", float, "How far.", "m"),)),),
+    measures=(Measure("longest", "Longest", "m"),),
+)
+def toy_arrows(old, new, extra=None, *, monitor=None):
+    """Draw an arrow from the middle of each old polygon to that of the new one in the same row."""
+    arrows = [
+        np.array([rings[0][:-1, :2].mean(axis=0) for rings in pair]) for pair in zip(old.geometries, new.geometries)
+    ]
+    length = [float(np.hypot(*(arrow[1] - arrow[0]))) for arrow in arrows]
+    longest = max(length, default=np.nan)
+    return Features(arrows, {"length": length}), Report({"longest": longest}, f"<html>{longest:.3f}</html>")
+
+
+@stage("Toy heights", group="Toys", rasters=(Raster("top", "Top", unit="m"), Raster("floor", "Floor", "top", "m")))
+def toy_heights(
+    xyz, *, cell_size: Annotated[float, Param("Cell size", "Side of a cell.", unit="m", low=0.1)] = 2.0, monitor=None
+):
+    """Draw the highest and the lowest point of each cell."""
+    west, north = float(xyz[:, 0].min()), float(xyz[:, 1].max()) + cell_size / 2
+    column, row = ((xyz[:, :2] - [west, north]) / [cell_size, -cell_size]).astype(int).T
+    shape = (row.max() + 1, column.max() + 1)
+    top, floor = np.full(shape, -np.inf, np.float32), np.full(shape, np.inf, np.float32)
+    np.maximum.at(top, (row, column), xyz[:, 2])
+    np.minimum.at(floor, (row, column), xyz[:, 2])
+    empty = np.isinf(top)
+    return tuple(Surface(np.where(empty, np.nan, values), west, north, cell_size) for values in (top, floor))
+
+
+@stage("Toy picture", group="Toys", rasters=(Raster("picture", "Picture"),))
+def toy_picture(xyz, *, monitor=None):
+    """Draw two cells, one of them empty."""
+    return Surface(np.array([[1.5, np.nan]]), 0.0, 0.0, 3.0)
+
+
+_FUNCTIONS = (
+    toy_lift,
+    toy_outline,
+    toy_compare,
+    toy_make,
+    toy_trouble,
+    toy_keep,
+    toy_merge,
+    toy_mask,
+    toy_arrows,
+    toy_heights,
+    toy_picture,
+)
+TOYS = {function.stage.name: function.stage for function in _FUNCTIONS}
 
 TOY_CHAIN = Pipeline(
     "toy_chain",

@@ -1,0 +1,73 @@
+"""Where the local metres of a run are on the map."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Callable, Optional
+
+import numpy as np
+from qgis.core import QgsCoordinateReferenceSystem, QgsProcessingFeatureSource
+
+from ..algorithms.cloud.cloud import Cloud
+from ..algorithms.stage import Monitor, Source
+from .crs import crs_of, metres_per_unit
+
+_ORIGIN_STEP = 1000.0
+
+
+@dataclass(frozen=True)
+class Place:
+    """A CRS, what turns local metres (m, 2 or 3) into its coordinates and back, and metres per unit in plan."""
+
+    crs: QgsCoordinateReferenceSystem
+    to_map: Callable[[np.ndarray], np.ndarray]
+    from_map: Callable[[np.ndarray], np.ndarray]
+    unit: float = 1.0
+
+
+def place_of_cloud(cloud: Cloud) -> Place:
+    """Return the place of what stages make of ``cloud``."""
+    return Place(crs_of(cloud.wkt), cloud.to_map, cloud.from_map, cloud.units.horizontal)
+
+
+def place_of_layers(layers: dict[Source, QgsProcessingFeatureSource], monitor: Monitor) -> Optional[Place]:
+    """Return the place of what a stage makes of layers alone: in the CRS of the first, from a round origin at its edge.
+
+    It is None where there are no layers.
+
+    Raises
+    ------
+    ValueError
+        If the coordinates of the first layer are degrees.
+    """
+    if not layers:
+        return None
+    source, layer = next(iter(layers.items()))
+    crs = layer.sourceCrs()
+    refuse_degrees(source.title, crs)
+    if not crs.isValid():
+        monitor.warn(f"{source.title} names no coordinate reference system; its coordinates are taken as meters.")
+    plane, height = metres_per_unit(crs)
+    units = np.array([plane, plane, height])
+    extent = layer.sourceExtent()
+    corner = (0.0, 0.0) if extent.isNull() else (extent.xMinimum(), extent.yMinimum())
+    origin = np.append(np.floor(np.array(corner) * plane / _ORIGIN_STEP) * _ORIGIN_STEP, 0.0)
+
+    def to_map(local: np.ndarray) -> np.ndarray:
+        axes = np.shape(local)[-1]
+        return (np.asarray(local, float) + origin[:axes]) / units[:axes]
+
+    def from_map(there: np.ndarray) -> np.ndarray:
+        axes = np.shape(there)[-1]
+        return np.asarray(there, float) * units[:axes] - origin[:axes]
+
+    return Place(crs, to_map, from_map, plane)
+
+
+def refuse_degrees(title: str, crs: QgsCoordinateReferenceSystem) -> None:
+    """Refuse a CRS in which nothing can be measured."""
+    if crs.isValid() and crs.isGeographic():
+        raise ValueError(
+            f"The coordinates of {title} are degrees ({crs.userFriendlyIdentifier()}); "
+            "reproject the layer to a projected system in meters or feet first."
+        )

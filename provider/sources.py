@@ -1,0 +1,206 @@
+"""Vector layers as input: declared, checked, and read as the features that stages are given."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any, Callable, Optional
+
+import numpy as np
+from qgis.core import (
+    Qgis,
+    QgsCoordinateTransform,
+    QgsCsException,
+    QgsFeatureRequest,
+    QgsGeometry,
+    QgsProcessingAlgorithm,
+    QgsProcessingContext,
+    QgsProcessingFeatureSource,
+    QgsProcessingParameterFeatureSource,
+    QgsProviderRegistry,
+    QgsVariantUtils,
+    QgsWkbTypes,
+)
+
+from ..algorithms.stage import Features, Monitor, Source
+from .places import Place, refuse_degrees
+from .vectors import SOURCE_TYPES
+
+_TYPES = {
+    "Polygon": Qgis.GeometryType.Polygon,
+    "LineString": Qgis.GeometryType.Line,
+    "Point": Qgis.GeometryType.Point,
+}
+_WORDS = {"Polygon": "polygons", "LineString": "lines", "Point": "points"}
+_BETWEEN_CHECKS = 1000
+_WKB_POINT, _WKB_LINE, _WKB_POLYGON = 1, 2, 3
+_Z_OF_OLD_WKB = 0x80000000
+
+
+def source_name(source: Source) -> str:
+    """Return the parameter's name, ``OLD_MAP`` of ``old_map``."""
+    return source.name.upper()
+
+
+def source_parameter(source: Source) -> QgsProcessingParameterFeatureSource:
+    """Return the Processing parameter of a source."""
+    definition = QgsProcessingParameterFeatureSource(
+        source_name(source), source.title, [SOURCE_TYPES[source.geometry]], optional=source.optional
+    )
+    definition.setHelp(source.help)
+    return definition
+
+
+def find_source(
+    algorithm: QgsProcessingAlgorithm, source: Source, parameters: dict, context: QgsProcessingContext
+) -> Optional[QgsProcessingFeatureSource]:
+    """Return the layer that a parameter gives; None where an optional one is not given.
+
+    Raises
+    ------
+    ValueError
+        If it is missing, or no vector layer, or of another kind of geometry.
+    """
+    name = source_name(source)
+    value = parameters.get(name)
+    if QgsVariantUtils.isNull(value) or value == "":
+        if source.optional:
+            return None
+        raise ValueError(f"{source.title} ({name}) is missing; choose a layer of {_WORDS[source.geometry]}.")
+    found = algorithm.parameterAsSource(parameters, name, context)
+    if found is None:
+        raise ValueError(f"{source.title} ({name}) must be a vector layer; there is none at {value}.")
+    kind = QgsWkbTypes.geometryType(found.wkbType())
+    if kind not in (_TYPES[source.geometry], Qgis.GeometryType.Unknown):
+        raise ValueError(
+            f"{source.title} ({name}) must be a layer of {_WORDS[source.geometry]}, got {found.sourceName()!r} with "
+            f"{QgsWkbTypes.geometryDisplayString(kind).lower()} geometries; choose another."
+        )
+    return found
+
+
+def source_files(
+    algorithm: QgsProcessingAlgorithm, sources: Iterable[Source], parameters: dict, context: QgsProcessingContext
+) -> list[Path]:
+    """Return the files of the layers that an algorithm reads, where they have one; refuse as :func:`find_source`."""
+    files = []
+    for source in sources:
+        if find_source(algorithm, source, parameters, context) is None:
+            continue
+        layer = algorithm.parameterAsVectorLayer(parameters, source_name(source), context)
+        if layer is not None:
+            uri = QgsProviderRegistry.instance().decodeUri(layer.providerType(), layer.source())
+            files.append(Path(uri.get("path") or ""))
+    return [path for path in files if path.is_file()]
+
+
+def read_source(
+    source: Source, layer: QgsProcessingFeatureSource, place: Place, context: QgsProcessingContext, monitor: Monitor
+) -> Features:
+    """Return a layer as a stage is given it: parts of geometries in local metres, with all attributes.
+
+    Arcs become lines. Features without a sound geometry of the declared kind are left out, which a
+    warning counts. Heights are taken in the vertical unit of the place; geometries that lack some are flat.
+    """
+    transform = _transform(source, layer, place, context, monitor)
+    geometries: list = []
+    rows: list = []
+    count = left_out = 0
+    request = QgsFeatureRequest()
+    for feature in layer.getFeatures(request, Qgis.ProcessingFeatureSourceFlag.SkipGeometryValidityChecks):
+        if count % _BETWEEN_CHECKS == 0:
+            monitor.progress(min(1.0, count / max(1, layer.featureCount())))
+        parts = _parts(feature.geometry(), source.geometry, transform, place)
+        geometries += parts
+        rows += [feature.attributes()] * len(parts)
+        count += 1
+        left_out += not parts
+    if left_out:
+        monitor.warn(
+            f"{source.title}: {left_out} of {count} features are left out; "
+            f"they have no valid geometry of {_WORDS[source.geometry]}."
+        )
+    names = layer.fields().names()
+    return Features(geometries, {name: _column([row[i] for row in rows]) for i, name in enumerate(names)})
+
+
+def _transform(
+    source: Source, layer: QgsProcessingFeatureSource, place: Place, context: QgsProcessingContext, monitor: Monitor
+) -> QgsCoordinateTransform:
+    """Return what brings a layer to the place; nothing to do where one of the two names no CRS."""
+    own = layer.sourceCrs()
+    if own.isValid() and place.crs.isValid():
+        return QgsCoordinateTransform(own, place.crs, context.transformContext())
+    if own.isValid():
+        refuse_degrees(source.title, own)
+        monitor.warn(f"{source.title} is in {own.userFriendlyIdentifier()}; so, it is taken, is all that names no CRS.")
+    elif place.crs.isValid():
+        monitor.warn(f"{source.title} names no CRS; it is taken to be in {place.crs.userFriendlyIdentifier()}.")
+    return QgsCoordinateTransform()
+
+
+def _parts(geometry: QgsGeometry, kind: str, transform: QgsCoordinateTransform, place: Place) -> list:
+    """Return the parts of a geometry as :class:`Features` holds them; none where it is not sound or of another kind."""
+    if geometry.isNull() or geometry.isEmpty() or geometry.type() != _TYPES[kind]:
+        return []
+    straight = QgsGeometry(geometry.constGet().segmentize())
+    if not straight.isGeosValid():
+        return []
+    try:
+        straight.transform(transform)
+    except QgsCsException:
+        return []
+    straight.get().dropMValue()
+    parts = [_vertices(bytes(part.asWkb()), place) for part in straight.asGeometryCollection()]
+    if not all(len(rings) and all(np.isfinite(ring).all() for ring in rings) for rings in parts):
+        return []
+    return [_SHAPES[kind](rings) for rings in parts]
+
+
+def _vertices(wkb: bytes, place: Place) -> list:
+    """Return the vertices of WKB in local metres, one array (m, 2 or 3) per ring; none of what is no simple shape."""
+    code = int.from_bytes(wkb[1:5], "little")
+    kind = (code & 0xFFFF) % 1000
+    width = 3 if code & _Z_OF_OLD_WKB or (code & 0xFFFF) // 1000 == 1 else 2
+    if kind == _WKB_POINT:
+        rings = [np.frombuffer(wkb, "<f8", width, 5)[None]]
+    elif kind == _WKB_LINE:
+        rings = list(_rings(wkb, 5, width))
+    else:
+        rings = list(_rings(wkb, 9, width)) if kind == _WKB_POLYGON else []
+    return [place.from_map(ring if np.isfinite(ring).all() else ring[:, :2]) for ring in rings]
+
+
+def _rings(wkb: bytes, at: int, width: int) -> Iterator[np.ndarray]:
+    while at < len(wkb):
+        n = int.from_bytes(wkb[at : at + 4], "little")
+        yield np.frombuffer(wkb, "<f8", n * width, at + 4).reshape(n, width)
+        at += 4 + 8 * n * width
+
+
+def _polygon(rings: list) -> list:
+    """Return rings that turn as they should: the exterior counterclockwise, holes clockwise."""
+    return [ring if (_doubled_area(ring) > 0) == (i == 0) else ring[::-1] for i, ring in enumerate(rings)]
+
+
+def _doubled_area(ring: np.ndarray) -> float:
+    x, y = (ring[:, :2] - ring[0, :2]).T
+    return float((x[:-1] * y[1:] - x[1:] * y[:-1]).sum())
+
+
+_SHAPES: dict[str, Callable[[list], Any]] = {
+    "Polygon": _polygon,
+    "LineString": lambda rings: rings[0],
+    "Point": lambda rings: rings[0][0],
+}
+
+
+def _column(values: list) -> Any:
+    """Return an attribute's values: int64, or float64 with NaN for NULL, or what they are with None for NULL."""
+    plain = [None if QgsVariantUtils.isNull(value) else value for value in values]
+    kinds = {type(value) for value in plain}
+    if kinds == {int}:
+        return np.array(plain, np.int64)
+    if kinds and kinds <= {int, float, type(None)} and kinds != {type(None)}:
+        return np.array([np.nan if value is None else value for value in plain], float)
+    return plain
