@@ -409,6 +409,10 @@ class Stage:
     def sorted(self, returned: Any) -> Made:
         """Give what the function returned its names."""
         results = list(returned) if isinstance(returned, tuple) else [returned]
+        names = (*(self.creates or self.writes), *self.layers, *self.rasters)
+        declared = self.selects + len(names) + bool(self.measures)
+        if len(results) != max(1, declared):
+            raise TypeError(f"{self.name} declares {declared} results and returned {len(results)}.")
         return Made(
             selected=results.pop(0) if self.selects else None,
             dimensions={name: results.pop(0) for name in self.creates or self.writes},

@@ -16,7 +16,19 @@ from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.dimensions import DIMENSIONS
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.run import Outcome, run_stage
-from lidar_buildings.algorithms.stage import REFERENCE_PREFIX, Cancelled, Features, Monitor, Report, Stage, Tunable
+from lidar_buildings.algorithms.stage import (
+    DIMENSION,
+    REFERENCE_PREFIX,
+    VALUES,
+    Cancelled,
+    Features,
+    Made,
+    Monitor,
+    Report,
+    Stage,
+    Surface,
+    Tunable,
+)
 
 # Released ids: people's saved models and scripts call them. A new one is added, none is ever changed.
 STAGE_IDS = {
@@ -39,6 +51,7 @@ PIPELINE_IDS = {"detectbuildings", "detectbuildings2019"}
 
 CLASSIFYING = {"classify", "complete"}
 VERBS = CLASSIFYING | {"segment", "cluster", "compute", "extract", "regularize", "simplify", "assess", "simulate"}
+VERBS |= {"filter", "downsample", "merge", "rasterize", "map", "compare", "interpret"}
 # Words that keep their capitals inside a title or label.
 NAMES = {"Gauss", "Delaunay", "Shannon"}
 # Shares (0 to 1) and multiples of what the data show.
@@ -63,6 +76,9 @@ NUMBERS = [p for p in TUNABLES if p.values[1].type in (int, float)]
 AUTOMATIC = [p for p in TUNABLES if p.values[1].is_automatic]
 each_stage = pytest.mark.parametrize("stage", ALL.values(), ids=lambda stage: stage.name)
 each_reader = pytest.mark.parametrize(
+    "stage", [stage for stage in ALL.values() if stage.reads_cloud], ids=lambda stage: stage.name
+)
+each_with_input = pytest.mark.parametrize(
     "stage", [stage for stage in ALL.values() if not stage.creates], ids=lambda stage: stage.name
 )
 
@@ -120,34 +136,71 @@ def scene() -> dict[str, np.ndarray]:
     }
 
 
-def arrays_of(stage: Stage, dimensions: dict[str, np.ndarray]) -> list[np.ndarray]:
+def arrays_of(stage: Stage, dimensions: dict[str, np.ndarray]) -> list[Any]:
     """Return copies of what the stage's positional arguments name, locked against writing."""
-    copies = []
+    copies: list[Any] = []
     for name in (*stage.reads, *stage.optional):
         plain = name[len(REFERENCE_PREFIX) :] if name.startswith(REFERENCE_PREFIX) else name
+        if name == VALUES:
+            plain = named_by_default(stage)
+        if not plain:
+            copies.append(None)
+            continue
         assert plain in dimensions, f"{stage.name} reads {plain}: give scene() that dimension"
-        copies.append(dimensions[plain].copy())
-        copies[-1].flags.writeable = False
+        values = dimensions[plain].copy()
+        values.flags.writeable = False
+        copies.append(parts_of(values) if stage.merges else values)
     return copies
 
 
-def made_by(stage: Stage, dimensions: dict[str, np.ndarray] | None = None, **tunables: Any) -> tuple[list, Monitor]:
-    """Run the stage's function on the scene and return what it made, as a list, and what it told."""
+def named_by_default(stage: Stage) -> str:
+    """Return the Python name of the dimension that the stage reads as ``values``, "" when it is none."""
+    wanted = QUICK.get(stage.name, {}).get(DIMENSION, stage.tunables[DIMENSION].default)
+    return next((name for name, one in DIMENSIONS.items() if wanted in (name, *one.disk)), "")
+
+
+def parts_of(values: np.ndarray) -> list[np.ndarray]:
+    """Return what a stage that merges is given of the scene: every other point, and the others."""
+    return [values[::2], values[1::2]]
+
+
+def drawn(stage: Stage, shift: tuple[float, float] = (0.0, 0.0)) -> dict[str, Features]:
+    """Return a layer for each source of the stage: the houses of the scene, each layer a hand further north."""
+    boxes = ((5, 5, 17, 13), (22, 20, 31, 34))
+    layers = {}
+    for i, source in enumerate(stage.sources):
+        rings = [np.array([[w, s], [e, s], [e, n], [w, n], [w, s]], float) for w, s, e, n in boxes]
+        rings = [ring + (0.0, 0.125 * i) + shift for ring in rings]
+        shapes = {"Polygon": [[ring] for ring in rings], "LineString": rings, "Point": [ring[0] for ring in rings]}
+        layers[source.name] = Features(shapes[source.geometry], {"id": np.array([1, 2]), "name": ["one", None]})
+    return layers
+
+
+def made_by(
+    stage: Stage,
+    dimensions: dict[str, np.ndarray] | None = None,
+    layers: dict[str, Features] | None = None,
+    **tunables: Any,
+) -> tuple[Made, Monitor]:
+    """Run the stage's function on the scene and return what it made and what it told."""
     monitor = Monitor()
-    arguments = {**QUICK.get(stage.name, {}), **tunables}
-    made = stage.function(*arrays_of(stage, dimensions or scene()), **arguments, monitor=monitor)
-    return (list(made) if isinstance(made, tuple) else [made]), monitor
+    given = {**(layers or drawn(stage)), **QUICK.get(stage.name, {}), **tunables}
+    return stage.sorted(stage.function(*arrays_of(stage, dimensions or scene()), **given, monitor=monitor)), monitor
 
 
 @cache
-def made_by_default(name: str) -> tuple[list, Monitor]:
+def made_by_default(name: str) -> tuple[Made, Monitor]:
     return made_by(ALL[name])
 
 
-def assert_same(made: list, expected: list) -> None:
+def results_of(made: Made) -> list:
+    """Return all results in a row."""
+    return [made.selected, *made.dimensions.values(), *made.layers.values(), *made.rasters.values(), made.report]
+
+
+def assert_same(made: Made, expected: Made) -> None:
     """Hold two results of a stage to each other, bit by bit."""
-    assert len(made) == len(expected)
-    for one, other in zip(made, expected):
+    for one, other in zip(results_of(made), results_of(expected)):
         if isinstance(one, Features):
             assert one.columns.keys() == other.columns.keys()
             for name, column in one.columns.items():
@@ -156,6 +209,9 @@ def assert_same(made: list, expected: list) -> None:
             assert len(flat) == len(flat_other)
             for ring, other_ring in zip(flat, flat_other):
                 np.testing.assert_array_equal(ring, other_ring)
+        elif isinstance(one, Surface):
+            np.testing.assert_array_equal(one.values, other.values)
+            assert (one.west, one.north, one.cell_size) == (other.west, other.north, other.cell_size)
         elif isinstance(one, Report):
             np.testing.assert_equal(one.values, other.values)
         elif one is None:
@@ -194,7 +250,8 @@ def test_ids_are_frozen():
 def test_name_is_a_verb_and_tells_what_is_set(stage):
     verb = stage.name.split("_")[0]
     assert verb in VERBS
-    assert (verb in CLASSIFYING) == ("classification" in stage.writes)
+    # Points that are made of others have a class of theirs too.
+    assert stage.selects or stage.merges or (verb in CLASSIFYING) == ("classification" in stage.writes)
 
 
 @each_stage
@@ -224,9 +281,10 @@ def test_number_has_bounds_and_a_unit_where_one_fits(stage, tunable):
 @each_stage
 def test_dimensions_are_those_of_the_table(stage):
     for name in (*stage.reads, *stage.optional):
-        assert (name[len(REFERENCE_PREFIX) :] if name.startswith(REFERENCE_PREFIX) else name) in DIMENSIONS
+        plain = name[len(REFERENCE_PREFIX) :] if name.startswith(REFERENCE_PREFIX) else name
+        assert plain in DIMENSIONS or plain == VALUES
     assert set(stage.writes) | set(stage.creates) <= set(DIMENSIONS)
-    assert stage.writes or stage.creates or stage.layers or stage.measures, "the stage makes nothing"
+    assert stage.makes_cloud or stage.layers or stage.rasters or stage.measures, "the stage makes nothing"
 
 
 @each_stage
@@ -236,6 +294,16 @@ def test_layers_and_measures_are_labeled(stage):
         assert is_sentence_case(layer.title)
         assert all(field.help.strip() for field in layer.fields)
         assert len({field.name for field in layer.fields}) == len(layer.fields)
+    for raster in stage.rasters:
+        assert is_sentence_case(raster.title)
+    for source in stage.sources:
+        assert source.geometry in {"Polygon", "LineString", "Point"}
+        assert is_sentence_case(source.title)
+        assert is_sentences(source.help)
+    made = [one.name for one in (*stage.layers, *stage.rasters)] + ["output", "report"]
+    given = [source.name for source in stage.sources] + [*stage.tunables, "input", "inputs", "reference"]
+    for names in (made + given, made + [measure.name for measure in stage.measures]):
+        assert len(set(names)) == len(names), "inputs and outputs of an algorithm have names of their own"
     assert len({measure.name for measure in stage.measures}) == len(stage.measures)
     assert all(measure.title for measure in stage.measures)
 
@@ -246,6 +314,8 @@ def test_docstring_tells_what_comes_in_and_goes_out(stage):
     assert stage.section("Returns")
     for name in (*stage.reads, *stage.optional):
         assert re.search(rf"^(?:.*, )?{name}(?:, .*)? : .*shape", stage.section("Parameters"), re.MULTILINE), name
+    for source in stage.sources:
+        assert re.search(rf"^(?:.*, )?{source.name}(?:, .*)? : .*Features", stage.section("Parameters"), re.MULTILINE)
     assert bool(stage.section("References")) != (stage.name in WITHOUT_REFERENCES)
     for name in stage.tunables:
         assert f"\n{name} : " in stage.function.__doc__
@@ -290,7 +360,7 @@ def test_bounds_refuse_with_a_sentence_that_names_the_tunable(stage, tunable):
 def test_function_refuses_like_the_declaration(stage, tunable):
     value = values_outside(tunable)[-1]
     with pytest.raises(ValueError, match=re.escape(f"({tunable.name}) must be ")):
-        stage.function(*arrays_of(stage, scene()), **{tunable.name: value})
+        stage.function(*arrays_of(stage, scene()), **drawn(stage), **{tunable.name: value})
 
 
 @pytest.mark.parametrize(("stage", "tunable"), TUNABLES)
@@ -310,23 +380,60 @@ def test_unknown_tunable_is_refused_by_name(stage):
         stage.check({"no_such": 1})
 
 
+def changed(arrays: Any, change) -> Any:
+    """Return an argument changed; of several clouds, the first one's."""
+    if arrays is None:
+        return None
+    return [change(arrays[0]), *arrays[1:]] if isinstance(arrays, list) else change(arrays)
+
+
 @each_reader
 def test_arrays_that_do_not_belong_together_are_refused(stage):
-    arrays = arrays_of(stage, scene())
-    flat, nowhere = arrays[0][:, :2], arrays[0].copy()
-    nowhere[3, 1] = np.nan
+    arrays, layers = arrays_of(stage, scene()), drawn(stage)
+
+    def nowhere(xyz):
+        xyz = xyz.copy()
+        xyz[3, 1] = np.nan
+        return xyz
+
     with pytest.raises(ValueError, match=r"must be of shape \(n, 3\), got \(\d+, 2\)"):
-        stage.function(flat, *arrays[1:])
+        stage.function(changed(arrays[0], lambda xyz: xyz[:, :2]), *arrays[1:], **layers)
     with pytest.raises(ValueError, match=r"1 of \d+ points have coordinates that are not finite"):
-        stage.function(nowhere, *arrays[1:])
-    with pytest.raises(ValueError, match=r"The (point|reference) cloud has no points\."):
-        stage.function(*(array[:0] for array in arrays))
-    for i in range(1, len(arrays)):
-        with pytest.raises(ValueError, match=r"they must be of the same points\."):
-            stage.function(*arrays[:i], arrays[i][:-1], *arrays[i + 1 :])
+        stage.function(changed(arrays[0], nowhere), *arrays[1:], **layers)
+    with pytest.raises(ValueError, match=r"The (point|reference) cloud( 1)? has no points\."):
+        stage.function(*(changed(array, lambda values: values[:0]) for array in arrays), **layers)
+    for i, array in enumerate(arrays):
+        if i and array is not None:
+            shorter = changed(array, lambda values: values[:-1])
+            with pytest.raises(ValueError, match=r"they must be of the same points\."):
+                stage.function(*arrays[:i], shorter, *arrays[i + 1 :], **layers)
+
+
+@pytest.mark.parametrize("stage", [stage for stage in ALL.values() if stage.merges], ids=lambda stage: stage.name)
+def test_clouds_to_merge_are_at_least_two(stage):
+    with pytest.raises(ValueError, match=rf"^{stage.title} needs at least two point clouds, got 1; add another\.$"):
+        stage.function(*(arrays and arrays[:1] for arrays in arrays_of(stage, scene())), **drawn(stage))
+
+
+@each_with_input
+def test_a_layer_that_is_needed_is_asked_for(stage):
+    for source in stage.sources:
+        if source.optional:
+            continue
+        layers = {**drawn(stage), source.name: None}
+        with pytest.raises(ValueError, match=re.escape(f"{source.title} ({source.name}) is missing; choose a layer.")):
+            stage.function(*arrays_of(stage, scene()), **layers)
 
 
 # --- The results.
+
+
+def points_of(stage: Stage, made: Made) -> np.ndarray:
+    """Return which point of the scene each point of the result is."""
+    points = np.arange(len(scene()["xyz"]))
+    if stage.merges:
+        return np.concatenate(parts_of(points))
+    return points[made.selected] if stage.selects else points
 
 
 def promised_dtype(name: str) -> np.dtype:
@@ -334,36 +441,47 @@ def promised_dtype(name: str) -> np.dtype:
 
 
 @each_stage
-def test_results_have_the_promised_number_shape_and_dtype(stage):
+def test_results_have_the_promised_shape_and_dtype(stage):
     made, _ = made_by_default(stage.name)
-    names = stage.creates or stage.writes
-    assert len(made) == len(names) + len(stage.layers) + bool(stage.measures)
-    n = len(made[0]) if stage.creates else len(scene()["xyz"])
-    for name, values in zip(names, made):
+    n = len(made.dimensions["xyz"]) if stage.creates else len(scene()["xyz"])
+    if stage.selects:
+        assert made.selected.dtype == np.int64
+        assert len(np.unique(made.selected)) == len(made.selected) > 0, "the scene has points to keep"
+        assert 0 <= made.selected.min() <= made.selected.max() < n
+        n = len(made.selected)
+    for name, values in made.dimensions.items():
         if values is None and not stage.creates:
             continue  # a choice of the user: not asked for
         components = len(DIMENSIONS[name].disk)
         assert values.shape == ((n,) if components == 1 else (n, components)), name
         assert np.can_cast(values.dtype, promised_dtype(name), "same_kind"), name
-    for layer, features in zip(stage.layers, made[len(names) :]):
+    for layer in stage.layers:
+        features = made.layers[layer.name]
         assert isinstance(features, Features)
         assert list(features.columns) == [field.name for field in layer.fields]
         assert all(len(column) == len(features) for column in features.columns.values())
         assert len(features) > 0, "the scene has something for every layer"
+    for surface in made.rasters.values():
+        assert isinstance(surface, Surface)
+        assert surface.values.dtype == np.float32
+        assert surface.values.ndim == 2
+        assert np.isfinite(surface.values).any(), "the scene has something for every raster"
+        assert not np.isinf(surface.values).any()
+        assert surface.cell_size > 0
     if stage.measures:
-        assert isinstance(made[-1], Report)
-        assert set(made[-1].values) == {measure.name for measure in stage.measures}
-        assert "<html" in made[-1].html
-        assert "</html>" in made[-1].html
+        assert isinstance(made.report, Report)
+        assert set(made.report.values) == {measure.name for measure in stage.measures}
+        assert "<html" in made.report.html
+        assert "</html>" in made.report.html
 
 
 @each_stage
 def test_polygons_are_closed_and_turn_as_promised(stage):
     made, _ = made_by_default(stage.name)
-    for layer, features in zip(stage.layers, made[len(stage.creates or stage.writes) :]):
+    for layer in stage.layers:
         if layer.geometry != "Polygon":
             continue
-        for rings in features.geometries:
+        for rings in made.layers[layer.name].geometries:
             for i, ring in enumerate(rings):
                 assert len(ring) >= 4
                 np.testing.assert_array_equal(ring[0], ring[-1])
@@ -374,20 +492,24 @@ def test_polygons_are_closed_and_turn_as_promised(stage):
 
 @each_stage
 def test_runner_stores_what_the_stage_makes(stage):
-    cloud = None if stage.creates else create_cloud(scene())
+    whole = create_cloud(scene()) if stage.reads_cloud else None
+    cloud = [whole.take(part) for part in parts_of(np.arange(len(whole)))] if stage.merges else whole
     reference = create_cloud(scene()) if stage.reads_reference else None
     # A file rounds coordinates to millimeters: the function has to see the same.
-    seen = scene() if cloud is None else {name: cloud.get(name) for name in scene()}
+    seen = scene() if whole is None else {name: whole.get(name) for name in scene()}
     expected, _ = made_by(stage, seen)
-    outcome: Outcome = run_stage(stage, cloud, reference, **QUICK.get(stage.name, {}))
-    for name, values in zip(stage.creates or stage.writes, expected):
-        if name == "xyz":
+    outcome: Outcome = run_stage(stage, cloud, reference, sources=drawn(stage), **QUICK.get(stage.name, {}))
+    for name, values in expected.dimensions.items():
+        if name == "xyz" and values is not None:
             np.testing.assert_allclose(outcome.cloud.to_map(outcome.cloud.get(name)), values, rtol=0, atol=0.0006)
         elif values is not None:
             stored = outcome.cloud.get(name)
             assert stored.dtype == promised_dtype(name)
             np.testing.assert_array_equal(stored, values.astype(promised_dtype(name)))
+    if stage.makes_cloud and not stage.creates and "intensity" not in stage.writes:
+        np.testing.assert_array_equal(outcome.cloud.get("intensity"), seen["intensity"][points_of(stage, expected)])
     assert set(outcome.layers) == {layer.name for layer in stage.layers}
+    assert set(outcome.rasters) == {raster.name for raster in stage.rasters}
     assert (outcome.report is not None) == bool(stage.measures)
 
 
@@ -425,7 +547,7 @@ class Listener(Monitor):
 @each_stage
 def test_progress_grows_from_0_to_1(stage):
     listener = Listener()
-    stage.function(*arrays_of(stage, scene()), **QUICK.get(stage.name, {}), monitor=listener)
+    stage.function(*arrays_of(stage, scene()), **drawn(stage), **QUICK.get(stage.name, {}), monitor=listener)
     assert listener.heard, "a stage that tells nothing can't be stopped"
     assert all(0 <= fraction <= 1 for fraction in listener.heard)
     assert all(before <= after + 1e-9 for before, after in zip(listener.heard, listener.heard[1:]))
@@ -434,43 +556,61 @@ def test_progress_grows_from_0_to_1(stage):
 @each_stage
 def test_stage_stops_when_it_is_cancelled(stage):
     with pytest.raises(Cancelled):
-        stage.function(*arrays_of(stage, scene()), **QUICK.get(stage.name, {}), monitor=Listener(stop_at=1))
+        stage.function(
+            *arrays_of(stage, scene()), **drawn(stage), **QUICK.get(stage.name, {}), monitor=Listener(stop_at=1)
+        )
 
 
 # --- What must not matter.
 
 
-@each_reader
+def assert_alike(stage: Stage, made: Made, expected: Made) -> None:
+    """Hold layers, rasters and numbers of two results to each other, but for what rounding does to coordinates."""
+    for name, features in made.layers.items():
+        assert len(features) == len(expected.layers[name])
+    for name, surface in made.rasters.items():
+        np.testing.assert_allclose(surface.values, expected.rasters[name].values, rtol=1e-4, atol=1e-4, err_msg=name)
+    if stage.measures:
+        np.testing.assert_equal(made.report.values, expected.report.values)
+
+
+@each_with_input
 def test_place_on_earth_does_not_matter(stage):
+    shift = (2.0**19, 2.0**22)  # powers of two: the differences stay exactly the same
     far = dict(scene())
-    far["xyz"] = far["xyz"] + (2.0**19, 2.0**22, 0.0)  # powers of two: the differences stay exactly the same
-    made, expected = made_by(stage, far)[0], made_by_default(stage.name)[0]
-    for name, values, wanted in zip(stage.writes, made, expected):
+    far["xyz"] = far["xyz"] + (*shift, 0.0)
+    made, expected = made_by(stage, far, drawn(stage, shift))[0], made_by_default(stage.name)[0]
+    if stage.selects:
+        np.testing.assert_array_equal(made.selected, expected.selected)
+    for name, values in made.dimensions.items():
         if values is not None:
-            np.testing.assert_allclose(values, wanted, rtol=1e-4, atol=1e-4, err_msg=name)
-    for features, wanted in zip(made[len(stage.writes) :], expected[len(stage.writes) :]):
-        if isinstance(features, Features):
-            assert len(features) == len(wanted)
-        else:
-            np.testing.assert_equal(features.values, wanted.values)
+            near = values - (*shift, 0.0) if name == "xyz" else values
+            np.testing.assert_allclose(near, expected.dimensions[name], rtol=1e-4, atol=1e-4, err_msg=name)
+    for name, surface in made.rasters.items():
+        wanted = expected.rasters[name]
+        assert (surface.west - shift[0], surface.north - shift[1]) == pytest.approx((wanted.west, wanted.north))
+    assert_alike(stage, made, expected)
 
 
 @each_reader
 def test_order_of_points_does_not_matter(stage):
-    order = np.random.default_rng(7).permutation(len(scene()["xyz"]))
+    random = np.random.default_rng(7)
+    order = np.arange(len(scene()["xyz"]))
+    for part in parts_of(order) if stage.merges else [order]:
+        part[:] = random.permutation(part)
     shuffled = {name: values[order] for name, values in scene().items()}
     made, expected = made_by(stage, shuffled)[0], made_by_default(stage.name)[0]
-    for name, values, wanted in zip(stage.writes, made, expected):
-        if values is None:
+    points, wanted_points = order[points_of(stage, made)], points_of(stage, expected)
+    here, there = np.argsort(points), np.argsort(wanted_points)
+    np.testing.assert_array_equal(points[here], wanted_points[there])
+    for name, found in made.dimensions.items():
+        if found is None:
             continue
-        if name.endswith("_id"):
-            pairs = np.unique(np.column_stack([values, wanted[order]]), axis=0)
+        values, wanted = found[here], expected.dimensions[name][there]
+        if name.endswith("_id") and name != "point_source_id":
+            pairs = np.unique(np.column_stack([values, wanted]), axis=0)
             assert len(pairs) == len(np.unique(values)) == len(np.unique(wanted)), "the same groups under other numbers"
-            np.testing.assert_array_equal(values == 0, wanted[order] == 0)
+            np.testing.assert_array_equal(values == 0, wanted == 0)
         else:
-            np.testing.assert_allclose(values, wanted[order], rtol=1e-4, atol=1e-4, err_msg=name)
-    for result, wanted in zip(made[len(stage.writes) :], expected[len(stage.writes) :]):
-        if isinstance(result, Features):
-            assert len(result) == len(wanted)
-        else:
-            np.testing.assert_equal(result.values, wanted.values)
+            np.testing.assert_allclose(values, wanted, rtol=1e-4, atol=1e-4, err_msg=name)
+    assert_alike(stage, made, expected)
