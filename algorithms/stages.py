@@ -13,6 +13,7 @@ from .preparation.noise_statistical import classify_noise_statistical
 from .quality.buildings import assess_buildings
 from .quality.ground import assess_ground
 from .segmentation.clusters import segment_clusters
+from .segmentation.planes_ransac import segment_planes_ransac
 from .segmentation.regions import segment_regions
 from .segmentation.roofs import segment_roofs
 from .simulation.town import simulate_town
@@ -28,6 +29,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     segment_regions,
     segment_roofs,
     segment_clusters,
+    segment_planes_ransac,
     classify_buildings,
     complete_buildings,
     extract_footprints,

@@ -40,6 +40,7 @@ STAGE_IDS = {
     "segmentregions",
     "segmentroofs",
     "segmentclusters",
+    "segmentplanesransac",
     "classifybuildings",
     "completebuildings",
     "extractfootprints",

@@ -26,6 +26,10 @@ _SMOOTH_SHARE = 0.2
 # Coordinates are stored to a centimetre or a millimetre: no noise below that can be told.
 _LEAST_NOISE = 0.01
 
+# Roof tiles, gravel and gutters are rougher than the smoothest surfaces, by which the noise is measured,
+# and the more so the farther apart the points are (m; share of the point spacing).
+_LEAST_ROUGHNESS, _ROUGHNESS_OF_SPACING = 0.02, 0.05
+
 
 def surface_noise(xyz: np.ndarray, tree: Any = None) -> float:
     """Return the standard deviation of points across the smooth surfaces of a cloud.
@@ -54,6 +58,43 @@ def surface_noise(xyz: np.ndarray, tree: Any = None) -> float:
     covariances, _ = Nearest(count).covariances(np.ascontiguousarray(xyz.T), tree, _sample(xyz))
     across = symmetric_eigenvalues(covariances)[:, 2] * count / (count - 3)
     return max(float(np.sqrt(np.quantile(across, _SMOOTH_SHARE))), _LEAST_NOISE)
+
+
+def surface_density(xyz: np.ndarray, tree: Any = None) -> float:
+    """Return the points per square metre of the surfaces that they lie on, however steep these are.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points (m), n >= 1.
+    tree : scipy.spatial.cKDTree, optional
+        Tree of ``xyz``, built when absent.
+
+    Returns
+    -------
+    float
+        Density (points/m²) around the median point, counted in the circle of its 12 nearest; infinite where all lie
+        at one place.
+    """
+    count = min(_NEIGHBORS, len(xyz))
+    tree = spatial.cKDTree(xyz) if tree is None else tree
+    reach = float(np.median(tree.query(xyz[_sample(xyz)], k=[count], workers=-1)[0]))
+    return count / (np.pi * reach**2) if reach > 0 else float("inf")
+
+
+def surface_roughness(xyz: np.ndarray, density: float, tree: Any = None) -> float:
+    """Return how far points of one roof surface may lie off its plane (one standard deviation, m).
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points (m), n >= 1.
+    density : float
+        Points per square metre.
+    tree : scipy.spatial.cKDTree, optional
+        Tree of ``xyz``, built when absent.
+    """
+    return float(np.hypot(max(surface_noise(xyz, tree), _LEAST_ROUGHNESS), _ROUGHNESS_OF_SPACING / np.sqrt(density)))
 
 
 def surface_neighbors(xyz: np.ndarray, density: float, noise: float, tree: Any = None) -> int:

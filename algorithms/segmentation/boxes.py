@@ -97,9 +97,9 @@ class Boxes:
             yield pair, self.start[here[pair]] + a, other.start[there[pair]] + b
 
 
-def around() -> list[Offset]:
-    """Return the steps to the boxes around a box that can hold a near point, nearest first."""
-    steps = range(-_REACH, _REACH + 1)
+def around(reach: int = _REACH) -> list[Offset]:
+    """Return the steps to the boxes around a box, nearest first."""
+    steps = range(-reach, reach + 1)
     offsets = [(i, j, k) for i in steps for j in steps for k in steps if (i, j, k) != (0, 0, 0)]
     return sorted(offsets, key=lambda offset: (sum(step * step for step in offset), offset))
 

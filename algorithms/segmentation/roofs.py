@@ -8,16 +8,12 @@ import numpy as np
 
 from ..cloud.asprs import NOISE
 from ..cloud.density import point_density
-from ..features.noise import surface_noise
+from ..features.noise import surface_roughness
 from ..params import PointDensity
 from ..stage import Param, stage
 from .connectivity import connect, number_large
 from .extent import plan_areas
 from .patches import segment_patches
-
-# Roof tiles, gravel and gutters are rougher than the smoothest surfaces, by which the noise is measured,
-# and the more so the farther apart the points are (m; share of the point spacing).
-_LEAST_ROUGHNESS, _ROUGHNESS_OF_SPACING = 0.02, 0.05
 
 # Points lower than this stand on the ground (kerbs, cars' bonnets, low plants), m.
 _RAISED = 1.5
@@ -106,7 +102,7 @@ def segment_roofs(
     entropy and the k-means concept, section 4. Sampath, A., Shan, J., 2007, as in "Segment regions".
     """
     density = point_density(xyz) if density is None else density
-    noise = _roughness(xyz, density) if noise is None else noise
+    noise = surface_roughness(xyz, density) if noise is None else noise
     monitor.resolved(density=density, noise=noise)
     used = np.flatnonzero(~np.isin(classification, NOISE))
 
@@ -125,11 +121,6 @@ def segment_roofs(
     cluster_id = segment_id.copy()
     cluster_id[others] = np.where(ids > 0, ids + segment_id.max(initial=0), 0)
     return segment_id, cluster_id
-
-
-def _roughness(xyz: np.ndarray, density: float) -> float:
-    """Return how far points of one roof surface may lie off its plane (one standard deviation, m)."""
-    return float(np.hypot(max(surface_noise(xyz), _LEAST_ROUGHNESS), _ROUGHNESS_OF_SPACING / np.sqrt(density)))
 
 
 def _roofs(

@@ -33,6 +33,7 @@ IDS = {
     "computeheightaboveground",
     "extractfootprints",
     "segmentclusters",
+    "segmentplanesransac",
     "segmentregions",
     "segmentroofs",
     "simulatetown",
