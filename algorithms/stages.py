@@ -8,6 +8,7 @@ from .buildings.buildings import classify_buildings
 from .buildings.complete import complete_buildings
 from .buildings.footprints import extract_footprints
 from .features.features import compute_features
+from .preparation.filter import filter_points
 from .preparation.noise_histogram import classify_noise_histogram
 from .preparation.noise_statistical import classify_noise_statistical
 from .quality.buildings import assess_buildings
@@ -23,6 +24,7 @@ from .terrain.height import compute_height_above_ground
 _FUNCTIONS: tuple[Any, ...] = (
     classify_noise_histogram,
     classify_noise_statistical,
+    filter_points,
     classify_ground_tin,
     compute_height_above_ground,
     compute_features,

@@ -34,6 +34,7 @@ from lidar_buildings.algorithms.stage import (
 STAGE_IDS = {
     "classifynoisehistogram",
     "classifynoisestatistical",
+    "filterpoints",
     "classifygroundtin",
     "computeheightaboveground",
     "computefeatures",
@@ -55,14 +56,14 @@ VERBS = CLASSIFYING | {"segment", "cluster", "compute", "extract", "regularize",
 VERBS |= {"filter", "downsample", "merge", "rasterize", "map", "compare", "interpret"}
 # Words that keep their capitals inside a title or label.
 NAMES = {"Gauss", "Delaunay", "Shannon"}
-# Shares (0 to 1) and multiples of what the data show.
-WITHOUT_UNIT = {"deviations", "forest", "max_penetration", "overlap"}
+# Shares (0 to 1), multiples of what the data show, and limits of whatever dimension is named.
+WITHOUT_UNIT = {"low", "high", "deviations", "forest", "max_penetration", "overlap"}
 # Our own, after no publication.
 WITHOUT_REFERENCES = {"simulate_town"}
 # Automatic tunables that matter only beside another setting.
 USED_WITH: dict[tuple[str, str], dict[str, Any]] = {("compute_features", "radius"): {"neighborhood": "radius"}}
 # Tunables at which a stage that makes its own data is quick.
-QUICK: dict[str, dict[str, Any]] = {"simulate_town": {"size": 80.0}}
+QUICK: dict[str, dict[str, Any]] = {"filter_points": {"dimension": "Intensity"}, "simulate_town": {"size": 80.0}}
 
 # As they are when tests are collected: tests of the provider add toys of their own while they run.
 ALL = dict(STAGES)

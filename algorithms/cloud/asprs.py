@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from enum import IntEnum
 
+import numpy as np
+
 
 class PointClass(IntEnum):
     """Standard classes of LAS 1.4; 8 and 12 are reserved, 23-63 too, 64-255 are the user's."""
@@ -32,3 +34,24 @@ class PointClass(IntEnum):
 
 
 NOISE = (PointClass.LOW_NOISE, PointClass.HIGH_NOISE)
+
+
+def parse_classes(text: str, label: str = "Ignored classes") -> np.ndarray:
+    """Return the class numbers of a text such as ``"7, 18, 64-67"``, ascending; ``label`` is what people call it.
+
+    Raises
+    ------
+    ValueError
+        If the text is anything else than numbers from 0 to 255 and ranges of them.
+    """
+    classes: set[int] = set()
+    for part in filter(None, (piece.strip() for piece in text.split(","))):
+        ends = [end.strip() for end in part.split("-")]
+        if (
+            len(ends) > 2
+            or not all(end.isdecimal() and int(end) <= 255 for end in ends)
+            or int(ends[0]) > int(ends[-1])
+        ):
+            raise ValueError(f"{label} must be numbers from 0 to 255 and ranges such as 64-67, got {part!r}.")
+        classes.update(range(int(ends[0]), int(ends[-1]) + 1))
+    return np.array(sorted(classes), dtype=np.int64)

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..cloud.asprs import PointClass
+from ..cloud.asprs import PointClass, parse_classes
 from ..cloud.cells import Grid, connected_cells, find_cells, grid_over
 from ..params import AssessmentCellSize, IgnoredClasses, MinBuildingArea
 from ..stage import Features, Field, Layer, Measure, Report, stage
 from .cell_outlines import outline_cells
-from .matching import compared_points, parse_classes
+from .matching import compared_points
 from .page import Row, build_page, draw_map, outcome_of, percent
 
 _RATES = (

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..cloud.asprs import PointClass
+from ..cloud.asprs import PointClass, parse_classes
 from ..params import IgnoredClasses
 from ..stage import Measure, Report, stage
-from .matching import compared_points, parse_classes
+from .matching import compared_points
 from .page import Row, build_page, draw_map, outcome_of, percent
 
 

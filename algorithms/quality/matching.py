@@ -111,24 +111,3 @@ def _match_nearest(xyz: np.ndarray, reference_xyz: np.ndarray, found: np.ndarray
     near = np.flatnonzero(np.isfinite(distance))
     _, first = np.unique(nearest[near], return_index=True)
     found[left[near[first]]] = free[nearest[near[first]]]
-
-
-def parse_classes(text: str) -> np.ndarray:
-    """Return the class numbers of a text such as ``"7, 18, 64-67"``, ascending.
-
-    Raises
-    ------
-    ValueError
-        If the text is anything else than numbers from 0 to 255 and ranges of them.
-    """
-    classes: set[int] = set()
-    for part in filter(None, (piece.strip() for piece in text.split(","))):
-        ends = [end.strip() for end in part.split("-")]
-        if (
-            len(ends) > 2
-            or not all(end.isdecimal() and int(end) <= 255 for end in ends)
-            or int(ends[0]) > int(ends[-1])
-        ):
-            raise ValueError(f"Ignored classes must be numbers from 0 to 255 and ranges such as 64-67, got {part!r}.")
-        classes.update(range(int(ends[0]), int(ends[-1]) + 1))
-    return np.array(sorted(classes), dtype=np.int64)

@@ -32,6 +32,7 @@ IDS = {
     "computefeatures",
     "computeheightaboveground",
     "extractfootprints",
+    "filterpoints",
     "segmentclusters",
     "segmentplanesransac",
     "segmentregions",

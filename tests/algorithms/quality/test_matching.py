@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.quality.matching import match_points, parse_classes
+from lidar_buildings.algorithms.cloud.asprs import parse_classes
+from lidar_buildings.algorithms.quality.matching import match_points
 
 
 @pytest.fixture
