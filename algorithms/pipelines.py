@@ -6,26 +6,34 @@ the graph that a user opens in the modeller and the chain that runs here can't d
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Any, Optional
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, Optional, Union
 
 from .cloud.cloud import Cloud
 from .run import Outcome, run_stage
-from .stage import Monitor, Stage, Tunable
+from .stage import Features, Monitor, Report, Source, Stage, Tunable, given_layers
 from .stages import STAGES
+
+_CLOUD, _REPORT = "output", "report"
 
 
 @dataclass(frozen=True)
 class Step:
-    """One stage of a chain; it works on the cloud that the step before it made.
+    """One stage of a chain; it works on the last cloud that a step before it made.
 
     ``name`` prefixes the composite's parameters (``GROUND_CELL_SIZE``); ``tunables``
-    are the defaults that differ from the stage's own.
+    are the defaults that differ from the stage's own. ``cloud`` names an earlier step
+    whose cloud it works on instead. ``layers`` says which of its sources is a layer of an
+    earlier step, ``{"new": "walls.footprints"}``; the composite asks for all others,
+    under the source's own name. A stage that merges is given all clouds of the composite.
     """
 
     name: str
     stage_name: str
     tunables: dict[str, Any] = field(default_factory=dict)
+    cloud: str = ""
+    layers: dict[str, str] = field(default_factory=dict)
 
     @property
     def stage(self) -> Stage:
@@ -34,14 +42,26 @@ class Step:
 
 
 @dataclass(frozen=True)
+class Output:
+    """One output of a composite: its name, and which output of which step it is.
+
+    ``of`` is ``"output"`` for a cloud, ``"report"``, or the name of a layer or raster.
+    """
+
+    name: str
+    step: Step
+    of: str
+
+
+@dataclass(frozen=True)
 class Pipeline:
     """A chain of stages that users meet as one algorithm.
 
-    The last step that writes a cloud gives the composite's OUTPUT; every layer of
-    every step is an output of its own. ``shared`` names tunables that are one parameter
-    of the composite and go to all the steps beside them; they have the same declaration
-    and default there. ``shown`` are the parameters that users meet first, in this order;
-    all others are folded away.
+    The last step that makes a cloud gives the composite's OUTPUT; every layer, raster and
+    report of every step is an output of its own, and so are the clouds of the steps that
+    ``kept`` names. ``shared`` names tunables that are one parameter of the composite and go
+    to all the steps beside them; they have the same declaration and default there. ``shown``
+    are the parameters that users meet first, in this order; all others are folded away.
     """
 
     name: str
@@ -54,6 +74,7 @@ class Pipeline:
     steps: tuple[Step, ...]
     shared: dict[str, tuple[str, ...]] = field(default_factory=dict)
     shown: tuple[str, ...] = ()
+    kept: tuple[str, ...] = ()
 
     def parameter(self, step: Step, tunable: str) -> str:
         """Return what the composite calls a step's tunable: ``ground_cell_size``, shared ``min_area``."""
@@ -68,10 +89,65 @@ class Pipeline:
                 found.setdefault(self.parameter(step, tunable.name), (step, tunable))
         return {name: found[name] for name in (*self.shown, *(name for name in found if name not in self.shown))}
 
+    def cloud_of(self, step: Step) -> Optional[str]:
+        """Return the name of the step whose cloud ``step`` works on, "" for what is given, None where it reads none."""
+        if not step.stage.reads_cloud:
+            return None
+        if step.stage.merges or step.cloud:
+            return step.cloud
+        before = self.steps[: self.steps.index(step)]
+        return next((other.name for other in reversed(before) if other.stage.makes_cloud), "")
+
+    @property
+    def reads_cloud(self) -> bool:
+        """Whether the composite is given a cloud, or several."""
+        return any(self.cloud_of(step) == "" for step in self.steps)
+
+    @property
+    def merges(self) -> bool:
+        """Whether it is given several clouds."""
+        return any(step.stage.merges for step in self.steps)
+
+    @property
+    def sources(self) -> dict[str, Source]:
+        """Vector layers that the composite is given, by name."""
+        found: dict[str, Source] = {}
+        for step in self.steps:
+            for source in step.stage.sources:
+                if source.name not in step.layers:
+                    found.setdefault(source.name, source)
+        return found
+
+    @property
+    def outputs(self) -> tuple[Output, ...]:
+        """All outputs in the order of steps; where two would have one name, the step's name is put before it."""
+        makers = [step for step in self.steps if step.stage.makes_cloud]
+        found = [(step, of) for step in self.steps for of in _made(step)]
+        names = [of for _, of in found]
+        outputs = []
+        for step, of in found:
+            is_single = step is makers[-1] if of == _CLOUD else names.count(of) == 1
+            if is_single or of != _CLOUD or step.name in self.kept:
+                outputs.append(Output(of if is_single else f"{step.name}_{of}", step, of))
+        return tuple(outputs)
+
+    def needs(self, output: Output) -> bool:
+        """Whether an output is made even if nobody asks for it: a cloud, or a layer that another step reads."""
+        return output.of == _CLOUD or any(
+            f"{output.step.name}.{output.of}" in step.layers.values() for step in self.steps
+        )
+
     @property
     def id(self) -> str:
         """Processing id, ``detectbuildings``."""
         return self.name.replace("_", "")
+
+
+def _made(step: Step) -> list[str]:
+    """Return what a step makes: its cloud, layers, rasters, report."""
+    stage = step.stage
+    files = [*(layer.name for layer in stage.layers), *(raster.name for raster in stage.rasters)]
+    return [_CLOUD] * stage.makes_cloud + files + [_REPORT] * bool(stage.measures)
 
 
 _SANTOS = (
@@ -136,25 +212,79 @@ _PIPELINES = (
 PIPELINES = {pipeline.name: pipeline for pipeline in _PIPELINES}
 
 
-def run_pipeline(pipeline: Pipeline, cloud: Cloud, monitor: Optional[Monitor] = None, **tunables: Any) -> Outcome:
-    """Run all steps on ``cloud``, in place, and return the cloud and every layer.
+@dataclass
+class Results(Outcome):
+    """What a chain made: the last cloud, and layers, rasters, reports and kept clouds by the composite's names."""
 
-    ``tunables`` are named ``<step>_<tunable>`` (``ground_cell_size``), and so are the monitor's values;
-    what steps share is named ``<tunable>``.
+    clouds: dict[str, Cloud] = field(default_factory=dict)
+    reports: dict[str, Report] = field(default_factory=dict)
+
+
+def run_pipeline(
+    pipeline: Pipeline,
+    cloud: Union[Cloud, Sequence[Cloud], None] = None,
+    monitor: Optional[Monitor] = None,
+    sources: Optional[dict[str, Optional[Features]]] = None,
+    **tunables: Any,
+) -> Results:
+    """Run all steps on ``cloud``, in place as far as they do so, and return all that they made.
+
+    ``cloud`` is several clouds where the pipeline merges. ``sources`` are the layers that the pipeline
+    is given, by name, in metres relative to the cloud's origin. ``tunables`` are named
+    ``<step>_<tunable>`` (``ground_cell_size``), and so are the monitor's values; what steps share is
+    named ``<tunable>``.
 
     Raises
     ------
     ValueError
-        If a tunable is unknown or a step refuses its data.
+        If a tunable or layer is unknown, a layer is missing, or a step refuses its data.
     """
     monitor = monitor or Monitor()
     chosen = _by_step(pipeline, tunables)
-    layers = {}
+    given = given_layers(pipeline.name, pipeline.sources.values(), sources or {})
+    # Later steps change the cloud that they work on: what is wanted as it was is copied when it is made.
+    wanted = {*pipeline.kept, *(step.cloud for step in pipeline.steps)}
+    copies: dict[str, Cloud] = {}
+    outcomes: dict[str, Outcome] = {}
+    current = cloud
     for i, step in enumerate(pipeline.steps):
         part = monitor.part(i / len(pipeline.steps), (i + 1) / len(pipeline.steps), f"{step.name}_")
-        outcome = run_stage(step.stage, cloud, monitor=part, **chosen[step.name])
-        layers.update(outcome.layers)
-    return Outcome(cloud, layers)
+        layers = {source.name: _layer(step, source.name, outcomes, given) for source in step.stage.sources}
+        works_on = copies[step.cloud].copy() if step.cloud else current if step.stage.reads_cloud else None
+        outcome = run_stage(step.stage, works_on, monitor=part, sources=layers, **chosen[step.name])
+        outcomes[step.name] = replace(outcome, cloud=None)
+        if step.stage.makes_cloud:
+            current = outcome.cloud
+            if step.name in wanted and outcome.cloud is not None:
+                copies[step.name] = outcome.cloud.copy()
+    return _results(pipeline, outcomes, copies, current if isinstance(current, Cloud) else None)
+
+
+def _layer(
+    step: Step, source: str, outcomes: dict[str, Outcome], given: dict[str, Optional[Features]]
+) -> Optional[Features]:
+    """Return the layer that a source of a step is: of an earlier step, or given."""
+    if source not in step.layers:
+        return given[source]
+    earlier, layer = step.layers[source].split(".")
+    return outcomes[earlier].layers[layer]
+
+
+def _results(
+    pipeline: Pipeline, outcomes: dict[str, Outcome], copies: dict[str, Cloud], cloud: Optional[Cloud]
+) -> Results:
+    results = Results(cloud)
+    for output in pipeline.outputs:
+        outcome = outcomes[output.step.name]
+        if output.of in outcome.layers:
+            results.layers[output.name] = outcome.layers[output.of]
+        elif output.of in outcome.rasters:
+            results.rasters[output.name] = outcome.rasters[output.of]
+        elif output.of == _REPORT and outcome.report is not None:
+            results.report = results.reports[output.name] = outcome.report
+        elif output.name != _CLOUD and output.step.name in copies:
+            results.clouds[output.name] = copies[output.step.name]
+    return results
 
 
 def _by_step(pipeline: Pipeline, tunables: dict[str, Any]) -> dict[str, dict[str, Any]]:

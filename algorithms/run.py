@@ -11,7 +11,7 @@ import numpy as np
 from .cloud.cloud import Cloud, create_cloud
 from .cloud.dimensions import DIMENSIONS
 from .cloud.merging import merge_records
-from .stage import DIMENSION, REFERENCE_PREFIX, VALUES, Features, Made, Monitor, Report, Stage, Surface
+from .stage import DIMENSION, REFERENCE_PREFIX, VALUES, Features, Made, Monitor, Report, Stage, Surface, given_layers
 from .stages import STAGES
 
 
@@ -54,7 +54,7 @@ def run_stage(
         other.origin = clouds[0].origin
     used = [_used(one) for one in clouds]
     arrays = [_argument(stage, name, clouds, reference, used, arguments) for name in (*stage.reads, *stage.optional)]
-    layers = _layers(stage, sources or {})
+    layers = given_layers(stage.name, stage.sources, sources or {})
     made = stage.sorted(stage.function(*arrays, **layers, **arguments, monitor=monitor or Monitor()))
     return Outcome(_result(stage, clouds, used, made), made.layers, made.report, made.rasters)
 
@@ -103,15 +103,6 @@ def _present(cloud: Cloud, name: str) -> np.ndarray:
     if writers and not cloud.has(name):
         raise ValueError(f"The cloud has no {DIMENSIONS[name].disk[0]} dimension; run '{writers[0]}' first.")
     return cloud.get(name)
-
-
-def _layers(stage: Stage, sources: dict[str, Optional[Features]]) -> dict[str, Optional[Features]]:
-    """Return a layer, or None, for each source of the stage."""
-    names = [source.name for source in stage.sources]
-    unknown = [name for name in sources if name not in names]
-    if unknown:
-        raise ValueError(f"{stage.name} reads no layer {unknown[0]!r}; it reads {', '.join(names) or 'none'}.")
-    return {name: sources.get(name) for name in names}
 
 
 def _result(stage: Stage, clouds: list[Cloud], used: list[Optional[np.ndarray]], made: Made) -> Optional[Cloud]:

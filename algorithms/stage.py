@@ -33,6 +33,7 @@ import inspect
 import math
 import textwrap
 import typing
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from typing import Any, Callable, Optional
 
@@ -228,6 +229,35 @@ class Features:
 
     def __len__(self) -> int:
         return len(self.geometries)
+
+
+def given_layers(
+    reader: str, sources: Iterable[Source], given: dict[str, Optional[Features]]
+) -> dict[str, Optional[Features]]:
+    """Return the layer that is given for each source, None where an optional one is not; refuse what does not fit.
+
+    Parameters
+    ----------
+    reader : str
+        Name of the stage or pipeline that reads them.
+    sources : iterable of Source
+        What it reads.
+    given : dict of str to Features
+        Layers by the names of sources.
+
+    Raises
+    ------
+    ValueError
+        If a layer is missing, or one is given that nobody reads.
+    """
+    wanted = {source.name: source for source in sources}
+    unknown = [name for name in given if name not in wanted]
+    if unknown:
+        raise ValueError(f"{reader} reads no layer {unknown[0]!r}; it reads {', '.join(wanted) or 'none'}.")
+    for source in wanted.values():
+        if given.get(source.name) is None and not source.optional:
+            raise ValueError(f"{source.title} ({source.name}) is missing; choose a layer.")
+    return {name: given.get(name) for name in wanted}
 
 
 @dataclass(frozen=True)
@@ -467,7 +497,8 @@ def stage(
         def checked(*args: Any, **kwargs: Any) -> Any:
             bound = signature.bind(*args, **kwargs)
             _check_arrays(bound.arguments, declared)
-            _check_sources(bound.arguments, declared)
+            layers = {source.name: bound.arguments.get(source.name) for source in declared.sources}
+            given_layers(declared.name, declared.sources, layers)
             for name, tunable in declared.tunables.items():
                 if name in bound.arguments:
                     bound.arguments[name] = tunable.check(bound.arguments[name])
@@ -553,12 +584,6 @@ def _check_array(name: str, array: np.ndarray, cloud: str, lengths: dict[str, tu
         raise ValueError(f"{name} has {len(array)} values, {first} has {length}; they must be of the same points.")
     if length == 0:
         raise ValueError(f"The {cloud} has no points.")
-
-
-def _check_sources(arguments: dict[str, Any], declared: Stage) -> None:
-    for source in declared.sources:
-        if arguments.get(source.name) is None and not source.optional:
-            raise ValueError(f"{source.title} ({source.name}) is missing; choose a layer.")
 
 
 def _check_coordinates(name: str, array: np.ndarray) -> None:

@@ -7,7 +7,7 @@ import re
 from typing import Optional
 
 from ..algorithms.cloud.dimensions import DIMENSIONS
-from ..algorithms.pipelines import Pipeline, Step
+from ..algorithms.pipelines import Output, Pipeline, Step
 from ..algorithms.stage import REFERENCE_PREFIX, VALUES, Field, Layer, Raster, Source, Stage, Tunable
 
 
@@ -40,12 +40,32 @@ def pipeline_help(pipeline: Pipeline) -> str:
         section = "Parameters" if name in pipeline.shared else f"Parameters: {step_title(step)}"
         rows[section].append(tunable_help(tunable, step.tunables.get(tunable.name, tunable.default)))
     parts += [_list(title, items) for title, items in rows.items() if items]
-    last = [name for step in pipeline.steps for name in step.stage.writes]
-    made = [f"<b>OUTPUT</b>: the cloud with {_disk_names(last)}."] if last else []
-    made += [_layer_text(layer) for step in pipeline.steps for layer in step.stage.layers]
+    sources = [source_text(source) for source in pipeline.sources.values()]
+    parts.append(_list("Layers", sources))
+    made = sorted(pipeline.outputs, key=lambda output: output.name != "output")
     return "\n".join(
-        part for part in (*parts, _list("Outputs", made), _section("References", pipeline.references)) if part
+        part
+        for part in (
+            *parts,
+            _list("Outputs", [_output_text(pipeline, output) for output in made]),
+            _section("References", pipeline.references),
+        )
+        if part
     )
+
+
+def _output_text(pipeline: Pipeline, output: Output) -> str:
+    """Return what one output of a composite is."""
+    name, stage = output.name.upper(), output.step.stage
+    if output.name == "output":
+        written = dict.fromkeys(name for step in pipeline.steps for name in step.stage.writes)
+        return f"<b>{name}</b>: the cloud with {_disk_names(written)}."
+    if output.of == "output":
+        return f"<b>{name}</b>: the cloud as the step {step_title(output.step)} leaves it."
+    if output.of == "report":
+        return _report_text(stage, name)
+    texts = {layer.name: _layer_text(layer, name) for layer in stage.layers}
+    return {**texts, **{raster.name: _raster_text(raster, name) for raster in stage.rasters}}[output.of]
 
 
 def step_title(step: Step) -> str:
@@ -95,11 +115,10 @@ def _default_text(tunable: Tunable, default: object) -> str:
 def outputs(stage: Stage) -> list:
     """Return what a stage makes, one HTML text per output."""
     made = [f"<b>OUTPUT</b>: {_cloud_text(stage)}."] if stage.makes_cloud else []
-    made += [_layer_text(layer) for layer in stage.layers]
-    made += [_raster_text(raster) for raster in stage.rasters]
+    made += [_layer_text(layer, layer.name.upper()) for layer in stage.layers]
+    made += [_raster_text(raster, raster.name.upper()) for raster in stage.rasters]
     if stage.measures:
-        measures = ", ".join(f"{m.title} ({m.unit})" if m.unit else m.title for m in stage.measures)
-        made.append(f"<b>REPORT</b>: a page with {html.escape(measures)}; each is an output of its own too.")
+        made.append(_report_text(stage, "REPORT"))
     used = [f"{t.name.upper()}_USED" for t in stage.tunables.values() if t.is_automatic and t.type in (int, float)]
     if used:
         made.append(f"<b>{', '.join(used)}</b>: the value that was used, given or automatic.")
@@ -117,14 +136,19 @@ def _cloud_text(stage: Stage) -> str:
     return f"the cloud{written}; everything else in it stays as it was"
 
 
-def _raster_text(raster: Raster) -> str:
+def _report_text(stage: Stage, name: str) -> str:
+    measures = ", ".join(f"{m.title} ({m.unit})" if m.unit else m.title for m in stage.measures)
+    return f"<b>{name}</b>: a page with {html.escape(measures)}; each is an output of its own too."
+
+
+def _raster_text(raster: Raster, name: str) -> str:
     unit = f" ({raster.unit})" if raster.unit else ""
-    return f"<b>{raster.name.upper()}</b>: {html.escape(raster.title + unit)}, a raster."
+    return f"<b>{name}</b>: {html.escape(raster.title + unit)}, a raster."
 
 
-def _layer_text(layer: Layer) -> str:
+def _layer_text(layer: Layer, name: str) -> str:
     fields = "; ".join(_field_text(declared) for declared in layer.fields)
-    return f"<b>{layer.name.upper()}</b>: {html.escape(layer.title)}, with the attributes {fields}."
+    return f"<b>{name}</b>: {html.escape(layer.title)}, with the attributes {fields}."
 
 
 def _field_text(declared: Field) -> str:

@@ -8,6 +8,7 @@ from typing import Any, Optional
 
 from qgis.core import (
     Qgis,
+    QgsProcessing,
     QgsProcessingContext,
     QgsProcessingException,
     QgsProcessingFeedback,
@@ -19,15 +20,15 @@ from qgis.core import (
     QgsProcessingModelParameter,
     QgsProcessingOutputNumber,
     QgsProcessingParameterDefinition,
+    QgsProcessingParameterMultipleLayers,
     QgsProcessingParameterPointCloudLayer,
 )
 from qgis.PyQt.QtCore import QPointF, QSizeF, QUrl
 from qgis.PyQt.QtGui import QColor, QIcon
 
 from ..algorithms.cloud.cloud import check_readable
-from ..algorithms.pipelines import Pipeline, Step
+from ..algorithms.pipelines import Output, Pipeline, Step
 from . import paths
-from .clouds import CloudParameter, cloud_path
 from .crs import crs_units
 from .dependencies import missing_sentence
 from .errors import one_sentence
@@ -35,7 +36,8 @@ from .feedback import ChainFeedback
 from .help import lower_first, pipeline_help, step_title
 from .outputs import check_targets, files_of, nothing_left_on_failure
 from .parameters import number_outputs, parameter, parameter_name, tunable_values
-from .stage_algorithm import INPUT, OUTPUT, cloud_title
+from .sources import source_files, source_name, source_parameter
+from .stage_algorithm import INPUT, INPUTS, OUTPUT, cloud_title, input_parameter, input_paths
 
 PROVIDER = "lidarbuildings"
 
@@ -82,9 +84,9 @@ class _Layout:
     def __init__(self) -> None:
         self.top = 150.0
 
-    def band(self, n_parameters: int) -> float:
-        """Return the height of a band with so many parameters."""
-        return self.rows(n_parameters) * self.cell.height() + 1.5 * self.margin
+    def band(self, n_parameters: int, n_outputs: int) -> float:
+        """Return the height of a band with so many parameters and outputs."""
+        return max(self.rows(n_parameters), n_outputs) * self.cell.height() + 1.5 * self.margin
 
     def rows(self, n_parameters: int) -> int:
         """Return the rows of cells for so many parameters."""
@@ -112,25 +114,45 @@ class _Layout:
 
 
 def build_model(pipeline: Pipeline) -> QgsProcessingModelAlgorithm:
-    """Return the model of a pipeline: steps in order, each fed by the last one that wrote a cloud."""
+    """Return the model of a pipeline: steps in order, each fed as the pipeline says."""
     model = QgsProcessingModelAlgorithm(pipeline.title, pipeline.group, "")
     layout = _Layout()
-    where = QgsProcessingModelParameter(INPUT)
-    where.setPosition(QPointF(layout.right, 60))
-    where.setSize(layout.box)
-    model.addModelParameter(QgsProcessingParameterPointCloudLayer(INPUT, "Point cloud"), where)
-    source = QgsProcessingModelChildParameterSource.fromModelParameter(INPUT)
-    writers = [step for step in pipeline.steps if step.stage.writes]
-    title = cloud_title([step.stage for step in writers])
+    inputs = _inputs(pipeline)
+    for i, definition in enumerate(inputs):
+        where = QgsProcessingModelParameter(definition.name())
+        where.setPosition(QPointF(layout.right - i * layout.cell.width(), 60))
+        where.setSize(layout.box)
+        model.addModelParameter(definition, where)
     definitions = pipeline_parameters(pipeline)
     for step in pipeline.steps:
         _add_parameters(model, pipeline, step, definitions, layout)
-        _add_step(model, pipeline, step, source, layout, title if step in writers[-1:] else "")
-        if step.stage.writes:
-            source = QgsProcessingModelChildParameterSource.fromChildOutput(step.name, OUTPUT)
+        _add_step(model, pipeline, step, layout)
     model.setHelpContent({"ALG_DESC": pipeline_help(pipeline), "SHORT_DESCRIPTION": pipeline.summary})
-    model.setParameterOrder([INPUT, *definitions])
+    model.setParameterOrder([*(definition.name() for definition in inputs), *definitions])
     return model
+
+
+def _inputs(pipeline: Pipeline) -> list[QgsProcessingParameterDefinition]:
+    """Return what a composite reads, clouds and layers, in QGIS's own types, as the designer knows them."""
+    clouds: list[QgsProcessingParameterDefinition] = []
+    if pipeline.merges:
+        kind = Qgis.ProcessingSourceType.PointCloud
+        clouds.append(QgsProcessingParameterMultipleLayers(INPUTS, "Point clouds", kind))
+    elif pipeline.reads_cloud:
+        clouds.append(QgsProcessingParameterPointCloudLayer(INPUT, "Point cloud"))
+    return clouds + [source_parameter(source) for source in pipeline.sources.values()]
+
+
+def output_title(pipeline: Pipeline, output: Output) -> str:
+    """Return what an output of a composite is called; the step's name is said where it tells outputs apart."""
+    stage = output.step.stage
+    if output.of == "output":
+        makers = [step.stage for step in pipeline.steps if step.stage.makes_cloud]
+        title = cloud_title(makers if output.name == "output" else [stage])
+    else:
+        titles = {made.name: made.title for made in (*stage.layers, *stage.rasters)}
+        title = titles.get(output.of, "Report")
+    return title if output.name == output.of else step_label(output.step, title)
 
 
 def _first_taken(pipeline: Pipeline, step: Step) -> list[str]:
@@ -162,39 +184,63 @@ def _add_step(
     model: QgsProcessingModelAlgorithm,
     pipeline: Pipeline,
     step: Step,
-    source: QgsProcessingModelChildParameterSource,
     layout: _Layout,
-    title: str,
 ) -> None:
     child = QgsProcessingModelChildAlgorithm(f"{PROVIDER}:{step.stage.id}")
     child.setChildId(step.name)
     child.setDescription(step.stage.title)
-    child.addParameterSources(INPUT, [source])
-    height = layout.band(len(_first_taken(pipeline, step)))
+    for name, source in _sources(pipeline, step).items():
+        child.addParameterSources(name, [source])
+    made = [output for output in pipeline.outputs if output.step is step]
+    height = layout.band(len(_first_taken(pipeline, step)), len(made))
     for tunable in step.stage.tunables.values():
         name = pipeline.parameter(step, tunable.name).upper()
         sources = [QgsProcessingModelChildParameterSource.fromModelParameter(name)]
         child.addParameterSources(parameter_name(tunable), sources)
     child.setPosition(layout.middle(height))
     child.setSize(layout.child)
-    child.setModelOutputs(_model_outputs(step, layout.middle(height), title))
+    child.setModelOutputs(_model_outputs(pipeline, made, layout.middle(height)))
     model.addChildAlgorithm(child)
     model.addGroupBox(_frame(step, layout, height))
     layout.top += height + layout.gap
 
 
-def _model_outputs(step: Step, middle: QPointF, title: str) -> dict[str, QgsProcessingModelOutput]:
-    titles = {OUTPUT: title} if title else {}
-    titles.update({layer.name.upper(): layer.title for layer in step.stage.layers})
+def _sources(pipeline: Pipeline, step: Step) -> dict[str, QgsProcessingModelChildParameterSource]:
+    """Return where a step's cloud and layers come from, by the names of its stage's inputs."""
+    found = {}
+    feeder = pipeline.cloud_of(step)
+    name = INPUTS if step.stage.merges else INPUT
+    if feeder is not None:
+        found[name] = _from_child(feeder, OUTPUT) if feeder else _from_parameter(name)
+    for source in step.stage.sources:
+        if source.name in step.layers:
+            found[source_name(source)] = _from_child(*step.layers[source.name].split("."))
+        else:
+            found[source_name(source)] = _from_parameter(source_name(source))
+    return found
+
+
+def _from_parameter(name: str) -> QgsProcessingModelChildParameterSource:
+    return QgsProcessingModelChildParameterSource.fromModelParameter(name)
+
+
+def _from_child(step_name: str, output: str) -> QgsProcessingModelChildParameterSource:
+    return QgsProcessingModelChildParameterSource.fromChildOutput(step_name, output.upper())
+
+
+def _model_outputs(
+    pipeline: Pipeline, outputs_of_step: list[Output], middle: QPointF
+) -> dict[str, QgsProcessingModelOutput]:
     outputs = {}
-    for i, (name, shown) in enumerate(titles.items()):
+    for i, made in enumerate(outputs_of_step):
+        shown = output_title(pipeline, made)
         # A layer that QGIS loads is called as the model's output.
         output = QgsProcessingModelOutput(shown)
-        output.setChildId(step.name)
-        output.setChildOutputName(name)
+        output.setChildId(made.step.name)
+        output.setChildOutputName(made.of.upper())
         output.setDescription(shown)
-        output.setMandatory(name == OUTPUT)
-        output.setPosition(QPointF(middle.x() + 360, middle.y() + 70 * i))
+        output.setMandatory(pipeline.needs(made))
+        output.setPosition(QPointF(middle.x() + 360, middle.y() + 70 * (i - (len(outputs_of_step) - 1) / 2)))
         output.setSize(QSizeF(240, 40))
         outputs[shown] = output
     return outputs
@@ -236,7 +282,10 @@ class PipelineAlgorithm(QgsProcessingModelAlgorithm):
 
     def _mend_parameters(self) -> None:
         """Let the input take any path, and name outputs by their names instead of their titles."""
-        mended = [self._mended(definition) for definition in self.parameterDefinitions()]
+        # A model's file holds no tooltips.
+        helps = {name: definition.help() for name, definition in pipeline_parameters(self.pipeline).items()}
+        helps.update({source_name(source): source.help for source in self.pipeline.sources.values()})
+        mended = [self._mended(definition, helps) for definition in self.parameterDefinitions()]
         mended.sort(
             key=lambda definition: (
                 definition.isDestination(),
@@ -248,19 +297,24 @@ class PipelineAlgorithm(QgsProcessingModelAlgorithm):
         for definition in mended:
             self.addParameter(definition)
 
-    def _mended(self, definition: QgsProcessingParameterDefinition) -> QgsProcessingParameterDefinition:
-        if definition.name() == INPUT:
-            mended = CloudParameter(INPUT, definition.description())
-            mended.setHelp("File or layer of the points.")
-            return mended
+    def _mended(
+        self, definition: QgsProcessingParameterDefinition, helps: dict[str, str]
+    ) -> QgsProcessingParameterDefinition:
+        if definition.name() in (INPUT, INPUTS):
+            return input_parameter(self.pipeline.merges)
         mended = definition.clone()
+        mended.setHelp(helps.get(definition.name(), definition.help()))
         if definition.isDestination():
             facts = definition.metadata()
-            output = self.childAlgorithm(facts["_modelChildId"]).modelOutput(facts["_modelChildOutputName"])
-            mended.setName(output.childOutputName())
+            made = self.childAlgorithm(facts["_modelChildId"]).modelOutput(facts["_modelChildOutputName"])
+            mended.setName(self._output_name(made.childId(), made.childOutputName()))
             if mended.name() != OUTPUT:
                 mended.setFlags(mended.flags() | Qgis.ProcessingParameterFlag.Optional)
         return mended
+
+    def _output_name(self, step_name: str, of: str) -> str:
+        outputs = ((output.step.name, output.of.upper(), output.name.upper()) for output in self.pipeline.outputs)
+        return next(name for step, made, name in outputs if (step, made) == (step_name, of))
 
     def as_model(self) -> QgsProcessingModelAlgorithm:
         """Return the plain model, as the designer edits it."""
@@ -340,19 +394,23 @@ class PipelineAlgorithm(QgsProcessingModelAlgorithm):
         for step in self.pipeline.steps:
             named = {name: self.pipeline.parameter(step, name).upper() for name in step.stage.tunables}
             tunable_values(self, step.stage, given, context, named)
-        source = cloud_path(self, INPUT, given, context)
-        check_targets(self.destinationParameterDefinitions(), given, [source])
-        # Now, as QGIS opens the input of a model as a layer too, and a damaged COPC can hang it.
-        check_readable(source, crs_units)
+        clouds = input_paths(self, self.pipeline.merges, given, context) if self.pipeline.reads_cloud else []
+        read = [*clouds, *source_files(self, self.pipeline.sources.values(), given, context)]
+        check_targets(self.destinationParameterDefinitions(), given, read)
+        for cloud in clouds:
+            # Now, as QGIS opens the input of a model as a layer too, and a damaged COPC can hang it.
+            check_readable(cloud, crs_units)
 
     def _with_defaults(self, parameters: dict) -> dict:
-        """Return ``parameters`` with the model's defaults, where QGIS would take the child's."""
-        defaults = {
-            definition.name(): definition.defaultValue()
-            for definition in self.parameterDefinitions()
-            if not definition.isDestination() and definition.name() != INPUT
-        }
-        return {**defaults, **parameters}
+        """Return ``parameters`` with the model's defaults, where QGIS would take the child's.
+
+        What one step makes and another one reads is temporary where nobody keeps it.
+        """
+        names = [name.upper() for name in self.pipeline.parameters]
+        defaults = {name: self.parameterDefinition(name).defaultValue() for name in names}
+        needed = [output.name.upper() for output in self.pipeline.outputs if self.pipeline.needs(output)]
+        skipped = [name for name in needed if name != OUTPUT and parameters.get(name) in (None, "")]
+        return {**defaults, **parameters, **dict.fromkeys(skipped, QgsProcessing.TEMPORARY_OUTPUT)}
 
     def processAlgorithm(  # noqa: N802
         self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback

@@ -7,8 +7,9 @@ from lidar_buildings.algorithms import pipelines as module
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.pipelines import PIPELINES, Pipeline, Step, run_pipeline
 from lidar_buildings.algorithms.run import run_stage
-from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.algorithms.stage import Cancelled, Features, Monitor
 from lidar_buildings.algorithms.stages import STAGES
+from lidar_buildings.tests.provider.toys import TOY_MAPPING, TOYS
 
 FIELD, HOUSE, SHED, CROWN, BIRD = range(5)
 
@@ -125,7 +126,7 @@ def calls(monkeypatch):
     """What each stage of a chain is called with, without running it."""
     called = []
 
-    def record(stage, cloud, monitor=None, **tunables):
+    def record(stage, cloud, monitor=None, sources=None, **tunables):
         called.append((stage.name, tunables))
         return module.Outcome(cloud)
 
@@ -253,3 +254,118 @@ def test_a_refusal_of_a_step_gets_through():
     cloud = create_cloud({"xyz": np.outer(np.arange(50.0), [1, 0, 0])})
     with pytest.raises(ValueError, match="lie on one line"):
         run_pipeline(PIPELINES["detect_buildings"], cloud)
+
+
+# --- all kinds of stages in one chain --------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def toys(monkeypatch):
+    """The toy stages among the stages."""
+    for name, stage in TOYS.items():
+        monkeypatch.setitem(STAGES, name, stage)
+
+
+def square(side=10.0, height=0.0):
+    """Return a cloud of a lattice with a block of 20 m in its middle."""
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(side), np.arange(side)))
+    z = np.where((np.abs(x - side / 2) < 2) & (np.abs(y - side / 2) < 2), 20.0, 2.0) + height
+    return create_cloud({"xyz": np.column_stack([x, y, z]), "classification": np.full(len(x), 2)})
+
+
+OLD = Features([[np.array([[1, 1], [3, 1], [3, 3], [1, 3], [1, 1]], float)]], {"id": [1]})
+
+
+def test_a_chain_merges_branches_and_keeps(toys):
+    clouds = [square(), square(height=1.0)]
+    results = run_pipeline(TOY_MAPPING, clouds, sources={"old": OLD})
+    assert [len(cloud) for cloud in clouds] == [100, 100]
+    assert len(results.cloud) == 200
+    assert list(results.clouds) == ["lift_output", "high_output"]
+    high = results.clouds["high_output"]
+    assert len(high) == 18
+    # The second cloud is 1 m higher and lifted by the chain's own half meter.
+    assert sorted(set(high.get("xyz")[:, 2])) == [20.0, 21.5]
+    # The last step that writes works on the lifted cloud again, where the kept one has no cluster ids.
+    assert not results.clouds["lift_output"].has("cluster_id")
+    assert np.bincount(results.cloud.get("cluster_id")).tolist() == [182, 0, 0, 0, 0, 0, 0, 18]
+    assert high.get("cluster_id").tolist() == list(range(1, 19))
+    assert list(results.layers) == ["footprints", "arrows"]
+    assert list(results.rasters) == ["top", "floor"]
+    assert np.nanmax(results.rasters["top"].values) == 21.5
+    assert results.reports == {"report": results.report}
+    # From (2, 2), the old map's middle, to (5, 5), the block's.
+    assert results.report.values["longest"] == pytest.approx(3 * np.sqrt(2))
+
+
+def test_layers_are_asked_for_before_anything_runs(toys, calls):
+    with pytest.raises(ValueError, match=r"^Old map \(old\) is missing; choose a layer\.$"):
+        run_pipeline(TOY_MAPPING, [square(), square()])
+    with pytest.raises(ValueError, match=r"^toy_mapping reads no layer 'areas'; it reads old, extra\.$"):
+        run_pipeline(TOY_MAPPING, [square(), square()], sources={"old": OLD, "areas": OLD})
+    assert calls == []
+
+
+def test_outputs_that_would_have_one_name_have_their_steps(toys):
+    twice = Pipeline(
+        "twice", "Twice", "Toys", "", "", "", "",
+        (Step("lift", "toy_lift"), Step("one", "toy_outline"), Step("two", "toy_outline"), Step("tops", "toy_heights")),
+        kept=("lift",),
+    )  # fmt: skip
+    assert [output.name for output in twice.outputs] == ["output", "one_footprints", "two_footprints", "top", "floor"]
+    assert list(run_pipeline(twice, square()).layers) == ["one_footprints", "two_footprints"]
+
+
+def test_a_chain_of_layers_needs_no_cloud(toys):
+    arrows = Pipeline("arrows", "Arrows", "Toys", "", "", "", "", (Step("arrows", "toy_arrows"),))
+    assert not arrows.reads_cloud
+    results = run_pipeline(arrows, sources={"old": OLD, "new": OLD})
+    assert results.cloud is None
+    assert results.report.values == {"longest": 0.0}
+
+
+def faults(pipeline):
+    """Return what is wrong with a pipeline's wiring."""
+    earlier, found = {}, []
+    for step in pipeline.steps:
+        stage = step.stage
+        if step.cloud and (step.cloud not in earlier or not earlier[step.cloud].makes_cloud):
+            found.append(f"{step.name} works on the cloud of {step.cloud}, which makes none before it")
+        if pipeline.merges and not stage.merges and pipeline.cloud_of(step) == "":
+            found.append(f"{step.name} can't work on several clouds")
+        geometries = {source.name: source.geometry for source in stage.sources}
+        for source, fed in step.layers.items():
+            layers = {f"{name}.{layer.name}": layer for name, one in earlier.items() for layer in one.layers}
+            if fed not in layers or geometries.get(source) != layers[fed].geometry:
+                found.append(f"{step.name} reads {fed} as {source}, which does not fit")
+        for source in stage.sources:
+            if source.name not in step.layers and pipeline.sources[source.name] != source:
+                found.append(f"two steps ask for different layers by the name {source.name}")
+        earlier[step.name] = stage
+    found += [
+        f"{name} keeps no cloud" for name in pipeline.kept if name not in earlier or not earlier[name].makes_cloud
+    ]
+    names = [*pipeline.parameters, *pipeline.sources, *(output.name for output in pipeline.outputs), "input", "inputs"]
+    return found + [f"{name} is two things" for name in set(names) if names.count(name) > 1]
+
+
+@pytest.mark.parametrize("pipeline", [*PIPELINES.values(), TOY_MAPPING], ids=lambda pipeline: pipeline.name)
+def test_the_wiring_of_every_chain_is_sound(toys, pipeline):
+    assert faults(pipeline) == []
+
+
+@pytest.mark.parametrize(
+    ("wrong", "fault"),
+    [
+        ({"steps": (Step("one", "toy_outline"), Step("two", "toy_lift", cloud="one"))}, "makes none before it"),
+        ({"steps": (Step("one", "toy_merge"), Step("two", "toy_lift", cloud="three"))}, "makes none before it"),
+        ({"steps": (Step("one", "toy_lift"), Step("two", "toy_merge"))}, "can't work on several clouds"),
+        ({"steps": (Step("two", "toy_mask", layers={"areas": "one.footprints"}),)}, "does not fit"),
+        ({"steps": (Step("one", "toy_lift"),), "kept": ("two",)}, "keeps no cloud"),
+        ({"steps": (Step("old", "toy_arrows"), Step("top", "toy_arrows"))}, ""),
+    ],
+)
+def test_faults_in_the_wiring_are_seen(toys, wrong, fault):
+    found = faults(Pipeline("wrong", "", "", "", "", "", "", **wrong))
+    assert bool(found) == bool(fault)
+    assert fault in " ".join(found)

@@ -12,7 +12,7 @@ import pytest
 from lidar_buildings.algorithms.cloud.cloud import create_cloud, write_cloud
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.stages import STAGES
-from lidar_buildings.tests.provider.toys import TOY_CHAIN, TOYS
+from lidar_buildings.tests.provider.toys import TOY_CHAIN, TOY_MAPPING, TOYS
 
 # The core is tested without QGIS too; so nothing of QGIS is imported before a fixture asks for it.
 collect_ignore_glob = [] if importlib.util.find_spec("qgis") else ["test_*.py"]
@@ -53,11 +53,12 @@ def provider(qgis_application, tmp_path_factory):
     provider = Provider()
     registry.addProvider(provider)
     folder = tmp_path_factory.mktemp("models")
-    for pipeline in (*PIPELINES.values(), TOY_CHAIN):
+    for pipeline in (*PIPELINES.values(), TOY_CHAIN, TOY_MAPPING):
         models.build_model(pipeline).toFile(str(folder / f"{pipeline.id}.model3"))
     shipped = paths.MODELS
     patch.setattr(paths, "MODELS", folder)
-    patch.setitem(PIPELINES, TOY_CHAIN.name, TOY_CHAIN)
+    for pipeline in (TOY_CHAIN, TOY_MAPPING):
+        patch.setitem(PIPELINES, pipeline.name, pipeline)
     provider.shipped_models = shipped
     provider.refreshAlgorithms()
     yield provider

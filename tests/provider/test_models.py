@@ -15,10 +15,14 @@ from qgis.core import (
 from lidar_buildings.algorithms.cloud.cloud import create_cloud, read_cloud, write_cloud
 from lidar_buildings.algorithms.cloud.dimensions import DIMENSIONS
 from lidar_buildings.algorithms.pipelines import PIPELINES, run_pipeline
+from lidar_buildings.algorithms.stage import Features
 from lidar_buildings.provider import models
+from lidar_buildings.provider.clouds import CloudsParameter
+from lidar_buildings.provider.help import pipeline_help
 from lidar_buildings.provider.outputs import nothing_left_on_failure
+from lidar_buildings.tests.provider.test_kinds import opened, squares, values_of
 from lidar_buildings.tests.provider.test_stage_algorithm import run
-from lidar_buildings.tests.provider.toys import TOY_CHAIN
+from lidar_buildings.tests.provider.toys import TOY_CHAIN, TOY_MAPPING
 
 
 def same_clouds(one, other):
@@ -80,7 +84,7 @@ def village(tmp_path_factory):
     return path
 
 
-@pytest.mark.parametrize("name", [name for name in PIPELINES if name != TOY_CHAIN.name])
+@pytest.mark.parametrize("name", [name for name, one in PIPELINES.items() if one.group != "Toys"])
 def test_shipped_composites_give_in_qgis_what_they_give_in_memory(name, provider, context, log, village, out):
     pipeline = PIPELINES[name]
     given = {"INPUT": str(village), "OUTPUT": str(out / "a.laz"), "FOOTPRINTS": str(out / "f.gpkg")}
@@ -234,13 +238,13 @@ def test_files_that_were_not_touched_stay_after_a_failure(tmp_path):
     assert not new.exists()
 
 
-@pytest.fixture(params=[*PIPELINES, "toy_chain"])
+@pytest.fixture(params=[*PIPELINES, "toy_chain", "toy_mapping"])
 def pipeline(request, provider):
     return PIPELINES[request.param]
 
 
 def test_shipped_models_are_what_the_pipelines_say(pipeline, provider):
-    if pipeline is TOY_CHAIN:
+    if pipeline.group == "Toys":
         pytest.skip("it is not shipped")
     shipped = QgsProcessingModelAlgorithm()
     assert shipped.fromFile(str(provider.shipped_models / f"{pipeline.id}.model3")), "run scripts/generate_resources.py"
@@ -255,13 +259,23 @@ def test_the_graph_is_the_chain(pipeline):
     assert list(children) == sorted(step.name for step in pipeline.steps)
     cloud = None
     for step in pipeline.steps:
-        (source,) = children[step.name].parameterSources()["INPUT"]
+        fed = children[step.name].parameterSources()
+        assert children[step.name].algorithm() is not None
+        for source in step.stage.sources:
+            (layer,) = fed[source.name.upper()]
+            if source.name in step.layers:
+                assert f"{layer.outputChildId()}.{layer.outputName().lower()}" == step.layers[source.name]
+            else:
+                assert layer.parameterName() == source.name.upper()
+        if "xyz" not in step.stage.reads:
+            assert "INPUT" not in fed
+            continue
+        (source,) = fed["INPUTS" if step.stage.merges else "INPUT"]
         if cloud is None:
             assert source.source() == Qgis.ProcessingModelChildParameterSource.ModelParameter
         else:
-            assert (source.outputChildId(), source.outputName()) == (cloud, "OUTPUT")
-        cloud = step.name if step.stage.writes else cloud
-        assert children[step.name].algorithm() is not None
+            assert (source.outputChildId(), source.outputName()) == (step.cloud or cloud, "OUTPUT")
+        cloud = step.name if step.stage.makes_cloud else cloud
     assert model.validate()[0], model.validate()[1]
 
 
@@ -273,3 +287,134 @@ def test_nothing_in_the_graph_overlaps(pipeline):
     for i, (x, y, width, height) in enumerate(boxes):
         for u, v, other_width, other_height in boxes[:i]:
             assert abs(x - u) >= (width + other_width) / 2 or abs(y - v) >= (height + other_height) / 2
+
+
+# --- A chain of all kinds of stages -----------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def mapping(town, tmp_path, context):
+    """What the mapping chain is given: the two halves of the square, and an old map in the project."""
+    paths = []
+    for name, half in (("west", town["xyz"][:, 0] < 85_010), ("east", town["xyz"][:, 0] >= 85_010)):
+        paths.append(str(tmp_path / f"{name}.laz"))
+        write_cloud(create_cloud({k: v[half] for k, v in town.items()}, wkt="EPSG:28992"), paths[-1])
+    old = squares((85_000.0, 446_000.0))
+    context.project().addMapLayer(old)
+    return {"INPUTS": paths, "OLD": old}
+
+
+KEPT = {
+    "LIFT_OUTPUT": "lift.las",
+    "HIGH_OUTPUT": "high.laz",
+    "OUTPUT": "mask.laz",
+    "FOOTPRINTS": "footprints.gpkg",
+    "TOP": "top.tif",
+    "FLOOR": "floor.tif",
+    "ARROWS": "arrows.gpkg",
+    "REPORT": "report.html",
+}
+
+
+def in_memory(given, **tunables):
+    clouds = [read_cloud(path) for path in given["INPUTS"]]
+    ring = np.array([[0, 0], [2, 0], [2, 2], [0, 2], [0, 0]], float)
+    old = Features([[clouds[0].from_map(ring + [85_000, 446_000])]], {"id": [1], "height": [1.0], "word": [""]})
+    return run_pipeline(TOY_MAPPING, clouds, sources={"old": old}, **tunables)
+
+
+def test_all_kinds_of_stages_give_in_qgis_what_they_give_in_memory(provider, context, log, mapping, out):
+    given = {**mapping, **{name: str(out / file) for name, file in KEPT.items()}, "HEIGHTS_CELL_SIZE": 4.0}
+    result = run("toymapping", given, context, log)
+    expected = in_memory(mapping, heights_cell_size=4.0)
+    assert sorted(path.name for path in out.iterdir()) == sorted(KEPT.values())
+    assert {name: result[name] for name in KEPT} == {name: given[name] for name in KEPT}
+
+    same_clouds(read_cloud(out / "mask.laz"), expected.cloud)
+    same_clouds(read_cloud(out / "lift.las"), expected.clouds["lift_output"])
+    same_clouds(read_cloud(out / "high.laz"), expected.clouds["high_output"])
+    assert sorted(set(expected.cloud.get("cluster_id"))) == [0, 7]
+    assert not expected.clouds["lift_output"].has("cluster_id"), "as the step left it"
+    assert len(expected.clouds["high_output"]) == 49 < len(expected.cloud) == 400
+
+    (footprint,) = QgsVectorLayer(result["FOOTPRINTS"], "f", "ogr").getFeatures()
+    assert footprint["height"] == pytest.approx(float(expected.layers["footprints"].columns["height"][0]))
+    for name in ("top", "floor"):
+        values = values_of(opened(result[name.upper()]))
+        np.testing.assert_array_equal(np.where(values == -9999, np.nan, values), expected.rasters[name].values)
+    (arrow,) = QgsVectorLayer(result["ARROWS"], "a", "ogr").getFeatures()
+    assert arrow["length"] == pytest.approx(expected.layers["arrows"].columns["length"][0])
+    assert arrow.geometry().length() == pytest.approx(arrow["length"])
+    # The roof's middle is at (10, 10), the old map's at (1, 1).
+    assert arrow["length"] == pytest.approx(9 * np.sqrt(2))
+    assert result["ARROWS_LONGEST"] == pytest.approx(expected.report.values["longest"])
+    assert (out / "report.html").read_text() == expected.reports["report"].html
+
+
+def test_what_is_not_kept_is_not_written(provider, context, log, mapping, out):
+    result = run("toymapping", {**mapping, "OUTPUT": str(out / "mask.laz")}, context, log)
+    assert [path.name for path in out.iterdir()] == ["mask.laz"]
+    same_clouds(read_cloud(out / "mask.laz"), in_memory(mapping).cloud)
+    assert result["ARROWS_LONGEST"] == pytest.approx(9 * np.sqrt(2))
+
+
+def test_the_mapping_chain_shows_what_it_is_given_and_makes(provider):
+    algorithm = provider.algorithm("toymapping").create()
+    definitions = {definition.name(): definition for definition in algorithm.parameterDefinitions()}
+    assert list(definitions)[:3] == ["INPUTS", "OLD", "EXTRA"]
+    assert isinstance(definitions["INPUTS"], CloudsParameter)
+    optional = Qgis.ProcessingParameterFlag.Optional
+    assert [bool(definitions[name].flags() & optional) for name in ("OLD", "EXTRA")] == [False, True]
+    made = algorithm.destinationParameterDefinitions()
+    assert [d.name() for d in made][0] == "OUTPUT"
+    assert {d.name() for d in made} == set(KEPT)
+    assert {d.name() for d in made if d.flags() & optional} == set(KEPT) - {"OUTPUT"}
+    assert definitions["HIGH_OUTPUT"].description() == "High: selected points"
+    assert [d.name() for d in definitions.values() if not d.help() and not d.isDestination()] == []
+
+
+def test_help_of_a_composite_tells_layers_and_what_is_kept():
+    text = pipeline_help(TOY_MAPPING)
+    assert "<b>OLD</b>: Old map, a layer of polygons. What it was." in text
+    assert "<b>EXTRA</b>: Extra, a layer of points; may be left empty. Anything." in text
+    assert "<b>AREAS</b>" not in text, "a step makes it"
+    assert "<b>HIGH_OUTPUT</b>: the cloud as the step High leaves it." in text
+    assert "<b>TOP</b>: Top (m), a raster." in text
+    assert "<b>REPORT</b>: a page with Longest (m)" in text
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"OLD": None}, "Old map (OLD) is missing; choose a layer of polygons."),
+        ({"INPUTS": ["{one}"]}, "Point clouds (INPUTS) must be at least two, got 1; choose another."),
+        ({"HIGH_OUTPUT": "{one}"}, "is also an input; choose another name."),
+        ({"TOP": "{out}/a.png"}, "a.png can't be written as a raster: give it the extension .tif."),
+        ({"TOP": "{out}/a.tif", "FLOOR": "{out}/a.tif"}, "give each its own."),
+        ({"HEIGHTS_CELL_SIZE": 0}, "Cell size (cell_size) must be at least 0.1 m, got 0.0."),
+    ],
+)
+def test_what_is_wrong_with_a_mapping_is_refused_at_once(provider, context, mapping, out, change, sentence):
+    def filled(value):
+        if isinstance(value, list):
+            return [filled(one) for one in value]
+        return value.format(one=mapping["INPUTS"][0], out=out) if isinstance(value, str) else value
+
+    given = {**mapping, "OUTPUT": str(out / "a.laz"), **{name: filled(value) for name, value in change.items()}}
+    accepted, message = provider.algorithm("toymapping").create().checkParameterValues(given, context)
+    assert not accepted
+    assert message.endswith(sentence)
+
+
+def test_a_mapping_that_fails_late_leaves_nothing(provider, context, log, mapping, out, monkeypatch):
+    from lidar_buildings.provider import stage_algorithm
+
+    def refused(self, *args):
+        assert (out / "footprints.gpkg").is_file()
+        raise ValueError("No page.")
+
+    monkeypatch.setattr(stage_algorithm.StageAlgorithm, "_write_report", refused)
+    given = {**mapping, **{name: str(out / file) for name, file in KEPT.items()}}
+    with pytest.raises(QgsProcessingException, match="No page"):
+        run("toymapping", given, context, log)
+    assert list(out.iterdir()) == []

@@ -251,3 +251,24 @@ TOY_FAILURE = Pipeline(
     "",
     (Step("good", "toy_lift"), Step("bad", "toy_trouble_later")),
 )
+
+# Clouds merged, a branch, layers of steps and of users, rasters, a report, and every cloud kept.
+TOY_MAPPING = Pipeline(
+    "toy_mapping",
+    "Toy mapping",
+    "Toys",
+    "toy",
+    "Compare roofs with an old map.",
+    "A longer text.",
+    "Nobody (2000), Nothing.",
+    (
+        Step("together", "toy_merge", {"apart": 0.5}),
+        Step("lift", "toy_lift", {"base": 2.0}),
+        Step("high", "toy_keep", {"low": 13.0, "dimension": "Z"}),
+        Step("outline", "toy_outline", {"margin": 0.25}),
+        Step("mask", "toy_mask", cloud="lift", layers={"areas": "outline.footprints"}),
+        Step("heights", "toy_heights"),
+        Step("arrows", "toy_arrows", layers={"new": "outline.footprints"}),
+    ),
+    kept=("lift", "high"),
+)
