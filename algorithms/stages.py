@@ -12,6 +12,7 @@ from .preparation.filter import filter_points
 from .preparation.noise_histogram import classify_noise_histogram
 from .preparation.noise_statistical import classify_noise_statistical
 from .quality.buildings import assess_buildings
+from .quality.corners import compare_corners
 from .quality.ground import assess_ground
 from .segmentation.clusters import segment_clusters
 from .segmentation.planes_ransac import segment_planes_ransac
@@ -37,6 +38,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     extract_footprints,
     assess_buildings,
     assess_ground,
+    compare_corners,
     simulate_town,
 )
 

@@ -47,6 +47,7 @@ STAGE_IDS = {
     "extractfootprints",
     "assessbuildings",
     "assessground",
+    "comparecorners",
     "simulatetown",
 }
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019"}
@@ -57,7 +58,7 @@ VERBS |= {"filter", "downsample", "merge", "rasterize", "map", "compare", "inter
 # Words that keep their capitals inside a title or label.
 NAMES = {"Gauss", "Delaunay", "Shannon"}
 # Shares (0 to 1), multiples of what the data show, and limits of whatever dimension is named.
-WITHOUT_UNIT = {"low", "high", "deviations", "forest", "max_penetration", "overlap"}
+WITHOUT_UNIT = {"low", "high", "deviations", "forest", "max_penetration", "min_overlap", "overlap"}
 # Our own, after no publication.
 WITHOUT_REFERENCES = {"simulate_town"}
 # Automatic tunables that matter only beside another setting.

@@ -23,6 +23,7 @@ body { font: 16px/1.5 sans-serif; color: #222; background: #fff; max-width: 60em
 table { border-collapse: collapse; margin: 1em 0 }
 th, td { padding: .3em .8em; border-bottom: 1px solid #ccc; text-align: left; vertical-align: top }
 td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap }
+svg { max-width: 100%; height: auto }
 img { max-width: 100%; border: 1px solid #ccc; image-rendering: pixelated }
 .swatch { display: inline-block; width: .9em; height: .9em; margin: 0 .4em 0 1em; border: 1px solid #888 }
 """

@@ -28,6 +28,7 @@ IDS = {
     "classifygroundtin",
     "classifynoisehistogram",
     "classifynoisestatistical",
+    "comparecorners",
     "completebuildings",
     "computefeatures",
     "computeheightaboveground",

@@ -4,11 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from qgis.core import QgsPointCloudLayer, QgsVectorLayer
+from qgis.core import (
+    QgsExpression,
+    QgsExpressionContext,
+    QgsFeature,
+    QgsGeometry,
+    QgsPointCloudLayer,
+    QgsVectorLayer,
+)
 
 from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.cloud.cloud import create_cloud, write_cloud
 from lidar_buildings.algorithms.cloud.dimensions import DIMENSIONS
+from lidar_buildings.algorithms.quality import corners
 from lidar_buildings.algorithms.quality.buildings import FOUND, INVENTED, INVENTED_PART, MISSED, MISSED_PART
 from lidar_buildings.provider.paths import STYLES
 from lidar_buildings.provider.styles import cloud_style, layer_style
@@ -50,12 +58,34 @@ def test_footprints_are_labeled(qgis_application):
     assert layer.labelsEnabled()
 
 
-def test_every_kind_of_object_has_a_style(qgis_application):
-    layer = QgsVectorLayer("Polygon?field=kind:string", "o", "memory")
-    message, loaded = layer.loadNamedStyle(str(STYLES / "objects.qml"))
+@pytest.mark.parametrize(
+    ("stem", "field", "kinds"),
+    [
+        ("objects", "kind", {FOUND, MISSED, INVENTED, MISSED_PART, INVENTED_PART}),
+        ("compared_buildings", "status", {corners.FOUND, corners.MISSED, corners.NEW}),
+    ],
+)
+def test_every_kind_has_a_style(stem, field, kinds, qgis_application):
+    layer = QgsVectorLayer(f"Polygon?field={field}:string", "o", "memory")
+    message, loaded = layer.loadNamedStyle(str(STYLES / f"{stem}.qml"))
     assert loaded, message
-    styled = {category.value() for category in layer.renderer().categories()}
-    assert styled == {FOUND, MISSED, INVENTED, MISSED_PART, INVENTED_PART}
+    assert layer.renderer().classAttribute() == field
+    assert {category.value() for category in layer.renderer().categories()} == kinds
+
+
+def test_displacements_are_arrows_drawn_ten_times_as_long(qgis_application):
+    layer = QgsVectorLayer("LineString", "d", "memory")
+    message, loaded = layer.loadNamedStyle(str(STYLES / "displacements.qml"))
+    assert loaded, message
+    (rule,) = layer.renderer().rootRule().children()
+    assert rule.label() == "Displacement, drawn 10 times as long"
+    expression = QgsExpression(rule.symbol().symbolLayer(0).geometryExpression())
+    feature = QgsFeature()
+    feature.setGeometry(QgsGeometry.fromWkt("LineString (600000 5000000, 600000.1 4999999.8)"))
+    context = QgsExpressionContext()
+    context.setFeature(feature)
+    context.setGeometry(feature.geometry())
+    assert expression.evaluate(context).asWkt(3) == "LineString (600000 5000000, 600001 4999998)"
 
 
 def test_results_find_their_style():
