@@ -11,6 +11,7 @@ from .features.features import compute_features
 from .preparation.filter import filter_points
 from .preparation.noise_histogram import classify_noise_histogram
 from .preparation.noise_statistical import classify_noise_statistical
+from .preparation.voxels import downsample_voxels
 from .quality.buildings import assess_buildings
 from .quality.corners import compare_corners
 from .quality.ground import assess_ground
@@ -26,6 +27,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     classify_noise_histogram,
     classify_noise_statistical,
     filter_points,
+    downsample_voxels,
     classify_ground_tin,
     compute_height_above_ground,
     compute_features,

@@ -35,6 +35,7 @@ STAGE_IDS = {
     "classifynoisehistogram",
     "classifynoisestatistical",
     "filterpoints",
+    "downsamplevoxels",
     "classifygroundtin",
     "computeheightaboveground",
     "computefeatures",
@@ -64,7 +65,10 @@ WITHOUT_REFERENCES = {"simulate_town"}
 # Automatic tunables that matter only beside another setting.
 USED_WITH: dict[tuple[str, str], dict[str, Any]] = {("compute_features", "radius"): {"neighborhood": "radius"}}
 # Tunables at which a stage that makes its own data is quick.
-QUICK: dict[str, dict[str, Any]] = {"filter_points": {"dimension": "Intensity"}, "simulate_town": {"size": 80.0}}
+QUICK: dict[str, dict[str, Any]] = {
+    "filter_points": {"dimension": "Intensity"},
+    "simulate_town": {"size": 80.0},
+}
 
 # As they are when tests are collected: tests of the provider add toys of their own while they run.
 ALL = dict(STAGES)
@@ -130,6 +134,7 @@ def scene() -> dict[str, np.ndarray]:
         "return_number": np.where((kind == 3) & ~is_first, 2, 1).astype(np.uint8),
         "number_of_returns": np.where(kind == 3, 2, 1).astype(np.uint8),
         "intensity": rng.integers(1, 1000, len(xy)).astype(np.uint16),
+        "gps_time": np.arange(len(xy)) / 1024,
         "height_above_ground": height.astype(np.float32),
         "cluster_id": cluster_id.astype(np.int32),
         "segment_id": cluster_id.astype(np.int32),

@@ -65,6 +65,7 @@ _WRITTEN = (
     Dimension("verticality", ("Verticality",), "f4", "1 - |nz|"),
     Dimension("normal", ("NormalX", "NormalY", "NormalZ"), "f4", "unit normal, upward"),
     Dimension("cluster_entropy", ("ClusterEntropy",), "f4", "mean entropy of the cluster"),
+    Dimension("voxel_count", ("VoxelCount",), "u4", "points of the voxel"),
     Dimension("confidence", ("Confidence",), "f4", "0 unsure to 1 sure of building"),
 )
 

@@ -29,6 +29,7 @@ IDS = {
     "classifynoisehistogram",
     "classifynoisestatistical",
     "comparecorners",
+    "downsamplevoxels",
     "completebuildings",
     "computefeatures",
     "computeheightaboveground",
