@@ -19,6 +19,7 @@ from .segmentation.clusters import segment_clusters
 from .segmentation.planes_ransac import segment_planes_ransac
 from .segmentation.regions import segment_regions
 from .segmentation.roofs import segment_roofs
+from .simulation.flight import simulate_flight
 from .simulation.town import simulate_town
 from .terrain.ground_tin import classify_ground_tin
 from .terrain.height import compute_height_above_ground
@@ -42,6 +43,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     assess_ground,
     compare_corners,
     simulate_town,
+    simulate_flight,
 )
 
 STAGES = {function.stage.name: function.stage for function in _FUNCTIONS}

@@ -50,6 +50,7 @@ STAGE_IDS = {
     "assessground",
     "comparecorners",
     "simulatetown",
+    "simulateflight",
 }
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019"}
 
@@ -68,6 +69,7 @@ USED_WITH: dict[tuple[str, str], dict[str, Any]] = {("compute_features", "radius
 QUICK: dict[str, dict[str, Any]] = {
     "filter_points": {"dimension": "Intensity"},
     "simulate_town": {"size": 80.0},
+    "simulate_flight": {"duration": 20.0, "line_rate": 4.0},
 }
 
 # As they are when tests are collected: tests of the provider add toys of their own while they run.

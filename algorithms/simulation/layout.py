@@ -127,7 +127,7 @@ def _clutter(scene: Scene, plots: list[Rect], rng: np.random.Generator, monitor:
     for i, (plot, line, free) in enumerate(zip(plots, lines, is_free)):
         car, border, place = rng.random(3)
         if car < 0.5:
-            _park_car(scene, plot.part(8.0 * place - 4.0, -plot.width / 2 - 1.4, 4.3, 1.8))
+            park_car(scene, plot.part(8.0 * place - 4.0, -plot.width / 2 - 1.4, 4.3, 1.8))
         if free and border < 0.3:
             plant_hedge(scene, line, 1.7)
         elif free and border < 0.5:
@@ -144,7 +144,7 @@ def _follow_ground(scene: Scene, rect: Rect, height: float, number: int) -> Soli
     return Solid(rect, np.array([[a, b, c + height]]), bottom, PointClass.UNCLASSIFIED, number)
 
 
-def _park_car(scene: Scene, body: Rect) -> None:
+def park_car(scene: Scene, body: Rect) -> None:
     """Put a car: body and cabin with slanting windows."""
     number = scene.new_id()
     cabin = body.part(-0.3, 0.0, 2.6, 1.6)

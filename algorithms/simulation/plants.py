@@ -32,7 +32,7 @@ def plant_trees(scene: Scene, per_hectare: float, forest: float, rng: np.random.
     clumps = clumps[_is_free(scene, clumps)]
     feet = _feet(scene, np.concatenate([open_ground, clumps]))
     for i, foot in enumerate(feet):
-        _plant_tree(scene, foot, rng.uniform(*_GARDEN_TREES), rng)
+        plant_tree(scene, foot, rng.uniform(*_GARDEN_TREES), rng)
         monitor.progress((1 - forest) * i / len(feet))
     _plant_forest(scene, forest, rng, monitor.part(1 - forest, 1.0))
 
@@ -54,7 +54,7 @@ def _plant_forest(scene: Scene, share: float, rng: np.random.Generator, monitor:
     for i, foot in enumerate(feet):
         kind = rng.random()
         if kind < 0.9:
-            _plant_tree(scene, foot, rng.uniform(*_FOREST_TREES), rng)
+            plant_tree(scene, foot, rng.uniform(*_FOREST_TREES), rng)
         if kind > 0.7:
             _plant_bush(scene, foot, rng)
         monitor.progress(i / len(feet))
@@ -83,7 +83,8 @@ def _is_free(scene: Scene, places: np.ndarray) -> np.ndarray:
     return inside & ~scene.near_building(places, 1.5) & ~scene.near_water(*places.T)
 
 
-def _plant_tree(scene: Scene, foot: tuple[float, float, float], height: float, rng: np.random.Generator) -> None:
+def plant_tree(scene: Scene, foot: tuple[float, float, float], height: float, rng: np.random.Generator) -> None:
+    """Plant a broadleaf or a conifer, with its stem, at x, y and elevation of the ground (m)."""
     x, y, ground = foot
     number = scene.new_id()
     if rng.random() < 0.3:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Optional
+from typing import Optional, Union
 
 import numpy as np
 
@@ -284,17 +284,22 @@ def _recorded(
     _, dy, dz = echoes.direction.T
     # To the left of the flight the angle is negative; odd strips are flown to the east.
     angle = np.rad2deg(np.arctan2(dy, -dz)) * (-1 if strip.number % 2 else 1)
-    # Every roof has its own brightness; the pulse's energy is shared by its returns.
-    bright = _REFLECTANCE[echoes.classification] * (0.7 + 0.6 * np.modf(echoes.object_id * 0.618034)[0])
-    intensity = 60_000 * bright / count * (1 + 0.08 * rng.standard_normal(n))
     return {
         "classification": echoes.classification,
         "return_number": (rank(pulse) + 1).astype(np.uint8) * np.uint8(returns),
         "number_of_returns": count.astype(np.uint8) * np.uint8(returns),
-        "intensity": np.clip(intensity, 1, 65_535).astype(np.uint16),
+        "intensity": brightness(echoes, count, rng),
         "scan_angle": angle.astype(np.float32),
         "point_source_id": np.full(n, strip.number, np.uint16),
         "gps_time": time[pulse],
         "segment_id": echoes.object_id,
         "pulse": pulse,
     }
+
+
+def brightness(echoes: Echoes, count: Union[int, np.ndarray], rng: np.random.Generator) -> np.ndarray:
+    """Return the intensity (n,), uint16, by material; the pulse's energy is shared by its ``count`` returns."""
+    # Every roof has its own.
+    bright = _REFLECTANCE[echoes.classification] * (0.7 + 0.6 * np.modf(echoes.object_id * 0.618034)[0])
+    intensity = 60_000 * bright / count * (1 + 0.08 * rng.standard_normal(len(echoes)))
+    return np.clip(intensity, 1, 65_535).astype(np.uint16)

@@ -122,7 +122,7 @@ class SolidArrays:
     object_id: np.ndarray
 
     def enter(self, which: np.ndarray, origin: np.ndarray, direction: np.ndarray) -> np.ndarray:
-        """Return the ranges (n,) (m) at which beams enter the solids ``which``, inf where they miss."""
+        """Return the ranges (n,) (m) at which beams enter the solids ``which``, inf where they miss or have passed."""
         near = np.full(len(which), -np.inf)
         far = np.full(len(which), np.inf)
         for face in range(_FACES):
@@ -135,7 +135,7 @@ class SolidArrays:
             far = np.where(speed > 0, np.minimum(far, crossing), far)
             # A beam parallel to a face, and on its wrong side, never comes in.
             far = np.where((speed == 0) & (left < 0), -np.inf, far)
-        return np.where(near < far, near, np.inf)
+        return np.where((near < far) & (near > 0), near, np.inf)
 
 
 def rectangles(solids: Sequence[Solid]) -> Rect:

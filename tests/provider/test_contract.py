@@ -40,6 +40,7 @@ IDS = {
     "segmentregions",
     "segmentroofs",
     "simulatetown",
+    "simulateflight",
 }
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019"}
 ALL = {**STAGES, **TOYS}

@@ -1,0 +1,234 @@
+"""A drone with two line scanners: its flight, its beams, and what they meet first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..stage import Monitor
+from .beams import Beams, Echoes, World, join
+from .pairs import in_boxes, rank
+from .scanner import brightness
+from .scene import Scene
+from .site import SIZE
+
+# Number of each scanner, which is the source id of its points.
+SCANNERS = {"horizontal": 1, "vertical": 2}
+
+# A scanner looks everywhere but into the quarter behind it (°), and from 0.1 m on.
+FIELD = 270.0
+_NEAREST = 0.1
+
+# The drone stands in the street, this far from the middle of the site, its scanners over the ground (m).
+_PLACE = (0.8, 3.0)
+_STANDING = 0.4
+
+# Shares of the time in which it climbs and comes down; between, it turns once.
+_CLIMB, _LANDING = 0.2, 0.2
+
+# What wind and control leave: how far it is off its way (m), and out of level and heading (°), at most, and the
+# periods (s) of that; it comes and goes within two seconds of take-off and landing.
+_DRIFT, _TILT, _YAW = 0.3, 2.0, 0.5
+_PERIODS = (3.1, 5.3, 11.7)
+_SETTLING = 2.0
+
+# The beams of small scanners are wide: some leaf sends an echo after this share of the way that a thin beam goes.
+_WIDE = 0.3
+
+# Pulses worked on at once, which bounds memory, and the time (s) that they may take: the drone must not go far in it.
+_BLOCK, _BLOCK_TIME = 50_000, 1.0
+
+
+@dataclass(frozen=True)
+class Flight:
+    """Where a drone is and how it hangs at any time: it climbs, turns once and lands.
+
+    Parameters
+    ----------
+    foot : ndarray of shape (3,)
+        Where its scanners are before it takes off (m).
+    climb : float
+        How far it climbs (m).
+    duration : float
+        From take-off to landing (s).
+    phases : ndarray of shape (6, 3)
+        Phases (rad) of the waves that it sways in: east, north, up, roll, pitch, heading.
+    """
+
+    foot: np.ndarray
+    climb: float
+    duration: float
+    phases: np.ndarray
+
+    def positions(self, time: np.ndarray) -> np.ndarray:
+        """Return where the scanners are (n, 3) (m) at times (n,) (s)."""
+        share = time / self.duration
+        height = self.climb * np.clip(np.minimum(share / _CLIMB, (1 - share) / _LANDING), 0.0, 1.0)
+        made = self.foot + _DRIFT * self._sway(time, slice(0, 3))
+        made[:, 2] += height
+        return made
+
+    def axes(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the directions that are forward, left and up for the drone, (n, 3) each, at times (n,) (s)."""
+        turn = np.clip((time / self.duration - _CLIMB) / (1 - _CLIMB - _LANDING), 0.0, 1.0)
+        roll, pitch, yaw = np.deg2rad([_TILT, _TILT, _YAW])[:, None] * self._sway(time, slice(3, 6)).T
+        yaw = yaw + 2 * np.pi * turn
+        (cr, cp, cy), (sr, sp, sy) = np.cos([roll, pitch, yaw]), np.sin([roll, pitch, yaw])
+        forward = np.column_stack([cy * cp, sy * cp, -sp])
+        left = np.column_stack([cy * sp * sr - sy * cr, sy * sp * sr + cy * cr, cp * sr])
+        return forward, left, np.cross(forward, left)
+
+    def _sway(self, time: np.ndarray, which: slice) -> np.ndarray:
+        """Return how far (n, 3) it is off, from -1 to 1."""
+        waves = np.sin(2 * np.pi * time[:, None, None] / np.array(_PERIODS) + self.phases[which]).mean(axis=-1)
+        return waves * np.clip(np.minimum(time, self.duration - time) / _SETTLING, 0.0, 1.0)[:, None]
+
+
+def plan_flight(scene: Scene, height: float, duration: float, seed: int) -> Flight:
+    """Return a flight over the middle of a site, ``height`` (m) over the ground at most but for the sway."""
+    x, y = (SIZE / 2 + part for part in _PLACE)
+    foot = np.array([x, y, float(scene.relief.ground(x, y)) + _STANDING])
+    phases = np.random.default_rng([seed, 3]).uniform(0.0, 2 * np.pi, (6, len(_PERIODS)))
+    return Flight(foot, height - _STANDING, duration, phases)
+
+
+class _Surroundings(World):
+    """What is around a drone: beams go in all directions, and the ground is a plane."""
+
+    def __init__(self, scene: Scene, reach: float) -> None:
+        super().__init__(scene)
+        self.reach = reach
+        self.crowns[:, 5] *= _WIDE
+
+    def ground(self, beams: Beams) -> np.ndarray:
+        """Return the ranges (n,) (m) at which beams meet the ground, beyond reach where they don't."""
+        x, y, z = beams.origin.T
+        clearance = z - self.relief.plane(x, y)
+        east, north = self.relief.plane_gradient
+        sinking = beams.direction @ [east, north, -1.0]
+        # Level and rising beams never come down; a range just out of reach keeps them apart from all that is met.
+        return np.where(
+            sinking * self.reach > clearance, clearance / np.where(sinking > 0, sinking, 1.0), 2 * self.reach
+        )
+
+    def met(self, kind: str, beams: Beams) -> tuple[np.ndarray, np.ndarray]:
+        """Return the pairs (beam, thing) that may meet: the beam aims at the ball around the thing's box."""
+        low, high = self.boxes(kind)
+        middle = beams.origin.mean(axis=0)
+        away = (low + high) / 2 - middle
+        radius = np.linalg.norm(high - low, axis=1) / 2 + np.linalg.norm(beams.origin - middle, axis=1).max()
+        distance = np.linalg.norm(away, axis=1)
+        near = np.flatnonzero(distance - radius < self.reach)
+        bearing = np.column_stack(_bearing(away[near]))
+        half = _half_widths(bearing[:, 1], radius[near], distance[near])
+        # Seen all around, the azimuth goes on after a full turn.
+        turn = np.repeat([-2 * np.pi, 0.0, 2 * np.pi], len(near))[:, None] * [1.0, 0.0]
+        bearing, half = np.tile(bearing, (3, 1)) + turn, np.tile(half, (3, 1))
+        beam, thing = in_boxes(beams.aim, bearing - half, bearing + half)
+        return beam, np.tile(near, 3)[thing]
+
+
+def _bearing(direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return azimuth, from east, and elevation (rad) of directions (n, 3) of any length."""
+    x, y, z = direction.T
+    return np.arctan2(y, x), np.arctan2(z, np.hypot(x, y))
+
+
+def _half_widths(elevation: np.ndarray, radius: np.ndarray, distance: np.ndarray) -> np.ndarray:
+    """Return half of what balls take up in azimuth and elevation (n, 2) (rad)."""
+    half = np.arcsin(np.minimum(radius / distance, 1.0))
+    high = np.where(radius < distance, half, np.pi)
+    # Balls that hide the zenith, the nadir or the drone are in every azimuth: half a turn to both sides.
+    share = np.sin(half) / np.maximum(np.cos(elevation), 1e-9)
+    wide = np.where(np.abs(elevation) + high < np.pi / 2, np.arcsin(np.minimum(share, 1.0)), np.pi)
+    return np.column_stack([wide, high])
+
+
+def fly(
+    scene: Scene,
+    flight: Flight,
+    scanners: tuple[str, ...],
+    *,
+    line_rate: float,
+    angular_step: float,
+    max_range: float,
+    range_noise: float,
+    seed: int,
+    monitor: Monitor,
+) -> dict[str, np.ndarray]:
+    """Scan a site from a drone. The tunables are those of :func:`.flight.simulate_flight`.
+
+    Returns
+    -------
+    dict of str to ndarray
+        Dimensions by name, in the order of time.
+    """
+    world, parts = _Surroundings(scene, max_range), []
+    blocks = [(name, time) for name in scanners for time in _blocks(flight, line_rate, angular_step)]
+    generators = {name: np.random.default_rng([seed, 4, SCANNERS[name]]) for name in scanners}
+    for i, (name, time) in enumerate(blocks):
+        rng = generators[name]
+        beams, left = _pulses(flight, name, time, line_rate)
+        echoes = _first(world, beams, rng)
+        # The noise of the range lies along the beam.
+        ranges = echoes.range + range_noise * rng.standard_normal(len(echoes))
+        part = _recorded(echoes, left, SCANNERS[name], rng)
+        part["gps_time"] = time[echoes.pulse]
+        part["xyz"] = beams.at(echoes.pulse, ranges)
+        parts.append(part)
+        monitor.progress((i + 1) / len(blocks))
+    made = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    order = np.argsort(made["gps_time"], kind="stable")
+    return {name: values[order] for name, values in made.items()}
+
+
+def _blocks(flight: Flight, line_rate: float, angular_step: float) -> Iterator[np.ndarray]:
+    """Yield the times (s) of the pulses of some scan lines each; a turn of the mirror is a line."""
+    per_line = pulses_per_line(angular_step)
+    n_lines, step = int(flight.duration * line_rate), max(1, min(_BLOCK // per_line, int(_BLOCK_TIME * line_rate)))
+    for line in range(0, n_lines, step):
+        lines = np.arange(line, min(line + step, n_lines))
+        pulse = np.arange(per_line) * (angular_step / 360.0)
+        yield (lines[:, None] + pulse).ravel() / line_rate
+
+
+def pulses_per_line(angular_step: float) -> int:
+    """Return how many pulses a scanner sends in the angle that it sees, one every ``angular_step`` (°)."""
+    return int(FIELD / angular_step + 1e-9) + 1
+
+
+def _pulses(flight: Flight, scanner: str, time: np.ndarray, line_rate: float) -> tuple[Beams, np.ndarray]:
+    """Return the beams of pulses, and what is left of the drone (n, 3)."""
+    forward, left, up = flight.axes(time)
+    angle = np.deg2rad(np.mod(time * line_rate, 1.0) * 360.0 - FIELD / 2)[:, None]
+    ahead = forward if scanner == "horizontal" else -up
+    direction = np.cos(angle) * ahead + np.sin(angle) * left
+    return Beams(np.arange(len(time)), flight.positions(time), direction, np.column_stack(_bearing(direction))), left
+
+
+def _first(world: _Surroundings, beams: Beams, rng: np.random.Generator) -> Echoes:
+    """Return what each beam meets first, of those that meet anything within reach; order of the beams."""
+    ends = world.surfaces(beams, *world.met("solids", beams))
+    leaves = world.leaves(beams, *world.met("crowns", beams), rng)
+    echoes = join([ends, leaves])
+    echoes = echoes.take((echoes.range > _NEAREST) & (echoes.range < world.reach))
+    echoes = echoes.take(np.lexsort((echoes.range, echoes.pulse)))
+    return echoes.take(rank(echoes.pulse) == 0)
+
+
+def _recorded(echoes: Echoes, left: np.ndarray, number: int, rng: np.random.Generator) -> dict[str, np.ndarray]:
+    """Return the dimensions of echoes but place and time."""
+    side = np.einsum("ij,ij->i", echoes.direction, left[echoes.pulse])
+    nadir = np.rad2deg(np.arccos(np.clip(-echoes.direction[:, 2], -1.0, 1.0)))
+    one = np.ones(len(echoes), np.uint8)
+    return {
+        "classification": echoes.classification,
+        "return_number": one,
+        "number_of_returns": one,
+        "intensity": brightness(echoes, 1, rng),
+        "scan_angle": np.where(side > 0, -nadir, nadir).astype(np.float32),
+        "point_source_id": np.full(len(echoes), number, np.uint16),
+        "segment_id": echoes.object_id,
+    }
