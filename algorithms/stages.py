@@ -21,6 +21,7 @@ from .segmentation.regions import segment_regions
 from .segmentation.roofs import segment_roofs
 from .simulation.flight import simulate_flight
 from .simulation.town import simulate_town
+from .simulation.village import simulate_village
 from .terrain.ground_tin import classify_ground_tin
 from .terrain.height import compute_height_above_ground
 
@@ -44,6 +45,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     compare_corners,
     simulate_town,
     simulate_flight,
+    simulate_village,
 )
 
 STAGES = {function.stage.name: function.stage for function in _FUNCTIONS}

@@ -51,6 +51,7 @@ STAGE_IDS = {
     "comparecorners",
     "simulatetown",
     "simulateflight",
+    "simulatevillage",
 }
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019"}
 
@@ -60,9 +61,19 @@ VERBS |= {"filter", "downsample", "merge", "rasterize", "map", "compare", "inter
 # Words that keep their capitals inside a title or label.
 NAMES = {"Gauss", "Delaunay", "Shannon"}
 # Shares (0 to 1), multiples of what the data show, and limits of whatever dimension is named.
-WITHOUT_UNIT = {"low", "high", "deviations", "forest", "max_penetration", "min_overlap", "overlap"}
+WITHOUT_UNIT = {
+    "low",
+    "high",
+    "deviations",
+    "forest",
+    "holes",
+    "map_changes",
+    "max_penetration",
+    "min_overlap",
+    "overlap",
+}
 # Our own, after no publication.
-WITHOUT_REFERENCES = {"simulate_town"}
+WITHOUT_REFERENCES = {"simulate_town", "simulate_village"}
 # Automatic tunables that matter only beside another setting.
 USED_WITH: dict[tuple[str, str], dict[str, Any]] = {("compute_features", "radius"): {"neighborhood": "radius"}}
 # Tunables at which a stage that makes its own data is quick.
@@ -70,6 +81,7 @@ QUICK: dict[str, dict[str, Any]] = {
     "filter_points": {"dimension": "Intensity"},
     "simulate_town": {"size": 80.0},
     "simulate_flight": {"duration": 20.0, "line_rate": 4.0},
+    "simulate_village": {"size": 90.0, "density": 5.0},
 }
 
 # As they are when tests are collected: tests of the provider add toys of their own while they run.

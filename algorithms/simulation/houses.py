@@ -21,7 +21,7 @@ _EAVES = (3.0, 5.7)
 _LEAST_EAVE = 1.5
 
 
-class _Site:
+class Site:
     """Where one building stands: it turns heights over the floor into elevations."""
 
     def __init__(self, scene: Scene, rect: Rect, eave: float) -> None:
@@ -59,7 +59,7 @@ def _detached(plot: Rect, rng: np.random.Generator, length: tuple, width: tuple)
 def _gable_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
     rect = _detached(plot, rng, (9.0, 12.0), (7.0, 9.0))
     eave, pitch = rng.choice(_EAVES), np.tan(np.deg2rad(rng.uniform(28.0, 48.0)))
-    site = _Site(scene, rect, eave)
+    site = Site(scene, rect, eave)
     eave += site.floor
     solids = [site.solid(rect, gable(rect, eave, pitch)), _chimney(site, rect, eave + pitch * rect.width / 2, rng)]
     if pitch > 0.7:
@@ -71,7 +71,7 @@ def _gable_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
 def _hip_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
     rect = _detached(plot, rng, (9.5, 12.0), (7.5, 9.5))
     eave, pitch = rng.choice(_EAVES), np.tan(np.deg2rad(rng.uniform(22.0, 38.0)))
-    site = _Site(scene, rect, eave)
+    site = Site(scene, rect, eave)
     eave += site.floor
     solids = [site.solid(rect, hip(rect, eave, pitch)), _chimney(site, rect, eave + pitch * rect.width / 2, rng)]
     scene.add_building("hip", rect.corners(), solids)
@@ -80,7 +80,7 @@ def _hip_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
 def _flat_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
     rect = _detached(plot, rng, (9.0, 12.5), (8.0, 10.5))
     eave = rng.choice((3.2, 6.2, 9.2))
-    site = _Site(scene, rect, eave)
+    site = Site(scene, rect, eave)
     eave += site.floor
     lift = rect.part(0.2 * rect.length, 0.1 * rect.width, 3.0, 2.5)
     solids = [site.solid(rect, flat(rect, eave)), site.solid(lift, flat(lift, eave + 2.2))]
@@ -91,7 +91,7 @@ def _angled_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
     """Build an L: a wing whose lower ridge runs into the roof of the main house."""
     main = _detached(plot, rng, (11.0, 12.5), (6.5, 7.0))
     eave, pitch = rng.choice(_EAVES), np.tan(np.deg2rad(rng.uniform(30.0, 45.0)))
-    site = _Site(scene, main, eave)
+    site = Site(scene, main, eave)
     eave += site.floor
     wide, reach = rng.uniform(4.8, 6.0), rng.uniform(3.0, 4.0)
     # The wing starts under the main ridge, flush with one gable, and ends behind the house.
@@ -114,7 +114,7 @@ def _row(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
     for side in (-0.25, 0.25):
         rect = plot.part(side * plot.length, -plot.width / 2 + 2.0 + depth / 2, plot.length / 2, depth)
         eave, pitch = rng.choice((5.4, 6.0, 8.4)), np.tan(np.deg2rad(rng.uniform(25.0, 45.0)))
-        site = _Site(scene, rect, eave)
+        site = Site(scene, rect, eave)
         eave += site.floor
         tops = flat(rect, eave + 1.0) if rng.random() < 0.15 else gable(rect, eave, pitch)
         scene.add_building("row", rect.corners(), [site.solid(rect, tops)])
@@ -126,14 +126,14 @@ def _shed(scene: Scene, plot: Rect, houses: list[Building], rng: np.random.Gener
     height, pitch = rng.uniform(2.0, 2.4), np.tan(np.deg2rad(rng.uniform(0.0, 15.0)))
     if any(house.contains(*rect.corners(0.5).T).any() for house in houses):
         return
-    site = _Site(scene, rect, height)
+    site = Site(scene, rect, height)
     scene.add_building("shed", rect.corners(), [site.solid(rect, lean_to(rect, site.floor + height, pitch))])
 
 
 def build_hall(scene: Scene, rect: Rect) -> None:
     """Put a large hall with a slight gable and bands of skylights."""
     eave, pitch = 8.0, np.tan(np.deg2rad(4.0))
-    site = _Site(scene, rect, eave)
+    site = Site(scene, rect, eave)
     eave += site.floor
     solids = [site.solid(rect, gable(rect, eave, pitch))]
     ridge = eave + pitch * rect.width / 2
@@ -143,12 +143,12 @@ def build_hall(scene: Scene, rect: Rect) -> None:
     scene.add_building("hall", rect.corners(), solids)
 
 
-def _chimney(site: _Site, rect: Rect, ridge: float, rng: np.random.Generator) -> Solid:
+def _chimney(site: Site, rect: Rect, ridge: float, rng: np.random.Generator) -> Solid:
     stack = rect.part(rng.uniform(-0.12, 0.12) * rect.length, rng.uniform(-1.0, 1.0), 0.7, 0.7)
     return site.solid(stack, flat(stack, ridge + 0.8))
 
 
-def _dormer(site: _Site, rect: Rect, eave: float, pitch: float, along: float, side: int) -> Solid:
+def _dormer(site: Site, rect: Rect, eave: float, pitch: float, along: float, side: int) -> Solid:
     """Return a dormer whose nearly flat roof runs from over the front into the roof plane behind it."""
     depth, back = 2.4, rect.width / 2 - 3.0
     box = rect.part(along, side * (back + depth / 2), 1.9, depth)

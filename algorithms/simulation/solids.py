@@ -1,14 +1,16 @@
 """Things with plane faces: oriented boxes under planes, and where a beam enters them.
 
 Houses, dormers, chimneys, cars, walls and bridge decks are all one shape: a rectangle on the map with vertical
-sides, a level bottom and, as its top, the lowest of up to four planes. Such a solid is convex, so that a beam
-meets it in closed form: it enters where it has crossed the last of the faces that it comes from the outside of.
+sides, a plane as its underside (level but for the slabs of roofs) and, as its top, the lowest of up to four planes.
+Such a solid is convex, so that a beam meets it in closed form: it enters where it has crossed the last of the faces
+that it comes from the outside of.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Optional
 
 import numpy as np
 
@@ -64,9 +66,11 @@ class Solid:
     tops : ndarray of shape (k, 3), k from 1 to 4
         Planes z = a x + b y + c.
     bottom : float
-        Elevation of the level underside (m).
+        Elevation of the underside where it is lowest (m).
     classification, object_id : int
         What the points on it are.
+    under : ndarray of shape (3,), optional
+        Plane of the underside, (a, b, c) like a top's; level where it is not given.
     """
 
     rect: Rect
@@ -74,6 +78,7 @@ class Solid:
     bottom: float
     classification: int
     object_id: int
+    under: Optional[np.ndarray] = None
 
     def top(self, x, y) -> np.ndarray:
         """Elevation of the top (m), inside the rectangle or beyond."""
@@ -154,7 +159,9 @@ def stack(solids: Sequence[Solid]) -> SolidArrays:
     for i, (side, reach) in enumerate([(1, rects.length), (-1, rects.length), (1, rects.width), (-1, rects.width)]):
         x, y = (side * cos, side * sin) if i < 2 else (-side * sin, side * cos)
         faces[:, i] = np.column_stack([x, y, np.zeros(len(solids)), x * rects.x + y * rects.y + reach / 2])
-    faces[:, 4] = np.column_stack([np.tile([0.0, 0.0, -1.0], (len(solids), 1)), -bottom])
+    under = [(0.0, 0.0, solid.bottom) if solid.under is None else solid.under for solid in solids]
+    a, b, c = np.array(under, float).reshape(-1, 3).T
+    faces[:, 4] = np.column_stack([a, b, -np.ones(len(solids)), -c])
     corners = rects.corners()
     top = np.full(len(solids), np.inf)
     for k in range(_MAX_TOPS):

@@ -41,6 +41,7 @@ IDS = {
     "segmentroofs",
     "simulatetown",
     "simulateflight",
+    "simulatevillage",
 }
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019"}
 ALL = {**STAGES, **TOYS}

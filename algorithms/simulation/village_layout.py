@@ -1,0 +1,112 @@
+"""A made-up village: streets with large plots, a house on most, a shed behind it, and what grows and parks beside."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..stage import Monitor
+from .eaves import build_home, build_shed
+from .layout import park_car
+from .plants import plant_hedge, plant_trees
+from .relief import make_relief
+from .scene import Building, Scene
+from .solids import Rect
+
+# Streets are this far apart, with two rows of plots between them (m).
+_STREETS, _STREET_WIDTH = 60.0, 8.0
+_PLOT = (22.0, 26.0)
+
+# Plots on a hectare of streets and plots: as many as can be built on.
+MAX_HOMES = 15
+
+# Hills and hollows of a few metres.
+_HILLS = 2.0
+
+
+@dataclass(frozen=True)
+class Village:
+    """A scene with its plots.
+
+    Parameters
+    ----------
+    scene : Scene
+        Everything that stands there.
+    owner : ndarray of shape (m,)
+        By object id, the id of the building where the object is its roof; the object's own id elsewhere.
+    free : list of Rect
+        Plots without a house.
+    """
+
+    scene: Scene
+    owner: np.ndarray
+    free: list[Rect]
+
+
+def build_village(
+    *, size: float, slope: float, buildings: float, trees: float, overhang: float, clutter: bool, seed: int
+) -> Village:
+    """Make up a village. The tunables are those of :func:`.village.simulate_village`."""
+    rng = np.random.default_rng([seed, 2])
+    scene = Scene(make_relief(size, slope, _HILLS, 0.0, False, rng))
+    plots = _plots(scene)
+    count = min(len(plots), round(len(plots) * buildings / MAX_HOMES))
+    order = rng.permutation(len(plots))
+    built, free = [plots[i] for i in np.sort(order[:count])], [plots[i] for i in order[count:]]
+    roofs = []
+    for plot in built:
+        roofs.append(build_home(scene, plot, overhang, rng))
+        if rng.random() < 2 / 3:
+            roofs.append(build_shed(scene, plot, overhang, rng))
+    if clutter:
+        _clutter(scene, built, rng)
+    plant_trees(scene, trees, 0.0, rng, Monitor())
+    owner = np.arange(scene.objects + 1)
+    owner[roofs] = [building.object_id for building in scene.buildings]
+    return Village(scene, owner, free)
+
+
+def _plots(scene: Scene) -> list[Rect]:
+    """Return the plots that lie in the village with some room around."""
+    relief, found = scene.relief, []
+    reach, n_half = int(scene.size // _STREETS) + 1, int(scene.size // _PLOT[0])
+    for street, side, i in itertools.product(range(-reach, reach), (1, -1), range(-n_half, n_half)):
+        along = (street + 0.5) * _STREETS + side * (_STREET_WIDTH + _PLOT[1]) / 2
+        x, y = relief.world((i + 0.5) * _PLOT[0], along)
+        plot = Rect(float(x), float(y), *_PLOT, relief.angle + (0.0 if side > 0 else np.pi))
+        if plot.corners().min() > 1.0 and plot.corners().max() < scene.size - 1.0:
+            found.append(plot)
+    return found
+
+
+def _clutter(scene: Scene, plots: list[Rect], rng: np.random.Generator) -> None:
+    """Put cars on drives and streets, hedges between plots, bushes against walls."""
+    for plot in plots:
+        car = plot.part(plot.length / 2 - 2.0, -plot.width / 2 + rng.uniform(2.5, 8.0), 4.3, 1.8, np.pi / 2)
+        if rng.random() < 0.4 and not scene.near_building(car.corners(), 0.4).any():
+            park_car(scene, car)
+        hedge = plot.part(-plot.length / 2, 0.0, plot.width - 4.0, 0.8, np.pi / 2)
+        if rng.random() < 0.4 and not scene.near_building(_line(hedge), 0.6).any():
+            plant_hedge(scene, hedge, rng.uniform(1.2, 2.2))
+    for building in scene.buildings:
+        _plant_against_walls(scene, building, rng)
+
+
+def _line(hedge: Rect) -> np.ndarray:
+    return np.column_stack(hedge.at(np.linspace(-hedge.length / 2, hedge.length / 2, 20), 0.0))
+
+
+def _plant_against_walls(scene: Scene, building: Building, rng: np.random.Generator) -> None:
+    """Plant up to three bushes, each with its middle a little before a wall."""
+    ring = building.outline
+    for _ in range(int(rng.integers(4))):
+        k = int(rng.integers(len(ring) - 1))
+        step = ring[k + 1] - ring[k]
+        # The ring runs counterclockwise: what lies to the right of a wall is outside.
+        outward = np.array([step[1], -step[0]]) / np.hypot(*step)
+        radius = rng.uniform(0.4, 0.8)
+        x, y = ring[k] + rng.random() * step + rng.uniform(0.3, 0.7) * radius * outward
+        ground = float(scene.relief.ground(x, y))
+        scene.crowns.add(float(x), float(y), ground + 0.9 * radius, radius, radius, 0.15, scene.new_id())
