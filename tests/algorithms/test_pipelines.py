@@ -316,6 +316,15 @@ def test_outputs_that_would_have_one_name_have_their_steps(toys):
     assert list(run_pipeline(twice, square()).layers) == ["one_footprints", "two_footprints"]
 
 
+def test_what_is_kept_is_not_changed_by_later_steps(toys):
+    steps = (Step("first", "toy_lift", {"step": 1.0}), Step("second", "toy_lift", {"step": 3.0}))
+    cloud = square()
+    results = run_pipeline(Pipeline("two", "Two", "Toys", "", "", "", "", steps, kept=("first",)), cloud)
+    assert results.cloud is cloud
+    assert set(cloud.get("height_above_ground")) == {6.0, 24.0}
+    assert set(results.clouds["first_output"].get("height_above_ground")) == {2.0, 20.0}
+
+
 def test_a_chain_of_layers_needs_no_cloud(toys):
     arrows = Pipeline("arrows", "Arrows", "Toys", "", "", "", "", (Step("arrows", "toy_arrows"),))
     assert not arrows.reads_cloud
