@@ -7,6 +7,7 @@ from typing import Any
 from .buildings.buildings import classify_buildings
 from .buildings.complete import complete_buildings
 from .buildings.footprints import extract_footprints
+from .features.dimensionality import classify_dimensionality
 from .features.features import compute_features
 from .preparation.filter import filter_points
 from .preparation.noise_histogram import classify_noise_histogram
@@ -33,6 +34,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     classify_ground_tin,
     compute_height_above_ground,
     compute_features,
+    classify_dimensionality,
     segment_regions,
     segment_roofs,
     segment_clusters,

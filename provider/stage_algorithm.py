@@ -246,7 +246,7 @@ class StageAlgorithm(QgsProcessingAlgorithm):
         target = self.parameterAsOutputLayer(parameters, OUTPUT, context)
         written += files_of(self.parameterDefinition(OUTPUT), target)
         shown = write_for_qgis(cloud, target, context, monitor)
-        style_on_load(context, shown, cloud_style(self.stage))
+        style_on_load(context, shown, cloud_style(self.stage, cloud))
         return target
 
     def _write_layer(

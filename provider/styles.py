@@ -7,6 +7,7 @@ from typing import Optional, Union
 from qgis.core import QgsProcessingContext, QgsProcessingLayerPostProcessorInterface
 from qgis.PyQt import sip
 
+from ..algorithms.cloud.cloud import Cloud
 from ..algorithms.stage import Layer, Raster, Stage
 from .paths import STYLES
 
@@ -31,9 +32,10 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
 _KEPT: list[Styler] = []
 
 
-def cloud_style(stage: Stage) -> Optional[str]:
-    """Return the style of a stage's cloud: that of the first dimension it writes that has one."""
-    return next((name for name in (*stage.writes, *stage.creates) if (STYLES / f"{name}.qml").is_file()), None)
+def cloud_style(stage: Stage, cloud: Cloud) -> Optional[str]:
+    """Return the style of a stage's cloud: that of the first dimension it wrote that has one."""
+    made = (name for name in (*stage.writes, *stage.creates) if cloud.has(name))
+    return next((name for name in made if (STYLES / f"{name}.qml").is_file()), None)
 
 
 def layer_style(layer: Union[Layer, Raster]) -> Optional[str]:

@@ -8,8 +8,8 @@ neither the chunks nor the number of threads.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, Callable, Optional, Union
+from dataclasses import dataclass, field
+from typing import Any, Callable, Optional, Protocol
 
 import numpy as np
 
@@ -24,10 +24,43 @@ _CHUNK_NEIGHBORS = 500_000
 MIN_NEIGHBORS = 3
 
 # Order of the six numbers of a symmetric matrix: xx, yy, zz, xy, xz, yz.
-_PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
 # A neighborhood larger than this on average is a radius chosen by mistake: it would run for days.
 _MAX_MEAN_NEIGHBORS = 20_000
+
+
+@dataclass
+class Shapes:
+    """What is known of the neighborhoods of m points.
+
+    Attributes
+    ----------
+    covariances : ndarray of shape (m, 6)
+        xx, yy, zz, xy, xz, yz (m²), divided by the number of points.
+    counts : ndarray of shape (m,)
+        Points of each neighborhood, the point itself among them.
+    height_range, plan_radius : ndarray of shape (m,)
+        Highest less lowest elevation, and the largest horizontal distance from the point (m); empty unless asked for.
+    """
+
+    covariances: np.ndarray
+    counts: np.ndarray
+    height_range: np.ndarray = field(default_factory=lambda: np.empty(0))
+    plan_radius: np.ndarray = field(default_factory=lambda: np.empty(0))
+
+
+class Neighborhood(Protocol):
+    """Which points describe a point: :class:`Nearest`, :class:`Within` or :class:`~.optimal.Optimal`."""
+
+    def check(self, xyz: np.ndarray, tree: Any) -> None:
+        """Raise ValueError when the cloud makes no sense with it."""
+
+    def rows_per_chunk(self, n_points: int) -> int:
+        """Return how many points are worked on at once."""
+
+    def shapes(self, columns: np.ndarray, tree: Any, rows: np.ndarray, extents: bool) -> Shapes:
+        """Return the shapes of the neighborhoods of the points ``rows``, with extents if wanted."""
 
 
 @dataclass(frozen=True)
@@ -36,25 +69,44 @@ class Nearest:
 
     count: int
 
+    def check(self, xyz: np.ndarray, tree: Any) -> None:
+        """Take every cloud."""
+
     def rows_per_chunk(self, n_points: int) -> int:
         """Return how many points are worked on at once."""
         return max(1, _CHUNK_NEIGHBORS // min(self.count, n_points))
 
-    def covariances(self, columns: np.ndarray, tree: Any, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return covariances (m, 6) of the points ``rows`` with their neighbors, and neighbors counted (m,)."""
-        neighbors, _, covariances = self.moments(columns, tree, rows)
-        return covariances, np.full(len(rows), neighbors.shape[1])
+    def shapes(self, columns: np.ndarray, tree: Any, rows: np.ndarray, extents: bool) -> Shapes:
+        """Return the shapes of the neighborhoods of the points ``rows``."""
+        neighbors, offsets = nearest_offsets(columns, tree, rows, self.count)
+        _, products = _moments(offsets)
+        shapes = Shapes(np.column_stack(products), np.full(len(rows), neighbors.shape[1]))
+        if extents:
+            shapes.height_range = np.ptp(offsets[2], axis=1)
+            shapes.plan_radius = np.sqrt((offsets[0] ** 2 + offsets[1] ** 2).max(axis=1))
+        return shapes
 
     def moments(self, columns: np.ndarray, tree: Any, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return neighbors (m, k), their centers (m, 3) and covariances (m, 6) of the points ``rows``."""
-        own = columns[:, rows]
-        count = min(self.count, columns.shape[1])
-        neighbors = tree.query(own.T, k=count)[1].reshape(len(rows), count)
-        # Offsets to the point itself are exact however large the coordinates are.
-        offsets = [np.take(column, neighbors) - start[:, None] for column, start in zip(columns, own)]
-        means = [offset.mean(axis=1) for offset in offsets]
-        products = [np.einsum("ij,ij->i", offsets[a], offsets[b]) / count - means[a] * means[b] for a, b in _PAIRS]
-        return neighbors, own.T + np.column_stack(means), np.column_stack(products)
+        neighbors, offsets = nearest_offsets(columns, tree, rows, self.count)
+        means, products = _moments(offsets)
+        return neighbors, columns[:, rows].T + np.column_stack(means), np.column_stack(products)
+
+
+def nearest_offsets(columns: np.ndarray, tree: Any, rows: np.ndarray, count: int) -> tuple[np.ndarray, list]:
+    """Return the neighbors (m, k) of the points ``rows``, nearest first, and how far they are off in x, y, z."""
+    own = columns[:, rows]
+    count = min(count, columns.shape[1])
+    neighbors = tree.query(own.T, k=count)[1].reshape(len(rows), count)
+    # Offsets to the point itself are exact however large the coordinates are.
+    return neighbors, [np.take(column, neighbors) - start[:, None] for column, start in zip(columns, own)]
+
+
+def _moments(offsets: list) -> tuple[list, list]:
+    """Return means and covariances of offsets (m, k) in x, y and z."""
+    means = [offset.mean(axis=1) for offset in offsets]
+    count = offsets[0].shape[1]
+    return means, [np.einsum("ij,ij->i", offsets[a], offsets[b]) / count - means[a] * means[b] for a, b in PAIRS]
 
 
 @dataclass(frozen=True)
@@ -77,51 +129,59 @@ class Within:
         """Return how many points are worked on at once."""
         return 20_000
 
-    def covariances(self, columns: np.ndarray, tree: Any, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return covariances (m, 6) of the points ``rows`` with their neighbors, and neighbors counted (m,)."""
+    def shapes(self, columns: np.ndarray, tree: Any, rows: np.ndarray, extents: bool) -> Shapes:
+        """Return the shapes of the neighborhoods of the points ``rows``."""
         own = columns[:, rows].T
         counts = tree.query_ball_point(own, self.radius, return_length=True)
         # Dense spots get smaller parts, so that memory does not follow the densest place.
         part = np.cumsum(counts) // _CHUNK_NEIGHBORS
         starts = np.flatnonzero(np.diff(part, prepend=-1))
-        parts = [_ball_covariances(columns, tree, points, self.radius) for points in np.split(own, starts[1:])]
-        return np.concatenate(parts), counts
+        parts = [_balls(columns, tree, points, self.radius, extents) for points in np.split(own, starts[1:])]
+        return Shapes(*(np.concatenate(values) for values in zip(*parts)))
 
 
-def _ball_covariances(columns: np.ndarray, tree: Any, points: np.ndarray, radius: float) -> np.ndarray:
-    """Return the covariances (m, 6) of all points of ``tree`` within ``radius`` of each of ``points`` (m, 3)."""
+def _balls(columns: np.ndarray, tree: Any, points: np.ndarray, radius: float, extents: bool) -> tuple:
+    """Return the :class:`Shapes` of all points of ``tree`` within ``radius`` of each of ``points`` (m, 3), as a row."""
     pairs = spatial.cKDTree(points).sparse_distance_matrix(tree, radius, output_type="ndarray")
     row, neighbor = pairs["i"], pairs["j"]
     offsets = [np.take(column, neighbor) - np.take(start, row) for column, start in zip(columns, points.T)]
     size = len(points)
     count = np.bincount(row, minlength=size)
     means = [np.bincount(row, offset, size) / count for offset in offsets]
-    products = [np.bincount(row, offsets[a] * offsets[b], size) / count - means[a] * means[b] for a, b in _PAIRS]
-    return np.column_stack(products)
+    products = [np.bincount(row, offsets[a] * offsets[b], size) / count - means[a] * means[b] for a, b in PAIRS]
+    if not extents:
+        return np.column_stack(products), count, np.empty(0), np.empty(0)
+    by_row, starts = np.argsort(row, kind="stable"), np.cumsum(count) - count
+    height, plan = offsets[2][by_row], (offsets[0] ** 2 + offsets[1] ** 2)[by_row]
+    height_range = np.maximum.reduceat(height, starts) - np.minimum.reduceat(height, starts)
+    return np.column_stack(products), count, height_range, np.sqrt(np.maximum.reduceat(plan, starts))
 
 
 def reduce_neighborhoods(
     xyz: np.ndarray,
-    neighborhood: Union[Nearest, Within],
-    reduce: Callable[[np.ndarray, np.ndarray, np.ndarray], None],
+    neighborhood: Neighborhood,
+    reduce: Callable[[np.ndarray, Shapes], None],
     tree: Any = None,
     monitor: Optional[Monitor] = None,
+    extents: bool = False,
 ) -> None:
-    """Call ``reduce(rows, covariances, counts)`` for all points, chunk by chunk, in threads.
+    """Call ``reduce(rows, shapes)`` for all points, chunk by chunk, in threads.
 
     Parameters
     ----------
     xyz : ndarray of shape (n, 3)
         Coordinates (m).
-    neighborhood : Nearest or Within
+    neighborhood : Neighborhood
         Which points belong to a point.
     reduce : callable
-        Stores what it makes of the points ``rows`` (m,), their ``covariances`` (m, 6; xx, yy, zz,
-        xy, xz, yz; m²) and the ``counts`` (m,) of their neighbors. Chunks never share a row.
+        Stores what it makes of the points ``rows`` (m,) and the :class:`Shapes` of their neighborhoods. Chunks
+        never share a row.
     tree : scipy.spatial.cKDTree, optional
         Tree of ``xyz``, built when absent.
     monitor : Monitor, optional
         Hears progress.
+    extents : bool
+        Whether height range and plan radius are wanted too.
 
     Raises
     ------
@@ -131,12 +191,11 @@ def reduce_neighborhoods(
     monitor = monitor or Monitor()
     xyz = np.asarray(xyz, dtype=np.float64)
     tree = spatial.cKDTree(xyz) if tree is None else tree
-    if isinstance(neighborhood, Within):
-        neighborhood.check(xyz, tree)
+    neighborhood.check(xyz, tree)
     columns = np.ascontiguousarray(xyz.T)
 
     def work(rows: np.ndarray) -> None:
-        reduce(rows, *neighborhood.covariances(columns, tree, rows))
+        reduce(rows, neighborhood.shapes(columns, tree, rows, extents))
 
     # In the order of the tree's leaves the neighbors of one chunk lie together in memory.
     in_chunks(work, tree.indices, neighborhood.rows_per_chunk(len(xyz)), monitor)
@@ -165,8 +224,8 @@ def neighborhood_eigenvalues(
     """
     eigenvalues = np.empty((len(xyz), 3))
 
-    def keep(rows: np.ndarray, covariances: np.ndarray, counts: np.ndarray) -> None:
-        eigenvalues[rows] = defined_eigenvalues(covariances, counts)
+    def keep(rows: np.ndarray, shapes: Shapes) -> None:
+        eigenvalues[rows] = defined_eigenvalues(shapes.covariances, shapes.counts)
 
     reduce_neighborhoods(xyz, Nearest(n_neighbors), keep, tree, monitor)
     return eigenvalues

@@ -55,7 +55,7 @@ def surface_noise(xyz: np.ndarray, tree: Any = None) -> float:
     if count <= 3:
         return _LEAST_NOISE
     tree = spatial.cKDTree(xyz) if tree is None else tree
-    covariances, _ = Nearest(count).covariances(np.ascontiguousarray(xyz.T), tree, _sample(xyz))
+    covariances = Nearest(count).moments(np.ascontiguousarray(xyz.T), tree, _sample(xyz))[2]
     across = symmetric_eigenvalues(covariances)[:, 2] * count / (count - 3)
     return max(float(np.sqrt(np.quantile(across, _SMOOTH_SHARE))), _LEAST_NOISE)
 
@@ -126,7 +126,7 @@ def surface_neighbors(xyz: np.ndarray, density: float, noise: float, tree: Any =
     tree = spatial.cKDTree(xyz) if tree is None else tree
     columns, rows = np.ascontiguousarray(xyz.T), _sample(xyz)
     while count < min(_MOST_NEIGHBORS, len(xyz)):
-        eigenvalues = symmetric_eigenvalues(Nearest(count).covariances(columns, tree, rows)[0])
+        eigenvalues = symmetric_eigenvalues(Nearest(count).moments(columns, tree, rows)[2])
         smooth = eigenvalues[:, 2] <= np.quantile(eigenvalues[:, 2], _SMOOTH_SHARE + 0.1)
         width = np.sqrt(eigenvalues[smooth, 1] / np.maximum(eigenvalues[smooth, 0], 1e-12))
         if np.quantile(width, 0.2) >= _LEAST_WIDTH:

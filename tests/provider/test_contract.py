@@ -25,6 +25,7 @@ IDS = {
     "assessbuildings",
     "assessground",
     "classifybuildings",
+    "classifydimensionality",
     "classifygroundtin",
     "classifynoisehistogram",
     "classifynoisestatistical",
@@ -76,7 +77,7 @@ def test_the_algorithm_is_the_stage(stage, algorithm):
 def test_inputs_and_outputs_are_what_the_stage_reads_and_makes(stage, algorithm):
     clouds = [d.name() for d in algorithm.parameterDefinitions() if isinstance(d, (CloudParameter, CloudsParameter))]
     own = "INPUTS" if stage.merges else "INPUT"
-    assert clouds == [own] * bool("xyz" in stage.reads) + ["REFERENCE"] * stage.reads_reference
+    assert clouds == [own] * stage.reads_cloud + ["REFERENCE"] * stage.reads_reference
     layers = [d for d in algorithm.parameterDefinitions() if isinstance(d, QgsProcessingParameterFeatureSource)]
     assert [layer.name() for layer in layers] == [source.name.upper() for source in stage.sources]
     for layer, source in zip(layers, stage.sources):

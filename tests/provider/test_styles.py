@@ -16,6 +16,7 @@ from qgis.core import (
 from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.cloud.cloud import create_cloud, write_cloud
 from lidar_buildings.algorithms.cloud.dimensions import DIMENSIONS
+from lidar_buildings.algorithms.features.dimensionality import Dimensionality
 from lidar_buildings.algorithms.quality import corners
 from lidar_buildings.algorithms.quality.buildings import FOUND, INVENTED, INVENTED_PART, MISSED, MISSED_PART
 from lidar_buildings.provider.paths import STYLES
@@ -88,9 +89,19 @@ def test_displacements_are_arrows_drawn_ten_times_as_long(qgis_application):
     assert expression.evaluate(context).asWkt(3) == "LineString (600000 5000000, 600001 4999998)"
 
 
-def test_results_find_their_style():
-    assert cloud_style(TOYS["toy_lift"]) == "height_above_ground"
-    assert cloud_style(TOYS["toy_make"]) == "classification"
-    assert cloud_style(TOYS["toy_compare"]) is None
+def test_results_find_their_style(town):
+    cloud = create_cloud(town)
+    assert cloud_style(TOYS["toy_lift"], cloud) is None  # not asked for, so that there is nothing to draw
+    cloud.set("height_above_ground", np.zeros(len(cloud), np.float32))
+    assert cloud_style(TOYS["toy_lift"], cloud) == "height_above_ground"
+    assert cloud_style(TOYS["toy_make"], cloud) == "classification"
+    assert cloud_style(TOYS["toy_compare"], cloud) is None
     assert layer_style(TOYS["toy_outline"].layers[0]) == "footprints"
     assert layer_style(TOYS["toy_make"].layers[0]) is None
+
+
+def test_every_kind_of_structure_has_a_color(cloud_file, qgis_application):
+    layer = QgsPointCloudLayer(str(cloud_file), "structure", "copc")
+    layer.loadNamedStyle(str(STYLES / "dimensionality.qml"))
+    found = {category.value(): category.label().lower() for category in layer.renderer().categories()}
+    assert found == {int(kind): kind.name.lower() for kind in Dimensionality}

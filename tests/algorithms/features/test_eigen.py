@@ -89,9 +89,9 @@ def test_radius_neighborhoods_are_those_of_brute_force(rng, monkeypatch):
     near = np.linalg.norm(xyz[:, None] - xyz, axis=2) <= 2.0
     found, counted = np.empty((300, 6)), np.zeros(300, int)
 
-    def keep(rows, covariances, counts):
-        found[rows] = covariances
-        counted[rows] += counts
+    def keep(rows, shapes):
+        found[rows] = shapes.covariances
+        counted[rows] += shapes.counts
 
     eigen.reduce_neighborhoods(xyz, eigen.Within(2.0), keep)
     assert (counted == near.sum(axis=1)).all()
