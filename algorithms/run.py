@@ -35,7 +35,8 @@ def run_stage(
 ) -> Outcome:
     """Run ``stage`` and return what it made.
 
-    ``cloud`` is several clouds for a stage that merges; they get the origin of the first.
+    ``cloud`` is several clouds for a stage that merges. It sees them from the zero of the map, about which it may turn
+    them; they, and the cloud that it makes, get the origin of the first.
     A cloud is changed in place: the dimensions that the stage writes are stored in it. Withheld
     points are not shown to the stage; in its result they keep their classification and are
     undefined in everything else. A stage that selects or merges makes a new cloud instead, in
@@ -49,14 +50,24 @@ def run_stage(
     """
     arguments: dict[str, Any] = stage.check(tunables)
     clouds = [cloud] if isinstance(cloud, Cloud) else list(cloud or ())
-    for other in (*clouds[1:], *([reference] if reference is not None and clouds else [])):
-        # Coordinates of two clouds can be compared only from one origin.
-        other.origin = clouds[0].origin
+    # Coordinates of two clouds can be compared only from one origin.
+    together = [*clouds, *([reference] if reference is not None and clouds else [])]
+    origin = clouds[0].origin if clouds else np.zeros(3)
+    _see_from(np.zeros(3) if stage.merges else origin, together)
     used = [_used(one) for one in clouds]
     arrays = [_argument(stage, name, clouds, reference, used, arguments) for name in (*stage.reads, *stage.optional)]
     layers = given_layers(stage.name, stage.sources, sources or {})
-    made = stage.sorted(stage.function(*arrays, **layers, **arguments, monitor=monitor or Monitor()))
-    return Outcome(_result(stage, clouds, used, made), made.layers, made.report, made.rasters)
+    monitor = monitor or Monitor()
+    made = stage.sorted(stage.function(*arrays, **layers, **arguments, monitor=monitor))
+    result = _result(stage, clouds, used, made, monitor)
+    if stage.merges and result is not None:
+        _see_from(origin, [*together, result])
+    return Outcome(result, made.layers, made.report, made.rasters)
+
+
+def _see_from(origin: np.ndarray, clouds: list[Cloud]) -> None:
+    for cloud in clouds:
+        cloud.origin = origin
 
 
 def _used(cloud: Cloud) -> Optional[np.ndarray]:
@@ -105,7 +116,9 @@ def _present(cloud: Cloud, name: str) -> np.ndarray:
     return cloud.get(name)
 
 
-def _result(stage: Stage, clouds: list[Cloud], used: list[Optional[np.ndarray]], made: Made) -> Optional[Cloud]:
+def _result(
+    stage: Stage, clouds: list[Cloud], used: list[Optional[np.ndarray]], made: Made, monitor: Monitor
+) -> Optional[Cloud]:
     """Return the cloud with what the stage made of it: the same one, or a new one."""
     if stage.creates:
         return create_cloud({name: values for name, values in made.dimensions.items() if values is not None})
@@ -113,7 +126,7 @@ def _result(stage: Stage, clouds: list[Cloud], used: list[Optional[np.ndarray]],
         return None
     if stage.merges:
         seen = [cloud if points is None else cloud.take(np.flatnonzero(points)) for cloud, points in zip(clouds, used)]
-        cloud, points = merge_records(seen, made.dimensions.pop("xyz", None)), None
+        cloud, points = merge_records(seen, made.dimensions.pop("xyz", None), monitor), None
     elif stage.selects:
         cloud, points = _selected(stage, clouds[0], used[0], made.selected), None
     else:

@@ -10,6 +10,7 @@ from .buildings.footprints import extract_footprints
 from .features.dimensionality import classify_dimensionality
 from .features.features import compute_features
 from .preparation.filter import filter_points
+from .preparation.merge import merge_clouds
 from .preparation.noise_histogram import classify_noise_histogram
 from .preparation.noise_statistical import classify_noise_statistical
 from .preparation.voxels import downsample_voxels
@@ -27,6 +28,7 @@ from .terrain.ground_tin import classify_ground_tin
 from .terrain.height import compute_height_above_ground
 
 _FUNCTIONS: tuple[Any, ...] = (
+    merge_clouds,
     classify_noise_histogram,
     classify_noise_statistical,
     filter_points,

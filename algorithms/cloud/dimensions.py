@@ -72,6 +72,7 @@ _WRITTEN = (
     Dimension("optimal_neighbors", ("OptimalKNN",), "i4", "points of the neighborhood"),
     Dimension("dimensionality", ("Dimensionality",), "u1", "1 line, 2 plane, 3 volume"),
     Dimension("cluster_entropy", ("ClusterEntropy",), "f4", "mean entropy of the cluster"),
+    Dimension("previous_source_id", ("PreviousSourceId",), "u2", "PointSourceId before the merge"),
     Dimension("voxel_count", ("VoxelCount",), "u4", "points of the voxel"),
     Dimension("confidence", ("Confidence",), "f4", "0 unsure to 1 sure of building"),
 )

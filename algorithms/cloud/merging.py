@@ -1,4 +1,4 @@
-"""Several clouds as one, so far of equal layout, scale and offset only."""
+"""Several clouds as one, whatever their scales, offsets, point formats and extra dimensions."""
 
 from __future__ import annotations
 
@@ -7,40 +7,121 @@ from typing import Optional
 
 import numpy as np
 
+from ..stage import Monitor
 from .cloud import Cloud
-from .units import crs_identity
+from .dimensions import DIMENSIONS
+from .header import Header
+from .records import Records, convert, find_extra, is_stored_as
+from .units import Units, crs_identity
+from .vpc import merged_header
+
+# Points converted at once: the memory beside the clouds and their union stays small.
+_CHUNK = 500_000
 
 
-def merge_records(clouds: list[Cloud], xyz: Optional[np.ndarray]) -> Cloud:
+def merge_records(clouds: list[Cloud], xyz: Optional[np.ndarray], monitor: Optional[Monitor] = None) -> Cloud:
     """Return one cloud of the points of all, cloud after cloud, with what stages have set in them.
+
+    It has the finest scale, the smallest point format that holds the standard fields of all (colors and times that a
+    cloud lacks are 0), and the extra dimensions of all: where a cloud lacks one, its points have NaN, or 0 in a
+    dimension of whole numbers. Fields of the header and records (VLRs) are the first cloud's, with those records that
+    only others have. A cloud without coordinate reference system is taken to be in that of the others.
 
     Parameters
     ----------
     clouds : list of Cloud
-        Two or more, of one origin, which the result has too. They are not changed. So far they
-        must have the same point format, extra dimensions, scale and offset.
+        Two or more, of one origin, which the result has too. They are not changed.
     xyz : ndarray of shape (n, 3), float64, or None
         New coordinates of all points (m, relative to the common origin); None where none were moved.
+    monitor : Monitor, optional
+        Hears of what can't be merged.
 
     Raises
     ------
     ValueError
-        If the clouds have different coordinate reference systems, layouts, scales or offsets.
+        If the clouds have different coordinate reference systems, or span more than their scale can store.
     """
-    first = clouds[0]
-    layouts = [cloud.records().layout for cloud in clouds]
-    for cloud, layout in zip(clouds, layouts):
-        if crs_identity(cloud.wkt) != crs_identity(first.wkt):
-            raise ValueError("The clouds have different coordinate reference systems; reproject them to one first.")
-        if (
-            layout != layouts[0]
-            or ((cloud.header.scale != first.header.scale) | (cloud.header.offset != first.header.offset)).any()
-        ):
-            raise ValueError("The clouds are stored in different ways; write them with one scale, offset and format.")
-    points = np.concatenate([cloud.records().take(slice(None)) for cloud in clouds])
-    header = replace(first.header.with_layout(layouts[0]), count=len(points))
-    merged = Cloud(header, points, first.units, [path for cloud in clouds for path in cloud.sources])
-    merged.wkt, merged.origin = first.wkt, first.origin
-    if xyz is not None:
-        merged.set("xyz", xyz)
+    monitor = monitor or Monitor()
+    leader = _leader(clouds, monitor)
+    records = [_records(cloud, leader.units) for cloud in clouds]
+    places = _places(clouds, xyz, leader.units)
+    headers = [_header(*one, leader.units) for one in zip(clouds, records, places)]
+    header = merged_header(headers, "clouds", monitor)
+    points = np.zeros(header.count, header.layout.dtype)
+    start = 0
+    for one, place in zip(records, places):
+        _fill(points[start : start + len(place)], one, place, header)
+        start += len(place)
+    merged = Cloud(header, points, leader.units, [path for cloud in clouds for path in cloud.sources])
+    merged.wkt, merged.origin = leader.wkt, clouds[0].origin
     return merged
+
+
+def _leader(clouds: list[Cloud], monitor: Monitor) -> Cloud:
+    """Return the cloud whose coordinate reference system the union has: the first that has one."""
+    named = [(number, cloud) for number, cloud in enumerate(clouds, start=1) if cloud.wkt]
+    if not named:
+        return clouds[0]
+    first, leader = named[0]
+    for number, cloud in named:
+        one, other = crs_identity(leader.wkt), crs_identity(cloud.wkt)
+        if one != other:
+            raise ValueError(
+                f"{_name(leader, first)} and {_name(cloud, number)} have different coordinate reference systems "
+                f"({one[:40]}, {other[:40]}); reproject them to one first."
+            )
+    for number, cloud in enumerate(clouds, start=1):
+        if not cloud.wkt:
+            monitor.warn(
+                f"{_name(cloud, number)} names no coordinate reference system; it is taken to be in that of "
+                f"{_name(leader, first)}, in meters."
+            )
+    return leader
+
+
+def _name(cloud: Cloud, number: int) -> str:
+    return f"Cloud {number}" + (f" ({cloud.sources[-1].name})" if cloud.sources else "")
+
+
+def _records(cloud: Cloud, units: Units) -> Records:
+    """Return what makes the cloud's records, its known dimensions with name, type and unit as in all the others."""
+    cloud, layout, factors = cloud.copy(), cloud.header.layout, _factors(cloud.units)
+    for name, dimension in DIMENSIONS.items():
+        if dimension.standard or not cloud.has(name):
+            continue
+        found = [find_extra(layout, dimension, i) for i in range(len(dimension.disk))]
+        fields = [(layout.extras[at], disk) for at, disk in zip(found, dimension.disk) if at is not None]
+        is_usual = all(is_stored_as(field, disk, dimension) for field, disk in fields)
+        if not is_usual or (dimension.unit in ("m", "m²") and (factors != _factors(units)).any()):
+            cloud.set(name, cloud.get(name))
+    cloud.units = units
+    return cloud.records()
+
+
+def _places(clouds: list[Cloud], xyz: Optional[np.ndarray], units: Units) -> list[np.ndarray]:
+    """Return the coordinates of each cloud (m, 3), on the map of the union."""
+    ends = np.cumsum([len(cloud) for cloud in clouds])[:-1]
+    parts = [cloud.get("xyz") for cloud in clouds] if xyz is None else np.split(xyz, ends)
+    factors, origin = _factors(units), clouds[0].origin
+    is_there = not origin.any() and (factors == 1).all()
+    return [part if is_there else (part + origin) / factors for part in parts]
+
+
+def _factors(units: Units) -> np.ndarray:
+    return np.array([units.horizontal, units.horizontal, units.vertical])
+
+
+def _header(cloud: Cloud, records: Records, place: np.ndarray, units: Units) -> Header:
+    """Return the cloud's header as if its file were one of the union's units, with the points where they are now."""
+    scale = cloud.header.scale * (_factors(cloud.units) / _factors(units))
+    low, high = place.min(axis=0), place.max(axis=0)
+    return replace(cloud.header, layout=records.layout, count=len(place), scale=scale, low=low, high=high)
+
+
+def _fill(out: np.ndarray, records: Records, place: np.ndarray, header: Header) -> None:
+    """Write the records of one cloud, with its new coordinates, to their part of the union."""
+    for start in range(0, len(out), _CHUNK):
+        chunk = slice(start, start + _CHUNK)
+        convert(records.take(chunk), records.layout, header.layout, out[chunk])
+        for i, axis in enumerate("XYZ"):
+            out[axis][chunk] = np.rint((place[chunk, i] - header.offset[i]) / header.scale[i])

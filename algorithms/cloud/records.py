@@ -129,9 +129,14 @@ def _columns(
 
 def _overwritten(old: ExtraField, disk: str, dimension: Dimension) -> ExtraField:
     """Return the field that takes the place of ``old``: itself if it holds the same numbers under the same name."""
-    if old.name == disk and old.dtype == np.dtype(dimension.dtype) and old.is_plain:
+    if is_stored_as(old, disk, dimension):
         return old.without_range()
     return new_field(disk, dimension.dtype, dimension.description)
+
+
+def is_stored_as(field: ExtraField, disk: str, dimension: Dimension) -> bool:
+    """Whether a field has the name, type and plain numbers that this program gives a component of ``dimension``."""
+    return field.name == disk and field.dtype == np.dtype(dimension.dtype) and field.is_plain
 
 
 def merged_layout(layouts: list[Layout]) -> Layout:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ..stage import Monitor
-from .header import COPC_HIERARCHY, COPC_INFO, LASZIP, WAVEFORMS, Header, Record
+from .header import COPC_HIERARCHY, COPC_INFO, LASZIP, WAVEFORMS, WKT_BIT, Header, Record
 from .las import open_header, read_chunks
 from .outputs import COPC, LAS, LAZ, kind_of
 from .records import convert, merged_layout
@@ -74,7 +74,7 @@ def read_tiles(paths: list[Path], monitor: Monitor) -> tuple[Header, np.ndarray]
     """
     headers = [open_header(path) for path in paths]
     _check_crs(paths, headers)
-    header = _merged_header(headers, monitor)
+    header = merged_header(headers, "tiles", monitor)
     points = np.zeros(header.count, header.layout.dtype)
     start = 0
     for path, tile in zip(paths, headers):
@@ -97,18 +97,35 @@ def _check_crs(paths: list[Path], headers: list[Header]) -> None:
             )
 
 
-def _merged_header(headers: list[Header], monitor: Monitor) -> Header:
+def merged_header(headers: list[Header], what: str, monitor: Monitor) -> Header:
+    """Return the header of all points of several files, or of clouds, as one: with the finest scale and all fields.
+
+    Parameters
+    ----------
+    headers : list of Header
+        With true bounds, in one coordinate system.
+    what : str
+        What a sentence to the user calls them: "tiles".
+    monitor : Monitor
+        Hears of what can't be merged.
+
+    Raises
+    ------
+    ValueError
+        If they span more than their scale can store.
+    """
     first = headers[0]
     if any(header.find(WAVEFORMS) for header in headers):
-        monitor.warn("The waveforms of the tiles are not merged; their references are kept.")
+        monitor.warn(f"The waveforms of the {what} are not merged; their references are kept.")
     if any((header.encoding ^ first.encoding) & _GPS_TIME_BIT for header in headers):
-        monitor.warn("The tiles count GPS time in different ways; the values are kept as they are.")
+        monitor.warn(f"The {what} count GPS time in different ways; the values are kept as they are.")
     layout = merged_layout([header.layout for header in headers])
-    scale, offset = _grid(headers)
+    scale, offset = _grid(headers, what)
     apart = [header.without(LASZIP, COPC_INFO, COPC_HIERARCHY, WAVEFORMS) for header in headers]
     merged = replace(
         apart[0],
         minor=max(header.minor for header in headers),
+        encoding=first.encoding if layout.is_old else first.encoding | WKT_BIT,
         count=sum(header.count for header in headers),
         scale=scale,
         offset=offset,
@@ -130,7 +147,7 @@ def _union(lists: list[list[Record]]) -> list[Record]:
     return records
 
 
-def _grid(headers: list[Header]) -> tuple[np.ndarray, np.ndarray]:
+def _grid(headers: list[Header], what: str) -> tuple[np.ndarray, np.ndarray]:
     """Return scale and offset that hold all tiles: the first's offset if the finest scale reaches from there."""
     scale = np.min([np.abs(header.scale) for header in headers], axis=0)
     low = np.min([header.low for header in headers], axis=0)
@@ -140,7 +157,7 @@ def _grid(headers: list[Header]) -> tuple[np.ndarray, np.ndarray]:
     offset[far] = np.round((low + high)[far] / 2)
     if (np.maximum(offset - low, high - offset) > scale * _LARGEST_INT).any():
         raise ValueError(
-            f"The tiles span {(high - low).max():.0f} units, too far for their scale {scale.min():g}; take fewer."
+            f"The {what} span {(high - low).max():.0f} units, too far for their scale {scale.min():g}; take fewer."
         )
     return scale, offset
 

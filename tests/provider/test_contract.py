@@ -31,6 +31,7 @@ IDS = {
     "classifynoisestatistical",
     "comparecorners",
     "downsamplevoxels",
+    "mergeclouds",
     "completebuildings",
     "computefeatures",
     "computeheightaboveground",
