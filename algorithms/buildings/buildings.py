@@ -14,7 +14,9 @@ from ..features.noise import surface_neighbors, surface_noise
 from ..packages import cluster
 from ..params import MinBuildingArea, PointDensity, Seed
 from ..segmentation.extent import penetration
-from ..stage import Monitor, Param, stage
+from ..stage import Measure, Monitor, Param, stage
+from .decisions import Clusters, build_report
+from .reasons import Reason
 
 # Entropies that differ by less than this are alike.
 _ALIKE = 1e-3
@@ -24,7 +26,14 @@ _ALIKE = 1e-3
     "Classify buildings",
     group="Buildings",
     tags="building,entropy,k-means,unsupervised,classification",
-    writes=("classification", "entropy", "cluster_entropy", "confidence"),
+    writes=("classification", "entropy", "cluster_entropy", "confidence", "reason"),
+    measures=(
+        Measure("clusters", "Clusters"),
+        Measure("building_clusters", "Clusters called building"),
+        Measure("undecided_clusters", "Undecided clusters"),
+        Measure("building_entropy", "Mean entropy of buildings"),
+        Measure("other_entropy", "Mean entropy of everything else"),
+    ),
 )
 def classify_buildings(
     xyz,
@@ -32,6 +41,7 @@ def classify_buildings(
     cluster_id,
     return_number=None,
     number_of_returns=None,
+    reason=None,
     *,
     min_area: MinBuildingArea = 4.0,
     n_neighbors: Annotated[
@@ -92,6 +102,8 @@ def classify_buildings(
         Clusters from 1; points of 0 keep their class.
     return_number, number_of_returns : ndarray of shape (n,), uint8, optional
         Used for penetration where given.
+    reason : ndarray of shape (n,), uint8, optional
+        What the segmentation said of points outside clusters, which stays.
 
     Returns
     -------
@@ -103,7 +115,11 @@ def classify_buildings(
         Mean entropy of the point's cluster; NaN elsewhere.
     confidence : ndarray of shape (n,), float32
         How sure the cluster is a building, 0 to 1: the distance of its entropy from the upper mean over the sum of
-        its distances from both (and solidity, see Notes); 0.5 is undecided. NaN elsewhere.
+        its distances from both (and solidity and size, see Notes); 0.5 is undecided. NaN elsewhere.
+    reason : ndarray of shape (n,), uint8
+        Why the point's cluster is called building or not, see :class:`~.reasons.Reason`; 0 outside clusters.
+    report : Report
+        Counts and the two mean entropies, and a page that shows what decided.
 
     Notes
     -----
@@ -115,6 +131,9 @@ def classify_buildings(
     Penetration is this project's: a roof stops the beam and a crown lets it through. A cluster's confidence is
     then the geometric mean of what its entropy and its penetration say, and none with more penetration than the
     maximum is a building.
+
+    Small things can look like a roof by chance: a car does. Confidence above 0.5 is therefore averaged with as many
+    undecided points as the smallest building has, which changes no decision.
 
     References
     ----------
@@ -130,26 +149,29 @@ def classify_buildings(
     entropy = np.full(len(xyz), np.nan, np.float32)
     cluster_entropy, confidence = entropy.copy(), entropy.copy()
     result = np.where(classification == PointClass.BUILDING, np.uint8(PointClass.UNCLASSIFIED), classification)
+    why = np.zeros(len(xyz), np.uint8) if reason is None else np.where(cluster_id > 0, 0, reason).astype(np.uint8)
     if not len(clustered):
         monitor.warn("There are no clusters, so no buildings were found.")
-        return result.astype(np.uint8), entropy, cluster_entropy, confidence
+        return result.astype(np.uint8), entropy, cluster_entropy, confidence, why, build_report(Clusters.none())
 
     values = shannon_entropy_lps(neighborhood_eigenvalues(xyz[clustered], None, n_neighbors, monitor))
-    ids, position = np.unique(cluster_id[clustered], return_inverse=True)
+    ids, position, size = np.unique(cluster_id[clustered], return_inverse=True, return_counts=True)
     means = _cluster_means(values, position, len(ids))
     split = _split(means, n_neighbors, guard, seed, monitor)
     monitor.resolved(building_entropy=split.building, other_entropy=split.other)
-    sure = split.confidence(means)
+    through = None
     if max_penetration < 1 and split.separates:
         through = penetration(xyz, cluster_id - 1, density, return_number, number_of_returns)[ids - 1]
-        # A cluster without entropy stays undecided, however solid it is.
-        sure = np.where(np.isfinite(means), _with_solidity(sure, through, max_penetration), sure)
+    sure, reasons = _decide(means, through, max_penetration, split)
+    sure = _supported(sure, size / (min_area * density))
 
     entropy[clustered] = values
     cluster_entropy[clustered] = means[position]
     confidence[clustered] = sure[position]
+    why[clustered] = reasons[position]
     result[clustered[(sure > 0.5)[position]]] = PointClass.BUILDING
-    return result.astype(np.uint8), entropy, cluster_entropy, confidence
+    made = Clusters(means, through, reasons, split.building, split.other, max_penetration, split.is_given)
+    return result.astype(np.uint8), entropy, cluster_entropy, confidence, why, build_report(made)
 
 
 def _neighbors(xyz: np.ndarray, density: float, min_area: float, neighborhood: str) -> int:
@@ -160,12 +182,39 @@ def _neighbors(xyz: np.ndarray, density: float, min_area: float, neighborhood: s
     return round(1.5 * surface_neighbors(xyz, density, surface_noise(xyz)))
 
 
+def _decide(
+    means: np.ndarray, through: Optional[np.ndarray], most: float, split: _Split
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return how sure each cluster is a building (more than 0.5 is one), and the reason.
+
+    ``through`` is the penetration of each cluster, None where it doesn't count, and ``most`` the greatest allowed.
+    """
+    sure = split.confidence(means)
+    is_planar = sure > 0.5
+    reasons = np.where(is_planar, Reason.PLANE, Reason.ROUGH)
+    if through is not None:
+        sure = _with_solidity(sure, through, most)
+        solid = np.where(is_planar, Reason.SOLID_PLANE, Reason.SOLID)
+        reasons = np.where(sure > 0.5, solid, np.where(is_planar, Reason.PENETRATED, Reason.ROUGH))
+    if not split.separates:
+        reasons[:] = Reason.ALIKE
+    # A cluster without entropy stays undecided, however solid it is.
+    undefined = ~np.isfinite(means)
+    reasons[undefined] = Reason.WITHOUT_ENTROPY
+    return np.where(undefined, 0.5, sure), reasons.astype(np.uint8)
+
+
 def _with_solidity(sure: np.ndarray, penetration: np.ndarray, most: float) -> np.ndarray:
     """Return the geometric mean of the entropy's confidence and of solidity, 0 at twice the penetration allowed."""
     solid = np.clip(1 - penetration / (2 * most), 0, 1)
     # Geometric, so that neither makes up for the other: a dense crown stops the beam and is no roof.
     both = np.sqrt(sure * solid)
     return np.where(penetration <= most, both, np.minimum(both, 0.5))
+
+
+def _supported(sure: np.ndarray, size: np.ndarray) -> np.ndarray:
+    """Return how sure clusters are that hold ``size`` times the points of the smallest building, if they may be one."""
+    return np.where(sure > 0.5, 0.5 + (sure - 0.5) * size / (size + 1), sure)
 
 
 def _cluster_means(values: np.ndarray, position: np.ndarray, count: int) -> np.ndarray:
@@ -178,10 +227,14 @@ def _cluster_means(values: np.ndarray, position: np.ndarray, count: int) -> np.n
 
 @dataclass(frozen=True)
 class _Split:
-    """Two mean entropies, of buildings and of everything else; alike, they leave every cluster undecided."""
+    """Two mean entropies, of buildings and of everything else; alike, they leave every cluster undecided.
+
+    They are ``is_given`` where they are those of planes and volumes and not of clusters.
+    """
 
     building: float
     other: float
+    is_given: bool = False
 
     @property
     def separates(self) -> bool:
@@ -218,7 +271,7 @@ def _split(means: np.ndarray, n_neighbors: int, guard: bool, seed: int, monitor:
         "The entropies of the clusters don't form two groups; each cluster was compared "
         f"with the entropy of planes ({plane:.2f}) and volumes ({volume:.2f}) instead."
     )
-    return _Split(plane, volume)
+    return _Split(plane, volume, is_given=True)
 
 
 def reference_entropies(n_points: int, trials: int = 400) -> tuple[float, float]:

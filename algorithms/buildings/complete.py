@@ -12,6 +12,7 @@ from ..cloud.density import point_density
 from ..packages import ndimage
 from ..params import MinBuildingArea, PointDensity
 from ..stage import Param, stage
+from .reasons import Reason
 
 # Cells hold at least a point where the roof was seen: this many point spacings, and no less than half a metre.
 _CELL_SPACINGS, _LEAST_CELL = 1.2, 0.5
@@ -35,12 +36,14 @@ _EIGHT = np.ones((3, 3), bool)
     "Complete buildings",
     group="Buildings",
     tags="building,roof,facade,chimney,dormer,attach",
-    writes=("classification", "cluster_id"),
+    writes=("classification", "cluster_id", "confidence", "reason"),
 )
 def complete_buildings(
     xyz,
     classification,
     height_above_ground,
+    confidence=None,
+    reason=None,
     *,
     gap: Annotated[
         Optional[float],
@@ -102,6 +105,10 @@ def complete_buildings(
         ASPRS classes; points of class 6 are the roofs to start from.
     height_above_ground : ndarray of shape (n,), float32
         Heights, m.
+    confidence : ndarray of shape (n,), float32, optional
+        How sure the roofs are buildings, 0 to 1.
+    reason : ndarray of shape (n,), uint8, optional
+        Why the roofs are buildings, see :class:`~.reasons.Reason`.
 
     Returns
     -------
@@ -109,6 +116,10 @@ def complete_buildings(
         Buildings 6; roofs of less than the minimum area or width become 1.
     cluster_id : ndarray of shape (n,), int32
         Buildings from 1, from the south-west northward; 0 is none.
+    confidence : ndarray of shape (n,), float32, or None
+        Of what is added to a building the mean of its roofs, of roofs that are none at most 0.5; None where not given.
+    reason : ndarray of shape (n,), uint8, or None
+        The same for what is added and what is no building; None where not given.
 
     Raises
     ------
@@ -133,7 +144,7 @@ def complete_buildings(
     cluster_id = np.zeros(len(xyz), np.int32)
     is_roof = classification == PointClass.BUILDING
     if not is_roof.any():
-        return result.astype(np.uint8), cluster_id
+        return result.astype(np.uint8), cluster_id, confidence, reason
 
     cell_size = max(_LEAST_CELL, _CELL_SPACINGS * spacing)
     refuse_sparse(xyz, cell_size)
@@ -143,7 +154,7 @@ def complete_buildings(
     # Multipath through a skylight is no ground that shows in it.
     covered = _covered(cell, is_roof, ~raised & ~is_noise, gap, cell_size)
     monitor.progress(0.3)
-    building = _numbered(covered, min_area, min_width, cell_size)
+    building, refused = _numbered(covered, min_area, min_width, cell_size)
     columns = _Columns(building, _roof_top(cell, xyz[:, 2], is_roof, covered))
     monitor.progress(0.6)
 
@@ -157,7 +168,29 @@ def complete_buildings(
     result[belongs] = PointClass.BUILDING
     cluster_id[belongs] = number[belongs]
     monitor.progress(1.0)
-    return result.astype(np.uint8), cluster_id
+    refusal = np.where(building[cell] > 0, Reason.TOO_LOW, refused[cell])
+    return result.astype(np.uint8), cluster_id, *_explained(confidence, reason, is_roof, cluster_id, refusal)
+
+
+def _explained(
+    confidence: Optional[np.ndarray],
+    reason: Optional[np.ndarray],
+    is_roof: np.ndarray,
+    cluster_id: np.ndarray,
+    refusal: np.ndarray,
+) -> tuple[Optional[np.ndarray], Optional[np.ndarray]]:
+    """Return confidence and reason of what was added to buildings and of roofs that are no building after all."""
+    is_added, is_dropped = (cluster_id > 0) & ~is_roof, (cluster_id == 0) & is_roof
+    if reason is not None:
+        reason = np.where(is_added, Reason.ATTACHED, np.where(is_dropped, refusal, reason)).astype(np.uint8)
+    if confidence is not None:
+        known = is_roof & (cluster_id > 0) & np.isfinite(confidence)
+        count = np.bincount(cluster_id[known], minlength=int(cluster_id.max()) + 1)
+        total = np.bincount(cluster_id[known], confidence[known], len(count))
+        mean = np.divide(total, count, out=np.full(len(count), np.nan), where=count > 0)
+        most = np.where(is_dropped, np.minimum(confidence, 0.5), confidence)
+        confidence = np.where(is_added, mean[cluster_id], most).astype(np.float32)
+    return confidence, reason
 
 
 def _is_wall(above: np.ndarray, height: np.ndarray, eave: np.ndarray) -> np.ndarray:
@@ -220,15 +253,18 @@ def _small(mask: np.ndarray, most: float) -> np.ndarray:
     return mask & (size <= most)[region]
 
 
-def _numbered(covered: np.ndarray, min_area: float, min_width: float, cell_size: float) -> np.ndarray:
-    """Return numbers from 1 for regions that are large and wide enough, from the south-west; 0 elsewhere."""
+def _numbered(
+    covered: np.ndarray, min_area: float, min_width: float, cell_size: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return numbers from 1 for regions that are large and wide enough, from the south-west; why the others are not."""
     region, count = ndimage.label(covered, _EIGHT)
-    kept = np.bincount(region.ravel(), minlength=count + 1) * cell_size**2 >= min_area
+    is_large = np.bincount(region.ravel(), minlength=count + 1) * cell_size**2 >= min_area
     # The distance to the nearest cell outside is 1 in a strip of one or two cells, 2 in one of three or four.
     inward = ndimage.maximum(ndimage.distance_transform_edt(covered), region, np.arange(count + 1))
-    kept &= (2 * inward - 1) * cell_size >= min_width
+    kept = is_large & ((2 * inward - 1) * cell_size >= min_width)
     kept[0] = False
-    return np.where(kept, np.cumsum(kept), 0).astype(np.int32)[region]
+    number = np.where(kept, np.cumsum(kept), 0).astype(np.int32)
+    return number[region], np.where(is_large, Reason.TOO_NARROW, Reason.TOO_SMALL).astype(np.uint8)[region]
 
 
 def _roof_top(

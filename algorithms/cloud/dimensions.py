@@ -75,6 +75,7 @@ _WRITTEN = (
     Dimension("previous_source_id", ("PreviousSourceId",), "u2", "PointSourceId before the merge"),
     Dimension("voxel_count", ("VoxelCount",), "u4", "points of the voxel"),
     Dimension("confidence", ("Confidence",), "f4", "0 unsure to 1 sure of building"),
+    Dimension("reason", ("Reason",), "u1", "why it is a building or not"),
 )
 
 DIMENSIONS = {dimension.name: dimension for dimension in (*_STANDARD, *_WRITTEN)}

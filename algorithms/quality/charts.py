@@ -14,8 +14,8 @@ BLUE, YELLOW, RED, GRAY = "#004488", "#ddaa33", "#bb5566", "#bbbbbb"
 _WIDTH, _HEIGHT = 720, 320
 _LEFT, _RIGHT, _TOP, _BOTTOM = 70, 20, 50, 50
 
-# Bars that are narrower tell nothing apart.
-_MOST_BARS = 40
+# Bars that are narrower tell nothing apart, and wider ones hide that there are two groups.
+_MOST_BARS, _FEWEST_BARS = 40, 20
 
 _SIDE, _MARGIN = 420, 50
 
@@ -58,7 +58,8 @@ def draw_histogram(series: list[Series], axis: str, count: str, marks: list[Mark
     if not sum(map(len, values)):
         return "<p>There is nothing to show in a histogram.</p>"
     edges = bar_edges(every)
-    counts = np.array([np.histogram(one, edges)[0] for one in values])
+    # Round edges may miss the outermost values by their last digit.
+    counts = np.array([np.histogram(np.clip(one, edges[0], edges[-1]), edges)[0] for one in values])
     across = _Axis(edges[0], edges[-1], _LEFT, _WIDTH - _RIGHT)
     up = _Axis(0.0, float(counts.sum(axis=0).max()) * 1.05, _HEIGHT - _BOTTOM, _TOP)
     parts = [_bars(edges, counts, [one.color for one in series], across, up), _ticks_across(across, axis)]
@@ -69,11 +70,14 @@ def draw_histogram(series: list[Series], axis: str, count: str, marks: list[Mark
 def bar_edges(values: np.ndarray) -> np.ndarray:
     """Return where bars begin and end: round numbers, as fine as the values bear (Freedman and Diaconis)."""
     low, high = float(values.min()), float(values.max())
-    spread = float(np.subtract(*np.percentile(values, [75, 25]))) or (high - low) / 10
-    width = max(2 * spread / len(values) ** (1 / 3), (high - low) / _MOST_BARS)
-    step = round_step(width if width > 0 else max(abs(high), 1.0) / 10)
-    first, last = math.floor(low / step), math.floor(high / step) + 1
-    return np.arange(first, last + 1) * step
+    extent, size = high - low, max(abs(low), abs(high))
+    if extent <= 1e-9 * size:  # equal but for rounding
+        step = round_step(size / 10 or 1.0)
+    else:
+        width = 2 * float(np.subtract(*np.percentile(values, [75, 25]))) / len(values) ** (1 / 3)
+        step = round_step(float(np.clip(width, extent / _MOST_BARS, extent / _FEWEST_BARS)))
+    first, last = math.floor(low / step + 1e-9), math.ceil(high / step - 1e-9)
+    return np.arange(first, max(last, first + 1) + 1) * step
 
 
 def round_step(width: float) -> float:

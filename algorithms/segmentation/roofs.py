@@ -6,6 +6,7 @@ from typing import Annotated, Optional
 
 import numpy as np
 
+from ..buildings.reasons import Reason
 from ..cloud.asprs import NOISE
 from ..cloud.density import point_density
 from ..features.noise import surface_roughness
@@ -26,7 +27,7 @@ _LOW_SHARE, _LOW = 0.1, 0.5
     "Segment roofs",
     group="Segmentation",
     tags="roof,plane,planar,surface growing,segmentation",
-    writes=("segment_id", "cluster_id"),
+    writes=("segment_id", "cluster_id", "reason"),
 )
 def segment_roofs(
     xyz,
@@ -90,6 +91,8 @@ def segment_roofs(
         Roof surfaces from 1; 0 is none.
     cluster_id : ndarray of shape (n,), int32
         Roof surfaces (same numbers as segment_id), then clusters of everything else; 0 is none.
+    reason : ndarray of shape (n,), uint8
+        Raised points of surfaces that go on into the ground have one, see :class:`~..buildings.reasons.Reason`.
 
     Notes
     -----
@@ -111,16 +114,15 @@ def segment_roofs(
     is_roof, is_terrain = _roofs(xyz, patch, height_above_ground, density, min_height, min_area)
     segment_id = _renumbered(patch, is_roof)
 
-    is_other = (
-        (height_above_ground >= min(_RAISED, min_height)) & (segment_id == 0) & ~np.append(is_terrain, False)[patch]
-    )
+    raised, goes_on = height_above_ground >= min(_RAISED, min_height), np.append(is_terrain, False)[patch]
+    is_other = raised & (segment_id == 0) & ~goes_on
     others = used[is_other[used]]
     reach = 2 / np.sqrt(density)
     component = connect(xyz[others], reach, reach, monitor.part(0.8, 1))
     ids = number_large(_high(component, height_above_ground[others], min_height), min_area * density)
     cluster_id = segment_id.copy()
     cluster_id[others] = np.where(ids > 0, ids + segment_id.max(initial=0), 0)
-    return segment_id, cluster_id
+    return segment_id, cluster_id, np.where(raised & goes_on, np.uint8(Reason.INTO_GROUND), np.uint8(0))
 
 
 def _roofs(

@@ -13,6 +13,7 @@ from qgis.core import (
     QgsVectorLayer,
 )
 
+from lidar_buildings.algorithms.buildings.reasons import Reason
 from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.cloud.cloud import create_cloud, write_cloud
 from lidar_buildings.algorithms.cloud.dimensions import DIMENSIONS
@@ -50,6 +51,13 @@ def test_every_class_has_a_color(cloud_file, qgis_application):
     assert [category.value() for category in layer.renderer().categories()] == [int(code) for code in PointClass]
     colors = [category.color().name() for category in layer.renderer().categories()]
     assert len(set(colors)) == len(colors)
+
+
+def test_every_reason_has_a_color_and_its_sentence(cloud_file, qgis_application):
+    layer = QgsPointCloudLayer(str(cloud_file), "reasons", "copc")
+    layer.loadNamedStyle(str(STYLES / "reason.qml"))
+    shown = {category.value(): category.label() for category in layer.renderer().categories()}
+    assert shown == {int(reason): reason.text.rstrip(".") for reason in Reason}
 
 
 def test_footprints_are_labeled(qgis_application):

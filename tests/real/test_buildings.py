@@ -47,6 +47,7 @@ WRITTEN = (
     "entropy",
     "cluster_entropy",
     "confidence",
+    "reason",
 )
 KEYS = ("xyz", "gps_time", "return_number", "number_of_returns", "intensity", "point_source_id")
 

@@ -5,6 +5,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from lidar_buildings.algorithms.buildings.buildings import classify_buildings, reference_entropies
+from lidar_buildings.algorithms.buildings.reasons import Reason
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 
 FAR = np.array([600_000.0, 5_000_000.0, 0.0])
@@ -76,7 +77,7 @@ def test_entropies_and_cluster_means_by_another_route(garden, shift):
     xyz = xyz + shift * FAR
     is_clustered = np.arange(len(xyz)) % 7 != 0
     cluster_id = np.where(is_clustered, cluster_id, 0)
-    _, entropy, cluster_entropy, _ = classify_buildings(xyz, ones(xyz), cluster_id, n_neighbors=24)
+    _, entropy, cluster_entropy, *_ = classify_buildings(xyz, ones(xyz), cluster_id, n_neighbors=24)
     # The points to find neighbors among are the clustered ones; local coordinates keep the digits.
     expected = literal_entropies((xyz - shift * FAR)[is_clustered], 24)
     np.testing.assert_allclose(entropy[is_clustered], expected, atol=2e-5)
@@ -95,7 +96,7 @@ def test_the_result_is_that_of_the_best_split_in_two(rng):
         xyz, cluster_id = clusters(*parts)
         monitor = Monitor()
         tunables = {"guard": False, "n_neighbors": 20, "monitor": monitor}
-        found, _, cluster_entropy, _ = classify_buildings(xyz, ones(xyz), cluster_id, **tunables)
+        found, _, cluster_entropy, *_ = classify_buildings(xyz, ones(xyz), cluster_id, **tunables)
         means = np.array([cluster_entropy[cluster_id == number][0] for number in range(1, len(parts) + 1)], float)
         ordered = np.sort(means)
         squares = [ordered[:k].var() * k + ordered[k:].var() * (len(ordered) - k) for k in range(1, len(ordered))]
@@ -123,7 +124,7 @@ def test_neighbors_are_area_times_density(garden, min_area, density, expected):
 @pytest.mark.parametrize("guard", [True, False])
 def test_roofs_are_buildings_and_crowns_are_not(garden, guard):
     xyz, cluster_id = garden
-    found, _, _, confidence = classify_buildings(xyz, ones(xyz), cluster_id, guard=guard)
+    found, _, _, confidence, *_ = classify_buildings(xyz, ones(xyz), cluster_id, guard=guard)
     np.testing.assert_array_equal(found == 6, cluster_id <= 3)
     assert found.dtype == np.uint8
     assert (confidence[cluster_id <= 3] > 0.8).all()
@@ -170,7 +171,7 @@ def test_a_lone_flat_roof_is_found_by_the_guard_only(rng):
     assert "compared with the entropy of planes" in monitor.warnings[0]
 
     monitor = Monitor()
-    found, _, _, confidence = classify_buildings(xyz, ones(xyz), cluster_id, guard=False, monitor=monitor)
+    found, _, _, confidence, *_ = classify_buildings(xyz, ones(xyz), cluster_id, guard=False, monitor=monitor)
     assert not (found == 6).any()
     assert (confidence == 0.5).all()
     assert monitor.warnings == ["There is only one cluster: nothing to separate, so nothing was called a building."]
@@ -208,9 +209,14 @@ def test_clusters_that_are_all_alike_are_said_to_be(rng, copies):
 def test_without_clusters_nothing_is_found_and_the_log_says_so(rng):
     xyz = roof(rng, 0, 0)
     monitor = Monitor()
-    found, *measures = classify_buildings(xyz, np.full(len(xyz), 6), np.zeros(len(xyz), int), monitor=monitor)
+    found, *measures, reason, report = classify_buildings(
+        xyz, np.full(len(xyz), 6), np.zeros(len(xyz), int), monitor=monitor
+    )
     assert (found == 1).all()
     assert all(np.isnan(measure).all() for measure in measures)
+    assert (reason == Reason.NOT_LOOKED_AT).all()
+    assert (report.values["clusters"], report.values["building_clusters"]) == (0, 0)
+    assert "0 of 0 clusters" in report.html
     assert monitor.warnings == ["There are no clusters, so no buildings were found."]
 
 
@@ -219,7 +225,7 @@ def test_without_clusters_nothing_is_found_and_the_log_says_so(rng):
 def test_clusters_without_extent_have_no_entropy_and_are_no_building(count, guard):
     xyz = np.concatenate([np.zeros((count, 3)), [[5.0, 5, 0]]])
     cluster_id = np.append(np.ones(count, int), 0)
-    found, entropy, _, confidence = classify_buildings(xyz, ones(xyz), cluster_id, guard=guard)
+    found, entropy, _, confidence, *_ = classify_buildings(xyz, ones(xyz), cluster_id, guard=guard)
     assert not (found == 6).any()
     assert np.isnan(entropy).all()
     assert np.isnan(confidence[-1])
@@ -236,7 +242,7 @@ def test_a_planar_cluster_with_ground_beneath_is_no_building(rng):
     cluster_id = np.where(part == 4, 0, part)
     published = classify_buildings(xyz, ones(xyz), cluster_id)[0]
     assert (published[cluster_id == 2] == 6).all()
-    found, _, _, confidence = classify_buildings(xyz, ones(xyz), cluster_id, max_penetration=0.4)
+    found, _, _, confidence, *_ = classify_buildings(xyz, ones(xyz), cluster_id, max_penetration=0.4)
     assert (found[cluster_id == 1] == 6).all()
     assert not (found[cluster_id > 1] == 6).any()
     assert (confidence[cluster_id == 2] <= 0.5).all()
@@ -253,12 +259,125 @@ def test_returns_that_are_not_the_last_tell_penetration_too(rng):
         assert (found[cluster_id == 2] == 6).all() == expected
 
 
+# --- reasons and confidence ------------------------------------------------------------------------------------------
+
+
+def reasons_of(xyz, cluster_id, *more, **tunables):
+    """Return the reason and the confidence of each cluster, and whether it is a building, by its number from 1."""
+    found, _, _, confidence, reason, report = classify_buildings(xyz, ones(xyz), cluster_id, *more, **tunables)
+    firsts = [np.flatnonzero(cluster_id == number)[0] for number in range(1, cluster_id.max() + 1)]
+    for number, first in enumerate(firsts, start=1):
+        assert len(np.unique(reason[cluster_id == number])) == 1
+        assert len(np.unique(confidence[cluster_id == number])) == 1
+        assert Reason(reason[first]).is_building == (found[first] == 6)
+    assert (reason[cluster_id == 0] == Reason.NOT_LOOKED_AT).all()
+    return [Reason(number) for number in reason[firsts]], confidence[firsts], report
+
+
+def test_reasons_of_the_published_method(garden):
+    reasons, _, report = reasons_of(*garden)
+    assert reasons == [Reason.PLANE] * 3 + [Reason.ROUGH] * 3
+    assert "low entropy, as planes have" in report.html
+    assert "Share of the beam" not in report.html
+
+
+def test_reasons_with_penetration(rng):
+    """A roof, a canopy as flat as a roof, a crown, and a rough thing that nothing passes through."""
+    ground = roof(rng, 30, 0, 12, 12, elevation=0.0)
+    crowns = [crown(rng, 20, 40), crown(rng, 40, 40), crown(rng, 60, 40)]
+    under = np.column_stack([rng.uniform([10, 30], [70, 50], (6000, 2)), np.zeros(6000)])
+    rubble = roof(rng, 80, 0, 12, 12, noise=0.2)
+    parts = [roof(rng, 0, 0, 12, 12), roof(rng, 30, 0, 12, 12), rubble, *crowns, ground, under]
+    xyz, part = clusters(*parts)
+    cluster_id = np.where(part > 6, 0, part)
+    reasons, confidence, report = reasons_of(xyz, cluster_id, max_penetration=0.4)
+    assert reasons == [Reason.SOLID_PLANE, Reason.PENETRATED, Reason.SOLID] + [Reason.ROUGH] * 3
+    assert confidence[0] > confidence[2] > 0.5 >= confidence[1]
+    assert "Share of the beam" in report.html
+    assert (report.values["clusters"], report.values["building_clusters"]) == (6, 2)
+
+
+def test_reasons_of_what_is_undecided(rng):
+    one = crown(rng, 0, 0)
+    reasons, confidence, report = reasons_of(*clusters(one, one + [50.0, 0, 0]), guard=False)
+    assert reasons == [Reason.ALIKE] * 2
+    assert (confidence == 0.5).all()
+    assert report.values["undecided_clusters"] == 2
+    reasons, confidence, _ = reasons_of(*clusters(one, roof(rng, 30, 30), np.full((30, 3), 90.0)), n_neighbors=24)
+    assert reasons[2] == Reason.WITHOUT_ENTROPY
+    assert confidence[2] == 0.5
+
+
+def test_what_was_said_of_points_outside_clusters_stays(garden):
+    xyz, cluster_id = garden
+    cluster_id = np.where(cluster_id == 2, 0, cluster_id)
+    said = np.full(len(xyz), Reason.INTO_GROUND, np.uint8)
+    reason = classify_buildings(xyz, ones(xyz), cluster_id, None, None, said)[4]
+    np.testing.assert_array_equal(reason == Reason.INTO_GROUND, cluster_id == 0)
+
+
+def test_the_report_tells_means_and_counts(garden):
+    monitor = Monitor()
+    report = classify_buildings(*garden[:1], ones(garden[0]), garden[1], monitor=monitor)[-1]
+    assert report.values == {
+        "clusters": 6,
+        "building_clusters": 3,
+        "undecided_clusters": 0,
+        "building_entropy": monitor.values["building_entropy"],
+        "other_entropy": monitor.values["other_entropy"],
+    }
+    assert f"buildings: {report.values['building_entropy']:.3g}" in report.html
+    assert f"everything else: {report.values['other_entropy']:.3g}" in report.html
+
+
+def test_the_report_tells_when_the_means_are_not_those_of_clusters(rng):
+    report = classify_buildings(*[(p, ones(p), c) for p, c in [clusters(roof(rng, 0, 0))]][0])[-1]
+    assert "compared with the entropies of planes and volumes" in report.html
+    assert f"planes: {report.values['building_entropy']:.3g}" in report.html
+
+
+def test_the_smaller_a_roof_the_less_sure(rng):
+    """Confidence of a plane of n smallest buildings' points: half, and n / (n + 1) of the rest."""
+    sizes = [2, 4, 8, 16]
+    parts = [roof(rng, 30 * i, 0, side, side, noise=0.01) for i, side in enumerate(sizes)]
+    parts += [crown(rng, 20 * i, 60) for i in range(4)]
+    xyz, cluster_id = clusters(*parts)
+    _, confidence, _ = reasons_of(xyz, cluster_id, density=6.0, n_neighbors=16)
+    assert (np.diff(confidence[:4]) > 0).all()
+    for side, sure in zip(sizes, confidence):
+        n = side**2 / 4
+        assert sure <= 0.5 + 0.5 * n / (n + 1) + 1e-6
+    assert (confidence[4:] < 0.5).all()
+
+
+@pytest.mark.parametrize("kinds", ["both", "roofs", "crowns"])
+def test_who_is_more_sure_is_more_often_right(rng, kinds):
+    """Roofs and crowns of all sizes and shapes, of which some look like the other kind; with the guard too."""
+    parts, is_roof = [], []
+    for i in range(240):
+        west, south = 40 * (i % 20), 40 * (i // 20)
+        is_roof.append(kinds == "roofs" or (kinds == "both" and i % 2 == 0))
+        if is_roof[-1]:
+            parts.append(roof(rng, west, south, *rng.uniform(2, 8, 2), noise=rng.uniform(0.01, 0.15)))
+        else:
+            thing = crown(rng, west, south, rng.uniform(0.8, 3), 7, int(rng.uniform(20, 200)))
+            parts.append((thing - [west, south, 7]) * [1, 1, rng.uniform(0.05, 1)] + [west, south, 7])
+    xyz, cluster_id = clusters(*parts)
+    _, confidence, _ = reasons_of(xyz, cluster_id, density=6.0, n_neighbors=16)
+    right = np.array(is_roof) == (confidence > 0.5)
+    sureness = np.abs(confidence - 0.5)
+    low, middle, high = np.array_split(right[np.argsort(sureness, kind="stable")], 3)
+    assert low.mean() <= middle.mean() + 0.05
+    assert middle.mean() <= high.mean() + 0.05
+    assert low.mean() < high.mean() or right.all()
+
+
 # --- properties ------------------------------------------------------------------------------------------------------
 
 
 def test_order_place_and_numbers_change_nothing(garden, rng):
     xyz, cluster_id = garden
-    found, entropy, cluster_entropy, confidence = classify_buildings(xyz, ones(xyz), cluster_id, n_neighbors=24)
+    found, entropy, cluster_entropy, confidence, *_ = classify_buildings(xyz, ones(xyz), cluster_id, n_neighbors=24)
     order = rng.permutation(len(xyz))
     for place in (0, FAR):
         other = classify_buildings(xyz[order] + place, ones(xyz), 7 - cluster_id[order], n_neighbors=24)
@@ -302,7 +421,7 @@ def test_solid_clusters_are_undecided_where_nothing_tells_them_apart(rng):
     """A roof lets nothing through, but the log says that none was called a building: so none is."""
     xyz, cluster_id = clusters(roof(rng, 0, 0))
     monitor = Monitor()
-    found, _, _, confidence = classify_buildings(
+    found, _, _, confidence, *_ = classify_buildings(
         xyz, ones(xyz), cluster_id, guard=False, max_penetration=0.4, monitor=monitor
     )
     assert "nothing was called a building" in monitor.warnings[0]

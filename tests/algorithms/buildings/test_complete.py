@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.buildings.complete import complete_buildings
+from lidar_buildings.algorithms.buildings.reasons import Reason
 from lidar_buildings.algorithms.stage import Monitor
 
 FAR = np.array([600_000.0, 5_000_000.0, 0.0])
@@ -43,7 +44,7 @@ class Scene:
         return self.add(self.rng.uniform(low, high, (count, 3)), classification)
 
     def complete(self, **tunables):
-        return complete_buildings(self.xyz, self.classification, self.xyz[:, 2].astype(np.float32), **tunables)
+        return complete_buildings(self.xyz, self.classification, self.xyz[:, 2].astype(np.float32), **tunables)[:2]
 
 
 @pytest.fixture
@@ -214,14 +215,14 @@ def test_no_roof_gives_no_building(scene):
 def test_a_few_roof_points_are_no_building(count):
     xyz = np.column_stack([np.arange(count + 1.0), np.zeros(count + 1), np.full(count + 1, 5.0)])
     classification = [6] * count + [1]
-    found, number = complete_buildings(xyz, classification, xyz[:, 2], density=4.0)
+    found, number, *_ = complete_buildings(xyz, classification, xyz[:, 2], density=4.0)
     assert found.tolist() == [1] * (count + 1)
     assert not number.any()
 
 
 def test_all_roof(rng):
     xyz = np.column_stack([rng.uniform(0, 20, (2000, 2)), np.full(2000, 5.0)])
-    found, number = complete_buildings(xyz, np.full(2000, 6), xyz[:, 2])
+    found, number, *_ = complete_buildings(xyz, np.full(2000, 6), xyz[:, 2])
     assert (found == 6).all()
     assert (number == 1).all()
 
@@ -275,3 +276,56 @@ def test_a_point_far_off_is_refused_instead_of_filling_memory(rng):
     xyz = np.vstack([rng.uniform(0, 20, (500, 3)), [[300_000.0, 300_000.0, 5.0]]])
     with pytest.raises(ValueError, match="which is nearly empty; remove points that lie far off"):
         complete_buildings(xyz, np.full(501, 6, np.uint8), np.full(501, 5.0, np.float32))
+
+
+# --- reasons ---------------------------------------------------------------------------------------------------------
+
+
+def explained(scene, confidence=0.9, **tunables):
+    """Return classes, numbers, confidence and reasons of a scene whose roofs were called building with confidence."""
+    sure = np.where(scene.classification == 6, confidence, 0.1).astype(np.float32)
+    said = np.where(scene.classification == 6, Reason.SOLID_PLANE, Reason.ROUGH).astype(np.uint8)
+    height = scene.xyz[:, 2].astype(np.float32)
+    return complete_buildings(scene.xyz, scene.classification, height, sure, said, **tunables)
+
+
+def test_what_is_added_has_a_reason_and_the_confidence_of_its_roofs(scene):
+    roof = scene.roof(10, 10, 20, 22, gable)
+    chimney = scene.box([16, 15, 7.2], [16.6, 15.6, 7.7], 8)
+    tree = scene.box([2, 2, 2], [5, 5, 7], 80)
+    _, number, confidence, reason = explained(scene)
+    assert (reason[chimney] == Reason.ATTACHED).all()
+    assert confidence[chimney] == pytest.approx(0.9)
+    assert (reason[: len(roof)][roof] == Reason.SOLID_PLANE).all()
+    assert (reason[tree] == Reason.ROUGH).all()
+    assert confidence[tree] == pytest.approx(0.1)
+    assert confidence.dtype == np.float32
+    assert reason.dtype == np.uint8
+    assert (number[tree] == 0).all()
+
+
+def test_confidence_of_what_is_added_is_the_mean_of_its_own_roofs(scene):
+    one, other = scene.roof(5, 5, 12, 12, 5.0), scene.roof(25, 25, 35, 35, 8.0)
+    walls = scene.box([5, 5, 1], [12, 12, 4], 20), scene.box([25, 25, 1], [35, 35, 6], 20)
+    sure = np.full(len(scene.xyz), np.nan, np.float32)
+    sure[: len(one)][one], sure[: len(other)][other] = 0.6, 0.8
+    said = np.full(len(sure), Reason.SOLID_PLANE, np.uint8)
+    confidence = complete_buildings(scene.xyz, scene.classification, scene.xyz[:, 2], sure, said)[2]
+    assert confidence[walls[0]] == pytest.approx(0.6)
+    assert confidence[walls[1]] == pytest.approx(0.8)
+
+
+def test_what_is_no_building_after_all_is_told_why(scene):
+    small, narrow = scene.roof(5, 5, 6.5, 6.5, 4.0), scene.roof(20, 5, 20.7, 35, 4.0)
+    low = scene.roof(30, 30, 38, 38, 5.0) & scene.within(33, 33, 34, 34)
+    scene.xyz[low, 2] = 0.2
+    found, _, confidence, reason = explained(scene)
+    for part, expected in ((small, Reason.TOO_SMALL), (narrow, Reason.TOO_NARROW), (low, Reason.TOO_LOW)):
+        assert (found[part] == 1).all()
+        assert (reason[part] == expected).all()
+        assert (confidence[part] == 0.5).all()
+
+
+def test_nothing_is_made_of_what_is_not_given(scene):
+    scene.roof(10, 10, 20, 22, gable)
+    assert complete_buildings(scene.xyz, scene.classification, scene.xyz[:, 2])[2:] == (None, None)

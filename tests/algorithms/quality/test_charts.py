@@ -74,11 +74,15 @@ def test_nothing_is_said_to_be_nothing():
 def test_edges_are_round_hold_all_values_and_are_not_too_many(rng):
     for values in (rng.normal(5, 2, 1000), rng.exponential(1e-3, 30), np.append(rng.normal(size=1000), 1e3)):
         edges = bar_edges(values)
-        assert edges[0] <= values.min()
-        assert edges[-1] > values.max()
-        assert len(edges) <= 43
+        assert edges[0] <= values.min() + 1e-9
+        assert edges[-1] >= values.max() - 1e-9
+        assert 8 <= len(edges) <= 43
         step = edges[1] - edges[0]
         assert round_step(step) == pytest.approx(step)
+
+
+def test_the_last_bar_ends_at_a_round_greatest_value():
+    np.testing.assert_allclose(bar_edges(np.linspace(0, 1, 11))[[0, -1]], [0, 1])
 
 
 @pytest.mark.parametrize(("width", "expected"), [(1.0, 1), (1.1, 2), (0.03, 0.05), (70, 100), (5, 5)])

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.buildings.buildings import classify_buildings
+from lidar_buildings.algorithms.buildings.reasons import Reason
 from lidar_buildings.algorithms.segmentation.roofs import segment_roofs
 from lidar_buildings.algorithms.stage import Monitor
 
@@ -40,7 +41,7 @@ def with_tree(rng, xyz, height, at, radius=3.0, crown=7.0, count=600):
 @pytest.mark.parametrize("noise", [0.01, 0.03, 0.06])
 def test_roofs_at_any_density_and_noise_with_nothing_to_set(density, noise, rng):
     xyz, height, truth = village(rng, density, noise)
-    segment, cluster = segment_roofs(xyz, ones(xyz), height)
+    segment, cluster, _ = segment_roofs(xyz, ones(xyz), height)
     assert not cluster[truth == FIELD].any()
     for roof in (EAST, WEST, FLAT):
         # Where neighborhoods are smallest for their noise, normals scatter and a third of the points stay alone.
@@ -51,7 +52,7 @@ def test_roofs_at_any_density_and_noise_with_nothing_to_set(density, noise, rng)
 
 def test_the_sides_of_a_gable_and_the_flat_roof_are_three_surfaces(rng):
     xyz, height, truth = village(rng)
-    segment, cluster = segment_roofs(xyz, ones(xyz), height)
+    segment, cluster, _ = segment_roofs(xyz, ones(xyz), height)
     assert segment.dtype == cluster.dtype == np.int32
     numbers = [np.bincount(segment[truth == roof]).argmax() for roof in (EAST, WEST, FLAT)]
     assert len(set(numbers)) == 3
@@ -64,7 +65,7 @@ def test_the_sides_of_a_gable_and_the_flat_roof_are_three_surfaces(rng):
 def test_roofs_keep_their_numbers_as_clusters_and_the_rest_follows(rng):
     xyz, height, _ = village(rng)
     xyz, height, is_leaf = with_tree(rng, xyz, height, (4, 4))
-    segment, cluster = segment_roofs(xyz, ones(xyz), height)
+    segment, cluster, _ = segment_roofs(xyz, ones(xyz), height)
     np.testing.assert_array_equal(cluster[segment > 0], segment[segment > 0])
     assert sorted(set(segment[segment > 0])) == list(range(1, segment.max() + 1))
     assert sorted(set(cluster[cluster > 0])) == list(range(1, cluster.max() + 1))
@@ -90,13 +91,24 @@ def test_what_goes_on_into_the_ground_is_no_roof(rng):
     is_ramp = np.abs(plan[:, 1] - 20) < 5
     height = np.where(is_ramp, 0.15 * plan[:, 0], 0.0)
     xyz = np.column_stack([plan, height + rng.normal(0, 0.02, 3800)])
-    assert not segment_roofs(xyz, ones(xyz), height)[0].any()
+    segment, _, reason = segment_roofs(xyz, ones(xyz), height)
+    assert not segment.any()
+    is_raised = height >= 1.5
+    assert (reason[is_raised] == Reason.INTO_GROUND).mean() > 0.9
+    assert not reason[~is_raised].any()
+    assert reason.dtype == np.uint8
+
+
+def test_roofs_and_crowns_are_given_no_reason_yet(rng):
+    xyz, height, _ = village(rng)
+    xyz, height, _ = with_tree(rng, xyz, height, (4, 4))
+    assert not segment_roofs(xyz, ones(xyz), height)[2].any()
 
 
 def test_noise_is_in_no_cluster(rng):
     xyz, height, truth = village(rng)
     classification = np.where(truth == FLAT, 7, np.where(truth == EAST, 18, 1)).astype(np.uint8)
-    segment, cluster = segment_roofs(xyz, classification, height)
+    segment, cluster, _ = segment_roofs(xyz, classification, height)
     assert not segment[truth != WEST].any()
     assert not cluster[truth != WEST].any()
     assert (segment[truth == WEST] > 0).mean() > 0.9
@@ -118,7 +130,7 @@ def test_a_porous_canopy_is_planar_but_no_building(rng):
 def test_nothing_above_the_ground_gives_no_cluster(rng):
     plan = rng.uniform(0, 30, (3000, 2))
     xyz = np.column_stack([plan, rng.normal(0, 0.02, 3000)])
-    segment, cluster = segment_roofs(xyz, ones(xyz), xyz[:, 2])
+    segment, cluster, _ = segment_roofs(xyz, ones(xyz), xyz[:, 2])
     assert not segment.any()
     assert not cluster.any()
 
@@ -126,7 +138,7 @@ def test_nothing_above_the_ground_gives_no_cluster(rng):
 def test_only_a_tree_gives_no_roof(rng):
     """Where no surface is left at all, nothing may break either."""
     xyz, height, _ = with_tree(rng, np.empty((0, 3)), np.empty(0), (10, 10), radius=2)
-    segment, cluster = segment_roofs(xyz, ones(xyz), height, noise=0.02)
+    segment, cluster, _ = segment_roofs(xyz, ones(xyz), height, noise=0.02)
     assert (segment > 0).mean() < 0.1
     assert cluster.any()
 
@@ -135,7 +147,7 @@ def test_only_a_tree_gives_no_roof(rng):
 @pytest.mark.parametrize("count", [2, 5])
 def test_a_few_points_do_no_harm(count, classification):
     xyz = np.column_stack([np.arange(count), np.zeros(count), np.full(count, 5.0)])
-    segment, cluster = segment_roofs(xyz, np.full(count, classification), xyz[:, 2])
+    segment, cluster, _ = segment_roofs(xyz, np.full(count, classification), xyz[:, 2])
     assert segment.tolist() == [0] * count
     assert len(cluster) == count
     assert not (classification == 7 and cluster.any())

@@ -1,0 +1,81 @@
+"""The page that shows how clusters were decided on: reasons, entropies and, where it counts, penetration."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Optional
+
+import numpy as np
+
+from ..quality.charts import BLUE, GRAY, YELLOW, Mark, Series, draw_histogram
+from ..quality.page import Row, build_page
+from ..stage import Report
+from .reasons import Reason
+
+
+@dataclass(frozen=True)
+class Clusters:
+    """What was measured of each cluster (m,), what was decided and by what.
+
+    ``penetration`` is None where it doesn't count; the two means are NaN without clusters, and ``is_given`` where
+    they are those of planes and volumes.
+    """
+
+    entropy: np.ndarray
+    penetration: Optional[np.ndarray]
+    reason: np.ndarray
+    building: float
+    other: float
+    max_penetration: float
+    is_given: bool
+
+    @classmethod
+    def none(cls) -> Clusters:
+        """Return what there is to say where there are no clusters."""
+        return cls(np.zeros(0), None, np.zeros(0, np.uint8), np.nan, np.nan, 1.0, is_given=False)
+
+
+def build_report(clusters: Clusters) -> Report:
+    """Return counts, means and page of a decision."""
+    outcome = [Reason(number) for number in clusters.reason.tolist()]
+    is_building = np.array([reason.is_building for reason in outcome], bool)
+    is_undecided = np.isin(clusters.reason, (Reason.ALIKE, Reason.WITHOUT_ENTROPY))
+    values = {
+        "clusters": len(outcome),
+        "building_clusters": int(is_building.sum()),
+        "undecided_clusters": int(is_undecided.sum()),
+        "building_entropy": clusters.building,
+        "other_entropy": clusters.other,
+    }
+    groups = {"building": (BLUE, is_building), "no building": (YELLOW, ~is_building & ~is_undecided)}
+    if is_undecided.any():
+        groups["undecided"] = (GRAY, is_undecided)
+    return Report(values, _page(clusters, values, groups))
+
+
+def _page(clusters: Clusters, values: dict, groups: dict) -> str:
+    lead = f"{values['building_clusters']:,} of {values['clusters']:,} clusters are called building."
+    if clusters.is_given:
+        lead += " Their entropies don't form two groups, so each was compared with the entropies of planes and volumes."
+    rows = [
+        Row(reason.name.replace("_", " ").capitalize(), f"{(clusters.reason == reason).sum():,}", reason.text)
+        for reason in Reason
+        if (clusters.reason == reason).any()
+    ]
+    pictures = "<h2>Mean entropy</h2>\n" + _chart(
+        clusters.entropy, groups, "Mean entropy of a cluster", _means(clusters)
+    )
+    if clusters.penetration is not None:
+        most = [Mark("at most", clusters.max_penetration)]
+        pictures += "<h2>Penetration</h2>\n" + _chart(clusters.penetration, groups, "Share of the beam passing", most)
+    return build_page("Why clusters are buildings", lead, {"Reasons": rows}, pictures)
+
+
+def _means(clusters: Clusters) -> list[Mark]:
+    names = ("planes", "volumes") if clusters.is_given else ("buildings", "everything else")
+    return [Mark(name, value) for name, value in zip(names, (clusters.building, clusters.other))]
+
+
+def _chart(values: np.ndarray, groups: dict, axis: str, marks: list[Mark]) -> str:
+    series = [Series(name, color, values[chosen]) for name, (color, chosen) in groups.items()]
+    return draw_histogram(series, axis, "Clusters", marks)
