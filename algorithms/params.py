@@ -35,6 +35,17 @@ MinBuildingArea = Annotated[
     Param("Minimum building area", "Area of the smallest building to be found.", unit="m²", low=0.1, high=10_000),
 ]
 
+SplitHeight = Annotated[
+    float,
+    Param(
+        "Split height",
+        "Height above the ground that parts roofs, which are looked for above it, from walls, which are below.",
+        unit="m",
+        low=0.5,
+        high=100,
+    ),
+]
+
 MinClusterHeight = Annotated[
     float,
     Param(

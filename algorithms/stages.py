@@ -7,6 +7,9 @@ from typing import Any
 from .buildings.buildings import classify_buildings
 from .buildings.complete import complete_buildings
 from .buildings.footprints import extract_footprints
+from .buildings.roofs import classify_roofs
+from .buildings.wall_footprints import extract_wall_footprints
+from .buildings.walls import classify_walls
 from .features.dimensionality import classify_dimensionality
 from .features.features import compute_features
 from .preparation.filter import filter_points
@@ -44,6 +47,9 @@ _FUNCTIONS: tuple[Any, ...] = (
     classify_buildings,
     complete_buildings,
     extract_footprints,
+    classify_roofs,
+    classify_walls,
+    extract_wall_footprints,
     assess_buildings,
     assess_ground,
     compare_corners,

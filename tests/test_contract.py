@@ -48,6 +48,9 @@ STAGE_IDS = {
     "classifybuildings",
     "completebuildings",
     "extractfootprints",
+    "classifyroofs",
+    "classifywalls",
+    "extractwallfootprints",
     "assessbuildings",
     "assessground",
     "comparecorners",
@@ -72,6 +75,7 @@ WITHOUT_UNIT = {
     "map_changes",
     "max_penetration",
     "min_overlap",
+    "min_seen",
     "overlap",
 }
 # Sort points into kinds of their own, which are no classes of ASPRS.
@@ -157,6 +161,7 @@ def scene() -> dict[str, np.ndarray]:
         "height_above_ground": height.astype(np.float32),
         "cluster_id": cluster_id.astype(np.int32),
         "segment_id": cluster_id.astype(np.int32),
+        "wall_of": np.zeros(len(xy), np.int32),
         "entropy": entropy.astype(np.float32),
         **{name: rng.random(len(xy)).astype(np.float32) for name in ("linearity", "planarity", "scattering")},
         "cluster_entropy": np.array([np.nan, 0.3, 0.3, 0.9, np.nan], np.float32)[kind],

@@ -69,7 +69,7 @@ def simplify_ring(ring: np.ndarray, tolerance: float) -> np.ndarray:
         first, last = spans.pop()
         if last - first < 2:
             continue
-        distance = _distances(turned[first + 1 : last], turned[first : first + 1], turned[last : last + 1])[:, 0]
+        distance = edge_distances(turned[first + 1 : last], turned[first : first + 1], turned[last : last + 1])[:, 0]
         at = int(np.argmax(distance))
         if distance[at] > tolerance:
             middle = first + 1 + at
@@ -220,10 +220,10 @@ def farthest(points: np.ndarray, ring: np.ndarray) -> float:
     """Return the largest distance (m) of points (n, 2) to the nearest place on a ring."""
     step = max(1, _PAIRS_AT_ONCE // len(ring))
     chunks = (points[low : low + step] for low in range(0, len(points), step))
-    return max(float(_distances(chunk, ring[:-1], ring[1:]).min(axis=1).max()) for chunk in chunks)
+    return max(float(edge_distances(chunk, ring[:-1], ring[1:]).min(axis=1).max()) for chunk in chunks)
 
 
-def _distances(points: np.ndarray, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
+def edge_distances(points: np.ndarray, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
     """Return the distances (n, m) of points to segments."""
     along = ends - starts
     square = np.maximum(np.einsum("ij,ij->i", along, along), 1e-30)

@@ -53,6 +53,7 @@ _WRITTEN = (
     ),
     Dimension("segment_id", ("SegmentID",), "i4", "segment, 0 is none", aliases=("segment_id",)),
     Dimension("cluster_id", ("ClusterID",), "i4", "cluster, 0 is none", aliases=("cluster_id",)),
+    Dimension("wall_of", ("WallOf",), "i4", "cluster of the wall's roof", aliases=("wall_of",)),
     Dimension("linearity", ("Linearity",), "f4", "(l1 - l2) / l1"),
     Dimension("planarity", ("Planarity",), "f4", "(l2 - l3) / l1"),
     Dimension("scattering", ("Scattering",), "f4", "l3 / l1"),

@@ -14,6 +14,7 @@ from qgis.core import (
 )
 
 from lidar_buildings.algorithms.buildings.reasons import Reason
+from lidar_buildings.algorithms.buildings.wall_footprints import ROOF, WALL
 from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.cloud.cloud import create_cloud, write_cloud
 from lidar_buildings.algorithms.cloud.dimensions import DIMENSIONS
@@ -80,6 +81,18 @@ def test_every_kind_has_a_style(stem, field, kinds, qgis_application):
     assert loaded, message
     assert layer.renderer().classAttribute() == field
     assert {category.value() for category in layer.renderer().categories()} == kinds
+
+
+def test_walls_are_told_from_roofs_and_edges_by_their_quality(qgis_application):
+    layer = QgsVectorLayer("Polygon?field=source:string", "f", "memory")
+    message, loaded = layer.loadNamedStyle(str(STYLES / "wall_footprints.qml"))
+    assert loaded, message
+    assert {category.value() for category in layer.renderer().categories()} == {WALL, ROOF}
+    layer = QgsVectorLayer("LineString?field=quality:double", "e", "memory")
+    message, loaded = layer.loadNamedStyle(str(STYLES / "wall_edges.qml"))
+    assert loaded, message
+    ranges = layer.renderer().ranges()
+    assert [(one.lowerValue(), one.upperValue()) for one in ranges] == [(0, 0.25), (0.25, 0.5), (0.5, 0.75), (0.75, 1)]
 
 
 def test_displacements_are_arrows_drawn_ten_times_as_long(qgis_application):

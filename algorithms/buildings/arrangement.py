@@ -1,0 +1,184 @@
+"""Lines that cut the plane into cells, and the ring around some of the cells."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..packages import csgraph, sparse
+
+# Costs become whole numbers for the flow, to this precision.
+_STEPS = 1000
+
+
+@dataclass(frozen=True)
+class Edge:
+    """A piece of a line between two cells: the line's number, its ends (m), the cells left and right of it."""
+
+    line: int
+    start: tuple[int, int]
+    end: tuple[int, int]
+    left: int
+    right: int
+
+
+class Arrangement:
+    """All cells that lines cut out of a rectangle.
+
+    Parameters
+    ----------
+    points, directions : ndarray of shape (m, 2)
+        The lines.
+    low, high : ndarray of shape (2,)
+        Corners of the rectangle (m), beyond everything that matters.
+
+    Attributes
+    ----------
+    edges : list of Edge
+        Pieces of lines between two cells; beyond the rectangle's sides, which are the last four lines, lies nothing,
+        numbered as one cell more. A corner is named by the two lines that meet in it.
+    signs : ndarray of shape (cells, m), bool
+        On which side of each line each cell lies: True is left.
+    """
+
+    def __init__(self, points: np.ndarray, directions: np.ndarray, low: np.ndarray, high: np.ndarray) -> None:
+        m = len(points)
+        frame = np.array([low, [high[0], low[1]], high, [low[0], high[1]]], float)
+        self.points = np.concatenate([points, frame])
+        self.directions = np.concatenate([directions, [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)]])
+        self._corners: dict[tuple[int, int], np.ndarray] = {}
+        # A cell is the list of lines around it, counterclockwise.
+        cells: list[tuple[list[int], list[bool]]] = [([m, m + 1, m + 2, m + 3], [])]
+        for line in range(m):
+            cells = [part for cell in cells for part in self._split(*cell, line)]
+        self.rings = [ring for ring, _ in cells]
+        self.signs = np.array([signs for _, signs in cells], bool).reshape(len(cells), m)
+        self.edges = self._shared_edges()
+
+    def corner(self, name: tuple[int, int]) -> np.ndarray:
+        """Return where two lines meet (m)."""
+        if name not in self._corners:
+            a, b = name
+            u, v, step = self.directions[a], self.directions[b], self.points[b] - self.points[a]
+            way = (step[0] * v[1] - step[1] * v[0]) / (u[0] * v[1] - u[1] * v[0])
+            self._corners[name] = self.points[a] + way * u
+        return self._corners[name]
+
+    def _is_left(self, line: int, name: tuple[int, int]) -> bool:
+        offset, u = self.corner(name) - self.points[line], self.directions[line]
+        return bool(u[0] * offset[1] - u[1] * offset[0] > 0)
+
+    def _split(self, ring: list[int], signs: list[bool], line: int) -> list[tuple[list[int], list[bool]]]:
+        """Return the one or two parts of a cell, left part first, with one sign more each."""
+        # Corner k is where side k begins.
+        is_left = [self._is_left(line, _name(before, here)) for before, here in zip([ring[-1], *ring], ring)]
+        if all(is_left) or not any(is_left):
+            return [(ring, [*signs, is_left[0]])]
+        parts = []
+        for side in (True, False):
+            part: list[int] = []
+            for k, here in enumerate(ring):
+                starts, ends = is_left[k] == side, is_left[(k + 1) % len(ring)] == side
+                if starts or ends:
+                    part.append(here)
+                if starts and not ends:
+                    part.append(line)
+            parts.append((part, [*signs, side]))
+        return parts
+
+    def _shared_edges(self) -> list[Edge]:
+        found: dict[tuple, tuple[int, tuple, tuple]] = {}
+        edges = []
+        for cell, ring in enumerate(self.rings):
+            for before, here, after in zip([ring[-1], *ring], ring, [*ring[1:], ring[0]]):
+                start, end = _name(before, here), _name(here, after)
+                key = (here, *sorted((start, end)))
+                if key in found:
+                    edges.append(Edge(here, *found[key][1:], found[key][0], cell))
+                else:
+                    found[key] = (cell, start, end)
+        m, nothing = self.signs.shape[1], len(self.rings)
+        return edges + [
+            Edge(key[0], start, end, cell, nothing) for key, (cell, start, end) in found.items() if key[0] >= m
+        ]
+
+    def cells_of(self, xy: np.ndarray) -> np.ndarray:
+        """Return the cell (n,) that each point (n, 2) lies in; points lie inside the rectangle."""
+        m = self.signs.shape[1]
+        offsets = xy[:, None] - self.points[:m]
+        u = self.directions[:m]
+        sides = u[:, 0] * offsets[..., 1] - u[:, 1] * offsets[..., 0] > 0
+        # The signs of a cell as one number: a sum of random numbers, which no two cells share.
+        weights = np.random.default_rng(0).integers(1, 2**62, m)
+        keys, wanted = self.signs @ weights, sides @ weights
+        order = np.argsort(keys)
+        cell = order[np.minimum(np.searchsorted(keys, wanted, sorter=order), len(keys) - 1)]
+        # Rounding may put a point into a cell that is too small to exist.
+        return np.where(keys[cell] == wanted, cell, -1)
+
+    def outline(self, inside: np.ndarray) -> list[list[tuple[int, tuple[int, int]]]]:
+        """Return the rings around the cells ``inside`` (cells,), bool: (line, corner where its edge begins) in order.
+
+        Exteriors run counterclockwise and holes clockwise; edges on one line that follow each other are one.
+        """
+        following: dict[tuple[int, int], list[tuple[int, tuple[int, int]]]] = {}
+        inside = np.append(inside, False)
+        for edge in self.edges:
+            if inside[edge.left] != inside[edge.right]:
+                start, end = (edge.start, edge.end) if inside[edge.left] else (edge.end, edge.start)
+                following.setdefault(start, []).append((edge.line, end))
+        rings = []
+        while following:
+            start = next(iter(following))
+            rings.append(self._walk(following, start))
+        return rings
+
+    def _walk(self, following: dict, start: tuple[int, int]) -> list[tuple[int, tuple[int, int]]]:
+        """Take one ring out of ``following`` and return it."""
+        here, came, ring = start, -1, []
+        while True:
+            ways = following[here]
+            # Where two rings touch, leaving the line parts them.
+            way = next((i for i, (line, _) in enumerate(ways) if line != came), 0) if len(ways) > 1 else 0
+            line, end = ways.pop(way)
+            if not ways:
+                del following[here]
+            if line != came:
+                ring.append((line, here))
+            here, came = end, line
+            if here == start:
+                break
+        if len(ring) > 1 and ring[0][0] == came:
+            ring.pop(0)
+        return ring
+
+    def cheapest(self, cost: np.ndarray, if_inside: np.ndarray, if_outside: np.ndarray) -> np.ndarray:
+        """Return the cells (cells,), bool, whose choice costs least: a minimum cut.
+
+        Parameters
+        ----------
+        cost : ndarray of shape (edges,)
+            Of an edge with one of its cells inside and the other outside, >= 0.
+        if_inside, if_outside : ndarray of shape (cells,)
+            Of a cell that is inside, and of one that is not, >= 0.
+        """
+        n = len(self.rings)
+        source, sink, cells = n, n + 1, np.arange(n)
+        left, right = (np.array([getattr(edge, side) for edge in self.edges], int) for side in ("left", "right"))
+        right = np.where(right == n, sink, right)
+        rows = np.concatenate([left, right, np.full(n, source), cells])
+        columns = np.concatenate([right, left, cells, np.full(n, sink)])
+        capacity = np.rint(np.concatenate([cost, cost, if_outside, if_inside]) * _STEPS).astype(np.int32)
+        graph = sparse.csr_matrix((capacity, (rows, columns)), shape=(n + 2, n + 2))
+        residual = graph - csgraph.maximum_flow(graph, source, sink).flow
+        residual.data = np.maximum(residual.data, 0)
+        residual.eliminate_zeros()
+        reached = csgraph.breadth_first_order(residual, source, return_predecessors=False)
+        inside = np.zeros(n + 2, bool)
+        inside[reached] = True
+        return inside[:n]
+
+
+def _name(a: int, b: int) -> tuple[int, int]:
+    return (a, b) if a < b else (b, a)

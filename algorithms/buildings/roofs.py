@@ -1,0 +1,118 @@
+"""Which planes are roofs, and which roofs are of one building."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..cloud.asprs import NOISE, PointClass
+from ..cloud.density import point_density
+from ..params import MinBuildingArea, PointDensity, SplitHeight
+from ..segmentation.clusters import dbscan
+from ..segmentation.extent import plan_areas
+from ..stage import Monitor, Param, stage
+
+# Surfaces of one roof lie within this distance (m), or so many point spacings; roofs of two buildings seldom do.
+_LEAST_GAP, _GAP_SPACINGS = 0.6, 3.0
+
+# The corner of a roof sees a quarter of the points that its middle sees.
+_CORNER = 0.25
+
+
+@stage(
+    "Classify roofs",
+    group="Buildings",
+    tags="building,roof,plane,cluster,DBSCAN,photogrammetry,UAV,cadastre",
+    writes=("classification", "cluster_id"),
+)
+def classify_roofs(
+    xyz,
+    classification,
+    height_above_ground,
+    segment_id,
+    *,
+    split_height: SplitHeight = 2.5,
+    min_area: MinBuildingArea = 6.0,
+    gap: Annotated[
+        Optional[float],
+        Param(
+            "Gap between roofs",
+            "Points of planes at most this far apart belong to one building.",
+            unit="m",
+            low=0,
+            high=20,
+            open_low=True,
+            automatic="3 times the point spacing, at least 0.6 m.",
+        ),
+    ] = None,
+    density: PointDensity = None,
+    monitor=None,
+):
+    """Gather the planes above a height into the roofs of buildings.
+
+    What lies on a plane and higher above the ground than cars and hedges is a roof; points of planes that lie near
+    each other are one building (class 6).
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes; noise (7, 18) is left out.
+    height_above_ground : ndarray of shape (n,), float32
+        Heights, m.
+    segment_id : ndarray of shape (n,), int32
+        Planes from 1, as "Segment planes (RANSAC)" finds them; 0 is none.
+
+    Returns
+    -------
+    classification : ndarray of shape (n,), uint8
+        Roofs get 6; what was 6 and is none becomes 1.
+    cluster_id : ndarray of shape (n,), int32
+        Buildings from 1, from west to east; 0 is none.
+
+    Notes
+    -----
+    The clusters are those of DBSCAN with the gap as radius and a quarter of the points that a level roof has within it.
+    Their numbers follow their westernmost points, not the order of points.
+
+    References
+    ----------
+    Hrutka, B. P., Siki, Z., Takács, B., 2022. Voxel-based point cloud segmentation and building detection.
+    International Archives of the Photogrammetry, Remote Sensing and Spatial Information Sciences XLVIII-4/W1,
+    section 2.3.
+    """
+    density = point_density(xyz) if density is None else density
+    gap = max(_LEAST_GAP, _GAP_SPACINGS / float(np.sqrt(density))) if gap is None else gap
+    monitor.resolved(density=density, gap=gap)
+    is_roof = (segment_id > 0) & (height_above_ground >= split_height) & ~np.isin(classification, NOISE)
+    roof = np.flatnonzero(is_roof)
+    result = np.where(classification == PointClass.BUILDING, np.uint8(PointClass.UNCLASSIFIED), classification)
+    cluster_id = np.zeros(len(xyz), np.int32)
+    cluster_id[roof] = _clusters(xyz[roof], gap, min_area, density, monitor)
+    result[cluster_id > 0] = PointClass.BUILDING
+    if not cluster_id.any():
+        monitor.warn(
+            f"No plane of {min_area:g} m² lies {split_height:g} m or more above the ground, so no roof was found."
+        )
+    return result.astype(np.uint8), cluster_id
+
+
+def _clusters(xyz: np.ndarray, gap: float, min_area: float, density: float, monitor: Monitor) -> np.ndarray:
+    """Return the building (n,) of each roof point, from 1 and from west to east; 0 where it is too small."""
+    if not len(xyz):
+        monitor.progress(1.0)
+        return np.zeros(0, np.int32)
+    cluster = dbscan(xyz, gap, max(1, round(_CORNER * np.pi * gap**2 * density)), monitor)
+    count = int(cluster.max()) + 1
+    if not count:
+        return np.zeros(len(xyz), np.int32)
+    member = cluster >= 0
+    large = plan_areas(xyz[member], cluster[member], density) >= min_area
+    west = np.full(count, np.inf)
+    np.minimum.at(west, cluster[member], xyz[member, 0])
+    order = np.argsort(np.where(large, west, np.inf), kind="stable")
+    number = np.zeros(count + 1, np.int32)
+    number[order[: large.sum()]] = np.arange(1, large.sum() + 1)
+    return number[cluster]

@@ -1,0 +1,324 @@
+"""The outline of one building's walls: which lines between its corners are real."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Optional
+
+import numpy as np
+
+from ..packages import ndimage
+from .arrangement import Arrangement
+from .outlines import signed_area
+from .regularize import edge_distances, regularize_outline, simplify_ring
+from .wall_lines import Scale, WallLine, find_lines, merge_lines, square_up, wall_scale
+
+# Cells in which roofs are held against walls (m), and how far around them there is room.
+_CELL, _ROOM = 0.25, 2.0
+
+# A square metre outside the roof costs so many metres of wall that nobody sees; one deep under it, this many.
+_OUTSIDE, _DEEP = 5.0, 1.0
+
+# Under a small roof, what is deeper than this share of its deepest place is deep, however narrow the overhang. The
+# deepest place itself costs more than any wall.
+_DEEPER, _CERTAIN = 0.6, 1e5
+
+# What isn't seen of a wall costs this share where the roof lets expect it; any edge costs a little.
+_EXPECTED, _ANY = 0.6, 0.05
+
+# Roof sides may wiggle by so much (m).
+_WIGGLE = 0.4
+
+# So many points, on this share of it, move a wall that the roof lets expect.
+_FEW, _LEAST_COVERED = 5, 0.2
+
+# What lies this far (m) beyond the roof is outside: room for noise and for the roof's own ragged edge.
+_BEYOND = 0.4
+
+# A wall shows no farther (m) beyond the roof than noise makes it.
+_FLUSH = 0.2
+
+# Sides of the roof within this angle of a wall (radians) run like it; within the second they are its eave, if
+# they lie where it is expected to within the first distance (m), and as expected within the second.
+_LIKE, _EAVE_ANGLE, _EAVE, _AS_EXPECTED = np.deg2rad(8.0), np.deg2rad(3.0), 0.3, 0.15
+
+# A corner must save so many metres of unseen wall, and so many more where it isn't square to within this angle.
+_CORNER_COST, _SKEW_COST, _SQUARE = 0.6, 0.6, np.sin(np.deg2rad(2.0))
+
+# Corners are left out of the test of an edge, by this much or by this share of a short edge.
+_CORNER, _CORNER_SHARE = 0.4, 0.25
+
+
+@dataclass(frozen=True)
+class WallEdge:
+    """One edge of a footprint: its ends, how much of it was seen, its points, their deviation and its own (m)."""
+
+    start: np.ndarray
+    end: np.ndarray
+    quality: float
+    points: int
+    deviation: float
+    precision: float
+
+
+@dataclass(frozen=True)
+class WallOutline:
+    """Rings of edges, exterior first, and the overhang of the roof (m)."""
+
+    rings: list[list[WallEdge]]
+    overhang: float
+
+    @property
+    def seen(self) -> float:
+        """Share of the outline that has wall points."""
+        edges = [edge for ring in self.rings for edge in ring]
+        length = np.array([np.hypot(*(edge.end - edge.start)) for edge in edges])
+        return float(np.sum(length * [edge.quality for edge in edges]) / length.sum())
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What walls may be like: distance (m) of points to their line, shortest wall and widest overhang (m)."""
+
+    tolerance: float
+    min_length: float
+    max_overhang: float
+
+
+class _Roof:
+    """Where a roof is, in small cells, and how deep (m) under it a place lies, negative beyond its edge."""
+
+    def __init__(self, roof: np.ndarray) -> None:
+        room = int(_ROOM / _CELL)
+        self.low = roof.min(axis=0) - _ROOM - _CELL
+        column, row = ((roof - self.low) / _CELL).astype(np.int64).T
+        mask = np.zeros((row.max() + room + 2, column.max() + room + 2), bool)
+        mask[row, column] = True
+        self.mask = ndimage.binary_fill_holes(ndimage.binary_closing(mask, np.ones((3, 3), bool), iterations=2))
+        inside, outside = ndimage.distance_transform_edt(self.mask), ndimage.distance_transform_edt(~self.mask)
+        self.depth = np.where(self.mask, inside - 0.5, 0.5 - outside) * _CELL
+        rows, columns = np.indices(mask.shape).reshape(2, -1)
+        self.places = np.column_stack([columns, rows]) * _CELL + _CELL / 2 + self.low
+        self.high = self.low + np.array(mask.shape[::-1]) * _CELL
+
+    def depth_at(self, xy: np.ndarray) -> np.ndarray:
+        column, row = np.floor((xy - self.low) / _CELL).astype(np.int64).T
+        rows, columns = self.depth.shape
+        return self.depth[np.clip(row, 0, rows - 1), np.clip(column, 0, columns - 1)]
+
+
+def outline_walls(
+    walls: np.ndarray, roof: np.ndarray, traced: list, spacing: float, limits: Limits, rng: np.random.Generator
+) -> Optional[WallOutline]:
+    """Return the outline of a building's walls, None where no wall is seen.
+
+    Parameters
+    ----------
+    walls, roof : ndarray of shape (n, 2), (m, 2)
+        Points of walls and of the roof in plan, near the origin (m).
+    traced : list of ndarray
+        Rings of the roof's outline.
+    spacing : float
+        Mean distance between the roof's points, m.
+    limits : Limits
+        What walls may be like.
+    rng : Generator
+        Random numbers.
+    """
+    perimeter = float(np.hypot(*np.diff(simplify_ring(traced[0], 0.5), axis=0).T).sum())
+    scale = wall_scale(len(walls), perimeter, limits.tolerance)
+    cover = _Roof(roof)
+    seen = find_lines(walls, scale, limits.min_length, rng)
+    seen = [line for line in seen if np.median(cover.depth_at(walls[line.points])) > -_FLUSH]
+    seen = square_up(merge_lines(seen, walls, scale), walls)
+    if not seen:
+        return None
+    sides = _sides(traced, spacing)
+    on_walls = np.concatenate([walls[line.points] for line in seen])
+    to_roof = edge_distances(on_walls, *np.moveaxis(sides, 1, 0)).min(axis=1)
+    overhang = float(np.clip(np.median(to_roof), 0.0, limits.max_overhang))
+    seen = [_expectation(line, sides, overhang) for line in seen]
+    lines = [*seen, *_from_roof(seen, sides, overhang, walls, scale)]
+    near = [_near(walls, line, scale) for line in lines]
+    rings = _Trial(lines, near, cover, scale, limits).simplified().edges()
+    return WallOutline(rings, overhang) if rings else None
+
+
+def _sides(traced: list, spacing: float) -> np.ndarray:
+    """Return the sides of the roof (k, 2, 2) (m): start and end, the building to the left."""
+    rings = regularize_outline(traced, _WIGGLE, spacing / 2) or [simplify_ring(ring, _WIGGLE) for ring in traced]
+    return np.concatenate([np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings])
+
+
+def _expectation(line: WallLine, sides: np.ndarray, overhang: float) -> WallLine:
+    """Return a wall with the mark of one that lies where a side of the roof lets expect it."""
+    expected = any(_is_eave_of(line, _expected(side, overhang, []), _AS_EXPECTED) for side in sides)
+    return replace(line, expected=expected)
+
+
+def _expected(side: np.ndarray, overhang: float, seen: list[WallLine]) -> WallLine:
+    """Return the line, without points, where a side of the roof lets expect a wall that runs like those seen."""
+    start, end = side
+    direction = _like_walls((end - start) / np.hypot(*(end - start)), seen)
+    middle = (start + end) / 2 + overhang * np.array([-direction[1], direction[0]])
+    return WallLine(middle, direction, np.zeros(0, np.int64), np.zeros(0), np.nan, True)
+
+
+def _like_walls(direction: np.ndarray, seen: list[WallLine]) -> np.ndarray:
+    """Return the direction of the wall that is most nearly parallel or square to one, where that is near."""
+    ways = [sign * way for line in seen for way in (line.direction, line.normal) for sign in (1, -1)]
+    best = max(ways, key=lambda way: float(way @ direction), default=direction)
+    return best if best @ direction > np.cos(_LIKE) else direction
+
+
+def _is_eave_of(wall: WallLine, line: WallLine, within: float) -> bool:
+    """Return whether a wall is the one that a side of the roof lets expect, to ``within`` (m)."""
+    parallel = abs(wall.direction @ line.direction) >= np.cos(_EAVE_ANGLE)
+    return bool(parallel and abs(float(wall.across(line.point[None])[0])) <= within)
+
+
+def _from_roof(
+    seen: list[WallLine], sides: np.ndarray, overhang: float, walls: np.ndarray, scale: Scale
+) -> list[WallLine]:
+    """Return lines for sides of the roof without a known wall: through the few points there, or as expected."""
+    lines: list[WallLine] = []
+    for side in sides:
+        line = _expected(side, overhang, seen)
+        if not any(_is_eave_of(wall, line, _EAVE) for wall in [*seen, *lines]):
+            lines.append(_through_few(line, float(np.hypot(*(side[1] - side[0]))) / 2, walls, scale))
+    return lines
+
+
+def _through_few(line: WallLine, half: float, walls: np.ndarray, scale: Scale) -> WallLine:
+    """Return the line moved to the most points beside it, ``half`` (m) to both sides of its middle, if there are any.
+
+    The direction is known, so that far fewer points tell a wall than without.
+    """
+    across, along = line.across(walls), (walls - line.point) @ line.direction
+    beside = np.flatnonzero((np.abs(across) <= _EAVE) & (np.abs(along) <= half))
+    if not len(beside):
+        return line
+    together = np.abs(across[beside, None] - across[beside]) <= scale.tolerance / 2
+    best = beside[together[np.argmax(together.sum(axis=1))]]
+    if len(best) < _FEW or scale.covered(along[best], -half, half) < _LEAST_COVERED:
+        return line
+    moved = line.point + np.mean(across[best]) * line.normal
+    return replace(line, point=moved, points=best, along=along[best], deviation=float(np.std(across[best])))
+
+
+class _Trial:
+    """The best outline that some lines can make, and what it costs."""
+
+    def __init__(
+        self, lines: list[WallLine], near: list[np.ndarray], cover: _Roof, scale: Scale, limits: Limits
+    ) -> None:
+        self.lines, self.near, self.cover, self.scale, self.limits = lines, near, cover, scale, limits
+        points, directions = (np.array([getattr(line, name) for line in lines]) for name in ("point", "direction"))
+        self.cells = Arrangement(points, directions, cover.low, cover.high)
+        cost = np.array([_cost(self.cells, edge, lines, near, scale) for edge in self.cells.edges])
+        if_inside, if_outside = self._unlikely()
+        inside = self.cells.cheapest(cost, if_inside, if_outside)
+        left, right = (np.array([getattr(edge, side) for edge in self.cells.edges], int) for side in ("left", "right"))
+        cut = inside[left] != np.append(inside, False)[right]
+        self.rings = self.cells.outline(inside)
+        self.total = float(cost[cut].sum() + if_inside[inside].sum() + if_outside[~inside].sum() + self._corners())
+
+    def _unlikely(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return for each cell how little the roof likes it inside, and outside."""
+        cell, depth = self.cells.cells_of(self.cover.places), self.cover.depth.ravel()
+        count = len(self.cells.rings)
+
+        def area(chosen: np.ndarray) -> np.ndarray:
+            return np.bincount(cell[chosen & (cell >= 0)], minlength=count) * _CELL**2
+
+        if_inside = _OUTSIDE * area(depth < -_BEYOND)
+        if_outside = _DEEP * area(depth > min(self.limits.max_overhang, _DEEPER * depth.max()))
+        # The deepest place is inside at any cost.
+        if_outside[cell[np.argmax(depth)]] += _CERTAIN
+        return if_inside, if_outside
+
+    def _corners(self) -> float:
+        """Return what the corners cost."""
+        total = 0.0
+        for ring in self.rings:
+            for (line, _), (other, _) in zip(ring, [*ring[1:], ring[0]]):
+                turn = abs(float(self.cells.directions[line] @ self.cells.directions[other]))
+                total += _CORNER_COST + _SKEW_COST * (turn > _SQUARE)
+        return total
+
+    def simplified(self) -> _Trial:
+        """Return the outline without the lines that are not worth their corners."""
+        best, used = self, sorted({line for ring in self.rings for line, _ in ring if line < len(self.lines)})
+        if len(used) < len(self.lines):
+            best = self.only(used)
+        tried: set[int] = set()
+        while True:
+            order = sorted(range(len(best.lines)), key=lambda i: (len(best.near[i]), i))
+            line = next((i for i in order if id(best.lines[i]) not in tried), None)
+            if line is None or len(best.lines) <= 3:
+                return best
+            tried.add(id(best.lines[line]))
+            without = best.only([i for i in range(len(best.lines)) if i != line])
+            if without.total < best.total:
+                best = without
+
+    def only(self, chosen: list[int]) -> _Trial:
+        """Return the best outline of some of the lines."""
+        lines, near = [self.lines[i] for i in chosen], [self.near[i] for i in chosen]
+        return _Trial(lines, near, self.cover, self.scale, self.limits)
+
+    def edges(self) -> list[list[WallEdge]]:
+        """Return the rings of edges, exterior first."""
+        rings = [
+            [
+                _edge(self.cells.corner(here), self.cells.corner(there), self.lines[line], self.near[line], self.scale)
+                for (line, here), (_, there) in zip(ring, [*ring[1:], ring[0]])
+            ]
+            for ring in self.rings
+            if len(ring) >= 3 and all(line < len(self.lines) for line, _ in ring)
+        ]
+        return sorted(rings, key=lambda ring: -signed_area(closed(ring)))
+
+
+def closed(ring: list[WallEdge]) -> np.ndarray:
+    """Return the corners of a ring, closed (m, 2)."""
+    return np.array([edge.start for edge in ring] + [ring[0].start])
+
+
+def _near(walls: np.ndarray, line: WallLine, scale: Scale) -> np.ndarray:
+    """Return along and across (k, 2) of all wall points near a line (m)."""
+    if not line.is_seen:
+        return np.zeros((0, 2))
+    across = line.across(walls)
+    chosen = np.abs(across) <= scale.tolerance
+    return np.column_stack([(walls[chosen] - line.point) @ line.direction, across[chosen]])
+
+
+def _stretch(line: WallLine, start: np.ndarray, end: np.ndarray) -> tuple[float, float]:
+    """Return where two places lie along a line (m), the lower first."""
+    low, high = sorted([float((start - line.point) @ line.direction), float((end - line.point) @ line.direction)])
+    return low, high
+
+
+def _cost(cells: Arrangement, edge, lines: list[WallLine], near: list[np.ndarray], scale: Scale) -> float:
+    """Return what an edge costs: its length as far as nothing is seen of it."""
+    if edge.line >= len(lines):
+        return _CERTAIN
+    line = lines[edge.line]
+    low, high = _stretch(line, cells.corner(edge.start), cells.corner(edge.end))
+    if high - low <= 0:
+        return 0.0
+    missing = 1 - scale.covered(near[edge.line][:, 0], low, high)
+    return (high - low) * (missing * (_EXPECTED if line.expected else 1.0) + _ANY)
+
+
+def _edge(start: np.ndarray, end: np.ndarray, line: WallLine, near: np.ndarray, scale: Scale) -> WallEdge:
+    """Return an edge with what the points between its corners say of it."""
+    low, high = _stretch(line, start, end)
+    corner = min(_CORNER, _CORNER_SHARE * (high - low))
+    low, high = low + corner, high - corner
+    between = near[(near[:, 0] >= low) & (near[:, 0] < high)]
+    quality = scale.covered(between[:, 0], low, high) if len(between) else 0.0
+    deviation = float(np.sqrt(np.mean(between[:, 1] ** 2))) if len(between) else np.nan
+    precision = deviation / np.sqrt(len(between)) if len(between) else np.nan
+    return WallEdge(start, end, quality, len(between), deviation, precision)
