@@ -71,6 +71,7 @@ WITHOUT_UNIT = {
     "high",
     "deviations",
     "forest",
+    "min_roof_share",
     "holes",
     "map_changes",
     "max_penetration",

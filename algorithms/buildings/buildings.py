@@ -10,16 +10,22 @@ import numpy as np
 from ..cloud.asprs import PointClass
 from ..cloud.density import point_density
 from ..features.eigen import neighborhood_eigenvalues, shannon_entropy_lps, symmetric_eigenvalues
-from ..features.noise import surface_neighbors, surface_noise
+from ..features.noise import surface_neighbors, surface_noise, surface_roughness
 from ..packages import cluster
 from ..params import MinBuildingArea, PointDensity, Seed
-from ..segmentation.extent import penetration
+from ..segmentation.extent import join_beside, penetration, plan_areas, share_going_on
 from ..stage import Measure, Monitor, Param, stage
 from .decisions import Clusters, build_report
 from .reasons import Reason
 
 # Entropies that differ by less than this are alike.
 _ALIKE = 1e-3
+
+# The entropies of planes and volumes count as so many clusters; two means in one dimension settle in a few rounds.
+_HELD_BY, _MOST_ROUNDS = 100, 100
+
+# At the edges of a roof some pulses split; in leaves most do. Less of a roof's points than this go on.
+_SPLIT_AT_EDGES = 0.3
 
 
 @stage(
@@ -68,8 +74,8 @@ def classify_buildings(
         bool,
         Param(
             "Guard against one kind only",
-            "Where both means lie on the same side of what planes and volumes have (no trees, or no buildings), "
-            "compare each cluster with that instead of splitting one kind in two.",
+            "Hold the two means by the entropies that planes and volumes have at this density and noise, so that a "
+            "handful of clusters, or clusters of one kind only, are not split in two. Off is the method as published.",
         ),
     ] = True,
     max_penetration: Annotated[
@@ -125,12 +131,15 @@ def classify_buildings(
     -----
     Equations 5 to 11 of the paper; the neighborhood is taken among the clustered points, with N = Ar_min d. A
     single cluster, or clusters that are all alike, have nothing for K-means to separate; unless guarded, none is
-    then called a building, and the log says so. The guard knows what N random points on a disk and in a ball have
-    for mean entropy; where K-means' means lie on both sides of the middle, it changes nothing.
+    then called a building, and the log says so. The guard knows what N random points on a disk, as rough as the
+    cloud's surfaces, and in a ball have for mean entropy; K-means then starts from these two, and each counts as 100
+    clusters of that entropy.
 
     Penetration is this project's: a roof stops the beam and a crown lets it through. A cluster's confidence is
     then the geometric mean of what its entropy and its penetration say, and none with more penetration than the
-    maximum is a building.
+    maximum is a building, except beside one: dormers, eaves and parapets are all edge, and what is seen past them
+    tells nothing. There entropy alone decides, as long as few of the pulses go on. And a cluster smaller than the
+    smallest building is one only beside another: crowns have smooth spots, but no large ones.
 
     Small things can look like a roof by chance: a car does. Confidence above 0.5 is therefore averaged with as many
     undecided points as the smallest building has, which changes no decision.
@@ -157,12 +166,20 @@ def classify_buildings(
     values = shannon_entropy_lps(neighborhood_eigenvalues(xyz[clustered], None, n_neighbors, monitor))
     ids, position, size = np.unique(cluster_id[clustered], return_inverse=True, return_counts=True)
     means = _cluster_means(values, position, len(ids))
-    split = _split(means, n_neighbors, guard, seed, monitor)
+    if guard:
+        reach = np.sqrt(n_neighbors / (np.pi * density))
+        split = _held_means(means, *reference_entropies(n_neighbors, surface_roughness(xyz, density) / reach), monitor)
+    else:
+        split = _two_means(means, seed, monitor)
     monitor.resolved(building_entropy=split.building, other_entropy=split.other)
     through = None
     if max_penetration < 1 and split.separates:
         through = penetration(xyz, cluster_id - 1, density, return_number, number_of_returns)[ids - 1]
-    sure, reasons = _decide(means, through, max_penetration, split)
+    sure, reasons = _by_entropy(means, split)
+    if through is not None:
+        goes_on = share_going_on(cluster_id - 1, return_number, number_of_returns)[ids - 1]
+        sides = _Sides(xyz, cluster_id, ids, density, min_area)
+        sure, reasons = _by_both(sure, reasons, through, goes_on, max_penetration, sides)
     sure = _supported(sure, size / (min_area * density))
 
     entropy[clustered] = values
@@ -182,26 +199,61 @@ def _neighbors(xyz: np.ndarray, density: float, min_area: float, neighborhood: s
     return round(1.5 * surface_neighbors(xyz, density, surface_noise(xyz)))
 
 
-def _decide(
-    means: np.ndarray, through: Optional[np.ndarray], most: float, split: _Split
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return how sure each cluster is a building (more than 0.5 is one), and the reason.
-
-    ``through`` is the penetration of each cluster, None where it doesn't count, and ``most`` the greatest allowed.
-    """
+def _by_entropy(means: np.ndarray, split: _Split) -> tuple[np.ndarray, np.ndarray]:
+    """Return how sure each cluster is a building by its entropy (more than 0.5 is one), and the reason."""
     sure = split.confidence(means)
-    is_planar = sure > 0.5
-    reasons = np.where(is_planar, Reason.PLANE, Reason.ROUGH)
-    if through is not None:
-        sure = _with_solidity(sure, through, most)
-        solid = np.where(is_planar, Reason.SOLID_PLANE, Reason.SOLID)
-        reasons = np.where(sure > 0.5, solid, np.where(is_planar, Reason.PENETRATED, Reason.ROUGH))
+    reasons = np.where(sure > 0.5, Reason.PLANE, Reason.ROUGH)
     if not split.separates:
         reasons[:] = Reason.ALIKE
-    # A cluster without entropy stays undecided, however solid it is.
     undefined = ~np.isfinite(means)
     reasons[undefined] = Reason.WITHOUT_ENTROPY
     return np.where(undefined, 0.5, sure), reasons.astype(np.uint8)
+
+
+def _by_both(
+    sure: np.ndarray, reasons: np.ndarray, through: np.ndarray, goes_on: np.ndarray, most: float, sides: _Sides
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return how sure each cluster is a building by its entropy and by how much passes through, and the reason.
+
+    ``through`` is the penetration of each cluster, ``most`` the greatest allowed, and ``goes_on`` the share of its
+    points that are not the last of their pulse.
+    """
+    undefined = reasons == Reason.WITHOUT_ENTROPY
+    is_planar = (sure > 0.5) & ~undefined
+    # A cluster without entropy stays undecided, however solid it is.
+    both = np.where(undefined, 0.5, _with_solidity(sure, through, most))
+    is_solid = both > 0.5
+    is_building = sides.standing_or_beside(is_solid, is_planar & (goes_on < _SPLIT_AT_EDGES))
+    found = {
+        Reason.WITHOUT_ENTROPY: undefined,
+        Reason.SOLID_PLANE: is_building & is_solid & is_planar,
+        Reason.SOLID: is_building & is_solid,
+        Reason.BESIDE: is_building,
+        Reason.TOO_SMALL: is_solid,
+        Reason.PENETRATED: is_planar,
+    }
+    reasons = np.select(list(found.values()), list(found), Reason.ROUGH).astype(np.uint8)
+    return np.where(is_building, np.where(is_solid, both, sure), np.minimum(both, 0.5)), reasons
+
+
+@dataclass(frozen=True)
+class _Sides:
+    """Where clusters lie, to ask which lie beside which."""
+
+    xyz: np.ndarray
+    cluster_id: np.ndarray
+    ids: np.ndarray
+    density: float
+    min_area: float
+
+    def standing_or_beside(self, is_solid: np.ndarray, is_plane: np.ndarray) -> np.ndarray:
+        """Return the solid clusters of a building's size, and those beside them that are solid or else plane."""
+        group = self.cluster_id - 1
+        area = plan_areas(self.xyz[group >= 0], group[group >= 0], self.density)
+        solid, plane = np.zeros((2, len(area)), bool)
+        solid[self.ids - 1], plane[self.ids - 1] = is_solid, is_plane
+        taken = join_beside(self.xyz, group, solid & (area >= self.min_area), solid | plane, self.density)
+        return taken[self.ids - 1]
 
 
 def _with_solidity(sure: np.ndarray, penetration: np.ndarray, most: float) -> np.ndarray:
@@ -251,33 +303,57 @@ class _Split:
         return np.where(np.isnan(outside) | (self.building == self.other), between, outside)
 
 
-def _split(means: np.ndarray, n_neighbors: int, guard: bool, seed: int, monitor: Monitor) -> _Split:
-    """Separate the clusters' mean entropies in two."""
+def _two_means(means: np.ndarray, seed: int, monitor: Monitor) -> _Split:
+    """Separate the clusters' mean entropies in two, as published."""
     known = means[np.isfinite(means)]
-    alike = len(known) < 2 or np.ptp(known) < _ALIKE
-    if alike and not guard:
+    if len(known) < 2 or np.ptp(known) < _ALIKE:
         one = "is only one cluster" if len(known) < 2 else "are only clusters of the same entropy"
         monitor.warn(f"There {one}: nothing to separate, so nothing was called a building.")
         same = float(known.mean()) if len(known) else np.nan
         return _Split(same, same)
-    if not alike:
-        two_means = cluster.KMeans(n_clusters=2, n_init=10, random_state=seed).fit(known[:, None])
-        low, high = sorted(two_means.cluster_centers_[:, 0].tolist())
-        plane, volume = reference_entropies(n_neighbors)
-        if not guard or low < (plane + volume) / 2 < high:
-            return _Split(low, high)
-    plane, volume = reference_entropies(n_neighbors)
-    monitor.warn(
-        "The entropies of the clusters don't form two groups; each cluster was compared "
-        f"with the entropy of planes ({plane:.2f}) and volumes ({volume:.2f}) instead."
-    )
-    return _Split(plane, volume, is_given=True)
+    two_means = cluster.KMeans(n_clusters=2, n_init=10, random_state=seed).fit(known[:, None])
+    return _Split(*sorted(two_means.cluster_centers_[:, 0].tolist()))
 
 
-def reference_entropies(n_points: int, trials: int = 400) -> tuple[float, float]:
+def _held_means(means: np.ndarray, plane: float, volume: float, monitor: Monitor) -> _Split:
+    """Separate in two as K-means does, from the entropies of planes and volumes and held by them.
+
+    Each of the two counts as ``_HELD_BY`` clusters: many clusters move the means to where they are, a handful can't.
+    """
+    known = np.sort(means[np.isfinite(means)])
+    low, high = plane, volume
+    for _ in range(_MOST_ROUNDS):
+        is_low = known <= (low + high) / 2
+        before = low, high
+        low = float((known[is_low].sum() + _HELD_BY * plane) / (is_low.sum() + _HELD_BY))
+        high = float((known[~is_low].sum() + _HELD_BY * volume) / ((~is_low).sum() + _HELD_BY))
+        if (low, high) == before:
+            break
+    is_one_kind = bool(is_low.all() or not is_low.any())
+    if is_one_kind:
+        monitor.warn(
+            "The entropies of the clusters don't form two groups; each cluster was compared "
+            f"with the entropy of planes ({plane:.2f}) and volumes ({volume:.2f}) instead."
+        )
+    return _Split(low, high, is_given=is_one_kind)
+
+
+def reference_entropies(n_points: int, roughness: float = 0.0, trials: int = 400) -> tuple[float, float]:
     """Return the mean entropy of ``n_points`` random points on a disk and in a ball.
 
-    Fixed random numbers: the same count always gives the same two figures.
+    Parameters
+    ----------
+    n_points : int
+        Points of a neighborhood.
+    roughness : float
+        Standard deviation of the points across the disk, as a share of its radius.
+    trials : int
+        Disks and balls drawn.
+
+    Returns
+    -------
+    plane, volume : float
+        Fixed random numbers: the same arguments always give the same two figures.
     """
     random = np.random.default_rng(0)
     n_points = min(n_points, 500)  # beyond, the figures change by less than 0.01
@@ -286,7 +362,8 @@ def reference_entropies(n_points: int, trials: int = 400) -> tuple[float, float]
     ball *= random.random((trials, n_points, 1)) ** (1 / 3)
     angle = random.random((trials, n_points)) * 2 * np.pi
     radius = np.sqrt(random.random((trials, n_points)))
-    disk = np.stack([radius * np.cos(angle), radius * np.sin(angle), np.zeros_like(angle)], axis=2)
+    across = roughness * random.normal(size=angle.shape)
+    disk = np.stack([radius * np.cos(angle), radius * np.sin(angle), across], axis=2)
     return _mean_entropy(disk), _mean_entropy(ball)
 
 

@@ -20,6 +20,9 @@ _CELL_SPACINGS, _LEAST_CELL = 1.2, 0.5
 # Points lower than this stand on the ground (kerbs, plants, steps) and are no wall, m.
 _WALL_FOOT = 0.5
 
+# Of what stands in the outline of a building, points higher than this are looked for on its roof surfaces, m.
+_RAISED = 1.0
+
 # Gaps are closed over so many point spacings, and no less than so far (m).
 _GAP_SPACINGS, _LEAST_GAP = 4.0, 1.5
 
@@ -44,6 +47,7 @@ def complete_buildings(
     height_above_ground,
     confidence=None,
     reason=None,
+    segment_id=None,
     *,
     gap: Annotated[
         Optional[float],
@@ -88,6 +92,16 @@ def complete_buildings(
             high=100,
         ),
     ] = 1.5,
+    min_roof_share: Annotated[
+        float,
+        Param(
+            "Minimum share of roof surfaces",
+            "At least so much of what stands in a building's outline lies on roof surfaces; of a crown with a smooth "
+            "side, less does. 0 takes any.",
+            low=0,
+            high=1,
+        ),
+    ] = 0.4,
     density: PointDensity = None,
     monitor=None,
 ):
@@ -109,11 +123,13 @@ def complete_buildings(
         How sure the roofs are buildings, 0 to 1.
     reason : ndarray of shape (n,), uint8, optional
         Why the roofs are buildings, see :class:`~.reasons.Reason`.
+    segment_id : ndarray of shape (n,), int32, optional
+        Roof surfaces, 0 is none; without it their share is not looked at.
 
     Returns
     -------
     classification : ndarray of shape (n,), uint8
-        Buildings 6; roofs of less than the minimum area or width become 1.
+        Buildings 6; roofs of less than the minimum area, width or share of roof surfaces become 1.
     cluster_id : ndarray of shape (n,), int32
         Buildings from 1, from the south-west northward; 0 is none.
     confidence : ndarray of shape (n,), float32, or None
@@ -155,6 +171,9 @@ def complete_buildings(
     covered = _covered(cell, is_roof, ~raised & ~is_noise, gap, cell_size)
     monitor.progress(0.3)
     building, refused = _numbered(covered, min_area, min_width, cell_size)
+    if segment_id is not None:
+        on_roof, stands = is_roof & (segment_id > 0), height_above_ground >= _RAISED
+        building, refused = _mostly_roof(building, refused, cell, stands, on_roof, min_roof_share)
     columns = _Columns(building, _roof_top(cell, xyz[:, 2], is_roof, covered))
     monitor.progress(0.6)
 
@@ -265,6 +284,24 @@ def _numbered(
     kept[0] = False
     number = np.where(kept, np.cumsum(kept), 0).astype(np.int32)
     return number[region], np.where(is_large, Reason.TOO_NARROW, Reason.TOO_SMALL).astype(np.uint8)[region]
+
+
+def _mostly_roof(
+    building: np.ndarray,
+    refused: np.ndarray,
+    cell: tuple[np.ndarray, np.ndarray],
+    stands: np.ndarray,
+    on_roof: np.ndarray,
+    least: float,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return what :func:`_numbered` does, without buildings of which less than ``least`` of what stands is roof."""
+    number = building[cell]
+    count = building.max() + 1
+    share = np.bincount(number[on_roof], minlength=count) / np.maximum(np.bincount(number[stands], minlength=count), 1)
+    kept = share >= least
+    kept[0] = False
+    kept_number = np.where(kept, np.cumsum(kept), 0).astype(np.int32)[building]
+    return kept_number, np.where((building > 0) & (kept_number == 0), np.uint8(Reason.MOSTLY_OTHER), refused)
 
 
 def _roof_top(

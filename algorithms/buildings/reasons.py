@@ -13,12 +13,14 @@ class Reason(IntEnum):
     SOLID_PLANE = 2
     SOLID = 3
     ATTACHED = 4
+    BESIDE = 5
     ROUGH = 11
     PENETRATED = 12
     INTO_GROUND = 13
     TOO_SMALL = 14
     TOO_NARROW = 15
     TOO_LOW = 16
+    MOSTLY_OTHER = 17
     ALIKE = 21
     WITHOUT_ENTROPY = 22
 
@@ -30,7 +32,7 @@ class Reason(IntEnum):
     @property
     def is_building(self) -> bool:
         """Whether it is a reason for calling something a building."""
-        return Reason.PLANE <= self <= Reason.ATTACHED
+        return Reason.PLANE <= self <= Reason.BESIDE
 
 
 _TEXTS = {
@@ -39,12 +41,14 @@ _TEXTS = {
     Reason.SOLID_PLANE: "Building: low entropy, as planes have, and it stops the beam.",
     Reason.SOLID: "Building: the entropy is not low, but next to nothing of the beam passes through.",
     Reason.ATTACHED: "Building: belongs to the roof above, beneath or beside it.",
+    Reason.BESIDE: "Building: low entropy, as planes have, and beside one, so what is seen past its edges counts not.",
     Reason.ROUGH: "No building: high entropy, as crowns have.",
     Reason.PENETRATED: "No building: low entropy, but the beam passes through.",
     Reason.INTO_GROUND: "No building: the surface goes on into the ground.",
     Reason.TOO_SMALL: "No building: smaller than the smallest building, with all that touches it.",
     Reason.TOO_NARROW: "No building: narrower everywhere than the narrowest building, as walls and railings are.",
     Reason.TOO_LOW: "No building: too near the ground to belong to the roof at its place.",
+    Reason.MOSTLY_OTHER: "No building: most of what stands in the outline lies on no roof surface, as in crowns.",
     Reason.ALIKE: "Undecided: all clusters have the same entropy.",
     Reason.WITHOUT_ENTROPY: "Undecided: its points have no extent, so they have no entropy.",
 }

@@ -17,8 +17,14 @@ _NEIGHBORS = 12
 # A plane's neighborhood reaches eight times the noise, which holds its normal's error to a few degrees.
 _REACH_DEVIATIONS, LEAST_NEIGHBORS = 8.0, 8
 
+# Leaves and twigs look smooth over less than this (m); roofs are planes over more.
+_LEAST_REACH = 0.5
+
 # A neighborhood is two-dimensional when it is at least so wide for its length; 60 points always are.
-_LEAST_WIDTH, _MOST_NEIGHBORS = 0.45, 60
+_LEAST_WIDTH, _MOST_ACROSS_LINES = 0.45, 60
+
+# Half a metre around holds so many at 125 points/m²; with more, every neighborhood would cost and tell nothing new.
+_MOST_NEIGHBORS = 100
 
 # A fifth of the surroundings of any cloud with ground in it is open ground or roof.
 _SMOOTH_SHARE = 0.2
@@ -100,9 +106,9 @@ def surface_roughness(xyz: np.ndarray, density: float, tree: Any = None) -> floa
 def surface_neighbors(xyz: np.ndarray, density: float, noise: float, tree: Any = None) -> int:
     """Return how many nearest points tell the plane of a surface.
 
-    Few where points are precise, more where they are noisy; and enough to cross scan lines:
-    scanners put points close together along a line and leave gaps between the lines, and a
-    neighborhood that holds one line only has no plane.
+    Few where points are precise, more where they are noisy or dense: the smooth side of a crown is a plane too
+    when it is looked at closely enough. And enough to cross scan lines: scanners put points close together along a
+    line and leave gaps between the lines, and a neighborhood that holds one line only has no plane.
 
     Parameters
     ----------
@@ -118,21 +124,21 @@ def surface_neighbors(xyz: np.ndarray, density: float, noise: float, tree: Any =
     Returns
     -------
     int
-        The least count, from 8 to 60, that reaches eight times the noise and with which four fifths of the
-        smooth neighborhoods are at least 0.45 times as wide as long; at most n.
+        The least count, from 8 to 100, that reaches half a metre and eight times the noise and with which four
+        fifths of the smooth neighborhoods are at least 0.45 times as wide as long (or 60); at most n.
     """
-    against_noise = int(np.ceil(np.pi * (_REACH_DEVIATIONS * noise) ** 2 * density))
-    count = min(max(against_noise, LEAST_NEIGHBORS), _MOST_NEIGHBORS)
+    reach = max(_LEAST_REACH, _REACH_DEVIATIONS * noise)
+    count = min(max(int(np.ceil(np.pi * reach**2 * density)), LEAST_NEIGHBORS), _MOST_NEIGHBORS)
     tree = spatial.cKDTree(xyz) if tree is None else tree
     columns, rows = np.ascontiguousarray(xyz.T), _sample(xyz)
-    while count < min(_MOST_NEIGHBORS, len(xyz)):
+    while count < min(_MOST_ACROSS_LINES, len(xyz)):
         eigenvalues = symmetric_eigenvalues(Nearest(count).moments(columns, tree, rows)[2])
         smooth = eigenvalues[:, 2] <= np.quantile(eigenvalues[:, 2], _SMOOTH_SHARE + 0.1)
         width = np.sqrt(eigenvalues[smooth, 1] / np.maximum(eigenvalues[smooth, 0], 1e-12))
         if np.quantile(width, 0.2) >= _LEAST_WIDTH:
             break
-        count = int(np.ceil(count * 1.5))
-    return min(count, _MOST_NEIGHBORS, len(xyz))
+        count = min(int(np.ceil(count * 1.5)), _MOST_ACROSS_LINES)
+    return min(count, len(xyz))
 
 
 def _sample(xyz: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Where groups of points lie in plan: their area, and whether the beam passes through them."""
+"""Where groups of points lie in plan: their area, what lies beside them, and whether the beam passes through them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Optional
 
 import numpy as np
 
-from ..cloud.cells import grid_over
+from ..cloud.cells import Grid, find_cells, grid_over
 from ..packages import ndimage
 
 # Cells in which area and what lies beneath are counted, in point spacings, and their least size (m).
@@ -14,6 +14,9 @@ _CELL_SPACINGS, _LEAST_CELL = 1.5, 0.3
 
 # What lies at least so far beneath a group lies under it and not on it, m.
 _BENEATH = 1.0
+
+# A group lies beside others when so much of it does: the edge of a dormer does, the tip of a crown's branch doesn't.
+_BESIDE = 0.2
 
 
 def _cell_size(density: float) -> float:
@@ -75,12 +78,68 @@ def penetration(
     too, so a roof has a small share and not none.
     """
     beneath = _share_with_points_beneath(xyz, group, density)
-    if return_number is None or number_of_returns is None or not number_of_returns.max(initial=0) > 1:
+    if not _numbered(number_of_returns):
         return beneath
+    return (beneath + share_going_on(group, return_number, number_of_returns)) / 2
+
+
+def share_going_on(
+    group: np.ndarray, return_number: Optional[np.ndarray], number_of_returns: Optional[np.ndarray]
+) -> np.ndarray:
+    """Return the share of each group's points that are not the last return of their pulse; 0 where none is numbered.
+
+    Arguments as of :func:`penetration`.
+    """
     member = group >= 0
-    size = np.maximum(np.bincount(group[member]), 1)
-    went_on = np.bincount(group[member], (return_number < number_of_returns)[member]) / size
-    return (beneath + went_on) / 2
+    size = np.bincount(group[member])
+    if return_number is None or number_of_returns is None or not _numbered(number_of_returns):
+        return np.zeros(len(size))
+    return np.bincount(group[member], (return_number < number_of_returns)[member]) / np.maximum(size, 1)
+
+
+def _numbered(number_of_returns: Optional[np.ndarray]) -> bool:
+    return number_of_returns is not None and number_of_returns.max(initial=0) > 1
+
+
+def join_beside(xyz: np.ndarray, group: np.ndarray, strong: np.ndarray, weak: np.ndarray, density: float) -> np.ndarray:
+    """Return the strong groups, and the weak ones that lie beside or over them or over weak ones that do.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points (m).
+    group : ndarray of shape (n,), int
+        Group of each point from 0, negative for none; at least one point has a group.
+    strong, weak : ndarray of shape (group.max() + 1,), bool
+        Which groups are taken in any case, and which ones beside others.
+    density : float
+        Points per square metre.
+
+    Returns
+    -------
+    ndarray of shape (group.max() + 1,), bool
+        Groups taken. A weak one is, when a fifth of its cells are cells of groups taken or next to one.
+    """
+    grid = grid_over(xyz, _cell_size(density))
+    member = group >= 0
+    count = grid.rows * grid.columns
+    owner, cell = np.divmod(np.unique(group[member].astype(np.int64) * count + grid.number(xyz[member])), count)
+    size = np.maximum(np.bincount(owner, minlength=len(strong)), 1)
+    taken = strong.copy()
+    while True:
+        near = _near(grid, cell, np.unique(cell[taken[owner]]))
+        joins = weak & ~taken & (np.bincount(owner, near, len(strong)) >= _BESIDE * size)
+        if not joins.any():
+            return taken
+        taken |= joins
+
+
+def _near(grid: Grid, cell: np.ndarray, chosen: np.ndarray) -> np.ndarray:
+    """Return which cells are among the ``chosen`` (ascending) or next to one."""
+    near = find_cells(chosen, cell)[1]
+    for step in grid.around:
+        near |= find_cells(chosen, cell + step)[1]
+    return near
 
 
 def _share_with_points_beneath(xyz: np.ndarray, group: np.ndarray, density: float) -> np.ndarray:

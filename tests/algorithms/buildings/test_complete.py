@@ -329,3 +329,20 @@ def test_what_is_no_building_after_all_is_told_why(scene):
 def test_nothing_is_made_of_what_is_not_given(scene):
     scene.roof(10, 10, 20, 22, gable)
     assert complete_buildings(scene.xyz, scene.classification, scene.xyz[:, 2])[2:] == (None, None)
+
+
+@pytest.mark.parametrize(("high", "kept"), [(5, True), (40, False)])
+def test_what_is_mostly_no_roof_surface_is_no_building(scene, high, kept):
+    """A smooth spot of 36 m² in a crown: with few leaves around it a shed, with many a tree."""
+    spot = scene.roof(10, 10, 16, 16, 5.0)
+    scene.box([10, 10, 5.2], [16, 16, 9], high * 36)
+    segment_id = np.append(spot.astype(np.int32), np.zeros(high * 36, np.int32))
+    height = scene.xyz[:, 2].astype(np.float32)
+    said = np.full(len(height), Reason.SOLID_PLANE, np.uint8)
+    given = (scene.xyz, scene.classification, height, None, said, segment_id)
+    classification, cluster_id, _, reason = complete_buildings(*given)
+    assert (classification[: len(spot)][spot] == 6).all() == kept
+    assert cluster_id.any() == kept
+    assert (reason[: len(spot)][spot] == (Reason.SOLID_PLANE if kept else Reason.MOSTLY_OTHER)).all()
+    assert complete_buildings(*given, min_roof_share=0.0)[1].any()
+    assert complete_buildings(scene.xyz, scene.classification, height)[1].any()
