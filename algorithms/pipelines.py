@@ -207,6 +207,37 @@ _PIPELINES = (
         shared={"min_area": ("regions", "buildings", "footprints"), "density": ("regions", "buildings")},
         shown=("min_area", "ground_max_building_size", "regions_plan_distance", "regions_height_distance"),
     ),
+    Pipeline(
+        name="interpret_structure",
+        title="Interpret structure",
+        group="Models",
+        tags="linear,planar,volumetric,dimensionality,voxel,drone,UAV,scanner,scene,structure,Weinmann",
+        summary="Tell lines, surfaces and volumes apart in the merged clouds of several scanners or scans.",
+        description=(
+            "Merges the clouds, leaves one point per voxel, so that places that were scanned for long don't count more "
+            "than others, describes the neighborhood of each point, and sorts points by the largest of linearity, "
+            "planarity and scattering: wires and edges, ground and walls, crowns and bushes. The features stay in the "
+            "cloud. The neighborhood of 50 points gives smooth results on noisy scans; 'optimal' chooses a number for "
+            "each point and keeps more detail. Of a single cloud, start with 'Downsample to voxels'."
+        ),
+        references=(
+            "Weinmann, M., Müller, M. S., Hillemann, M., Reydel, N., Hinz, S., Jutzi, B., 2017. Point cloud analysis "
+            "for UAV-borne laser scanning with horizontally and vertically oriented line scanners - concept and first "
+            "results. International Archives of the Photogrammetry, Remote Sensing and Spatial Information Sciences "
+            "XLII-2/W6."
+        ),
+        steps=(
+            Step("merge", "merge_clouds"),
+            Step("voxels", "downsample_voxels"),
+            Step(
+                "features",
+                "compute_features",
+                {"features": ("linearity", "planarity", "scattering", "verticality", "optimal_neighbors")},
+            ),
+            Step("structure", "classify_dimensionality"),
+        ),
+        shown=("voxels_voxel_size", "features_neighborhood", "features_n_neighbors", "merge_transforms"),
+    ),
 )
 
 PIPELINES = {pipeline.name: pipeline for pipeline in _PIPELINES}

@@ -58,7 +58,7 @@ STAGE_IDS = {
     "simulateflight",
     "simulatevillage",
 }
-PIPELINE_IDS = {"detectbuildings", "detectbuildings2019"}
+PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure"}
 
 CLASSIFYING = {"classify", "complete"}
 VERBS = CLASSIFYING | {"segment", "cluster", "compute", "extract", "regularize", "simplify", "assess", "simulate"}

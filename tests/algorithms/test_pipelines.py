@@ -5,6 +5,7 @@ import pytest
 
 from lidar_buildings.algorithms import pipelines as module
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.features.dimensionality import Dimensionality
 from lidar_buildings.algorithms.pipelines import PIPELINES, Pipeline, Step, run_pipeline
 from lidar_buildings.algorithms.run import run_stage
 from lidar_buildings.algorithms.stage import Cancelled, Features, Monitor
@@ -221,13 +222,48 @@ class Listening(Monitor):
 @pytest.mark.parametrize("name", PIPELINES)
 def test_progress_only_grows_and_every_step_is_heard_of(name):
     monitor = Listening()
-    run_pipeline(PIPELINES[name], made()[0], monitor)
+    run_pipeline(PIPELINES[name], [made()[0], made()[0]] if PIPELINES[name].merges else made()[0], monitor)
     assert monitor.told == sorted(monitor.told)
     assert monitor.told[0] >= 0
     assert monitor.told[-1] <= 1
     steps = len(PIPELINES[name].steps)
     # Completing is over in no time and tells nothing.
     assert len({min(int(fraction * steps), steps - 1) for fraction in monitor.told}) >= steps - 1
+
+
+def two_scans(rng):
+    """Return two clouds with 1 cm noise, of the ground and of a wall, a wire and a crown, and where these are."""
+    ground = np.column_stack([rng.uniform(0, 9, (24_000, 2)), np.zeros(24_000)])
+    wall = np.column_stack([np.full(20_000, 16.0), rng.uniform([0, 2], [9, 8], (20_000, 2))])
+    wire = np.column_stack([rng.uniform(0, 12, 2000), np.full(2000, 20.0), np.full(2000, 6.0)])
+    crown = rng.uniform(-1.5, 1.5, (40_000, 3)) + [30, 6, 5]
+    parts = [ground, np.concatenate([wall, wall[:5000], wire, crown])]
+    parts = [part + rng.normal(0, 0.01, part.shape) + [600_000, 5_000_000, 0] for part in parts]
+    inner = {"ground": [[1, 1, -1], [8, 8, 1]], "wall": [[15, 1, 3], [17, 8, 7]], "wire": [[1, 19, 5], [11, 21, 7]]}
+    inner["crown"] = [[29, 5, 4], [31, 7, 6]]
+    return [create_cloud({"xyz": part}) for part in parts], inner
+
+
+def test_lines_surfaces_and_volumes_of_two_scanners_are_told_apart(rng):
+    """The best neighborhoods are smaller than 50 points, and 50 points give the smoother picture, as published."""
+    kinds = {"ground": "PLANAR", "wall": "PLANAR", "wire": "LINEAR", "crown": "VOLUMETRIC"}
+    shares, chosen = {}, {}
+    for neighborhood in ("nearest", "optimal"):
+        clouds, inner = two_scans(rng)
+        made = run_pipeline(PIPELINES["interpret_structure"], clouds, features_neighborhood=neighborhood).cloud
+        assert len(made) < 0.6 * sum(len(cloud) for cloud in clouds)
+        xyz, found = made.to_map(made.get("xyz")) - [600_000, 5_000_000, 0], made.get("dimensionality")
+        for name, (low, high) in inner.items():
+            inside = ((xyz > low) & (xyz < high)).all(axis=1)
+            shares[neighborhood, name] = (found[inside] == Dimensionality[kinds[name]]).mean()
+        chosen[neighborhood] = made.get("optimal_neighbors")
+    assert (chosen["nearest"] == 50).all()
+    assert chosen["optimal"].min() >= 10
+    assert chosen["optimal"].mean() < 50
+    assert min(shares["nearest", name] for name in kinds) > 0.9
+    assert shares["optimal", "wire"] > 0.95
+    for name in ("ground", "wall", "crown"):
+        assert shares["optimal", name] < shares["nearest", name]
 
 
 @pytest.mark.parametrize("stop_at", [0.01, 0.3, 0.5, 0.65])

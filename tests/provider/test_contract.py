@@ -48,7 +48,7 @@ IDS = {
     "simulateflight",
     "simulatevillage",
 }
-PIPELINE_IDS = {"detectbuildings", "detectbuildings2019"}
+PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure"}
 ALL = {**STAGES, **TOYS}
 
 
