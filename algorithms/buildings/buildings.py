@@ -18,6 +18,9 @@ from ..stage import Measure, Monitor, Param, stage
 from .decisions import Clusters, build_report
 from .reasons import Reason
 
+# Half as sure as what was measured says are clusters with so many times the points of the smallest building.
+_SUPPORTED = 2.0
+
 # Entropies that differ by less than this are alike.
 _ALIKE = 1e-3
 
@@ -141,8 +144,8 @@ def classify_buildings(
     tells nothing. There entropy alone decides, as long as few of the pulses go on. And a cluster smaller than the
     smallest building is one only beside another: crowns have smooth spots, but no large ones.
 
-    Small things can look like a roof by chance: a car does. Confidence above 0.5 is therefore averaged with as many
-    undecided points as the smallest building has, which changes no decision.
+    Small things can look like a roof by chance: a car does. What confidence has above 0.5 therefore grows with the
+    size of the cluster, to half at twice the points of the smallest building, which changes no decision.
 
     References
     ----------
@@ -266,7 +269,7 @@ def _with_solidity(sure: np.ndarray, penetration: np.ndarray, most: float) -> np
 
 def _supported(sure: np.ndarray, size: np.ndarray) -> np.ndarray:
     """Return how sure clusters are that hold ``size`` times the points of the smallest building, if they may be one."""
-    return np.where(sure > 0.5, 0.5 + (sure - 0.5) * size / (size + 1), sure)
+    return np.where(sure > 0.5, 0.5 + (sure - 0.5) * size**2 / (size**2 + _SUPPORTED**2), sure)
 
 
 def _cluster_means(values: np.ndarray, position: np.ndarray, count: int) -> np.ndarray:

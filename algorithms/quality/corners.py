@@ -29,6 +29,9 @@ _FARTHEST = 3.0
 # short wall (m), so that corners that have moved since the map was made are told and not lost.
 _MEDIANS, _LEAST_TOLERANCE = 3.0, 1.0
 
+# Pairs farther apart than this share of the farthest are by chance.
+_FAR_OFF = 2 / 3
+
 # The shift between two maps is known when it changes by less, m.
 _STILL, _MOST_ROUNDS = 1e-3, 10
 
@@ -121,7 +124,7 @@ def compare_corners(
             low=0,
             high=100,
             open_low=True,
-            automatic="three times the median distance of the corners that are nearest to each other, from 1 to 3 m.",
+            automatic="three times the median distance of nearest corners that are not so by chance, 1 to 3 m.",
         ),
     ] = None,
     monitor=None,
@@ -310,11 +313,20 @@ def _same_corners(
     """Match corners of the same buildings one to one, the shift between the maps taken off."""
     one, other, distance = _nearest_first(old, new, link, shift, reach)
     if tolerance is None:
-        typical = _MEDIANS * float(np.median(distance)) if len(distance) else 0.0
-        tolerance = float(np.clip(typical, _LEAST_TOLERANCE, _FARTHEST))
+        tolerance = float(np.clip(_MEDIANS * _typical(distance), _LEAST_TOLERANCE, _FARTHEST))
         monitor.resolved(tolerance=tolerance)
     near = distance <= tolerance
     return one[near], other[near]
+
+
+def _typical(distance: np.ndarray) -> float:
+    """Return the median of the distances (up to 3 m) that are not by chance, 0 where there are none."""
+    # Pairs by chance are spread evenly in plan: how many there are shows where no others are left, far off.
+    ordered = np.sort(distance) / _FARTHEST
+    by_chance = min(float((ordered > _FAR_OFF).sum() / (1 - _FAR_OFF**2)), len(ordered))
+    others = np.arange(1, len(ordered) + 1) - by_chance * ordered**2
+    reached = np.flatnonzero(others >= (len(ordered) - by_chance) / 2)
+    return float(ordered[reached[0]]) * _FARTHEST if len(reached) else 0.0
 
 
 def _nearest_first(

@@ -89,6 +89,7 @@ TOWNS: tuple[dict[str, Any], ...] = (
     {"forest": 0.6},
     {"pattern": "zigzag"},
     {"buildings": 0.0},
+    {"trees": 0.0, "forest": 0.0},
 )
 
 

@@ -351,7 +351,7 @@ def test_the_report_tells_when_the_means_are_not_those_of_clusters(rng):
 
 
 def test_the_smaller_a_roof_the_less_sure(rng):
-    """Confidence of a plane of n smallest buildings' points: half, and n / (n + 1) of the rest."""
+    """Confidence of a plane of n smallest buildings' points: half, and n² / (n² + 4) of the rest."""
     sizes = [2, 4, 8, 16]
     parts = [roof(rng, 30 * i, 0, side, side, noise=0.01) for i, side in enumerate(sizes)]
     parts += [crown(rng, 20 * i, 60) for i in range(4)]
@@ -360,7 +360,7 @@ def test_the_smaller_a_roof_the_less_sure(rng):
     assert (np.diff(confidence[:4]) > 0).all()
     for side, sure in zip(sizes, confidence):
         n = side**2 / 4
-        assert sure <= 0.5 + 0.5 * n / (n + 1) + 1e-6
+        assert sure == pytest.approx(0.5 + 0.5 * n**2 / (n**2 + 4), abs=0.02)
     assert (confidence[4:] < 0.5).all()
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linear_sum_assignment
 
-from lidar_buildings.algorithms.quality.corners import FOUND, MISSED, NEW, compare_corners
+from lidar_buildings.algorithms.quality.corners import FOUND, MISSED, NEW, _typical, compare_corners
 from lidar_buildings.algorithms.stage import Features, Monitor
 
 FAR = np.array([600_000.0, 5_000_000.0])
@@ -206,6 +206,15 @@ def test_automatic_tolerance_follows_the_map(rng):
         report = compare_corners(layer(*new), layer(*houses), monitor=monitor)[2]
         assert low <= monitor.values["tolerance"] <= high
         assert report.values["matched"] == pytest.approx(158, abs=2)
+
+
+def test_pairs_by_chance_do_not_widen_the_automatic_tolerance(rng):
+    """Corners 0.4 m off, and twice as many that are spread evenly over 3 m: three times 0.47 m, their median."""
+    radius = 3 * np.sqrt(rng.random(4000))
+    true = np.hypot(*rng.normal(0, 0.4, (2, 2000)))
+    assert _typical(np.append(true, radius)) == pytest.approx(0.4 * np.sqrt(2 * np.log(2)), rel=0.1)
+    assert _typical(true) == pytest.approx(np.median(true), rel=0.02)
+    assert _typical(np.zeros(0)) == 0
 
 
 def test_the_tolerance_counts_without_the_shift():
