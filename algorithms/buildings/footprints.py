@@ -6,28 +6,43 @@ from typing import Annotated, Optional
 
 import numpy as np
 
-from ..cloud.asprs import PointClass
-from ..cloud.cells import find_cells, grid_over
+from ..cloud.asprs import NOISE, PointClass
+from ..cloud.cells import connected_cells, find_cells, grid_over
 from ..cloud.density import point_spacing
 from ..packages import spatial
 from ..params import MinBuildingArea
 from ..stage import Features, Field, Layer, Param, stage
-from .outlines import perimeter, signed_area, trace_outlines
-from .regularize import regularize_outline
+from .coverage import Coverage
+from .outlines import Tracing, perimeter, signed_area, trace_outlines
 
 _FIELDS = (
     Field("id", int, "number of the footprint, from 1"),
     Field("cluster_id", int, "cluster that it outlines"),
     Field("area", float, "area without holes", "m²"),
     Field("perimeter", float, "length of the exterior and the holes", "m"),
-    Field("height", float, "median height of the roof's points above ground", "m"),
-    Field("max_height", float, "greatest height above ground", "m"),
     Field("ground_elevation", float, "median elevation of the ground under the roof's points", "m"),
-    Field("entropy", float, "mean entropy of the cluster"),
+    Field("eave_height", float, "lower quartile of the roof's heights above ground along the outline", "m"),
+    Field("ridge_height", float, "98th percentile of the roof's heights above ground", "m"),
+    Field("height", float, "median of the roof's heights above ground", "m"),
+    Field("max_height", float, "greatest height above ground", "m"),
+    Field("volume", float, "space between roof and ground: mean height of the roof's surface by area", "m³"),
     Field("points", int, "points of the building, walls among them"),
+    Field("entropy", float, "mean entropy of the building's points' clusters"),
     Field("confidence", float, "0 unsure to 1 sure of being a building"),
     Field("regularized", int, "1 straightened, 0 outline as traced"),
 )
+
+# Percentiles of roof heights: of those along the outline, where gables rise from eaves, and of all, but for chimneys.
+_EAVE, _RIDGE = 25, 98
+
+# A point so far (m, and in spacings) under the roof beside it is no part of the roof.
+_STEP, _STEP_SPACINGS = 1.0, 3.0
+
+# Bare points that are farther from a roof than so many spacings tell nothing of where it ends.
+_BESIDE = 3.0
+
+# Points farther apart than so many spacings are never joined: what lies between such gaps can be done by itself.
+_APART = 8.0
 
 
 @stage(
@@ -78,24 +93,24 @@ def extract_footprints(
             unit="m",
             low=0.01,
             high=100,
-            automatic="twice the mean spacing of the building points, at least 0.3 m.",
+            automatic="twice the mean spacing of the building points, at least 0.4 m.",
             advanced=True,
         ),
     ] = None,
     monitor=None,
 ):
-    """Outline each building as a polygon with its area, heights, entropy and confidence.
+    """Outline each building as a polygon with its area, heights, volume, entropy and confidence.
 
-    Each cluster of building points is outlined by an alpha shape that adapts to the spacing of its points, with
-    courtyards as holes; walls are then made straight along the main directions of the building where that stays
-    close to the points.
+    Building points, seen from above, are divided among the buildings by an alpha shape that adapts to their spacing.
+    Walls are then made straight along the main directions of each group of buildings that touch, where that stays close
+    to the points; diagonals keep their direction. Buildings that touch share their border exactly.
 
     Parameters
     ----------
     xyz : ndarray of shape (n, 3)
         Coordinates (m).
     classification : ndarray of shape (n,)
-        Classes; points of class 6 are outlined.
+        Classes; points of class 6 are outlined, lower ones beside them show where a roof ends.
     cluster_id : ndarray of shape (n,), optional
         Building of each point, from 1; points of 0 are left out. Without it, points that lie together are a building.
     height_above_ground : ndarray of shape (n,), optional
@@ -108,15 +123,16 @@ def extract_footprints(
     Returns
     -------
     Features
-        One valid polygon per building part that is not connected with others, largest cluster number last; attributes
-        without the dimension they come from are NaN. None at all where there is no building.
+        One valid polygon per building part that is not connected with others, largest cluster number last; no two
+        overlap. Attributes without the dimension they come from are NaN. None at all where there is no building.
 
     Notes
     -----
-    Points with another one more than a meter (or three spacings) higher beside them are walls: they count as points
-    of the building but don't widen its outline. The outline runs through the outermost points, which lie inside the
-    eaves; where it is regularized its walls are moved outward by half a point spacing to make up for that. Clusters
-    whose points lie on one line have no area and give no polygon.
+    Points with another of their building more than a meter (or three spacings) higher beside them are walls: they count
+    as points of the building but don't widen its outline. A roof ends half-way between its outermost points and the
+    ground seen beside them, at most half a point spacing from its points. Walls are fitted to all points along them,
+    and turned to a main direction only where that moves their ends by less than half the tolerance. Clusters whose
+    points lie on one line have no area and give no polygon.
 
     References
     ----------
@@ -129,47 +145,36 @@ def extract_footprints(
         return found
     spacing = point_spacing(xyz[building])
     if tolerance is None:
-        tolerance = max(0.3, 2 * spacing)
+        tolerance = max(0.4, 2 * spacing)
         monitor.resolved(tolerance=tolerance)
 
-    is_roof = _is_roof(xyz[building], spacing)
+    cluster = np.ones(len(building), np.int64) if cluster_id is None else cluster_id[building].astype(np.int64)
+    is_roof = _is_roof(xyz[building], cluster, spacing)
+    bare = _bare_points(xyz, classification, building[is_roof], spacing)
     measured = {"height": height_above_ground, "entropy": cluster_entropy, "confidence": confidence}
     edges = []
-    clusters = _clusters(building, cluster_id)
-    for done, (number, rows) in enumerate(clusters, start=1):
-        members, roof = building[rows], is_roof[rows]
-        outlines = trace_outlines(xyz[members[roof], :2], spacing, max_edge)
-        edges += [outlines.max_edge] * bool(outlines.parts)
-        part_of_member = _part_of_members(xyz[members, :2], roof, outlines.part_of_point)
-        for part, rings in enumerate(outlines.parts):
-            traced = [rings[0], *(hole for hole in rings[1:] if -signed_area(hole) >= min_hole_area)]
-            if sum(map(signed_area, traced)) < min_area:
-                continue
-            straight = regularize_outline(traced, tolerance, spacing / 2) if regularize else None
-            own = part_of_member == part
-            described = _attributes(xyz, members[own], members[own & roof], measured)
-            described.update(cluster_id=number, regularized=int(straight is not None))
-            _add(found, straight or traced, described)
-        monitor.progress(done / len(clusters))
+    parts = _parts(xyz, building, bare, max(_APART * spacing, max_edge or 0.0))
+    for done, (rows, beside) in enumerate(parts, start=1):
+        roof = rows[is_roof[rows]]
+        points = np.concatenate([building[roof], bare[beside]])
+        label = np.concatenate([cluster[roof], np.zeros(len(beside), np.int64)])
+        traced = trace_outlines(xyz[points, :2], label, spacing, max_edge, min_area, min_hole_area)
+        if traced is not None and len(traced.labels):
+            edges.append(traced.max_edge)
+            coverage = Coverage(traced, tolerance, regularize)
+            _describe(found, xyz, building[rows], points, traced, coverage, measured)
+        monitor.progress(done / len(parts))
     if max_edge is None and edges:
         monitor.resolved(max_edge=float(np.median(edges)))
-    return found
+    return _sorted(found, min_area)
 
 
-def _clusters(building: np.ndarray, cluster_id: Optional[np.ndarray]) -> list:
-    """Return the number of each cluster and the positions of its points in ``building``."""
-    if cluster_id is None:
-        return [(0, np.arange(len(building)))]
-    numbers = cluster_id[building]
-    order = np.argsort(numbers, kind="stable")
-    starts = np.flatnonzero(np.diff(numbers[order], prepend=0))
-    return [(int(numbers[rows[0]]), rows) for rows in np.split(order, starts[1:])]
-
-
-def _is_roof(xyz: np.ndarray, spacing: float) -> np.ndarray:
-    """Return which points have none far above them in their cell of one spacing and the eight around it."""
+def _is_roof(xyz: np.ndarray, cluster: np.ndarray, spacing: float) -> np.ndarray:
+    """Return which points have none of their cluster far above them in their cell of one spacing or beside it."""
     grid = grid_over(xyz, spacing)
-    cell = grid.number(xyz)
+    # One number for cell and cluster; a cluster's cells are as far from the next one's as the grid is large.
+    number = np.unique(cluster, return_inverse=True)[1].ravel()
+    cell = grid.number(xyz) + number * (grid.rows * grid.columns)
     order = np.lexsort((xyz[:, 2], cell))
     last = np.flatnonzero(np.diff(cell[order], append=-1))
     cells, top = cell[order][last], xyz[order[last], 2]
@@ -177,45 +182,139 @@ def _is_roof(xyz: np.ndarray, spacing: float) -> np.ndarray:
     for step in grid.around:
         position, found = find_cells(cells, cells + step)
         highest[found] = np.maximum(highest[found], top[position[found]])
-    return xyz[:, 2] >= highest[np.searchsorted(cells, cell)] - max(1.0, 3 * spacing)
+    return xyz[:, 2] >= highest[np.searchsorted(cells, cell)] - max(_STEP, _STEP_SPACINGS * spacing)
 
 
-def _part_of_members(xy: np.ndarray, roof: np.ndarray, part_of_roof: np.ndarray) -> np.ndarray:
-    """Return the part of each point of a cluster: that of the nearest outlined point, -1 where there is none."""
-    part = np.full(len(xy), -1)
-    part[np.flatnonzero(roof)] = part_of_roof
-    if part_of_roof.max(initial=-1) <= 0:
-        part[:] = part_of_roof.max(initial=-1)
-        return part
-    has, left = np.flatnonzero(part >= 0), np.flatnonzero(part < 0)
-    if len(left):
-        part[left] = part[has[spatial.cKDTree(xy[has]).query(xy[left])[1]]]
-    return part
+def _bare_points(xyz: np.ndarray, classification: np.ndarray, roof: np.ndarray, spacing: float) -> np.ndarray:
+    """Return the points beside roofs and clearly below them that are no building: there the roof has ended."""
+    reach = _BESIDE * spacing
+    grid = grid_over(xyz, reach)
+    cells = np.unique(grid.number(xyz[roof]))
+    near = np.unique(np.concatenate([cells, *(cells + step for step in grid.around)]))
+    other = np.flatnonzero(~np.isin(classification, (PointClass.BUILDING, *NOISE)))
+    other = other[find_cells(near, grid.number(xyz[other]))[1]]
+    if not len(other):
+        return other
+    distance, nearest = spatial.cKDTree(xyz[roof, :2]).query(xyz[other, :2], distance_upper_bound=reach)
+    # A pulse that was split by the edge has a return on the ground right under that on the roof.
+    beside = (distance > spacing / 2) & np.isfinite(distance)
+    other, nearest = other[beside], nearest[beside]
+    return other[xyz[other, 2] < xyz[roof[nearest], 2] - _STEP]
 
 
-def _attributes(xyz: np.ndarray, members: np.ndarray, roof: np.ndarray, measured: dict) -> dict:
-    """Return what the points of one footprint say of it."""
-    height, entropy, confidence = (measured[name] for name in ("height", "entropy", "confidence"))
-    undefined = float("nan")
-    return {
-        "height": undefined if height is None else float(np.median(height[roof])),
-        "max_height": undefined if height is None else float(np.max(height[roof])),
-        "ground_elevation": undefined if height is None else float(np.median(xyz[roof, 2] - height[roof])),
-        "entropy": undefined if entropy is None else _mean(entropy[members]),
-        "confidence": undefined if confidence is None else _mean(confidence[members]),
-        "points": len(members),
-    }
+def _parts(xyz: np.ndarray, building: np.ndarray, bare: np.ndarray, apart: float) -> list:
+    """Return the rows of building points that can be outlined by themselves, and those of bare points beside them."""
+    grid = grid_over(xyz, apart)
+    cell = grid.number(xyz[building])
+    cells = np.unique(cell)
+    count, group = connected_cells(grid, cells)
+    own = group[np.searchsorted(cells, cell)]
+    # Bare points lie in a cell of the group or beside one.
+    bare_cell = grid.number(xyz[bare])
+    bare_group = np.full(len(bare), -1)
+    for step in (0, *grid.around):
+        position, there = find_cells(cells, bare_cell + step)
+        bare_group = np.where(there, group[position], bare_group)
+    return list(zip(_split(own, count), _split(bare_group, count)))
 
 
-def _mean(values: np.ndarray) -> float:
-    """Return the mean of the values that are defined: points that were added to a building later have none."""
+def _split(group: np.ndarray, count: int) -> list:
+    """Return the rows of each group from 0 to ``count`` - 1."""
+    order = np.argsort(group, kind="stable")
+    return np.split(order, np.searchsorted(group[order], np.arange(count + 1)))[1:-1]
+
+
+def _describe(
+    found: Features,
+    xyz: np.ndarray,
+    members: np.ndarray,
+    points: np.ndarray,
+    traced: Tracing,
+    coverage: Coverage,
+    measured: dict,
+) -> None:
+    """Append the footprints of a tracing to those found, with what their points and shapes say of them."""
+    count = len(traced.labels)
+    roof_face = _face_of_points(traced, xyz, points)
+    has = np.flatnonzero(roof_face >= 0)
+    distance, nearest = spatial.cKDTree(traced.xy[has]).query(xyz[members, :2])
+    member_face = np.where(distance <= traced.max_edge, roof_face[has[nearest]], -1)
+    border = _outer_points(traced)
+    height = measured["height"]
+    over_ground = np.full(len(points), np.nan) if height is None else height[points].astype(np.float64)
+    mean_height = _mean_heights(traced, over_ground)
+    rows = zip(_split(roof_face, count), _split(member_face, count), _split(border[0], count))
+    for face, (roof, own, outer) in enumerate(rows):
+        rings = coverage.polygons[face]
+        area = sum(map(signed_area, rings))
+        described = {
+            "cluster_id": int(traced.labels[face]),
+            "area": area,
+            "perimeter": sum(map(perimeter, rings)),
+            "ground_elevation": _percentile(xyz[points[roof], 2] - over_ground[roof], 50),
+            "eave_height": _percentile(over_ground[border[1][outer]], _EAVE),
+            "ridge_height": _percentile(over_ground[roof], _RIDGE),
+            "height": _percentile(over_ground[roof], 50),
+            "max_height": _percentile(over_ground[roof], 100),
+            "volume": area * mean_height[face],
+            "points": len(own),
+            "entropy": _mean(measured["entropy"], members[own]),
+            "confidence": _mean(measured["confidence"], members[own]),
+            "regularized": int(coverage.is_straight[face]),
+        }
+        found.geometries.append(rings)
+        for name, value in described.items():
+            found.columns[name].append(value)
+
+
+def _face_of_points(traced: Tracing, xyz: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Return the face (n,) of each point that is a corner of one; -1 of those that are in none or bare."""
+    face = np.full(len(points), -1)
+    inside = traced.face >= 0
+    corner, of = traced.triangles[inside].ravel(), np.repeat(traced.face[inside], 3)
+    is_own = traced.label[corner] == traced.labels[of]
+    face[corner[is_own]] = of[is_own]
+    return face
+
+
+def _outer_points(traced: Tracing) -> tuple[np.ndarray, np.ndarray]:
+    """Return faces and points along the outlines; those along borders between buildings only where it has no others."""
+    face, across = np.repeat(traced.face, 3), traced.beyond(traced.face)
+    is_border = (face >= 0) & (face != across)
+    has_outer = np.bincount(face[is_border & (across < 0)], minlength=len(traced.labels)) > 0
+    used = np.flatnonzero(is_border & ((across < 0) | ~has_outer[face]))
+    return face[used], traced.starts[used]
+
+
+def _mean_heights(traced: Tracing, height: np.ndarray) -> np.ndarray:
+    """Return the mean height (f,) of the roof's surface in each face."""
+    is_roof = (traced.face >= 0) & (traced.label[traced.triangles] > 0).all(axis=1)
+    face, triangles = traced.face[is_roof], traced.triangles[is_roof]
+    a, b = (traced.xy[triangles[:, k]] - traced.xy[triangles[:, 0]] for k in (1, 2))
+    area = np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+    count = len(traced.labels)
+    return np.bincount(face, area * height[triangles].mean(axis=1), count) / np.bincount(face, area, count)
+
+
+def _percentile(values: np.ndarray, percent: float) -> float:
+    """Return a percentile of the values that are defined, NaN without any."""
     defined = values[np.isfinite(values)]
+    return float(np.percentile(defined, percent)) if len(defined) else float("nan")
+
+
+def _mean(values: Optional[np.ndarray], rows: np.ndarray) -> float:
+    """Return the mean of the values that are defined: points that were added to a building later have none."""
+    if values is None:
+        return float("nan")
+    defined = values[rows][np.isfinite(values[rows])]
     return float(np.mean(defined, dtype=np.float64)) if len(defined) else float("nan")
 
 
-def _add(found: Features, rings: list, described: dict) -> None:
-    """Append a footprint to those found, with what its shape says of it."""
-    found.geometries.append(rings)
-    shape = {"area": sum(map(signed_area, rings)), "perimeter": sum(map(perimeter, rings))}
-    for name, value in {"id": len(found), **described, **shape}.items():
-        found.columns[name].append(value)
+def _sorted(found: Features, min_area: float) -> Features:
+    """Return the footprints that are large enough in the order of their clusters, from the south-west, numbered."""
+    lowest = [(*map(float, rings[0].min(axis=0)),) for rings in found.geometries]
+    keys = list(zip(found.columns["cluster_id"], lowest))
+    kept = [i for i in range(len(keys)) if found.columns["area"][i] >= min_area]
+    kept.sort(key=keys.__getitem__)
+    columns = {name: [values[i] for i in kept] for name, values in found.columns.items() if name != "id"}
+    return Features([found.geometries[i] for i in kept], {"id": list(range(1, len(kept) + 1)), **columns})

@@ -1,4 +1,8 @@
-"""Straight walls and right angles: outlines regularized to their main directions."""
+"""Straight walls and right angles: lines of samples along an outline turned into corners.
+
+Samples are places (m, 2) on an outline, one for each of its edges, with the length of that edge as weight. The outline
+has the building on its left.
+"""
 
 from __future__ import annotations
 
@@ -9,17 +13,95 @@ import numpy as np
 
 from .outlines import signed_area
 
-# Walls closer than this to a main direction are meant to have it; others are diagonals and keep their own.
+# Walls closer than this to a main direction may be meant to have it; others are diagonals and keep their own.
 _MAX_TURN = np.deg2rad(22.5)
 
-# Sine of the angle between walls that are taken for parallel, about a degree.
-_PARALLEL = 0.02
+# What supports a direction, and the share of an outline that makes it a main one: by chance 22 % of a circle is within
+# 10° of one direction and its normal, and a second direction needs a wing or a street of its own.
+_SUPPORT, _MIN_SHARE, _MIN_FURTHER_SHARE = np.deg2rad(10), 0.35, 0.15
 
-# Below this share of the outline within 10° of the main directions there are none; by chance 22 % of a circle is.
-_MIN_SHARE = 0.35
+# Sine of the angle between walls that are taken for parallel, about a degree, and for a spike, 30°.
+_PARALLEL, _SPIKE = 0.02, 0.5
+
+# Walls up to so many tolerances long don't know their direction well.
+_SHORT = 4.0
 
 # Pairs of segments or of points and segments that are compared at once.
 _PAIRS_AT_ONCE = 1_000_000
+
+
+@dataclass(frozen=True)
+class Wall:
+    """A line along an outline: unit direction, a point on it, length, its samples (first, last), whether main."""
+
+    direction: np.ndarray
+    point: np.ndarray
+    length: float
+    first: int
+    last: int
+    is_main: bool = False
+
+    @property
+    def angle(self) -> float:
+        """Direction (rad) from east."""
+        return float(np.arctan2(self.direction[1], self.direction[0]))
+
+    def offset(self, point: np.ndarray) -> float:
+        """Return how far a point lies to the left of this line."""
+        return _cross(self.direction, point - self.point)
+
+    def foot(self, point: np.ndarray) -> np.ndarray:
+        """Return the place on this line that is nearest to a point."""
+        return self.point + ((point - self.point) @ self.direction) * self.direction
+
+
+@dataclass(frozen=True)
+class Line:
+    """Samples (m, 2) along an outline or a part of it, with their weights (m,).
+
+    A closed one has no end; of an open one the first and last sample are its ends.
+    """
+
+    samples: np.ndarray
+    weights: np.ndarray
+    is_closed: bool
+
+    def rows(self, first: int, last: int) -> np.ndarray:
+        """Return the samples from ``first`` to ``last``, which may be beyond the end of a closed line."""
+        return np.arange(first, last + 1) % len(self.samples)
+
+    def walls(self, tolerance: float) -> list:
+        """Return the straight pieces that stay within ``tolerance`` (m) of the samples, fitted to them."""
+        bends = simplify(self.samples, tolerance, self.is_closed)
+        if self.is_closed:
+            bends = np.append(bends, bends[0] + len(self.samples))
+        return [self.fitted(int(a), int(b), tolerance) for a, b in zip(bends, bends[1:])]
+
+    def fitted(self, first: int, last: int, tolerance: float, direction: Optional[np.ndarray] = None) -> Wall:
+        """Return the wall along the samples from ``first`` to ``last``, of a given direction or their own."""
+        rows = self.rows(first, last)
+        places, weights = self.samples[rows], self.weights[rows]
+        chord = places[-1] - places[0]
+        length = float(np.hypot(*chord))
+        along = (places - places[0]) @ (chord / max(length, 1e-9))
+        # Corners are rounded by half the tolerance, a spacing: what lies there belongs to no wall.
+        inner = np.abs(along - length / 2) <= length / 2 - tolerance / 2
+        if inner.sum() >= 3:
+            places, weights = places[inner], weights[inner]
+        if direction is None:
+            direction = _principal(places, weights, chord)
+        across = direction[0] * (places[:, 1] - places[0, 1]) - direction[1] * (places[:, 0] - places[0, 0])
+        middle = _median(across, weights) * np.array([-direction[1], direction[0]])
+        center = places[0] + ((places.mean(axis=0) - places[0]) @ direction) * direction
+        return Wall(direction, center + middle, length, first, last)
+
+
+def line_along(ring: np.ndarray, outset: float = 0.0) -> Line:
+    """Return the samples in the middle of the edges of a closed ring, moved outward by ``outset`` (m)."""
+    step = np.diff(ring, axis=0)
+    length = np.hypot(*step.T)
+    outward = np.column_stack([step[:, 1], -step[:, 0]]) / np.maximum(length, 1e-9)[:, None]
+    return Line(ring[:-1] + step / 2 + outset * outward, length, is_closed=True)
 
 
 def regularize_outline(rings: list, tolerance: float, outset: float = 0.0) -> Optional[list]:
@@ -37,155 +119,302 @@ def regularize_outline(rings: list, tolerance: float, outset: float = 0.0) -> Op
     Returns
     -------
     list of ndarray, or None
-        Rings in the same order, valid together; holes smaller than the tolerance can resolve are left out.
+        Rings in the same order, valid together; holes too small for three walls are left out.
     """
-    simple = [simplify_ring(ring, tolerance) for ring in rings]
-    direction = main_direction(simple)
-    if direction is None or len(simple[0]) < 4:
+    lines = [line_along(ring, outset) for ring in rings]
+    walls = [line.walls(tolerance) for line in lines]
+    directions = main_directions([wall for one in walls for wall in one])
+    if not directions:
         return None
-    made = [_straightened(ring, direction, tolerance, outset) for ring in simple]
-    if made[0] is None:
-        return None
-    kept = [(ring, raw) for ring, raw in zip(made, rings) if ring is not None]
-    new, raw = [ring for ring, _ in kept], [raw for _, raw in kept]
-    if any(signed_area(a) * signed_area(b) <= 0 for a, b in kept) or not is_valid(new):
-        return None
-    limit = 2 * tolerance
-    near = all(farthest(a, b) <= limit and farthest(b[:-1], a) <= limit for a, b in zip(new, raw))
-    return new if near else None
+    made: list = []
+    for line, own in zip(lines, walls):
+        corners = np.array(straighten(line, own, directions, tolerance)[1]).reshape(-1, 2)
+        if len(corners) < 3 and made:
+            continue
+        if not is_near(corners, line, 2 * tolerance):
+            return None
+        made.append(np.concatenate([corners, corners[:1]]))
+    return made if is_valid(made) else None
+
+
+def is_near(places: np.ndarray, line: Line, limit: float) -> bool:
+    """Return whether a straight line stays within ``limit`` (m) of a traced one, and nearly all of that one of it."""
+    raw = line.samples
+    if len(places) < (3 if line.is_closed else 2):
+        return False
+    if line.is_closed:
+        places, raw = (np.concatenate([one, one[:1]]) for one in (places, raw))
+        if signed_area(places) * signed_area(raw) <= 0:
+            return False
+    far = distances_to(line.samples, places) > limit
+    # Spikes, which have no area, are left out: they are a small part of a building, or it is no good.
+    return bool((distances_to(places, raw) <= limit).all() and line.weights[far].sum() <= 0.1 * line.weights.sum())
 
 
 def simplify_ring(ring: np.ndarray, tolerance: float) -> np.ndarray:
     """Return the closed ring with the vertices of Douglas and Peucker that keep it within ``tolerance`` (m)."""
-    open_ring = ring[:-1]
-    # The two ends of the longest extent are corners in any case.
-    start = int(np.argmax(np.einsum("ij,ij->i", open_ring - open_ring.mean(0), open_ring - open_ring.mean(0))))
-    turned = np.concatenate([np.roll(open_ring, -start, axis=0), open_ring[start : start + 1]])
-    far = int(np.argmax(np.hypot(*(turned - turned[0]).T)))
-    is_kept = np.zeros(len(turned), bool)
-    is_kept[[0, far, -1]] = True
-    spans = [(0, far), (far, len(turned) - 1)]
+    rows = simplify(ring[:-1], tolerance, is_closed=True)
+    return ring[np.append(rows, rows[0])]
+
+
+def main_directions(walls: list) -> list:
+    """Return the directions (rad, in [0, pi/2)) that most walls, in order, have or are square to, the strongest first.
+
+    There is none without a right angle: a round tower turns little at every corner.
+    """
+    # A long wall tells more of a direction than many short ones.
+    length, angle = np.array([wall.length for wall in walls]) ** 2, np.array([wall.angle for wall in walls])
+    is_left, found, least = np.ones(len(walls), bool), [], _MIN_SHARE
+    # Four times the angle is the same for walls that are parallel or square to each other.
+    apart = np.abs(np.angle(np.exp(4j * (angle[:, None] - angle)))) / 4
+    while is_left.any():
+        near = (apart <= _SUPPORT) & is_left[:, None]
+        close = (apart <= _SUPPORT / 4) & is_left[:, None]
+        share = np.where(is_left, length @ near, 0.0)
+        best = int(np.argmax(share))
+        square = np.abs(np.cos(angle - np.roll(angle, 1))) < np.sin(_SUPPORT)
+        if share[best] < least * length.sum() or not (square & near[best] & np.roll(near[best], 1)).any():
+            break
+        # What the most nearly agree on, not the mean of all: a wall that is a few degrees off doesn't bend the others.
+        used = near[best] & (apart[int(np.argmax(np.where(near[best], length @ close, 0.0)))] <= _SUPPORT / 4)
+        center = np.angle(np.sum(length[used] * np.exp(4j * angle[used]))) / 4
+        found.append(float(np.mod(center, np.pi / 2)))
+        is_left &= ~near[:, best]
+        least = _MIN_FURTHER_SHARE
+    return found
+
+
+def straighten(line: Line, walls: list, directions: list, tolerance: float) -> tuple[list, list]:
+    """Return the walls along a line, turned to main directions where they nearly have them, and the corners between.
+
+    Parameters
+    ----------
+    line : Line
+        Samples along the outline.
+    walls : list of Wall
+        Its straight pieces.
+    directions : list of float
+        Main directions (rad), each with its normal.
+    tolerance : float
+        Distance (m) that wiggles may have; the ends of a wall are turned by no more than half of that.
+
+    Returns
+    -------
+    walls : list of Wall
+        At least one for an open line; none for a closed one that has no room for three walls.
+    corners : list of ndarray of shape (2,)
+        Of a closed line all around, from the end of the first wall; of an open one those between its ends.
+    """
+    walls = _turned(line, walls, directions, tolerance)
+    walls = _merged(line, _without_spikes(_without_fillers(walls, line, tolerance), line), tolerance)
+    walls = _rebroken(line, walls, tolerance)
+    if line.is_closed and len(walls) < 3:
+        return [], []
+    corners: list = []
+    for here, there in _following(walls, line):
+        corners += _joined(here, there, line, tolerance)
+    return walls, _without_loops(corners, 4 * tolerance) if line.is_closed else corners
+
+
+def simplify(places: np.ndarray, tolerance: float, is_closed: bool) -> np.ndarray:
+    """Return the rows of the vertices of Douglas and Peucker that keep a line within ``tolerance`` (m), ascending."""
+    count = len(places)
+    # The two ends of the longest extent are corners of a closed line in any case.
+    start = int(np.argmax(((places - places.mean(axis=0)) ** 2).sum(axis=1))) if is_closed else 0
+    turned = np.roll(places, -start, axis=0)
+    if is_closed:
+        turned = np.concatenate([turned, turned[:1]])
+    last = len(turned) - 1
+    far = int(np.argmax(((turned - turned[0]) ** 2).sum(axis=1))) if is_closed else last
+    is_kept = np.zeros(last + 1, bool)
+    is_kept[[0, far, last]] = True
+    spans = [(0, far), (far, last)]
     while spans:
-        first, last = spans.pop()
-        if last - first < 2:
+        low, high = spans.pop()
+        if high - low < 2:
             continue
-        distance = edge_distances(turned[first + 1 : last], turned[first : first + 1], turned[last : last + 1])[:, 0]
+        distance = edge_distances(turned[low + 1 : high], turned[low : low + 1], turned[high : high + 1])[:, 0]
         at = int(np.argmax(distance))
         if distance[at] > tolerance:
-            middle = first + 1 + at
+            middle = low + 1 + at
             is_kept[middle] = True
-            spans += [(first, middle), (middle, last)]
-    return turned[is_kept]
+            spans += [(low, middle), (middle, high)]
+    kept = np.flatnonzero(is_kept[:-1] if is_closed else is_kept)
+    return np.sort((kept + start) % count)
 
 
-def main_direction(rings: list) -> Optional[float]:
-    """Return the direction (rad, in [0, pi/2)) that most walls have or are square to, None where there is none."""
-    edges = np.concatenate([np.diff(ring, axis=0) for ring in rings])
-    length, angle = np.hypot(*edges.T), np.arctan2(edges[:, 1], edges[:, 0])
-    # Four times the angle is the same for walls that are parallel or square to each other.
-    candidates = np.mod(angle, np.pi / 2)
-    apart = np.abs(np.angle(np.exp(4j * (angle[:, None] - candidates)))) / 4
-    near = apart <= np.deg2rad(10)
-    share = length @ near
-    best = int(np.argmax(share))
-    if share[best] < _MIN_SHARE * length.sum():
-        return None
-    supporting = near[:, best]
-    # Long walls know their direction best.
-    mean = np.sum(length[supporting] ** 2 * np.exp(4j * angle[supporting]))
-    return float(np.mod(np.angle(mean) / 4, np.pi / 2))
-
-
-def _straightened(ring: np.ndarray, direction: float, tolerance: float, outset: float) -> Optional[np.ndarray]:
-    """Return a simplified ring with its walls turned to the main directions, None where nothing is left of it."""
-    walls = [_wall(a, b, direction, tolerance) for a, b in zip(ring[:-1], ring[1:])]
-    walls = _merged(_without_cut_corners(walls, tolerance), tolerance)
-    if len(walls) < 3:
-        return None
-    walls = [replace(wall, point=wall.point + outset * wall.outward) for wall in walls]
-    corners: list = []
-    for here, there in zip(walls, [*walls[1:], walls[0]]):
-        corners += _joined(here, there, tolerance)
-    made = np.array([*corners, corners[0]])
-    return made if abs(signed_area(made)) > tolerance**2 else None
-
-
-@dataclass(frozen=True)
-class _Wall:
-    """A line of the outline: unit direction, a point on it, length, the vertex it starts from, whether main."""
-
-    direction: np.ndarray
-    point: np.ndarray
-    length: float
-    start: np.ndarray
-    is_main: bool
-
-    @property
-    def outward(self) -> np.ndarray:
-        """Unit vector across the line, away from the building."""
-        return np.array([self.direction[1], -self.direction[0]])
-
-    def offset(self, point: np.ndarray) -> float:
-        """Return how far a point lies to the left of this line."""
-        return _cross(self.direction, point - self.point)
-
-    def foot(self, point: np.ndarray) -> np.ndarray:
-        """Return the place on this line that is nearest to a point."""
-        return self.point + ((point - self.point) @ self.direction) * self.direction
+def _following(walls: list, line: Line) -> list:
+    """Return the pairs of walls that follow each other."""
+    return list(zip(walls, [*walls[1:], walls[0]] if line.is_closed else walls[1:]))
 
 
 def _cross(a: np.ndarray, b: np.ndarray) -> float:
     return float(a[0] * b[1] - a[1] * b[0])
 
 
-def _wall(start: np.ndarray, end: np.ndarray, direction: float, tolerance: float) -> _Wall:
-    """Return the wall between two vertices, turned about its middle unless that moves its ends too far."""
-    step = end - start
-    length, angle = float(np.hypot(*step)), float(np.arctan2(step[1], step[0]))
-    snapped = direction + np.round((angle - direction) / (np.pi / 2)) * np.pi / 2
-    turn = abs(snapped - angle)
-    is_main = bool(turn <= _MAX_TURN and length / 2 * np.sin(turn) <= tolerance)
-    angle = snapped if is_main else angle
-    return _Wall(np.array([np.cos(angle), np.sin(angle)]), (start + end) / 2, length, start, is_main)
+def _principal(places: np.ndarray, weights: np.ndarray, chord: np.ndarray) -> np.ndarray:
+    """Return the unit direction of places, along the chord where they have none of their own."""
+    moved = places - np.average(places, axis=0, weights=weights)
+    xx, yy, xy = weights @ moved[:, 0] ** 2, weights @ moved[:, 1] ** 2, weights @ (moved[:, 0] * moved[:, 1])
+    angle = 0.5 * np.arctan2(2 * xy, xx - yy)
+    direction = np.array([np.cos(angle), np.sin(angle)])
+    along = float(direction @ chord)
+    if len(places) < 3 or abs(along) < 0.9 * np.hypot(*chord):
+        return chord / max(float(np.hypot(*chord)), 1e-9)
+    return direction if along > 0 else -direction
 
 
-def _without_cut_corners(walls: list, tolerance: float) -> list:
-    """Leave out short diagonals between walls that are square to each other: corners that no point has hit."""
+def _median(values: np.ndarray, weights: np.ndarray) -> float:
+    order = np.argsort(values)
+    total = np.cumsum(weights[order]) - weights[order] / 2
+    return float(np.interp(total[-1] / 2 + weights[order[-1]] / 4, total, values[order]))
+
+
+def _turned(line: Line, walls: list, directions: list, tolerance: float) -> list:
+    """Return the walls turned to main directions: long ones to the nearest, short ones as the longest wall beside."""
+    is_long = [wall.length > _SHORT * tolerance for wall in walls]
+    turned = [_snapped(line, wall, directions, tolerance) if long else wall for wall, long in zip(walls, is_long)]
+    for number, wall in enumerate(walls):
+        if is_long[number]:
+            continue
+        beside = [number + step for step in (-2, -1, 1, 2)]
+        beside = [i % len(walls) for i in beside if line.is_closed or 0 <= i < len(walls)]
+        longest = max((turned[i] for i in beside if is_long[i]), key=lambda one: one.length, default=None)
+        own = directions if longest is None else [longest.angle]
+        turned[number] = _snapped(line, wall, own, tolerance)
+    return turned
+
+
+def _snapped(line: Line, wall: Wall, directions: list, tolerance: float) -> Wall:
+    """Return the wall turned to the nearest main direction, unless that moves its ends too far."""
+    turns = [
+        (direction + np.round((wall.angle - direction) / (np.pi / 2)) * np.pi / 2) - wall.angle
+        for direction in directions
+    ]
+    turn = min(turns, key=abs, default=np.pi)
+    if abs(turn) > _MAX_TURN or wall.length / 2 * np.sin(abs(turn)) > tolerance / 2:
+        return wall
+    angle = wall.angle + turn
+    direction = np.array([np.cos(angle), np.sin(angle)])
+    return replace(line.fitted(wall.first, wall.last, tolerance, direction), is_main=True)
+
+
+def _without_fillers(walls: list, line: Line, tolerance: float) -> list:
+    """Leave out short diagonals between walls of main directions: corners that no point has hit, and steps."""
+    if len(walls) < 3:
+        return walls
     kept = []
-    for before, here, after in zip([walls[-1], *walls], walls, [*walls[1:], walls[0]]):
-        is_corner = before.is_main and after.is_main and abs(before.direction @ after.direction) < _PARALLEL
-        if here.is_main or here.length > 2.5 * tolerance or not is_corner:
+    around = zip([walls[-1], *walls], walls, [*walls[1:], walls[0]])
+    for number, (before, here, after) in enumerate(around):
+        is_end = not line.is_closed and number in (0, len(walls) - 1)
+        is_corner = abs(before.direction @ after.direction) < _PARALLEL
+        is_step = before.direction @ after.direction > 1 - _PARALLEL
+        longest = tolerance * (1.5 * is_corner + 2.0 * is_step)
+        if is_end or here.is_main or here.length > longest or not (before.is_main and after.is_main):
             kept.append(here)
     return kept
 
 
-def _merged(walls: list, tolerance: float) -> list:
-    """Join walls that follow each other in one line."""
+def _without_spikes(walls: list, line: Line) -> list:
+    """Leave out the shorter of two walls that lead to and fro: a strip too narrow to be a part of a building."""
     i = 0
-    while i < len(walls) and len(walls) > 3:
-        here, there = walls[i], walls[(i + 1) % len(walls)]
-        is_along = abs(_cross(here.direction, there.direction)) < _PARALLEL and here.direction @ there.direction > 0
-        if is_along and abs(here.offset(there.point)) <= tolerance:
-            total = here.length + there.length
-            point = (here.point * here.length + there.point * there.length) / total
-            longer = here if here.length >= there.length else there
-            walls[i] = _Wall(longer.direction, point, total, here.start, longer.is_main)
-            del walls[(i + 1) % len(walls)]
-            i = max(i - 1, 0)
+    while len(walls) > 3 and i < len(walls) - (not line.is_closed):
+        j = (i + 1) % len(walls)
+        here, there = walls[i], walls[j]
+        if here.direction @ there.direction < 0 and abs(_cross(here.direction, there.direction)) < _SPIKE:
+            del walls[i if here.length < there.length else j]
+            i = max(i - 2, 0)
         else:
             i += 1
     return walls
 
 
-def _joined(here: _Wall, there: _Wall, tolerance: float) -> list:
+def _merged(line: Line, walls: list, tolerance: float) -> list:
+    """Join walls that follow each other in one line, also over what is left of a spike between them."""
+    i = 0
+    while i < len(walls):
+        for ahead in (1, 2):
+            j = (i + ahead) % len(walls)
+            if len(walls) - ahead < (3 if line.is_closed else 1) or (j < i and not line.is_closed):
+                continue
+            here, there = walls[i], walls[j]
+            is_along = abs(_cross(here.direction, there.direction)) < _PARALLEL and here.direction @ there.direction > 0
+            if is_along and abs(here.offset(there.point)) <= tolerance:
+                longer = here if here.length >= there.length else there
+                last = there.last + len(line.samples) * (there.last < here.first)
+                joined = line.fitted(here.first, last, tolerance, longer.direction)
+                walls[i] = replace(joined, is_main=here.is_main or there.is_main)
+                gone = {(i + k) % len(walls) for k in range(1, ahead + 1)}
+                walls = [wall for k, wall in enumerate(walls) if k not in gone]
+                i = max(i - sum(k < i for k in gone) - 3, -1)
+                break
+        i += 1
+    return walls
+
+
+def _rebroken(line: Line, walls: list, tolerance: float) -> list:
+    """Fit walls anew to the samples between the corners that they make."""
+    breaks = {}
+    count = len(line.samples)
+    for number, (here, there) in enumerate(_following(walls, line)):
+        turn = _cross(here.direction, there.direction)
+        if abs(turn) < _PARALLEL:
+            continue
+        corner = _crossing(here, there, turn)
+        middle, end = (here.first + here.last) // 2, (there.first + there.last) // 2
+        rows = line.rows(middle, end + count * (end < middle))
+        nearest = int(np.argmin(((line.samples[rows] - corner) ** 2).sum(axis=1)))
+        breaks[number] = middle + nearest
+    made = []
+    for number, wall in enumerate(walls):
+        before = (number - 1) % len(walls) if line.is_closed else number - 1
+        first, last = breaks.get(before, wall.first), breaks.get(number, wall.last)
+        first += count * round((wall.first - first) / count)
+        last += count * round((wall.last - last) / count)
+        if last - first >= 2:
+            fitted = line.fitted(first, last, tolerance, wall.direction)
+            made.append(replace(fitted, is_main=wall.is_main))
+        else:
+            made.append(wall)
+    return made
+
+
+def _crossing(here: Wall, there: Wall, turn: float) -> np.ndarray:
+    return here.point + _cross(there.point - here.point, there.direction) / turn * here.direction
+
+
+def _joined(here: Wall, there: Wall, line: Line, tolerance: float) -> list:
     """Return the corner between two walls, or the two ends of the jog between walls that are nearly parallel."""
     turn = _cross(here.direction, there.direction)
+    bend = line.samples[there.first % len(line.samples)]
     if abs(turn) >= _PARALLEL:
-        corner = here.point + _cross(there.point - here.point, there.direction) / turn * here.direction
+        corner = _crossing(here, there, turn)
         # Walls that are nearly parallel meet far away: a step between them is truer than that corner.
-        if np.hypot(*(corner - there.start)) <= 2 * tolerance:
+        if np.hypot(*(corner - bend)) <= 2 * tolerance:
             return [corner]
-    return [here.foot(there.start), there.foot(there.start)]
+    return [here.foot(bend), there.foot(bend)]
+
+
+def _without_loops(corners: list, longest: float) -> list:
+    """Cut off where a closed line crosses itself within a short way (m): steps that are narrower than their walls."""
+    i = 0
+    while i < len(corners) and len(corners) > 4:
+        count = len(corners)
+        for ahead in (2, 3):
+            a, b, c, d = (corners[(i + k) % count] for k in (0, 1, ahead, ahead + 1))
+            turn = _cross(b - a, d - c)
+            way = sum(np.hypot(*(corners[(i + k) % count] - corners[(i + k + 1) % count])) for k in range(1, ahead))
+            if ahead + 2 > count or way > longest or not turn:
+                continue
+            share, other = _cross(c - a, d - c) / turn, _cross(c - a, b - a) / turn
+            if 0 <= share <= 1 and 0 <= other <= 1:
+                corners[(i + 1) % count] = a + share * (b - a)
+                gone = {(i + k) % count for k in range(2, ahead + 1)}
+                corners = [corner for k, corner in enumerate(corners) if k not in gone]
+                i = max(i - 3, -1)
+                break
+        i += 1
+    return corners
 
 
 def is_valid(rings: list) -> bool:
@@ -208,6 +437,12 @@ def is_valid(rings: list) -> bool:
     return all(is_inside(hole[0], rings[0]) for hole in rings[1:])
 
 
+def segments_meet(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> bool:
+    """Return whether any of the segments ab (n, 2) has a point in common with one of the segments cd (m, 2)."""
+    step = max(1, _PAIRS_AT_ONCE // len(c))
+    return any(_meet(a[low : low + step], b[low : low + step], c, d).any() for low in range(0, len(a), step))
+
+
 def is_inside(point: np.ndarray, ring: np.ndarray) -> bool:
     """Return whether a point (2,) lies inside a ring, by the parity of the walls to its east."""
     (x0, y0), (x1, y1) = ring[:-1].T, ring[1:].T
@@ -216,11 +451,16 @@ def is_inside(point: np.ndarray, ring: np.ndarray) -> bool:
     return bool(np.sum(crosses & (point[0] < x0 + (point[1] - y0) * slope)) % 2)
 
 
-def farthest(points: np.ndarray, ring: np.ndarray) -> float:
-    """Return the largest distance (m) of points (n, 2) to the nearest place on a ring."""
-    step = max(1, _PAIRS_AT_ONCE // len(ring))
-    chunks = (points[low : low + step] for low in range(0, len(points), step))
-    return max(float(edge_distances(chunk, ring[:-1], ring[1:]).min(axis=1).max()) for chunk in chunks)
+def distances_to(points: np.ndarray, line: np.ndarray) -> np.ndarray:
+    """Return the distances (n,) (m) of points (n, 2) to the nearest place on a line (m, 2)."""
+    step = max(1, _PAIRS_AT_ONCE // len(line))
+    chunks = [points[low : low + step] for low in range(0, len(points), step)]
+    return np.concatenate([edge_distances(chunk, line[:-1], line[1:]).min(axis=1) for chunk in chunks])
+
+
+def farthest(points: np.ndarray, line: np.ndarray) -> float:
+    """Return the largest distance (m) of points (n, 2) to the nearest place on a line."""
+    return float(distances_to(points, line).max())
 
 
 def edge_distances(points: np.ndarray, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:

@@ -207,8 +207,8 @@ class _Building:
         """Outlines of the roof: a list of rings for each part, the largest first."""
         if not self.spacing:
             return []
-        parts = trace_outlines(self.roof, self.spacing).parts
-        return sorted(parts, key=lambda rings: -sum(map(signed_area, rings)))
+        traced = trace_outlines(self.roof, np.ones(len(self.roof), np.int64), self.spacing)
+        return sorted(traced.parts if traced else [], key=lambda rings: -sum(map(signed_area, rings)))
 
     def walls_outline(self, limits: Limits, seed: int) -> Optional[WallOutline]:
         """Return the outline of the walls near the origin, None where there are too few."""

@@ -51,11 +51,31 @@ def test_village(village, assert_valid, regularize):
     assert table["height"] == pytest.approx([7, 10], abs=0.02)
     assert table["max_height"] == pytest.approx([7, 10], abs=0.1)
     assert table["ground_elevation"] == pytest.approx([-1, -1], abs=1e-5)
+    # Flat roofs: eaves and ridges are where the roof is, and the space is that of a box.
+    # Points down to a meter under the eaves are still roof.
+    assert table["eave_height"] == pytest.approx([7, 10], abs=0.5)
+    assert table["ridge_height"] == pytest.approx([7, 10], abs=0.1)
+    assert table["volume"] == pytest.approx([7 * table["area"][0], 10 * table["area"][1]], rel=0.01)
     assert table["entropy"] == pytest.approx([0.4, 0.5])
     assert table["confidence"] == pytest.approx([0.9, 0.8])
     if regularize:
         assert [len(ring) - 1 for rings in found.geometries for ring in rings] == [4, 4, 4]
         assert table["perimeter"] == pytest.approx([36, 96 + 48], rel=0.04)
+
+
+def test_eave_ridge_and_volume_of_a_gable_roof(rng):
+    """12 m by 8 m, eaves at 5 m, ridge at 8 m, with a chimney and a dormer wall that don't matter."""
+    n = 12 * 8 * 12
+    plan = rng.uniform([0, 0], [12, 8], (n, 2))
+    xyz = np.column_stack([plan, 8 - 0.75 * np.abs(plan[:, 1] - 4) + rng.normal(0, 0.02, n)])
+    xyz[(np.abs(plan - [6, 4]) < 0.3).all(axis=1), 2] += 1.5
+    xyz[:, 2] += 100
+    found = extract_footprints(xyz, np.full(n, 6), None, (xyz[:, 2] - 100).astype(np.float32)).columns
+    assert found["eave_height"] == pytest.approx([5], abs=0.4)
+    assert found["ridge_height"] == pytest.approx([8], abs=0.15)
+    assert found["max_height"] == pytest.approx([9.5], abs=0.1)
+    assert found["ground_elevation"] == pytest.approx([100], abs=1e-4)
+    assert found["volume"] == pytest.approx([12 * 8 * 6.5], rel=0.02)
 
 
 def test_walls_do_not_widen_the_outline(village, rng):

@@ -1,0 +1,139 @@
+"""Buildings of known shape at any angle and density, and rows that share their walls; GEOS says what is valid."""
+
+import numpy as np
+import pytest
+from qgis.core import QgsGeometry, QgsPointXY
+
+from lidar_buildings.algorithms.buildings.footprints import extract_footprints
+
+SHAPES = {
+    "L": [[(0, 0), (14, 0), (14, 8), (8, 8), (8, 14), (0, 14)]],
+    "U": [[(0, 0), (18, 0), (18, 12), (12, 12), (12, 6), (6, 6), (6, 12), (0, 12)]],
+    "T": [[(0, 8), (7, 8), (7, 0), (13, 0), (13, 8), (20, 8), (20, 14), (0, 14)]],
+    "diagonal": [[(0, 0), (16, 0), (16, 6), (11, 11), (0, 11)]],
+    "skewed": [[(0, 0), (14, 0), (14, 9), (0, 6)]],
+    "courtyard": [[(0, 0), (18, 0), (18, 16), (0, 16)], [(6, 5), (6, 11), (12, 11), (12, 5)]],
+}
+
+
+def turned(points, degrees):
+    c, s = np.cos(np.deg2rad(degrees)), np.sin(np.deg2rad(degrees))
+    return np.asarray(points, float) @ np.array([[c, s], [-s, c]])
+
+
+def polygon(rings):
+    return QgsGeometry.fromPolygonXY([[QgsPointXY(x, y) for x, y in ring.tolist()] for ring in rings])
+
+
+def closed(rings):
+    return [np.concatenate([ring, ring[:1]]) for ring in rings]
+
+
+def inside(points, rings):
+    """Even-odd rule."""
+    odd = np.zeros(len(points), bool)
+    for ring in rings:
+        for (x0, y0), (x1, y1) in zip(ring, np.roll(ring, -1, axis=0)):
+            crosses = (y0 > points[:, 1]) != (y1 > points[:, 1])
+            with np.errstate(divide="ignore", invalid="ignore"):
+                odd ^= crosses & (points[:, 0] < x0 + (points[:, 1] - y0) * (x1 - x0) / (y1 - y0))
+    return odd
+
+
+def scanned(buildings, density, rng):
+    """Points on flat roofs of different heights and on the ground between them: coordinates, classes, clusters."""
+    corners = np.concatenate([ring for rings in buildings for ring in rings])
+    low, high = corners.min(axis=0) - 5, corners.max(axis=0) + 5
+    plan = rng.uniform(low, high, (int(np.prod(high - low) * density), 2))
+    cluster = np.zeros(len(plan), int)
+    for number, rings in enumerate(buildings, start=1):
+        cluster[inside(plan, rings)] = number
+    z = np.where(cluster > 0, 5 + 0.7 * (cluster % 3), 0) + rng.normal(0, 0.03, len(plan))
+    return np.column_stack([plan, z]), np.where(cluster > 0, 6, 2), cluster
+
+
+def nearest(corners, rings):
+    """Distance of each true corner to the nearest corner that was made."""
+    made = np.concatenate([ring[:-1] for ring in rings])
+    return np.sqrt(((corners[:, None] - made) ** 2).sum(axis=2).min(axis=1))
+
+
+@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize(("density", "degrees"), [(2, 0), (4, 77), (8, 31), (15, 200), (50, 45)])
+def test_corners_of_known_buildings(name, density, degrees, rng):
+    truth = [turned(ring, degrees) + [600_000, 5_000_000] for ring in SHAPES[name]]
+    xyz, classification, _ = scanned([truth], density, rng)
+    found = extract_footprints(xyz, classification)
+    assert found.columns["regularized"] == [1]
+    made, real = polygon(found.geometries[0]), polygon(closed(truth))
+    assert made.isGeosValid()
+    assert len(found.geometries[0]) == len(truth)
+    spacing = density**-0.5
+    # A house of 14 m by 9 m has a hundred points at 2 per m².
+    assert np.median(nearest(np.concatenate(truth), found.geometries[0])) < spacing * (1.5 if density < 4 else 1.0)
+    beyond = made.symDifference(real).area() / real.length()
+    assert beyond < (0.6 if density < 4 else 0.4) * spacing
+    assert made.hausdorffDistance(real) < 2.5 * spacing
+
+
+@pytest.mark.parametrize("density", [2, 4, 15])
+@pytest.mark.parametrize("step", [0.0, 2.0])
+def test_row_houses_share_their_walls_exactly(density, step, rng):
+    houses = [
+        [turned([(6 * i, 0), (6 * i + 6, 0), (6 * i + 6, 9 + step * (i % 2)), (6 * i, 9 + step * (i % 2))], 25)]
+        for i in range(4)
+    ]
+    xyz, classification, cluster = scanned(houses, density, rng)
+    found = extract_footprints(xyz, classification, cluster)
+    assert found.columns["cluster_id"] == [1, 2, 3, 4]
+    assert found.columns["regularized"] == [1] * 4
+    made = [polygon(rings) for rings in found.geometries]
+    assert all(one.isGeosValid() for one in made)
+    for i in range(3):
+        assert made[i].intersection(made[i + 1]).area() == 0
+        shared = edges(found.geometries[i]) & edges(found.geometries[i + 1], back=True)
+        length = sum(np.hypot(x1 - x0, y1 - y0) for x0, y0, x1, y1 in shared)
+        assert length == pytest.approx(9 + step * (i % 2) * 0, abs=3 * density**-0.5)
+    union = QgsGeometry.unaryUnion(made)
+    assert union.area() == pytest.approx(sum(one.area() for one in made), rel=1e-9)
+    # One block without a seam between its houses.
+    assert len(union.asPolygon()) == 1
+    corners = np.concatenate([ring for rings in houses for ring in rings])
+    distances = [nearest(rings[0], geometry) for rings, geometry in zip(houses, found.geometries)]
+    assert len(corners) == 16
+    assert np.median(distances) < density**-0.5
+
+
+def edges(rings, back=False):
+    """Edges of a polygon as numbers, each in the direction it has or in the other."""
+    found = np.concatenate([np.hstack([ring[1:], ring[:-1]] if back else [ring[:-1], ring[1:]]) for ring in rings])
+    return {tuple(edge) for edge in found.tolist()}
+
+
+@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("regularize", [True, False])
+def test_any_division_gives_valid_polygons_that_do_not_overlap(seed, regularize):
+    """Clusters as no town has them: cells of chance, some within others, with gaps, holes and single points."""
+    rng = np.random.default_rng(seed)
+    xyz = np.column_stack([rng.uniform(0, 30, (3000, 2)), rng.normal(5, 0.05, 3000)])
+    centers = rng.uniform(0, 30, (9, 2))
+    apart = np.hypot(*(xyz[:, None, :2] - centers).transpose(2, 0, 1))
+    cluster = 1 + np.argmin(apart, axis=1)
+    cluster[np.hypot(*(xyz[:, :2] - centers[0]).T) < 3] = 20
+    cluster[rng.random(3000) < 0.02] = 21
+    classification = np.where((apart % 7 < 1.2).any(axis=1) & (seed % 2 == 0), 2, 6)
+    xyz[classification == 2, 2] = 0
+    found = extract_footprints(xyz, classification, cluster, regularize=regularize)
+    made = [polygon(rings) for rings in found.geometries]
+    assert made
+    assert all(one.isGeosValid() for one in made)
+    assert QgsGeometry.unaryUnion(made).area() == pytest.approx(sum(one.area() for one in made), rel=1e-6)
+    assert min(found.columns["area"]) >= 4.0
+
+
+def test_houses_with_a_gap_stay_apart_and_do_not_overlap(rng):
+    """Two houses with an alley of 80 cm between them, at 15 points per m²."""
+    houses = [[turned([(x, 0), (x + 8, 0), (x + 8, 9), (x, 9)], 40)] for x in (0, 8.8)]
+    found = extract_footprints(*scanned(houses, 15, rng))
+    first, second = (polygon(rings) for rings in found.geometries)
+    assert first.distance(second) == pytest.approx(0.8, abs=0.35)
