@@ -27,6 +27,7 @@ from .segmentation.roofs import segment_roofs
 from .simulation.flight import simulate_flight
 from .simulation.town import simulate_town
 from .simulation.village import simulate_village
+from .terrain.ground_cloth import classify_ground_cloth
 from .terrain.ground_tin import classify_ground_tin
 from .terrain.height import compute_height_above_ground
 
@@ -37,6 +38,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     filter_points,
     downsample_voxels,
     classify_ground_tin,
+    classify_ground_cloth,
     compute_height_above_ground,
     compute_features,
     classify_dimensionality,

@@ -38,6 +38,7 @@ STAGE_IDS = {
     "downsamplevoxels",
     "mergeclouds",
     "classifygroundtin",
+    "classifygroundcloth",
     "computeheightaboveground",
     "computefeatures",
     "classifydimensionality",
@@ -67,6 +68,7 @@ VERBS |= {"filter", "downsample", "merge", "rasterize", "map", "compare", "inter
 NAMES = {"Gauss", "Delaunay", "Shannon"}
 # Shares (0 to 1), multiples of what the data show, and limits of whatever dimension is named.
 WITHOUT_UNIT = {
+    "time_step",
     "low",
     "high",
     "deviations",

@@ -157,7 +157,7 @@ def classify_ground_tin(
     Photogrammetry and Remote Sensing 33 (B4), 110-117.
     """
     usable = np.flatnonzero(~np.isin(classification, NOISE))
-    points = _refuse_degenerate(xyz[usable])
+    points = refuse_degenerate(xyz[usable])
     last = _last_returns(return_number, number_of_returns, usable)
     spacing = 1 / np.sqrt(point_density(points))
     cell_size = max(1.0, spacing) if cell_size is None else cell_size
@@ -178,7 +178,7 @@ def classify_ground_tin(
     return result.astype(np.uint8)
 
 
-def _refuse_degenerate(points: np.ndarray) -> np.ndarray:
+def refuse_degenerate(points: np.ndarray) -> np.ndarray:
     """Return ``points`` if they span an area in plan."""
     if len(points) < 3:
         raise ValueError(

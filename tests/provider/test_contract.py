@@ -26,6 +26,7 @@ IDS = {
     "assessground",
     "classifybuildings",
     "classifydimensionality",
+    "classifygroundcloth",
     "classifygroundtin",
     "classifynoisehistogram",
     "classifynoisestatistical",

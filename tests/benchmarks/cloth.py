@@ -1,0 +1,77 @@
+#!/usr/bin/env python3
+"""Compare "Classify ground points (cloth)" with the package cloth-simulation-filter: classes that agree, and time.
+
+    .venv/bin/python tests/benchmarks/cloth.py [size of the simulated town in m, 150]
+
+Needs the package (pip install cloth-simulation-filter), and says so where it is absent. Both run on the same points
+with the same parameters, one after the other; ``cpu`` is summed over all cores, ``s`` is the time on the wall.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+import conftest  # noqa: E402, F401 - registers the checkout as the package lidar_buildings
+from lidar_buildings.algorithms.cloud.asprs import PointClass  # noqa: E402
+from lidar_buildings.algorithms.simulation.town import simulate_town  # noqa: E402
+from lidar_buildings.algorithms.terrain.ground_cloth import classify_ground_cloth  # noqa: E402
+
+SLOPES = (0.0, 10.0, 20.0, 30.0)
+
+
+def by_package(csf, xyz: np.ndarray, rigidness: int) -> np.ndarray:
+    """Return which points the package calls ground."""
+    filter_ = csf.CSF()
+    filter_.params.bSloopSmooth = True
+    filter_.params.cloth_resolution = 0.5
+    filter_.params.rigidness = rigidness
+    filter_.params.time_step = 0.65
+    filter_.params.class_threshold = 0.5
+    filter_.params.interations = 500
+    filter_.setPointCloud(xyz - xyz.min(axis=0))
+    ground, others = csf.VecInt(), csf.VecInt()
+    filter_.do_filtering(ground, others, False)
+    is_ground = np.zeros(len(xyz), bool)
+    is_ground[np.array(ground, int)] = True
+    return is_ground
+
+
+def timed(work, *arguments, **tunables) -> tuple[np.ndarray, float, float]:
+    """Return what ``work`` makes of its arguments, its seconds on the wall and on all cores."""
+    wall, cpu = time.perf_counter(), time.process_time()
+    made = work(*arguments, **tunables)
+    return made, time.perf_counter() - wall, time.process_time() - cpu
+
+
+def main(arguments: list[str]) -> int:
+    """Print the table."""
+    try:
+        import CSF as csf
+    except ImportError:
+        print("The package cloth-simulation-filter is not installed: nothing to compare with.")
+        return 0
+    size = float(arguments[0]) if arguments else 150.0
+    print(
+        f"{'slope':>6s} {'rigidness':>9s} {'points':>10s} {'agree %':>8s} {'s':>7s} {'cpu':>7s} {'s':>7s} {'cpu':>7s}"
+    )
+    for slope in SLOPES:
+        xyz = simulate_town(size=size, slope=slope)[0]
+        for rigidness in (1, 2, 3):
+            theirs, their_wall, their_cpu = timed(by_package, csf, xyz, rigidness)
+            ours, wall, cpu = timed(classify_ground_cloth, xyz, np.ones(len(xyz)), rigidness=rigidness)
+            agree = 100 * ((ours == PointClass.GROUND) == theirs).mean()
+            print(
+                f"{slope:6.0f} {rigidness:9d} {len(xyz):10d} {agree:8.2f} {wall:7.1f} {cpu:7.1f} "
+                f"{their_wall:7.1f} {their_cpu:7.1f}",
+                flush=True,
+            )
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
