@@ -162,8 +162,10 @@ class Cloud:
         points = self.points.copy()
         step = self.header.scale * self._factors
         for i, axis in enumerate("XYZ"):
-            steps = np.rint((xyz[:, i] + (self.origin[i] - self.header.offset[i] * self._factors[i])) / step[i])
-            if not np.abs(steps).max() <= _LARGEST_INT:
+            steps = xyz[:, i] + (self.origin[i] - self.header.offset[i] * self._factors[i])
+            steps /= step[i]
+            np.rint(steps, out=steps)
+            if not max(steps.max(), -steps.min()) <= _LARGEST_INT:
                 raise ValueError(
                     f"Points are moved too far for the file, which reaches {_LARGEST_INT * abs(step[i]):.0f} m from "
                     f"its offset in {axis} at a scale of {abs(step[i]):g} m; check the coordinates."
@@ -176,7 +178,9 @@ class Cloud:
 
         Header, units, CRS, origin and sources are those of this cloud, which is not changed.
         """
-        taken = Cloud(replace(self.header, count=len(index)), self.points[index], self.units, self.sources)
+        # Many times as fast as points[index], which goes through the fields of every record.
+        points = self.points.take(index)
+        taken = Cloud(replace(self.header, count=len(index)), points, self.units, self.sources)
         taken.wkt, taken.origin = self.wkt, self.origin
         taken._changes = {name: values[index] for name, values in self._changes.items()}
         return taken

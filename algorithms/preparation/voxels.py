@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Annotated, Optional
 
 import numpy as np
 
-from ..stage import Param, stage
+from ..stage import Monitor, Param, stage
 from ..threads import in_chunks
 
 # Points worked on at once: what is gathered for them stays in the processor's cache.
@@ -33,17 +34,27 @@ class _Sorted:
     ----------
     order : int64 array, (n,)
         Positions of the points, by voxel, then as in the file.
-    starts : int64 array, (m + 1,)
-        Where each voxel's points begin in ``order``, and the end of the last.
+    starts : int64 array, (m,)
+        Where each voxel's points begin in ``order``.
+    count : int64 array, (m,)
+        Points of each voxel.
     """
 
     order: np.ndarray
     starts: np.ndarray
+    count: np.ndarray
 
-    def chunks(self) -> np.ndarray:
-        """Return the first voxel of each chunk, and the number of voxels: chunks have whole voxels."""
-        firsts = np.searchsorted(self.starts, np.arange(0, len(self.order), _CHUNK))
-        return np.append(np.unique(firsts), len(self.starts) - 1)
+    def rows(self, voxels: np.ndarray) -> np.ndarray:
+        """Return the positions of the points of some voxels, voxel after voxel."""
+        count = self.count[voxels]
+        first = np.cumsum(count) - count
+        return self.order[np.repeat(self.starts[voxels] - first, count) + np.arange(count.sum())]
+
+    def chunks(self, voxels: np.ndarray) -> list[np.ndarray]:
+        """Cut a list of voxels into some that have about as many points as are worked on at once."""
+        ends = np.cumsum(self.count[voxels])
+        cuts = np.searchsorted(ends, np.arange(0, len(self.order), _CHUNK))
+        return [chunk for chunk in np.split(voxels, np.unique(cuts)) if len(chunk)]
 
 
 @stage(
@@ -126,62 +137,70 @@ def downsample_voxels(
     >>> selected.tolist(), center[:, 0].round(6).tolist(), count.tolist()
     ([1, 3], [0.04, 0.1], [3, 1])
     """
-    voxels = _by_voxel(xyz, voxel_size)
-    monitor.progress(0.4)
-    count = np.diff(voxels.starts)
-    selected, center = np.empty(len(count), np.int64), np.empty((len(count), 3))
-    majority = None if classification is None else np.empty(len(count), np.uint8)
-    bounds, touch = voxels.chunks(), _TOUCH / voxel_size * _STEPS
+    voxels = _by_voxel(xyz, voxel_size, monitor.part(0.0, 0.3))
+    # A point that is alone in its voxel is all there is to it.
+    selected = voxels.order[voxels.starts]
+    center = xyz.take(selected, axis=0)
+    majority = None if classification is None else classification.take(selected).astype(np.uint8)
+    chunks = voxels.chunks(np.flatnonzero(voxels.count > 1))
 
     def work(chunk: np.ndarray) -> None:
-        these = slice(bounds[chunk[0]], bounds[chunk[0] + 1])
-        rows = voxels.order[voxels.starts[these.start] : voxels.starts[these.stop]]
-        # The places inside each voxel, their mean, and the point nearest to it.
+        these = chunks[chunk[0]]
+        rows, count = voxels.rows(these), voxels.count[these]
+        which = np.repeat(np.arange(len(these)), count)
+        # The places inside each voxel, their sum, and the point nearest to their mean.
         place = _places(xyz.take(rows, axis=0), voxel_size)
-        total = np.add.reduceat(place, voxels.starts[these] - voxels.starts[these.start], axis=0)
-        which = np.repeat(np.arange(len(total)), count[these])
-        nearest = _nearest(place, total, which, count[these], touch, (gps_time, return_number), rows)
+        total = np.add.reduceat(place, _firsts(which), axis=0)
+        nearest = _nearest(place, total, which, _TOUCH / voxel_size * _STEPS, (gps_time, return_number), rows)
         selected[these] = rows[nearest]
-        shift = total / count[these, None] - place[nearest]
-        center[these] = xyz[selected[these]] + shift * (voxel_size / _STEPS)
+        shift = total / count[:, None] - place[nearest]
+        center[these] = xyz.take(rows[nearest], axis=0) + shift * (voxel_size / _STEPS)
         if majority is not None:
-            majority[these] = _majority(classification[rows], which, len(total))
+            majority[these] = _majority(classification.take(rows), which)
 
-    in_chunks(work, np.arange(len(bounds) - 1), 1, monitor.part(0.4, 1.0))
-    monitor.resolved(share_left=len(count) / len(xyz))
-    return selected, center, majority, count.astype(np.uint32)
+    in_chunks(work, np.arange(len(chunks)), 1, monitor.part(0.3, 1.0))
+    monitor.resolved(share_left=len(selected) / len(xyz))
+    return selected, center, majority, voxels.count.astype(np.uint32)
 
 
-def _by_voxel(xyz: np.ndarray, size: float) -> _Sorted:
-    key = _keys(xyz, size)
+def _by_voxel(xyz: np.ndarray, size: float, monitor: Monitor) -> _Sorted:
+    key = _keys(xyz, size, monitor)
     order = np.argsort(key, kind="stable")
-    key = key[order]
-    is_first = np.empty(len(key), bool)
-    is_first[0] = True
-    np.not_equal(key[1:], key[:-1], out=is_first[1:])
-    return _Sorted(order, np.append(np.flatnonzero(is_first), len(key)))
+    starts = _firsts(key[order])
+    return _Sorted(order, starts, np.diff(starts, append=len(order)))
 
 
-def _keys(xyz: np.ndarray, size: float) -> np.ndarray:
-    """Return a number for each point's voxel (n,), int64, that grows with x, then y, then z."""
-    farthest = max(float(xyz.max()), -float(xyz.min()))
-    if farthest / size > _MOST_ALONG_AXIS:
+def _keys(xyz: np.ndarray, size: float, monitor: Monitor) -> np.ndarray:
+    """Return a number for each point's voxel (n,), int64, from 0, that grows with x, then y, then z."""
+    ends = np.array([(column.min(), column.max()) for column in xyz.T], float)
+    if np.abs(ends).max() / size > _MOST_ALONG_AXIS:
         raise ValueError(
-            f"Voxels of {size:g} m are too fine for coordinates up to {farthest:g} m; "
+            f"Voxels of {size:g} m are too fine for coordinates up to {np.abs(ends).max():g} m; "
             "take larger voxels or check the coordinates."
         )
+    low, high = _index(ends / size, size).T.astype(np.int64)
+    _, n_y, n_z = shape = [int(count) for count in high - low + 1]
+    if math.prod(shape) > _LARGEST_KEY:
+        return _keys_of_wide(xyz, size)
+    key = np.empty(len(xyz), np.int64)
+
+    def work(start: np.ndarray) -> None:
+        rows = slice(start[0], start[0] + _CHUNK)
+        x, y, z = (_index(xyz[rows] / size, size).astype(np.int64) - low).T
+        key[rows] = (x * n_y + y) * n_z + z
+
+    in_chunks(work, np.arange(0, len(xyz), _CHUNK), 1, monitor)
+    return key
+
+
+def _keys_of_wide(xyz: np.ndarray, size: float) -> np.ndarray:
+    """Return the same where there are more voxels than numbers: only those that have points are numbered."""
     key, n_keys = np.zeros(len(xyz), np.int64), 1
-    for axis in range(3):
-        index = _index(xyz[:, axis] / size, size)
-        index = (index - index.min()).astype(np.int64)
-        n_index = int(index.max()) + 1
-        # In wide clouds the voxels that no point is in can't all be numbered: only those with points then are.
+    for column in xyz.T:
+        index, n_index = _renumbered(_index(column / size, size))
         if n_keys * n_index > _LARGEST_KEY:
             key, n_keys = _renumbered(key)
-        if n_keys * n_index > _LARGEST_KEY:
-            index, n_index = _renumbered(index)
-        key *= n_index
-        key += index
+        key = key * n_index + index
         n_keys *= n_index
     return key
 
@@ -209,7 +228,6 @@ def _nearest(
     place: np.ndarray,
     total: np.ndarray,
     which: np.ndarray,
-    count: np.ndarray,
     touch: float,
     times: tuple[Optional[np.ndarray], ...],
     rows: np.ndarray,
@@ -222,8 +240,8 @@ def _nearest(
         Of the points, by voxel.
     total : ndarray of shape (k, 3), int64
         Sum of the places of each voxel.
-    which, count : ndarray of shape (m,) and (k,)
-        Voxel of each point, points of each voxel.
+    which : ndarray of shape (m,)
+        Voxel of each point.
     touch : float
         Points that are so much (steps) farther away than the nearest are as near: only rounding tells them apart.
     times : tuple
@@ -231,8 +249,10 @@ def _nearest(
     rows : ndarray of shape (m,)
         Where in the cloud the points are.
     """
-    away = (place * count[which, None] - total[which]).astype(float)
-    distance = np.sqrt(np.einsum("ij,ij->i", away, away)) / count[which]
+    count = np.bincount(which)[which]
+    # Whole numbers: the two points of a pair are equally near to the last bit.
+    away = (place * count[:, None] - total[which]).astype(float)
+    distance = np.sqrt(np.einsum("ij,ij->i", away, away)) / count
     least = np.minimum.reduceat(distance, _firsts(which))
     left = np.flatnonzero(distance <= (least + touch)[which])
     for values in _criteria(place, times, rows):
@@ -256,7 +276,7 @@ def _firsts(which: np.ndarray) -> np.ndarray:
     return np.flatnonzero(np.diff(which, prepend=-1))
 
 
-def _majority(classes: np.ndarray, which: np.ndarray, n_voxels: int) -> np.ndarray:
+def _majority(classes: np.ndarray, which: np.ndarray) -> np.ndarray:
     """Return the most frequent class of each voxel, the lowest of those equally frequent."""
     firsts = _firsts(which)
     made = np.minimum.reduceat(classes, firsts).astype(np.uint8)

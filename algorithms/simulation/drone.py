@@ -94,7 +94,7 @@ def plan_flight(scene: Scene, height: float, duration: float, seed: int) -> Flig
     return Flight(foot, height - _STANDING, duration, phases)
 
 
-class _Surroundings(World):
+class Surroundings(World):
     """What is around a drone: beams go in all directions, and the ground is a plane."""
 
     def __init__(self, scene: Scene, reach: float) -> None:
@@ -165,7 +165,7 @@ def fly(
     dict of str to ndarray
         Dimensions by name, in the order of time.
     """
-    world, parts = _Surroundings(scene, max_range), []
+    world, parts = Surroundings(scene, max_range), []
     blocks = [(name, time) for name in scanners for time in _blocks(flight, line_rate, angular_step)]
     generators = {name: np.random.default_rng([seed, 4, SCANNERS[name]]) for name in scanners}
     for i, (name, time) in enumerate(blocks):
@@ -208,7 +208,7 @@ def _pulses(flight: Flight, scanner: str, time: np.ndarray, line_rate: float) ->
     return Beams(np.arange(len(time)), flight.positions(time), direction, np.column_stack(_bearing(direction))), left
 
 
-def _first(world: _Surroundings, beams: Beams, rng: np.random.Generator) -> Echoes:
+def _first(world: Surroundings, beams: Beams, rng: np.random.Generator) -> Echoes:
     """Return what each beam meets first, of those that meet anything within reach; order of the beams."""
     ends = world.surfaces(beams, *world.met("solids", beams))
     leaves = world.leaves(beams, *world.met("crowns", beams), rng)

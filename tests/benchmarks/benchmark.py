@@ -24,7 +24,7 @@ B/point     The same without what was there before the cloud was read, by points
 ==========  ==========================================================================================================
 
 Nothing is judged here: times depend on the machine. Compare two versions by running both on one, with nothing beside.
-``accuracy.py`` in this folder prints how good the results are.
+``accuracy.py`` in this folder prints how good the results are, ``structure.py`` repeats a published drone flight.
 """
 
 from __future__ import annotations

@@ -11,10 +11,12 @@ import pytest
 from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.run import run_stage
 from lidar_buildings.algorithms.simulation import flight as module
-from lidar_buildings.algorithms.simulation.drone import FIELD, Flight, plan_flight, pulses_per_line
+from lidar_buildings.algorithms.simulation.beams import Beams
+from lidar_buildings.algorithms.simulation.drone import FIELD, Flight, Surroundings, plan_flight, pulses_per_line
 from lidar_buildings.algorithms.simulation.flight import simulate_flight
 from lidar_buildings.algorithms.simulation.scene import Scene
 from lidar_buildings.algorithms.simulation.site import build_site
+from lidar_buildings.algorithms.simulation.solids import Rect, Solid, stack
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 
 NAMES = simulate_flight.stage.creates
@@ -112,6 +114,42 @@ def test_beams_that_come_back_empty_meet_nothing_solid():
     # Steps of 7 cm can miss a corner that a beam only grazes, and never a wall.
     assert not any(inside(solid, places, 0.06).any() for solid in scene.solids)
     assert (places[:, 2] > scene.relief.ground(*places[:, :2].T)).all()
+
+
+@pytest.mark.parametrize("place", [(40.0, 40.0, 3.0), (30.0, 62.5, 8.0), (63.0, 20.0, 12.0), (66.0, 34.0, 10.0)])
+def test_no_beam_misses_what_is_sought_in_its_direction_only(place):
+    """All pairs of beams and things, from beside, between and over them, against the few that are looked at."""
+    rng = np.random.default_rng(0)
+    way = rng.normal(size=(3000, 3))
+    way /= np.linalg.norm(way, axis=1)[:, None]
+    start = place + rng.uniform(-0.5, 0.5, (3000, 3))
+    aim = np.column_stack([np.arctan2(way[:, 1], way[:, 0]), np.arcsin(way[:, 2])])
+    beams = Beams(np.arange(3000), start, way, aim)
+    world = Surroundings(build_site(trees=22, slope=1.5, seed=1), 30.0)
+    crowns = world.crowns
+    hits = {}
+    for kind, count in (("solids", len(world.solids.low)), ("crowns", len(crowns))):
+        beam, thing = (part.ravel() for part in np.meshgrid(np.arange(3000), np.arange(count), indexing="ij"))
+        if kind == "solids":
+            ranges = world.solids.enter(thing, start[beam], way[beam])
+        else:
+            radius = crowns[thing][:, [3, 3, 4]]
+            to, along = (start[beam] - crowns[thing, :3]) / radius, way[beam] / radius
+            a, b, c = (along**2).sum(axis=1), (to * along).sum(axis=1), (to**2).sum(axis=1) - 1
+            with np.errstate(invalid="ignore"):
+                ranges = np.where(c > 0, (-b - np.sqrt(b * b - a * c)) / a, np.nan)
+        is_hit = (ranges > 0) & (ranges < 30)
+        hits[kind] = set(zip(beam[is_hit].tolist(), thing[is_hit].tolist()))
+        assert hits[kind] <= set(zip(*(part.tolist() for part in world.met(kind, beams))))
+    assert len(hits["solids"]) > 10
+    assert len(hits["crowns"]) > 10
+
+
+def test_what_lies_behind_a_beam_is_not_met():
+    box = stack([Solid(Rect(0.0, 0.0, 2.0, 2.0, 0.0), np.array([[0.0, 0.0, 1.0]]), -1.0, 1, 1)])
+    way = np.array([[1.0, 0, 0], [-1.0, 0, 0], [1.0, 0, 0]])
+    start = np.array([[-3.0, 0, 0], [-3.0, 0, 0], [0.0, 0, 0]])
+    assert box.enter(np.zeros(3, int), start, way).tolist() == [2.0, np.inf, np.inf]
 
 
 def test_range_noise_moves_points_along_the_beam_only():
