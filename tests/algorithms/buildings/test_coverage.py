@@ -5,6 +5,9 @@ import pytest
 from qgis.core import QgsGeometry, QgsPointXY
 
 from lidar_buildings.algorithms.buildings.footprints import extract_footprints
+from lidar_buildings.algorithms.simulation.layout import build_town
+from lidar_buildings.algorithms.simulation.scanner import scan
+from lidar_buildings.algorithms.stage import Monitor
 
 SHAPES = {
     "L": [[(0, 0), (14, 0), (14, 8), (8, 8), (8, 14), (0, 14)]],
@@ -137,3 +140,59 @@ def test_houses_with_a_gap_stay_apart_and_do_not_overlap(rng):
     found = extract_footprints(*scanned(houses, 15, rng))
     first, second = (polygon(rings) for rings in found.geometries)
     assert first.distance(second) == pytest.approx(0.8, abs=0.35)
+
+
+def test_order_place_and_direction_change_nothing(rng):
+    houses = [[turned([(6 * i, 0), (6 * i + 6, 0), (6 * i + 6, 9 + i % 2), (6 * i, 9 + i % 2)], 25)] for i in range(4)]
+    xyz, classification, cluster = scanned(houses, 8, rng)
+    here = extract_footprints(xyz, classification, cluster)
+    order = rng.permutation(len(xyz))
+    permuted = extract_footprints(xyz[order], classification[order], cluster[order])
+    for one, other in zip(here.geometries, permuted.geometries):
+        np.testing.assert_array_equal(one[0], other[0])
+    moved = extract_footprints(xyz + [600_000, 5_000_000, 100], classification, cluster)
+    for one, other in zip(here.geometries, moved.geometries):
+        np.testing.assert_allclose(one[0] + [600_000, 5_000_000], other[0], atol=1e-6)
+    around = np.column_stack([turned(xyz[:, :2], 33), xyz[:, 2]])
+    made = extract_footprints(around, classification, cluster)
+    # Which points stand under others is asked in cells, which don't turn with them.
+    assert made.columns["area"] == pytest.approx(here.columns["area"], rel=0.01)
+
+
+def test_houses_of_a_simulated_town():
+    """Every house of a town on a slope, with shadows, trees over eaves and rows of different heights."""
+    scene = build_town(
+        size=120.0,
+        slope=5.0,
+        relief=2.0,
+        terrace_height=1.5,
+        buildings=20.0,
+        trees=20.0,
+        forest=0.0,
+        river=False,
+        clutter=True,
+        seed=4,
+        monitor=Monitor(),
+    )
+    made = scan(
+        scene,
+        density=8.0,
+        pattern="lines",
+        max_scan_angle=20.0,
+        overlap=0.3,
+        range_noise=0.02,
+        returns=True,
+        noise_points=10.0,
+        seed=4,
+        monitor=Monitor(),
+    )
+    cluster = np.where(made.classification == 6, made.segment_id, 0)
+    found = extract_footprints(made.xyz, made.classification, cluster)
+    polygons = dict(zip(found.columns["cluster_id"], found.geometries))
+    houses = [house for house in scene.buildings if house.kind != "shed"]
+    assert {house.object_id for house in houses} <= set(polygons)
+    distances = np.concatenate([nearest(house.outline[:-1], polygons[house.object_id]) for house in houses])
+    # Points are 35 cm apart.
+    assert np.median(distances) < 0.2
+    assert np.percentile(distances, 90) < 0.4
+    assert all(polygon(rings).isGeosValid() for rings in found.geometries)
