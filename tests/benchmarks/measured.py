@@ -46,7 +46,7 @@ def main(job: dict[str, Any]) -> dict[str, Any]:
     -------
     dict
         ``points``; ``seconds`` on the wall; ``cpu_seconds`` over all cores; ``peak_bytes`` of the process and
-        ``base_bytes`` of it before the cloud was read.
+        ``base_bytes`` of it before the cloud was read. Or ``refused``: why a stage does not work on the scan.
     """
     load_packages()
     base = _peak()
@@ -57,7 +57,12 @@ def main(job: dict[str, Any]) -> dict[str, Any]:
         found, cloud = _timed(lambda: read_cloud(path), base)
         return {"points": len(cloud), **found}
     cloud = _cloud(path, job["states"])
-    found, _ = _timed(_work(job, cloud), base)
+    try:
+        found, made = _timed(_work(job, cloud), base)
+    except ValueError as error:
+        return {"refused": str(error)}
+    if what in STAGES and STAGES[what].creates:
+        return {"points": len(made.cloud), **found}
     if what in STAGES and job["state"]:
         np.savez(job["state"], **{name: cloud.get(name) for name in STAGES[what].writes if cloud.has(name)})
     return {"points": len(cloud), **found}
@@ -74,7 +79,9 @@ def _work(job: dict[str, Any], cloud: Cloud) -> Callable[[], Any]:
         return lambda: run_pipeline(PIPELINES[what], cloud)
     stage = STAGES[what]
     reference = _reference(Path(job["cloud"]), job["truth"]) if stage.reads_reference else None
-    return lambda: run_stage(stage, cloud, reference, **job["tunables"])
+    # A stage that merges is given the scan twice.
+    given = [cloud, cloud.copy()] if stage.merges else cloud
+    return lambda: run_stage(stage, given, reference, **job["tunables"])
 
 
 def load_packages() -> None:
