@@ -96,14 +96,20 @@ _MEASURES = (
     tags="cadastre,land registry,map,update,displacement,shift,accuracy,footprints,evaluation",
     sources=(
         Source("footprints", "Footprints", "Polygon", "New outlines of buildings."),
-        Source("old_map", "Old map", "Polygon", "Buildings to compare with; cut it to the area that was surveyed."),
+        Source(
+            "old_map",
+            "Old map",
+            "Polygon",
+            "Buildings to compare with, cut to the area that was surveyed; without any, all footprints are new.",
+            optional=True,
+        ),
     ),
     layers=(_DISPLACEMENTS, _BUILDINGS),
     measures=_MEASURES,
 )
 def compare_corners(
     footprints,
-    old_map,
+    old_map=None,
     *,
     min_overlap: Annotated[
         float,
@@ -138,7 +144,7 @@ def compare_corners(
     ----------
     footprints : Features
         Polygons of the new outlines.
-    old_map : Features
+    old_map : Features, optional
         Polygons to compare with.
 
     Returns
@@ -166,6 +172,9 @@ def compare_corners(
     Hrutka, B. P., Siki, Z., Takács, B., 2022. Voxel-based point cloud segmentation and building detection, section 4,
     table 2.
     """
+    if old_map is None:
+        monitor.warn("There is no old map to compare with, so all footprints are new.")
+        old_map = Features([], {})
     new, old = _cleaned(footprints, "footprints", monitor), _cleaned(old_map, "buildings of the old map", monitor)
     corners, others = _corners(old.rings), _corners(new.rings)
     reach = max(_FARTHEST, tolerance or 0.0)

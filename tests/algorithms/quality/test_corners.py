@@ -7,6 +7,7 @@ import pytest
 from scipy.optimize import linear_sum_assignment
 
 from lidar_buildings.algorithms.quality.corners import FOUND, MISSED, NEW, _typical, compare_corners
+from lidar_buildings.algorithms.simulation.village import simulate_village
 from lidar_buildings.algorithms.stage import Features, Monitor
 
 FAR = np.array([600_000.0, 5_000_000.0])
@@ -325,6 +326,30 @@ def test_repeated_vertices_do_no_harm():
     assert (report.values["corners"], report.values["matched"], report.values["maximum"]) == (4, 4, 0)
 
 
-def test_a_missing_layer_is_refused():
-    with pytest.raises(ValueError, match=r"Old map \(old_map\) is missing; choose a layer\."):
-        compare_corners(layer(house(0, 0)), None)
+def test_without_an_old_map_all_is_new_and_the_log_says_so():
+    monitor = Monitor()
+    arrows, buildings, report = compare_corners(layer(house(0, 0), house(30, 0)), None, monitor=monitor)
+    assert monitor.warnings == ["There is no old map to compare with, so all footprints are new."]
+    assert buildings.columns["status"] == [NEW, NEW]
+    assert (len(arrows), report.values["new"]) == (0, 2)
+
+
+def test_missing_footprints_are_refused():
+    with pytest.raises(ValueError, match=r"Footprints \(footprints\) is missing; choose a layer\."):
+        compare_corners(None, layer(house(0, 0)))
+
+
+@pytest.mark.parametrize("shift", [0.0, 1.5])
+def test_a_village_and_its_old_map(shift):
+    """Houses were pulled down and built since; the map is 15 cm off, and shifted as a whole."""
+    *_, footprints, old_map = simulate_village(size=120.0, density=5.0, map_shift=shift, map_changes=0.2)
+    _, buildings, report = compare_corners(footprints, old_map)
+    state = dict(zip(map(str, old_map.columns["id"]), old_map.columns["state"]))
+    told = [row for row in rows(buildings) if row["status"] != NEW]
+    assert {state[row["building"]] for row in told if row["status"] == FOUND} == {"kept"}
+    assert {state[row["building"]] for row in told if row["status"] == MISSED} == {"demolished"}
+    known = {str(number) for number in old_map.columns["building"]}
+    new = {row["building"] for row in rows(buildings) if row["status"] == NEW}
+    assert new == set(map(str, footprints.columns["id"])) - known
+    assert report.values["matched"] >= 0.98 * report.values["corners"]
+    assert [report.values["mean_dx"], report.values["mean_dy"]] == pytest.approx([-shift] * 2, abs=0.06)
