@@ -14,6 +14,7 @@ from ..params import MinBuildingArea
 from ..stage import Features, Field, Layer, Param, stage
 from .coverage import Coverage
 from .outlines import Tracing, perimeter, signed_area, trace_outlines
+from .reasons import Reason
 
 _FIELDS = (
     Field("id", int, "number of the footprint, from 1"),
@@ -29,6 +30,7 @@ _FIELDS = (
     Field("points", int, "points of the building, walls among them"),
     Field("entropy", float, "mean entropy of the building's points' clusters"),
     Field("confidence", float, "0 unsure to 1 sure of being a building"),
+    Field("reason", str, "why most of its roofs are called building"),
     Field("regularized", int, "1 straightened, 0 outline as traced"),
 )
 
@@ -58,6 +60,7 @@ def extract_footprints(
     height_above_ground=None,
     cluster_entropy=None,
     confidence=None,
+    reason=None,
     *,
     min_area: MinBuildingArea = 4.0,
     min_hole_area: Annotated[
@@ -119,6 +122,8 @@ def extract_footprints(
         Mean entropy of the cluster, for the attributes only.
     confidence : ndarray of shape (n,), optional
         Sureness of being a building, 0 to 1, for the attributes only.
+    reason : ndarray of shape (n,), optional
+        Why points are called building, see :class:`~.reasons.Reason`, for the attributes only.
 
     Returns
     -------
@@ -151,7 +156,12 @@ def extract_footprints(
     cluster = np.ones(len(building), np.int64) if cluster_id is None else cluster_id[building].astype(np.int64)
     is_roof = _is_roof(xyz[building], cluster, spacing)
     bare = _bare_points(xyz, classification, building[is_roof], spacing)
-    measured = {"height": height_above_ground, "entropy": cluster_entropy, "confidence": confidence}
+    measured = {
+        "height": height_above_ground,
+        "entropy": cluster_entropy,
+        "confidence": confidence,
+        "reason": reason,
+    }
     edges = []
     parts = _parts(xyz, building, bare, max(_APART * spacing, max_edge or 0.0))
     for done, (rows, beside) in enumerate(parts, start=1):
@@ -260,6 +270,7 @@ def _describe(
             "points": len(own),
             "entropy": _mean(measured["entropy"], members[own]),
             "confidence": _mean(measured["confidence"], members[own]),
+            "reason": _main_reason(measured["reason"], members[own]),
             "regularized": int(coverage.is_straight[face]),
         }
         found.geometries.append(rings)
@@ -308,6 +319,14 @@ def _mean(values: Optional[np.ndarray], rows: np.ndarray) -> float:
         return float("nan")
     defined = values[rows][np.isfinite(values[rows])]
     return float(np.mean(defined, dtype=np.float64)) if len(defined) else float("nan")
+
+
+def _main_reason(values: Optional[np.ndarray], rows: np.ndarray) -> str:
+    """Return the sentence of the reason that most points have, "" without any; what was added later has none itself."""
+    given = [] if values is None else values[rows].astype(np.int64)
+    counts = np.bincount(given, minlength=max(Reason) + 1)
+    roofs = [reason for reason in Reason if reason.is_building and reason != Reason.ATTACHED and counts[reason]]
+    return max(roofs, key=lambda reason: counts[reason]).text if roofs else ""
 
 
 def _sorted(found: Features, min_area: float) -> Features:

@@ -5,6 +5,7 @@ import pytest
 
 from lidar_buildings.algorithms.buildings.footprints import extract_footprints
 from lidar_buildings.algorithms.buildings.outlines import signed_area
+from lidar_buildings.algorithms.buildings.reasons import Reason
 from lidar_buildings.algorithms.stage import Monitor
 
 
@@ -33,6 +34,7 @@ def village(rng):
         "height_above_ground": (xyz[:, 2] + 1).astype(np.float32),
         "cluster_entropy": np.repeat([0.4, 0.4, 0.5, 0.6, np.nan], sizes).astype(np.float32),
         "confidence": np.repeat([0.9, 0.9, 0.8, 0.3, np.nan], sizes).astype(np.float32),
+        "reason": np.repeat([Reason.SOLID_PLANE, Reason.ATTACHED, Reason.BESIDE, Reason.SOLID, 0], sizes),
     }
 
 
@@ -58,9 +60,21 @@ def test_village(village, assert_valid, regularize):
     assert table["volume"] == pytest.approx([7 * table["area"][0], 10 * table["area"][1]], rel=0.01)
     assert table["entropy"] == pytest.approx([0.4, 0.5])
     assert table["confidence"] == pytest.approx([0.9, 0.8])
+    assert table["reason"] == [Reason.SOLID_PLANE.text, Reason.BESIDE.text]
     if regularize:
         assert [len(ring) - 1 for rings in found.geometries for ring in rings] == [4, 4, 4]
         assert table["perimeter"] == pytest.approx([36, 96 + 48], rel=0.04)
+
+
+def test_the_reason_is_that_of_most_roof_points(village):
+    """What was added to a building says nothing of why it is one, and numbers of others are no reasons of ours."""
+    house = np.flatnonzero(village["cluster_id"] == 3)
+    village["reason"][house] = Reason.ATTACHED
+    village["reason"][house[:5]], village["reason"][house[5:8]] = Reason.SOLID, Reason.PLANE
+    village["reason"][village["cluster_id"] == 7] = 200
+    assert extract_footprints(**village).columns["reason"] == [Reason.SOLID.text, ""]
+    del village["reason"]
+    assert extract_footprints(**village).columns["reason"] == ["", ""]
 
 
 def test_eave_ridge_and_volume_of_a_gable_roof(rng):
