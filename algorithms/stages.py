@@ -30,6 +30,7 @@ from .simulation.village import simulate_village
 from .terrain.ground_cloth import classify_ground_cloth
 from .terrain.ground_tin import classify_ground_tin
 from .terrain.height import compute_height_above_ground
+from .terrain.rasterize import rasterize_terrain
 
 _FUNCTIONS: tuple[Any, ...] = (
     merge_clouds,
@@ -40,6 +41,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     classify_ground_tin,
     classify_ground_cloth,
     compute_height_above_ground,
+    rasterize_terrain,
     compute_features,
     classify_dimensionality,
     segment_regions,

@@ -40,6 +40,7 @@ STAGE_IDS = {
     "classifygroundtin",
     "classifygroundcloth",
     "computeheightaboveground",
+    "rasterizeterrain",
     "computefeatures",
     "classifydimensionality",
     "segmentregions",

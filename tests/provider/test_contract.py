@@ -36,6 +36,7 @@ IDS = {
     "completebuildings",
     "computefeatures",
     "computeheightaboveground",
+    "rasterizeterrain",
     "extractfootprints",
     "classifyroofs",
     "classifywalls",

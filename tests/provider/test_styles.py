@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from osgeo import gdal
 from qgis.core import (
     QgsExpression,
     QgsExpressionContext,
     QgsFeature,
     QgsGeometry,
     QgsPointCloudLayer,
+    QgsRasterLayer,
     QgsVectorLayer,
 )
 
@@ -126,3 +128,15 @@ def test_every_kind_of_structure_has_a_color(cloud_file, qgis_application):
     layer.loadNamedStyle(str(STYLES / "dimensionality.qml"))
     found = {category.value(): category.label().lower() for category in layer.renderer().categories()}
     assert found == {int(kind): kind.name.lower() for kind in Dimensionality}
+
+
+@pytest.mark.parametrize(("stem", "kind"), [("terrain", "hillshade"), ("heights", "singlebandpseudocolor")])
+def test_styles_of_rasters_load(stem, kind, tmp_path, qgis_application):
+    path = tmp_path / "surface.tif"
+    image = gdal.GetDriverByName("GTiff").Create(str(path), 4, 4, 1, gdal.GDT_Float32)
+    image.GetRasterBand(1).WriteRaster(0, 0, 4, 4, np.arange(16, dtype=np.float32).tobytes())
+    image = None
+    layer = QgsRasterLayer(str(path), stem)
+    message, loaded = layer.loadNamedStyle(str(STYLES / f"{stem}.qml"))
+    assert loaded, message
+    assert layer.renderer().type() == kind
