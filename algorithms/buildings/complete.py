@@ -24,7 +24,7 @@ _WALL_FOOT = 0.5
 _RAISED = 1.0
 
 # Gaps are closed over so many point spacings, and no less than so far (m).
-_GAP_SPACINGS, _LEAST_GAP = 4.0, 1.5
+_GAP_SPACINGS, _LEAST_GAP = 4.0, 3.0
 
 # What stands on a roof is a chimney or dormer where it covers less than this share of the cells around.
 _SPARSE, _AROUND = 0.3, 7
@@ -57,7 +57,7 @@ def complete_buildings(
             unit="m",
             low=0,
             high=20,
-            automatic="four point spacings, at least 1.5 m.",
+            automatic="four point spacings, at least 3 m.",
         ),
     ] = None,
     roof_clearance: Annotated[
