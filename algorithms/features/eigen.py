@@ -190,7 +190,8 @@ def reduce_neighborhoods(
     """
     monitor = monitor or Monitor()
     xyz = np.asarray(xyz, dtype=np.float64)
-    tree = spatial.cKDTree(xyz) if tree is None else tree
+    # Cells cut at their middle are built in half the time of balanced ones, and are a little rounder to search in.
+    tree = spatial.cKDTree(xyz, balanced_tree=False) if tree is None else tree
     neighborhood.check(xyz, tree)
     columns = np.ascontiguousarray(xyz.T)
 

@@ -1,5 +1,7 @@
 """Eigenvalues against LAPACK, neighborhoods against brute force, known shapes against their known values."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -29,6 +31,57 @@ def test_eigenvalues_are_those_of_lapack(factors):
     expected = np.maximum(np.linalg.eigvalsh(matrices)[:, ::-1], 0)
     found = eigen.symmetric_eigenvalues(six(matrices))
     assert (np.abs(found - expected) <= 1e-12 * expected[:, :1] + 1e-200).all()
+
+
+def exact_covariance(xyz):
+    """Return the covariance (3 x 3) of points in fractions: floats are fractions, so that nothing is rounded."""
+    points = [[Fraction(float(value)) for value in point] for point in xyz]
+    n = len(points)
+    mean = [sum(column) / n for column in zip(*points)]
+    return [[sum((p[a] - mean[a]) * (p[b] - mean[b]) for p in points) / n for b in range(3)] for a in range(3)]
+
+
+def eigenvalues_above(matrix, bound):
+    """Return how many eigenvalues are larger, exactly: all roots are real, so the polynomial's signs count them."""
+    a, b, c = (matrix[i][i] - bound for i in range(3))
+    d, e, f = matrix[0][1], matrix[0][2], matrix[1][2]
+    polynomial = (
+        Fraction(1),
+        -(a + b + c),
+        a * b + a * c + b * c - d * d - e * e - f * f,
+        -(a * (b * c - f * f) - d * (d * c - f * e) + e * (d * f - b * e)),
+    )
+    signs = [value > 0 for value in polynomial if value]
+    return sum(one != other for one, other in zip(signs, signs[1:]))
+
+
+WHOLE = st.integers(-2000, 2000)
+
+
+@settings(max_examples=150, deadline=None)
+@given(
+    arrays(np.int64, (9, 3), elements=WHOLE),
+    arrays(np.int64, (3, 3), elements=st.integers(-30, 30)),
+    st.integers(0, 3),
+    st.sampled_from([0.0, 2.0**-20, 1.0]),
+)
+def test_eigenvalues_are_exact_for_points_lines_planes_and_volumes_far_away(steps, axes, rank, thickness):
+    """Nine points in UTM, of steps of 1/1024 m along up to three axes, a micron of a third one among them."""
+    local = (steps[:, :rank] @ axes[:rank]).astype(float) / 1024
+    if rank == 3:
+        local = ((steps[:, :2] @ axes[:2]) + thickness * steps[:, 2:] * axes[2]) / 1024
+    xyz = local + [600_000, 5_000_000, 100]
+    exact = exact_covariance(xyz)
+    found = eigen.neighborhood_eigenvalues(xyz, n_neighbors=9)
+    size = sum(exact[i][i] for i in range(3))
+    if size == 0:
+        assert np.isnan(found).all()
+        return
+    tolerance = size * Fraction(1, 10**13)
+    for row in np.unique(found, axis=0):
+        for i, value in enumerate(row):
+            assert eigenvalues_above(exact, Fraction(float(value)) - tolerance) >= i + 1
+            assert eigenvalues_above(exact, Fraction(float(value)) + tolerance) <= i
 
 
 @settings(max_examples=150, deadline=None)
