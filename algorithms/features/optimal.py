@@ -19,7 +19,7 @@ _EQUAL = 1e-9
 _LEAST = 1e-300
 
 # Beyond this share of the largest eigenvalue the others are what rounding leaves of a line's width.
-_LINE = 1 - 1e-5
+_LINE = 1 - 1e-4
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.spatial import cKDTree
@@ -47,8 +47,9 @@ def by_hand(xyz, scales):
     return entropies_by_lapack(covariances), covariances
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(FACTORS)
+@example(np.array([[[47, 2.5, 39.5], [0.5, 0, 0], [0, 0, 0]]]))  # hardly wider than a line, and flat
 def test_entropies_are_those_of_lapack(factors):
     matrices = factors @ factors.transpose(0, 2, 1)
     np.testing.assert_allclose(eigenentropies(six(matrices)), entropies_by_lapack(matrices), rtol=0, atol=1e-9)
