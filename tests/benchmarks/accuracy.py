@@ -20,7 +20,6 @@ import conftest  # noqa: E402, F401 - registers the checkout as the package lida
 from lidar_buildings.algorithms.cloud.asprs import PointClass  # noqa: E402
 from lidar_buildings.algorithms.pipelines import PIPELINES, run_pipeline  # noqa: E402
 from lidar_buildings.algorithms.run import run_stage  # noqa: E402
-from lidar_buildings.algorithms.stage import Monitor  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 from lidar_buildings.tests.real import test_buildings, test_ground, test_noise  # noqa: E402
 from lidar_buildings.tests.real.clouds import DATA, classified, detected, score  # noqa: E402
@@ -112,34 +111,26 @@ def towns() -> None:
 
 def confidence() -> None:
     """Print how many clusters of simulated towns are buildings, by how sure the default chain is of them."""
-    print("| confidence | clusters | are buildings, % | without two groups: clusters | are buildings, % |")
-    print("| --- |" + " ---: |" * 4)
-    sure, true, guarded = (np.concatenate(parts) for parts in zip(*map(_judged, TOWNS)))
+    print("| confidence | clusters | are buildings, % |\n| --- | ---: | ---: |")
+    sure, true = (np.concatenate(parts) for parts in zip(*map(_judged, TOWNS)))
     for low in np.arange(10):
         chosen = np.minimum((sure * 10).astype(int), 9) == low
-        cells = [cell for mask in (chosen, chosen & guarded) for cell in (int(mask.sum()), _percent(true[mask]))]
-        print(row(f"{low / 10:.1f} to {low / 10 + 0.1:.1f}", *cells))
+        print(row(f"{low / 10:.1f} to {low / 10 + 0.1:.1f}", int(chosen.sum()), 100 * float(true[chosen].mean())))
 
 
-def _judged(differs: dict[str, Any]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return of each cluster of a town how sure it is a building, whether it is, and whether there were two groups."""
+def _judged(differs: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
+    """Return of each cluster of a town how sure it is a building, and whether it is."""
     cloud = run_stage(STAGES["simulate_town"], size=150.0, seed=3, **differs).cloud
     is_building = cloud.get("classification") == PointClass.BUILDING
     cloud.set("classification", np.zeros(len(cloud), np.uint8))
-    monitor = Monitor()
     for step in PIPELINES["detect_buildings"].steps:
-        run_stage(step.stage, cloud, monitor=monitor, **step.tunables)
+        run_stage(step.stage, cloud, **step.tunables)
         if step.name == "buildings":
             break
     clustered = cloud.get("cluster_id") > 0
     _, first, cluster = np.unique(cloud.get("cluster_id")[clustered], return_index=True, return_inverse=True)
     true = np.bincount(cluster, is_building[clustered]) >= 0.5 * np.bincount(cluster)
-    is_guarded = any("don't form two groups" in warning for warning in monitor.warnings)
-    return cloud.get("confidence")[clustered][first], true, np.full(len(true), is_guarded)
-
-
-def _percent(mask: np.ndarray) -> str:
-    return f"{100 * mask.mean():.0f}" if len(mask) else ""
+    return cloud.get("confidence")[clustered][first], true
 
 
 def row(*cells: object) -> str:
