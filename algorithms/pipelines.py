@@ -198,7 +198,7 @@ _PIPELINES = (
         ),
         references=_SANTOS,
         steps=(
-            Step("noise", "classify_noise_histogram"),
+            Step("noise", "classify_noise_histogram", {"isolated": False}),
             Step("ground", "classify_ground_tin", {"seeds": "lowest"}),
             Step("regions", "segment_regions"),
             Step("buildings", "classify_buildings", {"guard": False}),
