@@ -53,7 +53,7 @@ def test_two_by_two_lines_make_nine_cells():
     ) == pytest.approx([-25, 320])
 
 
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=40)
 @given(seed=st.integers(0, 10_000), count=st.integers(0, 7))
 def test_cells_tile_the_rectangle_and_are_as_many_as_lines_make(seed, count):
     points, directions = lines(seed, count)
@@ -76,7 +76,7 @@ def test_cells_tile_the_rectangle_and_are_as_many_as_lines_make(seed, count):
     np.testing.assert_allclose(share, cell_areas(cells) / 320, atol=0.12)
 
 
-@settings(deadline=None, max_examples=25)
+@settings(max_examples=25)
 @given(seed=st.integers(0, 10_000))
 def test_no_other_choice_of_cells_is_cheaper(seed):
     points, directions = lines(seed, 3)

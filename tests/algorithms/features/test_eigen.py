@@ -24,7 +24,7 @@ def brute_covariances(xyz, neighbors):
     return np.array([np.cov(local[rows].T, bias=True) for rows in neighbors])
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(COVARIANCE_FACTORS)
 def test_eigenvalues_are_those_of_lapack(factors):
     matrices = factors @ factors.transpose(0, 2, 1)
@@ -58,7 +58,7 @@ def eigenvalues_above(matrix, bound):
 WHOLE = st.integers(-2000, 2000)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(
     arrays(np.int64, (9, 3), elements=WHOLE),
     arrays(np.int64, (3, 3), elements=st.integers(-30, 30)),
@@ -84,7 +84,7 @@ def test_eigenvalues_are_exact_for_points_lines_planes_and_volumes_far_away(step
             assert eigenvalues_above(exact, Fraction(float(value)) + tolerance) <= i
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(COVARIANCE_FACTORS)
 def test_normals_are_unit_eigenvectors_upward(factors):
     matrices = factors @ factors.transpose(0, 2, 1)

@@ -47,7 +47,7 @@ def by_hand(xyz, scales):
     return entropies_by_lapack(covariances), covariances
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(FACTORS)
 @example(np.array([[[47, 2.5, 39.5], [0.5, 0, 0], [0, 0, 0]]]))  # hardly wider than a line, and flat
 def test_entropies_are_those_of_lapack(factors):
@@ -55,7 +55,7 @@ def test_entropies_are_those_of_lapack(factors):
     np.testing.assert_allclose(eigenentropies(six(matrices)), entropies_by_lapack(matrices), rtol=0, atol=1e-9)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(
     arrays(np.float64, (3, 3), elements=st.integers(-9, 9).map(float)),
     st.sampled_from([0, 1e-20, 1e-15, 1e-12, 1e-9, 1e-7, 1e-6, 1e-5, 1e-4, 1e-2, 1]),

@@ -6,7 +6,7 @@ import doctest
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
@@ -41,7 +41,7 @@ def two(rng):
 # --- Against scipy
 
 
-@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=100)
 @given(angles, offsets)
 def test_angles_are_rotations_about_fixed_axes_one_after_the_other(degrees, offset):
     points = np.random.default_rng(0).uniform(-50, 50, (20, 3))
@@ -51,7 +51,7 @@ def test_angles_are_rotations_about_fixed_axes_one_after_the_other(degrees, offs
     assert (xyz[:20] == points).all()
 
 
-@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=100)
 @given(st.integers(0, 2**32 - 1), offsets)
 def test_a_matrix_does_the_same_as_its_angles(seed, offset):
     rotation = Rotation.random(random_state=seed)
@@ -62,7 +62,7 @@ def test_a_matrix_does_the_same_as_its_angles(seed, offset):
     np.testing.assert_allclose(by_matrix, by_angles, rtol=0, atol=1e-9)
 
 
-@settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=50)
 @given(st.integers(0, 2**32 - 1))
 def test_distances_stay_whatever_the_decimals(seed):
     """A matrix of four decimals is no rotation; what is made of it is one."""

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lidar_buildings.algorithms.preparation import voxels
@@ -72,7 +72,7 @@ def test_agrees_with_numpy_unique(rng):
 steps_of_points = st.lists(st.tuples(*[st.integers(-30, 30)] * 3), min_size=1, max_size=60)
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=60)
 @given(steps_of_points, st.integers(1, 40), st.randoms(use_true_random=False))
 def test_the_order_of_the_points_changes_nothing(places, side, random):
     steps = np.array(places)
@@ -93,7 +93,7 @@ def test_the_order_of_the_points_changes_nothing(places, side, random):
         assert one.tobytes() == other.tobytes()
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=60)
 @given(steps_of_points, st.sampled_from([1, 2, 5, 10, 25]))
 def test_the_place_of_the_cloud_changes_nothing(places, side):
     steps = np.array(places)
@@ -104,7 +104,7 @@ def test_the_place_of_the_cloud_changes_nothing(places, side):
     np.testing.assert_allclose(here[1], there[1] - [6e5, 5e6, 0], rtol=0, atol=3e-9)
 
 
-@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=40)
 @given(steps_of_points, st.integers(1, 40))
 def test_centers_stay_in_their_voxel_and_counts_add_up(places, side):
     steps = np.array(places)

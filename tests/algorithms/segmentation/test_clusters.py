@@ -28,7 +28,7 @@ eighths = st.integers(0, 24).map(lambda n: n / 8)
     st.integers(1, 12).map(lambda n: n / 8),
     st.integers(1, 9),
 )
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 def test_same_labels_as_scikit_learn_on_grids(points, radius, min_points):
     xyz = np.array(points)
     np.testing.assert_array_equal(dbscan(xyz, radius, min_points, Monitor()), of_sklearn(xyz, radius, min_points))

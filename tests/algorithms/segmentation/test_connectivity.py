@@ -32,7 +32,7 @@ eighths = st.integers(0, 40).map(lambda n: n / 8)
     st.integers(1, 16).map(lambda n: n / 8),
     st.integers(1, 16).map(lambda n: n / 8),
 )
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 def test_grids_with_points_exactly_a_distance_apart(points, plan_distance, height_distance):
     xyz = np.array(points)
     found = connect(xyz, plan_distance, height_distance, Monitor())

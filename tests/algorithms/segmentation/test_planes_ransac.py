@@ -56,7 +56,7 @@ def test_a_gable_roof_has_two_planes_and_a_tree_none(density, noise, rng):
 
 
 @given(st.floats(0, 90), st.integers(0, 2**31 - 1))
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 def test_a_plane_is_one_plane_at_any_slope(slope, seed):
     xyz = plane(np.random.default_rng(seed), slope)
     nowhere, found = sizes(segment(xyz, max_slope=90.0, seed=seed))

@@ -75,7 +75,7 @@ eighths = st.integers(0, 30).map(lambda n: n / 8)
     st.integers(1, 12).map(lambda n: n / 8),
     st.integers(1, 6),
 )
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 def test_the_published_steps_on_grids_full_of_ties(points, t_dxy, t_dh, t_np):
     xyz = np.array(points)
     np.testing.assert_array_equal(segment(xyz, t_dxy, t_dh, t_np), literal_ids(xyz, t_dxy, t_dh, t_np))
