@@ -16,8 +16,9 @@ from .wall_lines import Scale, WallLine, find_lines, merge_lines, square_up, wal
 # Cells in which roofs are held against walls (m), and how far around them there is room.
 _CELL, _ROOM = 0.25, 2.0
 
-# A square metre outside the roof costs so many metres of wall that nobody sees; one deep under it, this many.
-_OUTSIDE, _DEEP = 5.0, 1.0
+# A square metre outside the roof costs so many metres of wall that nobody sees; one that is left out although it lies
+# under the roof and inside of where walls are expected by this distance (m), and one deep under it, these.
+_OUTSIDE, _INSIDE, _WELL_INSIDE, _DEEP = 5.0, 1.0, 0.3, 2.0
 
 # Under a small roof, what is deeper than this share of its deepest place is deep, however narrow the overhang. The
 # deepest place itself costs more than any wall.
@@ -140,7 +141,7 @@ def outline_walls(
     seen = [_expectation(line, sides, overhang) for line in seen]
     lines = [*seen, *_from_roof(seen, sides, overhang, walls, scale)]
     near = [_near(walls, line, scale) for line in lines]
-    rings = _Trial(lines, near, cover, scale, limits).simplified().edges()
+    rings = _Trial(lines, near, _Case(cover, scale, limits, overhang)).simplified().edges()
     return WallOutline(rings, overhang) if rings else None
 
 
@@ -206,16 +207,24 @@ def _through_few(line: WallLine, half: float, walls: np.ndarray, scale: Scale) -
     return replace(line, point=moved, points=best, along=along[best], deviation=float(np.std(across[best])))
 
 
+@dataclass(frozen=True)
+class _Case:
+    """What all outlines of one building are judged by: its roof, its scale, limits, and the overhang (m)."""
+
+    cover: _Roof
+    scale: Scale
+    limits: Limits
+    overhang: float
+
+
 class _Trial:
     """The best outline that some lines can make, and what it costs."""
 
-    def __init__(
-        self, lines: list[WallLine], near: list[np.ndarray], cover: _Roof, scale: Scale, limits: Limits
-    ) -> None:
-        self.lines, self.near, self.cover, self.scale, self.limits = lines, near, cover, scale, limits
+    def __init__(self, lines: list[WallLine], near: list[np.ndarray], case: _Case) -> None:
+        self.lines, self.near, self.case = lines, near, case
         points, directions = (np.array([getattr(line, name) for line in lines]) for name in ("point", "direction"))
-        self.cells = Arrangement(points, directions, cover.low, cover.high)
-        cost = np.array([_cost(self.cells, edge, lines, near, scale) for edge in self.cells.edges])
+        self.cells = Arrangement(points, directions, case.cover.low, case.cover.high)
+        cost = np.array([_cost(self.cells, edge, lines, near, case.scale) for edge in self.cells.edges])
         if_inside, if_outside = self._unlikely()
         inside = self.cells.cheapest(cost, if_inside, if_outside)
         left, right = (np.array([getattr(edge, side) for edge in self.cells.edges], int) for side in ("left", "right"))
@@ -225,14 +234,15 @@ class _Trial:
 
     def _unlikely(self) -> tuple[np.ndarray, np.ndarray]:
         """Return for each cell how little the roof likes it inside, and outside."""
-        cell, depth = self.cells.cells_of(self.cover.places), self.cover.depth.ravel()
+        cell, depth = self.cells.cells_of(self.case.cover.places), self.case.cover.depth.ravel()
         count = len(self.cells.rings)
 
         def area(chosen: np.ndarray) -> np.ndarray:
             return np.bincount(cell[chosen & (cell >= 0)], minlength=count) * _CELL**2
 
         if_inside = _OUTSIDE * area(depth < -_BEYOND)
-        if_outside = _DEEP * area(depth > min(self.limits.max_overhang, _DEEPER * depth.max()))
+        if_outside = _INSIDE * area(depth > self.case.overhang + _WELL_INSIDE)
+        if_outside += _DEEP * area(depth > min(self.case.limits.max_overhang, _DEEPER * depth.max()))
         # The deepest place is inside at any cost.
         if_outside[cell[np.argmax(depth)]] += _CERTAIN
         return if_inside, if_outside
@@ -265,13 +275,19 @@ class _Trial:
     def only(self, chosen: list[int]) -> _Trial:
         """Return the best outline of some of the lines."""
         lines, near = [self.lines[i] for i in chosen], [self.near[i] for i in chosen]
-        return _Trial(lines, near, self.cover, self.scale, self.limits)
+        return _Trial(lines, near, self.case)
 
     def edges(self) -> list[list[WallEdge]]:
         """Return the rings of edges, exterior first."""
         rings = [
             [
-                _edge(self.cells.corner(here), self.cells.corner(there), self.lines[line], self.near[line], self.scale)
+                _edge(
+                    self.cells.corner(here),
+                    self.cells.corner(there),
+                    self.lines[line],
+                    self.near[line],
+                    self.case.scale,
+                )
                 for (line, here), (_, there) in zip(ring, [*ring[1:], ring[0]])
             ]
             for ring in self.rings
