@@ -6,7 +6,7 @@ the graph that a user opens in the modeller and the chain that runs here can't d
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Optional, Union
 
@@ -156,6 +156,11 @@ _SANTOS = (
     "Information Sciences XLII-2/W13."
 )
 
+_HRUTKA = (
+    "Hrutka, B. P., Siki, Z., Takács, B., 2022. Voxel-based point cloud segmentation and building detection. "
+    "International Archives of the Photogrammetry, Remote Sensing and Spatial Information Sciences XLVIII-4/W1."
+)
+
 _PIPELINES = (
     Pipeline(
         name="detect_buildings",
@@ -238,6 +243,37 @@ _PIPELINES = (
         ),
         shown=("voxels_voxel_size", "features_neighborhood", "features_n_neighbors", "merge_transforms"),
     ),
+    Pipeline(
+        name="map_footprints",
+        title="Map footprints",
+        group="Models",
+        tags="cadastre,land registry,wall,footprint,corner,drone,UAV,photogrammetry,map,update,Hrutka",
+        summary="Map the walls of buildings from a drone's point cloud, and compare them with the old map.",
+        description=(
+            "Noise is removed and one point left per voxel; a cloth finds the ground, and a terrain model is made of "
+            "it; planes high above it are roofs, and what is low and upright below them is their walls. Footprints "
+            "are the outlines of walls, without the eaves, with a quality for every edge; where too little of the "
+            "walls was seen, which is what clouds from airplanes come to, they are outlines of roofs and say so. "
+            "Where an old map is given, its corners are compared with the new ones. The cloud of every step can be "
+            "kept."
+        ),
+        references=_HRUTKA,
+        steps=(
+            Step("noise", "classify_noise_statistical"),
+            Step("voxels", "downsample_voxels"),
+            Step("ground", "classify_ground_cloth"),
+            Step("terrain", "rasterize_terrain"),
+            Step("height", "compute_height_above_ground"),
+            Step("planes", "segment_planes_ransac", {"min_height": 2.0}),
+            Step("roofs", "classify_roofs"),
+            Step("walls", "classify_walls"),
+            Step("footprints", "extract_wall_footprints"),
+            Step("comparison", "compare_corners", layers={"footprints": "footprints.wall_footprints"}),
+        ),
+        shared={"min_area": ("roofs", "footprints"), "split_height": ("roofs", "walls")},
+        shown=("min_area", "voxels_voxel_size", "ground_rigidness", "split_height", "footprints_min_seen"),
+        kept=("noise", "voxels", "ground", "height", "planes", "roofs"),
+    ),
 )
 
 PIPELINES = {pipeline.name: pipeline for pipeline in _PIPELINES}
@@ -256,12 +292,14 @@ def run_pipeline(
     cloud: Union[Cloud, Sequence[Cloud], None] = None,
     monitor: Optional[Monitor] = None,
     sources: Optional[dict[str, Optional[Features]]] = None,
+    kept: Optional[Collection[str]] = None,
     **tunables: Any,
 ) -> Results:
     """Run all steps on ``cloud``, in place as far as they do so, and return all that they made.
 
     ``cloud`` is several clouds where the pipeline merges. ``sources`` are the layers that the pipeline
-    is given, by name, in metres relative to the cloud's origin. ``tunables`` are named
+    is given, by name, in metres relative to the cloud's origin. ``kept`` are the steps whose clouds
+    are wanted, of those that the pipeline keeps; None is all of them. ``tunables`` are named
     ``<step>_<tunable>`` (``ground_cell_size``), and so are the monitor's values; what steps share is
     named ``<tunable>``.
 
@@ -274,7 +312,7 @@ def run_pipeline(
     chosen = _by_step(pipeline, tunables)
     given = given_layers(pipeline.name, pipeline.sources.values(), sources or {})
     # Later steps change the cloud that they work on: what is wanted as it was is copied when it is made.
-    wanted = {*pipeline.kept, *(step.cloud for step in pipeline.steps)}
+    wanted = {*(pipeline.kept if kept is None else kept), *(step.cloud for step in pipeline.steps)}
     copies: dict[str, Cloud] = {}
     outcomes: dict[str, Outcome] = {}
     current = cloud

@@ -60,7 +60,7 @@ STAGE_IDS = {
     "simulateflight",
     "simulatevillage",
 }
-PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure"}
+PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints"}
 
 CLASSIFYING = {"classify", "complete"}
 VERBS = CLASSIFYING | {"segment", "cluster", "compute", "extract", "regularize", "simplify", "assess", "simulate"}

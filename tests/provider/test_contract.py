@@ -50,7 +50,7 @@ IDS = {
     "simulateflight",
     "simulatevillage",
 }
-PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure"}
+PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints"}
 ALL = {**STAGES, **TOYS}
 
 

@@ -1,0 +1,114 @@
+"""From a drone's cloud to corrected corners: the whole chain on simulated villages, with nothing set."""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.pipelines import PIPELINES, run_pipeline
+from lidar_buildings.algorithms.simulation.village import simulate_village
+from lidar_buildings.algorithms.stage import Features, Monitor
+
+CHAIN = PIPELINES["map_footprints"]
+
+
+def village(**tunables):
+    """Return the cloud of a village as a drone's software gives it, the true footprints and the old map."""
+    *arrays, footprints, old_map = simulate_village(**tunables)
+    made = dict(zip(simulate_village.stage.creates, arrays))
+    return {**made, "classification": np.zeros_like(made["classification"])}, footprints, old_map
+
+
+def turned(arrays, layers, angle, shift):
+    """Return cloud and layers turned about z and moved."""
+    cos, sin = np.cos(angle), np.sin(angle)
+    rotation = np.array([(cos, sin), (-sin, cos)])
+    xyz = arrays["xyz"].copy()
+    xyz[:, :2] = xyz[:, :2] @ rotation + shift
+    moved = [
+        Features([[ring @ rotation + shift for ring in rings] for rings in f.geometries], f.columns) for f in layers
+    ]
+    return {**arrays, "xyz": xyz}, moved
+
+
+def mapped(arrays, old_map, monitor=None, **tunables):
+    cloud = create_cloud(arrays)
+    return run_pipeline(CHAIN, cloud, monitor, sources={"old_map": old_map}, kept=(), **tunables)
+
+
+def corner_distances(found, true):
+    """Return, for each true building that has a footprint, the distances of its corners, and the footprints used."""
+    distances, used = [], set()
+    middles = np.array([rings[0][:-1].mean(axis=0) for rings in found.geometries])
+    for rings in true.geometries:
+        own = rings[0][:-1]
+        apart = np.hypot(*(middles - own.mean(axis=0)).T)
+        nearest = int(np.argmin(apart))
+        if apart[nearest] < 2.5:
+            used.add(nearest)
+            ring = found.geometries[nearest][0][:-1]
+            distances.append(np.hypot(*(own[:, None] - ring).transpose(2, 0, 1)).min(axis=1))
+    return distances, used
+
+
+@pytest.mark.parametrize(
+    ("tunables", "angle"),
+    [
+        ({"density": 50.0, "noise": 0.05, "seed": 2}, 0.0),
+        ({"density": 70.0, "noise": 0.03, "seed": 3}, 0.7),
+    ],
+)
+def test_buildings_are_found_and_their_corners_are_where_they_are(tunables, angle):
+    arrays, true, old_map = village(size=100.0, **tunables)
+    arrays, (true, old_map) = turned(arrays, (true, old_map), angle, (0.0, 0.0))
+    made = mapped(arrays, old_map)
+    distances, used = corner_distances(made.layers["wall_footprints"], true)
+    assert len(true) >= 8
+    assert len(distances) == len(true)
+    assert len(used) == len(made.layers["wall_footprints"]) == len(true)
+    assert set(made.layers["wall_footprints"].columns["source"]) == {"wall"}
+    assert np.concatenate(distances).mean() < 0.08
+    # The old map lies 0.3 m to the east and north, turned with everything else.
+    shift = -0.3 * np.array([np.cos(angle) - np.sin(angle), np.sin(angle) + np.cos(angle)])
+    assert [made.report.values[name] for name in ("mean_dx", "mean_dy")] == pytest.approx(shift, abs=0.1)
+    assert made.report.values["new"] == made.report.values["missed"] == round(0.1 * len(true))
+    assert made.report.values["found"] == len(true) - round(0.1 * len(true))
+
+
+def test_without_an_old_map_footprints_are_made_all_the_same():
+    arrays, true, _ = village(size=90.0, density=30.0, seed=4)
+    monitor = Monitor()
+    made = mapped(arrays, None, monitor)
+    assert len(made.layers["wall_footprints"]) == len(true) > 2
+    assert any("no old map" in warning for warning in monitor.warnings)
+
+
+def test_where_no_walls_are_seen_footprints_are_roofs():
+    """Straight down, eaves hide the walls, as from an airplane."""
+    arrays, true, _ = village(size=90.0, density=40.0, oblique=0.0, clutter=False, trees=0.0, seed=4)
+    made = mapped(arrays, None)
+    footprints = made.layers["wall_footprints"]
+    assert set(footprints.columns["source"]) == {"roof"}
+    assert len(footprints) == len(true)
+    # Eaves of 0.5 m all around (0.25 m of sheds) make roofs larger than their walls.
+    larger = np.sort(footprints.columns["area"]) / np.sort(true.columns["area"])
+    assert (larger > 1.1).all()
+    assert (larger < 1.5).all()
+
+
+def test_the_clouds_of_the_steps_can_be_kept():
+    arrays, _, _ = village(size=90.0, density=20.0, seed=4)
+    made = run_pipeline(CHAIN, create_cloud(arrays))
+    assert set(made.clouds) == {f"{step}_output" for step in CHAIN.kept}
+    assert made.clouds["ground_output"].has("voxel_count")
+    assert not made.clouds["ground_output"].has("height_above_ground")
+    assert made.clouds["roofs_output"].has("cluster_id")
+    assert not made.clouds["roofs_output"].has("wall_of")
+    assert made.cloud.has("wall_of")
+
+
+def test_a_field_without_buildings_has_no_footprints():
+    arrays, _, old_map = village(size=60.0, density=30.0, buildings=0.0, trees=60.0)
+    monitor = Monitor()
+    made = mapped(arrays, old_map, monitor)
+    assert len(made.layers["wall_footprints"]) == 0
+    assert made.report.values["all_footprints"] == 0
