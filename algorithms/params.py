@@ -79,12 +79,13 @@ AssessmentCellSize = Annotated[
 ]
 
 MaxBuildingSize = Annotated[
-    float,
+    Optional[float],
     Param(
         "Maximum building size",
         "The shorter side of the largest building; smaller keeps more of narrow hilltops.",
         unit="m",
         low=1,
         high=1000,
+        automatic="60 m, and up to 250 m for what stands free of the terrain on all sides; or as the terrain says.",
     ),
 ]

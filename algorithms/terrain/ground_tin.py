@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Annotated, Optional
 
 import numpy as np
@@ -10,14 +11,33 @@ from ..cloud.asprs import NOISE, PointClass
 from ..cloud.density import point_density
 from ..params import MaxBuildingSize
 from ..stage import Monitor, Param, stage
-from .seeds import seeds_by_lowest, seeds_by_opening
+from .seeds import USUAL_BUILDING, seeds_by_lowest, seeds_by_opening
 from .tin import Tin, node_residuals, robust_deviation
 
-# A point may join the TIN within this many times the measured roughness of the surface ...
-_GROW_DEVIATIONS = 8.0
+# A point may join the TIN within this many times the measured roughness of the surface; half of that will do where
+# this share of the point spacing, by which the surface bends where nothing was seen, makes it more.
+_GROW_DEVIATIONS, _GROW_BEND = 8.0, 0.5
 
-# ... and belongs to the finished ground within this many.
-_SWEEP_DEVIATIONS = 6.0
+# It belongs to the finished ground within so many times the roughness; the latter is more than noise where
+# plants stand, so that what lies over the first number is at most this share of a cell or the spacing.
+_SWEEP_DEVIATIONS, _SWEEP_NOISE, _SWEEP_BEND = 6.0, 4.0, 0.1
+
+# Beyond a breakline the surface goes on as it comes if it is not steeper than this (°), for points within this
+# share of the distance at which they join.
+_LEVEL, _MIRROR_SHARE = 20.0, 0.25
+
+# What the kind of terrain means: shorter side of the largest building (m) and iteration angle (°).
+_TERRAINS = {
+    "nature": (20.0, 30.0),
+    "village": (40.0, 20.0),
+    "town": (USUAL_BUILDING, 20.0),
+    "city": (120.0, 20.0),
+    "industry": (250.0, 20.0),
+}
+_ANGLE = 20.0
+
+# What granularity means: least cell (m), and cells per point spacing.
+_GRANULARITIES = {"coarse": (2.0, 1.0), "medium": (1.0, 1.0), "fine": (1.0, 0.5), "extra fine": (0.5, 0.5)}
 
 # Rounds end when they add less than this share of the nodes.
 _LEAST_GROWTH = 0.005
@@ -42,6 +62,26 @@ def classify_ground_tin(
     return_number=None,
     number_of_returns=None,
     *,
+    terrain: Annotated[
+        Optional[str],
+        Param(
+            "Terrain",
+            "What the largest buildings are like: it sets the maximum building size (20, 40, 60, 120, 250 m) and the "
+            "iteration angle (30° in nature, else 20°) where these are automatic.",
+            choices=tuple(_TERRAINS),
+            automatic="the smallest kind from town on that has room for the largest building found.",
+        ),
+    ] = None,
+    granularity: Annotated[
+        Optional[str],
+        Param(
+            "Granularity",
+            "How finely the surface is started and refined: it sets the grid cell size where that is automatic, at "
+            "least 2 m (coarse), 1 m (medium, fine) or 0.5 m (extra fine).",
+            choices=tuple(_GRANULARITIES),
+            automatic="fine where points are farther apart than 1 m, else medium.",
+        ),
+    ] = None,
     seeds: Annotated[
         str,
         Param(
@@ -51,7 +91,7 @@ def classify_ground_tin(
             choices=("opening", "lowest"),
         ),
     ] = "opening",
-    max_building_size: MaxBuildingSize = 60.0,
+    max_building_size: MaxBuildingSize = None,
     cell_size: Annotated[
         Optional[float],
         Param(
@@ -60,12 +100,12 @@ def classify_ground_tin(
             unit="m",
             low=0.1,
             high=100,
-            automatic="the point spacing, at least 1 m.",
+            automatic="half the point spacing (coarse and medium: the whole), at least what the granularity says.",
             advanced=True,
         ),
     ] = None,
     iteration_angle: Annotated[
-        float,
+        Optional[float],
         Param(
             "Iteration angle",
             "Largest angle between a facet and the lines to its nodes under which a point joins the surface; "
@@ -74,8 +114,9 @@ def classify_ground_tin(
             low=0,
             high=90,
             open_low=True,
+            automatic="20°, in nature 30°.",
         ),
-    ] = 20.0,
+    ] = None,
     iteration_distance: Annotated[
         Optional[float],
         Param(
@@ -85,7 +126,8 @@ def classify_ground_tin(
             low=0,
             high=100,
             open_low=True,
-            automatic="8 times the roughness of the surface, measured again in each round.",
+            automatic="8 times the roughness of the surface, measured again in each round; or half of that and "
+            "half the point spacing, if that is more.",
             advanced=True,
         ),
     ] = None,
@@ -109,7 +151,7 @@ def classify_ground_tin(
             unit="m",
             low=0,
             high=100,
-            automatic="6 times the roughness of the finished surface.",
+            automatic="6 times the roughness of the finished surface, the last third at most a tenth of a cell.",
             advanced=True,
         ),
     ] = None,
@@ -147,6 +189,8 @@ def classify_ground_tin(
     the facet's nodes, if angle and distance to the facet are under the thresholds; the distance threshold is
     estimated in each round from the residuals of the nodes over the plane of their neighbors. It ends when hardly
     any point joins. Distances are measured across the facet, so that slopes don't loosen or tighten them.
+    A point that lies too high above its facet is tried again at its mirror image about the facet's highest
+    node: where the surface beyond is nearly level and has the image, it is the edge of a terrace.
 
     The paper leaves the points within the noise of the finished surface unclassified; the final sweep takes them
     in. With seeds 'lowest', sweep distance 0 is the method as published.
@@ -160,18 +204,29 @@ def classify_ground_tin(
     points = refuse_degenerate(xyz[usable])
     last = _last_returns(return_number, number_of_returns, usable)
     spacing = 1 / np.sqrt(point_density(points))
-    cell_size = max(1.0, spacing) if cell_size is None else cell_size
+    granularity, cell_size = _cell(granularity, cell_size, spacing)
+    scale = max(cell_size, spacing)
     edge_length = 2 * cell_size if edge_length is None else edge_length
+    by_terrain = _TERRAINS.get(terrain or "", (None, _ANGLE))
+    size = by_terrain[0] if max_building_size is None else max_building_size
+    angle = by_terrain[1] if iteration_angle is None else iteration_angle
 
     growing = points[last]
     if seeds == "lowest":
-        start = seeds_by_lowest(growing, max_building_size)
+        size = USUAL_BUILDING if size is None else size
+        start = seeds_by_lowest(growing, size)
     else:
-        start = seeds_by_opening(growing, cell_size, max_building_size, monitor.part(0, 0.3))
-    is_node, distance = _grow(growing, start, iteration_angle, iteration_distance, edge_length, monitor.part(0.3, 0.8))
-    is_ground, swept = _sweep(points, growing[is_node], sweep_distance, monitor.part(0.8, 1))
+        start, size = seeds_by_opening(growing, cell_size, size, monitor.part(0, 0.3))
+    terrain = _terrain(size) if terrain is None else terrain
+    rules = _Rules(angle, iteration_distance, _GROW_BEND * spacing, edge_length, scale)
+    is_node, distance = _grow(growing, start, rules, monitor.part(0.3, 0.8))
+    swept = (sweep_distance, np.inf if seeds == "lowest" else _SWEEP_BEND * scale)
+    is_ground, sweep_distance = _sweep(points, growing[is_node], *swept, monitor.part(0.8, 1))
     is_ground[np.flatnonzero(last)[is_node]] = True
-    monitor.resolved(cell_size=cell_size, iteration_distance=distance, edge_length=edge_length, sweep_distance=swept)
+    monitor.resolved(terrain=terrain, granularity=granularity, max_building_size=size, cell_size=cell_size)
+    monitor.resolved(
+        iteration_angle=angle, iteration_distance=distance, edge_length=edge_length, sweep_distance=sweep_distance
+    )
 
     result = np.where(classification == PointClass.GROUND, np.uint8(PointClass.UNCLASSIFIED), classification)
     result[usable[is_ground]] = PointClass.GROUND
@@ -202,28 +257,59 @@ def _last_returns(return_number, number_of_returns, usable: np.ndarray) -> np.nd
     return last if last.sum() >= 3 else np.ones(len(usable), bool)
 
 
-def _grow(
-    points: np.ndarray,
-    start: np.ndarray,
-    max_angle: float,
-    max_distance: Optional[float],
-    edge_length: float,
-    monitor: Monitor,
-) -> tuple[np.ndarray, float]:
+def _cell(granularity: Optional[str], cell_size: Optional[float], spacing: float) -> tuple[str, float]:
+    """Return the granularity and the cell (m) that go with a point spacing (m)."""
+    if granularity is None:
+        granularity = "fine" if spacing > 1 else "medium"
+    least, cells = _GRANULARITIES[granularity]
+    return granularity, max(least, cells * spacing) if cell_size is None else cell_size
+
+
+def _terrain(size: float) -> str:
+    """Return the kind of terrain whose largest building has room for ``size`` (m), from town on."""
+    kinds = list(_TERRAINS)[list(_TERRAINS).index("town") :]
+    return next((kind for kind in kinds if size <= _TERRAINS[kind][0]), kinds[-1])
+
+
+@dataclass(frozen=True)
+class _Rules:
+    """When a point joins.
+
+    Largest angle (°) and distance (m; None is measured, and ``bend`` comes on top), open edges (m), and from how far
+    a mirror image is taken (m).
+    """
+
+    max_angle: float
+    max_distance: Optional[float]
+    bend: float
+    edge_length: float
+    reach: float
+
+    def distance(self, nodes: np.ndarray) -> float:
+        """Return the largest distance (m) at which a point joins the TIN of ``nodes``."""
+        if self.max_distance is not None:
+            return self.max_distance
+        if len(nodes) <= 3:
+            return np.inf
+        rough = _GROW_DEVIATIONS * robust_deviation(node_residuals(nodes))
+        return max(rough, rough / 2 + self.bend)
+
+
+def _grow(points: np.ndarray, start: np.ndarray, rules: _Rules, monitor: Monitor) -> tuple[np.ndarray, float]:
     """Let the TIN of the points ``start`` grow; return which points are its nodes, and the last distance used."""
-    is_node = np.zeros(len(points), bool)
-    is_node[start] = True
+    is_start = np.zeros(len(points), bool)
+    is_start[start] = True
+    is_node = is_start.copy()
     candidates: Optional[np.ndarray] = None
-    distance = max_distance or 0.0
+    distance = 0.0
     for step in range(_MAX_ROUNDS):
         nodes = points[is_node]
-        if max_distance is None:
-            distance = _GROW_DEVIATIONS * robust_deviation(node_residuals(nodes)) if len(nodes) > 3 else np.inf
+        distance = rules.distance(nodes)
         tin = Tin(nodes)
         if candidates is None:
             candidates = _near(tin, points, _CANDIDATE_DISTANCES * distance, monitor.part(0, 0.5))
             candidates = candidates[~is_node[candidates]]
-        candidates, joining = _joining(tin, points, candidates, distance, max_angle, edge_length)
+        candidates, joining = _joining(tin, points, candidates, distance, rules, is_start[is_node])
         is_node[joining] = True
         monitor.progress(0.5 + 0.5 * (step + 1) / _MAX_ROUNDS)
         if len(joining) <= _LEAST_GROWTH * len(nodes):
@@ -238,25 +324,58 @@ def _near(tin: Tin, points: np.ndarray, distance: float, monitor: Monitor) -> np
 
 
 def _joining(
-    tin: Tin, points: np.ndarray, candidates: np.ndarray, max_distance: float, max_angle: float, edge_length: float
+    tin: Tin, points: np.ndarray, candidates: np.ndarray, distance: float, rules: _Rules, is_start: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the candidates that are left for later rounds, and those that join now, one per facet."""
     facet = tin.locate(points[candidates])
     # Small facets only get smaller, and a point beside a node makes a sliver and tells nothing new.
-    is_open = tin.longest_edge()[facet] > edge_length
+    is_open = tin.longest_edge()[facet] > rules.edge_length
     candidates, facet = candidates[is_open], facet[is_open]
-    nearest = _to_nearest_node(tin, facet, points[candidates])
-    apart = nearest > edge_length / 4
-    candidates, facet, nearest = candidates[apart], facet[apart], nearest[apart]
+    apart = _to_nearest_node(tin, facet, points[candidates]) > rules.edge_length / 4
+    candidates, facet = candidates[apart], facet[apart]
     here = points[candidates]
-    distance = np.abs(here[:, 2] - tin.elevation(here, facet)) * tin.steepness()[facet]
-    angle = np.degrees(np.arcsin(np.clip(distance / np.maximum(nearest, 1e-9), 0, 1)))
-    fits = (distance <= max_distance) & (angle <= max_angle)
+    offset, angle = _offset_and_angle(tin, facet, here)
+    fits = (offset <= distance) & (angle <= rules.max_angle)
+    mirrored = np.flatnonzero(~fits)
+    angle[mirrored] = _mirrored_angle(tin, facet[mirrored], here[mirrored], distance, rules, is_start)
+    fits |= angle <= rules.max_angle
     # Ties go to the south-west, so that the points' order doesn't matter.
     order = np.lexsort((here[fits, 1], here[fits, 0], angle[fits], facet[fits]))
     first = np.unique(facet[fits][order], return_index=True)[1]
     joining = candidates[fits][order][first]
     return np.setdiff1d(candidates, joining, assume_unique=True), joining
+
+
+def _mirrored_angle(
+    tin: Tin, facet: np.ndarray, here: np.ndarray, distance: float, rules: _Rules, is_start: np.ndarray
+) -> np.ndarray:
+    """Return the angles (°) of points that lie beyond a breakline, at their mirror images; inf where they don't fit.
+
+    A point above its facet is turned about the facet's highest node (Axelsson's mirror point). Where the surface on
+    that other side is nearly level and has the image, the point carries it on to the upper edge of a terrace. Only
+    seeds mirror, so that the surface can't climb on by itself.
+    """
+    angle = np.full(len(here), np.inf)
+    corners = tin.facets[facet]
+    highest = corners[np.arange(len(corners)), np.argmax(tin.nodes[corners, 2], axis=1)]
+    image = 2 * (tin.nodes[highest] + tin.shift) - here
+    reach = np.linalg.norm(here[:, :2] - image[:, :2], axis=1) / 2
+    can = (corners < tin.n_nodes).all(axis=1) & (reach < rules.reach)
+    can[can] = is_start[highest[can]] & (here[can, 2] > tin.elevation(here[can], facet[can]))
+    of, image = np.flatnonzero(can), image[can]
+    there = tin.locate(image)
+    offset, found = _offset_and_angle(tin, there, image)
+    level = (tin.steepness() > np.cos(np.radians(_LEVEL))) & ~tin.is_extrapolated()
+    fits = (offset <= _MIRROR_SHARE * distance) & level[there]
+    angle[of[fits]] = found[fits]
+    return angle
+
+
+def _offset_and_angle(tin: Tin, facet: np.ndarray, here: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the distance (m) of points to their facets, and the largest angle (°) to the nodes of these."""
+    offset = np.abs(here[:, 2] - tin.elevation(here, facet)) * tin.steepness()[facet]
+    nearest = _to_nearest_node(tin, facet, here)
+    return offset, np.degrees(np.arcsin(np.clip(offset / np.maximum(nearest, 1e-9), 0, 1)))
 
 
 def _to_nearest_node(tin: Tin, facet: np.ndarray, here: np.ndarray) -> np.ndarray:
@@ -265,11 +384,12 @@ def _to_nearest_node(tin: Tin, facet: np.ndarray, here: np.ndarray) -> np.ndarra
 
 
 def _sweep(
-    points: np.ndarray, nodes: np.ndarray, distance: Optional[float], monitor: Monitor
+    points: np.ndarray, nodes: np.ndarray, distance: Optional[float], bend: float, monitor: Monitor
 ) -> tuple[np.ndarray, float]:
     """Return which points lie within ``distance`` of the TIN of ``nodes``, and that distance."""
     if distance is None:
-        distance = _SWEEP_DEVIATIONS * robust_deviation(node_residuals(nodes)) if len(nodes) > 3 else 0.0
+        roughness = robust_deviation(node_residuals(nodes)) if len(nodes) > 3 else 0.0
+        distance = min(_SWEEP_DEVIATIONS * roughness, _SWEEP_NOISE * roughness + bend)
     is_ground = np.zeros(len(points), bool)
     if distance > 0:
         is_ground[_near(Tin(nodes), points, distance, monitor)] = True

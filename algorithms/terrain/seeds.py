@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Optional
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from .opening import open_surface
 _STEP = 0.1
 
 # Slope that terrain may have beside the slope measured around it, and the share of that which it may add.
-_FLAT_SLOPE, _SLOPE_SHARE = 0.1, 0.5
+_FLAT_SLOPE, _SLOPE_SHARE = 0.1, 0.4
 
 # Flat terrain may rise so far within a window of any size, m: less than the lowest of large buildings.
 _FLAT_RISE = 1.0
@@ -30,6 +31,20 @@ _PIT_SLOPE = 5.0
 # A region that was removed joins the terrain where a step at its edge is not steeper than this plus
 # this share of the local slope, and it is terrain when half of its edge does.
 _JOIN_SLOPE, _JOIN_SHARE, _JOINED = 0.3, 0.5, 0.5
+
+# What joins the terrain does so on at least this share of its whole edge, other objects beside it included.
+_JOINED_OF_ALL = 0.25
+
+# Where the surface goes on as steeply as at the step itself, up to this slope, the step is a bank rather than a wall.
+_STEEPEST_BANK = 2.0
+
+# Without a largest building given, windows go up to this size (m), beyond the usual one only for regions that stand
+# at least so high (m) over the terrain on so much of their edge, of which so much is not hidden by other objects.
+USUAL_BUILDING, _LARGEST_BUILDING = 60.0, 250.0
+_FREE_STEP, _FREE_EDGE, _OPEN_EDGE = 2.0, 0.9, 0.5
+
+# Cells at the rim of such a region that smaller windows may have lifted off.
+_RIM = 3
 
 # Windows over this share of the largest lift off spits and hilltops rather than houses.
 _LARGE_WINDOW = 0.5
@@ -65,7 +80,9 @@ def lowest_points(xyz: np.ndarray, cell_size: float) -> Lowest:
     return Lowest(index, cell_size)
 
 
-def seeds_by_opening(xyz: np.ndarray, cell_size: float, max_building_size: float, monitor: Monitor) -> np.ndarray:
+def seeds_by_opening(
+    xyz: np.ndarray, cell_size: float, max_building_size: Optional[float], monitor: Monitor
+) -> tuple[np.ndarray, float]:
     """Find ground points by opening the lowest surface with growing windows.
 
     What a window lifts off the surface by more than terrain of the local slope allows is an
@@ -77,20 +94,24 @@ def seeds_by_opening(xyz: np.ndarray, cell_size: float, max_building_size: float
         Points (m).
     cell_size : float
         Cell of the surface, m.
-    max_building_size : float
-        Least extent of the largest building, m: the last window.
+    max_building_size : float, optional
+        Least extent of the largest building, m: the last window. None is 60 m, and more for what stands free.
     monitor : Monitor
         Hears progress.
 
     Returns
     -------
-    ndarray of shape (m,), int64
+    seeds : ndarray of shape (m,), int64
         Indices of the seeds.
+    size : float
+        Least extent of the largest building that was looked for or found, m.
 
     Notes
     -----
     Progressive opening after Pingel et al. (2013), with a threshold that follows the slope of a
-    first, coarser result; the return of smoothly joined regions is this project's.
+    first, coarser result; the return of smoothly joined regions is this project's. So are windows of
+    unlimited size: beyond 60 m a region must stand at least 2 m over the terrain on nearly all of its edge, which
+    halls do and hills don't.
 
     References
     ----------
@@ -99,13 +120,20 @@ def seeds_by_opening(xyz: np.ndarray, cell_size: float, max_building_size: float
     """
     lowest = lowest_points(xyz, cell_size)
     surface, known = _surface(xyz, lowest)
-    windows = _windows(max_building_size / 2 / cell_size)
+    windows = _windows((max_building_size or USUAL_BUILDING) / 2 / cell_size)
+    usual = windows[-1]
+    if max_building_size is None:
+        windows += _windows(_LARGEST_BUILDING / 2 / cell_size, usual)
     coarse = _lifted(surface, windows, np.full(surface.shape, _FIRST_SLOPE), cell_size, monitor.part(0, 0.45))
+    coarse = _without_hills(coarse, usual, surface)
     slope = _slope(_interpolated(surface, coarse > 0), cell_size)
     lifted = _lifted(surface, windows, _SLOPE_SHARE * slope, cell_size, monitor.part(0.45, 0.9))
-    objects = _without_joined(lifted, windows[-1], surface, slope, cell_size)
+    lifted = _without_hills(lifted, usual, surface)
+    objects = _without_joined(lifted, usual, surface, slope, cell_size)
     monitor.progress(1.0)
-    return lowest.points(known & ~objects)
+    found = 2 * cell_size * int(lifted.max())
+    size = found if found > 2 * cell_size * usual else max_building_size or USUAL_BUILDING
+    return lowest.points(known & ~objects), size
 
 
 def seeds_by_lowest(xyz: np.ndarray, max_building_size: float) -> np.ndarray:
@@ -131,14 +159,15 @@ def _nearest(surface: np.ndarray, unknown: np.ndarray) -> np.ndarray:
     return surface[row, column]
 
 
-def _windows(largest: float) -> list[int]:
-    """Return radii in cells from 1 up to ``largest``, each a quarter larger than the one before."""
-    radii, last = [], max(1, int(np.ceil(largest)))
-    radius = 1
+def _windows(largest: float, beyond: int = 0) -> list[int]:
+    """Return radii in cells from 1, or over ``beyond``, to ``largest``, each a quarter larger than the one before."""
+    radii: list[int] = []
+    last = max(1, int(np.ceil(largest)))
+    radius = max(beyond + 1, round(beyond * _GROWTH))
     while radius < last:
         radii.append(radius)
         radius = max(radius + 1, round(radius * _GROWTH))
-    return [*radii, last]
+    return [*radii, last] if last > beyond else radii
 
 
 def _lifted(
@@ -180,29 +209,66 @@ def _slope(surface: np.ndarray, cell_size: float) -> np.ndarray:
     return np.sqrt(sum((gradient**2 for gradient in gradients), np.zeros_like(smooth)))
 
 
+def _without_hills(lifted: np.ndarray, usual: int, surface: np.ndarray) -> np.ndarray:
+    """Return ``lifted`` without what windows over ``usual`` lifted off and what doesn't stand free like a hall."""
+    is_large = lifted > usual
+    if not is_large.any():
+        return lifted
+    # Smaller windows lifted off its corners and what stands at its walls.
+    region, count = ndimage.label(ndimage.binary_dilation(is_large, iterations=_RIM, mask=lifted > 0))
+    edge, beside, free = np.zeros(count + 1), np.zeros(count + 1), np.zeros(count + 1)
+    for here, there in _beside(surface.ndim):
+        at_edge = (region[here] > 0) & (region[there] == 0)
+        at_terrain = at_edge & (lifted[there] == 0)
+        steps = at_terrain & (surface[here] - surface[there] >= _FREE_STEP)
+        edge += np.bincount(region[here][at_edge], minlength=count + 1)
+        beside += np.bincount(region[here][at_terrain], minlength=count + 1)
+        free += np.bincount(region[here][steps], minlength=count + 1)
+    stands = (free > 0) & (free >= _FREE_EDGE * beside) & (beside >= _OPEN_EDGE * edge)
+    return np.where(is_large & ~stands[region], 0, lifted)
+
+
 def _without_joined(
-    lifted: np.ndarray, largest: int, surface: np.ndarray, slope: np.ndarray, cell_size: float
+    lifted: np.ndarray, usual: int, surface: np.ndarray, slope: np.ndarray, cell_size: float
 ) -> np.ndarray:
     """Return the lifted cells but for regions that join the terrain smoothly on half of their edge.
 
+    A step is smooth if it is low, or if the surface goes on as steeply on one of its sides: the flank of a bank.
     What smaller windows and what larger windows lifted off make regions of their own: a house stays
     lifted off, though the spit of land on which it stands comes back.
     """
     allowed = (_JOIN_SLOPE + _JOIN_SHARE * slope) * cell_size
     objects = lifted > 0
-    is_large = lifted > _LARGE_WINDOW * largest
+    is_large = lifted > _LARGE_WINDOW * usual
     for group in (objects & ~is_large, is_large):
         region, count = ndimage.label(group)
-        edge, joined = np.zeros(count + 1), np.zeros(count + 1)
-        for here, there in _beside(surface.ndim):
-            at_edge = (region[here] > 0) & ~objects[there]
-            smooth = at_edge & (surface[here] - surface[there] < allowed[here])
+        whole, edge, joined = np.zeros(count + 1), np.zeros(count + 1), np.zeros(count + 1)
+        for (here, there), flank in zip(_beside(surface.ndim), _flanks(surface)):
+            outward = (region[here] > 0) & (region[there] != region[here])
+            at_edge = outward & ~objects[there]
+            step = surface[here] - surface[there]
+            is_bank = step < np.minimum(flank + _JOIN_SLOPE * cell_size, _STEEPEST_BANK * cell_size)
+            smooth = at_edge & ((step < allowed[here]) | is_bank)
+            whole += np.bincount(region[here][outward], minlength=count + 1)
             edge += np.bincount(region[here][at_edge], minlength=count + 1)
             joined += np.bincount(region[here][smooth], minlength=count + 1)
-        terrain = joined >= _JOINED * np.maximum(edge, 1)
+        terrain = (joined >= _JOINED * np.maximum(edge, 1)) & (joined >= _JOINED_OF_ALL * whole)
         terrain[0] = False
         objects &= ~terrain[region]
     return objects
+
+
+def _flanks(surface: np.ndarray) -> Iterator[np.ndarray]:
+    """Yield, in the order of ``_beside``, the larger rise (m) of the cell before and the cell after each step."""
+    for axis in range(surface.ndim):
+        for upward in (False, True):
+            along = np.moveaxis(surface, axis, 0)
+            along = along[::-1] if upward else along
+            step = along[:-1] - along[1:]
+            flank = np.full(step.shape, -np.inf)
+            flank[1:] = step[:-1]
+            flank[:-1] = np.maximum(flank[:-1], step[1:])
+            yield np.moveaxis(flank[::-1] if upward else flank, 0, axis)
 
 
 def _beside(dimensions: int) -> Iterator[tuple[tuple[slice, ...], tuple[slice, ...]]]:

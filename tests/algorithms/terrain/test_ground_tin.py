@@ -196,18 +196,97 @@ def test_automatic_values_follow_the_cloud(rng):
         monitor = Monitor()
         classify_ground_tin(xyz, unclassified(xyz), monitor=monitor)
         spacing = 1 / np.sqrt(density)
-        assert monitor.values["cell_size"] == pytest.approx(max(1.0, spacing), rel=0.1)
+        assert monitor.values["cell_size"] == pytest.approx(max(1.0, spacing / 2), rel=0.1)
         assert monitor.values["edge_length"] == pytest.approx(2 * monitor.values["cell_size"])
-        assert 4 * noise < monitor.values["iteration_distance"] < 12 * noise
+        low, high = (max(8 * rough, 4 * rough + 0.5 * spacing) for rough in (0.8 * noise, 1.4 * noise))
+        assert low < monitor.values["iteration_distance"] < high
         assert 3 * noise < monitor.values["sweep_distance"] < 9 * noise
+        assert monitor.values["granularity"] == ("fine" if density < 1 else "medium")
+        assert (monitor.values["terrain"], monitor.values["max_building_size"]) == ("town", 60.0)
+        assert monitor.values["iteration_angle"] == 20.0
 
 
 def test_values_given_by_hand_are_used(rng):
     xyz, _ = scan(rng, TERRAINS["level"], density=1)
     monitor = Monitor()
-    given = {"cell_size": 2.5, "edge_length": 3.0, "iteration_distance": 0.7, "sweep_distance": 0.2}
+    given = {
+        "terrain": "nature",
+        "granularity": "coarse",
+        "max_building_size": 33.0,
+        "cell_size": 2.5,
+        "iteration_angle": 12.0,
+        "edge_length": 3.0,
+        "iteration_distance": 0.7,
+        "sweep_distance": 0.2,
+    }
     classify_ground_tin(xyz, unclassified(xyz), **given, monitor=monitor)
     assert monitor.values == given
+
+
+@pytest.mark.parametrize(
+    ("word", "size", "angle"),
+    [("nature", 20, 30), ("village", 40, 20), ("town", 60, 20), ("city", 120, 20), ("industry", 250, 20)],
+)
+def test_the_terrain_sets_building_size_and_angle(word, size, angle, rng):
+    """A word gives the same result as what it stands for, and finds a building of its size but not a larger one."""
+    xyz, _ = scan(rng, TERRAINS["slope"], HOUSES)
+    monitor = Monitor()
+    found = classify_ground_tin(xyz, unclassified(xyz), terrain=word, monitor=monitor)
+    assert (monitor.values["max_building_size"], monitor.values["iteration_angle"]) == (size, angle)
+    same = classify_ground_tin(xyz, unclassified(xyz), max_building_size=size, iteration_angle=angle)
+    np.testing.assert_array_equal(found, same)
+
+
+def test_in_nature_a_large_building_is_a_hill_and_in_a_town_it_is_none(rng):
+    xyz, is_house = scan(rng, TERRAINS["level"], [(20, 20, 60, 60, 5)])
+    assert errors(classify_ground_tin(xyz, unclassified(xyz), terrain="nature"), is_house)[1] > 0.9
+    assert errors(classify_ground_tin(xyz, unclassified(xyz), terrain="town"), is_house)[1] == 0
+
+
+@pytest.mark.parametrize(
+    ("word", "density", "cell"),
+    [("coarse", 1.5, 2.0), ("medium", 1.5, 1.0), ("fine", 0.25, 1.0), ("extra fine", 9, 0.5), ("medium", 0.25, 2.0)],
+)
+def test_the_granularity_sets_the_cell(word, density, cell, rng):
+    xyz, _ = scan(rng, TERRAINS["level"], density=density)
+    monitor = Monitor()
+    classify_ground_tin(xyz, unclassified(xyz), granularity=word, monitor=monitor)
+    assert monitor.values["cell_size"] == pytest.approx(cell, rel=0.1)
+    assert monitor.values["granularity"] == word
+
+
+def test_a_quarry_is_ground_on_its_floor_its_benches_and_around(rng):
+    """Two benches, 6 m each, with faces of 70°."""
+    from_rim = 30 - WIDTH / 2
+    depth = lambda x, y: from_rim + np.maximum(np.abs(x - 40), np.abs(y - 40))  # noqa: E731
+    steps = lambda d: np.clip(2.7 * (d + 20), 0, 6) + np.clip(2.7 * (d + 10), 0, 6)  # noqa: E731
+    xyz, _ = scan(rng, lambda x, y: steps(depth(x, y)), density=4)
+    is_ground = classify_ground_tin(xyz, unclassified(xyz)) == 2
+    where = depth(*xyz[:, :2].T)
+    is_face = ((where > -20.5) & (where < -17.2)) | ((where > -10.5) & (where < -7.2))
+    assert is_ground[~is_face].mean() > 0.99
+    assert is_ground[is_face].mean() > 0.75
+
+
+def test_an_edge_between_two_slopes_is_ground(rng):
+    """A bank of 45° between two levels: its upper edge lies beyond the reach of any facet below."""
+    bank = lambda x, y: np.clip(x - 40, 0, 5)  # noqa: E731
+    xyz, _ = scan(rng, bank, density=1.0)
+    is_ground = classify_ground_tin(xyz, unclassified(xyz)) == 2
+    assert is_ground[np.abs(xyz[:, 0] - 45) < 2].mean() > 0.97
+
+
+def test_low_noise_does_not_become_ground(rng):
+    """Single points and pairs 6 m and deeper under a slope; the ground around them is still found."""
+    xyz, _ = scan(rng, TERRAINS["slope"], HOUSES, density=4)
+    low = rng.choice(len(xyz), 40, replace=False)
+    xyz[low, 2] -= rng.uniform(6, 30, 40)
+    found = classify_ground_tin(xyz, unclassified(xyz)) == 2
+    assert not found[low].any()
+    around = np.linalg.norm(xyz[:, None, :2] - xyz[low, :2], axis=2).min(axis=1) < 3
+    at_house = ((xyz[:, None, :2] >= [h[:2] for h in HOUSES]) & (xyz[:, None, :2] <= [h[2:4] for h in HOUSES])).all(2)
+    around[low] = False
+    assert found[around & ~at_house.any(axis=1)].mean() > 0.98
 
 
 @pytest.mark.parametrize("count", [1, 2])

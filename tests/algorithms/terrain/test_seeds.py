@@ -64,6 +64,13 @@ def test_windows_grow_from_one_to_the_largest(largest):
     assert all(a < b <= max(a + 1, 1.25 * a + 0.5) for a, b in zip(windows, windows[1:]))
 
 
+def test_windows_beyond_go_on_where_the_usual_ones_end():
+    assert _windows(30.0, beyond=30) == []
+    windows = _windows(125.0, beyond=30)
+    assert windows[0] > 30
+    assert windows[-1] == 125
+
+
 TERRAINS = {
     "level": lambda x, y: np.zeros_like(x),
     "slope": lambda x, y: 0.25 * x - 0.1 * y,
@@ -82,7 +89,7 @@ def test_seeds_cover_terrain_and_no_roof(name, rng):
         under = ((plan >= [west, south]) & (plan <= [west + width, south + depth])).all(axis=1)
         placed.append((west, south, width, depth, ground[under].max() + 4))
     z, is_roof = raise_roofs(plan, ground + rng.normal(0, 0.03, len(plan)), *placed)
-    seeds = seeds_by_opening(np.column_stack([plan, z]), 1.0, 60.0, Monitor())
+    seeds, _ = seeds_by_opening(np.column_stack([plan, z]), 1.0, 60.0, Monitor())
     assert len(set(seeds.tolist())) == len(seeds)
     assert not is_roof[seeds].any()
     # Every open place of terrain has a seed within a few cells.
@@ -95,7 +102,7 @@ def test_a_dike_is_terrain_though_windows_lift_it_off(rng):
     """It is narrower than any building, but its sides join the terrain smoothly."""
     plan = rng.uniform(0, 100, (30_000, 2))
     z = 4 * np.exp(-((plan[:, 0] - 50) ** 2) / (2 * 5**2))
-    seeds = seeds_by_opening(np.column_stack([plan, z + rng.normal(0, 0.02, len(plan))]), 1.0, 60.0, Monitor())
+    seeds, _ = seeds_by_opening(np.column_stack([plan, z + rng.normal(0, 0.02, len(plan))]), 1.0, 60.0, Monitor())
     upper_half = {tuple(cell) for cell in np.floor(plan[z > 2]).astype(int).tolist()}
     seeded = {tuple(cell) for cell in np.floor(plan[seeds][z[seeds] > 2]).astype(int).tolist()}
     assert len(seeded) > 0.88 * len(upper_half)
@@ -106,7 +113,7 @@ def test_pits_are_no_seeds(rng):
     xyz = np.column_stack([plan, rng.normal(0, 0.02, len(plan))])
     multipath = np.array([100, 1500, 2222])
     xyz[multipath, 2] = -9.0
-    seeds = seeds_by_opening(xyz, 1.0, 30.0, Monitor())
+    seeds, _ = seeds_by_opening(xyz, 1.0, 30.0, Monitor())
     assert not np.isin(multipath, seeds).any()
     assert len(seeds) > 1000
 
@@ -115,7 +122,7 @@ def test_gaps_without_points_change_nothing(rng):
     """A lake returns nothing; its shores are still ground."""
     plan = even(80, 80) + rng.uniform(-0.3, 0.3, (len(even(80, 80)), 2))
     plan = plan[np.hypot(*(plan - 40).T) > 18]
-    seeds = seeds_by_opening(np.column_stack([plan, 0.05 * plan[:, 0]]), 1.0, 60.0, Monitor())
+    seeds, _ = seeds_by_opening(np.column_stack([plan, 0.05 * plan[:, 0]]), 1.0, 60.0, Monitor())
     shore = np.hypot(*(plan[seeds] - 40).T) < 20
     assert shore.sum() > 100
 
@@ -124,9 +131,34 @@ def test_a_terrace_keeps_its_upper_level(rng):
     """A step of 3 m across the whole scene is terrain on both sides: the upper side is wider than any window."""
     plan = even(150, 60) + rng.uniform(-0.3, 0.3, (len(even(150, 60)), 2))
     z = np.where(plan[:, 0] > 75, 3.0, 0.0) + rng.normal(0, 0.02, len(plan))
-    seeds = seeds_by_opening(np.column_stack([plan, z]), 1.0, 40.0, Monitor())
+    seeds, _ = seeds_by_opening(np.column_stack([plan, z]), 1.0, 40.0, Monitor())
     upper = plan[seeds, 0] > 76
     assert upper.sum() > 0.9 * 74 * 60
+
+
+def scene_with_plateau(rng, bank):
+    """Return points of a level scene with a plateau of 100 m by 90 m, 9 m high, and how wide its bank is (m)."""
+    plan = even(240, 240, 1.4) + rng.uniform(-0.3, 0.3, (len(even(240, 240, 1.4)), 2))
+    inward = np.minimum(50 - np.abs(plan[:, 0] - 120), 45 - np.abs(plan[:, 1] - 120))
+    z = 9.0 * np.clip((inward + bank) / bank if bank else inward > 0, 0, 1)
+    return np.column_stack([plan, z + rng.normal(0, 0.02, len(plan))]), inward > 0
+
+
+def test_a_hall_larger_than_usual_is_found_as_it_stands_free(rng):
+    xyz, is_hall = scene_with_plateau(rng, bank=0.0)
+    seeds, size = seeds_by_opening(xyz, 1.4, None, Monitor())
+    assert not is_hall[seeds].any()
+    assert size > 85
+    seeds, size = seeds_by_opening(xyz, 1.4, 60.0, Monitor())
+    assert is_hall[seeds].mean() > 0.1
+    assert size == 60.0
+
+
+def test_a_flat_hill_as_large_as_a_hall_is_terrain(rng):
+    xyz, is_top = scene_with_plateau(rng, bank=15.0)
+    seeds, size = seeds_by_opening(xyz, 1.4, None, Monitor())
+    assert size == 60.0
+    assert is_top[seeds].sum() > 0.9 * is_top.sum()
 
 
 def test_progress_only_grows():
