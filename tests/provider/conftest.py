@@ -74,6 +74,8 @@ def context(provider):
     context = QgsProcessingContext()
     context.setProject(QgsProject.instance())
     yield context
+    # Its layers can't be closed any more when QGIS is gone, which outlives this fixture but not the objects of a test.
+    context.temporaryLayerStore().removeAllMapLayers()
     QgsProject.instance().clear()
 
 

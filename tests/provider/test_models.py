@@ -123,6 +123,35 @@ def test_structure_of_two_clouds_is_in_qgis_what_it_is_in_memory(provider, conte
     same_clouds(read_cloud(out / "a.laz"), expected)
 
 
+@pytest.mark.parametrize("with_map", [True, False])
+def test_footprints_mapped_in_qgis_are_those_mapped_in_memory(with_map, provider, context, log, village, out):
+    old_map = squares((85_007.0, 446_009.0), size=10.0)
+    context.project().addMapLayer(old_map)
+    targets = {"OUTPUT": "a.laz", "ROOFS_OUTPUT": "r.laz", "WALL_FOOTPRINTS": "f.gpkg", "WALL_EDGES": "e.gpkg"}
+    given = {name: str(out / file) for name, file in {**targets, "DTM": "dtm.tif"}.items()}
+    given.update({"INPUT": str(village), "OLD_MAP": old_map if with_map else None})
+    result = run("mapfootprints", given, context, log)
+
+    cloud = read_cloud(village)
+    ring = np.array([[7, 9], [17, 9], [17, 19], [7, 19], [7, 9]], float) + [85_000, 446_000]
+    drawn = Features([[cloud.from_map(ring)]], {"id": [1]}) if with_map else None
+    expected = run_pipeline(PIPELINES["map_footprints"], cloud, sources={"old_map": drawn})
+    same_clouds(read_cloud(out / "a.laz"), expected.cloud)
+    same_clouds(read_cloud(out / "r.laz"), expected.clouds["roofs_output"])
+    footprints = list(QgsVectorLayer(result["WALL_FOOTPRINTS"], "f", "ogr").getFeatures())
+    assert [f["area"] for f in footprints] == pytest.approx(expected.layers["wall_footprints"].columns["area"])
+    assert {f["source"] for f in footprints} == {"roof"}
+    edges = QgsVectorLayer(result["WALL_EDGES"], "e", "ogr")
+    assert edges.featureCount() == len(expected.layers["wall_edges"]) > 0
+    values, wanted = values_of(opened(result["DTM"])), expected.rasters["dtm"].values
+    np.testing.assert_array_equal(np.where(values == -9999, np.nan, values), wanted)
+    assert result["COMPARISON_FOUND"] == with_map
+    if with_map:
+        shift = [result[f"COMPARISON_MEAN_{axis}"] for axis in ("DX", "DY")]
+        wanted_shift = [expected.report.values[name] for name in ("mean_dx", "mean_dy")]
+        assert shift == pytest.approx(wanted_shift, abs=2e-3)
+
+
 def test_the_models_own_defaults_count(provider, context, log, town_file, out):
     run(
         "toychain",
