@@ -202,6 +202,12 @@ def compute_features(
             values[rows] = getattr(described, name)
 
     reduce_neighborhoods(xyz, around[neighborhood](), keep, monitor=monitor, extents=bool(_OF_EXTENT & set(features)))
+    wanted = {"nearest": n_neighbors, "optimal": min_neighbors}.get(neighborhood, 0)
+    if len(xyz) < wanted:
+        monitor.warn(
+            f"The cloud has fewer points ({len(xyz)}) than a neighborhood asks for ({wanted}): all points have the "
+            "features of the whole cloud."
+        )
     if undefined.any():
         monitor.warn(
             f"{undefined.sum()} of {len(xyz)} points have too few distinct neighbors: their features are undefined."

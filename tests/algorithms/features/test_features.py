@@ -174,6 +174,20 @@ def test_the_count_alone_is_told_everywhere(gable):
     assert len(monitor.warnings) == 1
 
 
+@pytest.mark.parametrize(
+    ("neighborhood", "told"), [({"n_neighbors": 6}, [6]), ({"n_neighbors": 5}, []), ({"neighborhood": "optimal"}, [10])]
+)
+def test_a_cloud_smaller_than_its_neighborhoods_is_told(neighborhood, told):
+    monitor = Monitor()
+    points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 1]]
+    compute_features(points, features=("planarity",), monitor=monitor, **neighborhood)
+    assert monitor.warnings == [
+        f"The cloud has fewer points (5) than a neighborhood asks for ({wanted}): all points have the features of the "
+        "whole cloud."
+        for wanted in told
+    ]
+
+
 def test_fewest_more_than_most_is_one_sentence(gable):
     with pytest.raises(
         ValueError, match=r"nearest points \(30\) is larger than the greatest \(20\); exchange the two\.$"
