@@ -67,6 +67,16 @@ def test_log_tells_the_range_of_what_is_not_limited():
     assert monitor.values == {"max_height": 2.6, "low": 0.0}
 
 
+def test_a_filter_without_limits_says_that_it_filters_nothing():
+    told = []
+    for limits in ({}, {"dimension": "Z"}, {"classes": "2"}, {"dimension": "Z", "low": 0.0}, {"max_height": 9.0}):
+        monitor = Monitor()
+        filter_points(XYZ, CLASSES, HEIGHTS, np.arange(6), monitor=monitor, **limits)
+        told.append(monitor.warnings)
+    sentence = "No limit is set (no classes, heights or values of a dimension), so all points stay."
+    assert told == [[sentence], [sentence], [], [], []]
+
+
 def test_limits_of_what_is_not_there_are_refused():
     with pytest.raises(ValueError, match="need HeightAboveGround; run 'Height above ground' first or set none"):
         kept(max_height=2.5)
