@@ -236,7 +236,11 @@ def _moved(number: int, xyz: np.ndarray, transform: Transform, monitor: Monitor)
     made = transform(xyz)
     middle = (xyz.min(axis=0) + xyz.max(axis=0)) / 2
     shift = float(np.linalg.norm(transform(middle) - middle))
-    monitor.resolved(**{f"rotation_{number}": transform.angle, f"shift_{number}": shift})
+    told = {
+        f"rotation_of_cloud_{number}_in_degrees": transform.angle,
+        f"shift_of_the_middle_of_cloud_{number}_in_meters": shift,
+    }
+    monitor.resolved(**told)
     farthest = np.abs(xyz).max(axis=0)
     off = float(np.linalg.norm(np.abs(transform.rotation - transform.given) @ farthest))
     if off > _WORTH_TELLING:
@@ -253,9 +257,10 @@ def _tell_apart(clouds: list[np.ndarray], monitor: Monitor) -> None:
     high = np.array([part.max(axis=0) for part in clouds])
     gap = np.linalg.norm(np.maximum(np.maximum(low[:, None] - high, low - high[:, None]), 0.0), axis=2)
     np.fill_diagonal(gap, np.inf)
-    for number, nearest in enumerate(gap.min(axis=1), start=1):
-        if nearest > _APART:
-            monitor.warn(
-                f"Cloud {number} lies apart, {nearest:,.0f} m from the nearest other; if they are of one site, "
-                "check the transforms."
-            )
+    nearest = gap.min(axis=1)
+    apart = np.flatnonzero(nearest > _APART)
+    if len(apart):
+        monitor.warn(
+            f"Some clouds lie apart, {nearest[apart].min():,.0f} m or more from the nearest other (cloud "
+            f"{', '.join(str(i + 1) for i in apart)}); if they are of one site, check the transforms."
+        )

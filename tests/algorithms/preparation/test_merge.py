@@ -111,9 +111,11 @@ def test_source_ids_from_before_are_kept(two):
 def test_what_was_done_is_told(two):
     monitor = Monitor()
     merged(two, "0 0 -90 0 0 0", monitor)
-    assert monitor.values["rotation_2"] == pytest.approx(90)
+    assert monitor.values["rotation_of_cloud_2_in_degrees"] == pytest.approx(90)
     middle = (two[1].min(axis=0) + two[1].max(axis=0)) / 2
-    assert monitor.values["shift_2"] == pytest.approx(np.hypot(*middle[:2]) * np.sqrt(2))
+    assert monitor.values["shift_of_the_middle_of_cloud_2_in_meters"] == pytest.approx(
+        np.hypot(*middle[:2]) * np.sqrt(2)
+    )
 
 
 # --- How transforms are written
@@ -215,8 +217,17 @@ def test_clouds_that_lie_apart_are_merged_and_told(two):
     xyz, *_ = merged([*two, two[0]], "; 0 0 0 1000 0 0", monitor)
     assert len(xyz) == 130
     (warning,) = monitor.warnings
-    assert warning.startswith("Cloud 3 lies apart, 99")
-    assert warning.endswith("m from the nearest other; if they are of one site, check the transforms.")
+    assert warning.startswith("Some clouds lie apart, 99")
+    assert warning.endswith(
+        "m or more from the nearest other (cloud 3); if they are of one site, check the transforms."
+    )
+
+
+def test_two_clouds_apart_from_each_other_are_told_in_one_sentence(two):
+    monitor = Monitor()
+    merged(two, "0 0 0 1000 0 0", monitor)
+    (warning,) = monitor.warnings
+    assert "(cloud 1, 2)" in warning
 
 
 def test_neighboring_tiles_are_not_told(rng):
