@@ -10,6 +10,7 @@ import numpy as np
 
 from ..cloud.density import point_spacing
 from ..features.noise import surface_density, surface_roughness
+from ..packages import spatial
 from ..params import MinBuildingArea, Seed
 from ..stage import Features, Field, Layer, Param, stage
 from .outlines import perimeter, signed_area, trace_outlines
@@ -184,7 +185,8 @@ def _tolerance(xyz: np.ndarray) -> float:
     """Return the distance (m) within which points lie on a wall."""
     if len(xyz) < 3:
         return 0.1
-    return float(np.clip(_ON_WALL * surface_roughness(xyz, surface_density(xyz)), 0.01, 2.0))
+    tree = spatial.cKDTree(xyz)
+    return float(np.clip(_ON_WALL * surface_roughness(xyz, surface_density(xyz, tree), tree), 0.01, 2.0))
 
 
 @dataclass(frozen=True)

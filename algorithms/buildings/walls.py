@@ -157,7 +157,9 @@ def classify_walls(
             f"The minimum height of walls ({min_height:g} m) is above the split height ({split_height:g} m); lower it."
         )
     if noise is None:
-        noise = surface_roughness(xyz, surface_density(xyz))
+        tree = spatial.cKDTree(xyz)
+        noise = surface_roughness(xyz, surface_density(xyz, tree), tree)
+        del tree
     monitor.progress(0.2)
     wall_of = np.zeros(len(xyz), np.int32)
     is_low = (height_above_ground >= min_height) & (height_above_ground < split_height)

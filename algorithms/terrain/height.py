@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..cloud.asprs import PointClass
+from ..params import GroundSpacing
 from ..stage import stage
-from .tin import Tin
+from .tin import Tin, thinned
 
 
 @stage(
@@ -15,7 +16,7 @@ from .tin import Tin
     tags="normalize,HAG,height,terrain,TIN",
     writes=("height_above_ground",),
 )
-def compute_height_above_ground(xyz, classification, *, monitor=None):
+def compute_height_above_ground(xyz, classification, *, ground_spacing: GroundSpacing = 0.0, monitor=None):
     """Measure how high each point lies above the ground points around it.
 
     The ground is the triangulated surface (TIN) of the points of class 2.
@@ -48,7 +49,7 @@ def compute_height_above_ground(xyz, classification, *, monitor=None):
     is_ground = classification == PointClass.GROUND
     if not is_ground.any():
         raise ValueError("The cloud has no ground points (class 2); run 'Classify ground points (TIN)' first.")
-    tin = Tin(xyz[is_ground])
+    tin = Tin(thinned(xyz[is_ground], ground_spacing))
     facet = tin.locate(xyz, monitor)
     height = xyz[:, 2] - tin.elevation(xyz, facet)
     outside = tin.is_extrapolated()[facet] & ~is_ground

@@ -10,8 +10,9 @@ from ..cloud.asprs import NOISE, PointClass
 from ..cloud.cells import refuse_sparse
 from ..cloud.density import point_density
 from ..packages import ndimage
+from ..params import GroundSpacing
 from ..stage import Monitor, Param, Raster, Surface, stage
-from .tin import Tin
+from .tin import Tin, thinned
 
 # A cell so many point spacings wide holds four points on average, and one in fifty is empty.
 _CELL_SPACINGS, _LEAST_CELL = 2.0, 0.05
@@ -56,6 +57,7 @@ def rasterize_terrain(
             automatic="5 cells.",
         ),
     ] = None,
+    ground_spacing: GroundSpacing = 0.0,
     monitor=None,
 ):
     """Make rasters of the terrain, of the surface with all that stands on it, and of the difference.
@@ -104,7 +106,9 @@ def rasterize_terrain(
     used, ground = used - corner, xyz[is_ground] - corner
     columns, rows = (np.floor(used[:, :2].max(axis=0) / cell_size).astype(np.int64) + 1).tolist()
     middle = _middles(cell_size, rows, columns)
-    dtm = _interpolated(ground, middle.reshape(-1, 3), monitor.part(0, 0.6)).reshape(rows, columns)
+    dtm = _interpolated(thinned(ground, ground_spacing), middle.reshape(-1, 3), monitor.part(0, 0.6)).reshape(
+        rows, columns
+    )
     if np.isnan(dtm).all():
         monitor.warn("The ground points span no area: the terrain model is empty.")
     dsm = _highest(used, cell_size, rows, columns)

@@ -6,13 +6,46 @@ from typing import Any, Optional
 
 import numpy as np
 
+from ..cloud.cells import grid_over
 from ..packages import spatial
 from ..stage import Monitor
 
 _CHUNK = 200_000
 
+# Points with less variance across their line (m²) have no hull.
+_NO_WIDTH = 1e-6
+
 # Far more steps than a walk from the nearest node takes.
 _MAX_STEPS = 1000
+
+
+def thinned(nodes: np.ndarray, size: float) -> np.ndarray:
+    """Return the mean of the nodes in each cell of ``size`` (m), and the corners of their hull; all where it is 0.
+
+    Parameters
+    ----------
+    nodes : ndarray of shape (m, 3), float64
+        Nodes (m), m >= 1.
+    size : float
+        Side of a cell, m.
+
+    Returns
+    -------
+    ndarray of shape (k, 3)
+        A corner that is alone in its cell is there twice.
+    """
+    if not size:
+        return nodes
+    index = np.unique(grid_over(nodes, size).number(nodes), return_inverse=True)[1]
+    start = nodes.min(axis=0)
+    means = (
+        start
+        + np.column_stack([np.bincount(index, column) for column in (nodes - start).T]) / np.bincount(index)[:, None]
+    )
+    # Without its corners the ground would end where the outermost means are. Ground on one line has none.
+    if len(nodes) < 3 or np.linalg.eigvalsh(np.cov(nodes[:, :2].T))[0] < _NO_WIDTH:
+        return means
+    return np.concatenate([means, nodes[spatial.ConvexHull(nodes[:, :2] - start[:2]).vertices]])
 
 
 class Tin:

@@ -112,3 +112,24 @@ def test_a_field_without_buildings_has_no_footprints():
     made = mapped(arrays, old_map, monitor)
     assert len(made.layers["wall_footprints"]) == 0
     assert made.report.values["all_footprints"] == 0
+
+
+def test_walls_without_roofs_are_no_buildings(rng):
+    """Ruins and fences: vertical planes only, each of them higher than roofs begin."""
+    ground = np.column_stack([rng.uniform(0, 40, (16_000, 2)), np.zeros(16_000)])
+    walls = []
+    for start, end in (((10, 10), (20, 10)), ((20, 10), (20, 18)), ((10, 30), (25, 33))):
+        share = rng.random((4000, 1))
+        plan = np.array(start) + share * (np.array(end) - start)
+        walls.append(np.column_stack([plan, rng.uniform(0, 5, 4000)]))
+    xyz = np.concatenate([ground, *walls])
+    monitor = Monitor()
+    made = mapped({"xyz": xyz + rng.normal(0, 0.02, xyz.shape)}, None, monitor)
+    assert len(made.layers["wall_footprints"]) == 0
+    assert any("No plane" in warning or "None of the" in warning for warning in monitor.warnings)
+
+
+def test_without_ground_the_sentence_says_what_is_missing(rng):
+    nothing = {"xyz": np.column_stack([np.arange(50.0), np.zeros(50), np.zeros(50)])}
+    with pytest.raises(ValueError, match=r"line|ground"):
+        mapped(nothing, None)
