@@ -264,7 +264,7 @@ _PIPELINES = (
             Step("ground", "classify_ground_cloth"),
             Step("terrain", "rasterize_terrain", {"ground_spacing": 0.5}),
             Step("height", "compute_height_above_ground", {"ground_spacing": 0.5}),
-            Step("planes", "segment_planes_ransac", {"min_height": 2.0}),
+            Step("planes", "segment_planes_ransac", {"min_height": 1.5}),
             Step("roofs", "classify_roofs"),
             Step("walls", "classify_walls"),
             Step("footprints", "extract_wall_footprints"),

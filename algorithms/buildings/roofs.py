@@ -51,8 +51,8 @@ def classify_roofs(
 ):
     """Gather the planes above a height into the roofs of buildings.
 
-    What lies on a plane and higher above the ground than cars and hedges is a roof; points of planes that lie near
-    each other are one building (class 6).
+    Planes that lie higher above the ground than cars and hedges are roofs; those whose points lie near each other are
+    one building (class 6).
 
     Parameters
     ----------
@@ -75,7 +75,8 @@ def classify_roofs(
     Notes
     -----
     The clusters are those of DBSCAN with the gap as radius and a quarter of the points that a level roof has within it.
-    Their numbers follow their westernmost points, not the order of points.
+    The paper takes the points above the height; here a plane is taken whole, down to eaves that are lower, if half of
+    it is above. Numbers follow the westernmost points of clusters, not the order of points.
 
     References
     ----------
@@ -86,7 +87,7 @@ def classify_roofs(
     density = point_density(xyz) if density is None else density
     gap = max(_LEAST_GAP, _GAP_SPACINGS / float(np.sqrt(density))) if gap is None else gap
     monitor.resolved(density=density, gap=gap)
-    is_roof = (segment_id > 0) & (height_above_ground >= split_height) & ~np.isin(classification, NOISE)
+    is_roof = _is_on_roof(segment_id, height_above_ground, split_height) & ~np.isin(classification, NOISE)
     roof = np.flatnonzero(is_roof)
     result = np.where(classification == PointClass.BUILDING, np.uint8(PointClass.UNCLASSIFIED), classification)
     cluster_id = np.zeros(len(xyz), np.int32)
@@ -97,6 +98,14 @@ def classify_roofs(
             f"No plane of {min_area:g} m² lies {split_height:g} m or more above the ground, so no roof was found."
         )
     return result.astype(np.uint8), cluster_id
+
+
+def _is_on_roof(segment_id: np.ndarray, height: np.ndarray, split_height: float) -> np.ndarray:
+    """Return which points (n,) are of planes that lie above the split height, by half of their points at least."""
+    high = np.bincount(segment_id, height >= split_height)
+    on_roof = 2 * high >= np.bincount(segment_id)
+    on_roof[0] = False
+    return on_roof[segment_id]
 
 
 def _clusters(xyz: np.ndarray, gap: float, min_area: float, density: float, monitor: Monitor) -> np.ndarray:

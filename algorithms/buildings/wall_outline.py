@@ -44,7 +44,7 @@ _FLUSH = 0.2
 _LIKE, _EAVE_ANGLE, _EAVE, _AS_EXPECTED = np.deg2rad(8.0), np.deg2rad(3.0), 0.3, 0.15
 
 # A corner must save so many metres of unseen wall, and so many more where it isn't square to within this angle.
-_CORNER_COST, _SKEW_COST, _SQUARE = 0.6, 0.6, np.sin(np.deg2rad(2.0))
+_CORNER_COST, _SKEW_COST, _SQUARE = 0.6, 1.5, np.sin(np.deg2rad(2.0))
 
 # Corners are left out of the test of an edge, by this much or by this share of a short edge.
 _CORNER, _CORNER_SHARE = 0.4, 0.25
@@ -147,7 +147,9 @@ def outline_walls(
 
 def _sides(traced: list, spacing: float) -> np.ndarray:
     """Return the sides of the roof (k, 2, 2) (m): start and end, the building to the left."""
-    rings = regularize_outline(traced, _WIGGLE, spacing / 2) or [simplify_ring(ring, _WIGGLE) for ring in traced]
+    # Holes at the edge of a roof bite pieces out of its outline, which straight sides go over.
+    straight = (regularize_outline(traced, wiggle, spacing / 2) for wiggle in (_WIGGLE, 2 * _WIGGLE))
+    rings = next((rings for rings in straight if rings), None) or [simplify_ring(ring, _WIGGLE) for ring in traced]
     return np.concatenate([np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings])
 
 

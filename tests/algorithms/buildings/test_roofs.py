@@ -60,6 +60,15 @@ def test_tunables_do_what_they_say(scene):
     assert joined[part == 0].max() == joined[part == 2].max()
 
 
+def test_a_roof_goes_down_to_its_eaves(rng):
+    """A slope from 2 to 4 m above the ground is a roof as a whole, one from 1 to 3.4 m is none: more of it is low."""
+    for low, found in ((2.0, True), (1.0, False)):
+        roof = plane(rng, 0, 0, 10, 4, low, 0.5 if found else 0.6)
+        height = roof[:, 2].astype(np.float32)
+        _, cluster_id = classify_roofs(roof, np.ones(len(roof), np.uint8), height, np.ones(len(roof), np.int32))
+        assert cluster_id.all() if found else not cluster_id.any()
+
+
 def test_noise_is_no_roof(scene):
     arrays, part = scene
     arrays["classification"][part == 2] = PointClass.HIGH_NOISE
