@@ -198,6 +198,10 @@ def simulate_village(
     village = build_village(
         size=size, slope=slope, buildings=buildings, trees=trees, overhang=overhang, clutter=clutter, seed=seed
     )
+    if buildings and not village.scene.buildings:
+        monitor.warn(
+            f"No house was built: too few plots lie wholly within {size:g} m; raise the size, or try another seed."
+        )
     xyz, seen = photograph(village.scene, density=density, oblique=oblique, seed=seed, monitor=monitor.part(0.0, 0.8))
     rng = np.random.default_rng([seed, 4])
     kept = _outside_holes(xyz, holes, rng)

@@ -258,6 +258,16 @@ def test_too_many_points_are_refused():
         simulate_village(size=1000.0, density=100.0)
 
 
+def test_a_village_without_houses_is_told_of():
+    """Seed 1 has no whole plot within 60 m; where nobody asks for houses, there is nothing to tell."""
+    told = {}
+    for size, buildings in ((60.0, 12.0), (60.0, 0.0), (80.0, 12.0)):
+        monitor = Monitor()
+        *_, footprints, _ = simulate_village(size=size, buildings=buildings, density=5.0, monitor=monitor)
+        told[size, buildings] = len(footprints) > 0, len(monitor.warnings)
+    assert told == {(60.0, 12.0): (False, 1), (60.0, 0.0): (False, 0), (80.0, 12.0): (True, 0)}
+
+
 def test_it_can_be_cancelled():
     class Impatient(Monitor):
         def progress(self, fraction: float) -> None:
