@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Optional
 
-from qgis.core import Qgis, QgsCoordinateReferenceSystem, QgsUnitTypes
+from qgis.core import Qgis, QgsCoordinateReferenceSystem, QgsProcessingFeatureSource, QgsUnitTypes
 
 _DISTANCES_UNKNOWN = (Qgis.DistanceUnit.Unknown, Qgis.DistanceUnit.Degrees)
 
@@ -42,3 +42,13 @@ def crs_of(wkt: str) -> QgsCoordinateReferenceSystem:
     # Layers hold heights as an attribute or in metres of the cloud's own vertical system, which GeoPackage can't name.
     horizontal = crs.horizontalCrs()
     return horizontal if horizontal.isValid() else crs
+
+
+def crs_of_layer(layer: QgsProcessingFeatureSource) -> QgsCoordinateReferenceSystem:
+    """Return the CRS of a layer, invalid when it names none.
+
+    A GeoPackage without a CRS comes back from disk in an "Undefined geographic SRS", by the name that its standard
+    gives it, which QGIS holds for valid; reprojecting to or from it would make degrees of metres.
+    """
+    crs = layer.sourceCrs()
+    return QgsCoordinateReferenceSystem() if crs.description().lower().startswith("undefined ") else crs

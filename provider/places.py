@@ -10,7 +10,7 @@ from qgis.core import QgsCoordinateReferenceSystem, QgsProcessingFeatureSource
 
 from ..algorithms.cloud.cloud import Cloud
 from ..algorithms.stage import Monitor, Source
-from .crs import crs_of, metres_per_unit
+from .crs import crs_of, crs_of_layer, metres_per_unit
 
 _ORIGIN_STEP = 1000.0
 
@@ -43,7 +43,7 @@ def place_of_layers(layers: dict[Source, QgsProcessingFeatureSource], monitor: M
     if not layers:
         return None
     source, layer = next(iter(layers.items()))
-    crs = layer.sourceCrs()
+    crs = crs_of_layer(layer)
     refuse_degrees(source.title, crs)
     if not crs.isValid():
         monitor.warn(f"{source.title} names no coordinate reference system; its coordinates are taken as meters.")

@@ -23,6 +23,7 @@ from qgis.core import (
 )
 
 from ..algorithms.stage import Features, Monitor, Source
+from .crs import crs_of_layer
 from .places import Place, refuse_degrees
 from .vectors import SOURCE_TYPES
 
@@ -128,7 +129,7 @@ def _transform(
     source: Source, layer: QgsProcessingFeatureSource, place: Place, context: QgsProcessingContext, monitor: Monitor
 ) -> QgsCoordinateTransform:
     """Return what brings a layer to the place; nothing to do where one of the two names no CRS."""
-    own = layer.sourceCrs()
+    own = crs_of_layer(layer)
     if own.isValid() and place.crs.isValid():
         return QgsCoordinateTransform(own, place.crs, context.transformContext())
     if own.isValid():

@@ -7,12 +7,14 @@ import pytest
 from osgeo import gdal
 from qgis.core import (
     QgsCoordinateReferenceSystem,
+    QgsCoordinateTransformContext,
     QgsFeature,
     QgsGeometry,
     QgsPointCloudLayer,
     QgsProcessingException,
     QgsProcessingOutputLayerDefinition,
     QgsRasterLayer,
+    QgsVectorFileWriter,
     QgsVectorLayer,
 )
 
@@ -270,6 +272,21 @@ def test_lengths_are_metres_where_layers_are_in_feet(provider, context, log, out
     assert result["LONGEST"] == pytest.approx(500 * 1200 / 3937)
     (feature,) = QgsVectorLayer(str(out / "a.gpkg"), "arrows", "ogr").getFeatures()
     assert feature.geometry().length() == pytest.approx(500)
+
+
+def test_a_geopackage_without_a_system_is_in_that_of_the_other_layer(provider, context, log, out):
+    """Its standard calls that "Undefined geographic SRS", from which QGIS would reproject as if it were degrees."""
+    nowhere, path = squares((85_000.0, 446_000.0), crs=""), str(out / "nowhere.gpkg")
+    options = QgsVectorFileWriter.SaveVectorOptions()
+    assert QgsVectorFileWriter.writeAsVectorFormatV3(nowhere, path, QgsCoordinateTransformContext(), options)[0] == 0
+    stored, new = QgsVectorLayer(path, "stored", "ogr"), squares((85_003.0, 446_004.0))
+    assert stored.crs().isValid()
+    context.project().addMapLayers([stored, new])
+    for first, second, told in ((stored, new, "Old map names no"), (new, stored, "New map names no")):
+        log.warnings.clear()
+        result = run("toyarrows", {"OLD": first, "NEW": second, "ARROWS": str(out / "a.gpkg")}, context, log)
+        assert result["LONGEST"] == pytest.approx(5.0)
+        assert log.warnings[0].startswith(told)
 
 
 def test_layers_in_degrees_are_refused(provider, context, log, out):
