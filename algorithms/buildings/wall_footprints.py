@@ -145,8 +145,9 @@ def extract_wall_footprints(
     they aren't square, what lies outside the roof by the area. It is found by a minimum cut, then line by line it is
     tried whether the outline is better off without.
 
-    Sides without wall points lie as far inside the edge of the roof as the other walls in the median; ``quality`` 0
-    marks them. The result depends on the seed, and not on the order of points.
+    What lies deeper under a roof than it juts out over the other walls counts as inside: loggias, porches. Sides
+    without wall points lie as far inside the edge of the roof as the other walls in the median; ``quality`` 0 marks
+    them. The result depends on the seed, and not on the order of points.
 
     References
     ----------
