@@ -36,7 +36,7 @@ from .feedback import ChainFeedback
 from .help import lower_first, pipeline_help, step_title
 from .outputs import check_targets, files_of, nothing_left_on_failure
 from .parameters import number_outputs, parameter, parameter_name, tunable_values
-from .sources import source_files, source_name, source_parameter
+from .sources import refuse_elsewhere, source_files, source_name, source_parameter
 from .stage_algorithm import INPUT, INPUTS, OUTPUT, cloud_title, input_parameter, input_paths
 
 PROVIDER = "lidarbuildings"
@@ -400,6 +400,8 @@ class PipelineAlgorithm(QgsProcessingModelAlgorithm):
         for cloud in clouds:
             # Now, as QGIS opens the input of a model as a layer too, and a damaged COPC can hang it.
             check_readable(cloud, crs_units)
+        for cloud in clouds[:1]:
+            refuse_elsewhere(self, self.pipeline.sources.values(), cloud, given, context)
 
     def _with_defaults(self, parameters: dict) -> dict:
         """Return ``parameters`` with the model's defaults, where QGIS would take the child's.

@@ -9,6 +9,7 @@ from typing import Any, Callable, Optional
 import numpy as np
 from qgis.core import (
     Qgis,
+    QgsCoordinateReferenceSystem,
     QgsCoordinateTransform,
     QgsCsException,
     QgsFeatureRequest,
@@ -18,12 +19,14 @@ from qgis.core import (
     QgsProcessingFeatureSource,
     QgsProcessingParameterFeatureSource,
     QgsProviderRegistry,
+    QgsRectangle,
     QgsVariantUtils,
     QgsWkbTypes,
 )
 
+from ..algorithms.cloud.cloud import read_extent
 from ..algorithms.stage import Features, Monitor, Source
-from .crs import crs_of_layer
+from .crs import crs_of, crs_of_layer
 from .places import Place, refuse_degrees
 from .vectors import SOURCE_TYPES
 
@@ -95,6 +98,48 @@ def source_files(
     return [path for path in files if path.is_file()]
 
 
+def refuse_elsewhere(
+    algorithm: QgsProcessingAlgorithm,
+    sources: Iterable[Source],
+    cloud: Path,
+    parameters: dict,
+    context: QgsProcessingContext,
+) -> None:
+    """Refuse layers that can't be brought to where a cloud is, or lie wholly outside of it, before any work.
+
+    Raises
+    ------
+    ValueError
+        If a layer doesn't touch the bounding box of the cloud.
+    """
+    found = {source: find_source(algorithm, source, parameters, context) for source in sources}
+    layers = {source: layer for source, layer in found.items() if layer is not None}
+    if not layers:
+        return
+    low, high, wkt = read_extent(cloud)
+    box, crs = QgsRectangle(low[0], low[1], high[0], high[1]), crs_of(wkt)
+    for source, layer in layers.items():
+        extent = layer.sourceExtent()
+        if extent.isNull() or not (low < high)[:2].all():
+            continue
+        try:
+            there = _transform(source, layer, crs, context, Monitor()).transformBoundingBox(extent)
+        except QgsCsException:
+            there = QgsRectangle()
+        if not there.intersects(box):
+            raise ValueError(
+                f"{source.title} and the point cloud don't overlap: {_range(there)} against {_range(box)}; choose a "
+                "layer of the place, or check the coordinate reference systems of both."
+            )
+
+
+def _range(box: QgsRectangle) -> str:
+    """Return the coordinates of a box as people read them."""
+    if box.isNull():
+        return "nowhere in the cloud's system"
+    return f"x {box.xMinimum():.0f} to {box.xMaximum():.0f}, y {box.yMinimum():.0f} to {box.yMaximum():.0f}"
+
+
 def read_source(
     source: Source, layer: QgsProcessingFeatureSource, place: Place, context: QgsProcessingContext, monitor: Monitor
 ) -> Features:
@@ -102,8 +147,13 @@ def read_source(
 
     Arcs become lines. Features without a sound geometry of the declared kind are left out, which a
     warning counts. Heights are taken in the vertical unit of the place; geometries that lack some are flat.
+
+    Raises
+    ------
+    ValueError
+        If there are features and all are left out.
     """
-    transform = _transform(source, layer, place, context, monitor)
+    transform = _transform(source, layer, place.crs, context, monitor)
     geometries: list = []
     rows: list = []
     count = left_out = 0
@@ -116,6 +166,11 @@ def read_source(
         rows += [feature.attributes()] * len(parts)
         count += 1
         left_out += not parts
+    if left_out and not rows:
+        raise ValueError(
+            f"{source.title} has no usable feature: none of {count} has a valid geometry of {_WORDS[source.geometry]}; "
+            "run 'Fix geometries' on the layer, or choose another."
+        )
     if left_out:
         monitor.warn(
             f"{source.title}: {left_out} of {count} features are left out; "
@@ -126,17 +181,21 @@ def read_source(
 
 
 def _transform(
-    source: Source, layer: QgsProcessingFeatureSource, place: Place, context: QgsProcessingContext, monitor: Monitor
+    source: Source,
+    layer: QgsProcessingFeatureSource,
+    there: QgsCoordinateReferenceSystem,
+    context: QgsProcessingContext,
+    monitor: Monitor,
 ) -> QgsCoordinateTransform:
-    """Return what brings a layer to the place; nothing to do where one of the two names no CRS."""
+    """Return what brings a layer to the CRS of the place; nothing to do where one of the two names none."""
     own = crs_of_layer(layer)
-    if own.isValid() and place.crs.isValid():
-        return QgsCoordinateTransform(own, place.crs, context.transformContext())
+    if own.isValid() and there.isValid():
+        return QgsCoordinateTransform(own, there, context.transformContext())
     if own.isValid():
         refuse_degrees(source.title, own)
         monitor.warn(f"{source.title} is in {own.userFriendlyIdentifier()}; so, it is taken, is all that names no CRS.")
-    elif place.crs.isValid():
-        monitor.warn(f"{source.title} names no CRS; it is taken to be in {place.crs.userFriendlyIdentifier()}.")
+    elif there.isValid():
+        monitor.warn(f"{source.title} names no CRS; it is taken to be in {there.userFriendlyIdentifier()}.")
     return QgsCoordinateTransform()
 
 

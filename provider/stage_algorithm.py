@@ -38,7 +38,7 @@ from .parameters import automatic_numbers, number_outputs, parameter, tunable_va
 from .paths import HELP, ICON
 from .places import Place, place_of_cloud, place_of_layers
 from .rasters import write_raster
-from .sources import find_source, read_source, source_files, source_parameter
+from .sources import find_source, read_source, refuse_elsewhere, source_files, source_parameter
 from .styles import cloud_style, layer_style, style_on_load
 from .vectors import SOURCE_TYPES, fields_of, plain, qgis_features, wkb_type
 
@@ -183,6 +183,8 @@ class StageAlgorithm(QgsProcessingAlgorithm):
             job.reference = cloud_path(self, REFERENCE, parameters, context)
         read = [*job.paths, *source_files(self, self.stage.sources, parameters, context)]
         check_targets(self.destinationParameterDefinitions(), parameters, read)
+        for cloud in job.inputs[:1]:
+            refuse_elsewhere(self, self.stage.sources, cloud, parameters, context)
         return job
 
     def processAlgorithm(  # noqa: N802

@@ -54,7 +54,11 @@ def build_report(clusters: Clusters) -> Report:
 
 
 def _page(clusters: Clusters, values: dict, groups: dict) -> str:
-    lead = f"{values['building_clusters']:,} of {values['clusters']:,} clusters are called building."
+    lead = (
+        f"{values['building_clusters']:,} of {values['clusters']:,} clusters of points are called building. "
+        "A cluster is often one surface of a roof: where clusters are joined to whole buildings afterwards, footprints "
+        "are fewer."
+    )
     if clusters.is_given:
         lead += " Their entropies don't form two groups, so each was compared with the entropies of planes and volumes."
     rows = [

@@ -146,6 +146,8 @@ def extract_footprints(
     """
     building = np.flatnonzero((classification == PointClass.BUILDING) & (cluster_id is None or cluster_id > 0))
     found = Features([], {field.name: [] for field in _FIELDS})
+    if not len(building):
+        monitor.warn("No point is called building (class 6), so there are no footprints.")
     if not len(building) or not np.ptp(xyz[building, :2], axis=0).any():
         return found
     spacing = point_spacing(xyz[building])

@@ -14,7 +14,8 @@ from ..segmentation.extent import plan_areas
 from ..stage import Monitor, Param, stage
 
 # Surfaces of one roof lie within this distance (m), or so many point spacings; roofs of two buildings seldom do.
-_LEAST_GAP, _GAP_SPACINGS = 0.6, 3.0
+# Farther apart than a lane is wide (m) they never are one roof, however few points there are.
+_LEAST_GAP, _GAP_SPACINGS, _MOST_GAP = 0.6, 3.0, 5.0
 
 # The corner of a roof sees a quarter of the points that its middle sees.
 _CORNER = 0.25
@@ -43,7 +44,7 @@ def classify_roofs(
             low=0,
             high=20,
             open_low=True,
-            automatic="3 times the point spacing, at least 0.6 m.",
+            automatic="3 times the point spacing, from 0.6 to 5 m.",
         ),
     ] = None,
     density: PointDensity = None,
@@ -85,7 +86,8 @@ def classify_roofs(
     section 2.3.
     """
     density = point_density(xyz) if density is None else density
-    gap = max(_LEAST_GAP, _GAP_SPACINGS / float(np.sqrt(density))) if gap is None else gap
+    if gap is None:
+        gap = float(np.clip(_GAP_SPACINGS / np.sqrt(density), _LEAST_GAP, _MOST_GAP))
     monitor.resolved(density=density, gap=gap)
     is_roof = _is_on_roof(segment_id, height_above_ground, split_height) & ~np.isin(classification, NOISE)
     roof = np.flatnonzero(is_roof)
@@ -95,7 +97,8 @@ def classify_roofs(
     result[cluster_id > 0] = PointClass.BUILDING
     if not cluster_id.any():
         monitor.warn(
-            f"No plane of {min_area:g} m² lies {split_height:g} m or more above the ground, so no roof was found."
+            f"No plane of {min_area:g} m² lies {split_height:g} m or more above the ground, so no roof was found; "
+            "check that the cloud shows the ground beside the buildings."
         )
     return result.astype(np.uint8), cluster_id
 

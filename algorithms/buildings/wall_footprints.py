@@ -12,7 +12,7 @@ from ..cloud.density import point_spacing
 from ..features.noise import surface_density, surface_roughness
 from ..packages import spatial
 from ..params import MinBuildingArea, Seed
-from ..stage import Features, Field, Layer, Param, stage
+from ..stage import Features, Field, Layer, Monitor, Param, stage
 from .outlines import perimeter, signed_area, trace_outlines
 from .regularize import is_inside, regularize_outline
 from .wall_outline import Limits, WallEdge, WallOutline, closed, outline_walls
@@ -174,12 +174,24 @@ def extract_wall_footprints(
                 _add(footprints, edges, rings, building, outline, height_above_ground)
         monitor.progress(done / len(buildings))
     monitor.progress(1.0)
-    if ROOF in footprints.columns["source"]:
-        count = footprints.columns["source"].count(ROOF)
-        monitor.warn(
-            f"{count} of {len(footprints)} footprints are outlines of roofs, as too few of their walls were seen."
-        )
+    _tell_unseen(footprints, monitor)
     return footprints, edges
+
+
+def _tell_unseen(footprints: Features, monitor: Monitor) -> None:
+    """Say how many footprints are outlines of roofs, and how many rest on few walls."""
+    source, quality = footprints.columns["source"], footprints.columns["quality"]
+    if ROOF in source:
+        monitor.warn(
+            f"{source.count(ROOF)} of {len(footprints)} footprints are outlines of roofs, "
+            "as too few of their walls were seen."
+        )
+    thin = sum(one == WALL and seen < _SEEN for one, seen in zip(source, quality))
+    if thin:
+        monitor.warn(
+            f"Of {thin} of {len(footprints)} footprints less than half of the walls was seen; "
+            "where the others are (edges of quality 0) is guessed from the edge of the roof."
+        )
 
 
 def _tolerance(xyz: np.ndarray) -> float:

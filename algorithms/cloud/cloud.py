@@ -335,6 +335,23 @@ def check_readable(path: Union[str, Path], crs_units: Optional[Resolver] = None)
             check_points(source, header)
 
 
+def read_extent(path: Union[str, Path]) -> tuple[np.ndarray, np.ndarray, str]:
+    """Return the lowest and the highest coordinates (3,) and the CRS of a file or of all its tiles.
+
+    Coordinates are those of the file, as its headers tell them. The CRS is WKT, "EPSG:code" or "".
+
+    Raises
+    ------
+    ValueError
+        In one sentence, what is wrong with the file or with a tile of it.
+    """
+    path = Path(path)
+    with _readable(path):
+        headers = [open_header(source) for source in _sources(path)]
+    low, high = ([getattr(header, name) for header in headers] for name in ("low", "high"))
+    return np.min(low, axis=0), np.max(high, axis=0), wkt_of(headers[0])
+
+
 @contextmanager
 def _readable(path: Path) -> Iterator[None]:
     try:

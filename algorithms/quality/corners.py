@@ -35,6 +35,9 @@ _FAR_OFF = 2 / 3
 # The shift between two maps is known when it changes by less, m.
 _STILL, _MOST_ROUNDS = 1e-3, 10
 
+# Footprints and a map that lie farther apart (m) show different places, whatever of one place each of them lacks.
+_ELSEWHERE = 1000.0
+
 # Polygons and lines that are smaller (m², m) are none.
 _NO_AREA, _NO_LENGTH = 1e-6, 1e-3
 
@@ -100,7 +103,7 @@ _MEASURES = (
             "old_map",
             "Old map",
             "Polygon",
-            "Buildings to compare with, cut to the area that was surveyed; without any, all footprints are new.",
+            "Buildings to compare with, cut to the area that was surveyed; without a map, all footprints are new.",
             optional=True,
         ),
     ),
@@ -156,6 +159,11 @@ def compare_corners(
     report : Report
         Counts and distances, and a page with charts. What there is nothing to compute from is NaN.
 
+    Raises
+    ------
+    ValueError
+        If footprints and map lie more than a kilometer apart.
+
     Notes
     -----
     A building of the old map is found when footprints cover at least the minimum overlap of it; a footprint is new
@@ -173,9 +181,10 @@ def compare_corners(
     table 2.
     """
     if old_map is None:
-        monitor.warn("There is no old map to compare with, so all footprints are new.")
+        monitor.warn("There is no old map to compare with" + (", so all footprints are new." if footprints else "."))
         old_map = Features([], {})
     new, old = _cleaned(footprints, "footprints", monitor), _cleaned(old_map, "buildings of the old map", monitor)
+    _refuse_elsewhere(old, new)
     corners, others = _corners(old.rings), _corners(new.rings)
     reach = max(_FARTHEST, tolerance or 0.0)
     shift = _shift(corners, others, _linked(old, new, min_overlap, np.zeros(2), monitor.part(0.0, 0.4)), reach)
@@ -216,6 +225,20 @@ def _cleaned(features: Features, called: str, monitor: Monitor) -> _Map:
             "run 'Fix geometries' on the layer first."
         )
     return _Map(rings, polygons, np.maximum(area, _NO_AREA), [name for _, name in usable])
+
+
+def _refuse_elsewhere(old: _Map, new: _Map) -> None:
+    """Refuse maps of which the one lies far from the other."""
+    if not old.rings or not new.rings:
+        return
+    boxes = [np.concatenate([rings[0] for rings in one.rings]) for one in (old, new)]
+    (low, high), (other_low, other_high) = [(box.min(axis=0), box.max(axis=0)) for box in boxes]
+    apart = float(np.hypot(*np.maximum(0.0, np.maximum(low - other_high, other_low - high))))
+    if apart > _ELSEWHERE:
+        raise ValueError(
+            f"The footprints and the old map lie {apart / 1000:,.0f} km apart; "
+            "choose a map of the place, or check the coordinate reference systems of both."
+        )
 
 
 def _proper(rings: list) -> list:

@@ -197,8 +197,8 @@ def _kept(
     on_plane[on_plane] = is_kept[plane[on_plane]]
     if not on_plane.any():
         monitor.warn(
-            f"None of the {len(planes)} planes has a slope from {min_slope:g}° to {max_slope:g}°; no point has a "
-            "SegmentID."
+            f"No plane has a slope from {min_slope:g}° to {max_slope:g}°, of {len(planes)} found; "
+            "no point has a SegmentID."
         )
         return segment_id, normal
     segment_id[on_plane] = by_first_point(plane[on_plane]) + 1

@@ -15,7 +15,10 @@ from ..stage import Monitor, Param, Raster, Surface, stage
 from .tin import Tin, thinned
 
 # A cell so many point spacings wide holds four points on average, and one in fifty is empty.
-_CELL_SPACINGS, _LEAST_CELL = 2.0, 0.05
+_CELL_SPACINGS, _LEAST_CELL, _MOST_CELL = 2.0, 0.05, 1000.0
+
+# People choose cells of 1, 2 or 5 times a power of ten.
+_ROUND = np.array([1.0, 2.0, 5.0, 10.0])
 
 # Gaps are filled up to so many cells from the nearest cell with points.
 _GAP_CELLS = 5.0
@@ -43,7 +46,7 @@ def rasterize_terrain(
             unit="m",
             low=0.01,
             high=1000,
-            automatic="twice the point spacing, at least 0.05 m.",
+            automatic="twice the point spacing, rounded to 1, 2 or 5 times a power of ten; at least 0.05 m.",
         ),
     ] = None,
     gap_distance: Annotated[
@@ -96,7 +99,7 @@ def rasterize_terrain(
         raise ValueError("The cloud has no ground points (class 2); run 'Classify ground points (TIN)' first.")
     used = xyz[~np.isin(classification, NOISE)]
     if cell_size is None:
-        cell_size = max(_CELL_SPACINGS / float(np.sqrt(point_density(used))), _LEAST_CELL)
+        cell_size = _rounded(_CELL_SPACINGS / float(np.sqrt(point_density(used))))
     gap_distance = _GAP_CELLS * cell_size if gap_distance is None else gap_distance
     monitor.resolved(cell_size=cell_size, gap_distance=gap_distance)
     refuse_sparse(used, cell_size)
@@ -115,6 +118,13 @@ def rasterize_terrain(
     _fill_gaps(dsm, middle, gap_distance / cell_size, monitor.part(0.6, 1))
     west, north = float(corner[0]), float(corner[1]) + rows * cell_size
     return tuple(Surface(values.astype(np.float32), west, north, cell_size) for values in (dtm, dsm, dsm - dtm))
+
+
+def _rounded(size: float) -> float:
+    """Return the round number nearest in proportion, from 0.05 to 1000."""
+    power = np.floor(np.log10(size))
+    number = _ROUND[np.argmin(np.abs(np.log(_ROUND * 10**power / size)))]
+    return float(np.clip(float(f"{number * 10**power:.0e}"), _LEAST_CELL, _MOST_CELL))
 
 
 def _middles(size: float, rows: int, columns: int) -> np.ndarray:

@@ -319,6 +319,34 @@ def test_a_layer_that_is_read_is_not_written(provider, context, log, out):
     assert "is also an input" in refused(provider, "toyarrows", given, context)
 
 
+def test_a_layer_outside_of_the_cloud_is_refused_before_any_work(provider, context, town_file, out):
+    """A map of another place, or of this one in a wrong system, would show all its buildings as gone."""
+    elsewhere = vector("Polygon", [(BOX.replace("8500", "9500"), [7, 1.5, "a"])])
+    beyond = vector("Polygon", [("Polygon ((900 900, 910 900, 910 910, 900 900))", [7, 1.5, "a"])], crs="EPSG:4326")
+    context.project().addMapLayers([elsewhere, beyond])
+    given = {"INPUT": str(town_file), "OUTPUT": str(out / "a.las")}
+    message = refused(provider, "toymask", {**given, "AREAS": elsewhere}, context)
+    assert message == (
+        "Areas and the point cloud don't overlap: x 95004 to 95010, y 446004 to 446010 against "
+        "x 85000 to 85019, y 446000 to 446019; choose a layer of the place, or check the coordinate reference systems "
+        "of both."
+    )
+    message = refused(provider, "toymask", {**given, "AREAS": beyond}, context)
+    assert message.startswith("Areas and the point cloud don't overlap: nowhere in the cloud's system against x 85000")
+
+
+def test_a_layer_without_a_sound_feature_is_refused(provider, context, log, town_file, out):
+    """Nothing but crossed outlines is a broken layer; as an empty one it would be taken for a field without houses."""
+    crossed = "Polygon ((85004 446004, 85009 446009, 85009 446004, 85004 446009, 85004 446004))"
+    areas = vector("Polygon", [(crossed, [7, 1.5, "a"])] * 2)
+    context.project().addMapLayer(areas)
+    with pytest.raises(
+        QgsProcessingException, match=r"^Areas has no usable feature: none of 2 has a valid geometry of"
+    ):
+        run("toymask", {"INPUT": str(town_file), "AREAS": areas, "OUTPUT": str(out / "a.las")}, context, log)
+    assert list(out.iterdir()) == []
+
+
 def write_town(folder):
     path = folder / "square.las"
     write_cloud(create_cloud({"xyz": np.array([[0.0, 0, 0], [9, 9, 9]])}, "EPSG:28992"), path)

@@ -162,7 +162,10 @@ def test_buildings_without_area_give_no_polygon(xyz):
 
 
 def test_no_building_gives_an_empty_layer(village):
-    found = extract_footprints(village["xyz"], np.full(len(village["xyz"]), 2), village["cluster_id"])
+    monitor = Monitor()
+    ground = np.full(len(village["xyz"]), 2)
+    found = extract_footprints(village["xyz"], ground, village["cluster_id"], monitor=monitor)
+    assert monitor.warnings == ["No point is called building (class 6), so there are no footprints."]
     assert found.geometries == []
     assert set(found.columns) == {field.name for field in extract_footprints.stage.layers[0].fields}
     assert all(len(values) == 0 for values in found.columns.values())

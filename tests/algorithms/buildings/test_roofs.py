@@ -86,6 +86,13 @@ def test_the_order_of_points_changes_nothing(scene, rng):
     )
 
 
+def test_a_few_points_far_apart_do_not_widen_the_gap_without_end():
+    xyz = np.array([[0, 0, 0], [300, 0, 1], [0, 300, 8]], float)
+    monitor = Monitor()
+    classify_roofs(xyz, np.ones(3, np.uint8), xyz[:, 2].astype(np.float32), np.zeros(3, np.int32), monitor=monitor)
+    assert monitor.values["gap"] == 5
+
+
 def test_without_planes_nothing_is_a_roof_and_the_log_says_so(scene):
     arrays, _ = scene
     monitor = Monitor()

@@ -119,6 +119,20 @@ def test_an_unseen_wall_is_told_from_the_roof_and_says_so(rng):
     assert edges.geometries[unseen][:, 1] == pytest.approx([7, 7], abs=0.15)
 
 
+def test_a_footprint_that_rests_on_one_wall_is_told(rng):
+    monitor = Monitor()
+    arrays, _ = building(rng, "rectangle", missing=(1, 2, 3))
+    footprints, _ = extract_wall_footprints(**arrays, min_seen=0.1, monitor=monitor)
+    assert footprints.columns["source"] == ["wall"]
+    assert monitor.warnings == [
+        "Of 1 of 1 footprints less than half of the walls was seen; where the others are (edges of quality 0) is "
+        "guessed from the edge of the roof."
+    ]
+    monitor = Monitor()
+    extract_wall_footprints(**building(rng, "rectangle", missing=(2,))[0], monitor=monitor)
+    assert not monitor.warnings
+
+
 def test_edges_tell_how_precise_they_are(rng):
     """The precision of an edge is that of its points over the root of their number, as repeated scans confirm."""
     offsets, told = [], []

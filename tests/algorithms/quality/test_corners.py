@@ -280,6 +280,16 @@ def test_heights_of_the_layers_are_not_used():
     assert buildings.geometries[0][0].shape == (5, 2)
 
 
+@pytest.mark.parametrize("away", [(1100.0, 0.0), (0.0, -1100.0), (-700.0, 800.0)])
+def test_a_map_of_another_place_is_refused(away):
+    """All its buildings would be told as gone, which nobody who reads the counts alone would doubt."""
+    footprints = layer(house(0, 0), house(30, 0))
+    with pytest.raises(ValueError, match=r"^The footprints and the old map lie 1 km apart; choose a map of the place"):
+        compare_corners(footprints, layer(house(0, 0) + away, house(30, 0) + away))
+    near = layer(house(0, 0) + np.array(away) * 0.9, house(30, 0) + np.array(away) * 0.9)
+    assert compare_corners(footprints, near)[2].values["missed"] == 2
+
+
 def test_no_overlap_at_all_is_said():
     monitor = Monitor()
     arrows, buildings, report = compare_corners(layer(house(0, 0)), layer(house(500, 0)), monitor=monitor)
@@ -330,6 +340,9 @@ def test_without_an_old_map_all_is_new_and_the_log_says_so():
     monitor = Monitor()
     arrows, buildings, report = compare_corners(layer(house(0, 0), house(30, 0)), None, monitor=monitor)
     assert monitor.warnings == ["There is no old map to compare with, so all footprints are new."]
+    monitor = Monitor()
+    compare_corners(layer(), None, monitor=monitor)
+    assert monitor.warnings == ["There is no old map to compare with."]
     assert buildings.columns["status"] == [NEW, NEW]
     assert (len(arrows), report.values["new"]) == (0, 2)
 

@@ -162,7 +162,7 @@ def test_only_walls_says_that_none_has_the_slope(rng):
     monitor = Monitor()
     xyz = plane(rng, 90)
     assert not segment_planes_ransac(xyz, np.ones(len(xyz)), monitor=monitor)[0].any()
-    assert monitor.warnings == ["None of the 1 planes has a slope from 0° to 60°; no point has a SegmentID."]
+    assert monitor.warnings == ["No plane has a slope from 0° to 60°, of 1 found; no point has a SegmentID."]
 
 
 def test_ground_is_left_out_and_minimum_height_needs_heights(rng):

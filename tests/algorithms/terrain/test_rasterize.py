@@ -5,7 +5,7 @@ import pytest
 from scipy.interpolate import LinearNDInterpolator
 
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
-from lidar_buildings.algorithms.terrain.rasterize import rasterize_terrain
+from lidar_buildings.algorithms.terrain.rasterize import _rounded, rasterize_terrain
 
 
 def slope_with_house(rng, density=8.0):
@@ -71,11 +71,22 @@ def test_noise_is_left_out(rng):
         np.testing.assert_array_equal(surface.values, expected.values)
 
 
-def test_automatic_cells_hold_four_points(rng):
-    xyz, classes = slope_with_house(rng, density=16)
+def test_round_numbers_are_the_nearest_in_proportion():
+    """None is farther than half-way, in proportion, from 2 to 5."""
+    sizes = np.geomspace(0.04, 900, 200)
+    rounded = np.array([_rounded(size) for size in sizes])
+    assert (np.diff(rounded) >= 0).all()
+    assert np.abs(np.log(rounded / sizes)).max() <= np.log(2.5) / 2 + 1e-9
+    assert {f"{size:.0e}"[0] for size in rounded} == {"1", "2", "5"}
+    assert (_rounded(1e-6), _rounded(1e6)) == (0.05, 1000)
+
+
+@pytest.mark.parametrize(("density", "cell"), [(16, 0.5), (12, 0.5), (4.5, 1.0), (1.2, 2.0)])
+def test_automatic_cells_hold_about_four_points_and_are_round(rng, density, cell):
+    xyz, classes = slope_with_house(rng, density=density)
     monitor = Monitor()
     dtm = rasterize_terrain(xyz, classes, monitor=monitor)[0]
-    assert monitor.values["cell_size"] == pytest.approx(0.5, rel=0.1)
+    assert monitor.values["cell_size"] == cell
     assert monitor.values["gap_distance"] == 5 * monitor.values["cell_size"]
     assert dtm.cell_size == monitor.values["cell_size"]
 
