@@ -35,19 +35,6 @@ MinBuildingArea = Annotated[
     Param("Minimum building area", "Area of the smallest building to be found.", unit="m²", low=0.1, high=10_000),
 ]
 
-GroundSpacing = Annotated[
-    float,
-    Param(
-        "Ground spacing",
-        "The ground is thinned to one point, the mean, in each cell of this side before it is triangulated: that saves "
-        "much memory where it is dense, and smooths its noise. 0 takes every ground point.",
-        unit="m",
-        low=0,
-        high=100,
-        advanced=True,
-    ),
-]
-
 SplitHeight = Annotated[
     float,
     Param(

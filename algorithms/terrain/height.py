@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..cloud.asprs import PointClass
-from ..params import GroundSpacing
 from ..stage import stage
-from .tin import Tin, thinned
+from .tiles import TiledTin
 
 
 @stage(
@@ -16,7 +15,7 @@ from .tin import Tin, thinned
     tags="normalize,HAG,height,terrain,TIN",
     writes=("height_above_ground",),
 )
-def compute_height_above_ground(xyz, classification, *, ground_spacing: GroundSpacing = 0.0, monitor=None):
+def compute_height_above_ground(xyz, classification, *, monitor=None):
     """Measure how high each point lies above the ground points around it.
 
     The ground is the triangulated surface (TIN) of the points of class 2.
@@ -40,7 +39,8 @@ def compute_height_above_ground(xyz, classification, *, ground_spacing: GroundSp
 
     Notes
     -----
-    Points outside the hull of the ground points are measured from the nearest ground point; the log says how many.
+    Ground points are 0 m high. Points outside the hull of the ground points are measured from the nearest ground point;
+    the log says how many. Of ground points at one place in plan the lowest counts.
 
     References
     ----------
@@ -49,14 +49,16 @@ def compute_height_above_ground(xyz, classification, *, ground_spacing: GroundSp
     is_ground = classification == PointClass.GROUND
     if not is_ground.any():
         raise ValueError("The cloud has no ground points (class 2); run 'Classify ground points (TIN)' first.")
-    tin = Tin(thinned(xyz[is_ground], ground_spacing))
-    facet = tin.locate(xyz, monitor)
-    height = xyz[:, 2] - tin.elevation(xyz, facet)
-    outside = tin.is_extrapolated()[facet] & ~is_ground
+    above = np.flatnonzero(~is_ground)
+    surface = TiledTin(xyz[is_ground])
+    elevation = surface.elevation(xyz[above], monitor)
+    outside = np.isnan(elevation)
     if outside.any():
-        height[outside] = xyz[outside, 2] - tin.nearest_elevation(xyz[outside])
+        elevation[outside] = surface.nearest_elevation(xyz[above[outside]])
         monitor.warn(
             f"{int(outside.sum())} of {len(xyz)} points lie outside the ground; "
             "the nearest ground point gave their height."
         )
-    return height.astype(np.float32)
+    height = np.zeros(len(xyz), np.float32)
+    height[above] = xyz[above, 2] - elevation
+    return height

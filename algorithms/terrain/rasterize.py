@@ -10,9 +10,8 @@ from ..cloud.asprs import NOISE, PointClass
 from ..cloud.cells import refuse_sparse
 from ..cloud.density import point_density
 from ..packages import ndimage
-from ..params import GroundSpacing
 from ..stage import Monitor, Param, Raster, Surface, stage
-from .tin import Tin, thinned
+from .tiles import TiledTin
 
 # A cell so many point spacings wide holds four points on average, and one in fifty is empty.
 _CELL_SPACINGS, _LEAST_CELL, _MOST_CELL = 2.0, 0.05, 1000.0
@@ -60,7 +59,6 @@ def rasterize_terrain(
             automatic="5 cells.",
         ),
     ] = None,
-    ground_spacing: GroundSpacing = 0.0,
     monitor=None,
 ):
     """Make rasters of the terrain, of the surface with all that stands on it, and of the difference.
@@ -109,9 +107,7 @@ def rasterize_terrain(
     used, ground = used - corner, xyz[is_ground] - corner
     columns, rows = (np.floor(used[:, :2].max(axis=0) / cell_size).astype(np.int64) + 1).tolist()
     middle = _middles(cell_size, rows, columns)
-    dtm = _interpolated(thinned(ground, ground_spacing), middle.reshape(-1, 3), monitor.part(0, 0.6)).reshape(
-        rows, columns
-    )
+    dtm = TiledTin(ground).elevation(middle.reshape(-1, 3), monitor.part(0, 0.6)).reshape(rows, columns)
     if np.isnan(dtm).all():
         monitor.warn("The ground points span no area: the terrain model is empty.")
     dsm = _highest(used, cell_size, rows, columns)
@@ -133,13 +129,6 @@ def _middles(size: float, rows: int, columns: int) -> np.ndarray:
     middle[..., 0] = (np.arange(columns) + 0.5) * size
     middle[..., 1] = ((rows - np.arange(rows) - 0.5) * size)[:, None]
     return middle
-
-
-def _interpolated(nodes: np.ndarray, places: np.ndarray, monitor: Monitor) -> np.ndarray:
-    """Return the elevation (m,) of the TIN of ``nodes`` at places (m, 3), NaN outside of their hull."""
-    tin = Tin(nodes)
-    facet = tin.locate(places, monitor)
-    return np.where(tin.is_extrapolated()[facet], np.nan, tin.elevation(places, facet))
 
 
 def _highest(points: np.ndarray, size: float, rows: int, columns: int) -> np.ndarray:
@@ -164,4 +153,4 @@ def _fill_gaps(surface: np.ndarray, middle: np.ndarray, reach: float, monitor: M
     rim = ~empty & ndimage.binary_dilation(empty, np.ones((3, 3), bool))
     nodes = middle[rim]
     nodes[:, 2] = surface[rim]
-    surface[gap] = _interpolated(nodes, middle[gap], monitor.part(0.2, 1))
+    surface[gap] = TiledTin(nodes).elevation(middle[gap], monitor.part(0.2, 1))

@@ -6,46 +6,20 @@ from typing import Any, Optional
 
 import numpy as np
 
-from ..cloud.cells import grid_over
 from ..packages import spatial
 from ..stage import Monitor
 
 _CHUNK = 200_000
 
-# Points with less variance across their line (m²) have no hull.
-_NO_WIDTH = 1e-6
-
 # Far more steps than a walk from the nearest node takes.
 _MAX_STEPS = 1000
 
 
-def thinned(nodes: np.ndarray, size: float) -> np.ndarray:
-    """Return the mean of the nodes in each cell of ``size`` (m), and the corners of their hull; all where it is 0.
-
-    Parameters
-    ----------
-    nodes : ndarray of shape (m, 3), float64
-        Nodes (m), m >= 1.
-    size : float
-        Side of a cell, m.
-
-    Returns
-    -------
-    ndarray of shape (k, 3)
-        A corner that is alone in its cell is there twice.
-    """
-    if not size:
-        return nodes
-    index = np.unique(grid_over(nodes, size).number(nodes), return_inverse=True)[1]
-    start = nodes.min(axis=0)
-    means = (
-        start
-        + np.column_stack([np.bincount(index, column) for column in (nodes - start).T]) / np.bincount(index)[:, None]
-    )
-    # Without its corners the ground would end where the outermost means are. Ground on one line has none.
-    if len(nodes) < 3 or np.linalg.eigvalsh(np.cov(nodes[:, :2].T))[0] < _NO_WIDTH:
-        return means
-    return np.concatenate([means, nodes[spatial.ConvexHull(nodes[:, :2] - start[:2]).vertices]])
+def plan_box(points: np.ndarray) -> np.ndarray:
+    """Return the least and the greatest easting and northing (2, 2) of points, m."""
+    # Column by column is many times faster than along the axis.
+    columns = points[:, 0], points[:, 1]
+    return np.array([[column.min() for column in columns], [column.max() for column in columns]])
 
 
 class Tin:
@@ -58,10 +32,12 @@ class Tin:
     ----------
     nodes : ndarray of shape (m, 3), float64
         Nodes (m), m >= 1; of nodes at one place in plan, one counts.
+    box : ndarray of shape (2, 2), float64, optional
+        Least and greatest easting and northing (m) that the far corners surround; those of the nodes when absent.
     """
 
-    def __init__(self, nodes: np.ndarray) -> None:
-        low, high = nodes[:, :2].min(axis=0), nodes[:, :2].max(axis=0)
+    def __init__(self, nodes: np.ndarray, box: Optional[np.ndarray] = None) -> None:
+        low, high = plan_box(nodes) if box is None else box
         # Qhull works in absolute coordinates: shifted ones keep their digits.
         self.shift = np.append((low + high) / 2, 0.0)
         self.n_nodes = len(nodes)
@@ -155,6 +131,19 @@ class Tin:
         """Return the longest edge (f,) of each facet in plan, m."""
         corners = self.nodes[self.facets, :2]
         return np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+
+    def circles(self, facets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return center (f, 2) and radius (f,) of the circles through the nodes of some facets, m.
+
+        No node lies inside of them. Where the nodes lie on a line, neither is finite.
+        """
+        a, b, c = np.swapaxes(self.nodes[self.facets[facets], :2], 0, 1)
+        u, v = b - a, c - a
+        uu, vv = np.einsum("ij,ij->i", u, u), np.einsum("ij,ij->i", v, v)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            scale = 0.5 / (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
+            to_center = np.column_stack([v[:, 1] * uu - u[:, 1] * vv, u[:, 0] * vv - v[:, 0] * uu]) * scale[:, None]
+        return a + to_center + self.shift[:2], np.linalg.norm(to_center, axis=1)
 
     def _planes(self) -> tuple[np.ndarray, np.ndarray]:
         """Return gradient (f, 2) and level at the shifted origin (f,) of each facet."""

@@ -6,7 +6,7 @@ from scipy.interpolate import LinearNDInterpolator
 from scipy.spatial import Delaunay
 
 from lidar_buildings.algorithms.terrain import tin as module
-from lidar_buildings.algorithms.terrain.tin import Tin, node_residuals, robust_deviation, thinned
+from lidar_buildings.algorithms.terrain.tin import Tin, node_residuals, robust_deviation
 
 FAR = np.array([600_000.0, 5_000_000.0, 0.0])
 
@@ -152,32 +152,3 @@ def test_truth_of_the_comparison(nodes):
     """The hull that the comparison rests on leaves places outside, so that both sides are tested."""
     outside = Delaunay(nodes[:, :2]).find_simplex([[-15.0, 5], [50, 30]]) < 0
     assert outside.tolist() == [True, False]
-
-
-def test_thinned_ground_is_the_same_plane_over_the_same_area(rng):
-    plan = rng.uniform([0, 0], [30, 20], (20_000, 2))
-    nodes = np.column_stack([plan, 0.3 * plan[:, 0] - 0.1 * plan[:, 1] + 100]) + FAR
-    few = thinned(nodes, 0.5)
-    assert 30 * 20 / 0.25 <= len(few) < 1.1 * 30 * 20 / 0.25
-    x, y = (few - FAR)[:, :2].T
-    np.testing.assert_allclose(few[:, 2], 0.3 * x - 0.1 * y + 100, atol=1e-6)
-    np.testing.assert_allclose([few.min(axis=0), few.max(axis=0)], [nodes.min(axis=0), nodes.max(axis=0)])
-    places = np.column_stack([rng.uniform([0, 0], [30, 20], (2000, 2)), np.zeros(2000)]) + FAR
-    means_alone = few[: 60 * 40]
-    outside = [tin.is_extrapolated()[tin.locate(places)].mean() for tin in map(Tin, (nodes, few, means_alone))]
-    assert outside[0] <= outside[1] < outside[0] + 0.01 < 0.5 * outside[2]
-
-
-def test_thinning_averages_noise(rng):
-    plan = rng.uniform(0, 20, (40_000, 2))
-    nodes = np.column_stack([plan, rng.normal(0, 0.1, len(plan))])
-    few = thinned(nodes, 0.5)
-    # 25 points in each cell.
-    assert few[:, 2].std() == pytest.approx(0.1 / 5, rel=0.2)
-
-
-@pytest.mark.parametrize("nodes", [np.zeros((1, 3)), np.zeros((5, 3)), np.column_stack([np.arange(9.0)] * 3)])
-def test_ground_without_area_is_thinned_too(nodes):
-    few = thinned(nodes, 2.0)
-    assert 1 <= len(few) <= len(nodes)
-    np.testing.assert_array_equal(thinned(nodes, 0.0), nodes)

@@ -1,0 +1,151 @@
+"""The surface made tile by tile against one triangulation of all nodes, above all where the ground has gaps."""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.algorithms.terrain import tiles as module
+from lidar_buildings.algorithms.terrain.tiles import TiledTin
+from lidar_buildings.algorithms.terrain.tin import Tin
+
+FAR = np.array([600_000.0, 5_000_000.0, 0.0])
+SIDE = 80.0
+
+
+@pytest.fixture(autouse=True)
+def small_tiles(monkeypatch):
+    """Tiles so small that the few points of a test make many."""
+    monkeypatch.setattr(module, "_NODES", 400)
+    monkeypatch.setattr(module, "_PLACES", 600)
+
+
+def ground(rng, where, count=6000):
+    """Return nodes of a bumpy, noisy surface where ``where`` says so of their plan."""
+    plan = rng.uniform(0, SIDE, (count, 2))
+    plan = plan[where(plan)]
+    return np.column_stack([plan, 5 * np.sin(plan[:, 0] / 9) + 0.1 * plan[:, 1] + rng.normal(0, 0.2, len(plan))])
+
+
+def by_one_triangulation(nodes, places):
+    tin = Tin(nodes)
+    facet = tin.locate(places)
+    return np.where(tin.is_extrapolated()[facet], np.nan, tin.elevation(places, facet))
+
+
+def from_middle(plan):
+    return np.hypot(*(plan - SIDE / 2).T)
+
+
+@pytest.mark.parametrize(
+    "where",
+    [
+        lambda plan: plan[:, 0] > -1,
+        lambda plan: from_middle(plan) > 30,
+        lambda plan: np.abs(from_middle(plan) - 30) < 3,
+        lambda plan: np.abs(plan[:, 0] - plan[:, 1]) < 2,
+        lambda plan: (np.floor(plan / 20) % 2).sum(axis=1) == 1,
+        lambda plan: np.random.default_rng(2).random(len(plan)) < np.exp(-from_middle(plan) / 6),
+    ],
+    ids=["everywhere", "lake", "ring", "diagonal strip", "chessboard", "denser in the middle"],
+)
+def test_elevations_are_those_of_one_triangulation(rng, where):
+    nodes = ground(rng, where)
+    places = rng.uniform(-10, SIDE + 10, (4000, 2))
+    found = TiledTin(nodes).elevation(places)
+    np.testing.assert_allclose(found, by_one_triangulation(nodes, places), atol=1e-9)
+
+
+def test_places_in_one_gap_only(rng):
+    """A tile without nodes: those around the gap are found from the places."""
+    nodes = ground(rng, lambda plan: from_middle(plan) > 25)
+    places = SIDE / 2 + rng.uniform(-3, 3, (50, 2))
+    np.testing.assert_allclose(TiledTin(nodes).elevation(places), by_one_triangulation(nodes, places), atol=1e-9)
+
+
+def test_a_regular_grid_of_nodes_is_its_own_surface(rng):
+    """Four nodes lie on every circle, and each diagonal is right: on a plane that makes no difference."""
+    x, y = np.meshgrid(np.arange(60.0), np.arange(50.0))
+    nodes = np.column_stack([x.ravel(), y.ravel(), (0.3 * x - 0.2 * y).ravel()])
+    places = rng.uniform(0, 49, (3000, 2))
+    np.testing.assert_allclose(TiledTin(nodes).elevation(places), places @ [0.3, -0.2], atol=1e-9)
+
+
+def test_of_nodes_at_one_place_the_lowest_counts(rng):
+    nodes = ground(rng, lambda plan: plan[:, 0] > -1, 2000)
+    places = rng.uniform(0, SIDE, (1000, 2))
+    expected = by_one_triangulation(nodes, places)
+    above = nodes[::2] + np.column_stack([np.zeros((1000, 2)), rng.uniform(0.1, 9, 1000)])
+    for both in (np.concatenate([nodes, above]), np.concatenate([above, nodes])):
+        np.testing.assert_allclose(TiledTin(both).elevation(places), expected, atol=1e-9)
+
+
+def test_order_and_place_change_nothing(rng):
+    nodes = ground(rng, lambda plan: from_middle(plan) > 20)
+    nodes[:, :2] = np.round(nodes[:, :2], 1)  # with twins, and many on one circle
+    places = rng.uniform(0, SIDE, (2000, 2))
+    found = TiledTin(nodes).elevation(places)
+    order = rng.permutation(2000)
+    np.testing.assert_array_equal(TiledTin(rng.permutation(nodes)).elevation(places[order]), found[order])
+    nodes = ground(rng, lambda plan: from_middle(plan) > 20)
+    found = TiledTin(nodes).elevation(places)
+    np.testing.assert_allclose(TiledTin(nodes + FAR).elevation(places + FAR[:2]), found, atol=1e-5)
+
+
+def test_size_of_tiles_changes_nothing(rng, monkeypatch):
+    nodes, places = ground(rng, lambda plan: from_middle(plan) > 20), rng.uniform(0, SIDE, (3000, 2))
+    found = TiledTin(nodes).elevation(places)
+    monkeypatch.setattr(module, "_NODES", 100_000)
+    monkeypatch.setattr(module, "_PLACES", 100_000)
+    np.testing.assert_allclose(TiledTin(nodes).elevation(places), found, atol=1e-9)
+
+
+@pytest.mark.parametrize("nodes", [[[3, 4, 5]], [[3, 4, 5]] * 1000], ids=["one", "all at one place"])
+def test_nodes_without_area_have_no_inside(nodes, rng):
+    surface = TiledTin(np.array(nodes, float))
+    places = rng.uniform(0, 9, (2000, 2))
+    assert np.isnan(surface.elevation(places)).all()
+    np.testing.assert_array_equal(surface.nearest_elevation(places), 5)
+
+
+def test_nearest_elevation(rng):
+    nodes, places = ground(rng, lambda plan: plan[:, 0] > -1, 300), rng.uniform(-50, 130, (200, 2))
+    nearest = np.linalg.norm(places[:, None] - nodes[None, :, :2], axis=2).argmin(axis=1)
+    np.testing.assert_array_equal(TiledTin(nodes).nearest_elevation(places), nodes[nearest, 2])
+
+
+def test_no_places():
+    assert TiledTin(np.zeros((1, 3))).elevation(np.zeros((0, 2))).shape == (0,)
+
+
+def test_progress_is_told_and_a_cancellation_ends_it(rng):
+    class Impatient(Monitor):
+        def __init__(self):
+            super().__init__()
+            self.heard = []
+
+        def progress(self, fraction):
+            self.heard.append(fraction)
+            if fraction > 0.3:
+                raise Cancelled
+
+    monitor = Impatient()
+    surface = TiledTin(ground(rng, lambda plan: plan[:, 0] > -1))
+    with pytest.raises(Cancelled):
+        surface.elevation(rng.uniform(0, SIDE, (4000, 2)), monitor)
+    assert len(monitor.heard) > 2
+    assert monitor.heard == sorted(monitor.heard)
+
+
+def test_only_few_nodes_are_triangulated_at_once(rng, monkeypatch):
+    """What the tiles are for: memory that doesn't grow with the cloud."""
+    sizes = []
+
+    class Watched(Tin):
+        def __init__(self, nodes, box):
+            sizes.append(len(nodes))
+            super().__init__(nodes, box)
+
+    monkeypatch.setattr(module, "Tin", Watched)
+    nodes = ground(rng, lambda plan: from_middle(plan) > 10, 20_000)
+    TiledTin(nodes).elevation(rng.uniform(0, SIDE, (3000, 2)))
+    assert max(sizes) < 1000
