@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,28 +14,38 @@ from qgis.core import (
     QgsProcessing,
     QgsProcessingContext,
     QgsProcessingOutputLayerDefinition,
+    QgsProcessingParameterFeatureSink,
     QgsProcessingParameterPointCloudDestination,
     QgsProcessingParameterRasterDestination,
     QgsProperty,
 )
 
 from ..algorithms.cloud.cloud import Cloud, write_cloud
-from ..algorithms.cloud.outputs import COPC, check_output, kind_of, same_file
+from ..algorithms.cloud.outputs import COPC, check_output, kind_of, same_file, written_or_told
 from ..algorithms.cloud.views import check_place, copc_path
 from ..algorithms.stage import Monitor
 from .clouds import reads_las
 from .rasters import check_raster
+from .vectors import check_layer
 
 # "memory:", "postgres://…", "ogr:dbname='x.gpkg' table=…": no files. A single letter is a drive.
 _NO_FILE = re.compile(r"^[A-Za-z]{2,}:")
+_TABLE_IN_FILE = re.compile(r"^ogr:dbname='([^']+)'")
+
+# The smallest results, an empty GeoPackage among them, need about so much (bytes).
+_LEAST_SPACE = 2**18
+
+
+def _plain(value: Any) -> Any:
+    """Return the value of an output parameter, whatever QGIS wrapped it in."""
+    if isinstance(value, QgsProcessingOutputLayerDefinition):
+        value = value.sink
+    return value.staticValue() if isinstance(value, QgsProperty) else value
 
 
 def target_path(value: Any) -> Optional[Path]:
     """Return the file that an output parameter's value names; None for a temporary, skipped or database output."""
-    if isinstance(value, QgsProcessingOutputLayerDefinition):
-        value = value.sink
-    if isinstance(value, QgsProperty):
-        value = value.staticValue()
+    value = _plain(value)
     if not isinstance(value, str) or not value or value == QgsProcessing.TEMPORARY_OUTPUT or _NO_FILE.match(value):
         return None
     return Path(value)
@@ -67,17 +78,28 @@ def check_targets(definitions: list, parameters: dict, inputs: list) -> None:
     Raises
     ------
     ValueError
-        If an output has an unknown extension, is an input or another output, or its folder is absent or read-only.
+        If an output has an unknown extension, is an input or another output, or a folder itself, or if its folder is
+        absent, read-only or full.
     """
     seen: dict[Path, str] = {}
     for definition in definitions:
-        path = target_path(parameters.get(definition.name()))
+        value = parameters.get(definition.name())
+        path = target_path(value)
         if path is None:
+            _check_database(value)
             continue
-        _check_target(definition, path, inputs)
         other = seen.setdefault(path.absolute(), definition.name())
         if other != definition.name():
             raise ValueError(f"{other} and {definition.name()} are the same file ({path}); give each its own.")
+        _check_target(definition, path, inputs)
+
+
+def _check_database(value: Any) -> None:
+    """Refuse a table of a file that can't be written; a file that is there is kept, with its other tables."""
+    plain = _plain(value)
+    table = _TABLE_IN_FILE.match(plain) if isinstance(plain, str) else None
+    if table is not None:
+        _check_file(Path(table[1]))
 
 
 def _check_target(definition, path: Path, inputs: list) -> None:
@@ -88,13 +110,25 @@ def _check_target(definition, path: Path, inputs: list) -> None:
             check_place(path, inputs)
     elif isinstance(definition, QgsProcessingParameterRasterDestination):
         check_raster(path)
+    elif isinstance(definition, QgsProcessingParameterFeatureSink):
+        check_layer(path)
+    if any(same_file(path, source) for source in inputs):
+        raise ValueError(f"The output {path} is also an input; choose another name.")
+    _check_file(path)
+
+
+def _check_file(path: Path) -> None:
+    """Refuse a file that can't be written where it is to be, because of its folder or for want of space."""
     folder = path.absolute().parent
     if not folder.is_dir():
         raise ValueError(f"The folder {folder} does not exist; make it or choose another one.")
-    if any(same_file(path, source) for source in inputs):
-        raise ValueError(f"The output {path} is also an input; choose another name.")
+    if path.is_dir():
+        raise ValueError(f"{path} is a folder; give the name of a file.")
     if not os.access(folder, os.W_OK) or (path.exists() and not os.access(path, os.W_OK)):
         raise ValueError(f"{path} can't be written: it or its folder is read-only; choose another one.")
+    # What a disk allows shows only when something is written.
+    with written_or_told(path), tempfile.TemporaryFile(dir=folder) as file:
+        file.write(bytes(_LEAST_SPACE))
 
 
 def _state(path: Path) -> Optional[tuple[int, int, int]]:

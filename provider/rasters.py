@@ -6,16 +6,19 @@ import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 from osgeo import gdal
 from qgis.core import QgsCoordinateReferenceSystem
 
+from ..algorithms.cloud.outputs import replacing
 from ..algorithms.stage import Cancelled, Monitor, Raster, Surface
 from .places import Place
 
 EXTENSIONS = ("tif", "tiff")
 NO_DATA = -9999.0
+_PIECE = 2**24
 _OPTIONS = (
     "COMPRESS=DEFLATE",
     "PREDICTOR=FLOATING_POINT",
@@ -50,22 +53,35 @@ def write_raster(raster: Raster, surface: Surface, place: Place, path: Path, mon
     Raises
     ------
     ValueError
-        If GDAL can't write it; in GDAL's words.
+        If GDAL can't make it, or it can't be written.
     """
     check_raster(path)
-    temporary = path.with_name(f".{path.stem}.{uuid.uuid4().hex[:8]}.tif")
+    # In memory first: on a disk that fills up GDAL fails where it can't tell, when it closes the file.
+    made = f"/vsimem/{uuid.uuid4().hex}.tif"
     progress = _Progress(monitor)
     try:
         with _errors(path, progress):
             image = _in_memory(raster, surface, place)
-            written = gdal.GetDriverByName("COG").CreateCopy(str(temporary), image, 0, list(_OPTIONS), progress)
+            written = gdal.GetDriverByName("COG").CreateCopy(made, image, 0, list(_OPTIONS), progress)
             if written is None:
                 raise RuntimeError(gdal.GetLastErrorMsg())
             # Complete when it is closed.
             del written
-        temporary.replace(path)
+        with replacing(path) as stream:
+            _copy(made, stream)
     finally:
-        temporary.unlink(missing_ok=True)
+        if gdal.VSIStatL(made) is not None:
+            gdal.Unlink(made)
+
+
+def _copy(made: str, stream: BinaryIO) -> None:
+    """Copy a file of GDAL's into a stream, piece by piece."""
+    file = gdal.VSIFOpenL(made, "rb")
+    try:
+        while piece := gdal.VSIFReadL(1, _PIECE, file):
+            stream.write(piece)
+    finally:
+        gdal.VSIFCloseL(file)
 
 
 class _Progress:
@@ -92,7 +108,7 @@ def _errors(path: Path, progress: _Progress) -> Iterator[None]:
     except RuntimeError as error:
         if progress.is_cancelled:
             raise Cancelled from None
-        raise ValueError(f"{path} can't be written ({error}); choose another folder or free some space.") from error
+        raise ValueError(f"{path} can't be made ({error}); choose larger cells.") from error
     finally:
         if not before:
             gdal.DontUseExceptions()

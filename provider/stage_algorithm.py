@@ -25,6 +25,7 @@ from qgis.PyQt.QtGui import QIcon
 
 from ..algorithms.cloud.cloud import Cloud, read_cloud
 from ..algorithms.cloud.dimensions import DIMENSIONS
+from ..algorithms.cloud.outputs import replacing
 from ..algorithms.run import Outcome, run_stage
 from ..algorithms.stage import Features, Layer, Monitor, Raster, Stage, Surface
 from .clouds import CloudParameter, CloudsParameter, cloud_path, cloud_paths
@@ -272,9 +273,10 @@ class StageAlgorithm(QgsProcessingAlgorithm):
             if row % 1000 == 0:
                 monitor.progress(0.97)
             if not sink.addFeature(feature, QgsFeatureSink.Flag.FastInsert):
-                raise QgsProcessingException(self.writeFeatureError(sink, parameters, name))
+                raise QgsProcessingException(_unwritten(layer, target, sink))
         # The file is closed with the sink, complete for the next step of a model.
-        sink.flushBuffer()
+        if not sink.flushBuffer():
+            raise QgsProcessingException(_unwritten(layer, target, sink))
         del sink
         style_on_load(context, target, layer_style(layer))
         return {name: target}
@@ -302,8 +304,15 @@ class StageAlgorithm(QgsProcessingAlgorithm):
         target = self.parameterAsFileOutput(parameters, REPORT, context)
         if not target:
             return {}
-        Path(target).write_text(html, encoding="utf-8")
+        with replacing(Path(target)) as stream:
+            stream.write(html.encode())
         return {REPORT: target}
+
+
+def _unwritten(layer: Layer, target: str, sink: QgsFeatureSink) -> str:
+    """Return why a layer can't be written, as far as its format tells."""
+    why = f" ({sink.lastError()})" if sink.lastError() else ""
+    return f"{layer.title} can't be written to {target}{why}; free some space or choose another folder."
 
 
 def _helped(definition, text: str):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any, Callable
 
 import numpy as np
@@ -15,6 +16,7 @@ from qgis.core import (
     QgsLineString,
     QgsPoint,
     QgsPolygon,
+    QgsVectorFileWriter,
     QgsWkbTypes,
 )
 from qgis.PyQt.QtCore import QMetaType
@@ -28,6 +30,13 @@ SOURCE_TYPES = {
     "LineString": Qgis.ProcessingSourceType.VectorLine,
     "Point": Qgis.ProcessingSourceType.VectorPoint,
 }
+
+
+def check_layer(path: Path) -> None:
+    """Refuse a file name that tells no format of layers; QGIS would write another file than the one that was named."""
+    extension = path.suffix.lower().lstrip(".")
+    if extension not in QgsVectorFileWriter.supportedFormatExtensions():
+        raise ValueError(f"{path.name} can't be written as a layer: give it the extension .gpkg, .shp or .geojson.")
 
 
 def fields_of(layer: Layer) -> QgsFields:

@@ -85,6 +85,21 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
         temporary.unlink(missing_ok=True)
 
 
+@contextmanager
+def written_or_told(path: Path) -> Iterator[None]:
+    """Say in one sentence why ``path`` can't be written where the block finds that out.
+
+    Raises
+    ------
+    ValueError
+        If the block fails with an error of the system.
+    """
+    try:
+        yield
+    except OSError as error:
+        raise ValueError(_sentence(path, error)) from error
+
+
 def _sentence(path: Path, error: OSError) -> str:
     if error.errno in (errno.ENOSPC, errno.EDQUOT):
         return f"The disk is full: {path} was not written; free some space or choose another folder."

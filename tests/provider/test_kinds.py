@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import errno
+import os
+
 import numpy as np
 import pytest
 from osgeo import gdal
@@ -442,6 +445,71 @@ def test_only_tif_is_written(provider, context, town_file, out):
     assert "same file" in refused(provider, "toyheights", given, context)
 
 
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"FOOTPRINTS": "{out}/a.foo"}, "a.foo can't be written as a layer: give it the extension .gpkg, .shp or"),
+        ({"FOOTPRINTS": "{out}/a"}, "a can't be written as a layer: give it the extension"),
+        ({"FOOTPRINTS": "{out}/folder.gpkg"}, "folder.gpkg is a folder; give the name of a file."),
+        ({"FOOTPRINTS": "ogr:dbname='{out}/none/a.gpkg' table=\"a\" (geom)"}, "none does not exist; make it"),
+        ({"FOOTPRINTS": "ogr:dbname='{out}/folder.gpkg' table=\"a\" (geom)"}, "folder.gpkg is a folder"),
+    ],
+)
+def test_where_no_layer_can_be_written_is_told_before_the_work(provider, context, town_file, out, change, sentence):
+    (out / "folder.gpkg").mkdir()
+    given = {"INPUT": str(town_file), **{name: value.format(out=out) for name, value in change.items()}}
+    assert sentence in refused(provider, "toyoutline", given, context)
+
+
+def test_a_table_is_added_to_a_file(provider, context, log, town_file, out):
+    for name in ("a", "b"):
+        target = f"ogr:dbname='{out}/all.gpkg' table=\"{name}\" (geom)"
+        run("toyoutline", {"INPUT": str(town_file), "FOOTPRINTS": target}, context, log)
+    for name in ("a", "b"):
+        assert QgsVectorLayer(f"{out}/all.gpkg|layername={name}", name, "ogr").featureCount() > 0
+
+
+@pytest.mark.parametrize(("name", "file"), [("OUTPUT", "a.laz"), ("PICTURE", "a.tif"), ("FOOTPRINTS", "a.gpkg")])
+def test_a_full_disk_is_told_before_the_work(provider, context, town_file, out, monkeypatch, name, file):
+    class Full:
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *_):
+            return None
+
+        def write(self, _):
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("lidar_buildings.provider.outputs.tempfile.TemporaryFile", lambda dir: Full())
+    algorithm = {"OUTPUT": "toylift", "PICTURE": "toypicture", "FOOTPRINTS": "toyoutline"}[name]
+    message = refused(provider, algorithm, {"INPUT": str(town_file), name: str(out / file)}, context)
+    assert message == f"The disk is full: {out / file} was not written; free some space or choose another folder."
+
+
+@pytest.mark.skipif(os.name == "nt" or os.geteuid() == 0, reason="root writes everywhere")
+def test_a_read_only_folder_is_told_before_the_work(provider, context, town_file, out):
+    out.chmod(0o500)
+    given = {"INPUT": str(town_file), "FOOTPRINTS": str(out / "a.gpkg")}
+    assert "its folder is read-only" in refused(provider, "toyoutline", given, context)
+
+
+def test_what_a_layers_format_says_is_told(provider, context, log, town_file, out, monkeypatch):
+    """A disk that fills up while features are written."""
+
+    class Full:
+        def addFeature(self, *_):
+            return False
+
+        def lastError(self):
+            return "no space"
+
+    target = str(out / "a.gpkg")
+    monkeypatch.setattr(stage_algorithm.StageAlgorithm, "parameterAsSink", lambda *_: (Full(), target))
+    with pytest.raises(QgsProcessingException, match=r"can't be written to .*a\.gpkg \(no space\); free some space or"):
+        run("toyoutline", {"INPUT": str(town_file), "FOOTPRINTS": target}, context, log)
+
+
 def test_a_raster_after_which_something_fails_is_removed(provider, context, log, town_file, out, monkeypatch):
     def later(raster, surface, place, path, monitor):
         if raster.name == "floor":
@@ -469,13 +537,18 @@ def stop(progress, *_):
     return 0
 
 
-def test_gdals_own_words_are_told(town_file, tmp_path):
+def test_gdals_own_words_are_told(town_file, tmp_path, monkeypatch):
     before = gdal.GetUseExceptions()
     surface = Surface(np.zeros((2, 2), np.float32), 0, 0, 1)
     place = place_of_cloud(read_cloud(town_file))
     with pytest.raises(ValueError, match=r"a\.tif can't be written \(.*No such file.*\); choose another folder"):
         rasters.write_raster(Raster("a", "A"), surface, place, tmp_path / "none" / "a.tif", Monitor())
+    monkeypatch.setattr(rasters, "_OPTIONS", ("BLOCKSIZE=7",))
+    with pytest.raises(ValueError, match=r"a\.tif can't be made \(.+\); choose larger cells"):
+        rasters.write_raster(Raster("a", "A"), surface, place, tmp_path / "a.tif", Monitor())
     assert gdal.GetUseExceptions() == before
+    assert not list(tmp_path.glob("*.tif*"))
+    assert not gdal.ReadDir("/vsimem/")
 
 
 def test_what_is_given_as_nothing_is_missing(provider, context):
