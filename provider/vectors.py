@@ -80,9 +80,9 @@ def qgis_features(layer: Layer, features: Features, to_map: Callable[[np.ndarray
 
 
 def plain(value: Any) -> Any:
-    """Return a numpy scalar as Python's own (QGIS shows others as empty), NaN as NULL."""
+    """Return a numpy scalar as Python's own (QGIS shows others as empty), what is no number as NULL."""
     value = value.item() if isinstance(value, np.generic) else value
-    return None if isinstance(value, float) and np.isnan(value) else value
+    return None if isinstance(value, float) and not np.isfinite(value) else value
 
 
 def _line(coordinates: np.ndarray, to_map: Callable[[np.ndarray], np.ndarray]) -> QgsLineString:

@@ -23,8 +23,8 @@ _WALL_FOOT = 0.5
 # Of what stands in the outline of a building, points higher than this are looked for on its roof surfaces, m.
 _RAISED = 1.0
 
-# Gaps are closed over so many point spacings, and no less than so far (m).
-_GAP_SPACINGS, _LEAST_GAP = 4.0, 3.0
+# Gaps are closed over so many point spacings, and no less and no more than so far (m).
+_GAP_SPACINGS, _LEAST_GAP, _MOST_GAP = 4.0, 3.0, 20.0
 
 # What stands on a roof is a chimney or dormer where it covers less than this share of the cells around.
 _SPARSE, _AROUND = 0.3, 7
@@ -57,7 +57,7 @@ def complete_buildings(
             unit="m",
             low=0,
             high=20,
-            automatic="four point spacings, at least 3 m.",
+            automatic="four point spacings, from 3 to 20 m.",
         ),
     ] = None,
     roof_clearance: Annotated[
@@ -154,7 +154,7 @@ def complete_buildings(
     """
     density = point_density(xyz) if density is None else density
     spacing = 1 / np.sqrt(density)
-    gap = max(_LEAST_GAP, _GAP_SPACINGS * spacing) if gap is None else gap
+    gap = float(np.clip(_GAP_SPACINGS * spacing, _LEAST_GAP, _MOST_GAP)) if gap is None else gap
     monitor.resolved(density=density, gap=gap)
     result = np.where(classification == PointClass.BUILDING, np.uint8(PointClass.UNCLASSIFIED), classification)
     cluster_id = np.zeros(len(xyz), np.int32)

@@ -136,6 +136,11 @@ def extract_wall_footprints(
     wall_edges : Features
         The edges of all footprints with what was seen of them.
 
+    Raises
+    ------
+    ValueError
+        If the points of one building are spread so thinly that it would be nearly empty.
+
     Notes
     -----
     Thresholds follow the data of each building: the distance of points to their line is that of the noise; a wall is

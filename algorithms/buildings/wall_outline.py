@@ -7,6 +7,7 @@ from typing import Optional
 
 import numpy as np
 
+from ..cloud.cells import refuse_sparse
 from ..packages import ndimage
 from .arrangement import Arrangement
 from .outlines import signed_area
@@ -90,6 +91,7 @@ class _Roof:
     """Where a roof is, in small cells, and how deep (m) under it a place lies, negative beyond its edge."""
 
     def __init__(self, roof: np.ndarray) -> None:
+        refuse_sparse(roof, _CELL)
         room = int(_ROOM / _CELL)
         self.low = roof.min(axis=0) - _ROOM - _CELL
         column, row = ((roof - self.low) / _CELL).astype(np.int64).T

@@ -261,7 +261,9 @@ class _Reader:
         start = self.stream.tell()
         if start + size > end:
             name = user_id.split(b"\0")[0].decode("ascii", "replace")
-            raise _truncated(self.path, f"record {name} {record_id} of {size} bytes runs past byte {end}")
+            # In damaged files it is anything, and would spoil the sentence.
+            known = f"{name} {record_id} " if name.isascii() and name.isprintable() else ""
+            raise _truncated(self.path, f"a record {known}of {size} bytes runs past byte {end}")
         record = Record(user_id, record_id, None, description, reserved, self.path, start, size)
         if size > _KEPT_IN_MEMORY:
             self.stream.seek(start + size)

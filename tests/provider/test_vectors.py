@@ -64,6 +64,7 @@ def test_nothing_found_is_an_empty_layer():
         (np.bool_(True), True),
         (float("nan"), None),
         (np.nan, None),
+        (np.inf, None),
         ("a", "a"),
     ],
 )

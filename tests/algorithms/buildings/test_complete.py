@@ -129,6 +129,13 @@ def test_a_narrow_alley_in_which_the_ground_shows_is_not_closed(scene):
     assert (found[cable] == 6).mean() < 0.25  # cells at the walls hold roof too
 
 
+def test_a_few_points_far_apart_do_not_widen_the_gap_without_end():
+    monitor = Monitor()
+    xyz = np.array([[0, 0, 5], [300, 0, 5], [0, 300, 5]], float)
+    complete_buildings(xyz, np.full(3, 6, np.uint8), np.full(3, 5, np.float32), monitor=monitor)
+    assert monitor.values["gap"] == 20
+
+
 def test_houses_farther_apart_than_the_gap_stay_two(scene):
     scene.roof(5, 10, 13, 20, 6.0)
     scene.roof(16, 10, 25, 20, 6.0)

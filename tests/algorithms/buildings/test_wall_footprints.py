@@ -251,6 +251,18 @@ def test_roofs_without_area_give_no_footprint(roof):
     assert len(footprints) == len(edges) == 0
 
 
+def test_a_building_that_spans_a_country_is_refused(rng):
+    """One point with a wrong ClusterID asked for terabytes."""
+    arrays, _ = building(rng, "rectangle")
+    arrays["xyz"] = np.append(arrays["xyz"], [[900_000.0, 500_000.0, 5.0]], axis=0)
+    for name, value in (("cluster_id", 1), ("wall_of", 0)):
+        arrays[name] = np.append(arrays[name], value).astype(np.int32)
+    if "height_above_ground" in arrays:
+        arrays["height_above_ground"] = np.append(arrays["height_above_ground"], 5.0).astype(np.float32)
+    with pytest.raises(ValueError, match=r"points are spread over 900,\d+ m by 500,\d+ m, which is nearly empty"):
+        extract_wall_footprints(**arrays)
+
+
 def test_walls_without_roofs_give_no_footprint(rng):
     arrays, _ = building(rng, "rectangle")
     footprints, edges = extract_wall_footprints(arrays["xyz"], np.zeros(len(arrays["xyz"]), int), arrays["wall_of"])

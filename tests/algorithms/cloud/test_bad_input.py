@@ -56,6 +56,17 @@ def test_a_look_at_the_header_finds_what_is_wrong(good, tmp_path, kind):
         check_readable(tmp_path / "none.las")
 
 
+def test_a_damaged_record_does_not_spoil_the_sentence(good, tmp_path):
+    """Its name is whatever bytes are there, line breaks and other signs that can't be shown among them."""
+    path = tmp_path / "a.laz"
+    raw = good[".laz"]
+    assert raw[377:391] == b"laszip encoded"
+    path.write_bytes(raw[:377] + b"\xff\n\x1b[31m\x07" + raw[385:395] + b"\xff\xff" + raw[397:])
+    refuse(path, "truncated or damaged: a record of 65535 bytes runs past byte")
+    path.write_bytes(raw[:395] + b"\xff\xff" + raw[397:])
+    refuse(path, "truncated or damaged: a record laszip encoded 22204 of 65535 bytes runs past byte")
+
+
 def patched(raw, at, kind, value):
     raw = bytearray(raw)
     struct.pack_into(kind, raw, at, value)
