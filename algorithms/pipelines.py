@@ -254,8 +254,8 @@ _PIPELINES = (
             "it; planes high above it are roofs, and what is low and upright below them is their walls. Footprints "
             "are the outlines of walls, without the eaves, with a quality for every edge; where too little of the "
             "walls was seen, which is what clouds from airplanes come to, they are outlines of roofs and say so. "
-            "Where an old map is given, its corners are compared with the new ones. The cloud of every step can be "
-            "kept."
+            "Where an old map is given, its corners are compared with the new ones. The terrain and the cloud of every "
+            "step can be kept."
         ),
         references=_HRUTKA,
         steps=(

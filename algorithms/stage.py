@@ -88,6 +88,16 @@ class Param:
         return f"{self.label} ({self.unit})" if self.unit else self.label
 
     @property
+    def unset(self) -> str:
+        """What an automatic tunable is when nobody sets it, in a word: a value found by the stage, or none at all."""
+        return "none" if self.automatic.startswith("none") else "automatic"
+
+    @property
+    def unset_text(self) -> str:
+        """The same in a sentence, empty where a value is needed."""
+        return f"{'Empty' if self.unset == 'none' else 'Automatic'}: {self.automatic}" if self.automatic else ""
+
+    @property
     def range(self) -> str:
         """Allowed values in words, empty when there is no bound."""
         if self.choices:

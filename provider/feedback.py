@@ -39,7 +39,8 @@ class FeedbackMonitor(Monitor):
         if tunable is None:
             return f"{name.replace('_', ' ').capitalize()}: {shown}"
         unit = f" {tunable.param.unit}" if tunable.param.unit else ""
-        return f"{tunable.param.label}, automatic: {shown}{unit}"
+        found = "automatic" if tunable.param.unset == "automatic" else "none set, the cloud has"
+        return f"{tunable.param.label}, {found}: {shown}{unit}"
 
 
 class ChainFeedback(QgsProcessingMultiStepFeedback):

@@ -96,7 +96,7 @@ def tunable_help(tunable: Tunable, default: object = _NOT_GIVEN) -> str:
     param = tunable.param
     facts = [param.range] if param.range else []
     facts.append(f"default {_default_text(tunable, tunable.default if default is _NOT_GIVEN else default)}")
-    automatic = f" Automatic: {inline(param.automatic)}" if tunable.is_automatic else ""
+    automatic = f" {inline(param.unset_text)}" if tunable.is_automatic else ""
     return (
         f"<b>{html.escape(param.title)}</b>: {inline(param.help)}{automatic} <i>({html.escape('; '.join(facts))})</i>"
     )
@@ -104,12 +104,12 @@ def tunable_help(tunable: Tunable, default: object = _NOT_GIVEN) -> str:
 
 def _default_text(tunable: Tunable, default: object) -> str:
     if default is None:
-        return "automatic"
+        return tunable.param.unset
     if isinstance(default, bool):
         return "yes" if default else "no"
     if isinstance(default, tuple):
         return ", ".join(default) or "none"
-    return tunable.param.written(default) if isinstance(default, (int, float)) else str(default)
+    return tunable.param.written(default) if isinstance(default, (int, float)) else str(default) or "empty"
 
 
 def outputs(stage: Stage) -> list:

@@ -37,7 +37,7 @@ from .help import lower_first, pipeline_help, step_title
 from .outputs import check_targets, files_of, nothing_left_on_failure
 from .parameters import number_outputs, parameter, parameter_name, tunable_values
 from .sources import refuse_elsewhere, source_files, source_name, source_parameter
-from .stage_algorithm import INPUT, INPUTS, OUTPUT, cloud_title, input_parameter, input_paths
+from .stage_algorithm import INPUT, INPUTS, OUTPUT, REPORT, cloud_title, input_parameter, input_paths
 
 PROVIDER = "lidarbuildings"
 
@@ -117,30 +117,27 @@ def build_model(pipeline: Pipeline) -> QgsProcessingModelAlgorithm:
     """Return the model of a pipeline: steps in order, each fed as the pipeline says."""
     model = QgsProcessingModelAlgorithm(pipeline.title, pipeline.group, "")
     layout = _Layout()
-    inputs = _inputs(pipeline)
-    for i, definition in enumerate(inputs):
+    clouds = _clouds(pipeline)
+    for definition in clouds:
         where = QgsProcessingModelParameter(definition.name())
-        where.setPosition(QPointF(layout.right - i * layout.cell.width(), 60))
+        where.setPosition(QPointF(layout.right, 60))
         where.setSize(layout.box)
         model.addModelParameter(definition, where)
-    definitions = pipeline_parameters(pipeline)
+    definitions = {source_name(source): source_parameter(source) for source in pipeline.sources.values()}
+    definitions.update(pipeline_parameters(pipeline))
     for step in pipeline.steps:
         _add_parameters(model, pipeline, step, definitions, layout)
         _add_step(model, pipeline, step, layout)
     model.setHelpContent({"ALG_DESC": pipeline_help(pipeline), "SHORT_DESCRIPTION": pipeline.summary})
-    model.setParameterOrder([*(definition.name() for definition in inputs), *definitions])
+    model.setParameterOrder([*(definition.name() for definition in clouds), *definitions])
     return model
 
 
-def _inputs(pipeline: Pipeline) -> list[QgsProcessingParameterDefinition]:
-    """Return what a composite reads, clouds and layers, in QGIS's own types, as the designer knows them."""
-    clouds: list[QgsProcessingParameterDefinition] = []
+def _clouds(pipeline: Pipeline) -> list[QgsProcessingParameterDefinition]:
+    """Return the parameter for the cloud or clouds that a composite reads, in QGIS's own type, as the designer does."""
     if pipeline.merges:
-        kind = Qgis.ProcessingSourceType.PointCloud
-        clouds.append(QgsProcessingParameterMultipleLayers(INPUTS, "Point clouds", kind))
-    elif pipeline.reads_cloud:
-        clouds.append(QgsProcessingParameterPointCloudLayer(INPUT, "Point cloud"))
-    return clouds + [source_parameter(source) for source in pipeline.sources.values()]
+        return [QgsProcessingParameterMultipleLayers(INPUTS, "Point clouds", Qgis.ProcessingSourceType.PointCloud)]
+    return [QgsProcessingParameterPointCloudLayer(INPUT, "Point cloud")] if pipeline.reads_cloud else []
 
 
 def output_title(pipeline: Pipeline, output: Output) -> str:
@@ -155,9 +152,20 @@ def output_title(pipeline: Pipeline, output: Output) -> str:
     return title if output.name == output.of else step_label(output.step, title)
 
 
+def _layers_taken(pipeline: Pipeline, step: Step) -> list[str]:
+    """Return the names of the layers given to the composite that ``step`` is the first to read."""
+    before = [_given(other) for other in pipeline.steps[: pipeline.steps.index(step)]]
+    return [name.upper() for name in _given(step) if not any(name in names for names in before)]
+
+
+def _given(step: Step) -> list[str]:
+    return [source.name for source in step.stage.sources if source.name not in step.layers]
+
+
 def _first_taken(pipeline: Pipeline, step: Step) -> list[str]:
-    """Return the names of the parameters that ``step`` is the first to take."""
-    return [name.upper() for name, (first, _) in pipeline.parameters.items() if first is step]
+    """Return the names of the layers and other parameters that ``step`` is the first to take."""
+    tunables = [name.upper() for name, (first, _) in pipeline.parameters.items() if first is step]
+    return tunables + _layers_taken(pipeline, step)
 
 
 def _add_parameters(
@@ -169,9 +177,10 @@ def _add_parameters(
 ) -> None:
     names = _first_taken(pipeline, step)
     last = layout.rows(len(names)) * layout.columns - 1
-    own = [name for name in names if name.lower() not in pipeline.shared]
+    layers = _layers_taken(pipeline, step)
+    own = [name for name in names if name.lower() not in pipeline.shared and name not in layers]
     cells = {name: i for i, name in enumerate(own)}
-    # What goes on to other steps stands at the lower right, where its lines cross the fewest boxes.
+    # Layers, and what goes on to other steps, stand at the lower right, where their lines cross the fewest boxes.
     cells.update({name: last - i for i, name in enumerate(name for name in names if name not in own)})
     for name, cell in cells.items():
         component = QgsProcessingModelParameter(name)
@@ -259,6 +268,18 @@ def _frame(step: Step, layout: _Layout, height: float) -> QgsProcessingModelGrou
     return box
 
 
+# Outputs of this rank or a higher one are what the result comes from.
+_FROM_BETWEEN = 3
+
+
+def _rank(output: Output) -> int:
+    """Return where an output stands in the dialog: cloud, layers, reports; rasters and kept clouds come last."""
+    if output.of == OUTPUT.lower():
+        return 0 if output.name == output.of else 4
+    rasters = [raster.name for raster in output.step.stage.rasters]
+    return 2 if output.of == REPORT.lower() else _FROM_BETWEEN if output.of in rasters else 1
+
+
 def model_file(pipeline: Pipeline) -> Path:
     """Return where the model of a pipeline is shipped."""
     return paths.MODELS / f"{pipeline.id}.model3"
@@ -286,12 +307,8 @@ class PipelineAlgorithm(QgsProcessingModelAlgorithm):
         helps = {name: definition.help() for name, definition in pipeline_parameters(self.pipeline).items()}
         helps.update({source_name(source): source.help for source in self.pipeline.sources.values()})
         mended = [self._mended(definition, helps) for definition in self.parameterDefinitions()]
-        mended.sort(
-            key=lambda definition: (
-                definition.isDestination(),
-                definition.isDestination() and definition.name() != OUTPUT,
-            )
-        )
+        order = [output.name.upper() for output in sorted(self.pipeline.outputs, key=_rank)]
+        mended.sort(key=lambda made: order.index(made.name()) if made.isDestination() else -1)
         for definition in self.parameterDefinitions():
             self.removeParameter(definition.name())
         for definition in mended:
@@ -307,14 +324,16 @@ class PipelineAlgorithm(QgsProcessingModelAlgorithm):
         if definition.isDestination():
             facts = definition.metadata()
             made = self.childAlgorithm(facts["_modelChildId"]).modelOutput(facts["_modelChildOutputName"])
-            mended.setName(self._output_name(made.childId(), made.childOutputName()))
+            output = self._output(made.childId(), made.childOutputName().lower())
+            mended.setName(output.name.upper())
             if mended.name() != OUTPUT:
                 mended.setFlags(mended.flags() | Qgis.ProcessingParameterFlag.Optional)
+                # Who wants what the result comes from asks for it.
+                mended.setCreateByDefault(_rank(output) < _FROM_BETWEEN)
         return mended
 
-    def _output_name(self, step_name: str, of: str) -> str:
-        outputs = ((output.step.name, output.of.upper(), output.name.upper()) for output in self.pipeline.outputs)
-        return next(name for step, made, name in outputs if (step, made) == (step_name, of))
+    def _output(self, step_name: str, of: str) -> Output:
+        return next(output for output in self.pipeline.outputs if (output.step.name, output.of) == (step_name, of))
 
     def as_model(self) -> QgsProcessingModelAlgorithm:
         """Return the plain model, as the designer edits it."""

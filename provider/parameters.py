@@ -35,7 +35,7 @@ def label(tunable: Tunable) -> str:
     """Return the label with its unit, and for automatic numbers how to ask for it."""
     facts = [tunable.param.unit] if tunable.param.unit else []
     if tunable.is_automatic:
-        facts.append("empty = automatic")
+        facts.append(f"empty = {tunable.param.unset}")
     return f"{tunable.param.label} ({', '.join(facts)})" if facts else tunable.param.label
 
 
@@ -45,7 +45,7 @@ def help_text(tunable: Tunable) -> str:
     if tunable.param.range and not tunable.param.choices:
         parts.append(f"Range: {tunable.param.range}.")
     if tunable.is_automatic:
-        parts.append(f"Automatic: {tunable.param.automatic}")
+        parts.append(tunable.param.unset_text)
     return " ".join(parts)
 
 

@@ -338,7 +338,9 @@ def input_paths(
 
 def cloud_title(stages: Sequence[Stage]) -> str:
     """Return what the cloud is called that these stages make one after the other, in the dialog and as a layer."""
-    writes = [name for stage in stages for name in stage.writes if name != "xyz"]
+    # What a selection or a merger writes is what its points had before.
+    of_their_own = [stage for stage in stages if not (stage.selects or stage.merges)]
+    writes = [name for stage in of_their_own for name in stage.writes]
     if any(stage.creates for stage in stages):
         return "Simulated point cloud"
     if all(stage.merges for stage in stages):

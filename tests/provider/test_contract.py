@@ -113,7 +113,7 @@ def test_every_tunable_is_a_parameter(stage, algorithm):
         if tunable.param.unit:
             assert f"({tunable.param.unit}" in definition.description()
         if tunable.is_automatic:
-            assert "empty = automatic" in definition.description()
+            assert f"empty = {tunable.param.unset}" in definition.description()
             assert tunable.param.automatic in definition.help()
 
 

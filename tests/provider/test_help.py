@@ -46,6 +46,10 @@ def test_help_of_a_tunable_has_unit_range_default_and_automatic():
     assert "Automatic: the lowest point. <i>(at least 0 m; default automatic)</i>" in tunable_help(tunables["base"])
     assert "default ground, building" in tunable_help(tunables["only"])
     assert "default no" in tunable_help(tunables["flat"])
+    limits = STAGES["filter_points"].tunables
+    assert "Empty: none; the log tells what the cloud has." in tunable_help(limits["min_height"])
+    assert tunable_help(limits["min_height"]).endswith("default none)</i>")
+    assert tunable_help(limits["classes"]).endswith("<i>(default empty)</i>")
 
 
 def test_text_is_escaped():

@@ -413,7 +413,17 @@ def test_the_mapping_chain_shows_what_it_is_given_and_makes(provider):
     assert {d.name() for d in made} == set(KEPT)
     assert {d.name() for d in made if d.flags() & optional} == set(KEPT) - {"OUTPUT"}
     assert definitions["HIGH_OUTPUT"].description() == "High: selected points"
+    # Clouds between the steps, and rasters, which would cover the result, are made for those who ask.
+    assert {d.name() for d in made if not d.createByDefault()} == {"LIFT_OUTPUT", "HIGH_OUTPUT", "TOP", "FLOOR"}
     assert [d.name() for d in definitions.values() if not d.help() and not d.isDestination()] == []
+
+
+def test_the_dialog_begins_with_what_the_composite_is_for(provider):
+    algorithm = provider.algorithm("mapfootprints").create()
+    made = [d.name() for d in algorithm.destinationParameterDefinitions()]
+    assert made[:5] == ["OUTPUT", "WALL_FOOTPRINTS", "WALL_EDGES", "DISPLACEMENTS", "BUILDINGS"]
+    assert made[5:9] == ["REPORT", "DTM", "DSM", "NDSM"]
+    assert all(name.endswith("_OUTPUT") for name in made[9:])
 
 
 def test_help_of_a_composite_tells_layers_and_what_is_kept():

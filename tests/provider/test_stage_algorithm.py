@@ -201,6 +201,13 @@ def test_what_is_wrong_is_told_in_one_sentence_before_and_in_the_run(
     assert list(out.iterdir()) == []
 
 
+def test_a_limit_that_is_not_set_is_not_called_automatic(provider, context, log, town_file, out):
+    lifted = str(out / "lifted.las")
+    run("toylift", {"INPUT": str(town_file), "OUTPUT": lifted}, context, log)
+    run("filterpoints", {"INPUT": lifted, "OUTPUT": str(out / "a.las")}, context, log)
+    assert f"Minimum height, none set, the cloud has: {heights(lifted)[0]:g} m" in log.infos
+
+
 def test_two_outputs_may_not_be_one_file(provider, context, out):
     algorithm = provider.algorithm("toymake").create()
     given = {"OUTPUT": str(out / "a.laz"), "TRUTH": str(out / "a.laz")}
