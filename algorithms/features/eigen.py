@@ -8,7 +8,7 @@ neither the chunks nor the number of threads.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Callable, Optional, Protocol
 
 import numpy as np
@@ -16,6 +16,7 @@ import numpy as np
 from ..packages import spatial
 from ..stage import Monitor
 from ..threads import in_chunks
+from .blocks import PAIRS, Shapes, nearest_shapes, shapes_within
 
 # Neighbors gathered at once by one thread: 40 bytes each, so 20 MB, which also fits caches best.
 _CHUNK_NEIGHBORS = 500_000
@@ -23,31 +24,8 @@ _CHUNK_NEIGHBORS = 500_000
 # Fewer points than this have no covariance worth the name.
 MIN_NEIGHBORS = 3
 
-# Order of the six numbers of a symmetric matrix: xx, yy, zz, xy, xz, yz.
-PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
-
 # A neighborhood larger than this on average is a radius chosen by mistake: it would run for days.
 _MAX_MEAN_NEIGHBORS = 20_000
-
-
-@dataclass
-class Shapes:
-    """What is known of the neighborhoods of m points.
-
-    Attributes
-    ----------
-    covariances : ndarray of shape (m, 6)
-        xx, yy, zz, xy, xz, yz (m²), divided by the number of points.
-    counts : ndarray of shape (m,)
-        Points of each neighborhood, the point itself among them.
-    height_range, plan_radius : ndarray of shape (m,)
-        Highest less lowest elevation, and the largest horizontal distance from the point (m); empty unless asked for.
-    """
-
-    covariances: np.ndarray
-    counts: np.ndarray
-    height_range: np.ndarray = field(default_factory=lambda: np.empty(0))
-    plan_radius: np.ndarray = field(default_factory=lambda: np.empty(0))
 
 
 class Neighborhood(Protocol):
@@ -78,13 +56,7 @@ class Nearest:
 
     def shapes(self, columns: np.ndarray, tree: Any, rows: np.ndarray, extents: bool) -> Shapes:
         """Return the shapes of the neighborhoods of the points ``rows``."""
-        neighbors, offsets = nearest_offsets(columns, tree, rows, self.count)
-        _, products = _moments(offsets)
-        shapes = Shapes(np.column_stack(products), np.full(len(rows), neighbors.shape[1]))
-        if extents:
-            shapes.height_range = np.ptp(offsets[2], axis=1)
-            shapes.plan_radius = np.sqrt((offsets[0] ** 2 + offsets[1] ** 2).max(axis=1))
-        return shapes
+        return nearest_shapes(columns, tree, rows, min(self.count, columns.shape[1]), extents)
 
     def moments(self, columns: np.ndarray, tree: Any, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return neighbors (m, k), their centers (m, 3) and covariances (m, 6) of the points ``rows``."""
@@ -131,30 +103,7 @@ class Within:
 
     def shapes(self, columns: np.ndarray, tree: Any, rows: np.ndarray, extents: bool) -> Shapes:
         """Return the shapes of the neighborhoods of the points ``rows``."""
-        own = columns[:, rows].T
-        counts = tree.query_ball_point(own, self.radius, return_length=True)
-        # Dense spots get smaller parts, so that memory does not follow the densest place.
-        part = np.cumsum(counts) // _CHUNK_NEIGHBORS
-        starts = np.flatnonzero(np.diff(part, prepend=-1))
-        parts = [_balls(columns, tree, points, self.radius, extents) for points in np.split(own, starts[1:])]
-        return Shapes(*(np.concatenate(values) for values in zip(*parts)))
-
-
-def _balls(columns: np.ndarray, tree: Any, points: np.ndarray, radius: float, extents: bool) -> tuple:
-    """Return the :class:`Shapes` of all points of ``tree`` within ``radius`` of each of ``points`` (m, 3), as a row."""
-    pairs = spatial.cKDTree(points).sparse_distance_matrix(tree, radius, output_type="ndarray")
-    row, neighbor = pairs["i"], pairs["j"]
-    offsets = [np.take(column, neighbor) - np.take(start, row) for column, start in zip(columns, points.T)]
-    size = len(points)
-    count = np.bincount(row, minlength=size)
-    means = [np.bincount(row, offset, size) / count for offset in offsets]
-    products = [np.bincount(row, offsets[a] * offsets[b], size) / count - means[a] * means[b] for a, b in PAIRS]
-    if not extents:
-        return np.column_stack(products), count, np.empty(0), np.empty(0)
-    by_row, starts = np.argsort(row, kind="stable"), np.cumsum(count) - count
-    height, plan = offsets[2][by_row], (offsets[0] ** 2 + offsets[1] ** 2)[by_row]
-    height_range = np.maximum.reduceat(height, starts) - np.minimum.reduceat(height, starts)
-    return np.column_stack(products), count, height_range, np.sqrt(np.maximum.reduceat(plan, starts))
+        return shapes_within(columns, tree, rows, self.radius, extents)
 
 
 def reduce_neighborhoods(

@@ -166,9 +166,11 @@ def compute_features(
     taken relative to each point, so that large ones lose nothing. Surface variation is what other programs
     call curvature; verticality is that of Demantké et al.
 
-    Where the cloud has fewer points than a neighborhood asks for, it is made of all of them. 'optimal' tries the
-    fewest, then a step more, up to the most nearest points, and takes the one with the least eigenentropy; of
-    several that differ by rounding only, the smallest.
+    Where the cloud has fewer points than a neighborhood asks for, it is made of all of them. Of several points equally
+    far at the end of a neighborhood of 'nearest', each counts in part, so that their order in the cloud decides
+    nothing; the features of extent are those of all of them. 'optimal' tries the fewest, then a step more, up to the
+    most nearest points, and takes the one with the least eigenentropy; of several that differ by rounding only, the
+    smallest.
 
     References
     ----------

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from .eigen import PAIRS, Shapes, full_matrices, nearest_offsets
+from .eigen import PAIRS, Nearest, Shapes, full_matrices, nearest_offsets
 
-# Numbers in each array of a chunk, over all scales: as large as lets a handful of them stay in the second-level cache.
-_CHUNK_NUMBERS = 16_000
+# Numbers in each array over all scales: as large as lets a handful of them stay in the second-level cache.
+_CACHED = 16_000
 
 # Entropies closer than this are equal but for rounding; of equal ones the smallest neighborhood is taken.
 _EQUAL = 1e-9
@@ -40,23 +40,31 @@ class Optimal:
 
     def rows_per_chunk(self, n_points: int) -> int:
         """Return how many points are worked on at once."""
-        return max(1, _CHUNK_NUMBERS // min(self.high, n_points))
+        return Nearest(self.high).rows_per_chunk(n_points)
 
     def shapes(self, columns: np.ndarray, tree: Any, rows: np.ndarray, extents: bool) -> Shapes:
         """Return the shapes of the best neighborhoods of the points ``rows``."""
         _, offsets = nearest_offsets(columns, tree, rows, self.high)
+        size = max(1, _CACHED // offsets[0].shape[1])
+        parts = [
+            self._best([offset[start : start + size] for offset in offsets], extents)
+            for start in range(0, len(rows), size)
+        ]
+        return Shapes(*(np.concatenate(values) for values in zip(*parts)))
+
+    def _best(self, offsets: list, extents: bool) -> tuple:
+        """Return the :class:`Shapes` of the best of the offsets (m, k) in x, y and z, nearest first, as a row."""
         x, y, z = offsets = [np.ascontiguousarray(offset.T) for offset in offsets]
         scales = np.arange(min(self.low, len(x)), len(x) + 1, self.step)
         covariances = _nested_covariances(offsets, scales)
         best = _first_least(eigenentropies(covariances))
-        every = np.arange(len(rows))
-        shapes = Shapes(covariances[:, best, every].T, scales[best])
-        if extents:
-            last = shapes.counts - 1
-            ranges = np.maximum.accumulate(z) - np.minimum.accumulate(z)
-            shapes.height_range = ranges[last, every]
-            shapes.plan_radius = np.sqrt(np.maximum.accumulate(x * x + y * y)[last, every])
-        return shapes
+        every = np.arange(x.shape[1])
+        made, counts = covariances[:, best, every].T, scales[best]
+        if not extents:
+            return made, counts, np.empty(0), np.empty(0)
+        last = counts - 1
+        ranges = np.maximum.accumulate(z) - np.minimum.accumulate(z)
+        return made, counts, ranges[last, every], np.sqrt(np.maximum.accumulate(x * x + y * y)[last, every])
 
 
 def _nested_covariances(offsets: list, scales: np.ndarray) -> np.ndarray:

@@ -136,8 +136,7 @@ def test_nearest_neighborhoods_are_those_of_brute_force(rng):
     np.testing.assert_allclose(eigen.neighborhood_eigenvalues(xyz, n_neighbors=12), expected, atol=1e-12)
 
 
-def test_radius_neighborhoods_are_those_of_brute_force(rng, monkeypatch):
-    monkeypatch.setattr(eigen, "_CHUNK_NEIGHBORS", 700)  # so that chunks are split by their neighbors
+def test_radius_neighborhoods_are_those_of_brute_force(rng):
     xyz = rng.uniform(0, 10, (300, 3)) + [600_000, 5_000_000, 0]
     near = np.linalg.norm(xyz[:, None] - xyz, axis=2) <= 2.0
     found, counted = np.empty((300, 6)), np.zeros(300, int)
