@@ -35,6 +35,15 @@ MinBuildingArea = Annotated[
     Param("Minimum building area", "Area of the smallest building to be found.", unit="m²", low=0.1, high=10_000),
 ]
 
+IsolatedPoints = Annotated[
+    bool,
+    Param(
+        "Isolated points",
+        "Also find what hangs free in the air (birds, flocks, plumes of dust) and what lies under the ground "
+        "(multipath), within the heights of the scene. Without it the method is the published one.",
+    ),
+]
+
 SplitHeight = Annotated[
     float,
     Param(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .cells import grid_over
+from .cells import distinct, grid_over, plan_box
 
 # With this many points per occupied cell on average, holes of random sampling are rare (one in 150)
 # and courtyards, water and gaps between strips still show as empty.
@@ -34,7 +34,8 @@ def point_density(xyz: np.ndarray) -> float:
     The area is that of the occupied cells of a grid whose cells hold five points on average;
     that size depends on the density in turn, so it is found by repetition.
     """
-    extent = np.ptp(xyz[:, :2], axis=0)
+    low, high = plan_box(xyz)
+    extent = high - low
     if not extent.any():
         raise ValueError(
             f"The cloud has no extent in plan (points: {len(xyz)}), so it has no density; choose a larger cloud."
@@ -44,7 +45,7 @@ def point_density(xyz: np.ndarray) -> float:
     density = len(xyz) / area
     for _ in range(20):
         size = float(np.sqrt(_POINTS_PER_CELL / density))
-        occupied = len(np.unique(grid_over(xyz, size).number(xyz)))
+        occupied = len(distinct(grid_over(xyz, size).number(xyz))[0])
         found = len(xyz) / (occupied * size * size)
         if abs(found - density) < 0.01 * density:
             break

@@ -8,11 +8,12 @@ from typing import Annotated, Optional
 import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
-from ..cloud.cells import Grid, grid_over
+from ..cloud.cells import Grid, grid_over, plan_box
 from ..cloud.density import point_density
 from ..packages import spatial
+from ..params import IsolatedPoints
 from ..stage import Monitor, Param, stage
-from .apart import in_the_air, under_ground
+from .apart import add_isolated
 
 # Points per cell on average: with the eight cells around it some 4000 points make a histogram, whatever the density.
 _POINTS_PER_CELL = 450
@@ -80,14 +81,7 @@ def classify_noise_histogram(
             advanced=True,
         ),
     ] = 200.0,
-    isolated: Annotated[
-        bool,
-        Param(
-            "Isolated points",
-            "Also find what hangs free in the air (birds, flocks, plumes of dust) and what lies under the ground "
-            "(multipath), within the heights of the scene. Without it the method is the published one.",
-        ),
-    ] = True,
+    isolated: IsolatedPoints = True,
     monitor=None,
 ):
     """Find points far above or below the scene, such as birds, clouds and multipath returns.
@@ -128,7 +122,7 @@ def classify_noise_histogram(
     """
     made = classification.astype(np.uint8)
     used = np.flatnonzero(~np.isin(made, NOISE))
-    if not len(used) or not np.ptp(xyz[used, :2], axis=0).any():
+    if not len(used) or not np.ptp(plan_box(xyz[used]), axis=0).any():
         monitor.warn("No noise was looked for: the points that are not noise already have no extent in plan.")
         return made
     points = xyz[used]
@@ -155,23 +149,12 @@ def classify_noise_histogram(
 
     # 3. What belongs to nothing, at whatever height.
     if isolated:
-        _add_isolated(points, is_low, is_high, 1 / float(np.sqrt(density)), monitor.part(0.7, 1.0))
+        add_isolated(points, is_low, is_high, 1 / float(np.sqrt(density)), monitor.part(0.7, 1.0))
     made[used[is_low]] = PointClass.LOW_NOISE
     made[used[is_high]] = PointClass.HIGH_NOISE
     monitor.resolved(low_noise=int(is_low.sum()), high_noise=int(is_high.sum()))
     monitor.progress(1.0)
     return made
-
-
-def _add_isolated(
-    points: np.ndarray, is_low: np.ndarray, is_high: np.ndarray, spacing: float, monitor: Monitor
-) -> None:
-    """Add isolated points to those that are low or high noise (n,)."""
-    rest = np.flatnonzero(~(is_low | is_high))
-    hanging = in_the_air(points[rest], spacing, monitor.part(0.0, 0.4))
-    is_high[rest[hanging]] = True
-    rest = rest[~hanging]
-    is_low[rest[under_ground(points[rest], spacing, monitor.part(0.4, 1.0))]] = True
 
 
 def _automatic(

@@ -7,8 +7,12 @@ from typing import Annotated
 import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
+from ..cloud.cells import plan_box
+from ..cloud.density import point_spacing
 from ..packages import spatial
+from ..params import IsolatedPoints
 from ..stage import Monitor, Param, stage
+from .apart import add_isolated, link_length
 
 # Points asked for at once, so that progress is told and the neighbors of only so many are held.
 _CHUNK = 100_000
@@ -40,13 +44,14 @@ def classify_noise_statistical(
             high=100,
         ),
     ] = 6.0,
+    isolated: IsolatedPoints = True,
     monitor=None,
 ):
-    """Find isolated points: those whose nearest neighbors are much farther away than is usual in the cloud.
+    """Find points far from their nearest neighbors, and groups of points apart from all others.
 
-    Suits clouds of even density, such as photogrammetric and terrestrial ones. It takes sparse parts of the scene for
-    noise sooner than the height histogram does. Low noise (class 7) lies under its neighbors, high noise (class 18)
-    over them.
+    The distances to neighbors find points that are alone. Then come isolated points, alone or many together, by their
+    distance to the scene: loose things in the open air, and few points under the ground. Low noise (class 7) lies under
+    its neighbors, high noise (class 18) over them.
 
     Parameters
     ----------
@@ -65,8 +70,13 @@ def classify_noise_statistical(
     A point is noise when the mean distance to its k nearest neighbors exceeds mean + m * standard deviation of all
     these means. Distances have a long tail wherever there are trees and walls: with m = 2 or 3, often seen elsewhere,
     every hundredth point or more of a good airborne cloud is lost, with the default less than two in a thousand on
-    most.
-    Points very far away raise the standard deviation and hide less distant ones; run the height histogram first.
+    most. Points very far away raise the standard deviation and hide less distant ones, and points of a flock or a plume
+    have near neighbors.
+
+    With isolated points, both are mended. A point must then be farther than 4.8 m (7 point spacings on sparse clouds)
+    from its nearest one, too, so that facades and crowns keep their sparse parts. And noise is what no chain of points
+    half as far apart ties to the scene, and what lies under the ground: the height histogram's stage finds these in the
+    same way, and its notes say what stays.
 
     References
     ----------
@@ -78,24 +88,36 @@ def classify_noise_statistical(
     if len(points) <= n_neighbors:
         monitor.warn(f"No noise was looked for: {len(points)} points are not enough for {n_neighbors} neighbors.")
         return made
-    distance, rise = _neighbor_distances(points, n_neighbors, monitor)
+    nearest, distance, rise = _neighbor_distances(points, n_neighbors, monitor.part(0.0, 0.5))
     limit = float(distance.mean() + deviations * distance.std())
     monitor.resolved(max_mean_distance=limit)
     is_noise = distance > limit
-    made[used[is_noise]] = np.where(rise[is_noise] < 0, PointClass.LOW_NOISE, PointClass.HIGH_NOISE)
+    isolated = isolated and bool(np.ptp(plan_box(points), axis=0).any())
+    spacing = point_spacing(points) if isolated else 0.0
+    if isolated:
+        is_noise &= nearest > 2 * link_length(spacing)
+    is_low, is_high = is_noise & (rise < 0), is_noise & (rise >= 0)
+    if isolated:
+        add_isolated(points, is_low, is_high, spacing, monitor.part(0.5, 1.0))
+    made[used[is_low]] = PointClass.LOW_NOISE
+    made[used[is_high]] = PointClass.HIGH_NOISE
+    monitor.resolved(low_noise=int(is_low.sum()), high_noise=int(is_high.sum()))
     return made
 
 
-def _neighbor_distances(points: np.ndarray, n_neighbors: int, monitor: Monitor) -> tuple[np.ndarray, np.ndarray]:
-    """Return the mean distance to the neighbors and the height over their median (n,), both in m."""
+def _neighbor_distances(
+    points: np.ndarray, n_neighbors: int, monitor: Monitor
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return least and mean distance to the neighbors, and the height over their median (n,), all in m."""
     tree = spatial.cKDTree(points)
-    distance, rise = np.empty(len(points)), np.empty(len(points))
+    nearest, distance, rise = (np.empty(len(points), dtype) for dtype in (np.float32, np.float64, np.float32))
     for start in range(0, len(points), _CHUNK):
         # In the order of the tree's leaves the neighbors of a chunk lie together.
         rows = tree.indices[start : start + _CHUNK]
         # The nearest point is the point itself.
         found, neighbors = tree.query(points[rows], n_neighbors + 1, workers=-1)
+        nearest[rows] = found[:, 1]
         distance[rows] = found[:, 1:].mean(axis=1)
         rise[rows] = points[rows, 2] - np.median(points[neighbors[:, 1:], 2], axis=1)
         monitor.progress(min(1.0, (start + _CHUNK) / len(points)))
-    return distance, rise
+    return nearest, distance, rise

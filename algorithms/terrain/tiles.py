@@ -12,11 +12,11 @@ from typing import Optional
 
 import numpy as np
 
-from ..cloud.cells import grid_over
+from ..cloud.cells import grid_over, plan_box
 from ..packages import spatial
 from ..stage import Monitor
 from ..threads import in_chunks
-from .tin import Tin, plan_box
+from .tin import Tin
 
 # Nodes and places of a tile at most: large ones hold more memory, small ones cost more overhead.
 _NODES, _PLACES = 20_000, 40_000

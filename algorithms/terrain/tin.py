@@ -6,6 +6,7 @@ from typing import Any, Optional
 
 import numpy as np
 
+from ..cloud.cells import plan_box
 from ..packages import spatial
 from ..stage import Monitor
 
@@ -13,13 +14,6 @@ _CHUNK = 200_000
 
 # Far more steps than a walk from the nearest node takes.
 _MAX_STEPS = 1000
-
-
-def plan_box(points: np.ndarray) -> np.ndarray:
-    """Return the least and the greatest easting and northing (2, 2) of points, m."""
-    # Column by column is many times faster than along the axis.
-    columns = points[:, 0], points[:, 1]
-    return np.array([[column.min() for column in columns], [column.max() for column in columns]])
 
 
 class Tin:

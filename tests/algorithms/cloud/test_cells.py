@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from lidar_buildings.algorithms.cloud.cells import connected_cells, find_cells, grid_over
+from lidar_buildings.algorithms.cloud.cells import connected_cells, distinct, find_cells, grid_over, plan_box
 
 
 def test_number_and_center_agree(rng):
@@ -49,3 +49,20 @@ def test_find(cells):
     position, found = find_cells(np.array(cells, np.int64), wanted)
     assert found.tolist() == [number in cells for number in wanted]
     assert all(cells[p] == number for p, number, there in zip(position, wanted, found) if there)
+
+
+@pytest.mark.parametrize("span", [1, 100, 10**12], ids=["one number", "by a table", "by sorting"])
+def test_distinct_numbers_are_those_of_numpy(rng, span):
+    numbers = rng.integers(-span, span, 500) + 10**13
+    values, which = distinct(numbers)
+    expected, inverse = np.unique(numbers, return_inverse=True)
+    np.testing.assert_array_equal(values, expected)
+    np.testing.assert_array_equal(which, inverse)
+
+
+def test_no_numbers_are_distinct():
+    assert [len(part) for part in distinct(np.zeros(0, np.int64))] == [0, 0]
+
+
+def test_box_in_plan():
+    np.testing.assert_array_equal(plan_box(np.array([[3.0, 1, 9], [2, 7, -1], [5, 4, 0]])), [[2, 1], [5, 7]])

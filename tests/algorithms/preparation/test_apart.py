@@ -6,6 +6,7 @@ import pytest
 from lidar_buildings.algorithms.cloud.asprs import NOISE, PointClass
 from lidar_buildings.algorithms.preparation.apart import in_the_air, under_ground
 from lidar_buildings.algorithms.preparation.noise_histogram import classify_noise_histogram
+from lidar_buildings.algorithms.preparation.noise_statistical import classify_noise_statistical
 from lidar_buildings.algorithms.stage import Monitor
 from lidar_buildings.tests.noisy import noisy_town
 
@@ -19,12 +20,13 @@ def plain(rng, density=8.0, side=80.0, slope=0.0):
     return np.column_stack([plan, slope * plan[:, 0] + rng.normal(0, 0.02, len(plan))])
 
 
+@pytest.mark.parametrize("classify", [classify_noise_histogram, classify_noise_statistical])
 @pytest.mark.parametrize(
     "differs", [{"density": 2.0}, {"density": 8.0, "slope": 25.0}, {"density": 8.0, "forest": 0.6}, {"density": 30.0}]
 )
-def test_noise_of_a_town_is_found_and_the_town_stays(differs):
+def test_noise_of_a_town_is_found_and_the_town_stays(classify, differs):
     town = noisy_town(seed=21, **differs)
-    made = classify_noise_histogram(town.xyz, np.ones(len(town.xyz), np.uint8))
+    made = classify(town.xyz, np.ones(len(town.xyz), np.uint8))
     found = np.isin(made, NOISE)
     assert (found & town.is_noise).sum() >= 0.9 * town.is_noise.sum()
     assert (found & town.is_noise).sum() >= 0.9 * found.sum()
@@ -65,6 +67,15 @@ def test_pits_ditches_steps_and_ground_between_leaves_stay(rng):
     in_wood = (x > 30) & (x < 60) & (y < 35) & (rng.random(len(x)) < 0.85)
     xyz[in_wood, 2] += rng.uniform(4, 14, in_wood.sum())
     assert under_ground(xyz, 8.0**-0.5, Monitor()).mean() <= 2e-4
+
+
+def test_points_that_are_ground_for_each_other_stay(rng):
+    """Four points of a hollow, seen here and there between leaves: 0.8 m apart and 0.2 m higher and lower."""
+    hollow = np.array([[40.0, 40, -0.8], [40.8, 40, -0.6], [40.8, 40.8, -0.8], [40, 40.8, -0.6]])
+    alone = np.array([[60.0, 60, -0.8]])
+    found = under_ground(np.concatenate([plain(rng, 16.0), hollow, alone]), 0.25, Monitor())
+    assert not found[-5:-1].any()
+    assert found[-1]
 
 
 def test_what_hangs_by_form_or_density_stays(rng):

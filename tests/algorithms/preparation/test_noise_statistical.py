@@ -13,7 +13,7 @@ def test_agrees_with_brute_force(rng, monkeypatch):
     xyz = np.concatenate([rng.uniform(0, 10, (300, 3)), rng.uniform(-40, 40, (10, 3))])
     distance = np.sort(np.linalg.norm(xyz[:, None] - xyz, axis=2), axis=1)[:, 1:6].mean(axis=1)
     expected = distance > distance.mean() + 1.5 * distance.std()
-    made = classify_noise_statistical(xyz, np.ones(310, np.uint8), n_neighbors=5, deviations=1.5)
+    made = classify_noise_statistical(xyz, np.ones(310, np.uint8), n_neighbors=5, deviations=1.5, isolated=False)
     assert expected.sum() >= 5
     assert (np.isin(made, (7, 18)) == expected).all()
 
@@ -27,18 +27,20 @@ def test_low_and_high(rng):
     assert (made[:-2] == 2).mean() > 0.999
 
 
-def test_place_and_point_order_change_nothing(rng):
+@pytest.mark.parametrize("isolated", [False, True])
+def test_place_and_point_order_change_nothing(rng, isolated):
     xyz = np.concatenate([rng.uniform(0, 10, (500, 3)), rng.uniform(-40, 40, (10, 3))])
-    made = classify_noise_statistical(xyz, np.ones(510, np.uint8), deviations=2.0)
+    made = classify_noise_statistical(xyz, np.ones(510, np.uint8), deviations=2.0, isolated=isolated)
     order = rng.permutation(510)
-    there = classify_noise_statistical(xyz[order] + [6e5, 5e6, 0], np.ones(510, np.uint8), deviations=2.0)
+    moved = xyz[order] + [6e5, 5e6, 0]
+    there = classify_noise_statistical(moved, np.ones(510, np.uint8), deviations=2.0, isolated=isolated)
     assert (there == made[order]).all()
 
 
 def test_fewer_deviations_find_more(rng):
     xyz = rng.normal(0, 5, (2000, 3))
     found = [
-        np.isin(classify_noise_statistical(xyz, np.ones(2000, np.uint8), deviations=m), (7, 18))
+        np.isin(classify_noise_statistical(xyz, np.ones(2000, np.uint8), deviations=m, isolated=False), (7, 18))
         for m in (4.0, 2.0, 1.0)
     ]
     assert (found[0] <= found[1]).all()
@@ -64,3 +66,25 @@ def test_too_few_points_are_told(n):
 
 def test_points_all_alike_are_no_noise():
     assert (classify_noise_statistical(np.ones((50, 3)), np.ones(50, np.uint8)) == 1).all()
+
+
+def test_sparse_parts_of_a_scene_stay_and_what_is_alone_goes(rng):
+    """A facade that few beams hit: far from each other, its points are near enough to belong to it."""
+    ground = np.column_stack([rng.uniform(0, 40, (16_000, 2)), rng.normal(0, 0.02, 16_000)])
+    facade = np.array([[20.0, y, z] for y in range(10, 30, 2) for z in (2.0, 4.0, 6.0)])
+    roof = np.column_stack([rng.uniform([20, 9], [26, 31], (1300, 2)), np.full(1300, 8.0)])
+    stray = np.array([[5.0, 5, 30], [70, 20, 3], [-50, -50, 0]])
+    xyz = np.concatenate([ground, facade, roof, stray])
+    plain, made = (
+        classify_noise_statistical(xyz, np.ones(len(xyz), np.uint8), deviations=3.0, isolated=isolated)
+        for isolated in (False, True)
+    )
+    assert (plain[16_000:16_030] != 1).any()
+    assert (made[:-3] == 1).all()
+    assert (made[-3:] != 1).all()
+
+
+def test_points_on_one_place_in_plan_have_no_scene_to_be_apart_from():
+    xyz = np.zeros((50, 3))
+    xyz[:, 2] = np.arange(50.0)
+    assert (classify_noise_statistical(xyz, np.ones(50, np.uint8)) == 1).all()
