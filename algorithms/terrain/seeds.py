@@ -12,6 +12,7 @@ from ..cloud.cells import refuse_sparse
 from ..packages import ndimage
 from ..stage import Monitor
 from .opening import open_surface
+from .standing import free_standing, neighbors
 
 # Step that terrain may make over any window, m: kerbs, ruts, tussocks.
 _STEP = 0.1
@@ -38,13 +39,8 @@ _JOINED_OF_ALL = 0.25
 # Where the surface goes on as steeply as at the step itself, up to this slope, the step is a bank rather than a wall.
 _STEEPEST_BANK = 2.0
 
-# Without a largest building given, windows go up to this size (m), beyond the usual one only for regions that stand
-# at least so high (m) over the terrain on so much of their edge, of which so much is not hidden by other objects.
-USUAL_BUILDING, _LARGEST_BUILDING = 60.0, 250.0
-_FREE_STEP, _FREE_EDGE, _OPEN_EDGE = 2.0, 0.9, 0.5
-
-# Cells at the rim of such a region that smaller windows may have lifted off.
-_RIM = 3
+# Without a largest building given, windows go up to this size (m); larger halls stand free.
+USUAL_BUILDING = 60.0
 
 # Windows over this share of the largest lift off spits and hilltops rather than houses.
 _LARGE_WINDOW = 0.5
@@ -85,8 +81,9 @@ def seeds_by_opening(
 ) -> tuple[np.ndarray, float]:
     """Find ground points by opening the lowest surface with growing windows.
 
-    What a window lifts off the surface by more than terrain of the local slope allows is an
-    object; what was removed but joins the terrain smoothly on half of its edge comes back.
+    What stands free with steps down all round is an object, and so is what a window lifts off the surface by more
+    than terrain of the local slope allows; of the latter, what joins the terrain smoothly on half of its edge comes
+    back.
 
     Parameters
     ----------
@@ -95,7 +92,7 @@ def seeds_by_opening(
     cell_size : float
         Cell of the surface, m.
     max_building_size : float, optional
-        Least extent of the largest building, m: the last window. None is 60 m, and more for what stands free.
+        Least extent of the largest building, m: the last window. None is 60 m, and any size for what stands free.
     monitor : Monitor
         Hears progress.
 
@@ -109,9 +106,9 @@ def seeds_by_opening(
     Notes
     -----
     Progressive opening after Pingel et al. (2013), with a threshold that follows the slope of a
-    first, coarser result; the return of smoothly joined regions is this project's. So are windows of
-    unlimited size: beyond 60 m a region must stand at least 2 m over the terrain on nearly all of its edge, which
-    halls do and hills don't.
+    first, coarser result; the return of smoothly joined regions is this project's, and so are the segments that
+    stand free. By these, low houses with large roofs on a slope are found, which windows shave down little by little,
+    and halls that no window is large enough for.
 
     References
     ----------
@@ -120,20 +117,16 @@ def seeds_by_opening(
     """
     lowest = lowest_points(xyz, cell_size)
     surface, known = _surface(xyz, lowest)
-    windows = _windows((max_building_size or USUAL_BUILDING) / 2 / cell_size)
-    usual = windows[-1]
-    if max_building_size is None:
-        windows += _windows(_LARGEST_BUILDING / 2 / cell_size, usual)
-    coarse = _lifted(surface, windows, np.full(surface.shape, _FIRST_SLOPE), cell_size, monitor.part(0, 0.45))
-    coarse = _without_hills(coarse, usual, surface)
-    slope = _slope(_interpolated(surface, coarse > 0), cell_size)
+    size = max_building_size or USUAL_BUILDING
+    windows = _windows(size / 2 / cell_size)
+    free, found = free_standing(surface, cell_size, size, max_building_size or np.inf)
+    first = np.full(surface.shape, _FIRST_SLOPE)
+    coarse = _lifted(surface, windows, first, cell_size, monitor.part(0, 0.45))
+    slope = _slope(_interpolated(surface, (coarse > 0) | free), cell_size)
     lifted = _lifted(surface, windows, _SLOPE_SHARE * slope, cell_size, monitor.part(0.45, 0.9))
-    lifted = _without_hills(lifted, usual, surface)
-    objects = _without_joined(lifted, usual, surface, slope, cell_size)
+    objects = _without_joined(lifted, free, windows[-1], surface, slope, cell_size)
     monitor.progress(1.0)
-    found = 2 * cell_size * int(lifted.max())
-    size = found if found > 2 * cell_size * usual else max_building_size or USUAL_BUILDING
-    return lowest.points(known & ~objects), size
+    return lowest.points(known & ~objects), max(size, found)
 
 
 def seeds_by_lowest(xyz: np.ndarray, max_building_size: float) -> np.ndarray:
@@ -159,15 +152,13 @@ def _nearest(surface: np.ndarray, unknown: np.ndarray) -> np.ndarray:
     return surface[row, column]
 
 
-def _windows(largest: float, beyond: int = 0) -> list[int]:
-    """Return radii in cells from 1, or over ``beyond``, to ``largest``, each a quarter larger than the one before."""
-    radii: list[int] = []
+def _windows(largest: float) -> list[int]:
+    """Return radii in cells from 1 to ``largest``, each a quarter larger than the one before."""
+    radii = [1]
     last = max(1, int(np.ceil(largest)))
-    radius = max(beyond + 1, round(beyond * _GROWTH))
-    while radius < last:
-        radii.append(radius)
-        radius = max(radius + 1, round(radius * _GROWTH))
-    return [*radii, last] if last > beyond else radii
+    while radii[-1] < last:
+        radii.append(min(last, max(radii[-1] + 1, round(radii[-1] * _GROWTH))))
+    return radii
 
 
 def _lifted(
@@ -209,41 +200,22 @@ def _slope(surface: np.ndarray, cell_size: float) -> np.ndarray:
     return np.sqrt(sum((gradient**2 for gradient in gradients), np.zeros_like(smooth)))
 
 
-def _without_hills(lifted: np.ndarray, usual: int, surface: np.ndarray) -> np.ndarray:
-    """Return ``lifted`` without what windows over ``usual`` lifted off and what doesn't stand free like a hall."""
-    is_large = lifted > usual
-    if not is_large.any():
-        return lifted
-    # Smaller windows lifted off its corners and what stands at its walls.
-    region, count = ndimage.label(ndimage.binary_dilation(is_large, iterations=_RIM, mask=lifted > 0))
-    edge, beside, free = np.zeros(count + 1), np.zeros(count + 1), np.zeros(count + 1)
-    for here, there in _beside(surface.ndim):
-        at_edge = (region[here] > 0) & (region[there] == 0)
-        at_terrain = at_edge & (lifted[there] == 0)
-        steps = at_terrain & (surface[here] - surface[there] >= _FREE_STEP)
-        edge += np.bincount(region[here][at_edge], minlength=count + 1)
-        beside += np.bincount(region[here][at_terrain], minlength=count + 1)
-        free += np.bincount(region[here][steps], minlength=count + 1)
-    stands = (free > 0) & (free >= _FREE_EDGE * beside) & (beside >= _OPEN_EDGE * edge)
-    return np.where(is_large & ~stands[region], 0, lifted)
-
-
 def _without_joined(
-    lifted: np.ndarray, usual: int, surface: np.ndarray, slope: np.ndarray, cell_size: float
+    lifted: np.ndarray, free: np.ndarray, usual: int, surface: np.ndarray, slope: np.ndarray, cell_size: float
 ) -> np.ndarray:
-    """Return the lifted cells but for regions that join the terrain smoothly on half of their edge.
+    """Return what stands free, and the lifted cells but for regions that join the terrain smoothly on half their edge.
 
     A step is smooth if it is low, or if the surface goes on as steeply on one of its sides: the flank of a bank.
     What smaller windows and what larger windows lifted off make regions of their own: a house stays
     lifted off, though the spit of land on which it stands comes back.
     """
     allowed = (_JOIN_SLOPE + _JOIN_SHARE * slope) * cell_size
-    objects = lifted > 0
+    objects = (lifted > 0) | free
     is_large = lifted > _LARGE_WINDOW * usual
     for group in (objects & ~is_large, is_large):
         region, count = ndimage.label(group)
         whole, edge, joined = np.zeros(count + 1), np.zeros(count + 1), np.zeros(count + 1)
-        for (here, there), flank in zip(_beside(surface.ndim), _flanks(surface)):
+        for (here, there), flank in zip(neighbors(surface.ndim), _flanks(surface)):
             outward = (region[here] > 0) & (region[there] != region[here])
             at_edge = outward & ~objects[there]
             step = surface[here] - surface[there]
@@ -254,12 +226,12 @@ def _without_joined(
             joined += np.bincount(region[here][smooth], minlength=count + 1)
         terrain = (joined >= _JOINED * np.maximum(edge, 1)) & (joined >= _JOINED_OF_ALL * whole)
         terrain[0] = False
-        objects &= ~terrain[region]
+        objects &= ~terrain[region] | free
     return objects
 
 
 def _flanks(surface: np.ndarray) -> Iterator[np.ndarray]:
-    """Yield, in the order of ``_beside``, the larger rise (m) of the cell before and the cell after each step."""
+    """Yield, in the order of ``neighbors``, the larger rise (m) of the cell before and the cell after each step."""
     for axis in range(surface.ndim):
         for upward in (False, True):
             along = np.moveaxis(surface, axis, 0)
@@ -269,10 +241,3 @@ def _flanks(surface: np.ndarray) -> Iterator[np.ndarray]:
             flank[1:] = step[:-1]
             flank[:-1] = np.maximum(flank[:-1], step[1:])
             yield np.moveaxis(flank[::-1] if upward else flank, 0, axis)
-
-
-def _beside(dimensions: int) -> Iterator[tuple[tuple[slice, ...], tuple[slice, ...]]]:
-    """Yield the slices of an array and of itself moved by one cell, along each axis, both ways."""
-    for axis in range(dimensions):
-        for inside, outside in ((slice(None, -1), slice(1, None)), (slice(1, None), slice(None, -1))):
-            yield (slice(None),) * axis + (inside,), (slice(None),) * axis + (outside,)

@@ -64,13 +64,6 @@ def test_windows_grow_from_one_to_the_largest(largest):
     assert all(a < b <= max(a + 1, 1.25 * a + 0.5) for a, b in zip(windows, windows[1:]))
 
 
-def test_windows_beyond_go_on_where_the_usual_ones_end():
-    assert _windows(30.0, beyond=30) == []
-    windows = _windows(125.0, beyond=30)
-    assert windows[0] > 30
-    assert windows[-1] == 125
-
-
 TERRAINS = {
     "level": lambda x, y: np.zeros_like(x),
     "slope": lambda x, y: 0.25 * x - 0.1 * y,
@@ -159,6 +152,18 @@ def test_a_flat_hill_as_large_as_a_hall_is_terrain(rng):
     seeds, size = seeds_by_opening(xyz, 1.4, None, Monitor())
     assert size == 60.0
     assert is_top[seeds].sum() > 0.9 * is_top.sum()
+
+
+def test_a_low_house_with_a_large_roof_on_a_slope_is_no_bank(rng):
+    """Windows shave its hip roof down little by little, and uphill its eaves are hardly 1.3 m over the lawn."""
+    plan = even(70, 70, 0.5) + rng.uniform(-0.2, 0.2, (len(even(70, 70, 0.5)), 2))
+    terrain = 0.08 * plan[:, 0]
+    inward = 7.0 - np.abs(plan - 35).max(axis=1)
+    eaves = 0.08 * 28 + 2.4
+    xyz = np.column_stack([plan, np.where(inward > 0, eaves + 0.35 * inward, terrain) + rng.normal(0, 0.02, len(plan))])
+    seeds, _ = seeds_by_opening(xyz, 1.0, None, Monitor())
+    assert not (inward[seeds] > 0).any()
+    assert (inward[seeds] < -1).sum() > 0.9 * (70**2 - 16**2)
 
 
 def test_progress_only_grows():

@@ -1,0 +1,139 @@
+"""Segments of the lowest surface that stand free: roofs of any size, told from hills by the steps at their edges."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..packages import ndimage
+
+# A step is at least so high (m) and so steep: lower than any eave, steeper than slopes that soil lies on.
+_STEP, _STEEP = 1.0, 1.0
+
+# Segments wider than usual buildings are halls if their steps are at least so high (m): quays are lower.
+_HALL_STEP = 2.0
+
+# A segment stands free with steps down on this share of its open edge; so much of its edge must be open, that is
+# not hidden behind what stands higher or is too rough to tell; and at most so much may be where the cloud ends.
+_FREE_EDGE, _OPEN_EDGE, _CUT_EDGE = 0.9, 0.4, 0.35
+
+# Smaller segments (cells) are too rough to tell.
+_LEAST_CELLS = 4
+
+# On terrain other things stand on more than this share of its area; on roofs, chimneys and machines on less.
+_CARRIES = 0.1
+
+
+def free_standing(
+    surface: np.ndarray, cell_size: float, usual: float, largest: float = np.inf
+) -> tuple[np.ndarray, float]:
+    """Find the smooth segments of a surface that are bounded by steps down all round.
+
+    Parameters
+    ----------
+    surface : ndarray of shape (rows, columns), float64
+        Lowest elevation of each cell, m.
+    cell_size : float
+        m.
+    usual : float
+        Shorter side (m) up to which low steps will do.
+    largest : float
+        Shorter side (m) over which nothing is taken for an object.
+
+    Returns
+    -------
+    free : ndarray of shape (rows, columns), bool
+        Cells of such segments, on terrain of any slope.
+    size : float
+        Shorter side (m) of the largest.
+    """
+    least = max(_STEP, _STEEP * cell_size)
+    segment, count = _segments(surface, least)
+    width = _widths(segment, count) * cell_size
+    wide = width > usual
+    needed = np.where(wide, max(_HALL_STEP, least), least)
+    needed[width > largest] = np.inf
+    stands = np.zeros(count + 1, bool)
+    # The highest come first; what stands at their walls is judged by the rest of its edge.
+    while True:
+        found = _stands(surface, segment, stands, needed) & ~stands
+        if not found.any():
+            break
+        stands |= found
+    stands &= ~_carries(segment, stands, np.flatnonzero(stands & wide))
+    return stands[segment], float(width[stands].max(initial=0.0))
+
+
+def _segments(surface: np.ndarray, least: float) -> tuple[np.ndarray, int]:
+    """Label (from 1) cells that join without a step; 0 are rough cells that have steps on all sides or nearly so."""
+    beside = np.zeros(surface.shape, bool)
+    for here, there in neighbors(surface.ndim):
+        beside[here] |= np.abs(surface[here] - surface[there]) >= least
+    segment, count = ndimage.label(~beside)
+    small = np.bincount(segment.ravel()) < _LEAST_CELLS
+    segment[small[segment]] = 0
+    # The cells at a step go to the segment beside them from which they differ least.
+    for _ in range(2):
+        best = np.full(surface.shape, least)
+        grown = segment.copy()
+        for here, there in neighbors(surface.ndim):
+            step = np.abs(surface[here] - surface[there])
+            takes = (segment[here] == 0) & (segment[there] > 0) & (step < best[here])
+            best[here] = np.where(takes, step, best[here])
+            grown[here] = np.where(takes, segment[there], grown[here])
+        segment = grown
+    return segment, count
+
+
+def _widths(segment: np.ndarray, count: int) -> np.ndarray:
+    """Return the shorter side of each segment's box, in cells."""
+    boxes = ndimage.find_objects(segment, count)
+    return np.array([0] + [min(side.stop - side.start for side in box) if box else 0 for box in boxes])
+
+
+def _stands(surface: np.ndarray, segment: np.ndarray, stands: np.ndarray, needed: np.ndarray) -> np.ndarray:
+    """Return which segments have a step down on most of the edge that no standing one and nothing rough hides."""
+    count = len(stands)
+    whole, open_, down = np.zeros(count), np.zeros(count), np.zeros(count)
+    for here, there in neighbors(surface.ndim):
+        own, other = segment[here], segment[there]
+        edge = (own > 0) & (own != other)
+        step = surface[here] - surface[there]
+        steps = edge & (step >= needed[own])
+        hidden = edge & ~steps & (stands[other] | (other == 0))
+        whole += np.bincount(own[edge], minlength=count)
+        open_ += np.bincount(own[edge & ~hidden], minlength=count)
+        down += np.bincount(own[steps], minlength=count)
+    cut = _cut(segment, count)
+    whole += cut
+    return (down > 0) & (down >= _FREE_EDGE * open_) & (open_ >= _OPEN_EDGE * whole) & (cut <= _CUT_EDGE * whole)
+
+
+def _cut(segment: np.ndarray, count: int) -> np.ndarray:
+    """Return how much of each segment's edge is the edge of the raster, in cells."""
+    cut = np.zeros(count)
+    for axis in range(segment.ndim):
+        for side in (0, -1):
+            cut += np.bincount(np.take(segment, side, axis).ravel(), minlength=count)
+    return cut
+
+
+def _carries(segment: np.ndarray, stands: np.ndarray, which: np.ndarray) -> np.ndarray:
+    """Tell which of the numbered segments have standing ones inside them on more than a share of their area."""
+    count = len(stands)
+    area = np.bincount(segment.ravel(), minlength=count)
+    boxes = ndimage.find_objects(segment, count - 1)
+    carries = np.zeros(count, bool)
+    for number in which:
+        box = boxes[number - 1]
+        inside = ndimage.binary_fill_holes(segment[box] == number) & (segment[box] != number)
+        carries[number] = (inside & stands[segment[box]]).sum() > _CARRIES * area[number]
+    return carries
+
+
+def neighbors(dimensions: int) -> Iterator[tuple[tuple[slice, ...], tuple[slice, ...]]]:
+    """Yield the slices of an array and of itself moved by one cell, along each axis, both ways."""
+    for axis in range(dimensions):
+        for inside, outside in ((slice(None, -1), slice(1, None)), (slice(1, None), slice(None, -1))):
+            yield (slice(None),) * axis + (inside,), (slice(None),) * axis + (outside,)
