@@ -12,11 +12,30 @@ from typing import Optional
 import numpy as np
 
 from .outlines import Tracing, pieces_of, signed_area
-from .regularize import Line, Wall, is_near, is_valid, main_directions, segments_meet, straighten
+from .regularize import Line, Wall, chords, is_near, is_valid, main_directions, segments_meet, simplify, straighten
 
-# How the borders of a group of buildings are made; where one fails, the next is tried: straight, straight and closer to
-# the traced ones, as traced with the outset, as traced through the points.
-_STRAIGHT, _CLOSE, _TRACED, _BARE = range(4)
+
+@dataclass(frozen=True)
+class _Manner:
+    """How the borders of a group of buildings are made: along main directions or not, how closely, how far outside."""
+
+    is_straight: bool = False
+    is_traced: bool = False
+    closeness: float = 1.0
+    outset: float = 1.0
+
+
+# Where one fails, the next is tried: straight, closer to the traced borders, at the outermost points; then chords of
+# the traced borders in their own directions, and of the outermost points; last, through the points.
+_REGULAR = (
+    _Manner(is_straight=True),
+    _Manner(is_straight=True, closeness=0.5),
+    _Manner(is_straight=True, closeness=0.5, outset=0.0),
+    _Manner(),
+    _Manner(closeness=0.5, outset=0.0),
+    _Manner(is_traced=True, outset=0.0),
+)
+_AS_TRACED = (_Manner(is_traced=True), _Manner(is_traced=True, outset=0.0))
 
 
 @dataclass
@@ -52,7 +71,8 @@ class Coverage:
         self._sort_rings()
         self.polygons: list = [[] for _ in tracing.labels]
         self.is_straight = np.zeros(len(tracing.labels), bool)
-        self.manner = np.full(self.n_groups, _STRAIGHT if regularize else _TRACED)
+        self.manners = _REGULAR if regularize else _AS_TRACED
+        self.manner = np.zeros(self.n_groups, np.int64)
         for group in range(self.n_groups):
             self._make(group)
         self._part_groups()
@@ -89,7 +109,7 @@ class Coverage:
 
     def _make(self, group: int) -> None:
         """Make the polygons of a group in the best manner that gives valid ones near the traced ones."""
-        while self.manner[group] < _BARE:
+        while self.manner[group] < self._last:
             if self._made(group):
                 return
             self.manner[group] += 1
@@ -97,7 +117,7 @@ class Coverage:
 
     def _made(self, group: int) -> bool:
         """Make the polygons of a group; return whether they are good."""
-        manner = self.manner[group]
+        manner = self.manners[self.manner[group]]
         borders = _Borders(self, group, manner)
         if not borders.are_made:
             return False
@@ -106,10 +126,10 @@ class Coverage:
             polygons[face].append(borders.closed(face, ring))
         for face, made in polygons.items():
             rings = _ordered(made)
-            if manner < _BARE and (rings is None or not is_valid(rings)):
+            if self.manner[group] < self._last and (rings is None or not is_valid(rings)):
                 return False
             self.polygons[face] = rings
-            self.is_straight[face] = manner <= _CLOSE and face not in borders.traced_faces
+            self.is_straight[face] = manner.is_straight and face not in borders.traced_faces
         return True
 
     def _part_groups(self) -> None:
@@ -120,8 +140,8 @@ class Coverage:
             lesser = set()
             for one, other in self._meeting(left, np.array(boxes)):
                 small, large = sorted((one, other), key=lambda group: (self._area(group), group))
-                if self.manner[small] < _BARE or self.manner[large] < _BARE:
-                    lesser.add(small if self.manner[small] < _BARE else large)
+                if self.manner[small] < self._last or self.manner[large] < self._last:
+                    lesser.add(small if self.manner[small] < self._last else large)
             left = sorted(lesser)
             for group in left:
                 self.manner[group] += 1
@@ -154,34 +174,51 @@ class Coverage:
                     found.add(pair)
         return found
 
-    def samples(self, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    @property
+    def _last(self) -> int:
+        """The manner that always gives valid polygons that don't overlap."""
+        return len(self.manners) - 1
+
+    def samples(self, edges: np.ndarray, share: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
         """Return the places (m, 2) where the building ends beyond its half-edges, and their lengths (m,)."""
         a, b = self.tracing.xy[self.starts[edges]], self.tracing.xy[self.ends[edges]]
         step = b - a
         length = np.hypot(*step.T)
         outward = np.column_stack([step[:, 1], -step[:, 0]]) / length[:, None]
-        return (a + b) / 2 + self.tracing.outset[edges, None] * outward, length
+        return (a + b) / 2 + share * self.tracing.outset[edges, None] * outward, length
 
 
 class _Borders:
     """All borders of one group of buildings that touch, made in one manner."""
 
-    def __init__(self, coverage: Coverage, group: int, manner: int) -> None:
+    def __init__(self, coverage: Coverage, group: int, manner: _Manner) -> None:
         self.coverage, self.manner, self.limit = coverage, manner, 2 * coverage.tolerance
-        self.tolerance = coverage.tolerance / 2 if manner == _CLOSE else coverage.tolerance
+        self.tolerance = coverage.tolerance * manner.closeness
+        # Through the points themselves, each border has its own and no other place.
+        self.is_bare = manner.is_traced and not manner.outset
         self.outer = coverage.outer_of[group]
         self.place_of_edge = {
             edge: (number, at) for number, ring in enumerate(self.outer) for at, edge in enumerate(ring.tolist())
         }
-        self.lines = [Line(*coverage.samples(ring), True) for ring in self.outer]
+        self.lines = [Line(*self._samples(ring), True) for ring in self.outer]
         self.traced_faces: set = set()
         self.positions: dict = {}
         self.arcs = self._arcs(group)
         self.rings = [line.samples for line in self.lines]
         self.is_straight = [False] * len(self.rings)
-        self.are_made = manner > _CLOSE or self._straighten()
+        self.are_made = not manner.is_straight or self._straighten()
         if self.are_made:
+            self._cut_corners()
             self._place_nodes()
+
+    def _samples(self, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return self.coverage.samples(edges, self.manner.outset)
+
+    def _cut_corners(self) -> None:
+        """Make chords of the rings that are not straight, which stay within a spacing of the traced ones."""
+        for number, line in enumerate(self.lines):
+            if not self.is_straight[number] and not self.manner.is_traced:
+                self.rings[number] = chords(line, self.tolerance / 2)
 
     def _arcs(self, group: int) -> dict:
         """Return the borders between buildings of the group by their first half-edge."""
@@ -216,7 +253,7 @@ class _Borders:
             if is_near(ring, line, self.limit):
                 self.rings[number], self.is_straight[number] = ring, True
         for arc in self.arcs.values():
-            samples, length = self.coverage.samples(arc.edges)
+            samples, length = self._samples(arc.edges)
             if not arc.is_closed:
                 ends = self.coverage.tracing.xy[list(arc.ends)]
                 samples = np.concatenate([ends[:1], samples, ends[1:]])
@@ -250,25 +287,28 @@ class _Borders:
 
     def _on_ring(self, number: int, at: int, walls: list) -> tuple:
         """Return where a border that ends before half-edge ``at`` of an outer ring meets it: segment, share; place."""
-        if self.manner == _BARE:
+        if self.is_bare:
             return at, 0.0, self.coverage.tracing.xy[self.coverage.starts[self.outer[number][at]]]
         samples, ring = self.lines[number].samples, self.rings[number]
         raw = (samples[at - 1] + samples[at]) / 2
-        if not self.is_straight[number]:
+        if self.manner.is_traced:
             return (at - 1) % len(samples), 0.5, raw
         return _hit(ring, raw, walls, self.limit)
 
     def _place_arc(self, arc: _Arc) -> None:
         """Put together the places of a border from one end to the other."""
         xy, starts = self.coverage.tracing.xy, self.coverage.starts[arc.edges]
-        if self.manner == _BARE:
+        if self.is_bare:
             places = xy[starts] if arc.is_closed else xy[np.append(starts, arc.ends[1])]
         else:
-            samples, length = self.coverage.samples(arc.edges)
+            samples, length = self._samples(arc.edges)
             traced = self._between(arc, samples)
+            if not self.manner.is_traced:
+                traced = traced[simplify(traced, self.tolerance / 2, arc.is_closed)]
             places = self._between(arc, np.array(arc.corners).reshape(-1, 2))
             weights = length if arc.is_closed else np.concatenate([[0.0], length, [0.0]])
-            arc.is_straight &= is_near(places, Line(traced, weights, arc.is_closed), self.limit)
+            raw = self._between(arc, samples)
+            arc.is_straight &= is_near(places, Line(raw, weights, arc.is_closed), self.limit)
             places = places if arc.is_straight else traced
         arc.places = places
 
@@ -297,7 +337,7 @@ class _Borders:
         if not self.is_straight[number]:
             self.traced_faces.add(face)
         xy, starts = self.coverage.tracing.xy, self.coverage.starts
-        if self.manner == _BARE:
+        if self.is_bare:
             return xy[starts[edges]] if is_closed else xy[np.append(starts[edges], self.coverage.ends[edges[-1]])]
         ring = self.rings[number]
         if is_closed:

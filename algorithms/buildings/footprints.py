@@ -31,7 +31,7 @@ _FIELDS = (
     Field("entropy", float, "mean entropy of the building's points' clusters"),
     Field("confidence", float, "0 unsure to 1 sure of being a building"),
     Field("reason", str, "why most of its roofs are called building"),
-    Field("regularized", int, "1 straightened, 0 outline as traced"),
+    Field("regularized", int, "1 straightened along main directions, 0 outline as traced or in chords of it"),
 )
 
 # Percentiles of roof heights: of those along the outline, where gables rise from eaves, and of all, but for chimneys.
@@ -42,6 +42,8 @@ _STEP, _STEP_SPACINGS = 1.0, 3.0
 
 # Bare points that are farther from a roof than so many spacings tell nothing of where it ends.
 _BESIDE = 3.0
+
+_AROUND, _NEAREST, _UNDER, _DENSE = 2.0, 24, 0.85, 0.6
 
 # Points farther apart than so many spacings are never joined: what lies between such gaps can be done by itself.
 _APART = 8.0
@@ -92,11 +94,11 @@ def extract_footprints(
         Param(
             "Tolerance",
             "Wiggles of the traced outline that are taken for straight; an outline that would have to move by more "
-            "than twice that stays as traced.",
+            "than twice that becomes chords of what was traced.",
             unit="m",
             low=0.01,
             high=100,
-            automatic="twice the mean spacing of the building points, at least 0.4 m.",
+            automatic="1.75 times the mean spacing of the building points, at least 0.4 m.",
             advanced=True,
         ),
     ] = None,
@@ -136,8 +138,9 @@ def extract_footprints(
     Points with another of their building more than a meter (or three spacings) higher beside them are walls: they count
     as points of the building but don't widen its outline. A roof ends half-way between its outermost points and the
     ground seen beside them, at most half a point spacing from its points. Walls are fitted to all points along them,
-    and turned to a main direction only where that moves their ends by less than half the tolerance. Clusters whose
-    points lie on one line have no area and give no polygon.
+    and turned to a main direction only where that moves their ends by about a point spacing at most; chords of curves
+    are not. Outlines without a right angle, or that straight walls would change too much, become chords of what was
+    traced, within a point spacing. Clusters whose points lie on one line have no area and give no polygon.
 
     References
     ----------
@@ -152,7 +155,7 @@ def extract_footprints(
         return found
     spacing = point_spacing(xyz[building])
     if tolerance is None:
-        tolerance = max(0.4, 2 * spacing)
+        tolerance = max(0.4, 1.75 * spacing)
         monitor.resolved(tolerance=tolerance)
 
     cluster = np.ones(len(building), np.int64) if cluster_id is None else cluster_id[building].astype(np.int64)
@@ -211,7 +214,26 @@ def _bare_points(xyz: np.ndarray, classification: np.ndarray, roof: np.ndarray, 
     # A pulse that was split by the edge has a return on the ground right under that on the roof.
     beside = (distance > spacing / 2) & np.isfinite(distance)
     other, nearest = other[beside], nearest[beside]
-    return other[xyz[other, 2] < xyz[roof[nearest], 2] - _STEP]
+    other = other[xyz[other, 2] < xyz[roof[nearest], 2] - _STEP]
+    return other[~_is_under(xyz[other, :2], xyz[roof, :2], spacing)]
+
+
+def _is_under(places: np.ndarray, roof: np.ndarray, spacing: float) -> np.ndarray:
+    """Return which places (n, 2) lie under a roof: it is about as dense around them as around its points beside them.
+
+    From the side, a scanner sees the ground and the wall under the eaves.
+    """
+    if not len(places):
+        return np.zeros(0, bool)
+    tree = spatial.cKDTree(roof)
+    count = tree.query_ball_point(places, _AROUND * spacing, return_length=True)
+    _, nearest = tree.query(places, min(_NEAREST, len(roof)))
+    nearest = nearest.reshape(len(places), -1)
+    beside, row = np.unique(nearest, return_inverse=True)
+    usual = tree.query_ball_point(roof[beside], _AROUND * spacing, return_length=True)
+    # Bushes beside a roof that are taken for it are thinner than a roof.
+    least = _DENSE * np.pi * _AROUND**2
+    return count > _UNDER * np.maximum(usual[row.reshape(nearest.shape)].mean(axis=1), least)
 
 
 def _parts(xyz: np.ndarray, building: np.ndarray, bare: np.ndarray, apart: float) -> list:

@@ -20,11 +20,26 @@ _MAX_TURN = np.deg2rad(22.5)
 # 10° of one direction and its normal, and a second direction needs a wing or a street of its own.
 _SUPPORT, _MIN_SHARE, _MIN_FURTHER_SHARE = np.deg2rad(10), 0.35, 0.15
 
-# Sine of the angle between walls that are taken for parallel, about a degree, and for a spike, 30°.
-_PARALLEL, _SPIKE = 0.02, 0.5
+# Sine of the angle between walls that are taken for parallel, about a degree.
+_PARALLEL = 0.02
+
+# Sine of the angle in which two walls are a spike or a notch, 30°, or 60° where it is small.
+_SPIKE, _SMALL_SPIKE = 0.5, 0.87
+
+# A step between parallel walls that is no larger (tolerances) is none.
+_STEP = 0.75
+
+# What is smaller than a square with sides of so many tolerances, three spacings, is no part of a building.
+_SMALL = 1.5
+
+# Turns (sine) between the walls along a curve, one after the other to the same side: 4° to 40°.
+_LEAST_BEND, _MOST_BEND = 0.07, 0.64
+
+# The ends of a wall are turned by no more than so many tolerances.
+_SHIFT = 0.6
 
 # Walls up to so many tolerances long don't know their direction well.
-_SHORT = 4.0
+_SHORT = 4.5
 
 # Pairs of segments or of points and segments that are compared at once.
 _PAIRS_AT_ONCE = 1_000_000
@@ -196,7 +211,7 @@ def straighten(line: Line, walls: list, directions: list, tolerance: float) -> t
     directions : list of float
         Main directions (rad), each with its normal.
     tolerance : float
-        Distance (m) that wiggles may have; the ends of a wall are turned by no more than half of that.
+        Distance (m) that wiggles may have; the ends of a wall are turned by little more than half of that.
 
     Returns
     -------
@@ -206,7 +221,11 @@ def straighten(line: Line, walls: list, directions: list, tolerance: float) -> t
         Of a closed line all around, from the end of the first wall; of an open one those between its ends.
     """
     walls = _turned(line, walls, directions, tolerance)
-    walls = _merged(line, _without_spikes(_without_fillers(walls, line, tolerance), line), tolerance)
+    walls = _without_fillers(walls, line, tolerance)
+    count = len(walls) + 1
+    while len(walls) < count:
+        count = len(walls)
+        walls = _merged(line, _without_spikes(walls, line, tolerance), tolerance)
     walls = _rebroken(line, walls, tolerance)
     if line.is_closed and len(walls) < 3:
         return [], []
@@ -214,6 +233,15 @@ def straighten(line: Line, walls: list, directions: list, tolerance: float) -> t
     for here, there in _following(walls, line):
         corners += _joined(here, there, line, tolerance)
     return walls, _without_loops(corners, 4 * tolerance) if line.is_closed else corners
+
+
+def chords(line: Line, tolerance: float) -> np.ndarray:
+    """Return the corners (m, 2) of a closed line along its samples, where it has no main directions: few, and close."""
+    made = np.array(straighten(line, line.walls(tolerance), [], tolerance)[1]).reshape(-1, 2)
+    if is_near(made, line, 2 * tolerance) and is_valid([np.concatenate([made, made[:1]])]):
+        return made
+    places = line.samples[simplify(line.samples, tolerance, line.is_closed)]
+    return np.array(_without_loops(list(places), 8 * tolerance))
 
 
 def simplify(places: np.ndarray, tolerance: float, is_closed: bool) -> np.ndarray:
@@ -273,9 +301,13 @@ def _median(values: np.ndarray, weights: np.ndarray) -> float:
 def _turned(line: Line, walls: list, directions: list, tolerance: float) -> list:
     """Return the walls turned to main directions: long ones to the nearest, short ones as the longest wall beside."""
     is_long = [wall.length > _SHORT * tolerance for wall in walls]
-    turned = [_snapped(line, wall, directions, tolerance) if long else wall for wall, long in zip(walls, is_long)]
+    is_bent = _along_curves(walls, line)
+    turned = [
+        _snapped(line, wall, directions, tolerance) if long and not bent else wall
+        for wall, long, bent in zip(walls, is_long, is_bent)
+    ]
     for number, wall in enumerate(walls):
-        if is_long[number]:
+        if is_long[number] or is_bent[number]:
             continue
         beside = [number + step for step in (-2, -1, 1, 2)]
         beside = [i % len(walls) for i in beside if line.is_closed or 0 <= i < len(walls)]
@@ -285,6 +317,20 @@ def _turned(line: Line, walls: list, directions: list, tolerance: float) -> list
     return turned
 
 
+def _along_curves(walls: list, line: Line) -> list:
+    """Return which walls are chords of a curve: the walls before and after them turn a little to the same side."""
+    turns = [
+        _cross(here.direction, there.direction) if here.direction @ there.direction > 0 else 1.0
+        for here, there in _following(walls, line)
+    ]
+    is_bend = [_LEAST_BEND <= abs(turn) <= _MOST_BEND for turn in turns]
+    around = range(len(walls)) if line.is_closed else range(1, len(walls) - 1)
+    bent = [False] * len(walls)
+    for i in around:
+        bent[i] = is_bend[i - 1] and is_bend[i] and turns[i - 1] * turns[i] > 0
+    return bent
+
+
 def _snapped(line: Line, wall: Wall, directions: list, tolerance: float) -> Wall:
     """Return the wall turned to the nearest main direction, unless that moves its ends too far."""
     turns = [
@@ -292,7 +338,7 @@ def _snapped(line: Line, wall: Wall, directions: list, tolerance: float) -> Wall
         for direction in directions
     ]
     turn = min(turns, key=abs, default=np.pi)
-    if abs(turn) > _MAX_TURN or wall.length / 2 * np.sin(abs(turn)) > tolerance / 2:
+    if abs(turn) > _MAX_TURN or wall.length / 2 * np.sin(abs(turn)) > _SHIFT * tolerance:
         return wall
     angle = wall.angle + turn
     direction = np.array([np.cos(angle), np.sin(angle)])
@@ -309,19 +355,22 @@ def _without_fillers(walls: list, line: Line, tolerance: float) -> list:
         is_end = not line.is_closed and number in (0, len(walls) - 1)
         is_corner = abs(before.direction @ after.direction) < _PARALLEL
         is_step = before.direction @ after.direction > 1 - _PARALLEL
-        longest = tolerance * (1.5 * is_corner + 2.0 * is_step)
+        longest = tolerance * (1.75 * is_corner + 2.25 * is_step)
         if is_end or here.is_main or here.length > longest or not (before.is_main and after.is_main):
             kept.append(here)
     return kept
 
 
-def _without_spikes(walls: list, line: Line) -> list:
+def _without_spikes(walls: list, line: Line, tolerance: float) -> list:
     """Leave out the shorter of two walls that lead to and fro: a strip too narrow to be a part of a building."""
     i = 0
     while len(walls) > 3 and i < len(walls) - (not line.is_closed):
         j = (i + 1) % len(walls)
         here, there = walls[i], walls[j]
-        if here.direction @ there.direction < 0 and abs(_cross(here.direction, there.direction)) < _SPIKE:
+        sine = abs(_cross(here.direction, there.direction))
+        is_small = sine * min(here.length, there.length) ** 2 / 2 < (_SMALL * tolerance) ** 2
+        most = _SMALL_SPIKE if is_small else _SPIKE
+        if here.direction @ there.direction < 0 and sine < most:
             del walls[i if here.length < there.length else j]
             i = max(i - 2, 0)
         else:
@@ -339,7 +388,11 @@ def _merged(line: Line, walls: list, tolerance: float) -> list:
                 continue
             here, there = walls[i], walls[j]
             is_along = abs(_cross(here.direction, there.direction)) < _PARALLEL and here.direction @ there.direction > 0
-            if is_along and abs(here.offset(there.point)) <= tolerance:
+            if (
+                is_along
+                and abs(here.offset(there.point)) <= _STEP * tolerance
+                and _is_small(line, here, there, tolerance)
+            ):
                 longer = here if here.length >= there.length else there
                 last = there.last + len(line.samples) * (there.last < here.first)
                 joined = line.fitted(here.first, last, tolerance, longer.direction)
@@ -350,6 +403,13 @@ def _merged(line: Line, walls: list, tolerance: float) -> list:
                 break
         i += 1
     return walls
+
+
+def _is_small(line: Line, here: Wall, there: Wall, tolerance: float) -> bool:
+    """Return whether the line has no bay or recess that counts between two walls."""
+    first, last = here.last, there.first + len(line.samples) * (there.first < here.last)
+    places = line.samples[line.rows(first, last)]
+    return abs(signed_area(np.concatenate([places, places[:1]]))) < (_SMALL * tolerance) ** 2
 
 
 def _rebroken(line: Line, walls: list, tolerance: float) -> list:
@@ -392,7 +452,10 @@ def _joined(here: Wall, there: Wall, line: Line, tolerance: float) -> list:
         # Walls that are nearly parallel meet far away: a step between them is truer than that corner.
         if np.hypot(*(corner - bend)) <= 2 * tolerance:
             return [corner]
-    return [here.foot(bend), there.foot(bend)]
+    ends = [here.foot(bend), there.foot(bend)]
+    if here.direction @ there.direction > 0 and np.hypot(*(ends[1] - ends[0])) <= tolerance:
+        return [(ends[0] + ends[1]) / 2]
+    return ends
 
 
 def _without_loops(corners: list, longest: float) -> list:

@@ -105,6 +105,19 @@ def test_walls_do_not_widen_the_outline(village, rng):
     assert after.columns["points"] == [1200]
 
 
+def test_what_is_seen_under_the_eaves_does_not_end_the_roof(rng):
+    """A second flight line looks 1.5 m under the eaves of a house of 12 m by 8 m, at half the density."""
+    areas = []
+    for _ in range(6):
+        house = roof(rng, 0, 0, 12, 8, 6.0, density=12)
+        field = roof(rng, -4, -4, 20, 4, 0.0, density=12)
+        under = roof(rng, 0, 0, 12, 1.5, 0.0, density=6)
+        xyz = np.concatenate([house, field, under])
+        areas += extract_footprints(xyz, np.repeat([6, 2, 2], [len(house), len(field), len(under)])).columns["area"]
+    assert len(areas) == 6
+    assert np.mean(areas) == pytest.approx(96, rel=0.03)
+
+
 def test_small_holes_are_filled(village):
     kept = extract_footprints(**village, min_hole_area=500.0)
     assert [len(rings) for rings in kept.geometries] == [1, 1]
@@ -138,13 +151,18 @@ def test_place_changes_nothing(village):
     assert shift == pytest.approx([600_000, 5_000_000], abs=0.2)
 
 
-def test_a_round_tower_keeps_its_traced_outline(rng, assert_valid):
+def test_a_round_tower_stays_round(rng, assert_valid):
     angle, radius = rng.uniform(0, 2 * np.pi, 3000), 8 * np.sqrt(rng.uniform(0, 1, 3000))
     xyz = np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(3000, 20.0)])
     found = extract_footprints(xyz, np.full(3000, 6), np.ones(3000, int), tolerance=0.3)
     assert found.columns["regularized"] == [0]
     assert_valid(found.geometries[0])
-    assert signed_area(found.geometries[0][0]) == pytest.approx(np.pi * 64, rel=0.06)
+    ring = found.geometries[0][0]
+    assert signed_area(ring) == pytest.approx(np.pi * 64, rel=0.06)
+    # Chords, each of a few points, and all of them near the wall.
+    assert len(ring) < 40
+    middle = (ring[1:] + ring[:-1]) / 2
+    assert (np.abs(np.hypot(*np.concatenate([ring, middle]).T) - 8) < 0.5).all()
 
 
 @pytest.mark.parametrize(

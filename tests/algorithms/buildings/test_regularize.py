@@ -91,6 +91,41 @@ def test_spikes_and_corners_that_no_point_has_hit_are_left_out(rng):
     assert farthest(np.array([[0, 0], [20, 0], [20, 12], [0, 12]]), ring) < 0.2
 
 
+@pytest.mark.parametrize("half_width", [0.2, 0.5, 0.8])
+def test_notches_as_wide_as_deep_are_left_out_where_they_are_small(rng, half_width):
+    """At a tolerance of 1 m, notches of up to 1.6 m by 1.3 m tell of points that are missing."""
+    notch = [[9 - half_width, 0], [9, 1.3], [9 + half_width, 0]]
+    ring = straight(wiggly(np.array([[0, 0], *notch, [20, 0], [20, 12], [0, 12], [0, 0]]), rng, 0.05, 0.2), 1.0)
+    assert len(ring) == 5
+    assert farthest(np.array([[0, 0], [20, 0], [20, 12], [0, 12]]), ring) < 0.2
+
+
+def test_bays_stay(rng):
+    """A bay of 4 m by 1.2 m on the long side of a house."""
+    truth = np.array([[0, 0], [8, 0], [8, -1.2], [12, -1.2], [12, 0], [20, 0], [20, 12], [0, 12], [0, 0]])
+    ring = straight(wiggly(truth, rng, 0.1))
+    assert len(ring) == 9
+    assert farthest(truth, ring) < 0.4
+
+
+@pytest.mark.parametrize("radius", [7, 10, 20])
+@pytest.mark.parametrize("degrees", [0, 30])
+def test_a_curved_wall_is_a_chain_of_chords(rng, assert_valid, radius, degrees):
+    """A house with a round end: its walls stay straight, and the curve turns to one side only."""
+    angle = np.linspace(-np.pi / 2, np.pi / 2, 60)
+    end = [20, radius] + radius * np.column_stack([np.cos(angle), np.sin(angle)])
+    truth = turned(np.concatenate([[[0, 0]], end, [[0, 2 * radius], [0, 0]]]), degrees)
+    ring = straight(wiggly(truth, rng))
+    assert_valid([ring])
+    assert farthest(truth, ring) < 0.75
+    assert farthest(ring, truth) < 0.75
+    assert len(ring) < 14
+    step = np.diff(ring, axis=0)
+    after = np.roll(step, -1, axis=0)
+    turn = np.arctan2(step[:, 0] * after[:, 1] - step[:, 1] * after[:, 0], (step * after).sum(axis=1))
+    assert turn.min() > np.deg2rad(-2)
+
+
 def test_courtyard_is_straightened_too(rng, assert_valid):
     exterior = 2 * L_SHAPE
     hole = np.array([[5, 5], [5, 11], [13, 11], [13, 5], [5, 5]], float)
