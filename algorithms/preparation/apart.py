@@ -47,7 +47,7 @@ _ROUNDS = 3
 _SUPPORT_POINTS, _SUPPORT_HEIGHT, _SUPPORT_SPACINGS = 3, 0.3, 2.5
 _SUPPORT_REACH, _SUPPORT_MOST_SPACINGS = 1.25, 5.0
 # Cells at once, so that memory stays small.
-_CHUNK = 200_000
+_CHUNK = 50_000
 
 
 def link_length(spacing: float) -> float:

@@ -69,10 +69,13 @@ def segment_patches(xyz: np.ndarray, density: float, noise: float, max_slope: fl
         return np.full(len(xyz), -1, np.int32)
     tree = spatial.cKDTree(xyz)
     planes = _local_planes(xyz, tree, surface_neighbors(xyz, density, noise, tree), monitor.part(0, 0.6))
+    del tree  # What is large goes as soon as it can: the links below are large, too.
     plane = _smoothest_plane(xyz, planes, noise, monitor.part(0.6, 0.8))
     on_surface = (planes.deviation[plane] <= _SMOOTH * noise) & (plane >= 0)
     on_surface &= planes.normal[plane, 2] >= np.cos(np.radians(max_slope))
-    component = _linked(xyz, planes, plane, on_surface, noise, monitor.part(0.8, 1))
+    links = _links(xyz, planes, plane, on_surface, noise, monitor.part(0.8, 1))
+    del planes, plane
+    component = csgraph.connected_components(links, directed=False)[1]
     return np.where(on_surface, component, -1).astype(np.int32)
 
 
@@ -103,7 +106,7 @@ def _local_planes(xyz: np.ndarray, tree: Any, n_neighbors: int, monitor: Monitor
 
 def _smoothest_plane(xyz: np.ndarray, planes: LocalPlanes, noise: float, monitor: Monitor) -> np.ndarray:
     """Return the number (n,) of the smoothest plane that holds each point; -1 where none does."""
-    plane = np.full(len(xyz), -1, np.int64)
+    plane = np.full(len(xyz), -1, np.int32)
 
     def work(rows: np.ndarray) -> None:
         smoothest = np.full(len(rows), np.inf)
@@ -117,24 +120,29 @@ def _smoothest_plane(xyz: np.ndarray, planes: LocalPlanes, noise: float, monitor
     return plane
 
 
-def _linked(
+def _links(
     xyz: np.ndarray, planes: LocalPlanes, plane: np.ndarray, on_surface: np.ndarray, noise: float, monitor: Monitor
-) -> np.ndarray:
-    """Return components (n,) of neighbors whose planes are one surface."""
+) -> Any:
+    """Return the graph, sparse (n, n), of neighbors whose planes are one surface."""
     # Spread over the ranks, so that links cross from one scan line to the next.
-    linked = np.unique(np.linspace(1, planes.neighbors.shape[1] - 1, _LINKS - 1).astype(int))
-    here, there = [], []
+    ranks = np.unique(np.linspace(1, planes.neighbors.shape[1] - 1, _LINKS - 1).astype(int))
+    planes.neighbors = planes.neighbors[:, ranks]
+    n_links, there = np.zeros(len(xyz) + 1, np.int64), []
     for start in range(0, len(xyz), _CHUNK):
         rows = np.arange(start, min(start + _CHUNK, len(xyz)))
-        for neighbor in planes.neighbors[rows][:, linked].T:
-            pair = on_surface[rows] & on_surface[neighbor]
+        neighbors = planes.neighbors[rows]
+        is_link = on_surface[rows, None] & on_surface[neighbors]
+        for column, neighbor in enumerate(neighbors.T):
+            pair = is_link[:, column].nonzero()[0]
             a, b = rows[pair], neighbor[pair]
             same = np.einsum("ij,ij->i", planes.normal[plane[a]], planes.normal[plane[b]]) >= _SAME_DIRECTION
             same &= planes.distance(xyz[b], plane[a]) <= _SAME_SURFACE * noise
             same &= planes.distance(xyz[a], plane[b]) <= _SAME_SURFACE * noise
-            here.append(a[same].astype(np.int32))
-            there.append(b[same])
+            is_link[pair, column] = same
+        n_links[rows + 1] = is_link.sum(axis=1)
+        there.append(neighbors[is_link])
         monitor.progress(start / len(xyz))
-    rows, columns = np.concatenate(here), np.concatenate(there)
-    links = sparse.coo_matrix((np.ones(len(rows), bool), (rows, columns)), (len(xyz), len(xyz)))
-    return csgraph.connected_components(links, directed=False)[1]
+    columns = np.concatenate(there)
+    del there
+    # The weights are of the type that the search for components would turn them to.
+    return sparse.csr_matrix((np.ones(len(columns)), columns, np.cumsum(n_links)), (len(xyz), len(xyz)))
