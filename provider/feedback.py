@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Optional
 
-from qgis.core import QgsProcessingFeedback, QgsProcessingMultiStepFeedback
+from qgis.core import QgsProcessingAlgorithm, QgsProcessingFeedback, QgsProcessingMultiStepFeedback
 
 from ..algorithms.stage import Cancelled, Monitor, Stage
 
@@ -55,6 +55,13 @@ class ChainFeedback(QgsProcessingMultiStepFeedback):
         if warning not in self._said:
             self._said.add(warning)
             super().pushWarning(warning)
+
+
+def tell_unknown(algorithm: QgsProcessingAlgorithm, parameters: dict, feedback: QgsProcessingFeedback) -> None:
+    """Warn of names on the command line or in a script that are no parameters, which QGIS passes over in silence."""
+    known = {definition.name() for definition in algorithm.parameterDefinitions()}
+    for name in sorted(set(parameters) - known):
+        feedback.pushWarning(f"{name} is no parameter of '{algorithm.displayName()}', so it has no effect.")
 
 
 def announce(title: str, feedback: QgsProcessingFeedback) -> None:

@@ -32,7 +32,7 @@ from . import paths
 from .crs import crs_units
 from .dependencies import missing_sentence
 from .errors import one_sentence
-from .feedback import ChainFeedback
+from .feedback import ChainFeedback, tell_unknown
 from .help import lower_first, pipeline_help, step_title
 from .outputs import check_targets, files_of, nothing_left_on_failure
 from .parameters import number_outputs, parameter, parameter_name, tunable_values
@@ -437,6 +437,7 @@ class PipelineAlgorithm(QgsProcessingModelAlgorithm):
         self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ) -> dict:
         """Run the graph; all or nothing."""
+        tell_unknown(self, parameters, feedback)
         with one_sentence(), nothing_left_on_failure(self._target_files(parameters)):
             self._check(parameters, context)
             results = super().processAlgorithm(self._with_defaults(parameters), context, ChainFeedback(feedback))

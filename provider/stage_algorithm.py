@@ -32,7 +32,7 @@ from .clouds import CloudParameter, CloudsParameter, cloud_path, cloud_paths
 from .crs import crs_units
 from .dependencies import missing_sentence
 from .errors import one_sentence
-from .feedback import FeedbackMonitor, announce
+from .feedback import FeedbackMonitor, announce, tell_unknown
 from .help import stage_help
 from .outputs import check_targets, files_of, nothing_left_on_failure, write_for_qgis
 from .parameters import automatic_numbers, number_outputs, parameter, tunable_values, used_name
@@ -193,6 +193,7 @@ class StageAlgorithm(QgsProcessingAlgorithm):
     ) -> dict:
         """Read, run the stage, write; all or nothing."""
         announce(self.stage.title, feedback)
+        tell_unknown(self, parameters, feedback)
         monitor = FeedbackMonitor(feedback, self.stage)
         with one_sentence(), nothing_left_on_failure(self._target_files(parameters)) as written:
             outcome, place = self._run(parameters, context, monitor)

@@ -1,4 +1,4 @@
-"""Take the pictures of the README: a simulated town whose buildings were found, and the graph of the model.
+"""Take the pictures of the README: a simulated town and village whose buildings were found, and the graph of a model.
 
 Runs inside QGIS, with the plugin enabled in the profile, on a screen that need not be there::
 
@@ -21,7 +21,7 @@ from qgis.core import (
     QgsProcessingOutputLayerDefinition,
     QgsProject,
 )
-from qgis.PyQt.QtCore import QRectF, QSize, Qt, QTimer
+from qgis.PyQt.QtCore import QRect, QRectF, QSize, Qt, QTimer
 from qgis.PyQt.QtGui import QImage, QPainter
 from qgis.PyQt.QtWidgets import QDockWidget, QTreeView
 from qgis.utils import iface
@@ -31,6 +31,7 @@ from lidar_buildings.provider.paths import PLUGIN
 FOLDER = Path(PLUGIN).resolve() / "resources" / "readme"
 WINDOW = QSize(1400, 900)
 GRAPH_WIDTH = 1300  # pixels
+CLOSER = 0.72  # the part of the village that is shown
 REDRAW = 20000  # milliseconds until the map is drawn
 
 
@@ -43,6 +44,45 @@ def found_town() -> None:
         for name in ("OUTPUT", "FOOTPRINTS")
     }
     processing.runAndLoadResults("lidarbuildings:detectbuildings", {"INPUT": town, **targets})
+
+
+def mapped_village() -> None:
+    """Photograph a village, map its walls, compare them with the old map, and load what came of it."""
+    project = QgsProject.instance()
+    project.clear()
+    names = ("OUTPUT", "OLD_MAP")
+    made = processing.run(
+        "lidarbuildings:simulatevillage", {"SIZE": 80, **dict.fromkeys(names, QgsProcessing.TEMPORARY_OUTPUT)}
+    )
+    targets = {
+        name: QgsProcessingOutputLayerDefinition(QgsProcessing.TEMPORARY_OUTPUT, project)
+        for name in ("OUTPUT", "WALL_FOOTPRINTS", "WALL_EDGES", "DISPLACEMENTS")
+    }
+    inputs = {"INPUT": made["OUTPUT"], "OLD_MAP": made["OLD_MAP"]}
+    processing.runAndLoadResults("lidarbuildings:mapfootprints", {**inputs, **targets})
+
+
+def close_window() -> None:
+    """Show the layers with what their signs mean, and a few houses, whose eaves jut out over the walls."""
+    window = iface.mainWindow()
+    window.resize(WINDOW)
+    window.statusBar().hide()
+    for panel in ("Browser", "ProcessingToolbox"):
+        window.findChild(QDockWidget, panel).hide()
+    window.resizeDocks([window.findChild(QDockWidget, "Layers")], [300], Qt.Orientation.Horizontal)
+    iface.messageBar().clearWidgets()
+    iface.zoomFull()
+    iface.mapCanvas().zoomByFactor(CLOSER)
+    (cloud,) = QgsProject.instance().mapLayersByName("Classified point cloud")
+    cloud.setSubsetString("Classification = 6")
+
+
+def village_picture() -> None:
+    """Save the window without its menus."""
+    iface.messageBar().clearWidgets()
+    window = iface.mainWindow()
+    top = window.findChild(QDockWidget, "Layers").y()
+    window.grab(QRect(0, top, window.width(), window.height() - top)).save(str(FOLDER / "village.png"))
 
 
 def arranged_window() -> None:
@@ -101,4 +141,6 @@ def follow(steps: list) -> None:
 
 
 FOLDER.mkdir(parents=True, exist_ok=True)
-QTimer.singleShot(REDRAW, lambda: follow([found_town, arranged_window, town_picture, graph_picture]))
+TOWN = [found_town, arranged_window, town_picture]
+VILLAGE = [mapped_village, close_window, village_picture]
+QTimer.singleShot(REDRAW, lambda: follow([*TOWN, graph_picture, *VILLAGE]))

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Print how good the results are: ``accuracy.py [buildings] [ground] [noise] [towns] [confidence]``, all by default.
+"""Print how good the results are: ``accuracy.py [buildings] [ground] [noise] [towns] [villages] [confidence]``.
 
-The first three are of real clouds, the last two of simulated towns, whose truth is exact.
+All by default. The first three are of real clouds, the others of simulated towns and villages, whose truth is exact.
 
 Each table comes as Markdown for people, and as the Python lines that the tests hold the program to.
 """
@@ -21,9 +21,12 @@ from lidar_buildings.algorithms.cloud.asprs import PointClass  # noqa: E402
 from lidar_buildings.algorithms.pipelines import PIPELINES, run_pipeline  # noqa: E402
 from lidar_buildings.algorithms.run import run_stage  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
+from lidar_buildings.tests.algorithms import test_map_footprints  # noqa: E402
 from lidar_buildings.tests.real import test_buildings, test_ground, test_noise  # noqa: E402
 from lidar_buildings.tests.real.clouds import DATA, classified, detected, score  # noqa: E402
 
+# Points per square metre, noise (m) and seed of simulated villages of 150 m.
+VILLAGES = [(density, noise, seed) for seed in (11, 12) for density in (50.0, 100.0) for noise in (0.02, 0.05)]
 CHAINS = {"detect_buildings": "default", "detect_buildings_2019": "2019"}
 
 
@@ -109,6 +112,24 @@ def towns() -> None:
         print(row(name, len(cloud), *rates, f_score, area), flush=True)
 
 
+def villages() -> None:
+    """Print how many buildings Map footprints finds, and how far its corners are from the true ones."""
+    print("| points/m² | noise | seed | buildings | found | invented | corners: median, cm | mean, cm | farthest, cm |")
+    print("|" + " ---: |" * 9)
+    every = []
+    for density, noise, seed in VILLAGES:
+        arrays, true, old_map = test_map_footprints.village(density=density, noise=noise, seed=seed)
+        made = test_map_footprints.mapped(arrays, old_map).layers["wall_footprints"]
+        distances, used = test_map_footprints.corner_distances(made, true)
+        corners = 100 * np.concatenate(distances)
+        facts = (density, f"{100 * noise:g} cm", seed, len(true), len(distances), len(made) - len(used))
+        print(row(*facts, *(float(measure(corners)) for measure in (np.median, np.mean, np.max))), flush=True)
+        every.append(corners)
+    corners = np.concatenate(every)
+    print(f"\n{len(corners)} corners: median {np.median(corners):.1f} cm, mean {corners.mean():.1f} cm,", end=" ")
+    print(f"{100 * np.mean(corners < 8):.0f} % within 8 cm")
+
+
 def confidence() -> None:
     """Print how many clusters of simulated towns are buildings, by how sure the default chain is of them."""
     print("| confidence | clusters | are buildings, % |\n| --- | ---: | ---: |")
@@ -146,7 +167,8 @@ def paste(name: str, values: dict[str, str]) -> None:
     print("}")
 
 
-TABLES = {"buildings": buildings, "ground": ground, "noise": noise, "towns": towns, "confidence": confidence}
+SIMULATED = {"towns": towns, "villages": villages, "confidence": confidence}
+TABLES = {"buildings": buildings, "ground": ground, "noise": noise, **SIMULATED}
 
 
 def main() -> None:
@@ -156,7 +178,7 @@ def main() -> None:
     wanted = parser.parse_args().tables or list(TABLES)
     if set(wanted) - set(TABLES):
         parser.error(f"there is no table {(set(wanted) - set(TABLES)).pop()!r}; there are {', '.join(TABLES)}")
-    if not DATA.is_dir() and not set(wanted) <= {"towns", "confidence"}:
+    if not DATA.is_dir() and not set(wanted) <= set(SIMULATED):
         parser.error(f"no real clouds in {DATA}; LIDAR_BUILDINGS_DATA names another folder")
     for name in wanted:
         print(f"\n## {name}\n")

@@ -282,8 +282,8 @@ def test_a_geopackage_without_a_system_is_in_that_of_the_other_layer(provider, c
     nowhere, path = squares((85_000.0, 446_000.0), crs=""), str(out / "nowhere.gpkg")
     options = QgsVectorFileWriter.SaveVectorOptions()
     assert QgsVectorFileWriter.writeAsVectorFormatV3(nowhere, path, QgsCoordinateTransformContext(), options)[0] == 0
+    # QGIS before 3.44 holds that system for valid.
     stored, new = QgsVectorLayer(path, "stored", "ogr"), squares((85_003.0, 446_004.0))
-    assert stored.crs().isValid()
     context.project().addMapLayers([stored, new])
     for first, second, told in ((stored, new, "Old map names no"), (new, stored, "New map names no")):
         log.warnings.clear()
