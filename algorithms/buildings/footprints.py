@@ -22,7 +22,9 @@ _FIELDS = (
     Field("area", float, "area without holes", "m²"),
     Field("perimeter", float, "length of the exterior and the holes", "m"),
     Field("ground_elevation", float, "median elevation of the ground under the roof's points", "m"),
-    Field("eave_height", float, "lower quartile of the roof's heights above ground along the outline", "m"),
+    Field(
+        "eave_height", float, "lower quartile of the heights above ground at which the roof ends along the outline", "m"
+    ),
     Field("ridge_height", float, "98th percentile of the roof's heights above ground", "m"),
     Field("height", float, "median of the roof's heights above ground", "m"),
     Field("max_height", float, "greatest height above ground", "m"),
@@ -36,6 +38,10 @@ _FIELDS = (
 
 # Percentiles of roof heights: of those along the outline, where gables rise from eaves, and of all, but for chimneys.
 _EAVE, _RIDGE = 25, 98
+
+# Eaves are where the plane through so many points of the roof ends, each at least so many spacings from the outline.
+# They lie this close to it (m), and it rises by no more than this (tangent), or it is none.
+_PLANE, _INNER, _FLAT, _STEEPEST = 12, 2.0, 0.15, 2.5
 
 # A point so far (m, and in spacings) under the roof beside it is no part of the roof.
 _STEP, _STEP_SPACINGS = 1.0, 3.0
@@ -177,7 +183,7 @@ def extract_footprints(
         if traced is not None and len(traced.labels):
             edges.append(traced.max_edge)
             coverage = Coverage(traced, tolerance, regularize)
-            _describe(found, xyz, building[rows], points, traced, coverage, measured)
+            _describe(found, xyz, building[rows], points, traced, coverage, measured, spacing)
         monitor.progress(done / len(parts))
     if max_edge is None and edges:
         monitor.resolved(max_edge=float(np.median(edges)))
@@ -266,6 +272,7 @@ def _describe(
     traced: Tracing,
     coverage: Coverage,
     measured: dict,
+    spacing: float,
 ) -> None:
     """Append the footprints of a tracing to those found, with what their points and shapes say of them."""
     count = len(traced.labels)
@@ -277,6 +284,7 @@ def _describe(
     height = measured["height"]
     over_ground = np.full(len(points), np.nan) if height is None else height[points].astype(np.float64)
     mean_height = _mean_heights(traced, over_ground)
+    eaves = _eave_heights(traced, border, roof_face, over_ground, spacing)
     rows = zip(_split(roof_face, count), _split(member_face, count), _split(border[0], count))
     for face, (roof, own, outer) in enumerate(rows):
         rings = coverage.polygons[face]
@@ -286,7 +294,7 @@ def _describe(
             "area": area,
             "perimeter": sum(map(perimeter, rings)),
             "ground_elevation": _percentile(xyz[points[roof], 2] - over_ground[roof], 50),
-            "eave_height": _percentile(over_ground[border[1][outer]], _EAVE),
+            "eave_height": _percentile(eaves[outer], _EAVE),
             "ridge_height": _percentile(over_ground[roof], _RIDGE),
             "height": _percentile(over_ground[roof], 50),
             "max_height": _percentile(over_ground[roof], 100),
@@ -319,6 +327,34 @@ def _outer_points(traced: Tracing) -> tuple[np.ndarray, np.ndarray]:
     has_outer = np.bincount(face[is_border & (across < 0)], minlength=len(traced.labels)) > 0
     used = np.flatnonzero(is_border & ((across < 0) | ~has_outer[face]))
     return face[used], traced.starts[used]
+
+
+def _eave_heights(
+    traced: Tracing, border: tuple, roof_face: np.ndarray, height: np.ndarray, spacing: float
+) -> np.ndarray:
+    """Return the height (b,) of the roof above each point of the outlines, continued from the roof beside it.
+
+    Many points of an outline are those of the wall below, down to where they are no longer taken for a roof's.
+    """
+    face, point = border
+    distance, _ = spatial.cKDTree(traced.xy[np.unique(point)]).query(traced.xy)
+    inner = np.flatnonzero((roof_face >= 0) & (distance >= _INNER * spacing) & np.isfinite(height))
+    if not len(inner):
+        return height[point]
+    distance, nearest = spatial.cKDTree(traced.xy[inner]).query(traced.xy[point], min(_PLANE, len(inner)))
+    beside = inner[nearest.reshape(len(point), -1)]
+    is_near = distance.reshape(beside.shape) <= _APART * spacing
+    weight = (is_near & (roof_face[beside] == face[:, None])).astype(float)
+    step = traced.xy[beside] - traced.xy[point][:, None]
+    factors = np.concatenate([np.ones((*weight.shape, 1)), step], axis=2)
+    # A pull to the level, which only points in one line feel.
+    matrix = np.einsum("ni,nij,nik->njk", weight, factors, factors) + np.diag([1e-6, *[spacing**2 / 10] * 2])
+    right = np.einsum("ni,nij,ni->nj", weight, factors, height[beside])
+    planes = np.linalg.solve(matrix, right[..., None])
+    off = ((factors @ planes)[..., 0] - height[beside]) ** 2
+    is_roof = (weight.sum(axis=1) >= _PLANE / 2) & (np.hypot(*planes[:, 1:, 0].T) <= _STEEPEST)
+    is_plane = is_roof & ((weight * off).sum(axis=1) <= _FLAT**2 * weight.sum(axis=1))
+    return np.where(is_plane, planes[:, 0, 0], height[point])
 
 
 def _mean_heights(traced: Tracing, height: np.ndarray) -> np.ndarray:

@@ -54,8 +54,8 @@ def test_village(village, assert_valid, regularize):
     assert table["max_height"] == pytest.approx([7, 10], abs=0.1)
     assert table["ground_elevation"] == pytest.approx([-1, -1], abs=1e-5)
     # Flat roofs: eaves and ridges are where the roof is, and the space is that of a box.
-    # Points down to a meter under the eaves are still roof.
-    assert table["eave_height"] == pytest.approx([7, 10], abs=0.5)
+    # Points of the wall down to a meter under the eaves are not told from the roof, but from its eaves.
+    assert table["eave_height"] == pytest.approx([7, 10], abs=0.1)
     assert table["ridge_height"] == pytest.approx([7, 10], abs=0.1)
     assert table["volume"] == pytest.approx([7 * table["area"][0], 10 * table["area"][1]], rel=0.01)
     assert table["entropy"] == pytest.approx([0.4, 0.5])
@@ -90,6 +90,22 @@ def test_eave_ridge_and_volume_of_a_gable_roof(rng):
     assert found["max_height"] == pytest.approx([9.5], abs=0.1)
     assert found["ground_elevation"] == pytest.approx([100], abs=1e-4)
     assert found["volume"] == pytest.approx([12 * 8 * 6.5], rel=0.02)
+
+
+@pytest.mark.parametrize("slope", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("density", [4, 12, 40])
+def test_walls_do_not_lower_the_eaves(rng, slope, density):
+    """A house of 12 m by 8 m, its eaves at 5 m, with as many points on its two long walls as on so much roof."""
+    n, walls = 12 * 8 * density, 12 * 4 * density
+    plan = rng.uniform([0, 0], [12, 8], (n, 2))
+    house = np.column_stack([plan, 5 + slope * (4 - np.abs(plan[:, 1] - 4)) + rng.normal(0, 0.02, n)])
+    side = np.where(rng.random(walls) < 0.5, 0.0, 8.0) + rng.normal(0, 0.03, walls)
+    wall = np.column_stack([rng.uniform(0, 12, walls), side, rng.uniform(0.5, 5, walls)])
+    xyz = np.concatenate([house, wall])
+    found = extract_footprints(xyz, np.full(len(xyz), 6), None, xyz[:, 2].astype(np.float32)).columns
+    assert found["eave_height"] == pytest.approx([5], abs=0.1)
+    assert found["ridge_height"] == pytest.approx([5 + 4 * slope], abs=0.15)
+    assert found["volume"] == pytest.approx([96 * (5 + 2 * slope)], rel=0.06)
 
 
 def test_walls_do_not_widen_the_outline(village, rng):
