@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any, Optional
 
 import numpy as np
@@ -108,7 +109,7 @@ class Tin:
 
     def elevation(self, xyz: np.ndarray, facet: np.ndarray) -> np.ndarray:
         """Return the surface's elevation (n,) at points that lie in ``facet`` (n,)."""
-        slope, level = self._planes()
+        slope, level = self._planes
         plan = xyz[:, :2] - self.shift[:2]
         return np.einsum("ij,ij->i", slope[facet], plan) + level[facet]
 
@@ -118,7 +119,7 @@ class Tin:
 
     def steepness(self) -> np.ndarray:
         """Return the cosine (f,) of each facet's slope, 1 where it is level."""
-        slope, _ = self._planes()
+        slope, _ = self._planes
         return 1.0 / np.sqrt(1.0 + np.einsum("ij,ij->i", slope, slope))
 
     def longest_edge(self) -> np.ndarray:
@@ -139,6 +140,7 @@ class Tin:
             to_center = np.column_stack([v[:, 1] * uu - u[:, 1] * vv, u[:, 0] * vv - v[:, 0] * uu]) * scale[:, None]
         return a + to_center + self.shift[:2], np.linalg.norm(to_center, axis=1)
 
+    @cached_property
     def _planes(self) -> tuple[np.ndarray, np.ndarray]:
         """Return gradient (f, 2) and level at the shifted origin (f,) of each facet."""
         a, b, c = np.swapaxes(self.nodes[self.facets], 0, 1)
