@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Print how good the results are: ``accuracy.py [buildings] [ground] [noise] [towns] [villages] [confidence]``.
+"""Print how good the results are: ``accuracy.py [table …]``, all by default.
 
-All by default. The first three are of real clouds, the others of simulated towns and villages, whose truth is exact.
+``buildings``, ``ground`` and ``noise`` are of real clouds, ``objects`` of real houses, trees, cars, fences and poles on
+simulated ground, ``towns``, ``villages`` and ``confidence`` of simulated scenes, whose truth is exact.
 
 Each table comes as Markdown for people, and as the Python lines that the tests hold the program to.
 """
@@ -18,10 +19,12 @@ import numpy as np  # noqa: E402
 
 import conftest  # noqa: E402, F401 - registers the checkout as the package lidar_buildings
 from lidar_buildings.algorithms.cloud.asprs import PointClass  # noqa: E402
+from lidar_buildings.algorithms.cloud.cloud import create_cloud  # noqa: E402
 from lidar_buildings.algorithms.pipelines import PIPELINES, run_pipeline  # noqa: E402
 from lidar_buildings.algorithms.run import run_stage  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 from lidar_buildings.tests.algorithms import test_map_footprints  # noqa: E402
+from lidar_buildings.tests.benchmarks.real_objects import CAR, FENCE, POLE, TREE, scene  # noqa: E402
 from lidar_buildings.tests.real import test_buildings, test_ground, test_noise  # noqa: E402
 from lidar_buildings.tests.real.clouds import DATA, classified, detected, score  # noqa: E402
 
@@ -52,6 +55,29 @@ def buildings() -> None:
             areas.setdefault(name, area)
     paste("REACHED", {name: "(" + ", ".join(f"{f:.1f}" for f in both) + ")" for name, both in f_scores.items()})
     paste("REACHED_WITHOUT_BUILDINGS", {name: f"{area:.1f}" for name, area in areas.items()})
+
+
+# Slope of the ground (rise per meter) and share of the points.
+OBJECT_SCENES = ((0.04, 0.1), (0.2, 0.1), (0.08, 0.3))
+
+
+def objects() -> None:
+    """Print how well the default chain tells real houses from real trees, cars, fences and poles."""
+    others = {"trees": TREE, "cars": CAR, "fences": FENCE, "poles": POLE}
+    print("| slope, % | points | completeness | correctness | F | houses | missed | " + ", % | ".join(others) + ", % |")
+    print("| ---: |" + " ---: |" * (6 + len(others)))
+    for slope, share in OBJECT_SCENES:
+        xyz, truth, number = scene(slope, share)
+        cloud = create_cloud({"xyz": xyz})
+        run_pipeline(PIPELINES["detect_buildings"], cloud)
+        is_building, is_found = truth == PointClass.BUILDING, cloud.get("classification") == PointClass.BUILDING
+        hit = int((is_building & is_found).sum())
+        rates = [100.0 * hit / int(is_building.sum()), 100.0 * hit / max(int(is_found.sum()), 1)]
+        f_score = 200.0 * hit / int(is_building.sum() + is_found.sum())
+        houses = np.unique(number[is_building], return_inverse=True)[1]
+        seen = np.bincount(houses, is_found[is_building]) / np.bincount(houses)
+        wrong = [100.0 * float(is_found[truth == kind].mean()) for kind in others.values()]
+        print(row(100 * slope, len(xyz), *rates, f_score, len(seen), int((seen < 0.5).sum()), *wrong), flush=True)
 
 
 def ground() -> None:
@@ -167,8 +193,8 @@ def paste(name: str, values: dict[str, str]) -> None:
     print("}")
 
 
-SIMULATED = {"towns": towns, "villages": villages, "confidence": confidence}
-TABLES = {"buildings": buildings, "ground": ground, "noise": noise, **SIMULATED}
+SIMULATED = {table.__name__: table for table in (towns, villages, confidence)}
+TABLES = {**{table.__name__: table for table in (buildings, objects, ground, noise)}, **SIMULATED}
 
 
 def main() -> None:

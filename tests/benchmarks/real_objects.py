@@ -1,0 +1,100 @@
+"""A scene of real objects, cut from a survey that nothing was tried on, set on a made-up slope."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from lidar_buildings.algorithms.cloud.asprs import PointClass
+from lidar_buildings.algorithms.cloud.cloud import read_cloud
+from lidar_buildings.algorithms.packages import spatial
+from lidar_buildings.tests.real.clouds import DATA
+
+CAR, FENCE, POLE, TREE = 65, 66, 64, int(PointClass.HIGH_VEGETATION)
+
+# Each house has a lot of so many meters, with two trees, a car, a fence and a pole: the first tree and the fence at
+# its walls, the others so far off (m).
+LOT, TOUCHING, APART = 70.0, 0.3, (1.0, 6.0)
+BESIDE = (TREE, TREE, CAR, FENCE, POLE)
+
+# The eaves are over the ground (m): objects were cut out above it, some without any point of a wall.
+EAVES, LEAST_UPHILL = 2.3, 1.5
+
+# Points of open ground on a square meter, and their noise (m).
+GROUND_DENSITY, GROUND_NOISE = 14.0, 0.02
+
+
+def scene(slope: float, share: float, seed: int = 0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return coordinates (m), true classes and object numbers (0 is ground) of houses, each with what stands beside it.
+
+    ``slope`` is the rise of the ground per meter, ``share`` how much of the points stays.
+    """
+    rng = np.random.default_rng(seed)
+    objects = {kind: _objects(kind, rng) for kind in (PointClass.BUILDING, *set(BESIDE))}
+    houses = objects[PointClass.BUILDING]
+    columns = int(np.ceil(np.sqrt(len(houses))))
+    placed: list[tuple[np.ndarray, int]] = []
+    for lot, house in enumerate(houses):
+        center = (np.array([lot % columns, lot // columns]) + 0.5) * LOT + rng.uniform(-5, 5, 2)
+        placed.append((_founded(house, center, slope), int(PointClass.BUILDING)))
+        for number, kind in enumerate(BESIDE):
+            thing = objects[kind][(lot + number * len(objects[kind]) // 2) % len(objects[kind])]
+            if np.ptp(thing[:, :2], axis=0).max() < 0.6 * LOT:
+                placed.append((_beside(thing, house, number, center, slope, rng), kind))
+    sizes = [len(points) for points, _ in placed]
+    xyz = np.concatenate([points for points, _ in placed])
+    kinds = np.repeat([kind for _, kind in placed], sizes)
+    ground = _ground(columns * LOT, slope, xyz, kinds, rng)
+    xyz = np.concatenate([xyz, ground])
+    kinds = np.concatenate([kinds, np.full(len(ground), PointClass.GROUND)])
+    number = np.concatenate([np.repeat(np.arange(len(placed)) + 1, sizes), np.zeros(len(ground), int)])
+    stays = rng.random(len(xyz)) < share
+    return xyz[stays], kinds[stays], number[stays]
+
+
+def elevation(plan: np.ndarray, slope: float) -> np.ndarray:
+    """Return the elevation (m) of the ground: a slope with hills."""
+    x, y = plan.T
+    return slope * x + 1.5 * np.sin(x / 60) * np.cos(y / 80)
+
+
+def _objects(kind: int, rng: np.random.Generator) -> list[np.ndarray]:
+    """Return the objects of a class in a random order, each centered, its lowest point at 0."""
+    xyz = read_cloud(DATA / "objects" / "dales-objects.laz").get("xyz")
+    with np.load(DATA / "objects" / "dales-objects.truth.npz") as truth:
+        number, classes = truth["object_id"], truth["classification"]
+    found = [xyz[number == one] for one in rng.permutation(np.unique(number[classes == kind]))]
+    return [points - [*points[:, :2].mean(axis=0), points[:, 2].min()] for points in found]
+
+
+def _founded(house: np.ndarray, center: np.ndarray, slope: float) -> np.ndarray:
+    """Return a house at its place, its eaves high enough over the ground downhill and uphill."""
+    house = house + [*center, 0.0]
+    house[:, 2] += max(0.0, EAVES - np.percentile(house[:, 2], 10))
+    below = elevation(house[:, :2], slope)
+    house[:, 2] += max(below.min(), below.max() - (EAVES - LEAST_UPHILL))
+    return house
+
+
+def _beside(
+    thing: np.ndarray, house: np.ndarray, number: int, center: np.ndarray, slope: float, rng: np.random.Generator
+) -> np.ndarray:
+    """Return a thing beside the house at ``center``, each number on a side of its own."""
+    half, own = np.ptp(house[:, :2], axis=0) / 2, np.ptp(thing[:, :2], axis=0) / 2
+    axis, side = number % 2, 1 if number // 2 % 2 else -1
+    apart = TOUCHING if number in (0, BESIDE.index(FENCE)) else rng.uniform(*APART)
+    offset = np.zeros(2)
+    offset[axis] = side * (half[axis] + own[axis] + apart)
+    offset[1 - axis] = rng.uniform(-0.5, 0.5) * half[1 - axis]
+    place = center + offset
+    return thing + [*place, elevation(place[None], slope)[0]]
+
+
+def _ground(size: float, slope: float, xyz: np.ndarray, kinds: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Return points of the ground, none under houses and half of them under trees."""
+    plan = rng.uniform(0, size, (int(GROUND_DENSITY * size**2), 2))
+    hidden = np.zeros(len(plan), bool)
+    for kind, share in ((PointClass.BUILDING, 1.0), (TREE, 0.5)):
+        distance, _ = spatial.cKDTree(xyz[kinds == kind, :2]).query(plan, distance_upper_bound=0.6)
+        hidden |= np.isfinite(distance) & (rng.random(len(plan)) < share)
+    plan = plan[~hidden]
+    return np.column_stack([plan, elevation(plan, slope) + rng.normal(0, GROUND_NOISE, len(plan))])
