@@ -95,6 +95,6 @@ MaxBuildingSize = Annotated[
         unit="m",
         low=1,
         high=1000,
-        automatic="60 m, and any size for what stands free of the terrain on all sides; or as the terrain says.",
+        automatic="60 m, and any size for what stands free of the terrain on nearly all sides; or as the terrain says.",
     ),
 ]

@@ -122,22 +122,22 @@ def refuse_elsewhere(
         extent = layer.sourceExtent()
         if extent.isNull() or not (low < high)[:2].all():
             continue
+        transform = _transform(source, layer, crs, context, Monitor())
         try:
-            there = _transform(source, layer, crs, context, Monitor()).transformBoundingBox(extent)
+            # This way round: a cloud is small, while the box of a layer may leave what the cloud's system is made for.
+            here = transform.transformBoundingBox(box, Qgis.TransformDirection.Reverse)
         except QgsCsException:
-            there = QgsRectangle()
-        if not there.intersects(box):
+            continue
+        if not extent.intersects(here):
             raise ValueError(
-                f"{source.title} and the point cloud don't overlap: {_range(there)} against {_range(box)}; choose a "
+                f"{source.title} and the point cloud don't overlap: {_range(extent)} against {_range(here)}; choose a "
                 "layer of the place, or check the coordinate reference systems of both."
             )
 
 
 def _range(box: QgsRectangle) -> str:
     """Return the coordinates of a box as people read them."""
-    if box.isNull():
-        return "nowhere in the cloud's system"
-    return f"x {box.xMinimum():.0f} to {box.xMaximum():.0f}, y {box.yMinimum():.0f} to {box.yMaximum():.0f}"
+    return f"x {box.xMinimum():.7g} to {box.xMaximum():.7g}, y {box.yMinimum():.7g} to {box.yMaximum():.7g}"
 
 
 def read_source(

@@ -153,10 +153,15 @@ def extract_footprints(
     Santos et al. (2019), Extraction of building roof boundaries from LiDAR data using an adaptive alpha shape.
     Santos et al. (2019), Building detection from LiDAR data using entropy and the k-means concept.
     """
-    building = np.flatnonzero((classification == PointClass.BUILDING) & (cluster_id is None or cluster_id > 0))
+    is_building = classification == PointClass.BUILDING
+    building = np.flatnonzero(is_building & (cluster_id is None or cluster_id > 0))
     found = Features([], {field.name: [] for field in _FIELDS})
     if not len(building):
-        monitor.warn("No point is called building (class 6), so there are no footprints.")
+        monitor.warn(
+            "No point of class 6 (building) has a ClusterID, so there are no footprints."
+            if is_building.any()
+            else "No point is called building (class 6), so there are no footprints."
+        )
     if not len(building) or not np.ptp(xyz[building, :2], axis=0).any():
         return found
     spacing = point_spacing(xyz[building])
@@ -276,7 +281,7 @@ def _describe(
 ) -> None:
     """Append the footprints of a tracing to those found, with what their points and shapes say of them."""
     count = len(traced.labels)
-    roof_face = _face_of_points(traced, xyz, points)
+    roof_face = _face_of_points(traced, points)
     has = np.flatnonzero(roof_face >= 0)
     distance, nearest = spatial.cKDTree(traced.xy[has]).query(xyz[members, :2])
     member_face = np.where(distance <= traced.max_edge, roof_face[has[nearest]], -1)
@@ -310,7 +315,7 @@ def _describe(
             found.columns[name].append(value)
 
 
-def _face_of_points(traced: Tracing, xyz: np.ndarray, points: np.ndarray) -> np.ndarray:
+def _face_of_points(traced: Tracing, points: np.ndarray) -> np.ndarray:
     """Return the face (n,) of each point that is a corner of one; -1 of those that are in none or bare."""
     face = np.full(len(points), -1)
     inside = traced.face >= 0

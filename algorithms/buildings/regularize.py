@@ -29,7 +29,7 @@ _SPIKE, _SMALL_SPIKE = 0.5, 0.87
 # A step between parallel walls that is no larger (tolerances) is none.
 _STEP = 0.75
 
-# What is smaller than a square with sides of so many tolerances, three spacings, is no part of a building.
+# What is smaller than a square with sides of so many tolerances is no part of a building.
 _SMALL = 1.5
 
 # Turns (sine) between the walls along a curve, one after the other to the same side: 4° to 40°.

@@ -14,8 +14,9 @@ from .outlines import signed_area
 from .regularize import edge_distances, regularize_outline, simplify_ring
 from .wall_lines import Scale, WallLine, find_lines, merge_lines, square_up, wall_scale
 
-# Cells in which roofs are held against walls (m), and how far around them there is room.
-_CELL, _ROOM = 0.25, 2.0
+# Cells in which roofs are held against walls (m), larger ones where they would be too many, and how far around them
+# there is room (m).
+_CELL, _LARGEST_CELL, _MOST_CELLS, _ROOM = 0.25, 1.0, 5e5, 2.0
 
 # A square metre outside the roof costs so many metres of wall that nobody sees; one that is left out although it lies
 # under the roof and inside of where walls are expected by this distance (m), and one deep under it, these.
@@ -91,21 +92,22 @@ class _Roof:
     """Where a roof is, in small cells, and how deep (m) under it a place lies, negative beyond its edge."""
 
     def __init__(self, roof: np.ndarray) -> None:
-        refuse_sparse(roof, _CELL)
-        room = int(_ROOM / _CELL)
-        self.low = roof.min(axis=0) - _ROOM - _CELL
-        column, row = ((roof - self.low) / _CELL).astype(np.int64).T
+        self.cell = float(np.clip(np.sqrt(np.ptp(roof, axis=0).prod() / _MOST_CELLS), _CELL, _LARGEST_CELL))
+        refuse_sparse(roof, self.cell)
+        room = int(_ROOM / self.cell)
+        self.low = roof.min(axis=0) - _ROOM - self.cell
+        column, row = ((roof - self.low) / self.cell).astype(np.int64).T
         mask = np.zeros((row.max() + room + 2, column.max() + room + 2), bool)
         mask[row, column] = True
         self.mask = ndimage.binary_fill_holes(ndimage.binary_closing(mask, np.ones((3, 3), bool), iterations=2))
         inside, outside = ndimage.distance_transform_edt(self.mask), ndimage.distance_transform_edt(~self.mask)
-        self.depth = np.where(self.mask, inside - 0.5, 0.5 - outside) * _CELL
+        self.depth = np.where(self.mask, inside - 0.5, 0.5 - outside) * self.cell
         rows, columns = np.indices(mask.shape).reshape(2, -1)
-        self.places = np.column_stack([columns, rows]) * _CELL + _CELL / 2 + self.low
-        self.high = self.low + np.array(mask.shape[::-1]) * _CELL
+        self.places = np.column_stack([columns, rows]) * self.cell + self.cell / 2 + self.low
+        self.high = self.low + np.array(mask.shape[::-1]) * self.cell
 
     def depth_at(self, xy: np.ndarray) -> np.ndarray:
-        column, row = np.floor((xy - self.low) / _CELL).astype(np.int64).T
+        column, row = np.floor((xy - self.low) / self.cell).astype(np.int64).T
         rows, columns = self.depth.shape
         return self.depth[np.clip(row, 0, rows - 1), np.clip(column, 0, columns - 1)]
 
@@ -242,7 +244,7 @@ class _Trial:
         count = len(self.cells.rings)
 
         def area(chosen: np.ndarray) -> np.ndarray:
-            return np.bincount(cell[chosen & (cell >= 0)], minlength=count) * _CELL**2
+            return np.bincount(cell[chosen & (cell >= 0)], minlength=count) * self.case.cover.cell**2
 
         if_inside = _OUTSIDE * area(depth < -_BEYOND)
         if_outside = _INSIDE * area(depth > self.case.overhang + _WELL_INSIDE)

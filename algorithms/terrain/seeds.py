@@ -201,7 +201,7 @@ def _slope(surface: np.ndarray, cell_size: float) -> np.ndarray:
 
 
 def _without_joined(
-    lifted: np.ndarray, free: np.ndarray, usual: int, surface: np.ndarray, slope: np.ndarray, cell_size: float
+    lifted: np.ndarray, free: np.ndarray, largest: int, surface: np.ndarray, slope: np.ndarray, cell_size: float
 ) -> np.ndarray:
     """Return what stands free, and the lifted cells but for regions that join the terrain smoothly on half their edge.
 
@@ -211,7 +211,7 @@ def _without_joined(
     """
     allowed = (_JOIN_SLOPE + _JOIN_SHARE * slope) * cell_size
     objects = (lifted > 0) | free
-    is_large = lifted > _LARGE_WINDOW * usual
+    is_large = lifted > _LARGE_WINDOW * largest
     for group in (objects & ~is_large, is_large):
         region, count = ndimage.label(group)
         whole, edge, joined = np.zeros(count + 1), np.zeros(count + 1), np.zeros(count + 1)

@@ -117,10 +117,10 @@ def _tiles(nodes: np.ndarray, places: np.ndarray) -> Iterator[tuple[np.ndarray, 
             continue
         low, high = plan_box(nodes[rows] if len(rows) > _NODES else places[own])
         axis = int(np.argmax(high - low))
-        if (len(rows) <= _NODES and len(own) <= _PLACES) or low[axis] == high[axis]:
+        middle = (low[axis] + high[axis]) / 2
+        if (len(rows) <= _NODES and len(own) <= _PLACES) or not low[axis] < middle:
             yield rows, own
             continue
-        middle = (low[axis] + high[axis]) / 2
         margin = 2 * _cell_size(nodes, rows)
         along, is_lower = nodes[rows, axis], places[own, axis] < middle
         left += [(rows[along < middle + margin], own[is_lower]), (rows[along >= middle - margin], own[~is_lower])]

@@ -113,10 +113,6 @@ class Tin:
         plan = xyz[:, :2] - self.shift[:2]
         return np.einsum("ij,ij->i", slope[facet], plan) + level[facet]
 
-    def nearest_elevation(self, xyz: np.ndarray) -> np.ndarray:
-        """Return the elevation (n,) of the node nearest in plan to each point."""
-        return self.nodes[self._node_tree.query(xyz[:, :2] - self.shift[:2], workers=-1)[1], 2]
-
     def steepness(self) -> np.ndarray:
         """Return the cosine (f,) of each facet's slope, 1 where it is level."""
         slope, _ = self._planes

@@ -205,6 +205,14 @@ def test_no_building_gives_an_empty_layer(village):
     assert all(len(values) == 0 for values in found.columns.values())
 
 
+def test_buildings_without_a_number_are_told_from_none():
+    monitor = Monitor()
+    xyz, classes = np.random.default_rng(1).uniform(0, 9, (50, 3)), np.full(50, 6, np.uint8)
+    found = extract_footprints(xyz, classes, np.zeros(50, np.int32), monitor=monitor)
+    assert len(found) == 0
+    assert monitor.warnings == ["No point of class 6 (building) has a ClusterID, so there are no footprints."]
+
+
 def test_automatic_values_are_told(village):
     monitor = Monitor()
     extract_footprints(**village, monitor=monitor)

@@ -263,6 +263,16 @@ def test_a_building_that_spans_a_country_is_refused(rng):
         extract_wall_footprints(**arrays)
 
 
+def test_a_long_row_across_the_grid_is_no_mistake(rng):
+    """Its box is nearly empty, and was refused as if a point lay far off."""
+    row = ((0, 0), (1150, 0), (1150, 10), (0, 10))
+    arrays, corners = building(rng, row, per_meter=2, turn=np.pi / 4, density=4)
+    footprints, _ = extract_wall_footprints(**arrays)
+    assert footprints.columns["source"] == ["wall"]
+    ring = footprints.geometries[0][0][:-1]
+    assert np.hypot(*(corners[:, None] - ring).transpose(2, 0, 1)).min(axis=1).max() < 0.5
+
+
 def test_walls_without_roofs_give_no_footprint(rng):
     arrays, _ = building(rng, "rectangle")
     footprints, edges = extract_wall_footprints(arrays["xyz"], np.zeros(len(arrays["xyz"]), int), arrays["wall_of"])
