@@ -266,7 +266,7 @@ def test_a_building_that_spans_a_country_is_refused(rng):
 def test_a_long_row_across_the_grid_is_no_mistake(rng):
     """Its box is nearly empty, and was refused as if a point lay far off."""
     row = ((0, 0), (1150, 0), (1150, 10), (0, 10))
-    arrays, corners = building(rng, row, per_meter=2, turn=np.pi / 4, density=4)
+    arrays, corners = building(rng, row, per_meter=1, turn=np.pi / 4, density=2)
     footprints, _ = extract_wall_footprints(**arrays)
     assert footprints.columns["source"] == ["wall"]
     ring = footprints.geometries[0][0][:-1]
