@@ -10,7 +10,7 @@ import numpy as np
 from ..cloud.asprs import PointClass
 from ..cloud.density import point_density
 from ..features.eigen import neighborhood_eigenvalues, shannon_entropy_lps, symmetric_eigenvalues
-from ..features.noise import surface_neighbors, surface_noise, surface_roughness
+from ..features.noise import SurfaceSample
 from ..packages import cluster
 from ..params import MinBuildingArea, PointDensity, Seed
 from ..segmentation.extent import join_beside, penetration, plan_areas, share_going_on
@@ -171,7 +171,8 @@ def classify_buildings(
     means = _cluster_means(values, position, len(ids))
     if guard:
         reach = np.sqrt(n_neighbors / (np.pi * density))
-        split = _held_means(means, *reference_entropies(n_neighbors, surface_roughness(xyz, density) / reach), monitor)
+        roughness = SurfaceSample(xyz).roughness(density)
+        split = _held_means(means, *reference_entropies(n_neighbors, roughness / reach), monitor)
     else:
         split = _two_means(means, seed, monitor)
     monitor.resolved(building_entropy=split.building, other_entropy=split.other)
@@ -199,7 +200,8 @@ def _neighbors(xyz: np.ndarray, density: float, min_area: float, neighborhood: s
     if neighborhood == "published":
         return max(3, round(min_area * density))
     # An entropy needs half as many again as a plane: three shares come from it and not one direction.
-    return round(1.5 * surface_neighbors(xyz, density, surface_noise(xyz)))
+    sample = SurfaceSample(xyz)
+    return round(1.5 * sample.n_neighbors(density, sample.noise()))
 
 
 def _by_entropy(means: np.ndarray, split: _Split) -> tuple[np.ndarray, np.ndarray]:

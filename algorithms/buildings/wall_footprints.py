@@ -9,8 +9,7 @@ from typing import Annotated, Optional
 import numpy as np
 
 from ..cloud.density import point_spacing
-from ..features.noise import surface_density, surface_roughness
-from ..packages import spatial
+from ..features.noise import SurfaceSample
 from ..params import MinBuildingArea, Seed
 from ..stage import Features, Field, Layer, Monitor, Param, stage
 from .outlines import perimeter, signed_area, trace_outlines
@@ -203,8 +202,8 @@ def _tolerance(xyz: np.ndarray) -> float:
     """Return the distance (m) within which points lie on a wall."""
     if len(xyz) < 3:
         return 0.1
-    tree = spatial.cKDTree(xyz)
-    return float(np.clip(_ON_WALL * surface_roughness(xyz, surface_density(xyz, tree), tree), 0.01, 2.0))
+    sample = SurfaceSample(xyz)
+    return float(np.clip(_ON_WALL * sample.roughness(sample.density()), 0.01, 2.0))
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from ..features.eigen import (
     reduce_neighborhoods,
     smallest_eigenvectors,
 )
-from ..features.noise import surface_density, surface_roughness
+from ..features.noise import SurfaceSample
 from ..packages import spatial
 from ..params import SplitHeight
 from ..stage import Monitor, Param, stage
@@ -157,9 +157,8 @@ def classify_walls(
             f"The minimum height of walls ({min_height:g} m) is above the split height ({split_height:g} m); lower it."
         )
     if noise is None:
-        tree = spatial.cKDTree(xyz)
-        noise = surface_roughness(xyz, surface_density(xyz, tree), tree)
-        del tree
+        sample = SurfaceSample(xyz)
+        noise = sample.roughness(sample.density())
     monitor.progress(0.2)
     wall_of = np.zeros(len(xyz), np.int32)
     is_low = (height_above_ground >= min_height) & (height_above_ground < split_height)
@@ -183,7 +182,7 @@ def _neighbors(xyz: np.ndarray, noise: float) -> int:
     """Return how many points tell the normal of a wall: few where walls are precise or thinly covered."""
     if not len(xyz):
         return _LEAST_NEIGHBORS
-    reached = np.pi * (_REACH_DEVIATIONS * noise) ** 2 * surface_density(xyz)
+    reached = np.pi * (_REACH_DEVIATIONS * noise) ** 2 * SurfaceSample(xyz).density()
     return int(np.clip(reached, _LEAST_NEIGHBORS, _MOST_NEIGHBORS))
 
 

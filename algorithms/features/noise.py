@@ -1,4 +1,4 @@
-"""How rough smooth surfaces look in a cloud: the noise that tolerances are tied to."""
+"""How dense and how rough the surfaces of a cloud are: what tolerances are tied to."""
 
 from __future__ import annotations
 
@@ -6,11 +6,20 @@ from typing import Any
 
 import numpy as np
 
+from ..cloud.cells import plan_box
+from ..cloud.density import point_spacing
 from ..packages import spatial
 from .eigen import Nearest, symmetric_eigenvalues
 
 # Points whose surroundings are looked at, about.
 _SAMPLE = 20_000
+
+# They lie in the middle of square places that are so many point spacings wide that the 60 points nearest
+# to each are there, too.
+_MIDDLE, _PLACE = 0.4, 18.0
+
+# With less than this share of the points aimed at, chance would tell.
+_LEAST_OF_SAMPLE = 0.25
 
 _NEIGHBORS = 12
 
@@ -37,118 +46,119 @@ _LEAST_NOISE = 0.01
 _LEAST_ROUGHNESS, _ROUGHNESS_OF_SPACING = 0.02, 0.05
 
 
-def surface_noise(xyz: np.ndarray, tree: Any = None) -> float:
-    """Return the standard deviation of points across the smooth surfaces of a cloud.
+class SurfaceSample:
+    """Places spread over a cloud, with all points there: what lies around some points tells about the whole.
 
     Parameters
     ----------
     xyz : ndarray of shape (n, 3), float64
         Points (m), n >= 1.
     tree : scipy.spatial.cKDTree, optional
-        Tree of ``xyz``, built when absent.
+        Tree of all points where there is one already: then the surroundings are exact.
 
-    Returns
-    -------
-    float
-        Noise (m), at least 0.01.
+    Attributes
+    ----------
+    columns : ndarray of shape (3, m)
+        x, y and z of the points of the places, or of all points (m), and ``tree`` of them.
+    rows : ndarray of shape (s,)
+        The points in the middle of their places, whose neighbors are all there.
 
     Notes
     -----
-    The deviation from the plane of the 12 nearest points at the smoothest fifth of the cloud: vegetation, edges
-    and walls don't reach that far. In a cloud of planes and nothing else that is 0.77 of the true noise.
+    Places are chosen by where they lie, so that the order of the points doesn't matter.
     """
-    count = min(_NEIGHBORS, len(xyz))
-    if count <= 3:
-        return _LEAST_NOISE
-    tree = spatial.cKDTree(xyz) if tree is None else tree
-    covariances = Nearest(count).moments(np.ascontiguousarray(xyz.T), tree, _sample(xyz))[2]
-    across = symmetric_eigenvalues(covariances)[:, 2] * count / (count - 3)
-    return max(float(np.sqrt(np.quantile(across, _SMOOTH_SHARE))), _LEAST_NOISE)
+
+    def __init__(self, xyz: np.ndarray, tree: Any = None) -> None:
+        at_places, is_middle = _places(xyz)
+        if tree is None:
+            xyz, is_middle = xyz[at_places], is_middle[at_places]
+            tree = spatial.cKDTree(xyz, balanced_tree=False)
+        self.tree, self.columns, self.rows = tree, np.ascontiguousarray(xyz.T), np.flatnonzero(is_middle)
+
+    def __len__(self) -> int:
+        return self.columns.shape[1]
+
+    def noise(self) -> float:
+        """Return the standard deviation of points across the smooth surfaces, m, at least 0.01.
+
+        Notes
+        -----
+        The deviation from the plane of the 12 nearest points at the smoothest fifth of the cloud: vegetation, edges
+        and walls don't reach that far. In a cloud of planes and nothing else that is 0.77 of the true noise.
+        """
+        count = min(_NEIGHBORS, len(self))
+        if count <= 3:
+            return _LEAST_NOISE
+        across = self._variances(count)[:, 2] * count / (count - 3)
+        return max(float(np.sqrt(np.quantile(across, _SMOOTH_SHARE))), _LEAST_NOISE)
+
+    def roughness(self, density: float) -> float:
+        """Return how far points of one roof surface, ``density`` per m², may lie off its plane (one deviation, m)."""
+        return float(np.hypot(max(self.noise(), _LEAST_ROUGHNESS), _ROUGHNESS_OF_SPACING / np.sqrt(density)))
+
+    def density(self) -> float:
+        """Return the points per square metre of the surfaces that they lie on, however steep these are.
+
+        It is that around the median point, counted in the circle of its 12 nearest; infinite where all points lie at
+        one place.
+        """
+        count = min(_NEIGHBORS, len(self))
+        own = self.columns[:, self.rows].T
+        reach = float(np.median(self.tree.query(own, k=[count], workers=-1)[0]))
+        return count / (np.pi * reach**2) if reach > 0 else float("inf")
+
+    def n_neighbors(self, density: float, noise: float) -> int:
+        """Return how many nearest points tell the plane of a surface.
+
+        Few where points are precise, more where they are noisy or dense: the smooth side of a crown is a plane too
+        when it is looked at closely enough. And enough to cross scan lines: scanners put points close together along
+        a line and leave gaps between the lines, and a neighborhood that holds one line only has no plane.
+
+        Parameters
+        ----------
+        density : float
+            Points per square metre.
+        noise : float
+            Standard deviation of points across a smooth surface, m.
+
+        Returns
+        -------
+        int
+            The least count, from 8 to 100, that reaches half a metre and eight times the noise and with which four
+            fifths of the smooth neighborhoods are at least 0.45 times as wide as long (or 60); at most all points.
+        """
+        reach = max(_LEAST_REACH, _REACH_DEVIATIONS * noise)
+        count = min(max(int(np.ceil(np.pi * reach**2 * density)), LEAST_NEIGHBORS), _MOST_NEIGHBORS)
+        while count < min(_MOST_ACROSS_LINES, len(self)):
+            eigenvalues = self._variances(count)
+            smooth = eigenvalues[:, 2] <= np.quantile(eigenvalues[:, 2], _SMOOTH_SHARE + 0.1)
+            width = np.sqrt(eigenvalues[smooth, 1] / np.maximum(eigenvalues[smooth, 0], 1e-12))
+            if np.quantile(width, 0.2) >= _LEAST_WIDTH:
+                break
+            count = min(int(np.ceil(count * 1.5)), _MOST_ACROSS_LINES)
+        return min(count, len(self))
+
+    def _variances(self, count: int) -> np.ndarray:
+        """Return the variances (s, 3), descending, of the ``count`` points nearest to each point of the sample, m²."""
+        return symmetric_eigenvalues(Nearest(count).moments(self.columns, self.tree, self.rows)[2])
 
 
-def surface_density(xyz: np.ndarray, tree: Any = None) -> float:
-    """Return the points per square metre of the surfaces that they lie on, however steep these are.
-
-    Parameters
-    ----------
-    xyz : ndarray of shape (n, 3), float64
-        Points (m), n >= 1.
-    tree : scipy.spatial.cKDTree, optional
-        Tree of ``xyz``, built when absent.
-
-    Returns
-    -------
-    float
-        Density (points/m²) around the median point, counted in the circle of its 12 nearest; infinite where all lie
-        at one place.
-    """
-    count = min(_NEIGHBORS, len(xyz))
-    tree = spatial.cKDTree(xyz) if tree is None else tree
-    reach = float(np.median(tree.query(xyz[_sample(xyz)], k=[count], workers=-1)[0]))
-    return count / (np.pi * reach**2) if reach > 0 else float("inf")
-
-
-def surface_roughness(xyz: np.ndarray, density: float, tree: Any = None) -> float:
-    """Return how far points of one roof surface may lie off its plane (one standard deviation, m).
-
-    Parameters
-    ----------
-    xyz : ndarray of shape (n, 3), float64
-        Points (m), n >= 1.
-    density : float
-        Points per square metre.
-    tree : scipy.spatial.cKDTree, optional
-        Tree of ``xyz``, built when absent.
-    """
-    return float(np.hypot(max(surface_noise(xyz, tree), _LEAST_ROUGHNESS), _ROUGHNESS_OF_SPACING / np.sqrt(density)))
-
-
-def surface_neighbors(xyz: np.ndarray, density: float, noise: float, tree: Any = None) -> int:
-    """Return how many nearest points tell the plane of a surface.
-
-    Few where points are precise, more where they are noisy or dense: the smooth side of a crown is a plane too
-    when it is looked at closely enough. And enough to cross scan lines: scanners put points close together along a
-    line and leave gaps between the lines, and a neighborhood that holds one line only has no plane.
-
-    Parameters
-    ----------
-    xyz : ndarray of shape (n, 3), float64
-        Points (m).
-    density : float
-        Points per square metre.
-    noise : float
-        Standard deviation of points across a smooth surface, m.
-    tree : scipy.spatial.cKDTree, optional
-        Tree of ``xyz``, built when absent.
-
-    Returns
-    -------
-    int
-        The least count, from 8 to 100, that reaches half a metre and eight times the noise and with which four
-        fifths of the smooth neighborhoods are at least 0.45 times as wide as long (or 60); at most n.
-    """
-    reach = max(_LEAST_REACH, _REACH_DEVIATIONS * noise)
-    count = min(max(int(np.ceil(np.pi * reach**2 * density)), LEAST_NEIGHBORS), _MOST_NEIGHBORS)
-    tree = spatial.cKDTree(xyz) if tree is None else tree
-    columns, rows = np.ascontiguousarray(xyz.T), _sample(xyz)
-    while count < min(_MOST_ACROSS_LINES, len(xyz)):
-        eigenvalues = symmetric_eigenvalues(Nearest(count).moments(columns, tree, rows)[2])
-        smooth = eigenvalues[:, 2] <= np.quantile(eigenvalues[:, 2], _SMOOTH_SHARE + 0.1)
-        width = np.sqrt(eigenvalues[smooth, 1] / np.maximum(eigenvalues[smooth, 0], 1e-12))
-        if np.quantile(width, 0.2) >= _LEAST_WIDTH:
-            break
-        count = min(int(np.ceil(count * 1.5)), _MOST_ACROSS_LINES)
-    return min(count, len(xyz))
-
-
-def _sample(xyz: np.ndarray) -> np.ndarray:
-    """Return indices of about ``_SAMPLE`` points, chosen by where they lie, so that their order doesn't matter."""
-    step = len(xyz) // _SAMPLE
-    if step < 2:
-        return np.arange(len(xyz))
-    millimetres = np.rint((xyz - xyz.min(axis=0)) * 1000).astype(np.uint64)
-    # Three large odd numbers mix the coordinates; the high bits of the product are the well mixed ones.
-    mixed = (millimetres * np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.uint64)).sum(
-        axis=1
-    )
-    return np.flatnonzero((mixed >> np.uint64(40)) % np.uint64(step) == 0)
+def _places(xyz: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return which points lie at the places of a sample, and which in the middle of one (n,); all of a small cloud."""
+    everything = np.ones(len(xyz), bool)
+    low, high = plan_box(xyz)
+    if len(xyz) < 2 * _SAMPLE or not (high > low).any():
+        return everything, everything
+    side = _PLACE * point_spacing(xyz)
+    place, middle = np.zeros(len(xyz), np.uint64), everything.copy()
+    # Large odd numbers mix the coordinates; the high bits of the products are the well mixed ones.
+    for axis, mixer in enumerate((0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F)):
+        position = (xyz[:, axis] - low[axis]) / side
+        number = np.floor(position)
+        middle &= np.abs(position - number - 0.5) <= _MIDDLE / 2
+        place += number.astype(np.uint64) * np.uint64(mixer)
+    share = min(1.0, _SAMPLE / (_MIDDLE**2 * len(xyz)))
+    chosen = (place >> np.uint64(40)).astype(np.float64) < share * 2**24
+    middle &= chosen
+    # A cloud on few places, a mast or a wall, is looked at whole.
+    return (chosen, middle) if middle.sum() >= _LEAST_OF_SAMPLE * _SAMPLE else (everything, everything)

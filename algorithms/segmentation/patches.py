@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..features.eigen import Nearest, smallest_eigenvectors, symmetric_eigenvalues
-from ..features.noise import LEAST_NEIGHBORS, surface_neighbors
+from ..features.noise import LEAST_NEIGHBORS, SurfaceSample
 from ..packages import csgraph, sparse, spatial
 from ..stage import Monitor
 from ..threads import in_chunks
@@ -68,7 +68,7 @@ def segment_patches(xyz: np.ndarray, density: float, noise: float, max_slope: fl
     if len(xyz) < LEAST_NEIGHBORS:
         return np.full(len(xyz), -1, np.int32)
     tree = spatial.cKDTree(xyz)
-    planes = _local_planes(xyz, tree, surface_neighbors(xyz, density, noise, tree), monitor.part(0, 0.6))
+    planes = _local_planes(xyz, tree, SurfaceSample(xyz, tree).n_neighbors(density, noise), monitor.part(0, 0.6))
     del tree  # What is large goes as soon as it can: the links below are large, too.
     plane = _smoothest_plane(xyz, planes, noise, monitor.part(0.6, 0.8))
     on_surface = (planes.deviation[plane] <= _SMOOTH * noise) & (plane >= 0)

@@ -6,8 +6,7 @@ from typing import Annotated, Optional
 
 import numpy as np
 
-from ..features.noise import surface_density, surface_roughness
-from ..packages import spatial
+from ..features.noise import SurfaceSample
 from ..params import MinClusterHeight, Seed
 from ..stage import Monitor, Param, stage
 from .boxes import Boxes, by_first_point
@@ -136,9 +135,9 @@ def segment_planes_ransac(
     if min_slope > max_slope:
         raise ValueError(f"The minimum slope ({min_slope:g}°) is above the maximum slope ({max_slope:g}°); lower it.")
     used = candidates(classification, height_above_ground, min_height)
-    tree = spatial.cKDTree(xyz)
-    density = surface_density(xyz, tree)
-    tolerance = _ON_PLANE * surface_roughness(xyz, density, tree) if tolerance is None else tolerance
+    sample = SurfaceSample(xyz)
+    density = sample.density()
+    tolerance = _ON_PLANE * sample.roughness(density) if tolerance is None else tolerance
     voxel_size = _voxel_size(density, tolerance) if voxel_size is None else voxel_size
     monitor.resolved(voxel_size=voxel_size, tolerance=tolerance)
 

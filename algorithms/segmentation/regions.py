@@ -7,7 +7,7 @@ from typing import Annotated, Optional
 import numpy as np
 
 from ..cloud.density import point_density
-from ..features.noise import surface_noise
+from ..features.noise import SurfaceSample
 from ..params import MinBuildingArea, MinClusterHeight, PointDensity
 from ..stage import Param, stage
 from .candidates import candidates
@@ -99,7 +99,7 @@ def segment_regions(
     density = point_density(xyz) if density is None else density
     spacing = 1 / np.sqrt(density)
     plan_distance = 2 * spacing if plan_distance is None else plan_distance
-    height_distance = _HEIGHT_NOISE_FACTOR * surface_noise(xyz) if height_distance is None else height_distance
+    height_distance = _HEIGHT_NOISE_FACTOR * SurfaceSample(xyz).noise() if height_distance is None else height_distance
     monitor.resolved(density=density, plan_distance=plan_distance, height_distance=height_distance)
 
     component = np.full(len(xyz), -1, np.int32)

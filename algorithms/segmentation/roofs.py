@@ -9,7 +9,7 @@ import numpy as np
 from ..buildings.reasons import Reason
 from ..cloud.asprs import NOISE
 from ..cloud.density import point_density
-from ..features.noise import surface_roughness
+from ..features.noise import SurfaceSample
 from ..params import PointDensity
 from ..stage import Param, stage
 from .connectivity import connect, number_large
@@ -105,7 +105,7 @@ def segment_roofs(
     entropy and the k-means concept, section 4. Sampath, A., Shan, J., 2007, as in "Segment regions".
     """
     density = point_density(xyz) if density is None else density
-    noise = surface_roughness(xyz, density) if noise is None else noise
+    noise = SurfaceSample(xyz).roughness(density) if noise is None else noise
     monitor.resolved(density=density, noise=noise)
     used = np.flatnonzero(~np.isin(classification, NOISE))
 

@@ -6,7 +6,7 @@ from scipy.spatial import cKDTree
 
 from lidar_buildings.algorithms.buildings.buildings import classify_buildings, reference_entropies
 from lidar_buildings.algorithms.buildings.reasons import Reason
-from lidar_buildings.algorithms.features.noise import surface_roughness
+from lidar_buildings.algorithms.features.noise import SurfaceSample
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 
 FAR = np.array([600_000.0, 5_000_000.0, 0.0])
@@ -202,7 +202,7 @@ def test_the_guard_counts_as_a_hundred_clusters(rng, copies):
     monitor = Monitor()
     means = classify_buildings(xyz, ones(xyz), cluster_id, n_neighbors=24, density=12.0, monitor=monitor)[2]
     measured = np.mean([means[cluster_id == i][0] for i in range(1, copies + 1)])
-    plane, volume = reference_entropies(24, surface_roughness(xyz, 12.0) / np.sqrt(24 / (12 * np.pi)))
+    plane, volume = reference_entropies(24, SurfaceSample(xyz).roughness(12.0) / np.sqrt(24 / (12 * np.pi)))
     expected = (copies * measured + 100 * plane) / (copies + 100)
     assert monitor.values["building_entropy"] == pytest.approx(expected, abs=1e-6)
     assert monitor.values["other_entropy"] == volume

@@ -2,11 +2,22 @@
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from lidar_buildings.algorithms.features import noise as module
-from lidar_buildings.algorithms.features.noise import surface_neighbors, surface_noise
+from lidar_buildings.algorithms.features.noise import SurfaceSample
 
 FAR = np.array([600_000.0, 5_000_000.0, 0.0])
+
+
+def surface_noise(xyz):
+    """Return the noise that a sample of the points shows."""
+    return SurfaceSample(xyz).noise()
+
+
+def surface_neighbors(xyz, density, noise):
+    """Return the neighbors that a sample of the points asks for."""
+    return SurfaceSample(xyz).n_neighbors(density, noise)
 
 
 def plane(rng, deviation, slope=0.0, count=4000, side=30.0):
@@ -61,18 +72,57 @@ def test_order_and_place_change_nothing(rng):
     assert surface_noise((xyz + FAR).round(3)) == pytest.approx(expected, rel=1e-4)
 
 
-def test_a_sample_is_enough_and_is_chosen_by_place(rng, monkeypatch):
-    xyz = plane(rng, 0.04, count=12_000, side=50).round(3)
-    whole = surface_noise(xyz)
+@pytest.fixture
+def small_sample(monkeypatch):
+    """Let clouds of a few thousand points be sampled."""
     monkeypatch.setattr(module, "_SAMPLE", 2000)
-    rows = module._sample(xyz)
-    assert 1500 < len(rows) < 2500
-    order = rng.permutation(len(xyz))
-    np.testing.assert_array_equal(np.sort(order[module._sample(xyz[order])]), rows)
-    assert surface_noise(xyz) == pytest.approx(whole, rel=0.05)
-    # Chosen evenly: no quarter of the area is left out.
-    quarter = (xyz[rows, 0] > 25).astype(int) * 2 + (xyz[rows, 1] > 25)
-    assert np.bincount(quarter).min() > 0.2 * len(rows)
+
+
+def test_a_sample_is_enough(rng, small_sample):
+    xyz = plane(rng, 0.04, count=60_000, side=120)
+    sample, whole = SurfaceSample(xyz), SurfaceSample(xyz, cKDTree(xyz))
+    assert len(sample) < len(xyz) / 4 < len(whole)
+    assert sample.noise() == pytest.approx(whole.noise(), rel=0.05)
+    assert sample.density() == pytest.approx(whole.density(), rel=0.05)
+    assert sample.n_neighbors(4.2, 0.15) == whole.n_neighbors(4.2, 0.15)
+
+
+def test_neighbors_of_the_sample_are_those_of_the_cloud(rng, small_sample):
+    """The sixty points nearest to a point of the sample are at its place, too, but for thin spots at its edge."""
+    xyz = plane(rng, 0.04, count=60_000, side=120)
+    sample, tree = SurfaceSample(xyz), cKDTree(xyz)
+    own = sample.columns[:, sample.rows].T
+    is_same = np.isclose(sample.tree.query(own, [60])[0], tree.query(own, [60])[0], rtol=1e-9)
+    assert is_same.mean() > 0.99
+
+
+def test_a_sample_is_chosen_by_place(rng, small_sample):
+    xyz = plane(rng, 0.04, count=60_000, side=120)
+
+    def own(cloud):
+        sample = SurfaceSample(cloud)
+        return sample.columns[:, sample.rows].T
+
+    here = own(xyz)
+    assert 1500 < len(here) < 2500
+    np.testing.assert_array_equal(np.unique(here, axis=0), np.unique(own(rng.permutation(xyz)), axis=0))
+    # No quarter of the area is left out.
+    quarter = (here[:, 0] > 60).astype(int) * 2 + (here[:, 1] > 60)
+    assert np.bincount(quarter).min() > 0.15 * len(here)
+
+
+@pytest.mark.parametrize("stretch", [[0, 0.001, 1], [0, 0, 0]])
+def test_a_cloud_without_width_is_looked_at_whole(stretch, rng, small_sample):
+    xyz = rng.uniform(0, 100, (10_000, 3)) * stretch
+    sample = SurfaceSample(xyz)
+    assert len(sample) == len(sample.rows) == len(xyz)
+
+
+def test_a_cloud_on_few_places_is_looked_at_whole(rng, small_sample):
+    """Twenty masts of 500 points stand at so few places that chance would leave nearly all out."""
+    mast = np.column_stack([np.zeros((500, 2)), np.arange(500) / 50])
+    xyz = (rng.uniform(0, 100, (20, 1, 3)) * [1, 1, 0] + mast).reshape(-1, 3)
+    assert len(SurfaceSample(xyz)) == len(xyz)
 
 
 def test_scattered_precise_points_need_few_neighbors(rng):

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lidar_buildings.algorithms.cloud.density import point_density
-from lidar_buildings.algorithms.features.noise import surface_noise
+from lidar_buildings.algorithms.features.noise import SurfaceSample
 from lidar_buildings.algorithms.segmentation.regions import segment_regions
 from lidar_buildings.algorithms.stage import Monitor
 
@@ -142,7 +142,7 @@ def test_automatic_thresholds_come_from_density_and_noise(rng):
     assert monitor.values["density"] == pytest.approx(6000 / 1600, rel=0.05)
     assert monitor.values["density"] == point_density(xyz)
     assert monitor.values["plan_distance"] == pytest.approx(2 / np.sqrt(point_density(xyz)))
-    assert monitor.values["height_distance"] == pytest.approx(10 * surface_noise(xyz))
+    assert monitor.values["height_distance"] == pytest.approx(10 * SurfaceSample(xyz).noise())
     assert 0.15 < monitor.values["height_distance"] < 0.35
 
 
