@@ -44,7 +44,7 @@ class TiledTin:
         # In this order rows, ascending, are in the same one however the nodes came.
         self.nodes = nodes = _lowest_of_each_place(nodes)
         self._box = plan_box(nodes)
-        # Small numbers keep their digits when they are squared.
+        # Small numbers keep their digits when they are squared; each tile's triangulation, of the same box, shifts alike.
         self._shift = self._box.mean(axis=0)
         self._tree = spatial.cKDTree(nodes[:, :2] - self._shift, balanced_tree=False)
 
@@ -90,7 +90,7 @@ class TiledTin:
     def _intruders(self, tin: Tin, facets: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the rows of nodes inside the circles of facets that ``rows`` lack, and which circles have such."""
         center, radius = tin.circles(facets)
-        center, limit = center - self._shift, radius * (1 - _ROUNDING)
+        limit = radius * (1 - _ROUNDING)
         # Nodes on a line have no circle, and no place lies between them.
         center[~np.isfinite(radius)], limit[~np.isfinite(radius)] = 0.0, 0.0
         is_wrong = self._tree.query(center)[0] < limit

@@ -10,8 +10,9 @@ import numpy as np
 from ..cloud.cells import plan_box
 from ..packages import spatial
 from ..stage import Monitor
+from ..threads import in_chunks
 
-_CHUNK = 200_000
+_CHUNK = 100_000
 
 # Far more steps than a walk from the nearest node takes.
 _MAX_STEPS = 1000
@@ -32,9 +33,9 @@ class Tin:
     """
 
     def __init__(self, nodes: np.ndarray, box: Optional[np.ndarray] = None) -> None:
-        low, high = plan_box(nodes) if box is None else box
+        low, high = box = plan_box(nodes) if box is None else box
         # Qhull works in absolute coordinates: shifted ones keep their digits.
-        self.shift = np.append((low + high) / 2, 0.0)
+        self.shift = np.append(box.mean(axis=0), 0.0)
         self.n_nodes = len(nodes)
         self.reach = reach = 3 * float((high - low).max()) + 10.0
         corners = np.array([[-reach, -reach], [reach, -reach], [reach, reach], [-reach, reach]])
@@ -64,17 +65,17 @@ class Tin:
         chunk together: a step or two for nearly all of them. Beyond the far corners the facet
         is the one at the nearest place between them.
         """
-        monitor = monitor or Monitor()
-        plan = np.clip(xyz[:, :2] - self.shift[:2], -0.99 * self.reach, 0.99 * self.reach)
-        found = np.empty(len(plan), np.int32)
-        for start in range(0, len(plan), _CHUNK):
-            monitor.progress(start / len(plan))
-            part = slice(start, start + _CHUNK)
-            found[part] = self._walk(plan[part])
+        found = np.empty(len(xyz), np.int32)
+
+        def walk(rows: np.ndarray) -> None:
+            plan = xyz[rows, :2] - self.shift[:2]
+            found[rows] = self._walk(np.clip(plan, -0.99 * self.reach, 0.99 * self.reach))
+
+        in_chunks(walk, np.arange(len(xyz)), _CHUNK, monitor or Monitor())
         return found
 
     def _walk(self, plan: np.ndarray) -> np.ndarray:
-        facet = self._start[self._node_tree.query(plan, workers=-1)[1]]
+        facet = self._start[self._node_tree.query(plan)[1]]
         walking = np.arange(len(plan))
         for _ in range(_MAX_STEPS):
             across = self._leaving(plan[walking], facet[walking])
@@ -124,7 +125,7 @@ class Tin:
         return np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
 
     def circles(self, facets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return center (f, 2) and radius (f,) of the circles through the nodes of some facets, m.
+        """Return center (f, 2), from the shift, and radius (f,) of the circles through the nodes of some facets, m.
 
         No node lies inside of them. Where the nodes lie on a line, neither is finite.
         """
@@ -134,7 +135,7 @@ class Tin:
         with np.errstate(divide="ignore", invalid="ignore"):
             scale = 0.5 / (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
             to_center = np.column_stack([v[:, 1] * uu - u[:, 1] * vv, u[:, 0] * vv - v[:, 0] * uu]) * scale[:, None]
-        return a + to_center + self.shift[:2], np.linalg.norm(to_center, axis=1)
+        return a + to_center, np.linalg.norm(to_center, axis=1)
 
     @cached_property
     def _planes(self) -> tuple[np.ndarray, np.ndarray]:

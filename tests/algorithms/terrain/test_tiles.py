@@ -136,6 +136,26 @@ def test_progress_is_told_and_a_cancellation_ends_it(rng):
     assert monitor.heard == sorted(monitor.heard)
 
 
+@pytest.mark.parametrize("place", [np.zeros(3), FAR], ids=["near", "map"])
+def test_no_circle_is_doubted_where_all_nodes_are_known(rng, place):
+    """In map coordinates the rounding of circles once sent many of them to a second search."""
+    nodes = ground(rng, lambda plan: plan[:, 0] > -1, 500) * [0.05, 0.05, 1]  # 0.2 m apart, as drones give them
+    surface = TiledTin(nodes + place)
+    asked = []
+
+    class Watched:
+        def query(self, center, *count):
+            asked.append((len(count), len(center)))
+            return surface_tree.query(center, *count)
+
+    surface_tree, surface._tree = surface._tree, Watched()
+    tin = Tin(surface.nodes, surface._box)
+    intruders, is_wrong = surface._intruders(tin, np.arange(len(tin.facets)), np.arange(len(surface.nodes)))
+    assert not len(intruders)
+    assert not is_wrong.any()
+    assert asked == [(0, len(tin.facets)), (1, 0)]
+
+
 def test_only_few_nodes_are_triangulated_at_once(rng, monkeypatch):
     """What the tiles are for: memory that doesn't grow with the cloud."""
     sizes = []

@@ -115,6 +115,25 @@ def test_steepness_and_longest_edge_of_a_roof():
     np.testing.assert_allclose(tin.longest_edge()[facet], 6)
 
 
+def test_circles_go_through_their_nodes_and_hold_no_other(nodes):
+    """To all digits in map coordinates too: else circles without a node inside would seem to have one."""
+    for place in (0, FAR):
+        tin = Tin(nodes + place)
+        center, radius = tin.circles(np.arange(len(tin.facets)))
+        distance = np.linalg.norm(tin.nodes[None, :, :2] - center[:, None], axis=2)
+        own = np.take_along_axis(distance, tin.facets, axis=1)
+        np.testing.assert_allclose(own, np.repeat(radius[:, None], 3, axis=1), rtol=1e-11)
+        assert (distance >= radius[:, None] * (1 - 1e-11)).all()
+
+
+def test_nodes_on_a_line_have_no_circle():
+    tin = Tin(np.array([[0.0, 0, 0], [10, 0, 0], [20, 0, 0]]))
+    tin.nodes[tin.facets[0], 1] = 0.0
+    center, radius = tin.circles(np.array([0]))
+    assert not np.isfinite(center).all()
+    assert not np.isfinite(radius).any()
+
+
 def test_empty_search(nodes):
     assert len(Tin(nodes).locate(np.empty((0, 3)))) == 0
 

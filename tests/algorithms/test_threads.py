@@ -1,0 +1,66 @@
+"""Chunks on all cores: every row once, whatever the chunks, and no thread where there is nothing to share."""
+
+import threading
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.algorithms.threads import in_chunks
+
+
+class Listening(Monitor):
+    def __init__(self):
+        super().__init__()
+        self.heard = []
+
+    def progress(self, fraction):
+        self.heard.append(fraction)
+
+
+@pytest.mark.parametrize("size", [1, 7, 99, 100, 1000])
+def test_each_row_is_worked_on_once(rng, size):
+    rows, seen, monitor = rng.permutation(100), np.zeros(100, int), Listening()
+
+    def work(some):
+        seen[some] += 1
+
+    in_chunks(work, rows, size, monitor)
+    np.testing.assert_array_equal(seen, 1)
+    n_chunks = -(-100 // size)
+    np.testing.assert_allclose(monitor.heard, np.arange(1, n_chunks + 1) / n_chunks)
+
+
+def test_no_rows():
+    in_chunks(pytest.fail, np.arange(0), 5, Monitor())
+
+
+def test_one_chunk_makes_no_thread():
+    """Searches within the tiles of a surface, which are threads already, would make threads of threads."""
+    where = []
+    in_chunks(lambda rows: where.append(threading.current_thread()), np.arange(5), 5, Monitor())
+    assert where == [threading.current_thread()]
+    in_chunks(lambda rows: where.append(threading.current_thread()), np.arange(5), 4, Monitor())
+    assert threading.current_thread() not in where[1:]
+
+
+def test_a_cancellation_ends_the_rest():
+    done = []
+
+    class Impatient(Monitor):
+        def progress(self, fraction):
+            raise Cancelled
+
+    with pytest.raises(Cancelled):
+        in_chunks(done.append, np.arange(10_000), 1, Impatient())
+    assert len(done) < 10_000
+    assert threading.active_count() == 1
+
+
+def test_an_exception_in_a_chunk_is_that_of_the_whole():
+    def work(rows):
+        if 7 in rows:
+            raise ValueError("seven")
+
+    with pytest.raises(ValueError, match="seven"):
+        in_chunks(work, np.arange(20), 3, Monitor())
