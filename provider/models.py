@@ -419,8 +419,8 @@ class PipelineAlgorithm(QgsProcessingModelAlgorithm):
         for cloud in clouds:
             # Now, as QGIS opens the input of a model as a layer too, and a damaged COPC can hang it.
             check_readable(cloud, crs_units)
-        for cloud in clouds[:1]:
-            refuse_elsewhere(self, self.pipeline.sources.values(), cloud, given, context)
+        if clouds:
+            refuse_elsewhere(self, self.pipeline.sources.values(), clouds, given, context)
 
     def _with_defaults(self, parameters: dict) -> dict:
         """Return ``parameters`` with the model's defaults, where QGIS would take the child's.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Callable, Optional
 
@@ -101,38 +101,58 @@ def source_files(
 def refuse_elsewhere(
     algorithm: QgsProcessingAlgorithm,
     sources: Iterable[Source],
-    cloud: Path,
+    clouds: Sequence[Path],
     parameters: dict,
     context: QgsProcessingContext,
 ) -> None:
-    """Refuse layers that can't be brought to where a cloud is, or lie wholly outside of it, before any work.
+    """Refuse layers that lie wholly outside of the clouds, before any work.
 
     Raises
     ------
     ValueError
-        If a layer doesn't touch the bounding box of the cloud.
+        If a layer doesn't touch the bounding box of a single cloud.
     """
     found = {source: find_source(algorithm, source, parameters, context) for source in sources}
     layers = {source: layer for source, layer in found.items() if layer is not None}
     if not layers:
         return
-    low, high, wkt = read_extent(cloud)
-    box, crs = QgsRectangle(low[0], low[1], high[0], high[1]), crs_of(wkt)
+    boxes = [_plan_box(cloud) for cloud in clouds]
     for source, layer in layers.items():
         extent = layer.sourceExtent()
-        if extent.isNull() or not (low < high)[:2].all():
+        here = [_brought_to(source, layer, box, crs, context) for box, crs in boxes]
+        if extent.isNull() or any(box is None or extent.intersects(box) for box in here):
             continue
+        around = QgsRectangle()
+        for box in here:
+            around.combineExtentWith(box)
+        raise ValueError(
+            f"{source.title} and the point cloud{'s' * (len(clouds) > 1)} don't overlap: {_range(extent)} against "
+            f"{_range(around)}; choose a layer of the place, or check the coordinate reference systems of both."
+        )
+
+
+def _plan_box(cloud: Path) -> tuple[QgsRectangle, QgsCoordinateReferenceSystem]:
+    """Return the bounding box of a cloud, empty where it has no area, and its CRS."""
+    low, high, wkt = read_extent(cloud)
+    return QgsRectangle(low[0], low[1], high[0], high[1]), crs_of(wkt)
+
+
+def _brought_to(
+    source: Source,
+    layer: QgsProcessingFeatureSource,
+    box: QgsRectangle,
+    crs: QgsCoordinateReferenceSystem,
+    context: QgsProcessingContext,
+) -> Optional[QgsRectangle]:
+    """Return the box of a cloud in the CRS of a layer; None where the cloud has no area or can't be brought there."""
+    if box.isEmpty():
+        return None
+    try:
+        # This way round: a cloud is small, while the box of a layer may leave what the cloud's system is made for.
         transform = _transform(source, layer, crs, context, Monitor())
-        try:
-            # This way round: a cloud is small, while the box of a layer may leave what the cloud's system is made for.
-            here = transform.transformBoundingBox(box, Qgis.TransformDirection.Reverse)
-        except QgsCsException:
-            continue
-        if not extent.intersects(here):
-            raise ValueError(
-                f"{source.title} and the point cloud don't overlap: {_range(extent)} against {_range(here)}; choose a "
-                "layer of the place, or check the coordinate reference systems of both."
-            )
+        return transform.transformBoundingBox(box, Qgis.TransformDirection.Reverse)
+    except QgsCsException:
+        return None
 
 
 def _range(box: QgsRectangle) -> str:

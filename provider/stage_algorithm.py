@@ -184,8 +184,8 @@ class StageAlgorithm(QgsProcessingAlgorithm):
             job.reference = cloud_path(self, REFERENCE, parameters, context)
         read = [*job.paths, *source_files(self, self.stage.sources, parameters, context)]
         check_targets(self.destinationParameterDefinitions(), parameters, read)
-        for cloud in job.inputs[:1]:
-            refuse_elsewhere(self, self.stage.sources, cloud, parameters, context)
+        if job.inputs:
+            refuse_elsewhere(self, self.stage.sources, job.inputs, parameters, context)
         return job
 
     def processAlgorithm(  # noqa: N802

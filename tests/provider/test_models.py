@@ -459,6 +459,20 @@ def test_what_is_wrong_with_a_mapping_is_refused_at_once(provider, context, mapp
     assert message.endswith(sentence)
 
 
+def test_a_map_of_any_of_several_clouds_is_not_elsewhere(provider, context, mapping, out):
+    check = provider.algorithm("toymapping").create().checkParameterValues
+    given = {**mapping, "OUTPUT": str(out / "a.laz")}
+    # The second of the clouds begins at x = 85 010.
+    east, elsewhere = squares((85_015.0, 446_003.0)), squares((85_030.0, 446_003.0))
+    context.project().addMapLayers([east, elsewhere])
+    assert check({**given, "OLD": east}, context) == (True, "")
+    accepted, message = check({**given, "OLD": elsewhere}, context)
+    assert not accepted
+    assert message.startswith(
+        "Old map and the point clouds don't overlap: x 85030 to 85032, y 446003 to 446005 against x 85000 to 85019, "
+    )
+
+
 def test_a_mapping_that_fails_late_leaves_nothing(provider, context, log, mapping, out, monkeypatch):
     from lidar_buildings.provider import stage_algorithm
 
