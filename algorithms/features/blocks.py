@@ -37,6 +37,8 @@ _FIRST_TRY = 1.0371
 # Squared distances that differ by less than this share are equal: coordinates of 5,000 km are right to a nanometre.
 _EQUAL = 1e-7
 
+# The same of squared distances in 32 bits, each of which is off by up to 6e-8 of itself.
+_EQUAL_ROUNDED = 5e-7
 
 # Points of a chunk whose neighbors within a radius are counted, to choose the size of its blocks.
 _SAMPLE = 200
@@ -126,7 +128,8 @@ def nearest_shapes(columns: np.ndarray, tree: Any, rows: np.ndarray, count: int,
     Notes
     -----
     Where several points are equally far and not all of them belong, they share what is left: each counts in part, the
-    same for all, so that their order in the cloud decides nothing.
+    same for all, so that their order in the cloud decides nothing. So it is for all that are among the
+    1.3 (sqrt(count) + 1)² nearest; of even more at one distance (a sphere of points around another) some are left out.
     """
 
     def candidates(centers: np.ndarray, radii: np.ndarray, size: int) -> np.ndarray:
@@ -137,7 +140,8 @@ def nearest_shapes(columns: np.ndarray, tree: Any, rows: np.ndarray, count: int,
         limits, weights = _nearest(batch.squares, count, _FIRST_TRY * batch.distances[:, count - 1] ** 2)
         if batch.distances.shape[1] == columns.shape[1]:
             return weights, np.full(limits.shape, True)
-        return weights, np.sqrt(limits) + np.sqrt(batch.offsets) <= batch.distances[:, -1:]
+        # Others as far as the last candidate may have been left out.
+        return weights, np.sqrt(limits) + np.sqrt(batch.offsets) < (1 - _EQUAL) * batch.distances[:, -1:]
 
     return _shapes(columns, tree, rows, min(count, _size(count)), candidates, weigh, extents)
 
@@ -248,7 +252,7 @@ def _nearest(squares: np.ndarray, count: int, guess: np.ndarray) -> tuple[np.nda
     rounded = flat.astype(np.float32)
     limits = _limits(rounded, count, np.repeat(guess, squares.shape[1]))
     # A little more, for a limit between equal ones is none.
-    inside = rounded <= (limits * (1 + 5 * _EQUAL))[:, None]
+    inside = rounded <= (limits * (1 + _EQUAL_ROUNDED))[:, None]
     weights = inside.astype(np.float64)
     undecided = (_counts(inside) != count).nonzero()[0]
     if len(undecided):

@@ -2,8 +2,8 @@
 
 Neighborhoods are gathered in chunks, so that the workspace stays small however
 many points there are, and the chunks are shared out among threads: the k-d tree
-and numpy both let go of the interpreter while they work. The result depends on
-neither the chunks nor the number of threads.
+and numpy both let go of the interpreter while they work. The result does not
+depend on the number of threads, and on the chunks only by rounding.
 """
 
 from __future__ import annotations
@@ -18,8 +18,11 @@ from ..stage import Monitor
 from ..threads import in_chunks
 from .blocks import PAIRS, Shapes, nearest_shapes, shapes_within
 
-# Neighbors gathered at once by one thread: 40 bytes each, so 20 MB, which also fits caches best.
+# Neighbors that a thread works on between two reports: where they are gathered, 40 bytes each, they take 20 MB.
 _CHUNK_NEIGHBORS = 500_000
+
+# Points that a thread works on between two reports where radii hold who knows how many neighbors.
+_CHUNK_POINTS = 20_000
 
 # Fewer points than this have no covariance worth the name.
 MIN_NEIGHBORS = 3
@@ -99,7 +102,7 @@ class Within:
 
     def rows_per_chunk(self, n_points: int) -> int:
         """Return how many points are worked on at once."""
-        return 20_000
+        return _CHUNK_POINTS
 
     def shapes(self, columns: np.ndarray, tree: Any, rows: np.ndarray, extents: bool) -> Shapes:
         """Return the shapes of the neighborhoods of the points ``rows``."""

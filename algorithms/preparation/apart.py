@@ -66,6 +66,8 @@ def add_isolated(points: np.ndarray, is_low: np.ndarray, is_high: np.ndarray, sp
         What is noise already, and not looked at.
     spacing : float
         Point spacing (m).
+    monitor : Monitor
+        Hears progress.
     """
     rest = np.flatnonzero(~(is_low | is_high))
     hanging = in_the_air(points[rest], spacing, monitor.part(0.0, 0.4))
@@ -83,6 +85,8 @@ def in_the_air(xyz: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarray:
         Coordinates (m).
     spacing : float
         Point spacing (m).
+    monitor : Monitor
+        Hears progress.
     """
     link = link_length(spacing)
     thing = _things(xyz, link)
@@ -220,6 +224,8 @@ def under_ground(xyz: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarra
         Coordinates (m).
     spacing : float
         Point spacing (m).
+    monitor : Monitor
+        Hears progress.
     """
     grid = grid_over(xyz, _CLOSE_SPACINGS * spacing)
     cells, which = distinct(grid.number(xyz))

@@ -96,6 +96,17 @@ def test_equally_far_points_share_what_is_left(rng, count):
     np.testing.assert_allclose(there, here, atol=1e-12)
 
 
+@pytest.mark.parametrize("n_equal", [8, 12])
+def test_how_many_equally_far_points_share(rng, n_equal):
+    """Six of them are wanted around a point: all count as long as they are among the 1.3 (sqrt(7) + 1)² nearest, 17."""
+    angle = 2 * np.pi * np.arange(n_equal) / n_equal
+    ring = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(n_equal)])
+    xyz = np.concatenate([[[0.0, 0, 0]], ring, rng.uniform(3, 9, (500, 3))])
+    shapes, order = nearest(xyz, 7)
+    check(xyz, shapes, order, lambda point: weights(xyz, point, 7), [0])
+    assert shapes.plan_radius[order == 0] == pytest.approx(1)
+
+
 def test_points_on_the_radius_are_within():
     line = np.arange(40)[:, None] * [0.1, 0, 0] + UTM
     shapes, _ = within(line, 0.3)

@@ -105,3 +105,14 @@ def test_turning_the_surface_turns_the_result(rng):
     assert found.any()
     for turned in (np.rot90, np.flipud, np.transpose):
         np.testing.assert_array_equal(free_standing(turned(surface), 1.0, USUAL)[0], turned(found))
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 40), (40, 1)])
+def test_a_surface_of_one_row_or_one_cell_has_nothing_that_stands(shape):
+    """Its edge is the edge of the cloud: a step on the way along it tells nothing of the sides."""
+    surface = np.zeros(shape)
+    surface.ravel()[15:25] = 6.0
+    found, size = free_standing(surface, 1.0, USUAL)
+    assert found.shape == shape
+    assert not found.any()
+    assert size == 0.0
