@@ -44,7 +44,7 @@ class TiledTin:
         # In this order rows, ascending, are in the same one however the nodes came.
         self.nodes = nodes = _lowest_of_each_place(nodes)
         self._box = plan_box(nodes)
-        # Small numbers keep their digits when they are squared; each tile's triangulation, of the same box, shifts alike.
+        # Small numbers keep their digits when they are squared. Triangulations of tiles, of the same box, have it too.
         self._shift = self._box.mean(axis=0)
         self._tree = spatial.cKDTree(nodes[:, :2] - self._shift, balanced_tree=False)
 

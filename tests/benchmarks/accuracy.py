@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Print how good the results are: ``accuracy.py [table …]``, all by default.
 
-``buildings``, ``ground`` and ``noise`` are of real clouds, ``objects`` of real houses, trees, cars, fences and poles on
-simulated ground, ``towns``, ``villages`` and ``confidence`` of simulated scenes, whose truth is exact.
+``buildings``, ``ground`` and ``noise`` are of real clouds, ``harder`` of the same with fewer points or more noise,
+``objects`` of real houses, trees, cars, fences and poles on simulated ground, ``towns``, ``villages`` and
+``confidence`` of simulated scenes, whose truth is exact.
 
 Each table comes as Markdown for people, and as the Python lines that the tests hold the program to.
 """
@@ -19,14 +20,22 @@ import numpy as np  # noqa: E402
 
 import conftest  # noqa: E402, F401 - registers the checkout as the package lidar_buildings
 from lidar_buildings.algorithms.cloud.asprs import PointClass  # noqa: E402
-from lidar_buildings.algorithms.cloud.cloud import create_cloud  # noqa: E402
+from lidar_buildings.algorithms.cloud.cloud import Cloud, create_cloud  # noqa: E402
 from lidar_buildings.algorithms.pipelines import PIPELINES, run_pipeline  # noqa: E402
 from lidar_buildings.algorithms.run import run_stage  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 from lidar_buildings.tests.algorithms import test_map_footprints  # noqa: E402
 from lidar_buildings.tests.benchmarks.real_objects import CAR, FENCE, POLE, TREE, scene  # noqa: E402
 from lidar_buildings.tests.real import test_buildings, test_ground, test_noise  # noqa: E402
-from lidar_buildings.tests.real.clouds import DATA, classified, detected, score  # noqa: E402
+from lidar_buildings.tests.real.clouds import (  # noqa: E402
+    DATA,
+    classified,
+    detected,
+    made_harder,
+    run_on,
+    score,
+    score_against,
+)
 
 # Points per square metre, noise (m) and seed of simulated villages of 150 m.
 VILLAGES = [(density, noise, 11) for density in (50, 100) for noise in (0.02, 0.05)]
@@ -55,6 +64,39 @@ def buildings() -> None:
             areas.setdefault(name, area)
     paste("REACHED", {name: "(" + ", ".join(f"{f:.1f}" for f in both) + ")" for name, both in f_scores.items()})
     paste("REACHED_WITHOUT_BUILDINGS", {name: f"{area:.1f}" for name, area in areas.items()})
+
+
+# What is taken from clouds, or added to them.
+HARDER: tuple[tuple[str, dict[str, Any]], ...] = (
+    ("buildings/ahn-amsterdam-1", {"noise": 0.1}),
+    ("buildings/ahn-amsterdam-1", {"returns": False}),
+    ("buildings/ahn-amsterdam-1", {"keep": 0.25}),
+    ("buildings/ign-stbarth", {"noise": 0.1}),
+    ("buildings/ign-bridge-none", {"keep": 0.25}),
+)
+
+
+def harder() -> None:
+    """Print how well the default chain does on harder versions of real clouds."""
+    print("| cloud | made harder | points | completeness | correctness | F | wrong points | wrong, m² |")
+    print("| --- | --- |" + " ---: |" * 6)
+    for name, change in HARDER:
+        cloud, true = made_harder(name, **change)
+        result = run_on(cloud)
+        found = score_against(true, "buildings", result)["points"]
+        figures = [found[rate] for rate in ("completeness", "correctness", "F")]
+        wrong = (result.classification == PointClass.BUILDING) & (true != PointClass.BUILDING)
+        print(row(name.split("/")[1], told(change), len(true), *figures, int(wrong.sum()), area_of(cloud, wrong)))
+
+
+def area_of(cloud: Cloud, chosen: np.ndarray) -> float:
+    """Return the area (m²) of the cells of 0.5 m with chosen points."""
+    return len(np.unique(np.floor(cloud.get("xyz")[chosen, :2] / 0.5), axis=0)) * 0.25
+
+
+def told(changes: dict[str, Any]) -> str:
+    """Return what differs from the usual, as a cell of a table."""
+    return ", ".join(f"{name} {value}" for name, value in changes.items()) or "as it comes"
 
 
 # Slope of the ground (rise per meter) and share of the points.
@@ -133,9 +175,7 @@ def towns() -> None:
         hit, wrong = int((is_building & is_found).sum()), is_found & ~is_building
         rates = [100.0 * hit / max(int(of.sum()), 1) for of in (is_building, is_found)]
         f_score = 200.0 * hit / max(int(is_building.sum() + is_found.sum()), 1)
-        area = len(np.unique(np.floor(cloud.get("xyz")[wrong, :2] / 0.5), axis=0)) * 0.25
-        name = ", ".join(f"{tunable} {value}" for tunable, value in differs.items()) or "as it comes"
-        print(row(name, len(cloud), *rates, f_score, area), flush=True)
+        print(row(told(differs), len(cloud), *rates, f_score, area_of(cloud, wrong)), flush=True)
 
 
 def villages() -> None:
@@ -194,7 +234,7 @@ def paste(name: str, values: dict[str, str]) -> None:
 
 
 SIMULATED = {table.__name__: table for table in (towns, villages, confidence)}
-TABLES = {**{table.__name__: table for table in (buildings, objects, ground, noise)}, **SIMULATED}
+TABLES = {**{table.__name__: table for table in (buildings, harder, objects, ground, noise)}, **SIMULATED}
 
 
 def main() -> None:

@@ -14,7 +14,7 @@ from types import ModuleType
 import numpy as np
 
 from lidar_buildings.algorithms.cloud.asprs import PointClass
-from lidar_buildings.algorithms.cloud.cloud import Cloud, read_cloud
+from lidar_buildings.algorithms.cloud.cloud import Cloud, create_cloud, read_cloud
 from lidar_buildings.algorithms.cloud.density import point_density
 from lidar_buildings.algorithms.pipelines import PIPELINES, run_pipeline
 from lidar_buildings.algorithms.run import run_stage
@@ -68,7 +68,11 @@ def detected(name: str, pipeline: str = "detect_buildings") -> Result:
 
 @functools.cache
 def _detected(name: str, pipeline: str) -> Result:
-    cloud = read_cloud(path_of(name))
+    return run_on(read_cloud(path_of(name)), pipeline)
+
+
+def run_on(cloud: Cloud, pipeline: str = "detect_buildings") -> Result:
+    """Run a chain on a cloud, which it changes."""
     start = time.perf_counter()
     outcome = run_pipeline(PIPELINES[pipeline], cloud)
     return Result(cloud, outcome.layers, time.perf_counter() - start)
@@ -83,9 +87,27 @@ def classified(name: str, stage: str) -> Result:
     return Result(cloud, outcome.layers, time.perf_counter() - start)
 
 
+def made_harder(name: str, keep: float = 1.0, noise: float = 0.0, returns: bool = True) -> tuple[Cloud, np.ndarray]:
+    """Return a cloud with a share of its points, normal noise (m) in their heights, and returns or none; and its truth.
+
+    The same every time. What else the file tells of its points is left out.
+    """
+    cloud, rng = read_cloud(path_of(name)), np.random.default_rng(0)
+    kept = rng.random(len(cloud)) < keep
+    xyz = cloud.get("xyz")[kept]
+    xyz[:, 2] += rng.normal(0.0, noise, len(xyz))
+    counted = ("return_number", "number_of_returns") if returns else ()
+    return create_cloud({"xyz": xyz, **{name: cloud.get(name)[kept] for name in counted}}), truth(name)[kept]
+
+
 def score(what: str, name: str, result: Result) -> dict:
     """Return the scores (%) of "buildings", "ground" or "noise", by the program that lies with the data."""
-    return _scorer().SCORES[what](result.cloud.get("xyz"), result.classification, truth(name))
+    return score_against(truth(name), what, result)
+
+
+def score_against(true: np.ndarray, what: str, result: Result) -> dict:
+    """Return the scores of a result whose true classes are given; see :func:`score`."""
+    return _scorer().SCORES[what](result.cloud.get("xyz"), result.classification, true)
 
 
 @functools.cache
