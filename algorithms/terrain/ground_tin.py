@@ -23,6 +23,11 @@ _GROW_DEVIATIONS, _GROW_BEND = 8.0, 0.5
 # plants stand, so that what lies over the first number is at most this share of a cell or the spacing.
 _SWEEP_DEVIATIONS, _SWEEP_NOISE, _SWEEP_BEND = 6.0, 4.0, 0.1
 
+# Where flight strips don't fit together, the surface follows the lowest. Others lie up to so far (m) above what is
+# ground by these distances, at most as far again; and the air over them is empty, where plants and cars go on
+# upward: in squares of so many point spacings, a band as high as all below has at most this share of their points.
+_MISFIT, _REGION, _EMPTY = 0.15, 40.0, 0.1
+
 # Beyond a breakline the surface goes on as it comes if it is not steeper than this (°), for points within this
 # share of the distance at which they join.
 _LEVEL, _MIRROR_SHARE = 20.0, 0.25
@@ -155,7 +160,8 @@ def classify_ground_tin(
             unit="m",
             low=0,
             high=100,
-            automatic="6 times the roughness of the finished surface, the last third at most a tenth of a cell.",
+            automatic="6 times the roughness of the finished surface, the last third at most a tenth of a cell; where "
+            "a higher flight strip shows, twice that, at most 0.15 m more.",
             advanced=True,
         ),
     ] = None,
@@ -201,6 +207,9 @@ def classify_ground_tin(
     seeds only, hardly any point joins by one then. In any case the largest angle is fixed, which the paper estimates
     from the data too, and the distance follows the point spacing as well.
 
+    Where strips overlap that were not adjusted to one another, the surface follows the lower one. The points of the
+    other are told from plants by the empty air over them, and are ground too (not with seeds 'lowest').
+
     References
     ----------
     Axelsson, P., 2000. DEM generation from laser scanner data using adaptive TIN models. International Archives of
@@ -229,8 +238,8 @@ def classify_ground_tin(
     terrain = _terrain(size) if terrain is None else terrain
     rules = _Rules(angle, iteration_distance, _GROW_BEND * spacing, edge_length, scale)
     is_node, distance = _grow(growing, start, rules, monitor.part(0.3, 0.8))
-    swept = (sweep_distance, np.inf if seeds == "lowest" else _SWEEP_BEND * scale)
-    is_ground, sweep_distance = _sweep(points, growing[is_node], *swept, monitor.part(0.8, 1))
+    bend, region = (np.inf, 0.0) if seeds == "lowest" else (_SWEEP_BEND * scale, _REGION * spacing)
+    is_ground, sweep_distance = _sweep(points, growing[is_node], sweep_distance, bend, region, monitor.part(0.8, 1))
     is_ground[np.flatnonzero(last)[is_node]] = True
     monitor.resolved(terrain=terrain, granularity=granularity, max_building_size=size, cell_size=cell_size)
     monitor.resolved(
@@ -328,8 +337,13 @@ def _grow(points: np.ndarray, start: np.ndarray, rules: _Rules, monitor: Monitor
 
 def _near(tin: Tin, points: np.ndarray, distance: float, monitor: Monitor) -> np.ndarray:
     """Return the indices of the points within ``distance`` of the surface."""
+    return np.flatnonzero(np.abs(_above(tin, points, monitor)) <= distance)
+
+
+def _above(tin: Tin, points: np.ndarray, monitor: Monitor) -> np.ndarray:
+    """Return how far (m) points lie above their facets, measured across these."""
     facet = tin.locate(points, monitor)
-    return np.flatnonzero(np.abs(points[:, 2] - tin.elevation(points, facet)) * tin.steepness()[facet] <= distance)
+    return (points[:, 2] - tin.elevation(points, facet)) * tin.steepness()[facet]
 
 
 def _joining(
@@ -393,13 +407,29 @@ def _to_nearest_node(tin: Tin, facet: np.ndarray, here: np.ndarray) -> np.ndarra
 
 
 def _sweep(
-    points: np.ndarray, nodes: np.ndarray, distance: Optional[float], bend: float, monitor: Monitor
+    points: np.ndarray, nodes: np.ndarray, distance: Optional[float], bend: float, region: float, monitor: Monitor
 ) -> tuple[np.ndarray, float]:
-    """Return which points lie within ``distance`` of the TIN of ``nodes``, and that distance."""
+    """Return which points lie within ``distance`` of the TIN of ``nodes``, and that distance.
+
+    Where it is measured, points of higher strips are ground too, looked for in squares of ``region`` (m; 0 is not).
+    """
+    higher = np.zeros(len(points), bool)
+    is_measured = distance is None
     if distance is None:
         roughness = robust_deviation(node_residuals(nodes)) if len(nodes) > 3 else 0.0
         distance = min(_SWEEP_DEVIATIONS * roughness, _SWEEP_NOISE * roughness + bend)
-    is_ground = np.zeros(len(points), bool)
-    if distance > 0:
-        is_ground[_near(Tin(nodes), points, distance, monitor)] = True
-    return is_ground, float(distance)
+    if distance == 0:
+        return higher, 0.0
+    above = _above(Tin(nodes), points, monitor)
+    if is_measured and region:
+        higher = _of_higher_strips(above, grid_over(points, region).number(points), distance)
+    return (np.abs(above) <= distance) | higher, float(distance)
+
+
+def _of_higher_strips(above: np.ndarray, square: np.ndarray, distance: float) -> np.ndarray:
+    """Return which points (n,) lie farther ``above`` the surface (m) than ``distance`` because their strip does."""
+    top = distance + min(distance, _MISFIT)
+    higher = (above > distance) & (above <= top)
+    over = (above > top) & (above <= 2 * top)
+    count = [np.bincount(square[band], minlength=square.max() + 1) for band in (higher, over)]
+    return higher & (count[1] <= _EMPTY * count[0])[square]

@@ -190,6 +190,30 @@ def test_sweep_distance_is_the_width_of_the_ground(rng):
     assert (xyz[nodes, 2] == 0).all()
 
 
+@pytest.mark.parametrize("misfit", [0.05, 0.1, 0.15])
+def test_where_strips_do_not_fit_together_both_are_ground(misfit, rng):
+    """From 30 m on a second strip overlaps the first and lies higher; some of it was left out by its distance."""
+    first, _ = scan(rng, TERRAINS["slope"], HOUSES, density=5, noise=0.02)
+    second, is_house = scan(rng, TERRAINS["slope"], HOUSES, density=5, noise=0.02)
+    beside = second[:, 0] > 30
+    second, is_house = second[beside] + [0, 0, misfit], is_house[beside]
+    xyz = np.concatenate([first, second])
+    missed, wrong = errors(classify_ground_tin(xyz, unclassified(xyz))[len(first) :], is_house)
+    assert wrong == 0
+    assert missed < 0.02
+
+
+def test_plants_as_high_as_strips_do_not_fit_are_no_ground(rng):
+    """A field of 0.3 m, through which every second beam gets to the ground."""
+    xyz, _ = scan(rng, TERRAINS["level"], density=8, noise=0.02)
+    is_plant = (np.abs(xyz[:, :2] - 40).max(axis=1) < 25) & (rng.random(len(xyz)) < 0.5)
+    xyz[is_plant, 2] += rng.uniform(0.0, 0.3, is_plant.sum())
+    monitor = Monitor()
+    is_ground = classify_ground_tin(xyz, unclassified(xyz), monitor=monitor) == 2
+    assert is_ground[is_plant & (xyz[:, 2] > monitor.values["sweep_distance"])].mean() < 0.01
+    assert is_ground[~is_plant].mean() > 0.99
+
+
 def test_automatic_values_follow_the_cloud(rng):
     for density, noise in ((3, 0.03), (0.25, 0.1)):
         xyz, _ = scan(rng, TERRAINS["level"], density=density, noise=noise)
