@@ -65,7 +65,7 @@ ndimage = _Lazy("scipy.ndimage")
 
 
 def test_there_are_sources_to_read():
-    assert "algorithms/stage.py" in CORE
+    assert "algorithms/stages.py" in CORE
     assert "provider/plugin.py" in PLUGIN
 
 
@@ -108,3 +108,16 @@ from lidar_buildings.algorithms import STAGES, pipelines
 """
     done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+
+
+def test_every_stage_loads_from_the_package_alone():
+    """What a stage and its tests need stands in ``algorithms.stage``, whichever of its modules it is in."""
+    parts = [path.stem for path in (ROOT / "algorithms" / "stage").glob("*.py") if path.stem != "__init__"]
+    deep = [
+        path
+        for path in sources("algorithms", "provider", "tests")
+        if not path.startswith("algorithms/stage/")
+        for name in imported((ROOT / path).read_text(encoding="utf-8"))
+        if any(name.endswith(f"stage.{part}") for part in parts)
+    ]
+    assert not deep

@@ -1,0 +1,204 @@
+"""The declaration beside a function, and the decorator that makes it a stage."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import typing
+from dataclasses import dataclass, field, replace
+from typing import Any, Callable
+
+from .arguments import REFERENCE_PREFIX, check_arrays
+from .contents import Layer, Made, Measure, Raster, Source, given_layers
+from .docstrings import before_first_section, sections, with_tunables
+from .monitor import Monitor
+from .tunables import Tunable
+
+# The positional argument that is whichever dimension a tunable names, and that tunable.
+VALUES, DIMENSION = "values", "dimension"
+
+
+@dataclass(frozen=True)
+class Stage:
+    """Everything that is known of a stage without running it."""
+
+    function: Callable
+    title: str
+    group: str
+    tags: str
+    reads: tuple[str, ...]
+    optional: tuple[str, ...]
+    tunables: dict[str, Tunable] = field(repr=False)
+    doc: str = field(repr=False)
+    writes: tuple[str, ...] = ()
+    creates: tuple[str, ...] = ()
+    layers: tuple[Layer, ...] = ()
+    measures: tuple[Measure, ...] = ()
+    sources: tuple[Source, ...] = ()
+    rasters: tuple[Raster, ...] = ()
+    selects: bool = False
+    merges: bool = False
+
+    @property
+    def name(self) -> str:
+        """Function name, ``classify_ground_tin``."""
+        return self.function.__name__
+
+    @property
+    def id(self) -> str:
+        """Processing id, ``classifygroundtin``: frozen, saved models depend on it."""
+        return self.name.replace("_", "")
+
+    @property
+    def summary(self) -> str:
+        """First paragraph of the docstring, on one line."""
+        return " ".join(self.doc.split("\n\n")[0].split())
+
+    @property
+    def description(self) -> str:
+        """Docstring text between the summary and the first section."""
+        text = self.doc.split("\n\n", 1)[1] if "\n\n" in self.doc else ""
+        return before_first_section(text).strip()
+
+    def section(self, title: str) -> str:
+        """Text of one numpydoc section ("Notes", "References"), "" without it."""
+        return sections(self.doc).get(title, "")
+
+    @property
+    def reads_cloud(self) -> bool:
+        """Whether it works on a cloud, or on several."""
+        return any(not name.startswith(REFERENCE_PREFIX) for name in (*self.reads, *self.optional))
+
+    @property
+    def makes_cloud(self) -> bool:
+        """Whether a cloud is among its results."""
+        return bool(self.writes or self.creates or self.selects or self.merges)
+
+    @property
+    def reads_reference(self) -> bool:
+        """Whether a second cloud is compared with."""
+        return any(name.startswith(REFERENCE_PREFIX) for name in (*self.reads, *self.optional))
+
+    def check(self, tunables: dict[str, Any]) -> dict[str, Any]:
+        """Return all tunables, given ones checked, the others at their default."""
+        unknown = sorted(set(tunables) - set(self.tunables))
+        if unknown:
+            raise ValueError(f"{self.name} has no tunable {unknown[0]!r}; it has {', '.join(self.tunables) or 'none'}.")
+        return {name: t.check(tunables[name]) if name in tunables else t.default for name, t in self.tunables.items()}
+
+    def sorted(self, returned: Any) -> Made:
+        """Give what the function returned its names."""
+        results = list(returned) if isinstance(returned, tuple) else [returned]
+        names = (*(self.creates or self.writes), *self.layers, *self.rasters)
+        declared = self.selects + len(names) + bool(self.measures)
+        if len(results) != max(1, declared):
+            raise TypeError(f"{self.name} declares {declared} results and returned {len(results)}.")
+        return Made(
+            selected=results.pop(0) if self.selects else None,
+            dimensions={name: results.pop(0) for name in self.creates or self.writes},
+            layers={layer.name: results.pop(0) for layer in self.layers},
+            rasters={raster.name: results.pop(0) for raster in self.rasters},
+            report=results.pop(0) if self.measures else None,
+        )
+
+
+def stage(
+    title: str,
+    *,
+    group: str,
+    tags: str = "",
+    writes: tuple[str, ...] = (),
+    creates: tuple[str, ...] = (),
+    layers: tuple[Layer, ...] = (),
+    measures: tuple[Measure, ...] = (),
+    sources: tuple[Source, ...] = (),
+    rasters: tuple[Raster, ...] = (),
+    selects: bool = False,
+    merges: bool = False,
+) -> Callable[[Callable], Callable]:
+    """Declare a function as a stage.
+
+    The function returns, in this order and bare when there is one thing only:
+    with ``selects`` the positions of the points that its result has, int64 (m,);
+    one array per name in ``writes`` (length n, with ``selects`` m, with ``merges`` that of all
+    clouds together; None for one that the user did not ask for) or ``creates`` (a new
+    cloud of any length), one :class:`Features` per layer, one :class:`Surface` per raster,
+    and a :class:`Report` when there are measures. A stage that merges and writes nothing
+    returns None for the cloud that it makes. The decorated function checks its arrays
+    and tunables on every call and carries its :class:`Stage` as ``function.stage``.
+    """
+    makes = {
+        "writes": writes,
+        "creates": creates,
+        "layers": layers,
+        "measures": measures,
+        "sources": sources,
+        "rasters": rasters,
+        "selects": selects,
+        "merges": merges,
+    }
+
+    def declare(function: Callable) -> Callable:
+        declared = _declared(function, title, group, tags, makes)
+        _check_declaration(declared)
+        signature = inspect.signature(function)
+
+        @functools.wraps(function)
+        def checked(*args: Any, **kwargs: Any) -> Any:
+            bound = signature.bind(*args, **kwargs)
+            check_arrays(bound.arguments, (*declared.reads, *declared.optional), merges, title)
+            layers = {source.name: bound.arguments.get(source.name) for source in declared.sources}
+            given_layers(declared.name, declared.sources, layers)
+            for name, tunable in declared.tunables.items():
+                if name in bound.arguments:
+                    bound.arguments[name] = tunable.check(bound.arguments[name])
+            if bound.arguments.get("monitor") is None:
+                bound.arguments["monitor"] = Monitor()
+            return function(*bound.args, **bound.kwargs)
+
+        checked.stage = replace(declared, function=checked)  # type: ignore[attr-defined]
+        checked.__doc__ = with_tunables(declared.doc, declared.tunables.values())
+        return checked
+
+    return declare
+
+
+def _declared(function: Callable, title: str, group: str, tags: str, makes: dict[str, Any]) -> Stage:
+    hints = typing.get_type_hints(function, include_extras=True)
+    reads: list[str] = []
+    optional: list[str] = []
+    tunables = {}
+    layers = {source.name for source in makes["sources"]}
+    for name, parameter in inspect.signature(function).parameters.items():
+        if parameter.kind is parameter.KEYWORD_ONLY:
+            if name != "monitor":
+                tunables[name] = _tunable(name, hints[name], parameter.default)
+        elif name not in layers:
+            (reads if parameter.default is parameter.empty else optional).append(name)
+    doc = inspect.cleandoc(function.__doc__ or "")
+    return Stage(function, title, group, tags, tuple(reads), tuple(optional), tunables, doc, **makes)
+
+
+def _check_declaration(declared: Stage) -> None:
+    """Refuse what no run could keep to."""
+    arguments = inspect.signature(declared.function).parameters
+    absent = [source.name for source in declared.sources if source.name not in arguments]
+    if absent:
+        raise TypeError(f"{declared.name} declares the source {absent[0]!r} and has no argument of that name.")
+    if declared.creates and (declared.reads or declared.optional or declared.sources):
+        raise TypeError(f"{declared.name} creates a cloud, so it can't read anything.")
+    if (declared.selects or declared.merges) and not declared.reads:
+        raise TypeError(f"{declared.name} makes a cloud of the points it reads, so it must read some.")
+    if declared.selects and declared.merges:
+        raise TypeError(f"{declared.name} selects and merges; make it two stages.")
+    if "xyz" in declared.writes and not (declared.selects or declared.merges):
+        raise TypeError(f"{declared.name} moves points, so it must select them: withheld points would stay behind.")
+    if VALUES in (*declared.reads, *declared.optional) and DIMENSION not in declared.tunables:
+        raise TypeError(f"{declared.name} reads {VALUES!r} and has no tunable {DIMENSION!r} that names them.")
+
+
+def _tunable(name: str, hint: Any, default: Any) -> Tunable:
+    base, param = typing.get_args(hint)[:2]
+    inner = [arg for arg in typing.get_args(base) if arg is not type(None)]
+    kind = inner[0] if typing.get_origin(base) is typing.Union else base
+    return Tunable(name, typing.get_origin(kind) or kind, default, param)
