@@ -15,6 +15,10 @@ _EVEN = 1 / np.sqrt(3)
 # A plane grows by a voxel all around in each round: more than the widest roof needs.
 _MAX_ROUNDS = 1000
 
+# Planes around a voxel go on into it where they hold this share of its points, each of them so many:
+# leaves in which a plane would end lie on it by chance, a fifth of them on one of automatic tolerance.
+_HELD, _LEAST_POINTS = 2 / 3, 4
+
 _CHUNK = 200_000
 
 
@@ -96,6 +100,30 @@ def _product(
     place = np.arange(len(which)) - np.repeat(np.cumsum(pairs) - pairs, pairs)
     first, second = np.divmod(place, count[there][which])
     return start[here[which]] + first, start[there[which]] + second
+
+
+def grown_planes(
+    boxes: Boxes, voxel: np.ndarray, group: np.ndarray, planes: Planes, tolerance: float, monitor: Monitor
+) -> np.ndarray:
+    """Return the plane (n,) nearest to each point, of planes that also grow into voxels where none was found.
+
+    The tip of a hip and the strip along an eave have too few points in a voxel to show a plane of their own. Takes and
+    returns what :func:`nearest_plane` does.
+    """
+    box = boxes.box()
+    pieces = np.unique(voxel * len(planes) + group)
+    for step in range(_MAX_ROUNDS):
+        now = monitor.part(step / _MAX_ROUNDS, (step + 1) / _MAX_ROUNDS)
+        nearest = nearest_plane(boxes, *np.divmod(pieces, max(len(planes), 1)), planes, tolerance, now)
+        on_plane = nearest >= 0
+        held = np.bincount(box[on_plane], minlength=len(boxes)) >= _HELD * boxes.size
+        inside = on_plane & held[box]
+        found, count = np.unique(box[inside] * len(planes) + nearest[inside], return_counts=True)
+        grown = np.union1d(pieces, found[count >= _LEAST_POINTS])
+        if len(grown) == len(pieces):
+            break
+        pieces = grown
+    return nearest
 
 
 def nearest_plane(

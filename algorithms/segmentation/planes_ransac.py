@@ -11,7 +11,7 @@ from ..params import MinClusterHeight, Seed
 from ..stage import Monitor, Param, stage
 from .boxes import Boxes, by_first_point
 from .candidates import candidates
-from .join import join_pieces, nearest_plane
+from .join import grown_planes, join_pieces, nearest_plane
 from .planes import Planes, planes_of
 from .voxel_planes import VoxelPlanes
 
@@ -178,7 +178,7 @@ def _joined(
     is_large = large[group]
     group = (np.cumsum(large) - 1)[group[is_large]]
     planes = planes.chosen(large)
-    return planes, nearest_plane(boxes, voxel[is_large], group, planes, tolerance, monitor.part(0.8, 1))
+    return planes, grown_planes(boxes, voxel[is_large], group, planes, tolerance, monitor.part(0.8, 1))
 
 
 def _kept(

@@ -101,6 +101,22 @@ def test_pieces_of_a_plane_are_joined_over_all_voxels(voxel_size, rng):
     assert nowhere < 0.03
 
 
+def test_a_plane_grows_along_a_strip_too_thin_for_a_plane_of_its_own(rng):
+    """Four meters of a strip 0.4 m wide: about five points in a voxel, of which ten would be a plane by themselves."""
+    strip = rng.uniform([8, 3.8, 0], [12, 4.2, 0], (70, 3)) + rng.normal(0, 0.01, (70, 3)) * [0, 0, 1]
+    ids = segment(np.concatenate([plane(rng, 0, noise=0.01, density=40), strip]), voxel_size=0.6, tolerance=0.06)
+    assert ids.max() == 1
+    assert (ids[-70:] == 1).mean() > 0.95
+
+
+def test_a_plane_does_not_grow_into_leaves_beside_it(rng):
+    crown = rng.uniform([8, 0, -2], [12, 8, 2], (6000, 3))
+    ids = segment(np.concatenate([plane(rng, 0, noise=0.01, density=40), crown]), voxel_size=0.6, tolerance=0.06)
+    # By chance a few lie on it in the voxels beside it, and no farther.
+    assert (ids[-6000:] > 0).mean() < 0.01
+    assert not ids[-6000:][crown[:, 0] > 9.2].any()
+
+
 def test_terraces_half_a_meter_apart_stay_apart(rng):
     """Joined are planes that are the same, not planes that are parallel."""
     xyz = plane(rng, 0, size=12)
