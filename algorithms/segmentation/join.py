@@ -114,7 +114,8 @@ def grown_planes(
     pieces = np.unique(voxel * len(planes) + group)
     for step in range(_MAX_ROUNDS):
         now = monitor.part(step / _MAX_ROUNDS, (step + 1) / _MAX_ROUNDS)
-        nearest = nearest_plane(boxes, *np.divmod(pieces, max(len(planes), 1)), planes, tolerance, now)
+        at, plane = np.divmod(pieces, max(len(planes), 1))
+        nearest = nearest_plane(boxes, at, plane, planes, tolerance, now)
         on_plane = nearest >= 0
         held = np.bincount(box[on_plane], minlength=len(boxes)) >= _HELD * boxes.size
         inside = on_plane & held[box]
