@@ -29,8 +29,11 @@ _GAP_SPACINGS, _LEAST_GAP, _MOST_GAP = 4.0, 3.0, 20.0
 # What stands on a roof is a chimney or dormer where it covers less than this share of the cells around.
 _SPARSE, _AROUND = 0.3, 7
 
-# Beside a roof, what is lower than this share of its height may be bushes.
-_BUSHES = 0.33
+# Beside a roof, what is lower than this share of its height may be bushes, but these grow no higher than so far (m).
+_BUSHES, _HIGHEST_BUSHES = 0.33, 2.5
+
+# The wall of a higher roof stands no farther from it than this, m: eaves reach out, and roof surfaces end before them.
+_WALL_REACH = 1.0
 
 _EIGHT = np.ones((3, 3), bool)
 
@@ -174,7 +177,7 @@ def complete_buildings(
     if segment_id is not None:
         on_roof, stands = is_roof & (segment_id > 0), height_above_ground >= _RAISED
         building, refused = _mostly_roof(building, refused, cell, stands, on_roof, min_roof_share)
-    columns = _Columns(building, _roof_top(cell, xyz[:, 2], is_roof, covered))
+    columns = _Columns(building, _roof_top(cell, xyz[:, 2], is_roof, covered), cell_size)
     monitor.progress(0.6)
 
     above = xyz[:, 2] - columns.top[cell]
@@ -182,8 +185,10 @@ def complete_buildings(
     belongs = inside & (above <= roof_clearance)
     belongs |= inside & (above <= structure_height) & columns.is_sparse(cell, inside & (above > roof_clearance))[cell]
     number = np.where(inside, building[cell], columns.beside[cell])
-    ground = xyz[:, 2] - height_above_ground
-    belongs |= raised & ~inside & (number > 0) & _is_wall(above, height_above_ground, columns.top[cell] - ground)
+    # What stands between a roof and the next higher one is the wall of the higher.
+    is_under = xyz[:, 2] <= columns.highest[cell]
+    is_bush = ~inside & _may_be_bush(height_above_ground, height_above_ground - above)
+    belongs |= raised & (number > 0) & is_under & ~is_bush
     result[belongs] = PointClass.BUILDING
     cluster_id[belongs] = number[belongs]
     monitor.progress(1.0)
@@ -212,17 +217,19 @@ def _explained(
     return confidence, reason
 
 
-def _is_wall(above: np.ndarray, height: np.ndarray, eave: np.ndarray) -> np.ndarray:
-    """Return which points beside a roof lie under its edge and not in the bushes at the foot of the wall."""
-    return (above <= 0) & (height >= _BUSHES * eave)
+def _may_be_bush(height: np.ndarray, roof: np.ndarray) -> np.ndarray:
+    """Return which points beside a building are so low that bushes at the foot of its wall reach them."""
+    return height < np.minimum(_BUSHES * roof, _HIGHEST_BUSHES)
 
 
 class _Columns:
-    """The cells of buildings: whose they are, whose roof they stand beside, and how high that roof is."""
+    """The cells of buildings: whose they are, whose roof they stand beside, and how high it and the highest near is."""
 
-    def __init__(self, building: np.ndarray, top: np.ndarray) -> None:
+    def __init__(self, building: np.ndarray, top: np.ndarray, cell_size: float) -> None:
         self.building = building
         self.top = top
+        reach = 2 * max(1, round(_WALL_REACH / cell_size)) + 1
+        self.highest = ndimage.maximum_filter(np.where(building > 0, top, -np.inf), reach)
         beside = ndimage.grey_dilation(building, footprint=_EIGHT)
         self.beside = np.where(building > 0, 0, beside)
 

@@ -112,6 +112,32 @@ def test_walls_just_outside_the_roof_belong_to_it_and_bushes_at_their_foot_do_no
     assert (found[tree] == 1).all()
 
 
+def test_the_wall_between_a_roof_and_a_higher_one_belongs_to_the_building(scene):
+    scene.roof(10, 10, 20, 20, 4.0)
+    tower = scene.roof(20, 10, 26, 20, 15.0)
+    west, south = scene.xyz[tower, :2].min(axis=0)
+    above_the_roof = scene.box([west - 0.4, 12, 6], [west - 0.2, 18, 14], 200)
+    above_the_field = scene.box([19, south - 0.2, 6], [19.6, south - 0.1, 14], 20)
+    too_high = scene.box([west - 1, 12, 15.1], [west - 0.8, 18, 17], 20)
+    too_far = scene.box([west - 3, 12, 9], [west - 2, 18, 14], 20)
+    found, number = scene.complete()
+    for wall in (above_the_roof, above_the_field):
+        assert (found[wall] == 6).all()
+        assert (number[wall] == 1).all()
+    assert (found[too_high] == 1).all()
+    assert (found[too_far] == 1).all()
+
+
+def test_bushes_at_the_wall_of_a_tower_grow_no_higher_than_elsewhere(scene):
+    roof = scene.roof(10, 10, 20, 20, 15.0)
+    outside = scene.xyz[roof, 0].min() - 0.25
+    wall = scene.box([outside, 12, 2.6], [outside + 0.05, 18, 4.9], 30)
+    bush = scene.box([outside - 0.35, 12, 0.6], [outside - 0.25, 18, 2.4], 30)
+    found, _ = scene.complete()
+    assert (found[wall] == 6).all()
+    assert (found[bush] == 1).all()
+
+
 def test_a_tree_beside_the_house_is_left_out(scene):
     scene.roof(10, 10, 20, 20, 5.0)
     crown = scene.box([21.5, 12, 2], [25, 18, 5], 200)
