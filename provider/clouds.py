@@ -71,6 +71,18 @@ class CloudsParameter(QgsProcessingParameterMultipleLayers):
         """Whether ``value`` may be point clouds; what they really are, :func:`cloud_paths` finds out."""
         return isinstance(value, (QgsMapLayer, QgsProperty)) or bool(value)
 
+    # QGIS writes down the layers that it can open, which leaves nothing of files that it can't.
+
+    def valueAsPythonString(self, value: Any, context: QgsProcessingContext) -> str:  # noqa: N802
+        """Return the clouds as a script names them."""
+        names = _names(value)
+        return super().valueAsPythonString(value, context) if names is None else repr(names)
+
+    def valueAsString(self, value: Any, context: QgsProcessingContext) -> tuple[str, bool]:  # noqa: N802
+        """Return the clouds as the log names them."""
+        names = _names(value)
+        return super().valueAsString(value, context) if names is None else (";".join(names), True)
+
 
 def cloud_path(algorithm: QgsProcessingAlgorithm, name: str, parameters: dict, context: QgsProcessingContext) -> Path:
     """Return the file of the point cloud that a parameter gives as layer, layer id, layer name, source or path.
@@ -127,6 +139,14 @@ def _known(title: str, path: Path) -> Path:
     if path.suffix.lower() not in SUFFIXES:
         raise ValueError(f"{title} must be a .las, .laz, .copc.laz or .vpc file, got {path.name}; convert it first.")
     return path
+
+
+def _names(value: Any) -> Optional[list]:
+    """Return the texts of a list of layers and paths; None of anything else."""
+    values = _flat(value)
+    if not all(isinstance(one, (str, QgsMapLayer)) for one in values):
+        return None
+    return [one if isinstance(one, str) else one.source() for one in values]
 
 
 def _plain(algorithm: QgsProcessingAlgorithm, name: str, value: Any, context: QgsProcessingContext) -> Any:

@@ -6,7 +6,7 @@ from typing import Any, Optional
 
 from qgis.core import QgsProcessingAlgorithm, QgsProcessingFeedback, QgsProcessingMultiStepFeedback
 
-from ..algorithms.stage import Cancelled, Monitor, Stage
+from ..algorithms.stage import Cancelled, Monitor, Param, Stage
 
 
 class FeedbackMonitor(Monitor):
@@ -35,12 +35,13 @@ class FeedbackMonitor(Monitor):
 
     def _sentence(self, name: str, value: Any) -> str:
         tunable = self._stage.tunables.get(name) if self._stage else None
-        shown = f"{value:.6g}" if isinstance(value, float) else str(value)
+        param = tunable.param if tunable else Param("", "")
+        # Who needs all digits finds them among the results.
+        shown = param.written(float(f"{value:.4g}")) if isinstance(value, float) else f"{value} {param.unit}".rstrip()
         if tunable is None:
             return f"{name.replace('_', ' ').capitalize()}: {shown}"
-        unit = f" {tunable.param.unit}" if tunable.param.unit else ""
-        found = "automatic" if tunable.param.unset == "automatic" else "none set, the cloud has"
-        return f"{tunable.param.label}, {found}: {shown}{unit}"
+        found = "automatic" if param.unset == "automatic" else "none set, the cloud has"
+        return f"{param.label}, {found}: {shown}"
 
 
 class ChainFeedback(QgsProcessingMultiStepFeedback):

@@ -78,6 +78,15 @@ def lower_first(text: str) -> str:
     return text[:1].lower() + text[1:] if text[1:2].islower() else text
 
 
+def as_text(text: str) -> str:
+    """Return a help for the command line: no HTML, nor what QGIS tells there itself, the summary and the parameters."""
+    sections = re.split(r"\n(?=<h3>)", text)
+    kept = "\n".join(section for section in sections if not section.startswith("<h3>Parameters"))
+    lines = [line for line in kept.split("\n")[1:] if not re.fullmatch("</?[ou]l>", line)]
+    begun = [line.replace("<h3>", "\n").replace("<li>", "- ") for line in lines]
+    return html.unescape(re.sub("<[^>]+>", "", "\n".join(begun)))
+
+
 def page(title: str, body: str) -> str:
     """Return a complete page around a help text."""
     return (

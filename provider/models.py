@@ -9,6 +9,7 @@ from typing import Any, Optional
 from qgis.core import (
     Qgis,
     QgsProcessing,
+    QgsProcessingAlgorithm,
     QgsProcessingContext,
     QgsProcessingException,
     QgsProcessingFeedback,
@@ -37,7 +38,17 @@ from .help import lower_first, pipeline_help, step_title
 from .outputs import check_targets, files_of, nothing_left_on_failure
 from .parameters import number_outputs, parameter, parameter_name, tunable_values
 from .sources import refuse_elsewhere, source_files, source_name, source_parameter
-from .stage_algorithm import INPUT, INPUTS, OUTPUT, REPORT, cloud_title, input_parameter, input_paths
+from .stage_algorithm import (
+    INPUT,
+    INPUTS,
+    OUTPUT,
+    REPORT,
+    cloud_title,
+    input_parameter,
+    input_paths,
+    on_command_line,
+    shown_help,
+)
 
 PROVIDER = "lidarbuildings"
 
@@ -300,6 +311,9 @@ class PipelineAlgorithm(QgsProcessingModelAlgorithm):
                 f"The model {model_file(pipeline).name} of the plugin can't be read; install it again."
             )
         self._mend_parameters()
+        if on_command_line():
+            # Of models it shows this alone.
+            self.setHelpContent({"ALG_DESC": f"{pipeline.summary}\n{self.shortHelpString()}"})
 
     def _mend_parameters(self) -> None:
         """Let the input take any path, and name outputs by their names instead of their titles."""
@@ -386,11 +400,15 @@ class PipelineAlgorithm(QgsProcessingModelAlgorithm):
 
     def shortHelpString(self) -> str:  # noqa: N802
         """Return the help that the dialog shows beside the parameters."""
-        return pipeline_help(self.pipeline)
+        return shown_help(pipeline_help(self.pipeline))
 
     def helpUrl(self) -> str:  # noqa: N802
         """Return the help page, which comes with the plugin."""
         return QUrl.fromLocalFile(str(paths.HELP / f"{self.pipeline.id}.html")).toString()
+
+    def asPythonCommand(self, parameters: dict, context: QgsProcessingContext) -> str:  # noqa: N802
+        """Return the call that the dialog copies; of a model as such QGIS knows none."""
+        return QgsProcessingAlgorithm.asPythonCommand(self, parameters, context)
 
     def canExecute(self) -> tuple[bool, str]:  # noqa: N802
         """Whether all packages are there, and how to install what is missing."""
@@ -429,9 +447,13 @@ class PipelineAlgorithm(QgsProcessingModelAlgorithm):
         """
         names = [name.upper() for name in self.pipeline.parameters]
         defaults = {name: self.parameterDefinition(name).defaultValue() for name in names}
+        temporary = dict.fromkeys(self._not_kept(parameters), QgsProcessing.TEMPORARY_OUTPUT)
+        return {**defaults, **parameters, **temporary}
+
+    def _not_kept(self, parameters: dict) -> list[str]:
+        """Return the names of outputs that nobody asks for and a step makes for another one."""
         needed = [output.name.upper() for output in self.pipeline.outputs if self.pipeline.needs(output)]
-        skipped = [name for name in needed if name != OUTPUT and parameters.get(name) in (None, "")]
-        return {**defaults, **parameters, **dict.fromkeys(skipped, QgsProcessing.TEMPORARY_OUTPUT)}
+        return [name for name in needed if name != OUTPUT and parameters.get(name) in (None, "")]
 
     def processAlgorithm(  # noqa: N802
         self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback
@@ -441,7 +463,8 @@ class PipelineAlgorithm(QgsProcessingModelAlgorithm):
         with one_sentence(), nothing_left_on_failure(self._target_files(parameters)):
             self._check(parameters, context)
             results = super().processAlgorithm(self._with_defaults(parameters), context, ChainFeedback(feedback))
-        return {**results, **self._numbers(results.get("CHILD_RESULTS", {}))}
+        numbers = self._numbers(results.get("CHILD_RESULTS", {}))
+        return {**results, **dict.fromkeys(self._not_kept(parameters)), **numbers}
 
     def _target_files(self, parameters: dict) -> list:
         definitions = self.destinationParameterDefinitions()

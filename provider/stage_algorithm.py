@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Optional
 
 from qgis.core import (
+    QgsApplication,
     QgsFeatureSink,
     QgsProcessingAlgorithm,
     QgsProcessingContext,
@@ -33,7 +34,7 @@ from .crs import crs_units
 from .dependencies import missing_sentence
 from .errors import one_sentence
 from .feedback import FeedbackMonitor, announce, tell_unknown
-from .help import stage_help
+from .help import as_text, stage_help
 from .outputs import check_targets, files_of, nothing_left_on_failure, write_for_qgis
 from .parameters import automatic_numbers, number_outputs, parameter, tunable_values, used_name
 from .paths import HELP, ICON
@@ -105,7 +106,7 @@ class StageAlgorithm(QgsProcessingAlgorithm):
 
     def shortHelpString(self) -> str:  # noqa: N802
         """Return the help that the dialog shows beside the parameters."""
-        return stage_help(self.stage)
+        return shown_help(stage_help(self.stage))
 
     def helpUrl(self) -> str:  # noqa: N802
         """Return the help page, which comes with the plugin."""
@@ -136,8 +137,10 @@ class StageAlgorithm(QgsProcessingAlgorithm):
             sink = QgsProcessingParameterFeatureSink(
                 layer.name.upper(), layer.title, SOURCE_TYPES[layer.geometry], optional=optional
             )
+            # Of layers alone the first is what the stage is for.
+            optional = True
             self.addParameter(_helped(sink, "A GeoPackage or any other vector format that QGIS writes."))
-        optional = optional or len((*stage.layers, *stage.rasters)) > 1
+        optional = optional or len(stage.rasters) > 1
         for raster in stage.rasters:
             image = QgsProcessingParameterRasterDestination(raster.name.upper(), raster.title, optional=optional)
             self.addParameter(_helped(image, "A GeoTIFF, tiled and compressed."))
@@ -314,6 +317,16 @@ def _unwritten(layer: Layer, target: str, sink: QgsFeatureSink) -> str:
     """Return why a layer can't be written, as far as its format tells."""
     why = f" ({sink.lastError()})" if sink.lastError() else ""
     return f"{layer.title} can't be written to {target}{why}; free some space or choose another folder."
+
+
+def on_command_line() -> bool:
+    """Whether this is ``qgis_process``, which shows HTML as it is written."""
+    return QgsApplication.platform() == "qgis_process"
+
+
+def shown_help(text: str) -> str:
+    """Return a help as dialogs or the command line show it."""
+    return as_text(text) if on_command_line() else text
 
 
 def _helped(definition, text: str):

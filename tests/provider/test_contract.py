@@ -100,6 +100,14 @@ def test_inputs_and_outputs_are_what_the_stage_reads_and_makes(stage, algorithm)
     assert numbers == automatic | {measure.name.upper() for measure in stage.measures}
 
 
+def test_only_what_a_stage_is_for_must_be_asked_for(stage, algorithm):
+    """The cloud, or else the first layer; of numbers and of several rasters each does without the others."""
+    destinations = algorithm.destinationParameterDefinitions()
+    needed = [d.name() for d in destinations if not d.flags() & Qgis.ProcessingParameterFlag.Optional]
+    choice = stage.measures or len(stage.rasters) > 1
+    assert needed == ([] if choice and not stage.makes_cloud else [destinations[0].name()])
+
+
 def test_every_tunable_is_a_parameter(stage, algorithm):
     for tunable in stage.tunables.values():
         definition = algorithm.parameterDefinition(tunable.name.upper())

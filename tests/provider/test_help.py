@@ -8,7 +8,7 @@ import pytest
 
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.stages import STAGES
-from lidar_buildings.provider.help import inline, page, paragraphs, pipeline_help, stage_help, tunable_help
+from lidar_buildings.provider.help import as_text, inline, page, paragraphs, pipeline_help, stage_help, tunable_help
 from lidar_buildings.provider.paths import HELP, PLUGIN
 from lidar_buildings.tests.provider.toys import TOYS
 
@@ -50,6 +50,17 @@ def test_help_of_a_tunable_has_unit_range_default_and_automatic():
     assert "Empty: none; the log tells what the cloud has." in tunable_help(limits["min_height"])
     assert tunable_help(limits["min_height"]).endswith("default none)</i>")
     assert tunable_help(limits["classes"]).endswith("<i>(default empty)</i>")
+
+
+def test_the_command_line_shows_text():
+    text = as_text(stage_help(TOYS["toy_lift"]))
+    assert text.startswith("A text in two parts, with code and emphasis.\n\nInputs\n- INPUT: reads X, Y, Z")
+    assert text.endswith("\n\nNotes\n- One.\n- Two.\n\nReferences\nNobody (2000), Nothing.")
+    # QGIS prints the summary before it, and every parameter with its tooltip after it.
+    assert "Lift every point" not in text
+    assert "Added to all heights" not in text
+    for stage in STAGES.values():
+        assert not set("<>") & set(as_text(stage_help(stage)).replace("->", "").replace(" < ", "").replace(" > ", ""))
 
 
 def test_text_is_escaped():

@@ -397,6 +397,8 @@ def test_all_kinds_of_stages_give_in_qgis_what_they_give_in_memory(provider, con
 def test_what_is_not_kept_is_not_written(provider, context, log, mapping, out):
     result = run("toymapping", {**mapping, "OUTPUT": str(out / "mask.laz")}, context, log)
     assert [path.name for path in out.iterdir()] == ["mask.laz"]
+    # What one step made for another is gone, and its path with it.
+    assert {result.get(name) for name in set(KEPT) - {"OUTPUT"}} == {None}
     same_clouds(read_cloud(out / "mask.laz"), in_memory(mapping).cloud)
     assert result["ARROWS_LONGEST"] == pytest.approx(9 * np.sqrt(2))
 
@@ -416,6 +418,15 @@ def test_the_mapping_chain_shows_what_it_is_given_and_makes(provider):
     # Clouds between the steps, and rasters, which would cover the result, are made for those who ask.
     assert {d.name() for d in made if not d.createByDefault()} == {"LIFT_OUTPUT", "HIGH_OUTPUT", "TOP", "FLOOR"}
     assert [d.name() for d in definitions.values() if not d.help() and not d.isDestination()] == []
+
+
+def test_a_call_can_be_copied_as_python(provider, context, mapping, out):
+    """QGIS writes no call of a model, and none of the files that it can't open itself."""
+    given = {**mapping, "OLD": "old.gpkg", "OUTPUT": str(out / "mask.laz")}
+    copied = provider.algorithm("toymapping").create().asPythonCommand(given, context)
+    assert copied.startswith('processing.run("lidarbuildings:toymapping", {')
+    assert f"'INPUTS':{mapping['INPUTS']!r}" in copied
+    assert f"'OUTPUT':{given['OUTPUT']!r}" in copied
 
 
 def test_the_dialog_begins_with_what_the_composite_is_for(provider):

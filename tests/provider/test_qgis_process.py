@@ -93,6 +93,8 @@ def test_help_names_every_parameter_and_output(qgis_process):
     assert done.returncode == 0, done.stderr
     for name in ("INPUT: ", "OUTPUT: ", "FOOTPRINTS: ", "Outputs"):
         assert name in done.stdout
+    assert "<b>" not in done.stdout
+    assert done.stdout.count("Find the buildings in a point cloud") == 1
 
 
 @pytest.mark.parametrize(

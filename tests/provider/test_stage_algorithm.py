@@ -47,6 +47,15 @@ def test_the_log_tells_automatic_values(provider, context, log, town_file, out):
     assert "Base, automatic: 10 m" in log.infos
 
 
+def test_the_log_rounds_what_the_results_have_in_full(provider, context, log, out):
+    xyz = np.column_stack([np.arange(9.0), np.arange(9.0), np.full(9, 12.345678)])
+    write_cloud(create_cloud({"xyz": xyz, "classification": np.full(9, 2)}, "EPSG:28992"), out / "in.las")
+    result = run("toylift", {"INPUT": str(out / "in.las"), "OUTPUT": str(out / "a.las")}, context, log)
+    assert "Base, automatic: 12.35 m" in log.infos
+    assert result["BASE_USED"] == pytest.approx(12.345678, abs=1e-3)
+    assert result["BASE_USED"] != 12.35
+
+
 def test_a_given_value_is_returned_and_not_called_automatic(provider, context, log, town_file, out):
     result = run("toylift", {"INPUT": str(town_file), "BASE": 4, "OUTPUT": str(out / "a.las")}, context, log)
     assert result["BASE_USED"] == 4.0
