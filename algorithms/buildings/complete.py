@@ -35,6 +35,10 @@ _BUSHES, _HIGHEST_BUSHES = 0.33, 2.5
 # The wall of a higher roof stands no farther from it than this, m: eaves reach out, and roof surfaces end before them.
 _WALL_REACH = 1.0
 
+# What stands beside a building on patches of two cells square, over half of it passed by the beam within five cells, is
+# a crown, and what it touches isn't wall.
+_CROWN, _PASSED, _WITHIN = np.ones((2, 2), bool), 0.5, 5
+
 _EIGHT = np.ones((3, 3), bool)
 
 
@@ -51,6 +55,8 @@ def complete_buildings(
     confidence=None,
     reason=None,
     segment_id=None,
+    return_number=None,
+    number_of_returns=None,
     *,
     gap: Annotated[
         Optional[float],
@@ -112,7 +118,8 @@ def complete_buildings(
 
     Buildings are decided in columns: where a roof was found, everything from the foot of the walls to just above
     the roof is building, and so are chimneys and the walls along its edge. Small gaps between roof surfaces are
-    closed where the ground does not show in them.
+    closed where the ground does not show in them. Where the scanner numbered its returns, crowns beside a wall are told
+    from it by the pulses that pass through them.
 
     Parameters
     ----------
@@ -128,6 +135,8 @@ def complete_buildings(
         Why the roofs are buildings, see :class:`~.reasons.Reason`.
     segment_id : ndarray of shape (n,), int32, optional
         Roof surfaces, 0 is none; without it their share is not looked at.
+    return_number, number_of_returns : ndarray of shape (n,), uint8, optional
+        Without them crowns are not looked for.
 
     Returns
     -------
@@ -187,8 +196,10 @@ def complete_buildings(
     number = np.where(inside, building[cell], columns.beside[cell])
     # What stands between a roof and the next higher one is the wall of the higher.
     is_under = xyz[:, 2] <= columns.highest[cell]
-    is_bush = ~inside & _may_be_bush(height_above_ground, height_above_ground - above)
-    belongs |= raised & (number > 0) & is_under & ~is_bush
+    is_plant = ~inside & _may_be_bush(height_above_ground, height_above_ground - above)
+    if return_number is not None and number_of_returns is not None:
+        is_plant |= ~inside & columns.is_beside_crown(cell, raised, return_number < number_of_returns)[cell]
+    belongs |= raised & (number > 0) & is_under & ~is_plant
     result[belongs] = PointClass.BUILDING
     cluster_id[belongs] = number[belongs]
     monitor.progress(1.0)
@@ -241,6 +252,21 @@ class _Columns:
         around = ndimage.uniform_filter(standing, _AROUND, mode="constant")
         roof = ndimage.uniform_filter((self.building > 0).astype(float), _AROUND, mode="constant")
         return around < _SPARSE * roof
+
+    def is_beside_crown(
+        self, cell: tuple[np.ndarray, np.ndarray], raised: np.ndarray, goes_on: np.ndarray
+    ) -> np.ndarray:
+        """Return the cells of crowns that stand apart from buildings, and the cells next to them."""
+        row, column = cell
+        apart = raised & (self.building[cell] == 0) & (self.beside[cell] == 0)
+        standing, passed = np.zeros((2, *self.building.shape))
+        np.add.at(standing, (row[apart], column[apart]), 1)
+        np.add.at(passed, (row[apart], column[apart]), goes_on[apart])
+        around, passed_around = (
+            ndimage.uniform_filter(count, _WITHIN, mode="constant") for count in (standing, passed)
+        )
+        crown = ndimage.binary_opening(standing > 0, _CROWN) & (passed_around > _PASSED * around)
+        return ndimage.binary_dilation(crown, _EIGHT)
 
 
 def _cells(xyz: np.ndarray, cell_size: float, margin: float) -> tuple[np.ndarray, np.ndarray]:
