@@ -18,6 +18,9 @@ _HALL_STEP = 2.0
 # not hidden behind what stands higher or is too rough to tell; and at most so much may be where the cloud ends.
 _FREE_EDGE, _OPEN_EDGE, _CUT_EDGE = 0.9, 0.4, 0.35
 
+# So much of its steps down face others, those to the west some to the east: a terrace steps down on one side.
+_FACING = 0.2
+
 # Smaller segments (cells) are too rough to tell.
 _LEAST_CELLS = 4
 
@@ -93,10 +96,11 @@ def _widths(segment: np.ndarray, count: int) -> np.ndarray:
 
 
 def _stands(surface: np.ndarray, segment: np.ndarray, stands: np.ndarray, needed: np.ndarray) -> np.ndarray:
-    """Return which segments have a step down on most of the edge that no standing one and nothing rough hides."""
+    """Return which segments have steps down that face one another on most of the edge that nothing hides."""
     count = len(stands)
-    whole, open_, down = np.zeros(count), np.zeros(count), np.zeros(count)
-    for here, there in neighbors(surface.ndim):
+    whole, open_ = np.zeros((2, count))
+    by_side = np.zeros((2 * surface.ndim, count))
+    for side, (here, there) in enumerate(neighbors(surface.ndim)):
         own, other = segment[here], segment[there]
         edge = (own > 0) & (own != other)
         step = surface[here] - surface[there]
@@ -104,10 +108,14 @@ def _stands(surface: np.ndarray, segment: np.ndarray, stands: np.ndarray, needed
         hidden = edge & ~steps & (stands[other] | (other == 0))
         whole += np.bincount(own[edge], minlength=count)
         open_ += np.bincount(own[edge & ~hidden], minlength=count)
-        down += np.bincount(own[steps], minlength=count)
+        by_side[side] = np.bincount(own[steps], minlength=count)
     cut = _cut(segment, count)
     whole += cut
-    return (down > 0) & (down >= _FREE_EDGE * open_) & (open_ >= _OPEN_EDGE * whole) & (cut <= _CUT_EDGE * whole)
+    down = by_side.sum(axis=0)
+    # Neighbors come along each axis both ways.
+    facing = 2 * np.minimum(by_side[::2], by_side[1::2]).sum(axis=0)
+    is_free = (down > 0) & (down >= _FREE_EDGE * open_) & (facing >= _FACING * down)
+    return is_free & (open_ >= _OPEN_EDGE * whole) & (cut <= _CUT_EDGE * whole)
 
 
 def _cut(segment: np.ndarray, count: int) -> np.ndarray:

@@ -73,6 +73,15 @@ def test_a_low_house_beside_a_tower_is_judged_by_the_rest_of_its_edge():
     np.testing.assert_array_equal(free_standing(surface, 1.0, USUAL)[0], low | tower)
 
 
+def test_terraces_below_a_forest_are_terrain(rng):
+    """The upper edge of the first is too rough to tell, that of each of the others lies below one that is judged."""
+    vineyard = np.floor(slope(130, 140) + np.arange(130)[:, None] / 12) * 3.0
+    vineyard[118:] += rng.uniform(0.0, 15.0, vineyard[118:].shape)
+    assert not free_standing(vineyard, 1.0, USUAL)[0][:118].any()
+    hut = block(vineyard, slice(50, 57), slice(30, 36), 3.0)
+    np.testing.assert_array_equal(free_standing(vineyard, 1.0, USUAL)[0][:118], hut[:118])
+
+
 def test_terraces_and_hills_are_terrain():
     """A terrace has its step on one side, and nothing is known of the others; a hill has no step, however high."""
     terraces = np.floor(slope(90, 60) + np.arange(90)[:, None] / 30) * 4.0
