@@ -12,6 +12,7 @@ from qgis.core import (
     QgsProcessingAlgorithm,
     QgsProcessingContext,
     QgsProcessingOutputLayerDefinition,
+    QgsProcessingParameterDefinition,
     QgsProcessingParameterMultipleLayers,
     QgsProcessingParameterPointCloudLayer,
     QgsProcessingUtils,
@@ -28,27 +29,34 @@ def reads_las() -> bool:
     return "pdal" in QgsProviderRegistry.instance().providerList()
 
 
-class CloudParameter(QgsProcessingParameterPointCloudLayer):
-    """A point cloud layer, or the path of a file that QGIS itself may be unable to open."""
+class _TakesFiles:
+    """What parameters for point clouds have in common: they take the paths of files that QGIS may be unable to open."""
 
-    def clone(self) -> CloudParameter:
-        """Return a copy of this very type; the base class would return its own."""
-        copy = CloudParameter(self.name(), self.description(), self.defaultValue())
+    def createFileFilter(self) -> str:  # noqa: N802 - QGIS asks for these names
+        """Return the filter of the browse dialog, LAS and LAZ first."""
+        return f"{_FILTER};;{super().createFileFilter()}"
+
+    def checkValueIsAcceptable(self, value: Any, context: Optional[QgsProcessingContext] = None) -> bool:  # noqa: N802
+        """Whether ``value`` may be a point cloud or several; what it really is, :func:`cloud_path` finds out."""
+        return isinstance(value, (QgsMapLayer, QgsProperty)) or bool(value)
+
+    def _as_this(self, copy: QgsProcessingParameterDefinition) -> QgsProcessingParameterDefinition:
+        """Return ``copy`` with everything that is set after a parameter was made."""
         copy.setFlags(self.flags())
         copy.setHelp(self.help())
         copy.setMetadata(self.metadata())
         return copy
 
-    def createFileFilter(self) -> str:  # noqa: N802 - QGIS asks for this name
-        """Return the filter of the browse dialog, LAS and LAZ first."""
-        return f"{_FILTER};;{super().createFileFilter()}"
 
-    def checkValueIsAcceptable(self, value: Any, context: Optional[QgsProcessingContext] = None) -> bool:  # noqa: N802
-        """Whether ``value`` may be a point cloud; what it really is, :func:`cloud_path` finds out."""
-        return isinstance(value, (QgsMapLayer, QgsProperty)) or bool(value)
+class CloudParameter(_TakesFiles, QgsProcessingParameterPointCloudLayer):
+    """A point cloud layer, or the path of a file that QGIS itself may be unable to open."""
+
+    def clone(self) -> CloudParameter:
+        """Return a copy of this very type; the base class would return its own."""
+        return self._as_this(CloudParameter(self.name(), self.description(), self.defaultValue()))
 
 
-class CloudsParameter(QgsProcessingParameterMultipleLayers):
+class CloudsParameter(_TakesFiles, QgsProcessingParameterMultipleLayers):
     """Two or more point clouds, each a layer or the path of a file that QGIS itself may be unable to open."""
 
     def __init__(self, name: str, description: str) -> None:
@@ -57,19 +65,7 @@ class CloudsParameter(QgsProcessingParameterMultipleLayers):
 
     def clone(self) -> CloudsParameter:
         """Return a copy of this very type; the base class would return its own."""
-        copy = CloudsParameter(self.name(), self.description())
-        copy.setFlags(self.flags())
-        copy.setHelp(self.help())
-        copy.setMetadata(self.metadata())
-        return copy
-
-    def createFileFilter(self) -> str:  # noqa: N802 - QGIS asks for this name
-        """Return the filter of the browse dialog, LAS and LAZ first."""
-        return f"{_FILTER};;{super().createFileFilter()}"
-
-    def checkValueIsAcceptable(self, value: Any, context: Optional[QgsProcessingContext] = None) -> bool:  # noqa: N802
-        """Whether ``value`` may be point clouds; what they really are, :func:`cloud_paths` finds out."""
-        return isinstance(value, (QgsMapLayer, QgsProperty)) or bool(value)
+        return self._as_this(CloudsParameter(self.name(), self.description()))
 
     # QGIS writes down the layers that it can open, which leaves nothing of files that it can't.
 

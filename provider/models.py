@@ -463,8 +463,9 @@ class PipelineAlgorithm(QgsProcessingModelAlgorithm):
         with one_sentence(), nothing_left_on_failure(self._target_files(parameters)):
             self._check(parameters, context)
             results = super().processAlgorithm(self._with_defaults(parameters), context, ChainFeedback(feedback))
-        numbers = self._numbers(results.get("CHILD_RESULTS", {}))
-        return {**results, **dict.fromkeys(self._not_kept(parameters)), **numbers}
+        gone = self._not_kept(parameters)
+        made = {name: value for name, value in results.items() if value is not None and name not in gone}
+        return {**made, **self._numbers(results.get("CHILD_RESULTS", {}))}
 
     def _target_files(self, parameters: dict) -> list:
         definitions = self.destinationParameterDefinitions()
