@@ -1,4 +1,4 @@
-"""LiDAR Buildings: a QGIS Processing plugin that finds buildings in airborne laser scans."""
+"""LiDAR Buildings: a QGIS Processing plugin that finds buildings in point clouds."""
 
 
 def classFactory(iface):  # noqa: N802 - QGIS asks for this name

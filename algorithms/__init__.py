@@ -2,13 +2,13 @@
 
 Conventions, written once and kept by every stage:
 
-* Coordinates are ``xyz``, float64 (n, 3): easting, northing, elevation in metres.
+* Coordinates are ``xyz``, float64 (n, 3): easting, northing, elevation in meters.
   Stages may be given large coordinates; they shift them before any covariance.
-* Lengths are metres, areas square metres, angles degrees, densities points per
-  square metre of occupied area. ``min_*`` and ``max_*`` are inclusive; a tolerance is a distance.
+* Lengths are meters, areas square meters, angles degrees, densities points per
+  square meter of occupied area. ``min_*`` and ``max_*`` are inclusive; a tolerance is a distance.
 * Eigenvalues are ordered l1 >= l2 >= l3 >= 0, of the covariance with divisor n.
 * Normals are unit vectors that point upward (n_z >= 0).
-* A neighbourhood holds the point itself.
+* A neighborhood holds the point itself.
 * Ids (``segment_id``, ``cluster_id``) run from 1; 0 is none. Undefined measures are NaN.
 * Classes are those of :class:`~.cloud.asprs.PointClass`; noise (7, 18) is never used by a later stage.
 * Withheld points never reach a stage: the runner leaves them out and keeps them in the file.

@@ -298,7 +298,7 @@ def run_pipeline(
     """Run all steps on ``cloud``, in place as far as they do so, and return all that they made.
 
     ``cloud`` is several clouds where the pipeline merges. ``sources`` are the layers that the pipeline
-    is given, by name, in metres relative to the cloud's origin. ``kept`` are the steps whose clouds
+    is given, by name, in meters relative to the cloud's origin. ``kept`` are the steps whose clouds
     are wanted, of those that the pipeline keeps; None is all of them. ``tunables`` are named
     ``<step>_<tunable>`` (``ground_cell_size``), and so are the monitor's values; what steps share is
     named ``<tunable>``.

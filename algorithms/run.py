@@ -41,7 +41,7 @@ def run_stage(
     points are not shown to the stage; in its result they keep their classification and are
     undefined in everything else. A stage that selects or merges makes a new cloud instead, in
     which withheld points are not. Coordinates of ``sources`` and of layers and rasters made are
-    metres relative to the cloud's origin.
+    meters relative to the cloud's origin.
 
     Raises
     ------

@@ -15,7 +15,7 @@ def crs_units(epsg: int) -> Optional[tuple[float, float, bool]]:
     Returns
     -------
     (float, float, bool) or None
-        Metres per horizontal unit, metres per vertical unit, whether it is geographic; None if unknown.
+        Meters per horizontal unit, meters per vertical unit, whether it is geographic; None if unknown.
     """
     crs = QgsCoordinateReferenceSystem.fromEpsgId(epsg)
     if not crs.isValid():
@@ -24,7 +24,7 @@ def crs_units(epsg: int) -> Optional[tuple[float, float, bool]]:
 
 
 def metres_per_unit(crs: QgsCoordinateReferenceSystem) -> tuple[float, float]:
-    """Return metres per horizontal and per vertical unit; heights have the unit of the plane where none is named."""
+    """Return meters per horizontal and per vertical unit; heights have the unit of the plane where none is named."""
     horizontal = _metres(crs)
     return horizontal, _metres(crs.verticalCrs()) if crs.verticalCrs().isValid() else horizontal
 
@@ -39,7 +39,7 @@ def crs_of(wkt: str) -> QgsCoordinateReferenceSystem:
     crs = QgsCoordinateReferenceSystem()
     if wkt:
         crs = QgsCoordinateReferenceSystem.fromWkt(wkt) if '"' in wkt else QgsCoordinateReferenceSystem(wkt)
-    # Layers hold heights as an attribute or in metres of the cloud's own vertical system, which GeoPackage can't name.
+    # Layers hold heights as an attribute or in meters of the cloud's own vertical system, which GeoPackage can't name.
     horizontal = crs.horizontalCrs()
     return horizontal if horizontal.isValid() else crs
 
@@ -48,7 +48,7 @@ def crs_of_layer(layer: QgsProcessingFeatureSource) -> QgsCoordinateReferenceSys
     """Return the CRS of a layer, invalid when it names none.
 
     A GeoPackage without a CRS comes back from disk in an "Undefined geographic SRS", by the name that its standard
-    gives it, which QGIS holds for valid; reprojecting to or from it would make degrees of metres.
+    gives it, which QGIS holds for valid; reprojecting to or from it would make degrees of meters.
     """
     crs = layer.sourceCrs()
     return QgsCoordinateReferenceSystem() if crs.description().lower().startswith("undefined ") else crs

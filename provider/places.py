@@ -1,4 +1,4 @@
-"""Where the local metres of a run are on the map."""
+"""Where the local meters of a run are on the map."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _ORIGIN_STEP = 1000.0
 
 @dataclass(frozen=True)
 class Place:
-    """A CRS, what turns local metres (m, 2 or 3) into its coordinates and back, and metres per unit in plan."""
+    """A CRS, what turns local meters (m, 2 or 3) into its coordinates and back, and meters per unit in plan."""
 
     crs: QgsCoordinateReferenceSystem
     to_map: Callable[[np.ndarray], np.ndarray]

@@ -44,7 +44,7 @@ class Provider(QgsProcessingProvider):
 
     def longName(self) -> str:  # noqa: N802 - QGIS asks for this name
         """Return the name with what it is for."""
-        return "LiDAR Buildings (buildings from airborne laser scans)"
+        return "LiDAR Buildings (buildings from point clouds)"
 
     def icon(self) -> QIcon:
         """Return the plugin's icon."""

@@ -42,9 +42,9 @@ def write_raster(raster: Raster, surface: Surface, place: Place, path: Path, mon
     raster : Raster
         What it is.
     surface : Surface
-        Its values and where they are, in local metres.
+        Its values and where they are, in local meters.
     place : Place
-        Where local metres are on the map.
+        Where local meters are on the map.
     path : Path
         In an existing folder.
     monitor : Monitor

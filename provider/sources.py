@@ -163,7 +163,7 @@ def _range(box: QgsRectangle) -> str:
 def read_source(
     source: Source, layer: QgsProcessingFeatureSource, place: Place, context: QgsProcessingContext, monitor: Monitor
 ) -> Features:
-    """Return a layer as a stage is given it: parts of geometries in local metres, with all attributes.
+    """Return a layer as a stage is given it: parts of geometries in local meters, with all attributes.
 
     Arcs become lines. Features without a sound geometry of the declared kind are left out, which a
     warning counts. Heights are taken in the vertical unit of the place; geometries that lack some are flat.
@@ -238,7 +238,7 @@ def _parts(geometry: QgsGeometry, kind: str, transform: QgsCoordinateTransform, 
 
 
 def _vertices(wkb: bytes, place: Place) -> list:
-    """Return the vertices of WKB in local metres, one array (m, 2 or 3) per ring; none of what is no simple shape."""
+    """Return the vertices of WKB in local meters, one array (m, 2 or 3) per ring; none of what is no simple shape."""
     code = int.from_bytes(wkb[1:5], "little")
     kind = (code & 0xFFFF) % 1000
     width = 3 if code & _Z_OF_OLD_WKB or (code & 0xFFFF) // 1000 == 1 else 2

@@ -65,9 +65,9 @@ def qgis_features(layer: Layer, features: Features, to_map: Callable[[np.ndarray
     layer : Layer
         What the features are.
     features : Features
-        Their geometries, in local metres, and columns.
+        Their geometries, in local meters, and columns.
     to_map : callable
-        Turns local metres (m, 2 or 3) into map coordinates.
+        Turns local meters (m, 2 or 3) into map coordinates.
     """
     fields = fields_of(layer)
     make = _GEOMETRIES[layer.geometry]

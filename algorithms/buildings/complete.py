@@ -14,7 +14,7 @@ from ..params import MinBuildingArea, PointDensity
 from ..stage import Param, stage
 from .reasons import Reason
 
-# Cells hold at least a point where the roof was seen: this many point spacings, and no less than half a metre.
+# Cells hold at least a point where the roof was seen: this many point spacings, and no less than half a meter.
 _CELL_SPACINGS, _LEAST_CELL = 1.2, 0.5
 
 # Points lower than this stand on the ground (kerbs, plants, steps) and are no wall, m.

@@ -47,13 +47,13 @@ class Cloud:
         The records, laid out as ``header.layout``. The array is never changed; moving
         points puts another in its place.
     units : Units
-        Metres per unit of the file's coordinates.
+        Meters per unit of the file's coordinates.
     wkt : str
         WKT as in the file, else "EPSG:code", else "". It may be set to the full
         WKT of that code: formats 6 to 10 and COPC, which know WKT only, are then
         written with it.
     origin : float64 array, (3,)
-        Metres; what ``get("xyz")`` is relative to. Set it to another cloud's
+        Meters; what ``get("xyz")`` is relative to. Set it to another cloud's
         before comparing the two. Its z is 0: elevations stay elevations.
     sources : list of Path
         The files that were read.
@@ -80,7 +80,7 @@ class Cloud:
         return np.array([self.units.horizontal, self.units.horizontal, self.units.vertical])
 
     def _metres(self, steps: np.ndarray, origin: Union[float, np.ndarray] = 0.0) -> np.ndarray:
-        """Return integer coordinates (m, 3) as metres from ``origin``."""
+        """Return integer coordinates (m, 3) as meters from ``origin``."""
         return steps * (self.header.scale * self._factors) + (self.header.offset * self._factors - origin)
 
     def has(self, name: str) -> bool:
@@ -95,9 +95,9 @@ class Cloud:
     def get(self, name: str) -> np.ndarray:
         """Return a dimension by its Python name, (n,) or (n, 3), in the dtype and unit of ``dimensions.py``.
 
-        ``xyz`` is float64, metres from ``origin``. What was set comes back as it
+        ``xyz`` is float64, meters from ``origin``. What was set comes back as it
         was set; the array may be a view, so don't change it. Heights and areas
-        that the file holds in its own unit (also under an alias, with its scale) come in metres.
+        that the file holds in its own unit (also under an alias, with its scale) come in meters.
 
         Raises
         ------
@@ -139,9 +139,9 @@ class Cloud:
         Parameters
         ----------
         name : str
-            Any of ``dimensions.py``. ``xyz``, metres from ``origin``, is rounded to the scale of the file.
+            Any of ``dimensions.py``. ``xyz``, meters from ``origin``, is rounded to the scale of the file.
         values : array, (n,) or (n, 3)
-            In metres where it has a unit. Kept, not copied, where the dtype fits.
+            In meters where it has a unit. Kept, not copied, where the dtype fits.
 
         Raises
         ------
@@ -246,13 +246,13 @@ class Cloud:
         return self.header.layout.extras[extra].decode(self.points[f"extra{extra}"])
 
     def to_map(self, coordinates: np.ndarray) -> np.ndarray:
-        """Return local metres (m, 2 or 3) as float64 coordinates of the file, in its CRS and units."""
+        """Return local meters (m, 2 or 3) as float64 coordinates of the file, in its CRS and units."""
         local = np.asarray(coordinates, float)
         axes = local.shape[-1]
         return (local + self.origin[:axes]) / self._factors[:axes]
 
     def from_map(self, coordinates: np.ndarray) -> np.ndarray:
-        """Return coordinates (m, 2 or 3) of the file's CRS as float64 local metres; the inverse of :meth:`to_map`."""
+        """Return coordinates (m, 2 or 3) of the file's CRS as float64 local meters; the inverse of :meth:`to_map`."""
         there = np.asarray(coordinates, float)
         axes = there.shape[-1]
         return there * self._factors[:axes] - self.origin[:axes]
@@ -295,7 +295,7 @@ def read_cloud(
     monitor : Monitor, optional
         Hears progress, and warnings about units.
     crs_units : callable, optional
-        EPSG code -> (metres per horizontal unit, metres per vertical unit, whether
+        EPSG code -> (meters per horizontal unit, meters per vertical unit, whether
         it is geographic), or None if unknown; asked when a file gives a code and no unit.
 
     Raises
@@ -381,14 +381,14 @@ def create_cloud(arrays: dict[str, np.ndarray], wkt: str = "") -> Cloud:
     Parameters
     ----------
     arrays : dict of str to array
-        By Python name; ``xyz`` (n, 3) in metres is needed.
+        By Python name; ``xyz`` (n, 3) in meters is needed.
     wkt : str
         WKT, "EPSG:code" or "": the cloud's CRS.
 
     Returns
     -------
     Cloud
-        Its origin is 0, so that its local metres are those of ``xyz``.
+        Its origin is 0, so that its local meters are those of ``xyz``.
 
     Raises
     ------
@@ -406,7 +406,7 @@ def create_cloud(arrays: dict[str, np.ndarray], wkt: str = "") -> Cloud:
     steps = np.rint((coordinates - header.offset) / _NEW_SCALE)
     if steps.max() > _LARGEST_INT:
         raise ValueError(
-            f"The cloud spans {np.ptp(xyz, axis=0).max():.0f} m, more than a file of millimetres can hold."
+            f"The cloud spans {np.ptp(xyz, axis=0).max():.0f} m, more than a file of millimeters can hold."
         )
     points = np.zeros(len(xyz), header.layout.dtype)
     for i, axis in enumerate("XYZ"):

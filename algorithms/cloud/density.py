@@ -12,7 +12,7 @@ _POINTS_PER_CELL = 5.0
 
 
 def point_density(xyz: np.ndarray) -> float:
-    """Return the points per square metre of the area that the points occupy in plan.
+    """Return the points per square meter of the area that the points occupy in plan.
 
     Parameters
     ----------

@@ -24,7 +24,7 @@ def find_extra(layout: Layout, dimension: Dimension, component: int = 0) -> Opti
 
 
 def unit_factor(dimension: Dimension, units: Units) -> float:
-    """Return metres (or square metres) per unit of a stored dimension.
+    """Return meters (or square meters) per unit of a stored dimension.
 
     Heights are stored in the vertical unit of the file and areas in its squared
     horizontal unit, so that QGIS and PDAL, which know one unit only, agree.
@@ -52,7 +52,7 @@ class Records:
     layout : Layout
         The input's.
     changes : dict of str to array
-        What stages have set, by Python name, in metres.
+        What stages have set, by Python name, in meters.
     units : Units
         Of the file.
     convert : callable, optional

@@ -10,14 +10,14 @@ from typing import Any, Callable, Optional, Union
 
 from .header import WKT_BIT, Header, Record
 
-# EPSG code -> (metres per horizontal unit, metres per vertical unit, whether it is geographic), or None if unknown.
+# EPSG code -> (meters per horizontal unit, meters per vertical unit, whether it is geographic), or None if unknown.
 Resolver = Callable[[int], Optional[tuple[float, float, bool]]]
 
 _PROJECTION = b"LASF_Projection"
 _WKT = ((_PROJECTION, 2112), (b"liblas", 2112))
 _GEOKEYS, _DOUBLES = (_PROJECTION, 34735), (_PROJECTION, 34736)
 
-# EPSG codes of length units, as GeoKeys give them, in metres.
+# EPSG codes of length units, as GeoKeys give them, in meters.
 _LENGTHS = {
     9001: 1.0,
     9002: 0.3048,
@@ -44,7 +44,7 @@ UNKNOWN = "The file names no coordinate reference system; its coordinates are ta
 
 @dataclass(frozen=True)
 class Units:
-    """Metres per unit of the file's coordinates, and what a person should know about them."""
+    """Meters per unit of the file's coordinates, and what a person should know about them."""
 
     horizontal: float = 1.0
     vertical: float = 1.0
@@ -122,7 +122,7 @@ def units_of(header: Header, crs_units: Optional[Resolver] = None) -> Units:
     Returns
     -------
     Units
-        Metres where the file does not tell, with a warning. Heights have the
+        Meters where the file does not tell, with a warning. Heights have the
         horizontal unit where nothing is said of theirs.
 
     Raises
@@ -169,7 +169,7 @@ def _not_plane(name: str, geocentric: bool) -> ValueError:
 
 
 def _axis_units(node: _Node) -> list[float]:
-    """Return metres per unit: one for all axes (WKT 1, or a common unit), or one per axis (WKT 2)."""
+    """Return meters per unit: one for all axes (WKT 1, or a common unit), or one per axis (WKT 2)."""
     by_axis = [unit for axis in node.all("AXIS") for unit in axis.all(*_LENGTH_UNITS)]
     units = by_axis or node.all(*_LENGTH_UNITS)
     sizes = [unit.values[1] for unit in units if len(unit.values) > 1]
@@ -242,7 +242,7 @@ def _units_of_geokeys(header: Header, crs_units: Optional[Resolver]) -> Units:
 
 
 def _linear_units(keys: dict[int, Any], crs_units: Optional[Resolver]) -> Units:
-    """Return what the unit keys say, else what the CRS database says of the codes, else metres."""
+    """Return what the unit keys say, else what the CRS database says of the codes, else meters."""
     of_code = _looked_up(keys.get(_PROJECTED, 0), crs_units)
     of_height = _looked_up(keys.get(_VERTICAL, 0), crs_units)
     if of_code and of_code[2]:

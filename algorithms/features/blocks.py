@@ -34,7 +34,7 @@ _TRIES, _FEW = 9, 0.06
 # The first try in squared reaches of the block's middle: none of the distances that points on a grid have.
 _FIRST_TRY = 1.0371
 
-# Squared distances that differ by less than this share are equal: coordinates of 5,000 km are right to a nanometre.
+# Squared distances that differ by less than this share are equal: coordinates of 5,000 km are right to a nanometer.
 _EQUAL = 1e-7
 
 # The same of squared distances in 32 bits, each of which is off by up to 6e-8 of itself.

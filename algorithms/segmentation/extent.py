@@ -33,7 +33,7 @@ def plan_areas(xyz: np.ndarray, group: np.ndarray, density: float) -> np.ndarray
     group : ndarray of shape (n,), int
         Group of each point from 0.
     density : float
-        Points per square metre.
+        Points per square meter.
 
     Returns
     -------
@@ -62,7 +62,7 @@ def penetration(
     group : ndarray of shape (n,), int
         Group of each point from 0, negative for none; at least one point has a group.
     density : float
-        Points per square metre.
+        Points per square meter.
     return_number, number_of_returns : ndarray of shape (n,), optional
         Where the scanner numbered its returns.
 
@@ -113,7 +113,7 @@ def join_beside(xyz: np.ndarray, group: np.ndarray, strong: np.ndarray, weak: np
     strong, weak : ndarray of shape (group.max() + 1,), bool
         Which groups are taken in any case, and which ones beside others.
     density : float
-        Points per square metre.
+        Points per square meter.
 
     Returns
     -------

@@ -52,7 +52,7 @@ def segment_patches(xyz: np.ndarray, density: float, noise: float, max_slope: fl
     xyz : ndarray of shape (n, 3), float64
         Points (m).
     density : float
-        Points per square metre.
+        Points per square meter.
     noise : float
         Standard deviation of points across a smooth surface, m.
     max_slope : float

@@ -31,7 +31,7 @@ def photograph(
     scene : Scene
         What there is to see.
     density : float
-        Points per square metre of open ground, all views together.
+        Points per square meter of open ground, all views together.
     oblique : float
         Angle of the oblique views to the vertical, degrees.
     seed : int

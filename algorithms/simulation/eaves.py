@@ -63,7 +63,7 @@ def build_shed(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generat
 
 
 def _placed(plot: Rect, rng: np.random.Generator, length: tuple, width: tuple) -> Rect:
-    """Return a rectangle some metres behind the street, turned at will against it."""
+    """Return a rectangle some meters behind the street, turned at will against it."""
     long, wide = rng.uniform(*length), rng.uniform(*width)
     front = -plot.width / 2 + rng.uniform(3.5, 4.5)
     return plot.part(rng.uniform(-1.0, 1.0), front + wide / 2, long, wide, np.deg2rad(rng.uniform(-8.0, 8.0)))

@@ -50,7 +50,7 @@ def build_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
 
 
 def _detached(plot: Rect, rng: np.random.Generator, length: tuple, width: tuple) -> Rect:
-    """Return the footprint of a house a few metres behind the street, not quite parallel to it."""
+    """Return the footprint of a house a few meters behind the street, not quite parallel to it."""
     long, wide = rng.uniform(*length), rng.uniform(*width)
     front = -plot.width / 2 + rng.uniform(2.0, 3.0)
     return plot.part(rng.uniform(-0.5, 0.5), front + wide / 2, long, wide, np.deg2rad(rng.uniform(-4.0, 4.0)))

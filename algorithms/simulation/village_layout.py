@@ -22,7 +22,7 @@ _PLOT = (22.0, 26.0)
 # Plots on a hectare of streets and plots: as many as can be built on.
 MAX_HOMES = 15
 
-# Hills and hollows of a few metres.
+# Hills and hollows of a few meters.
 _HILLS = 2.0
 
 

@@ -57,7 +57,7 @@ class Features:
     """The content of a :class:`Layer` or :class:`Source`: geometries and one column per field.
 
     ``geometries`` holds, per feature of a polygon layer, a list of rings (float64
-    (m, 2) or (m, 3), metres, first the exterior counterclockwise, then the holes
+    (m, 2) or (m, 3), meters, first the exterior counterclockwise, then the holes
     clockwise, closed: last vertex equals first); for lines one (m, 2 or 3) array; for points one (2 or 3,) array.
     Coordinates are relative to the cloud's origin, or, where a stage reads no cloud, to one that all its sources share.
     ``columns`` maps each field's name to a sequence of the same length; those of a source are
