@@ -20,16 +20,16 @@ def crs_units(epsg: int) -> Optional[tuple[float, float, bool]]:
     crs = QgsCoordinateReferenceSystem.fromEpsgId(epsg)
     if not crs.isValid():
         return None
-    return (*metres_per_unit(crs), crs.isGeographic())
+    return (*meters_per_unit(crs), crs.isGeographic())
 
 
-def metres_per_unit(crs: QgsCoordinateReferenceSystem) -> tuple[float, float]:
+def meters_per_unit(crs: QgsCoordinateReferenceSystem) -> tuple[float, float]:
     """Return meters per horizontal and per vertical unit; heights have the unit of the plane where none is named."""
-    horizontal = _metres(crs)
-    return horizontal, _metres(crs.verticalCrs()) if crs.verticalCrs().isValid() else horizontal
+    horizontal = _meters(crs)
+    return horizontal, _meters(crs.verticalCrs()) if crs.verticalCrs().isValid() else horizontal
 
 
-def _metres(crs: QgsCoordinateReferenceSystem) -> float:
+def _meters(crs: QgsCoordinateReferenceSystem) -> float:
     unit = crs.mapUnits()
     return 1.0 if unit in _DISTANCES_UNKNOWN else QgsUnitTypes.fromUnitToUnitFactor(unit, Qgis.DistanceUnit.Meters)
 

@@ -10,7 +10,7 @@ from qgis.core import QgsCoordinateReferenceSystem, QgsProcessingFeatureSource
 
 from ..algorithms.cloud.cloud import Cloud
 from ..algorithms.stage import Monitor, Source
-from .crs import crs_of, crs_of_layer, metres_per_unit
+from .crs import crs_of, crs_of_layer, meters_per_unit
 
 _ORIGIN_STEP = 1000.0
 
@@ -47,7 +47,7 @@ def place_of_layers(layers: dict[Source, QgsProcessingFeatureSource], monitor: M
     refuse_degrees(source.title, crs)
     if not crs.isValid():
         monitor.warn(f"{source.title} names no coordinate reference system; its coordinates are taken as meters.")
-    plane, height = metres_per_unit(crs)
+    plane, height = meters_per_unit(crs)
     units = np.array([plane, plane, height])
     extent = layer.sourceExtent()
     corner = (0.0, 0.0) if extent.isNull() else (extent.xMinimum(), extent.yMinimum())

@@ -1,6 +1,6 @@
 """Simulated towns with birds, dust, multipath and strays in them, and with the thin things that must not go with them.
 
-What is noise is known point by point. Everything is in metres; how much noise there is and how far it lies off is as
+What is noise is known point by point. Everything is in meters; how much noise there is and how far it lies off is as
 surveyors report it: birds alone or in flocks, a plume of dust that stops some of the pulses, echoes that took a
 detour over a wall and arrive too late, and wrong ranges from anywhere.
 """

@@ -1,6 +1,6 @@
 """Small scenes made by hand, seen from straight above, whose truth is a formula.
 
-Each function returns a :class:`Scene`: coordinates in metres around (50, 50), true classes and return numbers, in
+Each function returns a :class:`Scene`: coordinates in meters around (50, 50), true classes and return numbers, in
 random order. ``SCENES`` names them all. The larger scenes, with oblique beams, are those of ``simulate_town``.
 """
 

@@ -37,7 +37,7 @@ from lidar_buildings.tests.real.clouds import (  # noqa: E402
     score_against,
 )
 
-# Points per square metre, noise (m) and seed of simulated villages of 150 m.
+# Points per square meter, noise (m) and seed of simulated villages of 150 m.
 VILLAGES = [(density, noise, 11) for density in (50, 100) for noise in (0.02, 0.05)]
 CHAINS = {"detect_buildings": "default", "detect_buildings_2019": "2019"}
 

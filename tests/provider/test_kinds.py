@@ -150,7 +150,7 @@ def test_a_layer_is_reprojected_to_the_cloud(provider, context, log, town_file, 
 
 @pytest.fixture
 def read(provider, context, town_file):
-    """Return a layer as a stage would be given it, and the warnings, in metres from the town's origin."""
+    """Return a layer as a stage would be given it, and the warnings, in meters from the town's origin."""
 
     def read(kind, rows, cloud=None, **options):
         layer = vector(options.pop("layer_kind", kind), rows, **options)
@@ -222,7 +222,7 @@ def test_an_empty_layer_has_its_columns(read):
     assert (len(found), found.columns, warnings) == (0, {"id": [], "height": [], "word": []}, [])
 
 
-def test_coordinates_are_metres_where_the_cloud_is_in_feet(read, town, tmp_path):
+def test_coordinates_are_meters_where_the_cloud_is_in_feet(read, town, tmp_path):
     write_cloud(create_cloud(town, QgsCoordinateReferenceSystem(FOOT).toWkt()), tmp_path / "feet.las")
     cloud = read_cloud(tmp_path / "feet.las")
     assert cloud.units.horizontal == pytest.approx(0.3048, rel=1e-4)
@@ -268,7 +268,7 @@ def test_a_stage_of_layers_alone_works_in_the_first_ones_system(provider, contex
     assert not log.warnings
 
 
-def test_lengths_are_metres_where_layers_are_in_feet(provider, context, log, out):
+def test_lengths_are_meters_where_layers_are_in_feet(provider, context, log, out):
     old, new = squares((3e6, 1e7), crs=FOOT), squares((3e6 + 300, 1e7 + 400), crs=FOOT)
     context.project().addMapLayers([old, new])
     result = run("toyarrows", {"OLD": old, "NEW": new, "ARROWS": str(out / "a.gpkg")}, context, log)

@@ -101,7 +101,7 @@ def test_a_mast_belongs_to_the_roof_up_to_the_height_of_structures(scene, above,
 
 def test_walls_just_outside_the_roof_belong_to_it_and_bushes_at_their_foot_do_not(scene):
     roof = scene.roof(10, 10, 20, 20, 5.0)
-    # The cells of the outermost roof points end at most half a metre outside them.
+    # The cells of the outermost roof points end at most half a meter outside them.
     outside = scene.xyz[roof, 0].min() - 0.25
     wall = scene.box([outside, 12, 2.5], [outside + 0.05, 18, 4.8], 30)
     bush = scene.box([outside - 0.6, 12, 0.6], [outside - 0.5, 18, 1.2], 30)
@@ -164,7 +164,7 @@ def test_a_crown_that_touches_the_wall_is_told_from_it_by_the_pulses_that_pass(s
 
 
 def test_a_narrow_alley_in_which_the_ground_shows_is_not_closed(scene):
-    """Two row houses a metre apart: what hangs above the alley is no building."""
+    """Two row houses a meter apart: what hangs above the alley is no building."""
     scene.roof(5, 10, 14.5, 20, 6.0)
     scene.roof(15.5, 10, 25, 20, 6.0)
     alley = np.flatnonzero(scene.within(14.6, 11, 15.4, 19))

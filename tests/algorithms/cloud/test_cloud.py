@@ -49,13 +49,13 @@ def test_a_made_cloud_is_read_as_it_was_made(town, tmp_path, name, wkt):
         np.testing.assert_allclose(found, town[dimension], rtol=3e-7)
 
 
-def test_local_metres_of_a_created_cloud_are_those_it_was_made_of(town):
+def test_local_meters_of_a_created_cloud_are_those_it_was_made_of(town):
     cloud = create_cloud(town)
     np.testing.assert_array_equal(cloud.origin, 0)
     np.testing.assert_allclose(cloud.get("xyz"), town["xyz"], atol=0.000_501)
 
 
-def test_xyz_is_metres_from_a_round_origin_and_to_map_goes_back(make_las):
+def test_xyz_is_meters_from_a_round_origin_and_to_map_goes_back(make_las):
     records = random_records(1, 28, 50)
     path = make_las(records=records, point_format=1, vlrs=(wkt_vlr(IN_FEET),))
     cloud = read_cloud(path)

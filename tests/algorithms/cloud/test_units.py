@@ -140,7 +140,7 @@ def test_projected_code_that_turns_out_geographic_is_refused():
         units_of(geokeys((3072, 4326)), lambda code: (1.0, 1.0, True))
 
 
-def test_nothing_is_metres_with_a_warning():
+def test_nothing_is_meters_with_a_warning():
     assert units_of(Header()).warning == UNKNOWN
     assert units_of(geokeys()).warning == UNKNOWN
 

@@ -121,7 +121,7 @@ def test_a_first_try_between_equal_distances_is_no_limit():
 
 
 def test_small_clusters_in_large_blocks_keep_their_digits(rng):
-    """One of each dozen points within a millimetre is asked for: the block around it spans tens of metres."""
+    """One of each dozen points within a millimeter is asked for: the block around it spans tens of meters."""
     clusters = np.repeat(rng.uniform(0, 1000, (60, 3)), 12, axis=0) + rng.uniform(0, 0.001, (720, 3))
     xyz = np.concatenate([rng.uniform(0, 1000, (5000, 3)), clusters])
     shapes, order = nearest(xyz, 5, rows=np.r_[:5000, 5000:5720:12])

@@ -134,8 +134,8 @@ def test_noisy_points_need_as_many_as_reach_eight_times_the_noise(rng):
     assert surface_neighbors(plane(rng, 0.15), 4.4, 0.15) == int(np.ceil(np.pi * 1.2**2 * 4.4))
 
 
-def test_dense_points_need_as_many_as_reach_half_a_metre(rng):
-    """Half a metre around is 0.785 m²: 24 points at 30 per m², and a hundred at the most."""
+def test_dense_points_need_as_many_as_reach_half_a_meter(rng):
+    """Half a meter around is 0.785 m²: 24 points at 30 per m², and a hundred at the most."""
     assert surface_neighbors(plane(rng, 0.02), 30.0, 0.02) == 24
     assert surface_neighbors(plane(rng, 0.02), 1000.0, 0.02) == 100
 

@@ -18,7 +18,7 @@ def gable(rng, density, noise, slope=40.0):
 
 
 def leaves(rng, density, radius=4.0):
-    """Return points spread evenly in a ball, ``density`` of them per square metre seen from above, twice returned."""
+    """Return points spread evenly in a ball, ``density`` of them per square meter seen from above, twice returned."""
     direction = rng.normal(size=(int(2 * density * np.pi * radius**2), 3))
     direction /= np.linalg.norm(direction, axis=1)[:, None]
     return direction * radius * rng.random((len(direction), 1)) ** (1 / 3)

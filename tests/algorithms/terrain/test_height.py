@@ -10,7 +10,7 @@ FAR = np.array([600_000.0, 5_000_000.0, 0.0])
 
 
 def test_few_points_by_hand():
-    ground = [[0, 0, 10], [10, 0, 10], [10, 10, 20], [0, 10, 20]]  # rises by 1 m per metre of northing
+    ground = [[0, 0, 10], [10, 0, 10], [10, 10, 20], [0, 10, 20]]  # rises by 1 m per meter of northing
     above = [[5, 5, 18], [2, 1, 11], [9, 9, 12], [4, 10, 20.5]]
     height = compute_height_above_ground(np.array(ground + above, float), [2, 2, 2, 2, 1, 6, 5, 18])
     assert height.dtype == np.float32
