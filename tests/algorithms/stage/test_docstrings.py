@@ -1,0 +1,61 @@
+"""Sections of a docstring, and the one that a declaration adds."""
+
+from typing import Annotated, Optional
+
+from lidar_buildings.algorithms.stage import Param, stage
+
+
+@stage("Toy words", group="Toys", writes=("cluster_id",))
+def toy_words(
+    xyz,
+    *,
+    width: Annotated[float, Param("Width", "How wide.", unit="m", low=0)] = 2.0,
+    count: Annotated[Optional[int], Param("Count", "How many.", low=1, automatic="all.")] = None,
+    monitor=None,
+):
+    """Say something in one paragraph.
+
+    A second one.
+
+    Notes
+    -----
+    First note.
+
+    Second note.
+
+    References
+    ----------
+    Nobody.
+    """
+
+
+@stage("Toy silence", group="Toys", writes=("cluster_id",))
+def toy_silence(xyz, *, monitor=None):
+    """Say it all at once."""
+
+
+def test_summary_description_and_sections_come_from_the_docstring():
+    words = toy_words.stage
+    assert words.summary == "Say something in one paragraph."
+    assert words.description == "A second one."
+    assert words.section("Notes") == "First note.\n\nSecond note."
+    assert words.section("References") == "Nobody."
+    assert words.section("Raises") == ""
+    silence = toy_silence.stage
+    assert (silence.summary, silence.description) == ("Say it all at once.", "")
+
+
+def test_help_shows_tunables_as_the_dialog_does():
+    _, added = toy_words.__doc__.split("Other Parameters\n----------------\n")
+    assert added.splitlines() == [
+        "width : float, m, at least 0 m, default 2.0",
+        "    How wide.",
+        "count : int or None, at least 1, default None",
+        "    How many. Automatic: all.",
+        "monitor : Monitor, optional",
+        "    Hears progress, automatic values and warnings.",
+    ]
+
+
+def test_without_tunables_the_docstring_stays_as_it_is():
+    assert toy_silence.__doc__ == "Say it all at once."

@@ -1,0 +1,90 @@
+"""A tunable takes what fits its type and bounds, and says in one sentence why it takes nothing else."""
+
+import re
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.stage import Param, Tunable
+
+WIDTH = Param("Width", "How wide.", unit="m", low=0, high=4, open_low=True)
+
+
+def tunable(kind, default, param=WIDTH, name="width"):
+    return Tunable(name, kind, default, param)
+
+
+@pytest.mark.parametrize(
+    ("kind", "value", "taken"),
+    [
+        (float, 4, 4.0),
+        (float, np.float32(0.5), 0.5),
+        (int, 3.0, 3),
+        (int, np.int64(3), 3),
+        (bool, np.bool_(True), True),
+        (str, "up", "up"),
+        (tuple, ["up"], ("up",)),
+    ],
+)
+def test_values_come_in_the_declared_type(kind, value, taken):
+    param = Param("Way", "Which.", choices=("up", "down")) if kind in (str, tuple) else WIDTH
+    found = tunable(kind, None, param).check(value)
+    assert found == taken
+    assert type(found) is type(taken)
+
+
+@pytest.mark.parametrize(
+    ("kind", "value", "wanted"),
+    [
+        (float, 0.0, "greater than 0 m and at most 4 m"),
+        (float, 4.001, "greater than 0 m and at most 4 m"),
+        (float, float("nan"), "greater than 0 m and at most 4 m"),
+        (float, "3", "a number"),
+        (float, True, "a number"),
+        (float, [1.0], "a number"),
+        (int, 2.5, "a whole number"),
+        (int, float("inf"), "a whole number"),
+        (bool, 1, "true or false"),
+        (str, 1, "a word"),
+        (tuple, "up", "a list of words"),
+    ],
+)
+def test_what_does_not_fit_is_refused_in_one_sentence(kind, value, wanted):
+    sentence = f"Width (width) must be {wanted}, got {value!r}."
+    with pytest.raises(ValueError, match=f"^{re.escape(sentence)}$"):
+        tunable(kind, None).check(value)
+
+
+def test_words_must_be_among_the_choices():
+    way = Param("Way", "Which.", choices=("up", "down"))
+    for kind, value in ((str, "left"), (tuple, ("up", "left"))):
+        with pytest.raises(ValueError, match=r"Way \(width\) must be one of up, down, got"):
+            tunable(kind, "up", way).check(value)
+    assert tunable(tuple, (), way).check(()) == ()
+
+
+def test_nothing_is_a_value_of_automatic_tunables_alone():
+    assert tunable(float, None).check(None) is None
+    with pytest.raises(ValueError, match="must be a number, got None"):
+        tunable(float, 1.0).check(None)
+
+
+@pytest.mark.parametrize(
+    ("param", "words"),
+    [
+        (WIDTH, "greater than 0 m and at most 4 m"),
+        (Param("a", "b", unit="°", low=-1.5), "at least -1.5°"),
+        (Param("a", "b", high=7, open_high=True), "less than 7"),
+        (Param("a", "b", choices=("x", "y")), "one of x, y"),
+        (Param("a", "b"), ""),
+    ],
+)
+def test_range_in_words(param, words):
+    assert param.range == words
+
+
+def test_what_an_automatic_tunable_is_when_nobody_sets_it():
+    found, without = Param("a", "b", automatic="the spacing."), Param("a", "b", automatic="none; all stay.")
+    assert (found.unset, found.unset_text) == ("automatic", "Automatic: the spacing.")
+    assert (without.unset, without.unset_text) == ("none", "Empty: none; all stay.")
+    assert Param("a", "b").unset_text == ""
