@@ -35,8 +35,9 @@ _LEAST_WIDTH, _MOST_ACROSS_LINES = 0.45, 60
 # Half a metre around holds so many at 125 points/m²; with more, every neighborhood would cost and tell nothing new.
 _MOST_NEIGHBORS = 100
 
-# A fifth of the surroundings of any cloud with ground in it is open ground or roof.
-_SMOOTH_SHARE = 0.2
+# A fifth of the surroundings of nearly any cloud with ground in it is open ground or roof. In a closed forest less is:
+# surfaces differ in roughness by less than so many times the smoothest twentieth, and crowns by more.
+_SMOOTH_SHARE, _SMOOTHEST_SHARE, _MOST_ROUGHER = 0.2, 0.05, 3.0
 
 # Coordinates are stored to a centimetre or a millimetre: no noise below that can be told.
 _LEAST_NOISE = 0.01
@@ -84,13 +85,15 @@ class SurfaceSample:
         Notes
         -----
         The deviation from the plane of the 12 nearest points at the smoothest fifth of the cloud: vegetation, edges
-        and walls don't reach that far. In a cloud of planes and nothing else that is 0.77 of the true noise.
+        and walls don't reach that far; but no more than three times that of the smoothest twentieth, as in a closed
+        forest they do. In a cloud of planes and nothing else that is 0.77 of the true noise.
         """
         count = min(_NEIGHBORS, len(self))
         if count <= 3:
             return _LEAST_NOISE
         across = self._variances(count)[:, 2] * count / (count - 3)
-        return max(float(np.sqrt(np.quantile(across, _SMOOTH_SHARE))), _LEAST_NOISE)
+        smooth, smoothest = np.maximum(np.sqrt(np.quantile(across, (_SMOOTH_SHARE, _SMOOTHEST_SHARE))), _LEAST_NOISE)
+        return float(min(smooth, _MOST_ROUGHER * smoothest))
 
     def roughness(self, density: float) -> float:
         """Return how far points of one roof surface, ``density`` per m², may lie off its plane (one deviation, m)."""

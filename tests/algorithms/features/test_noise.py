@@ -56,6 +56,13 @@ def test_trees_over_two_thirds_of_the_ground_do_not_count(rng):
     assert surface_noise(np.concatenate([open_ground, crowns])) == pytest.approx(0.03, rel=0.35)
 
 
+def test_in_a_closed_forest_the_few_smooth_places_tell_the_noise(rng):
+    """A tenth of the points lie on the ground: the smoothest fifth reaches into the crowns."""
+    clearing = plane(rng, 0.03, side=20, count=1300)
+    crowns = rng.uniform([0, 30, 2], [80, 110, 12], (11_700, 3))
+    assert 0.02 < surface_noise(np.concatenate([clearing, crowns])) < 0.1
+
+
 @pytest.mark.parametrize("count", [1, 2, 3])
 def test_a_handful_of_points_has_the_least_noise(count):
     assert surface_noise(np.arange(3.0 * count).reshape(-1, 3)) == 0.01
