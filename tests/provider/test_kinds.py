@@ -39,6 +39,19 @@ def refused(provider, name, given, context):
     return message
 
 
+@pytest.mark.parametrize(("name", "own"), [("toylift", "INPUT"), ("toymerge", "INPUTS")])
+def test_files_of_points_can_be_browsed_for(provider, name, own):
+    algorithm = provider.algorithm(name).create()
+    definition = algorithm.parameterDefinition(own)
+    copy = definition.clone()
+    assert type(copy) is type(definition)
+    assert (copy.help(), copy.flags()) == (definition.help(), definition.flags())
+    for each in (definition, copy):
+        assert each.createFileFilter().startswith("Point clouds (*.las *.LAS *.laz *.LAZ *.vpc *.VPC);;")
+        assert each.checkValueIsAcceptable("tile.laz")
+        assert not each.checkValueIsAcceptable("")
+
+
 # --- selections and merged clouds -------------------------------------------------------------------------------------
 
 
