@@ -4,6 +4,9 @@ The figures are those of ``python tests/benchmarks/accuracy.py buildings``, whic
 better result is pasted, a worse one is explained.
 """
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -54,6 +57,16 @@ WRITTEN = (
     "reason",
 )
 KEYS = ("xyz", "gps_time", "return_number", "number_of_returns", "intensity", "point_source_id")
+
+
+# The rows of README's table, from above.
+TOLD = ("ahn3-delft", "ahn3-delft-4", "ahn-amsterdam-1", "ign-chalet", "ign-stbarth", "ign-stbarth-4")
+
+
+def test_readme_tells_what_was_reached():
+    readme = (Path(__file__).resolve().parents[2] / "README.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\|.*\| \*\*([\d.]+)\*\* \| ([\d.]+)", readme, re.MULTILINE)
+    assert [tuple(map(float, row)) for row in rows] == [REACHED[f"buildings/{name}"] for name in TOLD]
 
 
 def f_score(name, pipeline="detect_buildings"):
