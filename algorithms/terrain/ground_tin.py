@@ -199,6 +199,9 @@ def classify_ground_tin(
     the facet's nodes, if angle and distance to the facet are under the thresholds; the distance threshold is
     estimated in each round from the residuals of the nodes over the plane of their neighbors. It ends when hardly
     any point joins. Distances are measured across the facet, so that slopes don't loosen or tighten them.
+    What stands free, with steps down all round, starts the surface nowhere and joins it nowhere (not with seeds
+    'lowest').
+
     A point that lies too high above its facet is tried again at its mirror image about the facet's highest
     node: where the surface beyond is nearly level and has the image, it is the edge of a terrace.
 
@@ -232,12 +235,12 @@ def classify_ground_tin(
     growing = points[last]
     if seeds == "lowest":
         size = USUAL_BUILDING if size is None else size
-        start = seeds_by_lowest(growing, size)
+        start, stands_free = seeds_by_lowest(growing, size), np.zeros(len(growing), bool)
     else:
-        start, size = seeds_by_opening(growing, cell_size, size, monitor.part(0, 0.3))
+        start, stands_free, size = seeds_by_opening(growing, cell_size, size, monitor.part(0, 0.3))
     terrain = _terrain(size) if terrain is None else terrain
     rules = _Rules(angle, iteration_distance, _GROW_BEND * spacing, edge_length, scale)
-    is_node, distance = _grow(growing, start, rules, monitor.part(0.3, 0.8))
+    is_node, distance = _grow(growing, start, stands_free, rules, monitor.part(0.3, 0.8))
     bend, region = (np.inf, 0.0) if seeds == "lowest" else (_SWEEP_BEND * scale, _REGION * spacing)
     is_ground, sweep_distance = _sweep(points, growing[is_node], sweep_distance, bend, region, monitor.part(0.8, 1))
     is_ground[np.flatnonzero(last)[is_node]] = True
@@ -313,8 +316,13 @@ class _Rules:
         return max(rough, rough / 2 + self.bend)
 
 
-def _grow(points: np.ndarray, start: np.ndarray, rules: _Rules, monitor: Monitor) -> tuple[np.ndarray, float]:
-    """Let the TIN of the points ``start`` grow; return which points are its nodes, and the last distance used."""
+def _grow(
+    points: np.ndarray, start: np.ndarray, stands_free: np.ndarray, rules: _Rules, monitor: Monitor
+) -> tuple[np.ndarray, float]:
+    """Let the TIN of the points ``start`` grow; return which points are its nodes, and the last distance used.
+
+    What stands free doesn't join: on noisy clouds the surface would climb roofs, a step at a time.
+    """
     is_start = np.zeros(len(points), bool)
     is_start[start] = True
     is_node = is_start.copy()
@@ -326,7 +334,7 @@ def _grow(points: np.ndarray, start: np.ndarray, rules: _Rules, monitor: Monitor
         tin = Tin(nodes)
         if candidates is None:
             candidates = _near(tin, points, _CANDIDATE_DISTANCES * distance, monitor.part(0, 0.5))
-            candidates = candidates[~is_node[candidates]]
+            candidates = candidates[~(is_node | stands_free)[candidates]]
         candidates, joining = _joining(tin, points, candidates, distance, rules, is_start[is_node])
         is_node[joining] = True
         monitor.progress(0.5 + 0.5 * (step + 1) / _MAX_ROUNDS)

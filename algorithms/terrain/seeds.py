@@ -54,15 +54,20 @@ _SLOPE_SCALE = 4.0
 
 @dataclass
 class Lowest:
-    """The lowest point of each cell: ``index`` (rows, columns), -1 where empty, and the cell size (m)."""
+    """Lowest points of cells, ``index`` (rows, columns), -1 where empty; cell size (m) and each point's cell (n, 2)."""
 
     index: np.ndarray
     cell_size: float
+    cell: np.ndarray
 
     def points(self, chosen: np.ndarray) -> np.ndarray:
         """Return the indices of the points of the chosen, occupied cells."""
         index = self.index[chosen]
         return index[index >= 0]
+
+    def at_points(self, values: np.ndarray) -> np.ndarray:
+        """Return the value (n,) of each point's cell."""
+        return values[tuple(self.cell.T)]
 
 
 def lowest_points(xyz: np.ndarray, cell_size: float) -> Lowest:
@@ -73,12 +78,12 @@ def lowest_points(xyz: np.ndarray, cell_size: float) -> Lowest:
     # Written from the highest to the lowest, the last one stays; ties go to the south-west, whatever the order.
     order = np.lexsort((-xyz[:, 1], -xyz[:, 0], -xyz[:, 2]))
     index[tuple(cell[order].T)] = order
-    return Lowest(index, cell_size)
+    return Lowest(index, cell_size, cell)
 
 
 def seeds_by_opening(
     xyz: np.ndarray, cell_size: float, max_building_size: Optional[float], monitor: Monitor
-) -> tuple[np.ndarray, float]:
+) -> tuple[np.ndarray, np.ndarray, float]:
     """Find ground points by opening the lowest surface with growing windows.
 
     What stands free with steps down all round is an object, and so is what a window lifts off the surface by more
@@ -100,6 +105,8 @@ def seeds_by_opening(
     -------
     seeds : ndarray of shape (m,), int64
         Indices of the seeds.
+    stands_free : ndarray of shape (n,), bool
+        Points of what stands free, or over it: no terrain.
     size : float
         Least extent of the largest building that was looked for or found, m.
 
@@ -126,7 +133,9 @@ def seeds_by_opening(
     lifted = _lifted(surface, windows, _SLOPE_SHARE * slope, cell_size, monitor.part(0.45, 0.9))
     objects = _without_joined(lifted, free, windows[-1], surface, slope, cell_size)
     monitor.progress(1.0)
-    return lowest.points(known & ~objects), max(size, found)
+    # What is seen through a roof as through a pit lies lower than the surface there.
+    stands_free = lowest.at_points(free) & (xyz[:, 2] >= lowest.at_points(surface))
+    return lowest.points(known & ~objects), stands_free, max(size, found)
 
 
 def seeds_by_lowest(xyz: np.ndarray, max_building_size: float) -> np.ndarray:

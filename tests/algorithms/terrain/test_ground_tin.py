@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
-from lidar_buildings.algorithms.terrain.ground_tin import classify_ground_tin
+from lidar_buildings.algorithms.terrain.ground_tin import _grow, _Rules, classify_ground_tin
 
 FAR = np.array([600_000.0, 5_000_000.0, 0.0])
 WIDTH = 80.0
@@ -83,6 +83,18 @@ def test_a_bridge_over_a_valley_is_not_ground_and_the_valley_is(rng):
     hovering = on_deck & (np.abs(xyz[:, 1] - 40) < 8)
     assert is_ground[hovering].mean() < 0.15  # its ends join the banks
     assert is_ground[~on_deck].mean() > 0.99
+
+
+@pytest.mark.parametrize("is_free", [True, False])
+def test_what_stands_free_does_not_join_the_surface_however_near_it_is(is_free, rng):
+    """A platform 0.3 m over a field; of a roof such a step is what the surface would climb next."""
+    plan = rng.uniform(0, 20, (2000, 2))
+    on_top = np.abs(plan - 10).max(axis=1) < 4
+    points = np.column_stack([plan, np.where(on_top, 0.3, 0.0)])
+    rules = _Rules(max_angle=20.0, max_distance=0.5, bend=0.0, edge_length=0.5, reach=1.0)
+    is_node, _ = _grow(points, np.flatnonzero(~on_top), on_top & is_free, rules, Monitor())
+    assert is_node[on_top].any() != is_free
+    assert is_node[~on_top].all()
 
 
 def test_low_things_are_not_ground(rng):

@@ -82,7 +82,7 @@ def test_seeds_cover_terrain_and_no_roof(name, rng):
         under = ((plan >= [west, south]) & (plan <= [west + width, south + depth])).all(axis=1)
         placed.append((west, south, width, depth, ground[under].max() + 4))
     z, is_roof = raise_roofs(plan, ground + rng.normal(0, 0.03, len(plan)), *placed)
-    seeds, _ = seeds_by_opening(np.column_stack([plan, z]), 1.0, 60.0, Monitor())
+    seeds, *_ = seeds_by_opening(np.column_stack([plan, z]), 1.0, 60.0, Monitor())
     assert len(set(seeds.tolist())) == len(seeds)
     assert not is_roof[seeds].any()
     # Every open place of terrain has a seed within a few cells.
@@ -95,7 +95,7 @@ def test_a_dike_is_terrain_though_windows_lift_it_off(rng):
     """It is narrower than any building, but its sides join the terrain smoothly."""
     plan = rng.uniform(0, 100, (30_000, 2))
     z = 4 * np.exp(-((plan[:, 0] - 50) ** 2) / (2 * 5**2))
-    seeds, _ = seeds_by_opening(np.column_stack([plan, z + rng.normal(0, 0.02, len(plan))]), 1.0, 60.0, Monitor())
+    seeds, *_ = seeds_by_opening(np.column_stack([plan, z + rng.normal(0, 0.02, len(plan))]), 1.0, 60.0, Monitor())
     upper_half = {tuple(cell) for cell in np.floor(plan[z > 2]).astype(int).tolist()}
     seeded = {tuple(cell) for cell in np.floor(plan[seeds][z[seeds] > 2]).astype(int).tolist()}
     assert len(seeded) > 0.88 * len(upper_half)
@@ -106,7 +106,7 @@ def test_pits_are_no_seeds(rng):
     xyz = np.column_stack([plan, rng.normal(0, 0.02, len(plan))])
     multipath = np.array([100, 1500, 2222])
     xyz[multipath, 2] = -9.0
-    seeds, _ = seeds_by_opening(xyz, 1.0, 30.0, Monitor())
+    seeds, *_ = seeds_by_opening(xyz, 1.0, 30.0, Monitor())
     assert not np.isin(multipath, seeds).any()
     assert len(seeds) > 1000
 
@@ -115,7 +115,7 @@ def test_gaps_without_points_change_nothing(rng):
     """A lake returns nothing; its shores are still ground."""
     plan = even(80, 80) + rng.uniform(-0.3, 0.3, (len(even(80, 80)), 2))
     plan = plan[np.hypot(*(plan - 40).T) > 18]
-    seeds, _ = seeds_by_opening(np.column_stack([plan, 0.05 * plan[:, 0]]), 1.0, 60.0, Monitor())
+    seeds, *_ = seeds_by_opening(np.column_stack([plan, 0.05 * plan[:, 0]]), 1.0, 60.0, Monitor())
     shore = np.hypot(*(plan[seeds] - 40).T) < 20
     assert shore.sum() > 100
 
@@ -124,7 +124,7 @@ def test_a_terrace_keeps_its_upper_level(rng):
     """A step of 3 m across the whole scene is terrain on both sides: the upper side is wider than any window."""
     plan = even(150, 60) + rng.uniform(-0.3, 0.3, (len(even(150, 60)), 2))
     z = np.where(plan[:, 0] > 75, 3.0, 0.0) + rng.normal(0, 0.02, len(plan))
-    seeds, _ = seeds_by_opening(np.column_stack([plan, z]), 1.0, 40.0, Monitor())
+    seeds, *_ = seeds_by_opening(np.column_stack([plan, z]), 1.0, 40.0, Monitor())
     upper = plan[seeds, 0] > 76
     assert upper.sum() > 0.9 * 74 * 60
 
@@ -139,17 +139,21 @@ def scene_with_plateau(rng, bank):
 
 def test_a_hall_larger_than_usual_is_found_as_it_stands_free(rng):
     xyz, is_hall = scene_with_plateau(rng, bank=0.0)
-    seeds, size = seeds_by_opening(xyz, 1.4, None, Monitor())
+    seeds, stands_free, size = seeds_by_opening(xyz, 1.4, None, Monitor())
     assert not is_hall[seeds].any()
+    # At the walls cells hold the ground, too.
+    assert stands_free[is_hall].mean() > 0.9
+    assert not stands_free[~is_hall].any()
     assert size > 85
-    seeds, size = seeds_by_opening(xyz, 1.4, 60.0, Monitor())
+    seeds, _, size = seeds_by_opening(xyz, 1.4, 60.0, Monitor())
     assert is_hall[seeds].mean() > 0.1
     assert size == 60.0
 
 
 def test_a_flat_hill_as_large_as_a_hall_is_terrain(rng):
     xyz, is_top = scene_with_plateau(rng, bank=15.0)
-    seeds, size = seeds_by_opening(xyz, 1.4, None, Monitor())
+    seeds, stands_free, size = seeds_by_opening(xyz, 1.4, None, Monitor())
+    assert not stands_free.any()
     assert size == 60.0
     assert is_top[seeds].sum() > 0.9 * is_top.sum()
 
@@ -161,7 +165,7 @@ def test_a_low_house_with_a_large_roof_on_a_slope_is_no_bank(rng):
     inward = 7.0 - np.abs(plan - 35).max(axis=1)
     eaves = 0.08 * 28 + 2.4
     xyz = np.column_stack([plan, np.where(inward > 0, eaves + 0.35 * inward, terrain) + rng.normal(0, 0.02, len(plan))])
-    seeds, _ = seeds_by_opening(xyz, 1.0, None, Monitor())
+    seeds, *_ = seeds_by_opening(xyz, 1.0, None, Monitor())
     assert not (inward[seeds] > 0).any()
     assert (inward[seeds] < -1).sum() > 0.9 * (70**2 - 16**2)
 
