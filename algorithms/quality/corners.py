@@ -171,9 +171,9 @@ def compare_corners(
     the minimum overlap of the smaller one, so that a row of houses may be one outline in one of the maps.
 
     A corner is a vertex where the outline turns by 20° or more. Two corners can be the same when they face the same
-    way, to 60°. A shift that all corners share (the median of the
-    displacements) is found first and taken off while buildings and corners are matched; distances, arrows and the
-    mean shift are those between the maps as they are. The standard deviation has the divisor n.
+    way, to 60°. A shift that all corners share (the median of the displacements) is found first and taken off while
+    buildings and corners are matched; distances, arrows and the mean shift are those between the maps as they are.
+    The standard deviation has the divisor n.
 
     References
     ----------
