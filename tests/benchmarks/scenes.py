@@ -1,0 +1,149 @@
+"""Scenes unlike any that something was tried on: simulated, with the truth, each a function of nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from lidar_buildings.algorithms.cloud.asprs import PointClass
+from lidar_buildings.algorithms.simulation.houses import Site
+from lidar_buildings.algorithms.simulation.plants import plant_hedge, plant_trees
+from lidar_buildings.algorithms.simulation.relief import Relief
+from lidar_buildings.algorithms.simulation.scanner import Scan, scan
+from lidar_buildings.algorithms.simulation.scene import Scene
+from lidar_buildings.algorithms.simulation.solids import Rect, Solid, flat, gable, lean_to
+from lidar_buildings.algorithms.stage import Monitor
+
+SIDE = 120.0
+
+# Of strips that were not adjusted to one another, every second lies so much higher (m).
+MISFIT = 0.08
+
+
+@dataclass(frozen=True)
+class Steps(Relief):
+    """A slope whose rise is gathered in steps so high (m), at even distances."""
+
+    step: float = 0.0
+
+    def ground(self, x, y) -> np.ndarray:
+        """Elevation (m) of the ground."""
+        return self.plane(x, y) + self.step * (np.floor(x / 12) + np.clip((x % 12) / 1.5, 0, 1))
+
+    @property
+    def spread(self) -> float:
+        """Height (m) that the ground never leaves the plane by."""
+        return self.step * (self.size / 12 + 1)
+
+
+def city() -> Scene:
+    """Blocks as high as others are wide."""
+    town = Scene(Relief(SIDE))
+    for x in (30.0, 90.0):
+        for y in (30.0, 90.0):
+            _house(town, Rect(x, y, 36.0, 36.0, 0.05), 9.0 + x / 3)
+    return town
+
+
+def vineyard() -> Scene:
+    """Terraces 2.2 m high with walls, vines and four huts."""
+    hill = Scene(Steps(SIDE, gradient=0.07, step=2.2))
+    huts = [Rect(x, y, 6.0, 5.0, 0.0) for x, y in ((31.0, 30.0), (55.0, 60.0), (79.0, 90.0), (103.0, 30.0))]
+    for hut in huts:
+        _house(hill, hut, 2.8, 25.0)
+    for x in np.arange(12.0, SIDE, 12.0):
+        for y in np.arange(4.0, SIDE, 8.0):
+            _put(hill, Rect(x + 1.7, y, 0.4, 8.0, 0.0), 0.7)
+            for row in (3.5, 5.5, 7.5, 9.5):
+                vines = Rect(x + row, y, 8.0, 0.5, np.pi / 2)
+                if not hill.near_building(vines.corners(), 1.0).any():
+                    plant_hedge(hill, vines, 1.7)
+    return hill
+
+
+def forest() -> Scene:
+    """Six houses in a closed forest."""
+    wood, rng = Scene(Relief(SIDE, gradient=0.1)), np.random.default_rng(5)
+    for i, (x, y) in enumerate(((25, 30), (70, 25), (95, 60), (40, 75), (80, 100), (20, 105))):
+        _house(wood, Rect(x, y, 8.0 + i % 5, 7.0 + i % 3, 0.2 * i), 2.8 + i % 2 * 2.4, 22.0 + 4 * i)
+    plant_trees(wood, 60.0, 1.0, rng, Monitor())
+    return wood
+
+
+def alps() -> Scene:
+    """Huts on a slope of 38°, a fifth of it in forest."""
+    slope, rng = Scene(Relief(SIDE, gradient=float(np.tan(np.deg2rad(38.0))))), np.random.default_rng(6)
+    for i, (x, y) in enumerate(((20, 30), (55, 20), (90, 35), (30, 75), (65, 65), (85, 95), (45, 105))):
+        _house(slope, Rect(x, y, 7.0 + i % 4, 6.0 + i % 3, 0.1 * i), 5.0, 22.0)
+    plant_trees(slope, 60.0, 0.2, rng, Monitor())
+    return slope
+
+
+def solar_park() -> Scene:
+    """Tilted tables, 2.6 m high at the back, and nothing else."""
+    field = Scene(Relief(SIDE, gradient=0.03))
+    for y in np.arange(10.0, SIDE, 8.0):
+        table = Rect(SIDE / 2, y, 90.0, 4.2, 0.0)
+        tops = lean_to(table, float(field.relief.ground(table.x, y)) + 0.8, 0.44)
+        under = tops[0] - [0.0, 0.0, 0.1]
+        field.solids.append(Solid(table, tops, 0.0, PointClass.UNCLASSIFIED, field.new_id(), under))
+    return field
+
+
+def station() -> Scene:
+    """Trains of five cars between platforms with roofs."""
+    rails = Scene(Relief(SIDE))
+    _house(rails, Rect(60.0, 108.0, 80.0, 14.0, 0.0), 10.0, 30.0)
+    for y in (20.0, 48.0, 76.0):
+        for x in (20.0, 46.0, 72.0, 98.0):
+            _put(rails, Rect(x, y, 25.0, 2.9, 0.0), 3.9)
+        _put(rails, Rect(60.0, y + 8.0, 116.0, 7.0, 0.0), 0.75)
+        _house(rails, Rect(60.0, y + 8.0, 80.0, 5.0, 0.0), 4.2)
+    return rails
+
+
+def port() -> Scene:
+    """Stacks of one to four containers, and a shed."""
+    quay = Scene(Relief(SIDE))
+    for i, (x, y) in enumerate((x, y) for x in np.arange(15.0, 90.0, 12.6) for y in np.arange(10.0, 110.0, 2.6)):
+        if i % 7:
+            _put(quay, Rect(x, y, 12.2, 2.44, 0.0), 2.59 * (1 + i % 4))
+    _house(quay, Rect(106.0, 60.0, 18.0, 60.0, 0.0), 9.0)
+    return quay
+
+
+# Name, scene, and whether the strips don't fit together.
+SCENES: tuple[tuple[str, Callable[[], Scene], bool], ...] = (
+    ("blocks of a city", city, False),
+    ("the same, strips 8 cm apart", city, True),
+    ("terraced vineyard with huts", vineyard, False),
+    ("houses in a closed forest", forest, False),
+    ("huts on a slope of 38°", alps, False),
+    ("solar park, no building", solar_park, False),
+    ("railway station with trains", station, False),
+    ("container port", port, False),
+)
+
+
+def scanned(make: Callable[[], Scene], misfit: bool, density: float) -> Scan:
+    """Return the points of a scene at ``density`` pulses per m²."""
+    made = scan(make(), density=density)
+    made.xyz[:, 2] += MISFIT * (misfit & (made.point_source_id % 2 == 0))
+    return made
+
+
+def _house(scene: Scene, rect: Rect, eave: float, pitch: float = 0.0) -> None:
+    """Put up a building with a flat roof, or a gable roof of ``pitch`` (°)."""
+    site = Site(scene, rect, eave)
+    top = site.floor + eave
+    tops = gable(rect, top, float(np.tan(np.deg2rad(pitch)))) if pitch else flat(rect, top)
+    scene.add_building("house", rect.corners(), [site.solid(rect, tops)])
+
+
+def _put(scene: Scene, rect: Rect, height: float) -> None:
+    """Put down a box that is no building."""
+    ground = float(scene.relief.ground(rect.x, rect.y))
+    top = flat(rect, ground + height)
+    scene.solids.append(Solid(rect, top, ground - 1.5, PointClass.UNCLASSIFIED, scene.new_id()))
