@@ -18,10 +18,10 @@ REACHED = {
     "ground/samp31": 1.9,
     "ground/samp41": 3.6,
     "ground/samp52": 2.8,
-    "ground/samp53": 3.5,
+    "ground/samp53": 3.6,
     "ground/samp61": 1.8,
 }
-REACHED_MEAN = 3.63
+REACHED_MEAN = 3.64
 REACHED_IN_TOWN = {"buildings/ahn3-delft": 1.0}
 
 # Other versions of numpy and scipy round differently.
