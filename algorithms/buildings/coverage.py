@@ -12,7 +12,18 @@ from typing import Optional
 import numpy as np
 
 from .outlines import Tracing, pieces_of, signed_area
-from .regularize import Line, Wall, chords, is_near, is_valid, main_directions, segments_meet, simplify, straighten
+from .regularize import (
+    Line,
+    Wall,
+    chords,
+    is_near,
+    is_valid,
+    main_directions,
+    meet_in_corners,
+    segments_meet,
+    simplify,
+    straighten,
+)
 
 
 @dataclass(frozen=True)
@@ -130,7 +141,7 @@ class Coverage:
                 return False
             self.polygons[face] = rings
             self.is_straight[face] = manner.is_straight and face not in borders.traced_faces
-        return True
+        return len(polygons) == 1 or self.manner[group] == self._last or meet_in_corners(*self._segments(group))
 
     def _part_groups(self) -> None:
         """Give groups whose outlines run into each other's a lesser manner, the smaller one first, until none do."""
@@ -180,7 +191,10 @@ class Coverage:
         return len(self.manners) - 1
 
     def samples(self, edges: np.ndarray, share: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
-        """Return the places (m, 2) where the building ends beyond its half-edges, and their lengths (m,)."""
+        """Return the places (m, 2) where the building ends beyond its half-edges, and their lengths (m,).
+
+        ``share`` is how much of the outset counts, from 0, at the points themselves, to 1.
+        """
         a, b = self.tracing.xy[self.starts[edges]], self.tracing.xy[self.ends[edges]]
         step = b - a
         length = np.hypot(*step.T)
@@ -215,7 +229,7 @@ class _Borders:
         return self.coverage.samples(edges, self.manner.outset)
 
     def _cut_corners(self) -> None:
-        """Make chords of the rings that are not straight, which stay within a spacing of the traced ones."""
+        """Make chords of the rings that are not straight, which stay within the tolerance of the traced ones."""
         for number, line in enumerate(self.lines):
             if not self.is_straight[number] and not self.manner.is_traced:
                 self.rings[number] = chords(line, self.tolerance / 2)
@@ -302,12 +316,11 @@ class _Borders:
             places = xy[starts] if arc.is_closed else xy[np.append(starts, arc.ends[1])]
         else:
             samples, length = self._samples(arc.edges)
-            traced = self._between(arc, samples)
+            raw = traced = self._between(arc, samples)
             if not self.manner.is_traced:
-                traced = traced[simplify(traced, self.tolerance / 2, arc.is_closed)]
+                traced = raw[simplify(raw, self.tolerance / 2, arc.is_closed)]
             places = self._between(arc, np.array(arc.corners).reshape(-1, 2))
             weights = length if arc.is_closed else np.concatenate([[0.0], length, [0.0]])
-            raw = self._between(arc, samples)
             arc.is_straight &= is_near(places, Line(raw, weights, arc.is_closed), self.limit)
             places = places if arc.is_straight else traced
         arc.places = places

@@ -7,7 +7,7 @@ list of rings, first the exterior counterclockwise, then the holes clockwise.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Optional
+from typing import Any, Optional
 
 import numpy as np
 
@@ -51,6 +51,8 @@ class Tracing:
         bare point, at most half a spacing; 0 between two faces.
     max_edge : float
         Longest edge (m) that joins two points of one building.
+    triangulation : scipy.spatial.Delaunay
+        The triangles, to find places in; its points are ``xy`` less their mean.
     """
 
     xy: np.ndarray
@@ -61,6 +63,7 @@ class Tracing:
     labels: np.ndarray
     outset: np.ndarray
     max_edge: float
+    triangulation: Any
 
     @property
     def starts(self) -> np.ndarray:
@@ -75,6 +78,19 @@ class Tracing:
     def beyond(self, group: np.ndarray) -> np.ndarray:
         """Return the group (3 t,) across each half-edge, -1 outside, for groups (t,) of triangles."""
         return np.where(self.neighbors >= 0, group[self.neighbors], -1).ravel()
+
+    @property
+    def areas(self) -> np.ndarray:
+        """Area (m²) of each triangle."""
+        return _areas(self.xy, self.triangles)
+
+    def locate(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the triangle (n,) that each place (n, 2) lies in, -1 outside, and the shares (n, 3) of its corners."""
+        places = places - self.xy.mean(axis=0)
+        triangle = self.triangulation.find_simplex(places)
+        transform = self.triangulation.transform[triangle]
+        share = np.einsum("nij,nj->ni", transform[:, :2], places - transform[:, 2])
+        return triangle, np.column_stack([share, 1 - share.sum(axis=1)])
 
     @property
     def parts(self) -> list:
@@ -160,7 +176,7 @@ def trace_outlines(
     _absorb(value, neighbors, length, area, spacing, 1, min_area)
     face, labels = _faces(value, neighbors)
     outset = _outsets(neighbors, triangles, face, label, length, area, spacing)
-    return Tracing(xy, label, triangles, neighbors, face, labels, outset, max_edge)
+    return Tracing(xy, label, triangles, neighbors, face, labels, outset, max_edge, triangulation)
 
 
 def signed_area(ring: np.ndarray) -> float:

@@ -506,6 +506,23 @@ def segments_meet(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) ->
     return any(_meet(a[low : low + step], b[low : low + step], c, d).any() for low in range(0, len(a), step))
 
 
+def meet_in_corners(starts: np.ndarray, ends: np.ndarray) -> bool:
+    """Return whether segments (n, 2), some of them there and back, have no points in common but their ends."""
+    is_back = (starts[:, 0] > ends[:, 0]) | ((starts[:, 0] == ends[:, 0]) & (starts[:, 1] > ends[:, 1]))
+    a, b = np.where(is_back[:, None], ends, starts), np.where(is_back[:, None], starts, ends)
+    a, b = np.split(np.unique(np.column_stack([a, b]), axis=0), 2, axis=1)
+    step = max(1, _PAIRS_AT_ONCE // len(a))
+    for low in range(0, len(a), step):
+        c, d = a[low : low + step], b[low : low + step]
+        share = np.zeros((len(c), len(a)), bool)
+        for one in (c, d):
+            for other in (a, b):
+                share |= (one[:, None] == other).all(axis=-1)
+        if (_meet(c, d, a, b) & ~share).any():
+            return False
+    return True
+
+
 def is_inside(point: np.ndarray, ring: np.ndarray) -> bool:
     """Return whether a point (2,) lies inside a ring, by the parity of the walls to its east."""
     (x0, y0), (x1, y1) = ring[:-1].T, ring[1:].T

@@ -1,0 +1,112 @@
+"""Simulated rows: every house gets its polygon where its roof ends, and no house is cut in two."""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.buildings.footprints import extract_footprints
+
+WIDTH, DEPTH = 5.5, 11.0
+
+
+def gables(a, v, number):
+    return 6 + 1.1 * (WIDTH / 2 - np.abs(a - WIDTH / 2))
+
+
+def steps(a, v, number):
+    return 7 + 0.6 * (number % 2) + 0.7 * (DEPTH / 2 - np.abs(v - DEPTH / 2))
+
+
+def flat_steps(a, v, number):
+    return 7 + 0.8 * (number % 2)
+
+
+def one_roof(a, v, number):
+    return 7 + 0.7 * (DEPTH / 2 - np.abs(v - DEPTH / 2))
+
+
+def firewalls(a, v, number):
+    return one_roof(a, v, number) + 0.6 * (np.minimum(a, WIDTH - a) < 0.2)
+
+
+def dormers(a, v, number):
+    return np.where((np.abs(a - WIDTH / 2) < 1.2) & (v > 1) & (v < 4), 9.0, one_roof(a, v, number))
+
+
+def row(rng, roof, density, houses=5, angle=0.5):
+    """Return the points of a row of houses and the ground around it, their classes, and how to turn back to the row."""
+    n = round(houses * WIDTH * DEPTH * density)
+    u, v = rng.uniform(0, houses * WIDTH, n), rng.uniform(0, DEPTH, n)
+    number = (u // WIDTH).astype(int)
+    z = roof(u - number * WIDTH, v, number)
+    m = round((houses * WIDTH + 16) * (DEPTH + 16) * density)
+    ground = rng.uniform([-8, -8], [houses * WIDTH + 8, DEPTH + 8], (m, 2))
+    is_under = (ground >= 0).all(axis=1) & (ground <= [houses * WIDTH, DEPTH]).all(axis=1)
+    plan = np.concatenate([np.column_stack([u, v]), ground[~is_under]])
+    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    z = np.concatenate([z, np.zeros((~is_under).sum())]) + rng.normal(0, 0.03, len(plan))
+    return np.column_stack([plan @ turn + [1000, 2000], z]), np.repeat([6, 2], [n, (~is_under).sum()]), turn
+
+
+def outlined(rng, roof, density, **more):
+    xyz, classification, turn = row(rng, roof, density, **more)
+    found = extract_footprints(xyz, classification, None, xyz[:, 2].astype(np.float32), split_rows=True)
+    return found, [(np.concatenate(rings) - [1000, 2000]) @ turn.T for rings in found.geometries]
+
+
+@pytest.mark.parametrize("roof", [gables, steps, flat_steps, firewalls])
+@pytest.mark.parametrize("density", [8, 20])
+def test_houses_of_a_row_are_polygons_that_share_their_walls(rng, assert_valid, roof, density):
+    found, places = outlined(rng, roof, density)
+    assert len(found) == 5
+    assert found.columns["cluster_id"] == [1] * 5
+    assert sorted(found.columns["id"]) == [1, 2, 3, 4, 5]
+    assert found.columns["area"] == pytest.approx([WIDTH * DEPTH] * 5, rel=0.06)
+    walls = sorted(x for place in places for x in (place[:, 0].min(), place[:, 0].max()))
+    # Inner walls are there twice, once for either house.
+    assert walls[1:-1] == pytest.approx(np.repeat(np.arange(1, 5) * WIDTH, 2), abs=0.3)
+    edges = [{tuple(edge) for edge in np.hstack([r[:-1], r[1:]]).tolist()} for (r,) in found.geometries]
+    back = [{(c, d, a, b) for a, b, c, d in one} for one in edges]
+    assert sum(bool(one & other) for one in edges for other in back) == 8
+    for rings in found.geometries:
+        assert_valid(rings)
+
+
+def test_attributes_are_those_of_each_house(rng):
+    found, places = outlined(rng, flat_steps, 12)
+    heights = [7 + 0.8 * ((place[:, 0].min() + WIDTH / 2) // WIDTH % 2) for place in places]
+    for name in ("height", "ridge_height", "eave_height"):
+        assert found.columns[name] == pytest.approx(heights, abs=0.1)
+    assert found.columns["volume"] == pytest.approx([h * a for h, a in zip(heights, found.columns["area"])], rel=0.03)
+
+
+@pytest.mark.parametrize("roof", [one_roof, dormers])
+@pytest.mark.parametrize("density", [4, 20])
+def test_a_roof_that_goes_on_is_not_split(rng, roof, density):
+    assert len(outlined(rng, roof, density)[0]) == 1
+
+
+def test_two_gables_may_be_one_house(rng):
+    assert len(outlined(rng, gables, 12, houses=2)[0]) == 1
+
+
+def test_low_parts_and_towers_are_no_houses(rng):
+    """A wing of 30 m² that is half as high as the house, on either side of it, and a tower on it."""
+
+    def house(a, v, number):
+        z = np.choose(number, [4.0, 8.0, 8.0, 8.0, 4.0])
+        return np.where((number == 2) & (v < 4), 14.0, z)
+
+    assert len(outlined(rng, house, 12)[0]) == 1
+
+
+def test_without_splitting_a_row_is_one_polygon(rng):
+    xyz, classification, _ = row(rng, gables, 12)
+    assert len(extract_footprints(xyz, classification)) == 1
+
+
+def test_houses_are_the_same_in_any_order_and_place(rng):
+    xyz, classification, _ = row(rng, gables, 10)
+    areas = sorted(extract_footprints(xyz, classification, split_rows=True).columns["area"])
+    order = rng.permutation(len(xyz))
+    moved = extract_footprints(xyz[order] + [6e5, 5e6, 0], classification[order], split_rows=True)
+    assert sorted(moved.columns["area"]) == pytest.approx(areas, rel=1e-3)
