@@ -48,8 +48,9 @@ _LARGE_WINDOW = 0.5
 # Windows of the opening grow by this factor.
 _GROWTH = 1.25
 
-# Terrain slope is measured over about this distance, m.
-_SLOPE_SCALE = 4.0
+# Terrain slope is that of a surface smoothed over about the first distance (m), a root mean square over the second:
+# on crests and beside cliffs, where windows lift terrain off, it is the flanks' that counts.
+_SLOPE_SMOOTHING, _SLOPE_SCALE = 2.0, 4.0
 
 
 @dataclass
@@ -112,8 +113,8 @@ def seeds_by_opening(
 
     Notes
     -----
-    Progressive opening after Pingel et al. (2013), with a threshold that follows the slope of a
-    first, coarser result; the return of smoothly joined regions is this project's, and so are the segments that
+    Progressive opening after Pingel et al. (2013), with a threshold that follows the slope of the result before, a
+    coarse one first; the return of smoothly joined regions is this project's, and so are the segments that
     stand free. By these, low houses with large roofs on a slope are found, which windows shave down little by little,
     and halls that no window is large enough for.
 
@@ -128,10 +129,14 @@ def seeds_by_opening(
     windows = _windows(size / 2 / cell_size)
     free, found = free_standing(surface, cell_size, size, max_building_size or np.inf)
     first = np.full(surface.shape, _FIRST_SLOPE)
-    coarse = _lifted(surface, windows, first, cell_size, monitor.part(0, 0.45))
-    slope = _slope(_interpolated(surface, (coarse > 0) | free), cell_size)
-    lifted = _lifted(surface, windows, _SLOPE_SHARE * slope, cell_size, monitor.part(0.45, 0.9))
-    objects = _without_joined(lifted, free, windows[-1], surface, slope, cell_size)
+    objects = free | (_lifted(surface, windows, first, cell_size, monitor.part(0, 0.3)) > 0)
+    for start in (0.3, 0.6):
+        terrain = _interpolated(surface, objects)
+        slope = _slope(terrain, cell_size)
+        # With what stands free taken away, a low roof beside a higher one is as narrow as it is.
+        bare = np.where(free, terrain, surface)
+        lifted = _lifted(bare, windows, _SLOPE_SHARE * slope, cell_size, monitor.part(start, start + 0.3))
+        objects = _without_joined(lifted, free, windows[-1], surface, slope, cell_size)
     monitor.progress(1.0)
     # What is seen through a roof as through a pit lies lower than the surface there.
     stands_free = lowest.at_points(free) & (xyz[:, 2] >= lowest.at_points(surface))
@@ -201,12 +206,13 @@ def _interpolated(surface: np.ndarray, unknown: np.ndarray) -> np.ndarray:
 
 
 def _slope(surface: np.ndarray, cell_size: float) -> np.ndarray:
-    """Return the slope (rise over run) of the smoothed surface."""
-    smooth = ndimage.gaussian_filter(surface, _SLOPE_SCALE / cell_size, mode="nearest")
+    """Return the slope (rise over run) that the smoothed surface has around each cell."""
+    smooth = ndimage.gaussian_filter(surface, _SLOPE_SMOOTHING / cell_size, mode="nearest")
     # A raster one cell wide has no gradient across.
     axes = [axis for axis in (0, 1) if smooth.shape[axis] > 1]
     gradients = [np.gradient(smooth, cell_size, axis=axis) for axis in axes]
-    return np.sqrt(sum((gradient**2 for gradient in gradients), np.zeros_like(smooth)))
+    squares = sum((gradient**2 for gradient in gradients), np.zeros_like(smooth))
+    return np.sqrt(ndimage.gaussian_filter(squares, _SLOPE_SCALE / cell_size, mode="nearest"))
 
 
 def _without_joined(

@@ -5,6 +5,7 @@ import pytest
 
 from lidar_buildings.algorithms.stage import Monitor
 from lidar_buildings.algorithms.terrain.seeds import (
+    _slope,
     _windows,
     lowest_points,
     seeds_by_lowest,
@@ -168,6 +169,14 @@ def test_a_low_house_with_a_large_roof_on_a_slope_is_no_bank(rng):
     seeds, *_ = seeds_by_opening(xyz, 1.0, None, Monitor())
     assert not (inward[seeds] > 0).any()
     assert (inward[seeds] < -1).sum() > 0.9 * (70**2 - 16**2)
+
+
+def test_the_slope_of_a_crest_is_that_of_its_flanks_and_a_plane_keeps_its_own():
+    across, along = np.meshgrid(np.arange(60.0), np.arange(50.0))
+    np.testing.assert_allclose(_slope(0.3 * across - 0.4 * along, 1.0)[15:-15, 15:-15], 0.5, rtol=1e-3)
+    crest = _slope(-0.5 * np.abs(across - 30), 1.0)
+    assert (crest[:, 20:41] > 0.35).all()
+    assert (crest < 0.5 + 1e-9).all()
 
 
 def test_progress_only_grows():
