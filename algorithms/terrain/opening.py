@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Callable
+from typing import Callable, Optional
 
 import numpy as np
 
 from ..packages import ndimage
 
 
-def open_surface(surface: np.ndarray, radius: int) -> np.ndarray:
+def open_surface(surface: np.ndarray, radius: int, absent: Optional[np.ndarray] = None) -> np.ndarray:
     """Return the opening of a raster by an octagon: its lower envelope by a plate of that radius.
 
     Parameters
@@ -18,6 +18,8 @@ def open_surface(surface: np.ndarray, radius: int) -> np.ndarray:
         Heights, without gaps.
     radius : int
         Radius of the octagon in cells, at least 1.
+    absent : ndarray of shape (rows, columns), bool, optional
+        Cells that hold no plate up and over which no plate is centered; they keep their heights.
 
     Returns
     -------
@@ -29,8 +31,11 @@ def open_surface(surface: np.ndarray, radius: int) -> np.ndarray:
     An octagon is a square swept over a diamond, a diamond is one diagonal line swept over the other, so four
     running minima and four running maxima do it.
     """
-    eroded = _octagon(surface, radius, ndimage.minimum_filter1d, np.inf)
-    return _octagon(eroded, radius, ndimage.maximum_filter1d, -np.inf)
+    if absent is None:
+        absent = np.zeros(surface.shape, bool)
+    eroded = _octagon(np.where(absent, np.inf, surface), radius, ndimage.minimum_filter1d, np.inf)
+    opened = _octagon(np.where(absent, -np.inf, eroded), radius, ndimage.maximum_filter1d, -np.inf)
+    return np.where(absent, surface, opened)
 
 
 def _octagon(surface: np.ndarray, radius: int, running: Callable, outside: float) -> np.ndarray:

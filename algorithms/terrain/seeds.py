@@ -131,11 +131,10 @@ def seeds_by_opening(
     first = np.full(surface.shape, _FIRST_SLOPE)
     objects = free | (_lifted(surface, windows, first, cell_size, monitor.part(0, 0.3)) > 0)
     for start in (0.3, 0.6):
-        terrain = _interpolated(surface, objects)
-        slope = _slope(terrain, cell_size)
+        slope = _slope(_interpolated(surface, objects), cell_size)
         # With what stands free taken away, a low roof beside a higher one is as narrow as it is.
-        bare = np.where(free, terrain, surface)
-        lifted = _lifted(bare, windows, _SLOPE_SHARE * slope, cell_size, monitor.part(start, start + 0.3))
+        part = monitor.part(start, start + 0.3)
+        lifted = _lifted(surface, windows, _SLOPE_SHARE * slope, cell_size, part, absent=free)
         objects = _without_joined(lifted, free, windows[-1], surface, slope, cell_size)
     monitor.progress(1.0)
     # What is seen through a roof as through a pit lies lower than the surface there.
@@ -176,13 +175,21 @@ def _windows(largest: float) -> list[int]:
 
 
 def _lifted(
-    surface: np.ndarray, windows: list[int], slope: np.ndarray, cell_size: float, monitor: Monitor
+    surface: np.ndarray,
+    windows: list[int],
+    slope: np.ndarray,
+    cell_size: float,
+    monitor: Monitor,
+    absent: Optional[np.ndarray] = None,
 ) -> np.ndarray:
-    """Return the radius of the first window that lifts a cell off by more than terrain of ``slope`` allows, or 0."""
+    """Return the radius of the first window that lifts a cell off by more than terrain of ``slope`` allows, or 0.
+
+    Windows don't see cells that are ``absent``.
+    """
     lifted = np.zeros(surface.shape, np.int32)
     opened = surface
     for done, radius in enumerate(windows, start=1):
-        previous, opened = opened, open_surface(opened, radius)
+        previous, opened = opened, open_surface(opened, radius, absent)
         reach = radius * cell_size
         off = previous - opened > _STEP + min(_FLAT_SLOPE * reach, _FLAT_RISE) + slope * reach
         lifted[off & (lifted == 0)] = radius

@@ -84,3 +84,16 @@ def test_the_surface_given_is_left_alone(rng):
     before = surface.copy()
     open_surface(surface, 3)
     np.testing.assert_array_equal(surface, before)
+
+
+def test_plates_rest_on_what_is_there_alone():
+    """Beside what is absent a low shelf is as narrow as it is, and a valley between two such stays."""
+    surface = np.zeros((30, 60))
+    absent = np.zeros(surface.shape, bool)
+    absent[5:25, 10:20] = absent[5:25, 30:40] = True
+    surface[absent] = 9.0
+    surface[5:25, 20:23] = 2.0
+    opened = open_surface(surface, 4, absent)
+    assert (opened[absent] == 9.0).all()
+    assert (opened[~absent] == 0.0).all()
+    assert (open_surface(surface, 4)[5:25, 20:23] == 2.0).any()

@@ -171,6 +171,17 @@ def test_a_low_house_with_a_large_roof_on_a_slope_is_no_bank(rng):
     assert (inward[seeds] < -1).sum() > 0.9 * (70**2 - 16**2)
 
 
+def test_a_garage_built_into_the_slope_beside_a_high_building_is_no_terrain(rng):
+    """Its roof meets the slope uphill, so that it doesn't stand free, and with the building it is as wide as a hill."""
+    plan = even(90, 90) + rng.uniform(-0.3, 0.3, (len(even(90, 90)), 2))
+    terrain = 0.08 * plan[:, 1]
+    z, is_roof = raise_roofs(plan, terrain, (25, 25, 15, 40, 12.0), (40, 30, 5, 30, 0.08 * 60))
+    seeds, *_ = seeds_by_opening(np.column_stack([plan, z + rng.normal(0, 0.02, len(plan))]), 1.0, None, Monitor())
+    is_high = is_roof & (z > terrain + 1.0)
+    assert is_high[seeds].sum() < 0.05 * is_high.sum()
+    assert (~is_roof[seeds]).sum() > 0.45 * (~is_roof).sum()
+
+
 def test_the_slope_of_a_crest_is_that_of_its_flanks_and_a_plane_keeps_its_own():
     across, along = np.meshgrid(np.arange(60.0), np.arange(50.0))
     np.testing.assert_allclose(_slope(0.3 * across - 0.4 * along, 1.0)[15:-15, 15:-15], 0.5, rtol=1e-3)
