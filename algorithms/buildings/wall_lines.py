@@ -107,7 +107,7 @@ class Scale:
         """Return the share of the stretch from ``start`` to ``end`` (m) whose bins hold points at ``along``."""
         count = max(1, int(np.ceil((end - start) / self.bin)))
         inside = along[(along >= start) & (along < end)]
-        return len(np.unique(((inside - start) / (end - start) * count).astype(np.int64))) / count
+        return np.count_nonzero(np.bincount(((inside - start) / (end - start) * count).astype(np.int64))) / count
 
 
 def wall_scale(n_points: int, perimeter: float, tolerance: float) -> Scale:

@@ -143,6 +143,7 @@ def outline_walls(
     to_roof = edge_distances(on_walls, *np.moveaxis(sides, 1, 0)).min(axis=1)
     overhang = float(np.clip(np.median(to_roof), 0.0, limits.max_overhang))
     seen = [_expectation(line, sides, overhang) for line in seen]
+    sides = np.concatenate([sides, _bends(traced, sides, spacing)])
     lines = [*seen, *_from_roof(seen, sides, overhang, walls, scale)]
     near = [_near(walls, line, scale) for line in lines]
     rings = _Trial(lines, near, _Case(cover, scale, limits, overhang)).simplified().edges()
@@ -154,6 +155,18 @@ def _sides(traced: list, spacing: float) -> np.ndarray:
     # Holes at the edge of a roof bite pieces out of its outline, which straight sides go over.
     straight = (regularize_outline(traced, wiggle, spacing / 2) for wiggle in (_WIGGLE, 2 * _WIGGLE))
     rings = next((rings for rings in straight if rings), None) or [simplify_ring(ring, _WIGGLE) for ring in traced]
+    return _edges_of(rings)
+
+
+def _bends(traced: list, sides: np.ndarray, spacing: float) -> np.ndarray:
+    """Return the edges (k, 2, 2) of the roof's exterior as it was seen where the straight ``sides`` go over it (m)."""
+    ring = simplify_ring(traced[0], max(_WIGGLE, 2 * spacing))
+    is_over = edge_distances(ring, *np.moveaxis(sides, 1, 0)).min(axis=1) > _WIGGLE
+    return _edges_of([ring])[is_over[:-1] | is_over[1:]]
+
+
+def _edges_of(rings: list) -> np.ndarray:
+    """Return the edges (k, 2, 2) of closed rings."""
     return np.concatenate([np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings])
 
 
@@ -189,10 +202,12 @@ def _from_roof(
 ) -> list[WallLine]:
     """Return lines for sides of the roof without a known wall: through the few points there, or as expected."""
     lines: list[WallLine] = []
-    for side in sides:
-        line = _expected(side, overhang, seen)
+    length = np.hypot(*(sides[:, 1] - sides[:, 0]).T)
+    # A long side meets more points than the rest of it beyond a notch, which would stand for it.
+    for number in np.argsort(-length, kind="stable"):
+        line = _expected(sides[number], overhang, seen)
         if not any(_is_eave_of(wall, line, _EAVE) for wall in [*seen, *lines]):
-            lines.append(_through_few(line, float(np.hypot(*(side[1] - side[0]))) / 2, walls, scale))
+            lines.append(_through_few(line, float(length[number]) / 2, walls, scale))
     return lines
 
 
@@ -233,10 +248,13 @@ class _Trial:
         cost = np.array([_cost(self.cells, edge, lines, near, case.scale) for edge in self.cells.edges])
         if_inside, if_outside = self._unlikely()
         inside = self.cells.cheapest(cost, if_inside, if_outside)
-        left, right = (np.array([getattr(edge, side) for edge in self.cells.edges], int) for side in ("left", "right"))
+        line, left, right = (
+            np.array([getattr(e, of) for e in self.cells.edges], int) for of in ("line", "left", "right")
+        )
         cut = inside[left] != np.append(inside, False)[right]
         self.rings = self.cells.outline(inside)
-        self.total = float(cost[cut].sum() + if_inside[inside].sum() + if_outside[~inside].sum() + self._corners())
+        self.line_cost = np.bincount(line[cut], cost[cut], len(self.cells.points))
+        self.total = float(self.line_cost.sum() + if_inside[inside].sum() + if_outside[~inside].sum() + self._corners())
 
     def _unlikely(self) -> tuple[np.ndarray, np.ndarray]:
         """Return for each cell how little the roof likes it inside, and outside."""
@@ -263,20 +281,33 @@ class _Trial:
         return total
 
     def simplified(self) -> _Trial:
-        """Return the outline without the lines that are not worth their corners."""
+        """Return the cheapest outline found that some of the lines make."""
+        best = first = self._descended()
+        # Going down can end at a chord over a corner, so what costs more than one is also left out from the start.
+        for doubtful in np.flatnonzero(first.line_cost[: len(first.lines)] > _CORNER_COST + _SKEW_COST):
+            rest = [i for i, line in enumerate(self.lines) if line is not first.lines[doubtful]]
+            if len(rest) > 3:
+                best = min(best, self.only(rest)._descended(), key=lambda trial: trial.total)
+        return best
+
+    def _descended(self) -> _Trial:
+        """Return the outline without the lines that are not worth their corners, the worst left out first."""
         best, used = self, sorted({line for ring in self.rings for line, _ in ring if line < len(self.lines)})
-        if len(used) < len(self.lines):
+        if 0 < len(used) < len(self.lines):
             best = self.only(used)
-        tried: set[int] = set()
-        while True:
-            order = sorted(range(len(best.lines)), key=lambda i: (len(best.near[i]), i))
-            line = next((i for i in order if id(best.lines[i]) not in tried), None)
-            if line is None or len(best.lines) <= 3:
-                return best
-            tried.add(id(best.lines[line]))
+        # What leaving out a line saved when it was last tried, and whether that was with this outline.
+        saving, is_known = np.full(len(best.lines), np.inf), np.zeros(len(best.lines), bool)
+        while len(best.lines) > 3 and (saving.max() > 0 or not is_known.all()):
+            if saving.max() <= 0:
+                saving[~is_known] = np.inf
+            line = int(np.argmax(saving))
             without = best.only([i for i in range(len(best.lines)) if i != line])
-            if without.total < best.total:
-                best = without
+            if is_known[line]:
+                best, saving = without, np.delete(saving, line)
+                is_known = np.zeros(len(saving), bool)
+            else:
+                saving[line], is_known[line] = best.total - without.total, True
+        return best
 
     def only(self, chosen: list[int]) -> _Trial:
         """Return the best outline of some of the lines."""

@@ -93,6 +93,30 @@ def test_corners_are_where_walls_meet(rng, assert_valid, shape, per_meter, noise
     assert table["area"] == pytest.approx(abs(signed_area(np.concatenate([true, true[:1]]))), rel=0.03)
 
 
+def holed_bend(seed):
+    """Return a bent house with six holes of 2 m at the eaves, and half of the points of the walls at its inner bend."""
+    rng = np.random.default_rng(seed)
+    arrays, true = building(rng, "bend", per_meter=5, noise=0.05)
+    xy, is_wall = arrays["xyz"][:, :2], arrays["wall_of"] > 0
+    eaves, side, share = grown(true, OVERHANG), rng.integers(0, 6, 6), rng.random((6, 1))
+    holes = eaves[side] * (1 - share) + eaves[(side + 1) % 6] * share
+    is_seen = np.hypot(*(xy[:, None] - holes).transpose(2, 0, 1)).min(axis=1) > 1.0
+    direction = (true[4] - true[3]) / np.hypot(*(true[4] - true[3]))
+    beside = np.abs((xy - true[4]) @ [-direction[1], direction[0]]) < 0.3
+    at_bend = is_wall & (beside | (np.abs(xy[:, 1] - true[4, 1]) < 0.3))
+    kept = (is_wall | is_seen) & (~at_bend | (rng.random(len(xy)) < 0.5))
+    return {name: values[kept] for name, values in arrays.items()}, true
+
+
+def test_a_bend_is_seldom_cut_off_where_the_roof_has_holes_and_the_walls_few_points():
+    """A chord over the bend is off by 2 m and more."""
+    cut = []
+    for seed in range(16, 28):
+        arrays, true = holed_bend(seed)
+        cut.append(errors(extract_wall_footprints(**arrays)[0], true).max() > 0.5)
+    assert sum(cut) <= 1
+
+
 def test_right_angles_are_right_and_others_are_kept(rng):
     arrays, _ = building(rng, "L", turn=0.3)
     assert extract_wall_footprints(**arrays)[1].columns["angle"] == pytest.approx([90] * 6, abs=1e-6) or sorted(
