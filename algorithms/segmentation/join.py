@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Optional
+
 import numpy as np
 
 from ..stage import Monitor
@@ -20,6 +22,9 @@ _MAX_ROUNDS = 1000
 _HELD, _LEAST_POINTS = 2 / 3, 4
 
 _CHUNK = 200_000
+
+# Boxes of the first array of a pair with those of the second.
+_Pairs = list[tuple[np.ndarray, np.ndarray]]
 
 
 def join_pieces(pieces: Planes, voxel: np.ndarray, boxes: Boxes, tolerance: float, monitor: Monitor) -> np.ndarray:
@@ -110,12 +115,12 @@ def grown_planes(
     The tip of a hip and the strip along an eave have too few points in a voxel to show a plane of their own. Takes and
     returns what :func:`nearest_plane` does.
     """
-    box = boxes.box()
+    box, around_each = boxes.box(), _around_each(boxes)
     pieces = np.unique(voxel * len(planes) + group)
     for step in range(_MAX_ROUNDS):
         now = monitor.part(step / _MAX_ROUNDS, (step + 1) / _MAX_ROUNDS)
         at, plane = np.divmod(pieces, max(len(planes), 1))
-        nearest = nearest_plane(boxes, at, plane, planes, tolerance, now)
+        nearest = nearest_plane(boxes, at, plane, planes, tolerance, now, around_each)
         on_plane = nearest >= 0
         held = np.bincount(box[on_plane], minlength=len(boxes)) >= _HELD * boxes.size
         inside = on_plane & held[box]
@@ -128,7 +133,13 @@ def grown_planes(
 
 
 def nearest_plane(
-    boxes: Boxes, voxel: np.ndarray, group: np.ndarray, planes: Planes, tolerance: float, monitor: Monitor
+    boxes: Boxes,
+    voxel: np.ndarray,
+    group: np.ndarray,
+    planes: Planes,
+    tolerance: float,
+    monitor: Monitor,
+    around_each: Optional[_Pairs] = None,
 ) -> np.ndarray:
     """Return the plane (n,), of those in its voxel and the voxels around, that each point lies nearest to.
 
@@ -144,13 +155,16 @@ def nearest_plane(
         Distance within which a point lies on a plane, m.
     monitor : Monitor
         Hears progress.
+    around_each : list of pairs of ndarray, optional
+        What :func:`_around_each` returns for the boxes, where it is known.
 
     Returns
     -------
     ndarray of shape (n,), int64
         Numbers of planes in the order of the boxes; -1 where none is within the tolerance.
     """
-    seen_from, plane = _planes_around(boxes, voxel, group, len(planes))
+    around_each = _around_each(boxes) if around_each is None else around_each
+    seen_from, plane = _planes_around(boxes, voxel, group, len(planes), around_each)
     count = np.bincount(seen_from, minlength=len(boxes))
     start = np.cumsum(count) - count
     box = boxes.box()
@@ -170,13 +184,20 @@ def nearest_plane(
     return nearest
 
 
-def _planes_around(boxes: Boxes, voxel: np.ndarray, group: np.ndarray, n_planes: int) -> tuple[np.ndarray, np.ndarray]:
+def _around_each(boxes: Boxes) -> _Pairs:
+    """Return pairs of each box with itself and with every box that touches it, by the step between them."""
+    every = np.arange(len(boxes))
+    return [(every, every), *(boxes.beside(boxes, offset) for offset in around(1))]
+
+
+def _planes_around(
+    boxes: Boxes, voxel: np.ndarray, group: np.ndarray, n_planes: int, around_each: _Pairs
+) -> tuple[np.ndarray, np.ndarray]:
     """Return pairs of a box and a plane that has a piece in it or beside it, by box."""
     count = np.bincount(voxel, minlength=len(boxes))
     start = np.cumsum(count) - count
-    every = np.arange(len(boxes))
     keys = []
-    for here, there in ((every, every), *(boxes.beside(boxes, offset) for offset in around(1))):
+    for here, there in around_each:
         which = np.repeat(np.arange(len(here)), count[there])
         place = np.arange(len(which)) - np.repeat(np.cumsum(count[there]) - count[there], count[there])
         keys.append(here[which] * n_planes + group[start[there[which]] + place])
