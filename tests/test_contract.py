@@ -29,6 +29,7 @@ from lidar_buildings.algorithms.stage import (
     Surface,
     Tunable,
 )
+from lidar_buildings.tests.monitors import Listening
 
 # Released ids: people's saved models and scripts call them. A new one is added, none is ever changed.
 STAGE_IDS = {
@@ -570,23 +571,9 @@ def test_same_input_gives_the_same_result(stage):
     assert_same(made_by(stage)[0], made_by_default(stage.name)[0])
 
 
-class Listener(Monitor):
-    """Hears how far the stage is, and stops it at a given call."""
-
-    def __init__(self, stop_at: int | None = None) -> None:
-        super().__init__()
-        self.heard: list[float] = []
-        self.stop_at = stop_at
-
-    def progress(self, fraction: float) -> None:
-        self.heard.append(fraction)
-        if len(self.heard) == self.stop_at:
-            raise Cancelled
-
-
 @each_stage
 def test_progress_grows_from_0_to_1(stage):
-    listener = Listener()
+    listener = Listening()
     stage.function(*arrays_of(stage, scene()), **drawn(stage), **QUICK.get(stage.name, {}), monitor=listener)
     assert listener.heard, "a stage that tells nothing can't be stopped"
     assert all(0 <= fraction <= 1 for fraction in listener.heard)
@@ -597,7 +584,7 @@ def test_progress_grows_from_0_to_1(stage):
 def test_stage_stops_when_it_is_cancelled(stage):
     with pytest.raises(Cancelled):
         stage.function(
-            *arrays_of(stage, scene()), **drawn(stage), **QUICK.get(stage.name, {}), monitor=Listener(stop_at=1)
+            *arrays_of(stage, scene()), **drawn(stage), **QUICK.get(stage.name, {}), monitor=Listening(stop_at=0.0)
         )
 
 

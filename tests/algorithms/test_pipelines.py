@@ -10,6 +10,7 @@ from lidar_buildings.algorithms.pipelines import PIPELINES, Pipeline, Step, run_
 from lidar_buildings.algorithms.run import run_stage
 from lidar_buildings.algorithms.stage import Cancelled, Features, Monitor
 from lidar_buildings.algorithms.stages import STAGES
+from lidar_buildings.tests.monitors import Listening
 from lidar_buildings.tests.provider.toys import TOY_MAPPING, TOYS
 
 FIELD, HOUSE, SHED, CROWN, BIRD = range(5)
@@ -206,29 +207,16 @@ def test_the_steps_own_tunables_are_ones_that_their_stages_take():
 # --- what is told meanwhile ------------------------------------------------------------------------------------------
 
 
-class Listening(Monitor):
-    """Keeps the fractions, and stops the run at one of them."""
-
-    def __init__(self, stop_at=2.0):
-        super().__init__()
-        self.told, self.stop_at = [], stop_at
-
-    def progress(self, fraction):
-        self.told.append(fraction)
-        if fraction >= self.stop_at:
-            raise Cancelled
-
-
 @pytest.mark.parametrize("name", PIPELINES)
 def test_progress_only_grows_and_every_step_is_heard_of(name):
     monitor = Listening()
     run_pipeline(PIPELINES[name], [made()[0], made()[0]] if PIPELINES[name].merges else made()[0], monitor)
-    assert monitor.told == sorted(monitor.told)
-    assert monitor.told[0] >= 0
-    assert monitor.told[-1] <= 1
+    assert monitor.heard == sorted(monitor.heard)
+    assert monitor.heard[0] >= 0
+    assert monitor.heard[-1] <= 1
     steps = len(PIPELINES[name].steps)
     # Completing is over in no time and tells nothing.
-    assert len({min(int(fraction * steps), steps - 1) for fraction in monitor.told}) >= steps - 1
+    assert len({min(int(fraction * steps), steps - 1) for fraction in monitor.heard}) >= steps - 1
 
 
 def two_scans(rng):
@@ -271,7 +259,7 @@ def test_a_cancel_gets_through_at_once(stop_at):
     monitor = Listening(stop_at)
     with pytest.raises(Cancelled):
         run_pipeline(PIPELINES["detect_buildings"], made()[0], monitor)
-    assert sum(fraction >= stop_at for fraction in monitor.told) == 1
+    assert sum(fraction >= stop_at for fraction in monitor.heard) == 1
 
 
 def test_automatic_values_and_warnings_of_all_steps_come_together():

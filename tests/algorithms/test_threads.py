@@ -7,15 +7,7 @@ import pytest
 
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.algorithms.threads import in_chunks
-
-
-class Listening(Monitor):
-    def __init__(self):
-        super().__init__()
-        self.heard = []
-
-    def progress(self, fraction):
-        self.heard.append(fraction)
+from lidar_buildings.tests.monitors import Listening
 
 
 @pytest.mark.parametrize("size", [1, 7, 99, 100, 1000])
@@ -31,8 +23,10 @@ def test_each_row_is_worked_on_once(rng, size):
     np.testing.assert_allclose(monitor.heard, np.arange(1, n_chunks + 1) / n_chunks)
 
 
-def test_no_rows():
-    in_chunks(pytest.fail, np.arange(0), 5, Monitor())
+def test_without_rows_no_work_is_called():
+    done = []
+    in_chunks(done.append, np.arange(0), 5, Monitor())
+    assert done == []
 
 
 def test_one_chunk_makes_no_thread():
@@ -47,12 +41,8 @@ def test_one_chunk_makes_no_thread():
 def test_a_cancellation_ends_the_rest():
     done = []
 
-    class Impatient(Monitor):
-        def progress(self, fraction):
-            raise Cancelled
-
     with pytest.raises(Cancelled):
-        in_chunks(done.append, np.arange(10_000), 1, Impatient())
+        in_chunks(done.append, np.arange(10_000), 1, Listening(stop_at=0.0))
     assert len(done) < 10_000
     assert threading.active_count() == 1
 

@@ -159,7 +159,16 @@ def test_the_models_own_defaults_count(provider, context, log, town_file, out):
         context,
         log,
     )
-    same_clouds(read_cloud(out / "a.las"), run_pipeline(TOY_CHAIN, read_cloud(town_file)).cloud)
+    made, cloud = read_cloud(out / "a.las"), read_cloud(town_file)
+    same_clouds(made, run_pipeline(TOY_CHAIN, cloud).cloud)
+    stages_own = {
+        f"{step.name}_{name}": tunable.default
+        for step in TOY_CHAIN.steps
+        for name, tunable in step.stage.tunables.items()
+        if name in step.tunables
+    }
+    other = run_pipeline(TOY_CHAIN, cloud, **stages_own).cloud
+    assert not np.array_equal(made.get("height_above_ground"), other.get("height_above_ground"))
 
 
 def test_the_composite_shows_the_steps_parameters(provider):

@@ -8,6 +8,7 @@ from lidar_buildings.algorithms.buildings.buildings import classify_buildings, r
 from lidar_buildings.algorithms.buildings.reasons import Reason
 from lidar_buildings.algorithms.features.noise import SurfaceSample
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.tests.monitors import Listening
 
 FAR = np.array([600_000.0, 5_000_000.0, 0.0])
 
@@ -454,13 +455,9 @@ def test_entropies_of_planes_and_volumes_are_those_of_large_samples(rng):
 
 
 def test_cancel_gets_through(garden):
-    class Stopping(Monitor):
-        def progress(self, fraction):
-            raise Cancelled
-
     xyz, cluster_id = garden
     with pytest.raises(Cancelled):
-        classify_buildings(xyz, ones(xyz), cluster_id, monitor=Stopping())
+        classify_buildings(xyz, ones(xyz), cluster_id, monitor=Listening(stop_at=0.0))
 
 
 def test_solid_clusters_are_undecided_where_nothing_tells_them_apart(rng):

@@ -8,6 +8,7 @@ import pytest
 from lidar_buildings.algorithms.cloud.cloud import create_cloud, read_cloud, write_cloud
 from lidar_buildings.algorithms.cloud.dimensions import DIMENSIONS
 from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.tests.monitors import Listening
 
 from .conftest import RECORD_SIZES, descriptor, random_records, vlr
 
@@ -224,21 +225,13 @@ def test_progress_is_told_in_order(make_las, tmp_path, monkeypatch, name):
     monkeypatch.setattr("lidar_buildings.algorithms.cloud.las.AT_ONCE", 10)
     monkeypatch.setattr("lidar_buildings.algorithms.cloud.copc.AT_ONCE", 10)
 
-    class Heard(Monitor):
-        def __init__(self):
-            super().__init__()
-            self.fractions = []
-
-        def progress(self, fraction):
-            self.fractions.append(fraction)
-
-    reading, writing = Heard(), Heard()
+    reading, writing = Listening(), Listening()
     cloud = read_cloud(make_las(n=100), reading)
     write_cloud(cloud, tmp_path / name, writing)
-    for heard in (reading, writing):
-        assert len(heard.fractions) > 10
-        assert heard.fractions == sorted(heard.fractions)
-        assert heard.fractions[-1] == 1
+    for heard in (reading.heard, writing.heard):
+        assert len(heard) > 10
+        assert heard == sorted(heard)
+        assert heard[-1] == 1
 
 
 # --- other points, other places ---------------------------------------------------------------------------------------

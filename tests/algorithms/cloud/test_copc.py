@@ -6,6 +6,7 @@ import pytest
 from lidar_buildings.algorithms.cloud import copc
 from lidar_buildings.algorithms.cloud.cloud import create_cloud, read_cloud, write_cloud
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.tests.monitors import Listening
 
 from .conftest import FORMATS, evlr, vlr
 
@@ -113,11 +114,8 @@ def test_copc_becomes_las_again_without_its_records(make_las, take_apart, tmp_pa
 
 
 def test_cancel_leaves_nothing(tmp_path, rng, small_leaves):
-    class Stop(Monitor):
-        def progress(self, fraction):
-            if fraction > 0.5:
-                raise Cancelled
-
     with pytest.raises(Cancelled):
-        write_cloud(create_cloud({"xyz": rng.uniform(0, 50, (20_000, 3))}), tmp_path / "a.copc.laz", Stop())
+        write_cloud(
+            create_cloud({"xyz": rng.uniform(0, 50, (20_000, 3))}), tmp_path / "a.copc.laz", Listening(stop_at=0.5)
+        )
     assert not list(tmp_path.iterdir())

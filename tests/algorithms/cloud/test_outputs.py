@@ -9,7 +9,8 @@ import pytest
 from lidar_buildings.algorithms.cloud import outputs
 from lidar_buildings.algorithms.cloud.cloud import check_write, create_cloud, read_cloud, write_cloud
 from lidar_buildings.algorithms.cloud.views import copc_path
-from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.algorithms.stage import Cancelled
+from lidar_buildings.tests.monitors import Listening
 
 KINDS = [".las", ".laz", ".copc.laz"]
 
@@ -26,20 +27,12 @@ def folder(tmp_path):
     return folder
 
 
-class Stop(Monitor):
-    """Cancels once something has been written."""
-
-    def progress(self, fraction):
-        if fraction >= 0.5:
-            raise Cancelled
-
-
 @pytest.mark.parametrize("kind", KINDS)
 def test_cancel_leaves_what_was_there(cloud, folder, kind):
     target = folder / f"a{kind}"
     target.write_bytes(b"old")
     with pytest.raises(Cancelled):
-        write_cloud(cloud, target, Stop())
+        write_cloud(cloud, target, Listening(stop_at=0.5))
     assert [path.name for path in folder.iterdir()] == [target.name]
     assert target.read_bytes() == b"old"
 
@@ -182,7 +175,7 @@ def test_a_cancelled_view_leaves_the_old_pair(cloud, folder):
     write_cloud(cloud, folder / "a.laz", copc_beside=True)
     before = {path.name: path.read_bytes() for path in folder.iterdir()}
     with pytest.raises(Cancelled):
-        write_cloud(cloud, folder / "a.laz", Stop(), copc_beside=True)
+        write_cloud(cloud, folder / "a.laz", Listening(stop_at=0.5), copc_beside=True)
     assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
 
 

@@ -10,7 +10,8 @@ from hypothesis.extra.numpy import arrays
 from scipy.spatial import cKDTree
 
 from lidar_buildings.algorithms.features import eigen
-from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.algorithms.stage import Cancelled
+from lidar_buildings.tests.monitors import Listening
 
 COVARIANCE_FACTORS = arrays(np.float64, (8, 3, 3), elements=st.floats(-100, 100).map(lambda number: round(number, 6)))
 
@@ -177,12 +178,11 @@ def test_cancel_stops_the_threads(rng, monkeypatch):
     monkeypatch.setattr(eigen, "_CHUNK_NEIGHBORS", 100)
     ran = []
 
-    class Stop(Monitor):
-        def progress(self, fraction):
-            raise Cancelled
-
     with pytest.raises(Cancelled):
         eigen.reduce_neighborhoods(
-            rng.uniform(0, 9, (5000, 3)), eigen.Nearest(10), lambda rows, *_: ran.append(rows), monitor=Stop()
+            rng.uniform(0, 9, (5000, 3)),
+            eigen.Nearest(10),
+            lambda rows, *_: ran.append(rows),
+            monitor=Listening(stop_at=0.0),
         )
     assert len(ran) < 500

@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 from lidar_buildings.algorithms.preparation import merge
 from lidar_buildings.algorithms.preparation.merge import merge_clouds, read_transforms
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.tests.monitors import Listening
 
 angles = st.lists(st.floats(-360, 360), min_size=3, max_size=3)
 offsets = st.lists(st.floats(-1e6, 1e6), min_size=3, max_size=3)
@@ -238,12 +239,8 @@ def test_neighboring_tiles_are_not_told(rng):
 
 
 def test_it_can_be_cancelled(two):
-    class Stop(Monitor):
-        def progress(self, fraction):
-            raise Cancelled
-
     with pytest.raises(Cancelled):
-        merged(two, "", Stop())
+        merged(two, "", Listening(stop_at=0.0))
 
 
 def test_the_example_in_the_docstring_is_true():

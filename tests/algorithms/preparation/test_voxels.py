@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 from lidar_buildings.algorithms.preparation import voxels
 from lidar_buildings.algorithms.preparation.voxels import downsample_voxels
-from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.algorithms.stage import Cancelled
+from lidar_buildings.tests.monitors import Listening
 
 
 def by_dictionary(steps: np.ndarray, scale: int, side: int) -> dict[tuple, list[int]]:
@@ -209,13 +210,8 @@ def test_bad_sizes_are_refused(side):
 def test_it_can_be_cancelled(rng, monkeypatch):
     monkeypatch.setattr(voxels, "_CHUNK", 50)
 
-    class Stop(Monitor):
-        def progress(self, fraction):
-            if fraction > 0.5:
-                raise Cancelled
-
     with pytest.raises(Cancelled):
-        downsample_voxels(rng.uniform(0, 5, (1000, 3)), monitor=Stop())
+        downsample_voxels(rng.uniform(0, 5, (1000, 3)), monitor=Listening(stop_at=0.5))
 
 
 def test_the_example_in_the_docstring():

@@ -11,6 +11,7 @@ from sklearn.cluster import DBSCAN
 from lidar_buildings.algorithms.segmentation import boxes
 from lidar_buildings.algorithms.segmentation.clusters import dbscan, segment_clusters
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.tests.monitors import Listening
 
 FAR = np.array([600_000.0, 5_000_000.0, 0.0])
 
@@ -130,9 +131,5 @@ def test_place_changes_nothing(rng):
 
 
 def test_cancel_gets_through(rng):
-    class Stopping(Monitor):
-        def progress(self, fraction):
-            raise Cancelled
-
     with pytest.raises(Cancelled):
-        dbscan(rng.uniform(0, 9, (50, 3)), 1.0, 3, Stopping())
+        dbscan(rng.uniform(0, 9, (50, 3)), 1.0, 3, Listening(stop_at=0.0))

@@ -10,6 +10,7 @@ from scipy.sparse.csgraph import connected_components
 from lidar_buildings.algorithms.segmentation import boxes
 from lidar_buildings.algorithms.segmentation.connectivity import connect, number_large
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.tests.monitors import Listening
 
 FAR = np.array([600_000.0, 5_000_000.0, 0.0])
 
@@ -107,12 +108,8 @@ def test_larger_distances_never_part_what_was_together(rng):
 
 
 def test_cancel_gets_through(rng):
-    class Stopping(Monitor):
-        def progress(self, fraction):
-            raise Cancelled
-
     with pytest.raises(Cancelled):
-        connect(rng.uniform(0, 9, (50, 3)), 1.0, 1.0, Stopping())
+        connect(rng.uniform(0, 9, (50, 3)), 1.0, 1.0, Listening(stop_at=0.0))
 
 
 def test_small_components_get_no_number_and_the_others_follow_each_other():

@@ -5,6 +5,7 @@ import pytest
 
 from lidar_buildings.algorithms.segmentation.patches import segment_patches
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.tests.monitors import Listening
 
 FAR = np.array([600_000.0, 5_000_000.0, 0.0])
 
@@ -132,10 +133,5 @@ def test_points_without_a_plane_do_no_harm(xyz):
 
 
 def test_cancel_gets_through(rng):
-    class Stopping(Monitor):
-        def progress(self, fraction):
-            if fraction > 0.3:
-                raise Cancelled
-
     with pytest.raises(Cancelled):
-        segment_patches(gable(rng, 5, 0.02)[0], 5.0, 0.02, 75.0, Stopping())
+        segment_patches(gable(rng, 5, 0.02)[0], 5.0, 0.02, 75.0, Listening(stop_at=0.3))

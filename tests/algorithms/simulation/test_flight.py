@@ -17,7 +17,8 @@ from lidar_buildings.algorithms.simulation.flight import simulate_flight
 from lidar_buildings.algorithms.simulation.scene import Scene
 from lidar_buildings.algorithms.simulation.site import build_site
 from lidar_buildings.algorithms.simulation.solids import Rect, Solid, stack
-from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.algorithms.stage import Cancelled
+from lidar_buildings.tests.monitors import Listening
 
 NAMES = simulate_flight.stage.creates
 VEGETATION = (PointClass.LOW_VEGETATION, PointClass.MEDIUM_VEGETATION, PointClass.HIGH_VEGETATION)
@@ -337,18 +338,11 @@ def test_extremes_work(tunables):
 
 
 def test_it_can_be_cancelled_and_progress_only_grows(monkeypatch):
-    heard = []
-
-    class Impatient(Monitor):
-        def progress(self, fraction: float) -> None:
-            heard.append(fraction)
-            if fraction > 0.5:
-                raise Cancelled
-
+    monitor = Listening(stop_at=0.5)
     with pytest.raises(Cancelled):
-        simulate_flight(duration=60.0, line_rate=8.0, monitor=Impatient())
-    assert heard == sorted(heard)
-    assert len(heard) > 3
+        simulate_flight(duration=60.0, line_rate=8.0, monitor=monitor)
+    assert monitor.heard == sorted(monitor.heard)
+    assert len(monitor.heard) > 3
 
 
 def test_the_example_in_the_docstring_is_true():

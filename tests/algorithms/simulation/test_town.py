@@ -15,7 +15,8 @@ from lidar_buildings.algorithms.simulation.layout import build_town
 from lidar_buildings.algorithms.simulation.scanner import Scan, scan
 from lidar_buildings.algorithms.simulation.scene import Scene
 from lidar_buildings.algorithms.simulation.town import simulate_town
-from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.algorithms.stage import Cancelled
+from lidar_buildings.tests.monitors import Listening
 from lidar_buildings.tests.scenes import SCENES, gable_on_slope
 
 VEGETATION = (PointClass.LOW_VEGETATION, PointClass.MEDIUM_VEGETATION, PointClass.HIGH_VEGETATION)
@@ -352,26 +353,18 @@ def test_too_many_pulses_are_refused():
 
 @pytest.mark.parametrize("end", [0.05, 0.5])
 def test_it_can_be_cancelled(end):
-    class Impatient(Monitor):
-        def progress(self, fraction: float) -> None:
-            assert 0 <= fraction <= 1
-            if fraction > end:
-                raise Cancelled
-
+    monitor = Listening(stop_at=end)
     with pytest.raises(Cancelled):
-        simulate_town(size=100.0, monitor=Impatient())
+        simulate_town(size=100.0, monitor=monitor)
+    assert min(monitor.heard) >= 0
+    assert end <= max(monitor.heard) <= 1
 
 
 def test_progress_only_grows():
-    heard = []
-
-    class Listener(Monitor):
-        def progress(self, fraction: float) -> None:
-            heard.append(fraction)
-
-    simulate_town(size=100.0, density=3.0, monitor=Listener())
-    assert heard == sorted(heard)
-    assert heard[-1] == 1.0
+    monitor = Listening()
+    simulate_town(size=100.0, density=3.0, monitor=monitor)
+    assert monitor.heard == sorted(monitor.heard)
+    assert monitor.heard[-1] == 1.0
 
 
 @pytest.mark.parametrize(

@@ -16,6 +16,7 @@ from lidar_buildings.algorithms.simulation.solids import Rect, Solid, inclined, 
 from lidar_buildings.algorithms.simulation.village import simulate_village
 from lidar_buildings.algorithms.simulation.village_layout import build_village
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.tests.monitors import Listening
 
 NAMES = (*simulate_village.stage.creates, "footprints", "old_map")
 OVERHANG = 0.5
@@ -269,13 +270,8 @@ def test_a_village_without_houses_is_told_of():
 
 
 def test_it_can_be_cancelled():
-    class Impatient(Monitor):
-        def progress(self, fraction: float) -> None:
-            if fraction > 0.4:
-                raise Cancelled
-
     with pytest.raises(Cancelled):
-        simulate_village(size=60.0, density=100.0, monitor=Impatient())
+        simulate_village(size=60.0, density=100.0, monitor=Listening(stop_at=0.4))
 
 
 @pytest.mark.parametrize(

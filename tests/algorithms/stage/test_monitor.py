@@ -2,18 +2,8 @@
 
 import pytest
 
-from lidar_buildings.algorithms.stage import Cancelled, Monitor
-
-
-class Listening(Monitor):
-    def __init__(self, patience=1.0):
-        super().__init__()
-        self.heard, self.patience = [], patience
-
-    def progress(self, fraction):
-        self.heard.append(fraction)
-        if fraction > self.patience:
-            raise Cancelled
+from lidar_buildings.algorithms.stage import Cancelled
+from lidar_buildings.tests.monitors import Listening
 
 
 def test_a_part_of_a_part_is_a_stretch_of_the_whole():
@@ -35,4 +25,4 @@ def test_values_get_the_prefixes_of_all_parts_and_warnings_none():
 
 def test_a_part_passes_a_cancellation_on():
     with pytest.raises(Cancelled):
-        Listening(patience=0.5).part(0.4, 0.8).progress(0.5)
+        Listening(stop_at=0.5).part(0.4, 0.8).progress(0.5)

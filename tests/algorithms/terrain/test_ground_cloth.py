@@ -7,6 +7,7 @@ from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.algorithms.terrain import cloth as of_cloth
 from lidar_buildings.algorithms.terrain.cloth import Cloth
 from lidar_buildings.algorithms.terrain.ground_cloth import classify_ground_cloth
+from lidar_buildings.tests.monitors import Listening
 
 FAR = np.array([2.0**19, 2.0**22, 0.0])
 WIDTH = 40.0
@@ -161,10 +162,6 @@ def test_bad_clouds_are_refused():
 
 
 def test_cancel_gets_through(rng):
-    class Stopping(Monitor):
-        def progress(self, fraction):
-            raise Cancelled
-
     xyz, _ = scan(rng)
     with pytest.raises(Cancelled):
-        classify_ground_cloth(xyz, np.ones(len(xyz)), monitor=Stopping())
+        classify_ground_cloth(xyz, np.ones(len(xyz)), monitor=Listening(stop_at=0.0))

@@ -5,6 +5,7 @@ import pytest
 
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.algorithms.terrain.ground_tin import _grow, _Rules, classify_ground_tin
+from lidar_buildings.tests.monitors import Listening
 
 FAR = np.array([600_000.0, 5_000_000.0, 0.0])
 WIDTH = 80.0
@@ -349,20 +350,10 @@ def test_points_at_one_place_are_refused():
 
 def test_progress_only_grows_and_a_cancel_gets_through(rng):
     xyz, _ = scan(rng, TERRAINS["slope"], HOUSES, density=1)
-    told = []
-
-    class Listening(Monitor):
-        def progress(self, fraction):
-            told.append(fraction)
-
-    classify_ground_tin(xyz, unclassified(xyz), monitor=Listening())
-    assert told == sorted(told)
-    assert 0 <= told[0] <= told[-1] <= 1
-
-    class Stopping(Monitor):
-        def progress(self, fraction):
-            if fraction > 0.5:
-                raise Cancelled
+    monitor = Listening()
+    classify_ground_tin(xyz, unclassified(xyz), monitor=monitor)
+    assert monitor.heard == sorted(monitor.heard)
+    assert 0 <= monitor.heard[0] <= monitor.heard[-1] <= 1
 
     with pytest.raises(Cancelled):
-        classify_ground_tin(xyz, unclassified(xyz), monitor=Stopping())
+        classify_ground_tin(xyz, unclassified(xyz), monitor=Listening(stop_at=0.5))

@@ -6,6 +6,7 @@ from scipy.interpolate import LinearNDInterpolator
 
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.algorithms.terrain.rasterize import _rounded, rasterize_terrain
+from lidar_buildings.tests.monitors import Listening
 
 
 def slope_with_house(rng, density=8.0):
@@ -126,10 +127,6 @@ def test_one_ground_point_makes_no_terrain(rng):
 
 
 def test_cancel_gets_through(rng):
-    class Stopping(Monitor):
-        def progress(self, fraction):
-            raise Cancelled
-
     xyz, classes = slope_with_house(rng)
     with pytest.raises(Cancelled):
-        rasterize_terrain(xyz, classes, monitor=Stopping())
+        rasterize_terrain(xyz, classes, monitor=Listening(stop_at=0.0))

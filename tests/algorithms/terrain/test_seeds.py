@@ -11,6 +11,7 @@ from lidar_buildings.algorithms.terrain.seeds import (
     seeds_by_lowest,
     seeds_by_opening,
 )
+from lidar_buildings.tests.monitors import Listening
 
 
 def even(width, depth, step=0.7):
@@ -191,16 +192,10 @@ def test_the_slope_of_a_crest_is_that_of_its_flanks_and_a_plane_keeps_its_own():
 
 
 def test_progress_only_grows():
-    told = []
-
-    class Listening(Monitor):
-        def progress(self, fraction):
-            told.append(fraction)
-
-    plan = even(30, 30)
-    seeds_by_opening(np.column_stack([plan, np.zeros(len(plan))]), 1.0, 30.0, Listening())
-    assert told == sorted(told)
-    assert told[-1] == 1.0
+    plan, monitor = even(30, 30), Listening()
+    seeds_by_opening(np.column_stack([plan, np.zeros(len(plan))]), 1.0, 30.0, monitor)
+    assert monitor.heard == sorted(monitor.heard)
+    assert monitor.heard[-1] == 1.0
 
 
 def test_a_point_far_off_is_refused_instead_of_filling_memory(rng):

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.algorithms.stage import Cancelled
 from lidar_buildings.algorithms.terrain import tiles as module
 from lidar_buildings.algorithms.terrain.tiles import TiledTin
 from lidar_buildings.algorithms.terrain.tin import Tin
+from lidar_buildings.tests.monitors import Listening
 
 FAR = np.array([600_000.0, 5_000_000.0, 0.0])
 SIDE = 80.0
@@ -118,17 +119,7 @@ def test_no_places():
 
 
 def test_progress_is_told_and_a_cancellation_ends_it(rng):
-    class Impatient(Monitor):
-        def __init__(self):
-            super().__init__()
-            self.heard = []
-
-        def progress(self, fraction):
-            self.heard.append(fraction)
-            if fraction > 0.3:
-                raise Cancelled
-
-    monitor = Impatient()
+    monitor = Listening(stop_at=0.3)
     surface = TiledTin(ground(rng, lambda plan: plan[:, 0] > -1))
     with pytest.raises(Cancelled):
         surface.elevation(rng.uniform(0, SIDE, (4000, 2)), monitor)
