@@ -10,6 +10,10 @@ from .cells import distinct, grid_over, plan_box
 # and courtyards, water and gaps between strips still show as empty.
 _POINTS_PER_CELL = 5.0
 
+# Coordinates are stored to a centimeter or finer: points of a wall or a mast share places, and cells smaller than these
+# (m) would find the less area the smaller they are.
+_LEAST_CELL = 0.01
+
 
 def point_density(xyz: np.ndarray) -> float:
     """Return the points per square meter of the area that the points occupy in plan.
@@ -32,7 +36,7 @@ def point_density(xyz: np.ndarray) -> float:
     Notes
     -----
     The area is that of the occupied cells of a grid whose cells hold five points on average;
-    that size depends on the density in turn, so it is found by repetition.
+    that size depends on the density in turn, so it is found by repetition. Cells are a centimeter wide at least.
     """
     low, high = plan_box(xyz)
     extent = high - low
@@ -44,7 +48,7 @@ def point_density(xyz: np.ndarray) -> float:
     area = max(float(extent.prod()), float(extent.max()) ** 2 / len(xyz))
     density = len(xyz) / area
     for _ in range(20):
-        size = float(np.sqrt(_POINTS_PER_CELL / density))
+        size = max(float(np.sqrt(_POINTS_PER_CELL / density)), _LEAST_CELL)
         occupied = len(distinct(grid_over(xyz, size).number(xyz))[0])
         found = len(xyz) / (occupied * size * size)
         if abs(found - density) < 0.01 * density:

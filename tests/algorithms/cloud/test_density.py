@@ -30,6 +30,20 @@ def test_points_on_a_line_have_a_finite_density():
     assert 0.1 < point_density(xyz) < 2  # cells of five points are 5 m wide
 
 
+@pytest.mark.parametrize("n_points", [100, 5000])
+def test_points_above_each_other_share_a_place(n_points):
+    """Twenty masts: cells that shrank until they held five points each would never do so."""
+    x, y = np.meshgrid(np.arange(5.0), np.arange(4.0))
+    xyz = np.concatenate([np.column_stack([x.ravel(), y.ravel(), np.full(20, z)]) for z in np.arange(n_points) / 100])
+    assert point_density(xyz) == pytest.approx(n_points / 0.01**2)
+
+
+def test_a_wall_stored_to_centimeters(rng):
+    """Three meters of a wall that is 6 cm deep, a hundred points on each place that the file can tell."""
+    xyz = rng.uniform(0, [3, 0.06, 10], (180_000, 3)).round(2)
+    assert point_density(xyz) == pytest.approx(180_000 / (3 * 0.06), rel=0.2)
+
+
 def test_points_at_one_place_are_refused():
     with pytest.raises(ValueError, match=r"no extent in plan \(points: 7\), so it has no density; choose"):
         point_density(np.column_stack([np.ones(7), np.ones(7), np.arange(7)]))
