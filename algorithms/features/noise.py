@@ -9,6 +9,8 @@ import numpy as np
 from ..cloud.cells import plan_box
 from ..cloud.density import point_spacing
 from ..packages import spatial
+from ..stage import Monitor
+from ..threads import in_chunks
 from .eigen import Nearest, symmetric_eigenvalues
 
 # Points whose surroundings are looked at, about.
@@ -32,14 +34,14 @@ _LEAST_REACH = 0.5
 # A neighborhood is two-dimensional when it is at least so wide for its length; 60 points always are.
 _LEAST_WIDTH, _MOST_ACROSS_LINES = 0.45, 60
 
-# Half a metre around holds so many at 125 points/m²; with more, every neighborhood would cost and tell nothing new.
+# Half a meter around holds so many at 125 points/m²; with more, every neighborhood would cost and tell nothing new.
 _MOST_NEIGHBORS = 100
 
 # A fifth of the surroundings of nearly any cloud with ground in it is open ground or roof. In a closed forest less is:
 # surfaces differ in roughness by less than so many times the smoothest twentieth, and crowns by more.
 _SMOOTH_SHARE, _SMOOTHEST_SHARE, _MOST_ROUGHER = 0.2, 0.05, 3.0
 
-# Coordinates are stored to a centimetre or a millimetre: no noise below that can be told.
+# Coordinates are stored to a centimeter or a millimeter: no noise below that can be told.
 _LEAST_NOISE = 0.01
 
 # Roof tiles, gravel and gutters are rougher than the smoothest surfaces, by which the noise is measured,
@@ -100,7 +102,7 @@ class SurfaceSample:
         return float(np.hypot(max(self.noise(), _LEAST_ROUGHNESS), _ROUGHNESS_OF_SPACING / np.sqrt(density)))
 
     def density(self) -> float:
-        """Return the points per square metre of the surfaces that they lie on, however steep these are.
+        """Return the points per square meter of the surfaces that they lie on, however steep these are.
 
         It is that around the median point, counted in the circle of its 12 nearest; infinite where all points lie at
         one place.
@@ -120,14 +122,14 @@ class SurfaceSample:
         Parameters
         ----------
         density : float
-            Points per square metre.
+            Points per square meter.
         noise : float
             Standard deviation of points across a smooth surface, m.
 
         Returns
         -------
         int
-            The least count, from 8 to 100, that reaches half a metre and eight times the noise and with which four
+            The least count, from 8 to 100, that reaches half a meter and eight times the noise and with which four
             fifths of the smooth neighborhoods are at least 0.45 times as wide as long (or 60); at most all points.
         """
         reach = max(_LEAST_REACH, _REACH_DEVIATIONS * noise)
@@ -143,7 +145,13 @@ class SurfaceSample:
 
     def _variances(self, count: int) -> np.ndarray:
         """Return the variances (s, 3), descending, of the ``count`` points nearest to each point of the sample, m²."""
-        return symmetric_eigenvalues(Nearest(count).moments(self.columns, self.tree, self.rows)[2])
+        variances, nearest = np.empty((len(self.rows), 3)), Nearest(count)
+
+        def work(some: np.ndarray) -> None:
+            variances[some] = symmetric_eigenvalues(nearest.moments(self.columns, self.tree, self.rows[some])[2])
+
+        in_chunks(work, np.arange(len(self.rows)), nearest.rows_per_chunk(len(self)), Monitor())
+        return variances
 
 
 def _places(xyz: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

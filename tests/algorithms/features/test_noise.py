@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
+from lidar_buildings.algorithms.features import eigen
 from lidar_buildings.algorithms.features import noise as module
 from lidar_buildings.algorithms.features.noise import SurfaceSample
 
@@ -130,6 +131,16 @@ def test_a_cloud_on_few_places_is_looked_at_whole(rng, small_sample):
     mast = np.column_stack([np.zeros((500, 2)), np.arange(500) / 50])
     xyz = (rng.uniform(0, 100, (20, 1, 3)) * [1, 1, 0] + mast).reshape(-1, 3)
     assert len(SurfaceSample(xyz)) == len(xyz)
+
+
+def test_only_some_points_are_looked_at_at_once(rng, monkeypatch):
+    """A cloud that is looked at whole may be large: memory must not grow with it."""
+    xyz, at_once, moments = plane(rng, 0.03), [], eigen.Nearest.moments
+    expected = surface_noise(xyz)
+    monkeypatch.setattr(eigen, "_CHUNK_NEIGHBORS", 6000)
+    monkeypatch.setattr(eigen.Nearest, "moments", lambda *given: at_once.append(len(given[-1])) or moments(*given))
+    assert surface_noise(xyz) == expected
+    assert at_once == [500] * 8
 
 
 def test_scattered_precise_points_need_few_neighbors(rng):
