@@ -8,7 +8,7 @@ from typing import Annotated, Optional
 import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
-from ..cloud.cells import grid_over
+from ..cloud.cells import distinct, grid_over
 from ..cloud.density import point_density
 from ..params import MaxBuildingSize
 from ..stage import Monitor, Param, stage
@@ -424,18 +424,22 @@ def _sweep(
     higher = np.zeros(len(points), bool)
     is_measured = distance is None
     if distance is None:
-        roughness = robust_deviation(node_residuals(nodes)) if len(nodes) > 3 else 0.0
+        # So few have no neighbors to differ from.
+        roughness = robust_deviation(node_residuals(nodes) if len(nodes) > 3 else np.zeros(1))
         distance = min(_SWEEP_DEVIATIONS * roughness, _SWEEP_NOISE * roughness + bend)
     if distance == 0:
         return higher, 0.0
     above = _above(Tin(nodes), points, monitor)
     if is_measured and region:
-        higher = _of_higher_strips(above, grid_over(points, region).number(points), distance)
+        higher = _of_higher_strips(above, distinct(grid_over(points, region).number(points))[1], distance)
     return (np.abs(above) <= distance) | higher, float(distance)
 
 
 def _of_higher_strips(above: np.ndarray, square: np.ndarray, distance: float) -> np.ndarray:
-    """Return which points (n,) lie farther ``above`` the surface (m) than ``distance`` because their strip does."""
+    """Return which points (n,) lie farther ``above`` the surface (m) than ``distance`` because their strip does.
+
+    Squares are numbered from 0, none left out.
+    """
     top = distance + min(distance, _MISFIT)
     higher = (above > distance) & (above <= top)
     over = (above > top) & (above <= 2 * top)

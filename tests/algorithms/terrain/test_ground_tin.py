@@ -1,5 +1,7 @@
 """The ground of scenes whose ground is known by formula."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
@@ -216,6 +218,20 @@ def test_where_strips_do_not_fit_together_both_are_ground(misfit, rng):
     assert missed < 0.02
 
 
+def test_squares_far_apart_take_no_memory_between_them(rng):
+    """Of the nine million squares between two fields, in which strips are compared, nearly none holds a point."""
+    field = rng.uniform(0, 6, (3000, 3)) * [1, 1, 0.005]
+    xyz = np.concatenate([field, field + [12_000, 12_000, 0]])
+    tracemalloc.start()
+    try:
+        found = classify_ground_tin(xyz, unclassified(xyz), cell_size=100.0)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert (found == 2).mean() > 0.98
+    assert peak < 40e6
+
+
 def test_plants_as_high_as_strips_do_not_fit_are_no_ground(rng):
     """A field of 0.3 m, through which every second beam gets to the ground."""
     xyz, _ = scan(rng, TERRAINS["level"], density=8, noise=0.02)
@@ -324,6 +340,15 @@ def test_low_noise_does_not_become_ground(rng):
     at_house = ((xyz[:, None, :2] >= [h[:2] for h in HOUSES]) & (xyz[:, None, :2] <= [h[2:4] for h in HOUSES])).all(2)
     around[low] = False
     assert found[around & ~at_house.any(axis=1)].mean() > 0.98
+
+
+@pytest.mark.parametrize("side", [0.9, 1.5, 2.5])
+def test_a_cloud_of_few_cells_is_ground_as_far_as_it_is_level(side, rng):
+    """Three nodes have no neighbors by which to measure the roughness, and what lies on them was left out."""
+    xyz = rng.uniform(0, side, (300, 3)) * [1, 1, 0.02]
+    xyz[:30, 2] += 1.0
+    found = classify_ground_tin(xyz, unclassified(xyz))
+    np.testing.assert_array_equal(found == 2, np.arange(300) >= 30)
 
 
 @pytest.mark.parametrize("count", [1, 2])
