@@ -21,6 +21,10 @@ def one_sentence() -> Iterator[None]:
         yield
     except Cancelled:
         raise QgsProcessingException("Cancelled; nothing was written.") from None
+    except MemoryError:
+        raise QgsProcessingException(
+            "This needs more memory than there is; cut the cloud into tiles, or thin it with 'Downsample to voxels'."
+        ) from None
     except ValueError as error:
         raise QgsProcessingException(str(error)) from error
     except OSError as error:

@@ -6,6 +6,7 @@ from typing import Any, Optional
 
 from qgis.core import QgsProcessingAlgorithm, QgsProcessingFeedback, QgsProcessingMultiStepFeedback
 
+from ..algorithms.cloud.units import NAMES_NO_CRS
 from ..algorithms.stage import Cancelled, Monitor, Param, Stage
 
 
@@ -53,8 +54,10 @@ class ChainFeedback(QgsProcessingMultiStepFeedback):
 
     def pushWarning(self, warning: str) -> None:  # noqa: N802 - QGIS asks for this name
         """Log a warning that was not said yet."""
-        if warning not in self._said:
-            self._said.add(warning)
+        # What names no system is said of the first alone: later steps have it from there.
+        about = NAMES_NO_CRS if warning.endswith(NAMES_NO_CRS) else warning
+        if about not in self._said:
+            self._said.add(about)
             super().pushWarning(warning)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from qgis.core import QgsCoordinateReferenceSystem, QgsProcessingFeatureSource
 
 from ..algorithms.cloud.cloud import Cloud
+from ..algorithms.cloud.units import NAMES_NO_CRS
 from ..algorithms.stage import Monitor, Source
 from .crs import crs_of, crs_of_layer, meters_per_unit
 
@@ -46,7 +47,7 @@ def place_of_layers(layers: dict[Source, QgsProcessingFeatureSource], monitor: M
     crs = crs_of_layer(layer)
     refuse_degrees(source.title, crs)
     if not crs.isValid():
-        monitor.warn(f"{source.title} names no coordinate reference system; its coordinates are taken as meters.")
+        monitor.warn(f"{source.title} {NAMES_NO_CRS}")
     plane, height = meters_per_unit(crs)
     units = np.array([plane, plane, height])
     extent = layer.sourceExtent()

@@ -39,7 +39,9 @@ _PLANE = ("PROJCS", "PROJCRS", "PROJECTEDCRS", "LOCAL_CS", "ENGCRS", "ENGINEERIN
 _ON_ELLIPSOID = ("GEOGCS", "GEOGCRS", "GEOGRAPHICCRS", "GEODCRS", "GEODETICCRS", "GEOCCS")
 _HEIGHT = ("VERT_CS", "VERTCS", "VERTCRS", "VERTICALCRS")
 
-UNKNOWN = "The file names no coordinate reference system; its coordinates are taken as meters."
+# What is said of any input: a file, or a layer by its title.
+NAMES_NO_CRS = "names no coordinate reference system; its coordinates are taken as meters."
+UNKNOWN = f"The file {NAMES_NO_CRS}"
 
 
 @dataclass(frozen=True)

@@ -265,7 +265,7 @@ def refuse_degenerate(points: np.ndarray) -> np.ndarray:
     if extent[1] <= _LEAST_WIDTH**2 * len(points):
         raise ValueError(
             f"All {len(points)} points lie on one line or at one place in plan; ground needs an area, "
-            "choose a larger cloud."
+            "choose a larger cloud, or reproject this one to meters if its coordinates are degrees."
         )
     return points
 

@@ -212,6 +212,16 @@ def test_each_step_is_announced_and_no_warning_is_repeated(provider, context, lo
     assert "no coordinate reference system" in log.warnings[0]
 
 
+def test_what_names_no_system_is_told_once_of_all_that_is_made_of_it(provider, context, log, mapping, town, out):
+    for path in mapping["INPUTS"]:
+        write_cloud(create_cloud(town), path)
+    old = squares((85_000.0, 446_000.0), crs="")
+    context.project().addMapLayer(old)
+    given = {**mapping, "OLD": old, "OUTPUT": str(out / "mask.laz"), "ARROWS": str(out / "arrows.gpkg")}
+    run("toymapping", given, context, log)
+    assert log.warnings == ["The file names no coordinate reference system; its coordinates are taken as meters."]
+
+
 def test_a_damaged_input_is_refused_before_qgis_opens_it(provider, context, town_file, out):
     """As a model's input QGIS opens it as a layer too, and a truncated COPC can hang it."""
     broken = out / "broken.copc.laz"

@@ -257,6 +257,13 @@ def test_a_fault_keeps_its_traceback(provider, context, log, town_file, out):
     assert list(out.iterdir()) == []
 
 
+def test_too_little_memory_is_told_in_a_sentence(provider, context, log, town_file, out):
+    given = {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz"), "KIND": "memory"}
+    with pytest.raises(QgsProcessingException, match="^This needs more memory than there is; cut the cloud into tiles"):
+        run("toytrouble", given, context, log)
+    assert list(out.iterdir()) == []
+
+
 def test_a_cancelled_stage_is_an_error_and_leaves_nothing(provider, context, log, town_file, out):
     with pytest.raises(QgsProcessingException, match="Cancelled; nothing was written"):
         run("toytrouble", {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz"), "KIND": "cancel"}, context, log)

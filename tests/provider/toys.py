@@ -118,13 +118,17 @@ def toy_make(*, n_points: Annotated[int, Param("Points", "How many.", low=1, hig
 def toy_trouble(
     xyz,
     *,
-    kind: Annotated[str, Param("Kind", "What goes wrong.", choices=("value", "bug", "cancel"))] = "value",
+    kind: Annotated[str, Param("Kind", "What goes wrong.", choices=("value", "bug", "memory", "cancel"))] = "value",
     monitor=None,
 ):
     """Fail in a chosen way."""
     if kind == "cancel":
         raise Cancelled
-    raise {"value": ValueError("The field is empty; choose another."), "bug": ZeroDivisionError("a fault")}[kind]
+    raise {
+        "value": ValueError("The field is empty; choose another."),
+        "bug": ZeroDivisionError("a fault"),
+        "memory": MemoryError("Unable to allocate 9 GiB"),
+    }[kind]
 
 
 @stage("Toy keep", group="Toys", writes=("xyz", "cluster_id"), selects=True)
