@@ -82,9 +82,17 @@ def as_text(text: str) -> str:
     """Return a help for the command line: no HTML, nor what QGIS tells there itself, the summary and the parameters."""
     sections = re.split(r"\n(?=<h3>)", text)
     kept = "\n".join(section for section in sections if not section.startswith("<h3>Parameters"))
-    lines = [line for line in kept.split("\n")[1:] if not re.fullmatch("</?[ou]l>", line)]
-    begun = [line.replace("<h3>", "\n").replace("<li>", "- ") for line in lines]
-    return html.unescape(re.sub("<[^>]+>", "", "\n".join(begun)))
+    lines, depth = [], 0
+    for line in kept.split("\n")[1:]:
+        tag = _LIST.fullmatch(line)
+        if tag is None:
+            lines.append(line.replace("<h3>", "\n").replace("<li>", "  " * (depth - 1) + "- "))
+        else:
+            depth += -1 if tag.group(1) else 1
+    return html.unescape(re.sub("<[^>]+>", "", "\n".join(lines)))
+
+
+_LIST = re.compile("<(/?)[ou]l>(?:</li>)?")
 
 
 def page(title: str, body: str) -> str:
@@ -103,7 +111,8 @@ _NOT_GIVEN = object()
 def tunable_help(tunable: Tunable, default: object = _NOT_GIVEN) -> str:
     """Return one tunable's name, meaning, range and default as HTML."""
     param = tunable.param
-    facts = [param.range] if param.range else []
+    several = tunable.type is tuple
+    facts = [param.range.replace("one of", "any of", several)] if param.range else []
     facts.append(f"default {_default_text(tunable, tunable.default if default is _NOT_GIVEN else default)}")
     automatic = f" {inline(param.unset_text)}" if tunable.is_automatic else ""
     return (
@@ -123,7 +132,7 @@ def _default_text(tunable: Tunable, default: object) -> str:
 
 def outputs(stage: Stage) -> list:
     """Return what a stage makes, one HTML text per output."""
-    made = [f"<b>OUTPUT</b>: {_cloud_text(stage)}."] if stage.makes_cloud else []
+    made = [f"<b>OUTPUT</b>: {_cloud_text(stage)}"] if stage.makes_cloud else []
     made += [_layer_text(layer, layer.name.upper()) for layer in stage.layers]
     made += [_raster_text(raster, raster.name.upper()) for raster in stage.rasters]
     if stage.measures:
@@ -136,13 +145,29 @@ def outputs(stage: Stage) -> list:
 
 def _cloud_text(stage: Stage) -> str:
     written = f" with {_disk_names(stage.writes)}" if stage.writes else ""
+    chosen = _chosen(stage)
+    if chosen is not None:
+        meanings = [_meaning(name) for name in stage.writes]
+        return f"the cloud as it was, and what '{chosen.param.label}' names of these dimensions:{_sublist(meanings)}"
     if stage.creates:
-        return f"a new cloud with {_disk_names(stage.creates)}"
+        return f"a new cloud with {_disk_names(stage.creates)}."
     if stage.merges:
-        return f"the points of all clouds in one{written}; withheld points are left out"
+        return f"the points of all clouds in one{written}; withheld points are left out."
     if stage.selects:
-        return f"a cloud of the points selected{written}; everything else of them stays, withheld points are left out"
-    return f"the cloud{written}; everything else in it stays as it was"
+        return f"a cloud of the points selected{written}; everything else of them stays, withheld points are left out."
+    return f"the cloud{written}; everything else in it stays as it was."
+
+
+def _chosen(stage: Stage) -> Optional[Tunable]:
+    """Return the tunable that says which of its dimensions a stage writes; None where it always writes all."""
+    tunables = (tunable for tunable in stage.tunables.values() if tunable.type is tuple)
+    return next((tunable for tunable in tunables if tunable.param.choices == stage.writes), None)
+
+
+def _meaning(name: str) -> str:
+    dimension = DIMENSIONS[name]
+    unit = f" ({dimension.unit})" if dimension.unit else ""
+    return html.escape(f"{name}: {', '.join(dimension.disk)}, {dimension.description}{unit}")
 
 
 def _report_text(stage: Stage, name: str) -> str:
@@ -156,8 +181,8 @@ def _raster_text(raster: Raster, name: str) -> str:
 
 
 def _layer_text(layer: Layer, name: str) -> str:
-    fields = "; ".join(_field_text(declared) for declared in layer.fields)
-    return f"<b>{name}</b>: {html.escape(layer.title)}, with the attributes {fields}."
+    attributes = _sublist([_field_text(declared) for declared in layer.fields])
+    return f"<b>{name}</b>: {html.escape(layer.title)}, with the attributes:{attributes}"
 
 
 def _field_text(declared: Field) -> str:
@@ -196,6 +221,11 @@ def _list(title: str, rows: list, ordered: bool = False) -> str:
         return ""
     tag = "ol" if ordered else "ul"
     return f"<h3>{html.escape(title)}</h3>\n<{tag}>\n" + "\n".join(f"<li>{row}</li>" for row in rows) + f"\n</{tag}>"
+
+
+def _sublist(rows: list) -> str:
+    """Return rows as a list within a row of another one."""
+    return "\n<ul>\n" + "\n".join(f"<li>{row}</li>" for row in rows) + "\n</ul>"
 
 
 def _section(title: str, text: str) -> str:

@@ -273,6 +273,7 @@ class StageAlgorithm(QgsProcessingAlgorithm):
         )
         if sink is None:
             raise QgsProcessingException(self.invalidSinkError(parameters, name))
+        monitor.resolved(**{layer.name: len(features)})
         for row, feature in enumerate(qgis_features(layer, features, place.to_map)):
             if row % 1000 == 0:
                 monitor.progress(0.97)

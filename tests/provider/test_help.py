@@ -52,10 +52,24 @@ def test_help_of_a_tunable_has_unit_range_default_and_automatic():
     assert tunable_help(limits["classes"]).endswith("<i>(default empty)</i>")
 
 
+def test_dimensions_to_choose_from_are_explained_one_by_one():
+    text = stage_help(STAGES["compute_features"])
+    assert "<i>(any of linearity, planarity, " in text
+    assert (
+        "<b>OUTPUT</b>: the cloud as it was, and what 'Features' names of these dimensions:\n<ul>\n"
+        "<li>linearity: Linearity, (l1 - l2) / l1</li>\n"
+    ) in text
+    assert "<li>normal: NormalX, NormalY, NormalZ, unit normal, upward</li>\n" in text
+    assert "<li>plan_radius: PlanRadius, reach of the neighbors in plan (m)</li>\n" in text
+
+
 def test_the_command_line_shows_text():
     text = as_text(stage_help(TOYS["toy_lift"]))
     assert text.startswith("A text in two parts, with code and emphasis.\n\nInputs\n- INPUT: reads X, Y, Z")
     assert text.endswith("\n\nNotes\n- One.\n- Two.\n\nReferences\nNobody (2000), Nothing.")
+    assert "- FOOTPRINTS: Footprints, with the attributes:\n  - id: Number of the polygon\n" in as_text(
+        stage_help(TOYS["toy_outline"])
+    )
     # QGIS prints the summary before it, and every parameter with its tooltip after it.
     assert "Lift every point" not in text
     assert "Added to all heights" not in text

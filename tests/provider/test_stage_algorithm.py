@@ -124,6 +124,7 @@ def test_a_temporary_output_is_uncompressed_and_feeds_the_next_stage(provider, c
 def test_footprints_have_geometry_fields_and_crs(provider, context, log, town_file, out):
     target = out / "footprints.gpkg"
     run("toyoutline", {"INPUT": str(town_file), "FOOTPRINTS": str(target)}, context, log)
+    assert "Footprints: 1" in log.infos
     layer = QgsVectorLayer(str(target), "footprints", "ogr")
     assert layer.crs().authid() == "EPSG:28992"
     assert layer.wkbType() == QgsWkbTypes.Type.Polygon
