@@ -11,6 +11,7 @@ from typing import Optional
 
 import numpy as np
 
+from ..stage import Monitor
 from .outlines import Tracing, pieces_of, signed_area
 from .regularize import (
     Line,
@@ -73,8 +74,8 @@ class Coverage:
         Whether its outline was made straight.
     """
 
-    def __init__(self, tracing: Tracing, tolerance: float, regularize: bool) -> None:
-        self.tracing, self.tolerance = tracing, tolerance
+    def __init__(self, tracing: Tracing, tolerance: float, regularize: bool, monitor: Monitor) -> None:
+        self.tracing, self.tolerance, self.monitor = tracing, tolerance, monitor
         self.starts, self.ends = tracing.starts, tracing.ends
         self.group_of_triangle = _groups(tracing)
         self.across = tracing.beyond(tracing.face)
@@ -86,6 +87,7 @@ class Coverage:
         self.manner = np.zeros(self.n_groups, np.int64)
         for group in range(self.n_groups):
             self._make(group)
+            monitor.progress((group + 1) / self.n_groups)
         self._part_groups()
 
     def _sort_rings(self) -> None:

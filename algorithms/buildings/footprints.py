@@ -15,6 +15,7 @@ from ..stage import Features, Field, Layer, Param, stage
 from .coverage import Coverage
 from .outlines import Tracing, perimeter, signed_area, trace_outlines
 from .reasons import Reason
+from .rows import MAX_SPACING
 from .rows import split_rows as split_into_houses
 
 _FIELDS = (
@@ -137,7 +138,8 @@ def extract_footprints(
     cluster_id : ndarray of shape (n,), optional
         Building of each point, from 1; points of 0 are left out. Without it, points that lie together are a building.
     height_above_ground : ndarray of shape (n,), optional
-        Heights (m), for the attributes only.
+        Heights (m), for the attributes and to tell low parts from the houses of a row; for these it is otherwise taken
+        over the lowest point of the buildings that lie together or beside them.
     cluster_entropy : ndarray of shape (n,), optional
         Mean entropy of the cluster, for the attributes only.
     confidence : ndarray of shape (n,), optional
@@ -187,6 +189,10 @@ def extract_footprints(
     if tolerance is None:
         tolerance = max(0.4, 1.75 * spacing)
         monitor.resolved(tolerance=tolerance)
+    if split_rows and spacing > MAX_SPACING:
+        monitor.warn(
+            f"Points are {spacing:.1f} m apart, too far to see where the houses of a row part; they are left in one."
+        )
 
     cluster = np.ones(len(building), np.int64) if cluster_id is None else cluster_id[building].astype(np.int64)
     is_roof = _is_roof(xyz[building], cluster, spacing)
@@ -199,19 +205,21 @@ def extract_footprints(
     }
     edges = []
     parts = _parts(xyz, building, bare, max(_APART * spacing, max_edge or 0.0))
-    for done, (rows, beside) in enumerate(parts, start=1):
+    for done, (rows, beside) in enumerate(parts):
+        part = monitor.part(done / len(parts), (done + 1) / len(parts))
         roof = rows[is_roof[rows]]
         points = np.concatenate([building[roof], bare[beside]])
         label = np.concatenate([cluster[roof], np.zeros(len(beside), np.int64)])
         traced = trace_outlines(xyz[points, :2], label, spacing, max_edge, min_area, min_hole_area)
         if traced is not None and len(traced.labels):
             if split_rows:
-                elevation = xyz[points, 2] if height_above_ground is None else height_above_ground[points]
-                traced = split_into_houses(traced, elevation.astype(np.float64), spacing, tolerance)
+                lowest = min(xyz[building[rows], 2].min(), xyz[points, 2].min())
+                height = xyz[points, 2] - lowest if height_above_ground is None else height_above_ground[points]
+                traced = split_into_houses(traced, height.astype(np.float64), spacing, tolerance, part.part(0.0, 0.6))
             edges.append(traced.max_edge)
-            coverage = Coverage(traced, tolerance, regularize)
+            coverage = Coverage(traced, tolerance, regularize, part.part(0.6, 1.0))
             _describe(found, xyz, building[rows], points, traced, coverage, measured, spacing)
-        monitor.progress(done / len(parts))
+        part.progress(1.0)
     if max_edge is None and edges:
         monitor.resolved(max_edge=float(np.median(edges)))
     return _sorted(found, min_area)

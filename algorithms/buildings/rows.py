@@ -6,11 +6,13 @@ A party wall is seen where, along a straight line from one side of a building to
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import Optional
 
 import numpy as np
 
-from ..packages import csgraph, ndimage, sparse
+from ..packages import csgraph, ndimage, sparse, spatial
+from ..stage import Monitor
 from .outlines import Tracing
 from .regularize import edge_distances, line_along, main_directions, segments_meet
 
@@ -47,28 +49,20 @@ _NEARLY = 0.985
 # Lines this close (m) are the same wall: the one, of those with so much (share) for them, that parts the roofs best.
 _SAME, _STRONG = 0.8, 0.5
 
+# Points farther apart (m) don't show the roof on either side of a wall, which takes two places of the grid at least.
+MAX_SPACING = _FAR / (2 * _STEP_SPACINGS)
 
-@dataclass(frozen=True)
-class _Wall:
-    """A line that may be a party wall: its ends (m), and how much speaks for it (m²: height times length)."""
+# What a wall cuts off at the outline is no more than this (spacings squared, each of them two triangles): it stays with
+# the house beside it.
+_SCRAP = 2.0
 
-    ends: np.ndarray
-    strength: float
-
-    @property
-    def start(self) -> np.ndarray:
-        return self.ends[0]
-
-    @property
-    def length(self) -> float:
-        return float(np.hypot(*np.diff(self.ends, axis=0)[0]))
-
-    @property
-    def direction(self) -> np.ndarray:
-        return (self.ends[1] - self.ends[0]) / self.length
+# So many places of a grid are looked at between two calls for progress.
+_AT_ONCE = 200_000
 
 
-def split_rows(tracing: Tracing, height: np.ndarray, spacing: float, tolerance: float) -> Tracing:
+def split_rows(
+    tracing: Tracing, height: np.ndarray, spacing: float, tolerance: float, monitor: Optional[Monitor] = None
+) -> Tracing:
     """Return the tracing with the houses of rows as faces of their own, which have the label of the whole.
 
     A wall goes from one side of the face to the other and has another one beside it, a house away.
@@ -78,58 +72,93 @@ def split_rows(tracing: Tracing, height: np.ndarray, spacing: float, tolerance: 
     tracing : Tracing
         Faces of buildings.
     height : ndarray of shape (n,)
-        Height above ground or elevation of its points (m).
+        Height above ground of its points (m).
     spacing, tolerance : float
-        Mean distance between neighboring points, and how far wiggles of an outline may go (m).
+        Mean distance between neighboring points, and how far wiggles of an outline may go (m). Nothing is split where
+        the spacing is greater than ``MAX_SPACING``.
+    monitor : Monitor, optional
+        Hears the progress.
     """
+    if spacing > MAX_SPACING:
+        return tracing
+    monitor = monitor or Monitor()
     face, labels = tracing.face.copy(), list(tracing.labels)
-    area = tracing.areas
+    starts, area = tracing.starts, tracing.areas
     rings: list = [[] for _ in labels]
     for number, edges in tracing.rings(tracing.face):
-        places = tracing.xy[tracing.starts[edges]]
+        places = tracing.xy[starts[edges]]
         rings[number].append(np.concatenate([places, places[:1]]))
-    for number, own in enumerate(rings):
-        rows = np.flatnonzero(tracing.face == number)
-        if area[rows].sum() < 3 * _HOUSE:
-            continue
-        walls = [wall for ring in own for wall in line_along(ring).walls(tolerance)]
-        found = [wall for angle in main_directions(walls) for wall in _lines(tracing, number, height, angle, spacing)]
-        pieces = _parted(tracing, rows, area[rows], found)
-        for piece in range(1, pieces.max() + 1):
-            face[rows[pieces == piece]] = len(labels)
-            labels.append(tracing.labels[number])
+    order = np.argsort(tracing.face, kind="stable")
+    rows_of = np.split(order, np.searchsorted(tracing.face[order], np.arange(len(labels) + 1)))[1:-1]
+    for number, (own, rows) in enumerate(zip(rings, rows_of)):
+        if area[rows].sum() >= 3 * _HOUSE:
+            part = monitor.part(number / len(rings), (number + 1) / len(rings))
+            walls = [wall for ring in own for wall in line_along(ring).walls(tolerance)]
+            angles = main_directions(walls)
+            found = [
+                _lines(
+                    tracing, rows, height, angle, spacing, part.part(0.7 * k / len(angles), 0.7 * (k + 1) / len(angles))
+                )
+                for k, angle in enumerate(angles)
+            ]
+            pieces = _parted(tracing, rows, area[rows], found, _SCRAP * spacing**2, part.part(0.7, 1.0))
+            face[rows] = np.where(pieces > 0, len(labels) + pieces - 1, number)
+            labels += [tracing.labels[number]] * int(pieces.max())
+        monitor.progress((number + 1) / len(rings))
     return replace(tracing, face=face, labels=np.array(labels, tracing.labels.dtype))
 
 
-def _lines(tracing: Tracing, face: int, height: np.ndarray, angle: float, spacing: float) -> list[_Wall]:
-    """Return what may be party walls in a face, along a direction (rad) and square to it."""
+def _lines(
+    tracing: Tracing, rows: np.ndarray, height: np.ndarray, angle: float, spacing: float, monitor: Monitor
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the ends (w, 2, 2) (m) and strengths (w,) (m²) of what may be party walls in a face, given by its rows.
+
+    They run along a direction (rad) or square to it.
+    """
     step = max(_STEP, _STEP_SPACINGS * spacing)
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    places = tracing.xy[np.unique(tracing.triangles[tracing.face == face])] @ turn
+    places = tracing.xy[np.unique(tracing.triangles[rows])] @ turn
     low, high = places.min(axis=0) - 2 * step, places.max(axis=0) + 2 * step
-    axes = [np.arange(a, b, step) for a, b in zip(low, high)]
-    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
-    is_inside, roof = (
-        values.reshape(grid.shape[:2]) for values in _sampled(tracing, face, height, grid.reshape(-1, 2) @ turn.T)
-    )
+    u, v = (np.arange(a, b, step) for a, b in zip(low, high))
+    roof, is_inside = _sampled(tracing, tracing.face[rows[0]], height, (u, v), turn, monitor.part(0.0, 0.5))
     # Farther than the face on both sides, so that the line parts it where the outline has a notch, too.
     beyond = _ALONG + spacing
-    walls = []
-    for first, last, strength in _along_first_axis(roof, is_inside, step):
-        ends = [axes[0][first[0]] - beyond, axes[0][last[0]] + beyond], [axes[1][first[1]]] * 2
-        walls.append(_Wall(np.column_stack(ends) @ turn.T, strength))
-    for first, last, strength in _along_first_axis(roof.T, is_inside.T, step):
-        ends = [axes[0][first[1]]] * 2, [axes[1][first[0]] - beyond, axes[1][last[0]] + beyond]
-        walls.append(_Wall(np.column_stack(ends) @ turn.T, strength))
-    return walls
+    column, first, last, strength = _along_first_axis(roof, is_inside, step, monitor.part(0.5, 0.75))
+    along_u = np.stack([[u[first] - beyond, v[column]], [u[last] + beyond, v[column]]])
+    column, first, last, more = _along_first_axis(roof.T, is_inside.T, step, monitor.part(0.75, 1.0))
+    along_v = np.stack([[u[column], v[first] - beyond], [u[column], v[last] + beyond]])
+    ends = np.concatenate([along_u, along_v], axis=2)
+    return np.moveaxis(ends, 2, 0) @ turn.T, np.concatenate([strength, more])
 
 
-def _along_first_axis(roof: np.ndarray, is_inside: np.ndarray, step: float) -> list:
-    """Return first and last place, (row, column), and strength (m²) of what may be walls along the first axis."""
-    if not is_inside.any():
-        return []
+def _along_first_axis(
+    roof: np.ndarray, is_inside: np.ndarray, step: float, monitor: Monitor
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Return column, first and last row, and strength (m²) of what may be walls along the first axis."""
+    least = _HIGH * np.median(roof[is_inside]) if is_inside.any() else 0.0
+    # What is seen from a column, to both sides.
+    reach = int(np.ceil(_WIDE / step)) + 2
+    width = max(4 * reach, _AT_ONCE // len(roof))
+    found = []
+    for start in range(0, roof.shape[1], width):
+        low = max(0, start - reach)
+        block = slice(low, start + width + reach)
+        column, *more = _runs_of_walls(roof[:, block], is_inside[:, block], least, step)
+        own = (column >= start - low) & (column < start - low + width)
+        found.append([column[own] + low, *(values[own] for values in more)])
+        monitor.progress(min(1.0, (start + width) / roof.shape[1]))
+    column, first, last, strength, misfit = (np.concatenate(values) for values in zip(*found))
+    chosen = _distinct(column, first, last, strength, misfit, _SAME / step)
+    return column[chosen], first[chosen], last[chosen] - 1, strength[chosen]
+
+
+def _runs_of_walls(roof: np.ndarray, is_inside: np.ndarray, least: float, step: float) -> tuple[np.ndarray, ...]:
+    """Return column, first row and the one after the last, strength (m²) and mean misfit (m) of runs like a wall.
+
+    Only beside roofs of the ``least`` height (m) a wall has to be seen.
+    """
     weight, beside, misfit = _evidence(roof, is_inside, step)
-    is_high = beside >= _HIGH * np.median(roof[is_inside])
+    is_high = beside >= least
     column, first, last = _runs(is_inside)
     length = (last - first) * step
     seen = ndimage.maximum_filter1d(weight, 3, axis=1) > 0
@@ -137,22 +166,35 @@ def _along_first_axis(roof: np.ndarray, is_inside: np.ndarray, step: float) -> l
         _sums(values, column, first, last) * step for values in (is_high, seen & is_high, weight, misfit)
     )
     good = (length >= _SHORTEST) & (length <= _DEEPEST) & (supported >= np.maximum(_SHORTEST, _SEEN * counted))
-    column, first, last, strength, misfit = (
-        values[good] for values in (column, first, last, strength, misfit / length)
-    )
-    return [
-        ((first[run], column[run]), (last[run] - 1, column[run]), float(strength[run]))
-        for run in _distinct(column, first, last, strength, misfit, _SAME / step)
-    ]
+    return tuple(values[good] for values in (column, first, last, strength, misfit / length))
 
 
-def _sampled(tracing: Tracing, face: int, height: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return which places (n, 2) lie in a face, and the height there, 0 outside."""
-    triangle, share = tracing.locate(places)
-    is_inside = (triangle >= 0) & (tracing.face[triangle] == face)
-    roof = np.where(is_inside, (height[tracing.triangles[triangle]] * share).sum(axis=1), 0.0)
-    is_known = np.isfinite(roof)
-    return is_inside & is_known, np.where(is_known, roof, 0.0)
+def _sampled(
+    tracing: Tracing,
+    face: int,
+    height: np.ndarray,
+    axes: tuple[np.ndarray, np.ndarray],
+    turn: np.ndarray,
+    monitor: Monitor,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the height at the places of a grid, 0 outside of a face, and which of them lie in it.
+
+    ``axes`` are those of the grid before it is turned back by the transpose of ``turn`` (2, 2).
+    """
+    u, v = axes
+    roof = np.zeros((len(u), len(v)))
+    is_inside = np.zeros(roof.shape, bool)
+    size = max(1, _AT_ONCE // len(v))
+    for start in range(0, len(u), size):
+        block = slice(start, start + size)
+        places = np.stack(np.meshgrid(u[block], v, indexing="ij"), axis=-1).reshape(-1, 2) @ turn.T
+        triangle, share = tracing.locate(places)
+        here = (height[tracing.triangles[triangle]] * share).sum(axis=1)
+        inside = (triangle >= 0) & (tracing.face[triangle] == face) & np.isfinite(here)
+        roof[block] = np.where(inside, here, 0.0).reshape(-1, len(v))
+        is_inside[block] = inside.reshape(-1, len(v))
+        monitor.progress(min(1.0, (start + size) / len(u)))
+    return roof, is_inside
 
 
 def _evidence(roof: np.ndarray, is_inside: np.ndarray, step: float) -> tuple[np.ndarray, ...]:
@@ -242,71 +284,129 @@ def _distinct(
     return found
 
 
-def _parted(tracing: Tracing, rows: np.ndarray, area: np.ndarray, walls: list[_Wall]) -> np.ndarray:
-    """Return the house (t,), from 0, of each triangle of a face, given by its rows: pieces between party walls."""
+def _parted(
+    tracing: Tracing, rows: np.ndarray, area: np.ndarray, found: list, scrap: float, monitor: Monitor
+) -> np.ndarray:
+    """Return the house (t,), from 0, of each triangle of a face, given by its rows: pieces between party walls.
+
+    ``found`` are ends and strengths of what may be party walls, ``scrap`` (m²) is too little for a piece of its own.
+    """
+    ends, strength = (np.concatenate(values) for values in zip(*found)) if found else (np.zeros((0, 2, 2)), np.zeros(0))
+    ends = ends[np.argsort(-strength, kind="stable")]
+    ends = ends[_in_rows(ends)]
+    if not len(ends):
+        return np.zeros(len(rows), np.int64)
     pairs, middle = _pairs(tracing, rows)
+    crossed = _crossed(ends, middle[pairs])
+    # Triangles that no wall parts are one cell: there are many fewer of these.
+    is_crossed = np.zeros(len(pairs), bool)
+    is_crossed[np.concatenate(crossed)] = True
+    cell = _pieces(pairs[~is_crossed], len(rows))
+    pairs, number = cell[pairs[is_crossed]], np.cumsum(is_crossed) - 1
+    crossed, area = [number[own] for own in crossed], np.bincount(cell, area)
+    kept = _kept(ends, crossed, pairs, area, scrap, monitor)
+    is_cut = np.zeros(len(pairs), bool)
+    for wall in kept[_in_rows(ends[kept])]:
+        is_cut[crossed[wall]] = True
+    return _without_scraps(_pieces(pairs[~is_cut], len(area)), pairs, area, scrap)[cell]
+
+
+def _kept(
+    ends: np.ndarray, crossed: list, pairs: np.ndarray, area: np.ndarray, scrap: float, monitor: Monitor
+) -> np.ndarray:
+    """Return the walls, of those that come first, that leave room between them and no piece smaller than a house.
+
+    ``crossed`` are the ``pairs`` of cells that each parts, ``area`` (m²) is that of the cells.
+    """
     kept: list = []
-    cut = np.zeros(len(pairs), bool)
-    for wall in sorted(_in_rows(walls), key=lambda wall: -wall.strength):
-        if any(_are_close(wall, other) for other in kept):
+    is_cut = np.zeros(len(pairs), bool)
+    for wall, own in enumerate(crossed):
+        monitor.progress(wall / len(ends))
+        if kept and _is_close(ends[wall], ends[kept]):
             continue
-        more = cut | _crosses(wall, middle[pairs])
-        if np.bincount(_pieces(pairs[~more], len(rows)), area).min() >= _HOUSE:
+        more = is_cut.copy()
+        more[own] = True
+        size = np.bincount(_pieces(pairs[~more], len(area)), area)
+        if ((size >= _HOUSE) | (size < scrap)).all():
             kept.append(wall)
-            cut = more
-    cut = np.zeros(len(pairs), bool)
-    for wall in _in_rows(kept):
-        cut |= _crosses(wall, middle[pairs])
-    return _pieces(pairs[~cut], len(rows))
+            is_cut = more
+    return np.array(kept, np.int64)
+
+
+def _without_scraps(piece: np.ndarray, pairs: np.ndarray, area: np.ndarray, scrap: float) -> np.ndarray:
+    """Return the pieces of cells, from 0, with those of less than ``scrap`` (m²) in the largest one beside them."""
+    size = np.bincount(piece, area)
+    beside = piece[np.concatenate([pairs, pairs[:, ::-1]])]
+    beside = beside[(size[beside[:, 0]] < scrap) & (size[beside[:, 1]] >= scrap)]
+    # The largest comes last for each scrap, and stays.
+    beside = beside[np.argsort(size[beside[:, 1]], kind="stable")]
+    target = np.arange(len(size))
+    target[beside[:, 0]] = beside[:, 1]
+    return np.unique(target[piece], return_inverse=True)[1]
 
 
 def _pairs(tracing: Tracing, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the triangles (p, 2) of a face that share an edge, counted in its rows, and the middle of each."""
-    number = np.full(len(tracing.triangles), -1)
-    number[rows] = np.arange(len(rows))
-    beside = np.where(tracing.neighbors[rows] >= 0, number[tracing.neighbors[rows]], -1)
-    one, side = np.nonzero(beside > np.arange(len(rows))[:, None])
-    return np.column_stack([one, beside[one, side]]), tracing.xy[tracing.triangles[rows]].mean(axis=1)
+    beside = tracing.neighbors[rows]
+    position = np.minimum(np.searchsorted(rows, beside), len(rows) - 1)
+    one, side = np.nonzero((rows[position] == beside) & (position > np.arange(len(rows))[:, None]))
+    return np.column_stack([one, position[one, side]]), tracing.xy[tracing.triangles[rows]].mean(axis=1)
 
 
 def _pieces(pairs: np.ndarray, count: int) -> np.ndarray:
+    """Return the piece, from 0, of each of ``count`` things that pairs of them hold together."""
     graph = sparse.coo_matrix((np.ones(len(pairs), bool), tuple(pairs.T)), (count, count))
     return csgraph.connected_components(graph, directed=False)[1]
 
 
-def _crosses(wall: _Wall, places: np.ndarray) -> np.ndarray:
-    """Return which segments (n, 2, 2) lead across a wall."""
-    (x, y), offset = wall.direction, places - wall.start
-    side = x * offset[..., 1] - y * offset[..., 0]
-    along = (offset @ wall.direction).mean(axis=1)
-    return ((side[:, 0] > 0) != (side[:, 1] > 0)) & (along >= 0) & (along <= wall.length)
+def _crossed(ends: np.ndarray, segments: np.ndarray) -> list:
+    """Return for each wall the segments (n, 2, 2) that lead across it."""
+    middle, step = segments.mean(axis=1), ends[:, 1] - ends[:, 0]
+    length = np.hypot(*step.T)
+    reach = (length + np.hypot(*(segments[:, 1] - segments[:, 0]).T).max(initial=0.0)) / 2
+    near = spatial.cKDTree(middle).query_ball_point(ends.mean(axis=1), reach)
+    found = []
+    for start, (x, y), size, beside in zip(ends[:, 0], step / length[:, None], length, near):
+        own = np.sort(np.array(beside, np.int64))
+        offset = segments[own] - start
+        side = x * offset[..., 1] - y * offset[..., 0] > 0
+        along = (middle[own] - start) @ [x, y]
+        found.append(own[(side[:, 0] != side[:, 1]) & (along >= 0) & (along <= size)])
+    return found
 
 
-def _are_close(wall: _Wall, other: _Wall) -> bool:
-    """Return whether two walls cross or leave no room for a house between them."""
-    one, two = wall.ends, other.ends
-    if segments_meet(one[:1], one[1:], two[:1], two[1:]):
+def _is_close(wall: np.ndarray, others: np.ndarray) -> bool:
+    """Return whether a wall (2, 2) crosses one of the others (w, 2, 2), or leaves no room for a house beside it."""
+    starts, stops = others[:, 0], others[:, 1]
+    if segments_meet(wall[:1], wall[1:], starts, stops):
         return True
-    apart = min(edge_distances(a, b[:1], b[1:]).min() for a, b in ((one, two), (two, one)))
-    return bool(apart < _NARROWEST)
+    from_wall, to_wall = edge_distances(wall, starts, stops), edge_distances(others.reshape(-1, 2), wall[:1], wall[1:])
+    return bool(min(from_wall.min(), to_wall.min()) < _NARROWEST)
 
 
-def _in_rows(walls: list[_Wall]) -> list[_Wall]:
-    """Return the walls that have another beside them, a house away: two roofs may be one house, three are a row."""
-    while True:
-        kept = [wall for wall in walls if any(_is_next(wall, other) for other in walls)]
-        if len(kept) == len(walls):
-            return kept
-        walls = kept
+def _in_rows(ends: np.ndarray) -> np.ndarray:
+    """Return which walls (w,) have another beside them, a house away: two roofs may be one house, three are a row."""
+    length = np.hypot(*(ends[:, 1] - ends[:, 0]).T)
+    reach = _WIDEST + length.max(initial=0.0)
+    near = spatial.cKDTree(ends.mean(axis=1)).query_pairs(reach, output_type="ndarray")
+    near = np.concatenate([near, near[:, ::-1]])
+    one, other = near[_are_next(ends[near[:, 0]], ends[near[:, 1]])].T
+    kept, count = np.ones(len(ends), bool), len(ends) + 1
+    while kept.sum() < count:
+        count = kept.sum()
+        kept = np.bincount(one[kept[one] & kept[other]], minlength=len(ends)) > 0
+    return kept
 
 
-def _is_next(wall: _Wall, other: _Wall) -> bool:
-    """Return whether another wall is nearly parallel to a wall and as far away as a house is wide."""
-    if abs(wall.direction @ other.direction) < _NEARLY:
-        return False
-    offset = other.ends - wall.start
-    along = np.sort(offset @ wall.direction)
-    shared = min(along[1], wall.length) - max(along[0], 0.0)
-    x, y = wall.direction
-    apart = abs(float((x * offset[:, 1] - y * offset[:, 0]).mean()))
-    return bool(_NARROWEST <= apart <= _WIDEST and 2 * shared >= min(wall.length, other.length))
+def _are_next(walls: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Return which others (p, 2, 2) are nearly parallel to walls (p, 2, 2) and as far away as a house is wide."""
+    step, other_step = walls[:, 1] - walls[:, 0], others[:, 1] - others[:, 0]
+    length, other_length = np.hypot(*step.T), np.hypot(*other_step.T)
+    x, y = (step / length[:, None]).T
+    offset_x, offset_y = np.moveaxis(others - walls[:, :1], 2, 0)
+    along = np.sort(offset_x * x[:, None] + offset_y * y[:, None], axis=1)
+    shared = np.minimum(along[:, 1], length) - np.maximum(along[:, 0], 0.0)
+    apart = np.abs((x[:, None] * offset_y - y[:, None] * offset_x).mean(axis=1))
+    is_parallel = np.abs(x * other_step[:, 0] + y * other_step[:, 1]) >= _NEARLY * other_length
+    is_beside = 2 * shared >= np.minimum(length, other_length)
+    return is_parallel & is_beside & (apart >= _NARROWEST) & (apart <= _WIDEST)

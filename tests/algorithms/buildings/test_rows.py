@@ -3,7 +3,10 @@
 import numpy as np
 import pytest
 
+from lidar_buildings.algorithms.buildings import rows
 from lidar_buildings.algorithms.buildings.footprints import extract_footprints
+from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.tests.monitors import Listening
 
 WIDTH, DEPTH = 5.5, 11.0
 
@@ -71,6 +74,14 @@ def test_houses_of_a_row_are_polygons_that_share_their_walls(rng, assert_valid, 
         assert_valid(rings)
 
 
+@pytest.mark.parametrize("density", [5, 8])
+def test_triangles_that_a_wall_cuts_off_at_the_outline_cost_no_house(density):
+    """A corner of a triangle behind a wall was taken for a piece too small for a house, and the wall was given up."""
+    for seed in range(6):
+        found, _ = outlined(np.random.default_rng(seed), flat_steps, density, houses=8, angle=0.3 * seed)
+        assert found.columns["area"] == pytest.approx([WIDTH * DEPTH] * 8, rel=0.2)
+
+
 def test_attributes_are_those_of_each_house(rng):
     found, places = outlined(rng, flat_steps, 12)
     heights = [7 + 0.8 * ((place[:, 0].min() + WIDTH / 2) // WIDTH % 2) for place in places]
@@ -89,14 +100,21 @@ def test_two_gables_may_be_one_house(rng):
     assert len(outlined(rng, gables, 12, houses=2)[0]) == 1
 
 
+def with_wings(a, v, number):
+    """A wing of 60 m² that is half as high as the house, on either side of it, and a tower on it."""
+    return np.where((number == 2) & (v < 4), 14.0, np.choose(number, [4.0, 8.0, 8.0, 8.0, 4.0]))
+
+
 def test_low_parts_and_towers_are_no_houses(rng):
-    """A wing of 30 m² that is half as high as the house, on either side of it, and a tower on it."""
+    assert len(outlined(rng, with_wings, 12)[0]) == 1
 
-    def house(a, v, number):
-        z = np.choose(number, [4.0, 8.0, 8.0, 8.0, 4.0])
-        return np.where((number == 2) & (v < 4), 14.0, z)
 
-    assert len(outlined(rng, house, 12)[0]) == 1
+@pytest.mark.parametrize("elevation", [-300.0, 0.0, 3000.0])
+def test_without_heights_the_elevation_of_the_place_changes_nothing(rng, elevation):
+    """Shares of heights were shares of elevations: in the mountains a wing was a house, below sea level none was."""
+    for roof, houses in ((with_wings, 1), (gables, 5)):
+        xyz, classification, _ = row(rng, roof, 12)
+        assert len(extract_footprints(xyz + [0, 0, elevation], classification, split_rows=True)) == houses
 
 
 def test_without_splitting_a_row_is_one_polygon(rng):
@@ -110,3 +128,34 @@ def test_houses_are_the_same_in_any_order_and_place(rng):
     order = rng.permutation(len(xyz))
     moved = extract_footprints(xyz[order] + [6e5, 5e6, 0], classification[order], split_rows=True)
     assert sorted(moved.columns["area"]) == pytest.approx(areas, rel=1e-3)
+
+
+@pytest.mark.parametrize("spacing", [3.0, 1.4])
+def test_where_points_are_too_far_apart_to_see_roofs_this_is_told(rng, spacing):
+    """From 2.7 m on, not one place of the grid was beside a wall, and the stage broke off."""
+    plan = rng.uniform(0, 1, (round(4800 / spacing**2), 2)) * [80, 60]
+    monitor = Monitor()
+    found = extract_footprints(
+        np.column_stack([plan, np.full(len(plan), 8.0)]), np.full(len(plan), 6), split_rows=True, monitor=monitor
+    )
+    assert len(found) == 1
+    assert len(monitor.warnings) == 1
+    assert "too far to see where the houses of a row part" in monitor.warnings[0]
+
+
+def test_large_buildings_are_looked_at_piece_by_piece(rng, monkeypatch):
+    xyz, classification, _ = row(rng, steps, 10, houses=12)
+    at_once = extract_footprints(xyz, classification, split_rows=True)
+    monkeypatch.setattr(rows, "_AT_ONCE", 1000)
+    monitor = Listening()
+    found = extract_footprints(xyz, classification, split_rows=True, monitor=monitor)
+    assert len(found) == 12
+    for one, other in zip(found.geometries, at_once.geometries):
+        np.testing.assert_allclose(one[0], other[0], atol=1e-6)
+    assert monitor.heard == sorted(monitor.heard)
+    assert monitor.heard[-1] == pytest.approx(1)
+    # A grid of 70 m by 15 m has 17,000 places.
+    assert len(set(monitor.heard)) > 25
+    for stop_at in (0.1, 0.3, 0.45):
+        with pytest.raises(Cancelled):
+            extract_footprints(xyz, classification, split_rows=True, monitor=Listening(stop_at))
