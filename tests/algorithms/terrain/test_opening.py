@@ -97,3 +97,38 @@ def test_plates_rest_on_what_is_there_alone():
     assert (opened[absent] == 9.0).all()
     assert (opened[~absent] == 0.0).all()
     assert (open_surface(surface, 4)[5:25, 20:23] == 2.0).any()
+
+
+@pytest.mark.parametrize("radius", [1, 3, 4, 5])
+@pytest.mark.parametrize("level", [-50.0, 50.0])
+def test_inside_it_is_the_highest_plate_over_a_cell_that_no_cell_is_below(radius, level, rng):
+    """By definition, cell by cell: what is absent neither holds a plate up nor has one centered over it."""
+    surface = level + rng.normal(size=(5 * radius + 12, 5 * radius + 9))
+    absent = rng.random(surface.shape) < 0.3
+    steps = np.argwhere(plate(radius)) - radius
+
+    def under(center):
+        """Return the cells, absent ones left out, that a plate over ``center`` covers."""
+        return [tuple(cell) for cell in center + steps if not absent[tuple(cell)]]
+
+    height = {
+        (i, j): min(surface[cell] for cell in under((i, j)))
+        for i, j in np.argwhere(~absent)
+        if radius <= i < surface.shape[0] - radius and radius <= j < surface.shape[1] - radius
+    }
+    opened = open_surface(surface, radius, absent)
+    for i in range(2 * radius, surface.shape[0] - 2 * radius):
+        for j in range(2 * radius, surface.shape[1] - 2 * radius):
+            expected = surface[i, j] if absent[i, j] else max(height[cell] for cell in under((i, j)))
+            assert opened[i, j] == expected
+
+
+@pytest.mark.parametrize("radius", RADII)
+def test_the_level_of_a_surface_is_that_of_its_opening(radius, rng):
+    """Also at the border, where plates hang over: what is beyond it holds none up."""
+    surface = np.round(rng.normal(0, 9, (40, 30)))
+    absent = rng.random(surface.shape) < 0.2
+    for level in (-512.0, 512.0):
+        np.testing.assert_array_equal(open_surface(surface + level, radius), open_surface(surface, radius) + level)
+        moved = open_surface(surface + level, radius, absent)
+        np.testing.assert_array_equal(moved, open_surface(surface, radius, absent) + level)
