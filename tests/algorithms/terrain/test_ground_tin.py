@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
-from lidar_buildings.algorithms.terrain.ground_tin import _grow, _Rules, classify_ground_tin
+from lidar_buildings.algorithms.terrain.ground_tin import _grow, _of_higher_strips, _Rules, classify_ground_tin
+from lidar_buildings.algorithms.terrain.tin import node_residuals, robust_deviation
 from lidar_buildings.tests.monitors import Listening
 
 FAR = np.array([600_000.0, 5_000_000.0, 0.0])
@@ -98,6 +99,18 @@ def test_what_stands_free_does_not_join_the_surface_however_near_it_is(is_free, 
     is_node, _ = _grow(points, np.flatnonzero(~on_top), on_top & is_free, rules, Monitor())
     assert is_node[on_top].any() != is_free
     assert is_node[~on_top].all()
+
+
+def test_points_beside_nodes_of_their_facet_do_not_join(rng):
+    """They make slivers and tell nothing new: nearer than a quarter of the edge length there is none."""
+    points = rng.uniform(0, 20, (4000, 3)) * [1, 1, 0.01]
+    corners = np.array([[x, y, 0.1] for x in range(0, 21, 4) for y in range(0, 21, 4)], float)
+    rules = _Rules(max_angle=45.0, max_distance=0.5, bend=0.0, edge_length=2.0, reach=1.0)
+    both = np.concatenate([corners, points])
+    is_node, _ = _grow(both, np.arange(len(corners)), np.zeros(len(both), bool), rules, Monitor())
+    joined = points[is_node[len(corners) :]]
+    assert len(joined) > 50
+    assert np.linalg.norm(joined[:, None] - corners, axis=2).min() > 0.5
 
 
 def test_low_things_are_not_ground(rng):
@@ -216,6 +229,60 @@ def test_where_strips_do_not_fit_together_both_are_ground(misfit, rng):
     missed, wrong = errors(classify_ground_tin(xyz, unclassified(xyz))[len(first) :], is_house)
     assert wrong == 0
     assert missed < 0.02
+
+
+@pytest.mark.parametrize(("distance", "top"), [(0.08, 0.16), (0.15, 0.3), (0.4, 0.55)])
+def test_a_higher_strip_lies_at_most_15_cm_higher_and_as_far_as_the_ground_is_wide(distance, top):
+    above = np.array([distance, distance + 0.01, top - 0.01, top + 0.01, 2 * top + 0.01, -distance - 0.01])
+    higher = _of_higher_strips(above, np.arange(6), distance)
+    assert higher.tolist() == [False, True, True, False, False, False]
+
+
+@pytest.mark.parametrize(("n_over", "is_strip"), [(10, True), (11, False)])
+def test_a_tenth_of_a_higher_strip_may_have_something_over_it(n_over, is_strip):
+    above = np.append(np.full(100, 0.12), np.full(n_over, 0.3))
+    square = np.zeros(len(above), int)
+    assert _of_higher_strips(above, square, 0.1)[:100].all() == is_strip
+    # What is farther up than all that stands for plants, and what is over other squares, counts for nothing.
+    assert _of_higher_strips(np.where(above > 0.2, 0.5, above), square, 0.1)[:100].all()
+    assert _of_higher_strips(above, np.where(above > 0.2, 1, 0), 0.1)[:100].all()
+
+
+def test_plants_elsewhere_do_not_hide_a_higher_strip(rng):
+    """Forty point spacings are 14 m here: in the west plants, in the east strips that don't fit together."""
+    xyz, _ = scan(rng, TERRAINS["level"], density=8, noise=0.02)
+    is_second, half = xyz[:, 0] > 45, rng.random(len(xyz)) < 0.5
+    xyz[is_second & half, 2] += 0.12
+    is_plant = (xyz[:, 0] < 30) & half
+    xyz[is_plant, 2] += rng.uniform(0.0, 0.3, is_plant.sum())
+    is_ground = classify_ground_tin(xyz, unclassified(xyz)) == 2
+    assert is_ground[xyz[:, 0] > 60].mean() > 0.99
+    assert is_ground[is_plant & (xyz[:, 2] > 0.15)].mean() < 0.1
+
+
+@pytest.mark.parametrize("tunables", [{"seeds": "lowest"}, {"sweep_distance": 0.06}])
+def test_higher_strips_are_left_out_as_published_and_where_the_distance_is_given(tunables, rng):
+    xyz, _ = scan(rng, TERRAINS["level"], density=5, noise=0.0)
+    is_higher = rng.random(len(xyz)) < 0.5
+    xyz[is_higher, 2] += 0.11
+    monitor = Monitor()
+    is_ground = classify_ground_tin(xyz, unclassified(xyz), iteration_distance=0.05, **tunables, monitor=monitor) == 2
+    assert monitor.values["sweep_distance"] < 0.11
+    assert is_ground[~is_higher].mean() > 0.99
+    # Where a cell has no lower point the surface starts on a higher one.
+    assert is_ground[is_higher].mean() < 0.2
+
+
+@pytest.mark.parametrize(("seeds", "noise"), [("lowest", 0.2), ("opening", 0.2), ("opening", 0.02)])
+def test_the_sweep_distance_is_six_times_the_roughness_of_which_the_last_third_is_small(seeds, noise, rng):
+    """As published it is six times the roughness, which rough terrain makes wide."""
+    xyz, _ = scan(rng, TERRAINS["level"], density=2, noise=noise)
+    is_node = classify_ground_tin(xyz, unclassified(xyz), seeds=seeds, sweep_distance=0.0) == 2
+    roughness = robust_deviation(node_residuals(xyz[is_node]))
+    most_more = np.inf if seeds == "lowest" else 0.1
+    monitor = Monitor()
+    classify_ground_tin(xyz, unclassified(xyz), seeds=seeds, monitor=monitor)
+    assert monitor.values["sweep_distance"] == pytest.approx(4 * roughness + min(2 * roughness, most_more))
 
 
 def test_squares_far_apart_take_no_memory_between_them(rng):

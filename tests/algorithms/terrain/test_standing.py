@@ -41,11 +41,90 @@ def test_a_hall_may_be_larger_than_any_window(cell_size):
     assert not free_standing(surface, cell_size, USUAL, largest=USUAL)[0].any()
 
 
-@pytest.mark.parametrize(("width", "is_object"), [(50, True), (70, False)])
-def test_what_is_wider_than_usual_needs_walls_higher_than_quays(width, is_object):
+@pytest.mark.parametrize(
+    ("width", "height", "is_object"),
+    [(50, 0.8, False), (50, 1.2, True), (50, 1.5, True), (70, 1.5, False), (70, 1.9, False), (70, 2.1, True)],
+)
+def test_what_is_wider_than_usual_needs_walls_higher_than_quays(width, height, is_object):
     surface = slope(120, 120)
-    block(surface, slice(10, 110), slice(10, 10 + width), 1.5)
+    block(surface, slice(10, 110), slice(10, 10 + width), height)
     assert free_standing(surface, 1.0, USUAL)[0].any() == is_object
+
+
+@pytest.mark.parametrize(("height", "is_object"), [(0.9, False), (1.1, True)])
+def test_a_step_is_a_meter_high_however_small_the_cells(height, is_object):
+    surface = slope(60, 60)
+    block(surface, slice(20, 40), slice(20, 40), height)
+    assert free_standing(surface, 0.5, USUAL)[0].any() == is_object
+
+
+@pytest.mark.parametrize(("rise", "is_object"), [(1.8, False), (2.2, True)])
+def test_a_hill_whose_flanks_soil_can_lie_on_has_no_walls(rise, is_object):
+    """On cells of 2 m a flank of 42° rises 1.8 m from one cell to the next, one of 48° 2.2 m."""
+    rows, columns = np.mgrid[:60, :60]
+    hill = rise * np.clip(18.5 - np.maximum(np.abs(rows - 29.5), np.abs(columns - 29.5)), 0, 4)
+    assert free_standing(hill, 2.0, USUAL)[0].any() == is_object
+
+
+@pytest.mark.parametrize(("side", "is_object"), [(3, False), (4, True)])
+def test_what_has_fewer_than_four_cells_off_its_edge_is_too_rough_to_tell(side, is_object):
+    surface = slope(40, 40)
+    thing = block(surface, slice(10, 10 + side), slice(20, 20 + side), 5.0)
+    np.testing.assert_array_equal(free_standing(surface, 1.0, USUAL)[0], thing & is_object)
+
+
+@pytest.mark.parametrize(("length", "is_object"), [(4, True), (12, False)])
+def test_what_the_terrain_is_above_on_more_than_a_tenth_of_the_edge_is_a_terrace(length, is_object):
+    surface = slope(80, 80)
+    house = block(surface, slice(30, 50), slice(30, 50), 4.0)
+    surface[2:30, 30 : 30 + length] = 6.0  # a bank up to the wall
+    surface[:2] = 6.0
+    assert free_standing(surface, 1.0, USUAL)[0][house].all() == is_object
+
+
+@pytest.mark.parametrize(("seen", "is_object"), [(5, True), (3, False)])
+def test_two_fifths_of_the_edge_must_be_seen(seen, is_object):
+    """A house of 12 m by 12 m between towers on two sides, and in front of parts of the others."""
+    surface = slope(80, 80)
+    house = block(surface, slice(30, 42), slice(30, 42), 4.0)
+    for rows, columns in ((slice(20, 52), slice(42, 54)), (slice(20, 52), slice(18, 30))):
+        block(surface, rows, columns, 20.0)
+    surface[22:30, 30 + 2 * seen : 42] = surface[42:50, 30 + 2 * seen : 42] = 20.0
+    assert free_standing(surface, 1.0, USUAL)[0][house].all() == is_object
+
+
+@pytest.mark.parametrize(("seen", "is_object"), [(2, True), (1, False)])
+def test_a_fifth_of_the_steps_must_face_others(seen, is_object):
+    """Of 10 m by 10 m, in the corner between two towers: to the other sides it is all steps."""
+    surface = slope(80, 80)
+    house = block(surface, slice(30, 40), slice(30, 40), 4.0)
+    surface[10:30, 10 : 40 - seen] = 20.0
+    surface[10 : 40 - seen, 10:30] = 20.0
+    assert free_standing(surface, 1.0, USUAL)[0][house].all() == is_object
+
+
+@pytest.mark.parametrize(("rows", "is_object"), [(60, True), (30, False)])
+def test_a_third_of_the_edge_may_lie_where_the_cloud_ends(rows, is_object):
+    """A building of 25 m that crosses a cloud as long as that."""
+    for turned in (np.asarray, np.transpose):
+        surface = slope(rows, 80)
+        crossing = block(surface, slice(None), slice(30, 55), 4.0)
+        np.testing.assert_array_equal(free_standing(turned(surface), 1.0, USUAL)[0], turned(crossing & is_object))
+
+
+@pytest.mark.parametrize(("low", "high"), [(0.0, 4.0), (12.0, 30.0)])
+def test_a_house_among_plants_stands_free_and_they_do_not(low, high, rng):
+    """All round it are shrubs, or trees along one of its sides: too rough to tell, lower or higher."""
+    surface = slope(80, 80)
+    plants = np.zeros(surface.shape, bool)
+    plants[25:59, 25 : 59 if high < 8 else 34] = True
+    surface[plants] = rng.uniform(low, high, plants.sum())
+    house = np.zeros(surface.shape, bool)
+    house[34:50, 34:50] = True
+    surface[house] = 8.0
+    found = free_standing(surface, 1.0, USUAL)[0]
+    assert found[house].all()
+    assert not found[plants & ~house].any()
 
 
 def test_an_island_with_houses_on_it_is_terrain_and_the_houses_are_not():
@@ -64,6 +143,23 @@ def test_machines_on_a_roof_make_no_terrain_of_it():
     for row in range(20, 100, 20):
         block(surface, slice(row, row + 5), slice(40, 48), 2.0)
     np.testing.assert_array_equal(free_standing(surface, 1.0, USUAL)[0], hall)
+
+
+def test_a_house_with_a_penthouse_is_no_terrain():
+    """Islands are wide: on what is not, anything may stand."""
+    surface = slope(60, 60)
+    house = block(surface, slice(20, 40), slice(20, 40), 6.0)
+    block(surface, slice(24, 36), slice(24, 36), 3.0)
+    np.testing.assert_array_equal(free_standing(surface, 1.0, USUAL)[0], house)
+
+
+def test_houses_in_the_angle_of_a_hall_do_not_stand_on_it():
+    surface = slope(140, 140)
+    hall = np.zeros(surface.shape, bool)
+    hall[10:130, 10:75] = hall[65:130, 10:130] = True
+    surface[hall] = 8.0
+    house = block(surface, slice(12, 57), slice(83, 128), 6.0)
+    np.testing.assert_array_equal(free_standing(surface, 1.0, USUAL)[0], hall | house)
 
 
 def test_a_low_house_beside_a_tower_is_judged_by_the_rest_of_its_edge():
@@ -99,11 +195,13 @@ def test_a_house_at_the_end_of_the_cloud_stands_free_on_its_other_sides():
     assert not found[corner].any()
 
 
-def test_a_courtyard_stays_terrain():
-    surface = slope(80, 80)
-    ring = block(surface, slice(20, 60), slice(20, 60), 9.0)
-    surface[32:48, 32:48] = 0.0
-    ring[32:48, 32:48] = False
+@pytest.mark.parametrize("side", [40, 80])
+def test_a_courtyard_stays_terrain(side):
+    surface = slope(side + 40, side + 40)
+    ring = block(surface, slice(20, 20 + side), slice(20, 20 + side), 9.0)
+    yard = (slice(32, 8 + side),) * 2
+    surface[yard] = 0.0
+    ring[yard] = False
     np.testing.assert_array_equal(free_standing(surface, 1.0, USUAL)[0], ring)
 
 

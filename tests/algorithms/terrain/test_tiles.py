@@ -147,6 +147,34 @@ def test_no_circle_is_doubted_where_all_nodes_are_known(rng, place):
     assert asked == [(0, len(tin.facets)), (1, 0)]
 
 
+@pytest.mark.parametrize("rounding", [1e-9, -1e-9])
+def test_a_node_on_a_circle_makes_no_circle_wrong_that_has_all_nodes_known(rng, monkeypatch, rounding):
+    """Else the search for nodes that are missing would never end."""
+    monkeypatch.setattr(module, "_ROUNDING", rounding)
+    surface = TiledTin(ground(rng, lambda plan: plan[:, 0] > -1, 300))
+    tin = Tin(surface.nodes, surface._box)
+    intruders, is_wrong = surface._intruders(tin, np.arange(len(tin.facets)), np.arange(len(surface.nodes)))
+    assert not len(intruders)
+    assert not is_wrong.any()
+
+
+def test_a_facet_of_nodes_on_a_line_is_taken_as_it_is(rng):
+    surface = TiledTin(ground(rng, lambda plan: plan[:, 0] > -1, 300))
+    tin = Tin(surface.nodes, surface._box)
+    tin.nodes[tin.facets[5], 1] = 0.0
+    intruders, is_wrong = surface._intruders(tin, np.array([5]), np.arange(len(surface.nodes)))
+    assert not len(intruders)
+    assert is_wrong.tolist() == [False]
+
+
+@pytest.mark.parametrize("other", [3.0, np.nextafter(3.0, 4.0)])
+def test_places_that_no_line_parts_stay_in_one_tile(other, monkeypatch):
+    monkeypatch.setattr(module, "_PLACES", 1)
+    places = np.array([[3.0, 7.0], [other, 7.0]])
+    ((rows, own),) = module._tiles(np.zeros((1, 3)), places)
+    assert (rows.tolist(), own.tolist()) == ([0], [0, 1])
+
+
 def test_only_few_nodes_are_triangulated_at_once(rng, monkeypatch):
     """What the tiles are for: memory that doesn't grow with the cloud."""
     sizes = []

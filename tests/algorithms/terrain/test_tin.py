@@ -7,6 +7,7 @@ from scipy.spatial import Delaunay
 
 from lidar_buildings.algorithms.terrain import tin as module
 from lidar_buildings.algorithms.terrain.tin import Tin, node_residuals, robust_deviation
+from lidar_buildings.tests.monitors import Listening
 
 FAR = np.array([600_000.0, 5_000_000.0, 0.0])
 
@@ -132,6 +133,13 @@ def test_nodes_on_a_line_have_no_circle():
     center, radius = tin.circles(np.array([0]))
     assert not np.isfinite(center).all()
     assert not np.isfinite(radius).any()
+
+
+def test_a_search_tells_how_far_it_is(nodes, monkeypatch):
+    monkeypatch.setattr(module, "_CHUNK", 10)
+    monitor = Listening()
+    Tin(nodes).locate(nodes[:40], monitor)
+    assert monitor.heard == [0.25, 0.5, 0.75, 1.0]
 
 
 def test_empty_search(nodes):
