@@ -268,8 +268,8 @@ def test_higher_strips_are_left_out_as_published_and_where_the_distance_is_given
     monitor = Monitor()
     is_ground = classify_ground_tin(xyz, unclassified(xyz), iteration_distance=0.05, **tunables, monitor=monitor) == 2
     assert monitor.values["sweep_distance"] < 0.11
-    assert is_ground[~is_higher].mean() > 0.99
     # Where a cell has no lower point the surface starts on a higher one.
+    assert is_ground[~is_higher].mean() > 0.98
     assert is_ground[is_higher].mean() < 0.2
 
 
