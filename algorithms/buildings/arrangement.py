@@ -107,14 +107,9 @@ class Arrangement:
             Edge(key[0], start, end, cell, nothing) for key, (cell, start, end) in found.items() if key[0] >= m
         ]
 
-    def cells_of(self, xy: np.ndarray) -> np.ndarray:
-        """Return the cell (n,) that each point (n, 2) lies in; points lie inside the rectangle."""
-        m = self.signs.shape[1]
-        normals = np.column_stack([-self.directions[:m, 1], self.directions[:m, 0]])
-        sides = xy @ normals.T > np.einsum("ij,ij->i", self.points[:m], normals)
-        # The signs of a cell as one number: a sum of random numbers, which no two cells share.
-        weights = np.random.default_rng(0).integers(1, 2**62, m)
-        keys, wanted = self.signs @ weights, sides @ weights
+    def cells_at(self, sides: np.ndarray) -> np.ndarray:
+        """Return the cell (n,) of points that lie on these ``sides`` (n, m) of the lines, -1 where there is none."""
+        keys, wanted = keys_of(self.signs), keys_of(sides)
         order = np.argsort(keys)
         cell = order[np.minimum(np.searchsorted(keys, wanted, sorter=order), len(keys) - 1)]
         # Rounding may put a point into a cell that is too small to exist.
@@ -181,6 +176,17 @@ class Arrangement:
         inside = np.zeros(n + 2, bool)
         inside[reached] = True
         return inside[:n]
+
+
+def sides_of(xy: np.ndarray, points: np.ndarray, directions: np.ndarray) -> np.ndarray:
+    """Return whether each point (n, 2) lies to the left of each line (m), bool (n, m)."""
+    normals = np.column_stack([-directions[:, 1], directions[:, 0]])
+    return xy @ normals.T > np.einsum("ij,ij->i", points, normals)
+
+
+def keys_of(sides: np.ndarray) -> np.ndarray:
+    """Return the sides of lines (n, m), bool, as one number each: a sum of random ones, which no two cells share."""
+    return sides @ np.random.default_rng(0).integers(1, 2**62, sides.shape[1])
 
 
 def _name(a: int, b: int) -> tuple[int, int]:

@@ -168,15 +168,16 @@ def extract_wall_footprints(
         tolerance = _tolerance(xyz[used])
         monitor.resolved(tolerance=tolerance)
     limits = Limits(tolerance, min_length, max_overhang)
-    for done, building in enumerate(buildings, start=1):
-        outline = building.walls_outline(limits, seed)
+    for done, building in enumerate(buildings):
+        part = monitor.part(done / len(buildings), (done + 1) / len(buildings))
+        outline = building.walls_outline(limits, seed, part)
         if outline is not None and outline.seen < min_seen:
             outline = None
         parts = _parts(outline.rings) if outline is not None else [_bare(rings) for rings in building.roof_outlines()]
         for rings in parts:
             if sum(signed_area(closed(ring)) for ring in rings) >= min_area:
                 _add(footprints, edges, rings, building, outline, height_above_ground)
-        monitor.progress(done / len(buildings))
+        part.progress(1.0)
     monitor.progress(1.0)
     _tell_unseen(footprints, monitor)
     return footprints, edges
@@ -229,12 +230,12 @@ class _Building:
         traced = trace_outlines(self.roof, np.ones(len(self.roof), np.int64), self.spacing)
         return sorted(traced.parts if traced else [], key=lambda rings: -sum(map(signed_area, rings)))
 
-    def walls_outline(self, limits: Limits, seed: int) -> Optional[WallOutline]:
+    def walls_outline(self, limits: Limits, seed: int, monitor: Monitor) -> Optional[WallOutline]:
         """Return the outline of the walls near the origin, None where there are too few."""
         if not len(self.walls) or not self.traced:
             return None
         rng = np.random.default_rng(seed)
-        return outline_walls(self.walls, self.roof, self.traced[0], self.spacing, limits, rng)
+        return outline_walls(self.walls, self.roof, self.traced[0], self.spacing, limits, rng, monitor)
 
     def roof_outlines(self) -> list:
         """Return the outlines of the roof's parts, straight where they nearly are."""

@@ -8,6 +8,7 @@ from typing import Optional
 import numpy as np
 
 from ..packages import spatial
+from ..stage import Monitor
 
 # Hypotheses for each line: where a wall holds a tenth of the points, one pair in a hundred lies on it.
 _TRIALS = 500
@@ -115,7 +116,9 @@ def wall_scale(n_points: int, perimeter: float, tolerance: float) -> Scale:
     return Scale(tolerance, float(np.clip(_POINTS_PER_BIN * perimeter / max(n_points, 1), 0.2, 1.0)))
 
 
-def find_lines(xy: np.ndarray, scale: Scale, min_length: float, rng: np.random.Generator) -> list[WallLine]:
+def find_lines(
+    xy: np.ndarray, scale: Scale, min_length: float, rng: np.random.Generator, monitor: Monitor
+) -> list[WallLine]:
     """Return the walls among points in plan, longest first, about.
 
     Parameters
@@ -128,6 +131,8 @@ def find_lines(xy: np.ndarray, scale: Scale, min_length: float, rng: np.random.G
         Shortest wall, m.
     rng : Generator
         Random numbers.
+    monitor : Monitor
+        Hears the progress.
 
     Returns
     -------
@@ -144,6 +149,7 @@ def find_lines(xy: np.ndarray, scale: Scale, min_length: float, rng: np.random.G
             break
         lines.append(line)
         left = left[~np.isin(left, line.points)]
+        monitor.progress(1 - len(left) / len(xy))
     return lines
 
 

@@ -9,7 +9,8 @@ import numpy as np
 
 from ..cloud.cells import refuse_sparse
 from ..packages import ndimage
-from .arrangement import Arrangement
+from ..stage import Monitor
+from .arrangement import Arrangement, keys_of, sides_of
 from .outlines import signed_area
 from .regularize import edge_distances, regularize_outline, simplify_ring
 from .wall_lines import Scale, WallLine, find_lines, merge_lines, square_up, wall_scale
@@ -18,7 +19,7 @@ from .wall_lines import Scale, WallLine, find_lines, merge_lines, square_up, wal
 # there is room (m).
 _CELL, _LARGEST_CELL, _MOST_CELLS, _ROOM = 0.25, 1.0, 5e5, 2.0
 
-# A square metre outside the roof costs so many metres of wall that nobody sees; one that is left out although it lies
+# A square meter outside the roof costs so many meters of wall that nobody sees; one that is left out although it lies
 # under the roof and inside of where walls are expected by this distance (m), and one deep under it, these.
 _OUTSIDE, _INSIDE, _WELL_INSIDE, _DEEP = 5.0, 1.0, 0.3, 2.0
 
@@ -45,8 +46,11 @@ _FLUSH = 0.2
 # they lie where it is expected to within the first distance (m), and as expected within the second.
 _LIKE, _EAVE_ANGLE, _EAVE, _AS_EXPECTED = np.deg2rad(8.0), np.deg2rad(3.0), 0.3, 0.15
 
-# A corner must save so many metres of unseen wall, and so many more where it isn't square to within this angle.
+# A corner must save so many meters of unseen wall, and so many more where it isn't square to within this angle.
 _CORNER_COST, _SKEW_COST, _SQUARE = 0.6, 1.5, np.sin(np.deg2rad(2.0))
+
+# So many sides of lines that places are on are told at once.
+_AT_ONCE = 10_000_000
 
 # Corners are left out of the test of an edge, by this much or by this share of a short edge.
 _CORNER, _CORNER_SHARE = 0.4, 0.25
@@ -113,7 +117,13 @@ class _Roof:
 
 
 def outline_walls(
-    walls: np.ndarray, roof: np.ndarray, traced: list, spacing: float, limits: Limits, rng: np.random.Generator
+    walls: np.ndarray,
+    roof: np.ndarray,
+    traced: list,
+    spacing: float,
+    limits: Limits,
+    rng: np.random.Generator,
+    monitor: Monitor,
 ) -> Optional[WallOutline]:
     """Return the outline of a building's walls, None where no wall is seen.
 
@@ -129,11 +139,13 @@ def outline_walls(
         What walls may be like.
     rng : Generator
         Random numbers.
+    monitor : Monitor
+        Hears the progress.
     """
     perimeter = float(np.hypot(*np.diff(simplify_ring(traced[0], 0.5), axis=0).T).sum())
     scale = wall_scale(len(walls), perimeter, limits.tolerance)
     cover = _Roof(roof)
-    seen = find_lines(walls, scale, limits.min_length, rng)
+    seen = find_lines(walls, scale, limits.min_length, rng, monitor.part(0.0, 0.3))
     seen = [line for line in seen if np.median(cover.depth_at(walls[line.points])) > -_FLUSH]
     seen = square_up(merge_lines(seen, walls, scale), walls)
     if not seen:
@@ -146,7 +158,9 @@ def outline_walls(
     sides = np.concatenate([sides, _bends(traced, sides, spacing)])
     lines = [*seen, *_from_roof(seen, sides, overhang, walls, scale)]
     near = [_near(walls, line, scale) for line in lines]
-    rings = _Trial(lines, near, _Case(cover, scale, limits, overhang)).simplified().edges()
+    case = _Case(cover, scale, limits, overhang)
+    patches = _patches(lines, case, monitor.part(0.3, 0.4))
+    rings = _Trial(lines, near, patches, case).simplified(monitor.part(0.4, 1.0)).edges()
     return WallOutline(rings, overhang) if rings else None
 
 
@@ -238,15 +252,63 @@ class _Case:
     overhang: float
 
 
+@dataclass(frozen=True)
+class _Patches:
+    """Pieces of the rectangle that no line parts: their sides of the lines (k, m), costs (k,) inside and outside."""
+
+    is_left: np.ndarray
+    if_inside: np.ndarray
+    if_outside: np.ndarray
+
+    def of(self, chosen: list[int]) -> _Patches:
+        """Return the same with some of the lines."""
+        return replace(self, is_left=self.is_left[:, chosen])
+
+    def costs_in(self, cells: Arrangement) -> tuple[np.ndarray, np.ndarray]:
+        """Return for each cell how little the roof likes it inside, and outside."""
+        cell, count = cells.cells_at(self.is_left), len(cells.rings)
+        known = cell >= 0
+        if_inside, if_outside = (
+            np.bincount(cell[known], cost[known], count) for cost in (self.if_inside, self.if_outside)
+        )
+        return if_inside, if_outside
+
+
+def _patches(lines: list[WallLine], case: _Case, monitor: Monitor) -> _Patches:
+    """Return what the roof says of each patch between lines: the places in it are looked at once, for all outlines."""
+    places, depth = case.cover.places, case.cover.depth.ravel()
+    points, directions = _points_and_directions(lines)
+    size = max(1, _AT_ONCE // max(1, len(lines)))
+    keys = np.zeros(len(places), np.int64)
+    for start in range(0, len(places), size):
+        keys[start : start + size] = keys_of(sides_of(places[start : start + size], points, directions))
+        monitor.progress(start / len(places))
+    _, first, patch = np.unique(keys, return_index=True, return_inverse=True)
+
+    def area(chosen: np.ndarray) -> np.ndarray:
+        return np.bincount(patch[chosen], minlength=len(first)) * case.cover.cell**2
+
+    if_inside = _OUTSIDE * area(depth < -_BEYOND)
+    if_outside = _INSIDE * area(depth > case.overhang + _WELL_INSIDE)
+    if_outside += _DEEP * area(depth > min(case.limits.max_overhang, _DEEPER * depth.max()))
+    # The deepest place is inside at any cost.
+    if_outside[patch[np.argmax(depth)]] += _CERTAIN
+    return _Patches(sides_of(places[first], points, directions), if_inside, if_outside)
+
+
+def _points_and_directions(lines: list[WallLine]) -> tuple[np.ndarray, np.ndarray]:
+    """Return a point on each line and its direction (m, 2)."""
+    return np.array([line.point for line in lines]), np.array([line.direction for line in lines])
+
+
 class _Trial:
     """The best outline that some lines can make, and what it costs."""
 
-    def __init__(self, lines: list[WallLine], near: list[np.ndarray], case: _Case) -> None:
-        self.lines, self.near, self.case = lines, near, case
-        points, directions = (np.array([getattr(line, name) for line in lines]) for name in ("point", "direction"))
-        self.cells = Arrangement(points, directions, case.cover.low, case.cover.high)
+    def __init__(self, lines: list[WallLine], near: list[np.ndarray], patches: _Patches, case: _Case) -> None:
+        self.lines, self.near, self.patches, self.case = lines, near, patches, case
+        self.cells = Arrangement(*_points_and_directions(lines), case.cover.low, case.cover.high)
         cost = np.array([_cost(self.cells, edge, lines, near, case.scale) for edge in self.cells.edges])
-        if_inside, if_outside = self._unlikely()
+        if_inside, if_outside = patches.costs_in(self.cells)
         inside = self.cells.cheapest(cost, if_inside, if_outside)
         line, left, right = (
             np.array([getattr(e, of) for e in self.cells.edges], int) for of in ("line", "left", "right")
@@ -255,21 +317,6 @@ class _Trial:
         self.rings = self.cells.outline(inside)
         self.line_cost = np.bincount(line[cut], cost[cut], len(self.cells.points))
         self.total = float(self.line_cost.sum() + if_inside[inside].sum() + if_outside[~inside].sum() + self._corners())
-
-    def _unlikely(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return for each cell how little the roof likes it inside, and outside."""
-        cell, depth = self.cells.cells_of(self.case.cover.places), self.case.cover.depth.ravel()
-        count = len(self.cells.rings)
-
-        def area(chosen: np.ndarray) -> np.ndarray:
-            return np.bincount(cell[chosen & (cell >= 0)], minlength=count) * self.case.cover.cell**2
-
-        if_inside = _OUTSIDE * area(depth < -_BEYOND)
-        if_outside = _INSIDE * area(depth > self.case.overhang + _WELL_INSIDE)
-        if_outside += _DEEP * area(depth > min(self.case.limits.max_overhang, _DEEPER * depth.max()))
-        # The deepest place is inside at any cost.
-        if_outside[cell[np.argmax(depth)]] += _CERTAIN
-        return if_inside, if_outside
 
     def _corners(self) -> float:
         """Return what the corners cost."""
@@ -280,17 +327,19 @@ class _Trial:
                 total += _CORNER_COST + _SKEW_COST * (turn > _SQUARE)
         return total
 
-    def simplified(self) -> _Trial:
+    def simplified(self, monitor: Monitor) -> _Trial:
         """Return the cheapest outline found that some of the lines make."""
-        best = first = self._descended()
+        best = first = self._descended(monitor.part(0.0, 0.5))
         # Going down can end at a chord over a corner, so what costs more than one is also left out from the start.
-        for doubtful in np.flatnonzero(first.line_cost[: len(first.lines)] > _CORNER_COST + _SKEW_COST):
-            rest = [i for i, line in enumerate(self.lines) if line is not first.lines[doubtful]]
+        doubtful = np.flatnonzero(first.line_cost[: len(first.lines)] > _CORNER_COST + _SKEW_COST)
+        for done, number in enumerate(doubtful):
+            part = monitor.part(0.5 + done / len(doubtful) / 2, 0.5 + (done + 1) / len(doubtful) / 2)
+            rest = [i for i, line in enumerate(self.lines) if line is not first.lines[number]]
             if len(rest) > 3:
-                best = min(best, self.only(rest)._descended(), key=lambda trial: trial.total)
+                best = min(best, self.only(rest)._descended(part), key=lambda trial: trial.total)
         return best
 
-    def _descended(self) -> _Trial:
+    def _descended(self, monitor: Monitor) -> _Trial:
         """Return the outline without the lines that are not worth their corners, the worst left out first."""
         best, used = self, sorted({line for ring in self.rings for line, _ in ring if line < len(self.lines)})
         if 0 < len(used) < len(self.lines):
@@ -301,6 +350,7 @@ class _Trial:
             if saving.max() <= 0:
                 saving[~is_known] = np.inf
             line = int(np.argmax(saving))
+            monitor.progress(1 - len(best.lines) / len(self.lines))
             without = best.only([i for i in range(len(best.lines)) if i != line])
             if is_known[line]:
                 best, saving = without, np.delete(saving, line)
@@ -312,7 +362,7 @@ class _Trial:
     def only(self, chosen: list[int]) -> _Trial:
         """Return the best outline of some of the lines."""
         lines, near = [self.lines[i] for i in chosen], [self.near[i] for i in chosen]
-        return _Trial(lines, near, self.case)
+        return _Trial(lines, near, self.patches.of(chosen), self.case)
 
     def edges(self) -> list[list[WallEdge]]:
         """Return the rings of edges, exterior first."""

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lidar_buildings.algorithms.buildings.arrangement import Arrangement
+from lidar_buildings.algorithms.buildings.arrangement import Arrangement, sides_of
 from lidar_buildings.algorithms.buildings.outlines import signed_area
 
 LOW, HIGH = np.array([-10.0, -8.0]), np.array([10.0, 8.0])
@@ -41,7 +41,7 @@ def test_two_by_two_lines_make_nine_cells():
     directions = np.array([(0.0, 1), (0, 1), (1, 0), (1, 0)])
     cells = Arrangement(points, directions, LOW, HIGH)
     assert sorted(cell_areas(cells)) == pytest.approx(sorted(a * b for a in (8, 5, 7) for b in (7, 5, 4)))
-    middle = cells.cells_of(np.array([[0.0, 0.0], [2.9, 3.9]]))
+    middle = cells.cells_at(sides_of(np.array([[0.0, 0.0], [2.9, 3.9]]), points, directions))
     assert middle[0] == middle[1]
     inside = np.arange(9) == middle[0]
     (ring,) = cells.outline(inside)
@@ -70,7 +70,7 @@ def test_cells_tile_the_rectangle_and_are_as_many_as_lines_make(seed, count):
     inside = rng.random(len(cells.rings)) < 0.5
     assert outline_area(cells, inside) == pytest.approx(cell_areas(cells)[inside].sum())
     places = rng.uniform(LOW, HIGH, (300, 2))
-    cell = cells.cells_of(places)
+    cell = cells.cells_at(sides_of(places, points, directions))
     assert (cell >= 0).all()
     share = np.bincount(cell, minlength=len(cells.rings)) / 300
     np.testing.assert_allclose(share, cell_areas(cells) / 320, atol=0.12)

@@ -5,7 +5,8 @@ import pytest
 
 from lidar_buildings.algorithms.buildings.outlines import signed_area
 from lidar_buildings.algorithms.buildings.wall_footprints import extract_wall_footprints
-from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.tests.monitors import Listening
 
 OVERHANG = 0.5
 
@@ -295,6 +296,23 @@ def test_a_long_row_across_the_grid_is_no_mistake(rng):
     assert footprints.columns["source"] == ["wall"]
     ring = footprints.geometries[0][0][:-1]
     assert np.hypot(*(corners[:, None] - ring).transpose(2, 0, 1)).min(axis=1).max() < 0.5
+
+
+def test_the_outline_of_one_building_tells_how_far_it_is_and_can_be_stopped(rng):
+    """One with sixty walls took two minutes in which nobody could stop it."""
+    teeth = [(x + dx, 8 + dy) for x in (12, 0) for dx, dy in ((12, 6), (6, 6), (6, 0), (0, 0))]
+    arrays, _ = building(rng, ((0, 0), (24, 0), *teeth), per_meter=8, density=10)
+    monitor = Listening()
+    footprints, _ = extract_wall_footprints(**arrays, monitor=monitor)
+    assert footprints.columns["edges"] == [10]
+    assert monitor.heard == sorted(monitor.heard)
+    assert 0 < monitor.heard[0] < 0.1
+    assert monitor.heard[-1] == 1
+    # Once for each wall found and each outline tried.
+    assert len(monitor.heard) > 25
+    for stop_at in (0.01, 0.35, 0.6):
+        with pytest.raises(Cancelled):
+            extract_wall_footprints(**arrays, monitor=Listening(stop_at))
 
 
 def test_walls_without_roofs_give_no_footprint(rng):

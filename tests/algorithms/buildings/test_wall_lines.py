@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.buildings.wall_lines import find_lines, merge_lines, square_up, wall_scale
+from lidar_buildings.algorithms.stage import Monitor
 
 
 def wall(rng, start, end, per_meter=10, noise=0.03):
@@ -15,7 +16,7 @@ def wall(rng, start, end, per_meter=10, noise=0.03):
 
 def found_in(xy, tolerance=0.1, min_length=1.2):
     length = 2 * np.ptp(xy, axis=0).sum()
-    return find_lines(xy, wall_scale(len(xy), length, tolerance), min_length, np.random.default_rng(0))
+    return find_lines(xy, wall_scale(len(xy), length, tolerance), min_length, np.random.default_rng(0), Monitor())
 
 
 def angle_between(one, other):
