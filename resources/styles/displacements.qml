@@ -2,7 +2,7 @@
 <qgis styleCategories="Symbology" version="3.40.0">
   <renderer-v2 forceraster="0" enableorderby="0" referencescale="-1" type="RuleRenderer" symbollevels="0">
     <rules>
-      <rule symbol="0" label="Displacement, drawn 10 times as long"/>
+      <rule symbol="0" label="Displacement × 10"/>
     </rules>
     <symbols>
       <symbol name="0" force_rhr="0" frame_rate="10" alpha="1" is_animated="0" clip_to_extent="1" type="line">

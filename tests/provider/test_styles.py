@@ -102,7 +102,7 @@ def test_displacements_are_arrows_drawn_ten_times_as_long(qgis_application):
     message, loaded = layer.loadNamedStyle(str(STYLES / "displacements.qml"))
     assert loaded, message
     (rule,) = layer.renderer().rootRule().children()
-    assert rule.label() == "Displacement, drawn 10 times as long"
+    assert rule.label() == "Displacement × 10"
     expression = QgsExpression(rule.symbol().symbolLayer(0).geometryExpression())
     feature = QgsFeature()
     feature.setGeometry(QgsGeometry.fromWkt("LineString (600000 5000000, 600000.1 4999999.8)"))
