@@ -5,8 +5,10 @@ import pytest
 
 from lidar_buildings.algorithms.stage import Monitor
 from lidar_buildings.algorithms.terrain.seeds import (
+    _lifted,
     _slope,
     _windows,
+    _without_joined,
     lowest_points,
     seeds_by_lowest,
     seeds_by_opening,
@@ -189,6 +191,105 @@ def test_the_slope_of_a_crest_is_that_of_its_flanks_and_a_plane_keeps_its_own():
     crest = _slope(-0.5 * np.abs(across - 30), 1.0)
     assert (crest[:, 20:41] > 0.35).all()
     assert (crest < 0.5 + 1e-9).all()
+
+
+def lifted_square(side=10, radius=4):
+    """Return a level surface of 40 by 40 cells of 1 m and what windows lifted off it: a square from (15, 15)."""
+    lifted = np.zeros((40, 40), np.int32)
+    lifted[15 : 15 + side, 15 : 15 + side] = radius
+    return np.zeros((40, 40)), lifted
+
+
+def stays_lifted(surface, lifted, slope=0.0):
+    none, slopes = np.zeros(surface.shape, bool), np.full(surface.shape, slope)
+    return _without_joined(lifted, none, 30, surface, slopes, 1.0)
+
+
+@pytest.mark.parametrize(("smooth", "stays"), [(10, False), (9, True)])
+def test_what_joins_the_terrain_on_half_of_its_edge_comes_back(smooth, stays):
+    """Of a square of 10 m two sides and so much of a third join the terrain, or a little less; there are four."""
+    surface, lifted = lifted_square()
+    surface[:15] = surface[:, :15] = -2.0
+    surface[25:, 15 : 25 - smooth] = -2.0
+    np.testing.assert_array_equal(stays_lifted(surface, lifted), (lifted > 0) & stays)
+
+
+@pytest.mark.parametrize(("smooth", "stays"), [(10, False), (9, True)])
+def test_what_comes_back_joins_the_terrain_on_a_quarter_of_all_its_edge(smooth, stays):
+    """Beside the terrain there is nothing but other objects, which the largest windows lifted off."""
+    surface, lifted = lifted_square()
+    lifted[10:15, 10:30] = lifted[10:30, 10:15] = lifted[10:30, 25:30] = 25
+    lifted[25:30, 15 + smooth : 25] = 25
+    surface[lifted == 25] = 8.0
+    np.testing.assert_array_equal(stays_lifted(surface, lifted), (lifted == 25) | ((lifted == 4) & stays))
+
+
+def test_what_stands_on_a_spit_stays_lifted_where_the_spit_comes_back():
+    surface, lifted = lifted_square(side=20, radius=16)
+    lifted[20:26, 20:26] = 4
+    surface[20:26, 20:26] = 5.0
+    np.testing.assert_array_equal(stays_lifted(surface, lifted), lifted == 4)
+
+
+@pytest.mark.parametrize(("slope", "stays"), [(1.2, False), (1.9, False), (2.3, True)])
+def test_flanks_as_steep_as_the_step_make_a_bank_of_it_up_to_a_slope_of_two(slope, stays):
+    _, lifted = lifted_square()
+    rows, columns = np.mgrid[:40, :40]
+    pyramid = -slope * np.maximum(np.abs(rows - 19.5), np.abs(columns - 19.5))
+    np.testing.assert_array_equal(stays_lifted(pyramid, lifted), (lifted > 0) & stays)
+
+
+@pytest.mark.parametrize(("slope", "stays"), [(0.0, True), (0.5, True), (0.7, False)])
+def test_on_slopes_higher_steps_are_smooth(slope, stays):
+    """A step of 0.6 m joins where terrain may rise by 0.3 m and half its slope from cell to cell."""
+    surface, lifted = lifted_square()
+    surface[lifted > 0] = 0.6
+    np.testing.assert_array_equal(stays_lifted(surface, lifted, slope), (lifted > 0) & stays)
+
+
+@pytest.mark.parametrize(
+    ("side", "height", "slope", "is_lifted"),
+    [
+        # The first window that is wider has a radius of 4 m: 0.1 m, a tenth of the radius, and the slope.
+        (7, 0.55, 0.0, True),
+        (7, 0.45, 0.0, False),
+        (7, 1.35, 0.2, True),
+        (7, 1.25, 0.2, False),
+        # Flat terrain rises by no more than a meter however large the window.
+        (45, 1.15, 0.0, True),
+        (45, 1.05, 0.0, False),
+    ],
+)
+def test_a_window_lifts_off_what_rises_more_than_terrain_may(side, height, slope, is_lifted):
+    """Looked at in the middle: corners are lifted off by smaller windows."""
+    surface, square = np.zeros((140, 140)), slice(70 - side // 2, 71 + side // 2)
+    surface[square, square] = height
+    lifted = _lifted(surface, _windows(30), np.full(surface.shape, slope), 1.0, Monitor())
+    assert (lifted[70, 70] > 0) == is_lifted
+    assert not lifted[surface == 0].any()
+
+
+@pytest.mark.parametrize("cell_size", [0.5, 2.0])
+def test_the_slope_does_not_depend_on_the_cells(cell_size):
+    """It is smoothed over meters, whatever the cells."""
+    here, cells = np.arange(0.0, 80.0), np.arange(0.0, 80.0, cell_size)
+    crests = [np.repeat(-0.5 * np.abs(x - 40)[:, None], 40, axis=1) for x in (here, cells)]
+    expected, found = (_slope(crest, size)[:, 20] for crest, size in zip(crests, (1.0, cell_size)))
+    np.testing.assert_allclose(np.interp(here, cells, found)[20:60], expected[20:60], atol=0.02)
+
+
+def test_a_house_on_a_dike_stays_an_object_where_the_dike_comes_back(rng):
+    """Windows lift both off, as one region that joins the terrain smoothly all round."""
+    plan = even(100, 100) + rng.uniform(-0.3, 0.3, (len(even(100, 100)), 2))
+    dike = 4 * np.exp(-((plan[:, 0] - 50) ** 2) / (2 * 5**2))
+    z, is_house = raise_roofs(plan, dike, (46, 40, 8, 10, 7.0))
+    seeds, stands_free, _ = seeds_by_opening(
+        np.column_stack([plan, z + rng.normal(0, 0.02, len(plan))]), 1.0, None, Monitor()
+    )
+    assert stands_free[is_house].mean() > 0.7
+    assert not is_house[seeds].any()
+    # One of the two points of a cell is a seed.
+    assert (dike[seeds] > 2).sum() > 0.4 * ((dike > 2) & ~is_house).sum()
 
 
 def test_progress_only_grows():
