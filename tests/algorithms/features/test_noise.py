@@ -32,7 +32,7 @@ def plane(rng, deviation, slope=0.0, count=4000, side=30.0):
 @pytest.mark.parametrize("slope", [0.0, 1.0])
 def test_noise_of_a_plane(deviation, slope, rng):
     """The smoothest fifth of equally rough surroundings looks a quarter smoother than they are."""
-    assert 0.65 * deviation < surface_noise(plane(rng, deviation, slope)) < 1.05 * deviation
+    assert 0.68 * deviation < surface_noise(plane(rng, deviation, slope)) < 0.82 * deviation
 
 
 def test_twice_the_noise_is_twice_the_figure(rng):
@@ -163,6 +163,36 @@ def test_points_along_scan_lines_need_neighbors_on_several_lines(rng):
     x, y = np.meshgrid(np.arange(0, 30, 0.1), np.arange(0, 30, 1.0))
     lines = np.column_stack([x.ravel(), y.ravel(), rng.normal(0, 0.02, x.size)])
     assert 25 <= surface_neighbors(lines, 10.0, 0.02) <= 60
+
+
+def test_lines_over_half_of_the_cloud_are_enough_to_look_across_them(rng):
+    """Four fifths of the neighborhoods must be wide, those between points that are not in lines are not enough."""
+    x, y = np.meshgrid(np.arange(0, 30, 0.1), np.arange(0, 30, 1.0))
+    lines = np.column_stack([x.ravel(), y.ravel(), rng.normal(0, 0.02, x.size)])
+    scattered = rng.uniform([0, 40, 0], [30, 70, 0], lines.shape) + rng.normal(0, 0.02, lines.shape) * [0, 0, 1]
+    assert surface_neighbors(scattered, 10.0, 0.02) == 8
+    assert 25 <= surface_neighbors(np.concatenate([lines, scattered]), 10.0, 0.02) <= 60
+
+
+def test_density_on_a_grid_by_hand():
+    """At 1 m from each other: one at no distance, four at 1 m, four at 1.4 m and more than three at 2 m."""
+    x, y = np.meshgrid(np.arange(40.0), np.arange(40.0))
+    level = np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)])
+    assert SurfaceSample(level).density() == pytest.approx(12 / (np.pi * 2**2))
+    wall = level[:, [0, 2, 1]]
+    assert SurfaceSample(wall).density() == SurfaceSample(level).density()
+
+
+def test_points_at_one_place_have_no_density():
+    assert SurfaceSample(np.full((20, 3), 7.0)).density() == np.inf
+
+
+@pytest.mark.parametrize(("density", "noise", "expected"), [(25.0, 0.0, np.hypot(0.02, 0.01)), (4.0, 0.1, None)])
+def test_roofs_are_rougher_than_the_smoothest_surfaces(density, noise, expected, rng):
+    """By 2 cm at least, and by a twentieth of the point spacing."""
+    sample = SurfaceSample(plane(rng, noise))
+    expected = np.hypot(sample.noise(), 0.05 / 2) if expected is None else expected
+    assert sample.roughness(density) == pytest.approx(expected)
 
 
 def test_neighbors_are_at_most_sixty_and_all_points():
