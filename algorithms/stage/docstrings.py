@@ -38,7 +38,7 @@ def with_tunables(doc: str, tunables: Collection[Tunable]) -> str:
         kind = t.type.__name__ + (" or None" if t.is_automatic else "")
         facts = [kind, *([t.param.unit] if t.param.unit else []), *([t.param.range] if t.param.range else [])]
         rows.append(f"{t.name} : {', '.join(facts)}, default {t.default!r}")
-        text = t.param.help + (f" Automatic: {t.param.automatic}" if t.is_automatic else "")
+        text = f"{t.param.help} {t.param.unset_text}".rstrip()
         rows.extend(textwrap.wrap(text, 88, initial_indent="    ", subsequent_indent="    "))
     rows.append("monitor : Monitor, optional\n    Hears progress, automatic values and warnings.")
     return f"{doc}\n\n" + "\n".join(rows) + "\n" if tunables else doc

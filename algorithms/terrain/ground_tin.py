@@ -233,11 +233,7 @@ def classify_ground_tin(
     angle = by_terrain[1] if iteration_angle is None else iteration_angle
 
     growing = points[last]
-    if seeds == "lowest":
-        size = USUAL_BUILDING if size is None else size
-        start, stands_free = seeds_by_lowest(growing, size), np.zeros(len(growing), bool)
-    else:
-        start, stands_free, size = seeds_by_opening(growing, cell_size, size, monitor.part(0, 0.3))
+    start, stands_free, size = _start(growing, seeds, cell_size, size, monitor.part(0, 0.3))
     terrain = _terrain(size) if terrain is None else terrain
     rules = _Rules(angle, iteration_distance, _GROW_BEND * spacing, edge_length, scale)
     is_node, distance = _grow(growing, start, stands_free, rules, monitor.part(0.3, 0.8))
@@ -284,6 +280,16 @@ def _cell(granularity: Optional[str], cell_size: Optional[float], spacing: float
         granularity = "fine" if spacing > 1 else "medium"
     least, cells = _GRANULARITIES[granularity]
     return granularity, max(least, cells * spacing) if cell_size is None else cell_size
+
+
+def _start(
+    points: np.ndarray, seeds: str, cell_size: float, size: Optional[float], monitor: Monitor
+) -> tuple[np.ndarray, np.ndarray, float]:
+    """Return the indices of the seeds, which points (n,) stand free, and the size (m) of the largest building."""
+    if seeds == "opening":
+        return seeds_by_opening(points, cell_size, size, monitor)
+    size = USUAL_BUILDING if size is None else size
+    return seeds_by_lowest(points, size), np.zeros(len(points), bool), size
 
 
 def _terrain(size: float) -> str:
@@ -335,9 +341,10 @@ def _grow(
         if candidates is None:
             candidates = _near(tin, points, _CANDIDATE_DISTANCES * distance, monitor.part(0, 0.5))
             candidates = candidates[~(is_node | stands_free)[candidates]]
-        candidates, joining = _joining(tin, points, candidates, distance, rules, is_start[is_node])
+        part = monitor.part(0.5 + 0.5 * step / _MAX_ROUNDS, 0.5 + 0.5 * (step + 1) / _MAX_ROUNDS)
+        candidates, joining = _joining(tin, points, candidates, distance, rules, is_start[is_node], part)
         is_node[joining] = True
-        monitor.progress(0.5 + 0.5 * (step + 1) / _MAX_ROUNDS)
+        part.progress(1.0)
         if len(joining) <= _LEAST_GROWTH * len(nodes):
             break
     return is_node, float(distance)
@@ -355,10 +362,16 @@ def _above(tin: Tin, points: np.ndarray, monitor: Monitor) -> np.ndarray:
 
 
 def _joining(
-    tin: Tin, points: np.ndarray, candidates: np.ndarray, distance: float, rules: _Rules, is_start: np.ndarray
+    tin: Tin,
+    points: np.ndarray,
+    candidates: np.ndarray,
+    distance: float,
+    rules: _Rules,
+    is_start: np.ndarray,
+    monitor: Monitor,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the candidates that are left for later rounds, and those that join now, one per facet."""
-    facet = tin.locate(points[candidates])
+    facet = tin.locate(points[candidates], monitor)
     # Small facets only get smaller, and a point beside a node makes a sliver and tells nothing new.
     is_open = tin.longest_edge()[facet] > rules.edge_length
     candidates, facet = candidates[is_open], facet[is_open]

@@ -90,6 +90,7 @@ def test_a_sample_is_enough(rng, small_sample):
     xyz = plane(rng, 0.04, count=60_000, side=120)
     sample, whole = SurfaceSample(xyz), SurfaceSample(xyz, cKDTree(xyz))
     assert len(sample) < len(xyz) / 4 < len(whole)
+    assert len(sample.rows) == len(whole.rows)
     assert sample.noise() == pytest.approx(whole.noise(), rel=0.05)
     assert sample.density() == pytest.approx(whole.density(), rel=0.05)
     assert sample.n_neighbors(4.2, 0.15) == whole.n_neighbors(4.2, 0.15)

@@ -200,9 +200,9 @@ def lifted_square(side=10, radius=4):
     return np.zeros((40, 40)), lifted
 
 
-def stays_lifted(surface, lifted, slope=0.0):
-    none, slopes = np.zeros(surface.shape, bool), np.full(surface.shape, slope)
-    return _without_joined(lifted, none, 30, surface, slopes, 1.0)
+def stays_lifted(surface, lifted, slope=0.0, free=False):
+    everywhere = np.ones(surface.shape)
+    return _without_joined(lifted, everywhere.astype(bool) & free, 30, surface, slope * everywhere, 1.0)
 
 
 @pytest.mark.parametrize(("smooth", "stays"), [(10, False), (9, True)])
@@ -229,6 +229,15 @@ def test_what_stands_on_a_spit_stays_lifted_where_the_spit_comes_back():
     lifted[20:26, 20:26] = 4
     surface[20:26, 20:26] = 5.0
     np.testing.assert_array_equal(stays_lifted(surface, lifted), lifted == 4)
+
+
+def test_what_stands_free_stays_an_object_in_a_region_that_comes_back():
+    """It has no wall there: lifted off by the same windows, it joins the region around."""
+    surface, lifted = lifted_square(side=20)
+    free = np.zeros(lifted.shape, bool)
+    free[20:26, 20:26] = True
+    np.testing.assert_array_equal(stays_lifted(surface, lifted, free=free), free)
+    np.testing.assert_array_equal(stays_lifted(surface, np.zeros_like(lifted), free=free), free)
 
 
 @pytest.mark.parametrize(("slope", "stays"), [(1.2, False), (1.9, False), (2.3, True)])
