@@ -31,6 +31,8 @@ _LARGEST_VLR = 65_535
 # Longer payloads (waveforms) stay in their file until they are copied.
 _KEPT_IN_MEMORY = 2**24
 _COPIED_AT_ONCE = 2**24
+# Doubles may be this many steps of the scale apart; some files are written with far too fine a scale.
+_COARSEST = 1000.0
 LASZIP = (b"laszip encoded", 22204)
 EXTRA_BYTES = (b"LASF_Spec", 4)
 WAVEFORMS = (b"LASF_Spec", 65535)
@@ -226,8 +228,11 @@ class _Reader:
         return header
 
     def _check_scale(self, header: Header) -> None:
-        numbers = np.concatenate((header.scale, header.offset))
-        if not np.isfinite(numbers).all() or (header.scale == 0).any():
+        step = np.abs(header.scale)
+        with np.errstate(over="ignore"):
+            farthest = np.abs(header.offset) + 2.0**31 * step
+        # Beyond, all coordinates are one and the same; of NaN and infinity the comparison is false.
+        if not (np.spacing(farthest) <= _COARSEST * step).all():
             raise ValueError(
                 f"{self.path.name} has no usable coordinates: scale {header.scale.tolist()}, offset "
                 f"{header.offset.tolist()} in its header; get the file again."
