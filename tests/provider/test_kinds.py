@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from osgeo import gdal
 from qgis.core import (
+    Qgis,
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransformContext,
     QgsFeature,
@@ -43,9 +44,13 @@ def refused(provider, name, given, context):
 def test_files_of_points_can_be_browsed_for(provider, name, own):
     algorithm = provider.algorithm(name).create()
     definition = algorithm.parameterDefinition(own)
+    definition.setFlags(Qgis.ProcessingParameterFlag.Hidden)
+    definition.setMetadata({"kept": 1})
     copy = definition.clone()
     assert type(copy) is type(definition)
-    assert (copy.help(), copy.flags()) == (definition.help(), definition.flags())
+    assert copy.help() == definition.help() != ""
+    assert copy.flags() == Qgis.ProcessingParameterFlag.Hidden
+    assert copy.metadata() == {"kept": 1}
     for each in (definition, copy):
         assert each.createFileFilter().startswith("Point clouds (*.las *.LAS *.laz *.LAZ *.vpc *.VPC);;")
         assert each.checkValueIsAcceptable("tile.laz")
