@@ -167,7 +167,7 @@ def _chosen(stage: Stage) -> Optional[Tunable]:
 def _meaning(name: str) -> str:
     dimension = DIMENSIONS[name]
     unit = f" ({dimension.unit})" if dimension.unit else ""
-    return html.escape(f"{name}: {', '.join(dimension.disk)}, {dimension.description}{unit}")
+    return f"<i>{name}</i>: {', '.join(dimension.disk)}, {html.escape(dimension.description + unit)}"
 
 
 def _report_text(stage: Stage, name: str) -> str:
@@ -187,7 +187,7 @@ def _layer_text(layer: Layer, name: str) -> str:
 
 def _field_text(declared: Field) -> str:
     unit = f" ({declared.unit})" if declared.unit else ""
-    return html.escape(f"{declared.name}{unit}: {declared.help.rstrip('.')}")
+    return f"<i>{html.escape(declared.name + unit)}</i>: {html.escape(declared.help.rstrip('.'))}"
 
 
 def _dimensions(stage: Stage) -> str:

@@ -57,10 +57,10 @@ def test_dimensions_to_choose_from_are_explained_one_by_one():
     assert "<i>(any of linearity, planarity, " in text
     assert (
         "<b>OUTPUT</b>: the cloud as it was, and what 'Features' names of these dimensions:\n<ul>\n"
-        "<li>linearity: Linearity, (l1 - l2) / l1</li>\n"
+        "<li><i>linearity</i>: Linearity, (l1 - l2) / l1</li>\n"
     ) in text
-    assert "<li>normal: NormalX, NormalY, NormalZ, unit normal, upward</li>\n" in text
-    assert "<li>plan_radius: PlanRadius, reach of the neighbors in plan (m)</li>\n" in text
+    assert "<li><i>normal</i>: NormalX, NormalY, NormalZ, unit normal, upward</li>\n" in text
+    assert "<li><i>plan_radius</i>: PlanRadius, reach of the neighbors in plan (m)</li>\n" in text
 
 
 def test_the_command_line_shows_text():
