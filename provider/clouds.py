@@ -67,17 +67,11 @@ class CloudsParameter(_TakesFiles, QgsProcessingParameterMultipleLayers):
         """Return a copy of this very type; the base class would return its own."""
         return self._as_this(CloudsParameter(self.name(), self.description()))
 
-    # QGIS writes down the layers that it can open, which leaves nothing of files that it can't.
-
     def valueAsPythonString(self, value: Any, context: QgsProcessingContext) -> str:  # noqa: N802
-        """Return the clouds as a script names them."""
+        """Return the clouds as a script and the log name them."""
+        # QGIS writes down the layers that it can open, which leaves nothing of files that it can't.
         names = _names(value)
         return super().valueAsPythonString(value, context) if names is None else repr(names)
-
-    def valueAsString(self, value: Any, context: QgsProcessingContext) -> tuple[str, bool]:  # noqa: N802
-        """Return the clouds as the log names them."""
-        names = _names(value)
-        return super().valueAsString(value, context) if names is None else (";".join(names), True)
 
 
 def cloud_path(algorithm: QgsProcessingAlgorithm, name: str, parameters: dict, context: QgsProcessingContext) -> Path:
