@@ -233,7 +233,7 @@ def classify_ground_tin(
     angle = by_terrain[1] if iteration_angle is None else iteration_angle
 
     growing = points[last]
-    start, stands_free, size = _start(growing, seeds, cell_size, size, monitor.part(0, 0.3))
+    start, stands_free, size = _start(growing, seeds, cell_size, spacing, size, monitor.part(0, 0.3))
     terrain = _terrain(size) if terrain is None else terrain
     rules = _Rules(angle, iteration_distance, _GROW_BEND * spacing, edge_length, scale)
     is_node, distance = _grow(growing, start, stands_free, rules, monitor.part(0.3, 0.8))
@@ -283,11 +283,11 @@ def _cell(granularity: Optional[str], cell_size: Optional[float], spacing: float
 
 
 def _start(
-    points: np.ndarray, seeds: str, cell_size: float, size: Optional[float], monitor: Monitor
+    points: np.ndarray, seeds: str, cell_size: float, spacing: float, size: Optional[float], monitor: Monitor
 ) -> tuple[np.ndarray, np.ndarray, float]:
     """Return the indices of the seeds, which points (n,) stand free, and the size (m) of the largest building."""
     if seeds == "opening":
-        return seeds_by_opening(points, cell_size, size, monitor)
+        return seeds_by_opening(points, cell_size, size, monitor, spacing)
     size = USUAL_BUILDING if size is None else size
     return seeds_by_lowest(points, size), np.zeros(len(points), bool), size
 

@@ -83,7 +83,7 @@ def lowest_points(xyz: np.ndarray, cell_size: float) -> Lowest:
 
 
 def seeds_by_opening(
-    xyz: np.ndarray, cell_size: float, max_building_size: Optional[float], monitor: Monitor
+    xyz: np.ndarray, cell_size: float, max_building_size: Optional[float], monitor: Monitor, spacing: float = 0.0
 ) -> tuple[np.ndarray, np.ndarray, float]:
     """Find ground points by opening the lowest surface with growing windows.
 
@@ -101,6 +101,8 @@ def seeds_by_opening(
         Least extent of the largest building, m: the last window. None is 60 m, and any size for what stands free.
     monitor : Monitor
         Hears progress.
+    spacing : float
+        Point spacing (m), where that is more than a cell.
 
     Returns
     -------
@@ -127,7 +129,7 @@ def seeds_by_opening(
     surface, known = _surface(xyz, lowest)
     size = max_building_size or USUAL_BUILDING
     windows = _windows(size / 2 / cell_size)
-    free, found = free_standing(surface, cell_size, size, max_building_size or np.inf)
+    free, found = free_standing(surface, cell_size, size, max_building_size or np.inf, spacing)
     first = np.full(surface.shape, _FIRST_SLOPE)
     objects = free | (_lifted(surface, windows, first, cell_size, monitor.part(0, 0.3)) > 0)
     for start in (0.3, 0.6):
@@ -135,7 +137,7 @@ def seeds_by_opening(
         # With what stands free taken away, a low roof beside a higher one is as narrow as it is.
         part = monitor.part(start, start + 0.3)
         lifted = _lifted(surface, windows, _SLOPE_SHARE * slope, cell_size, part, absent=free)
-        objects = _without_joined(lifted, free, windows[-1], surface, slope, cell_size)
+        objects = _without_joined(lifted, free, windows[-1], surface, slope, cell_size, spacing)
     monitor.progress(1.0)
     # What is seen through a roof as through a pit lies lower than the surface there.
     stands_free = lowest.at_points(free) & (xyz[:, 2] >= lowest.at_points(surface))
@@ -223,25 +225,34 @@ def _slope(surface: np.ndarray, cell_size: float) -> np.ndarray:
 
 
 def _without_joined(
-    lifted: np.ndarray, free: np.ndarray, largest: int, surface: np.ndarray, slope: np.ndarray, cell_size: float
+    lifted: np.ndarray,
+    free: np.ndarray,
+    largest: int,
+    surface: np.ndarray,
+    slope: np.ndarray,
+    cell_size: float,
+    spacing: float = 0.0,
 ) -> np.ndarray:
     """Return what stands free, and the lifted cells but for regions that join the terrain smoothly on half their edge.
 
-    A step is smooth if it is low, or if the surface goes on as steeply on one of its sides: the flank of a bank.
+    A step is smooth if it is low, or if the surface goes on as steeply on one of its sides: the flank of a bank. It is
+    one from point to point, so that this is looked for a spacing on, where that is more than a cell.
     What smaller windows and what larger windows lifted off make regions of their own: a house stays
     lifted off, though the spit of land on which it stands comes back.
     """
+    apart = max(1, round(spacing / cell_size))
+    bank = apart * cell_size
     allowed = (_JOIN_SLOPE + _JOIN_SHARE * slope) * cell_size
     objects = (lifted > 0) | free
     is_large = lifted > _LARGE_WINDOW * largest
     for group in (objects & ~is_large, is_large):
         region, count = ndimage.label(group)
         whole, edge, joined = np.zeros(count + 1), np.zeros(count + 1), np.zeros(count + 1)
-        for (here, there), flank in zip(neighbors(surface.ndim), _flanks(surface)):
+        for (here, there), flank in zip(neighbors(surface.ndim), _flanks(surface, apart)):
             outward = (region[here] > 0) & (region[there] != region[here])
             at_edge = outward & ~objects[there]
             step = surface[here] - surface[there]
-            is_bank = step < np.minimum(flank + _JOIN_SLOPE * cell_size, _STEEPEST_BANK * cell_size)
+            is_bank = step < np.minimum(flank + _JOIN_SLOPE * bank, _STEEPEST_BANK * bank)
             smooth = at_edge & ((step < allowed[here]) | is_bank)
             whole += np.bincount(region[here][outward], minlength=count + 1)
             edge += np.bincount(region[here][at_edge], minlength=count + 1)
@@ -252,14 +263,13 @@ def _without_joined(
     return objects
 
 
-def _flanks(surface: np.ndarray) -> Iterator[np.ndarray]:
-    """Yield, in the order of ``neighbors``, the larger rise (m) of the cell before and the cell after each step."""
+def _flanks(surface: np.ndarray, apart: int) -> Iterator[np.ndarray]:
+    """Yield, in the order of ``neighbors``, the larger rise (m) of so many cells before and after each step."""
     for axis in range(surface.ndim):
         for upward in (False, True):
             along = np.moveaxis(surface, axis, 0)
             along = along[::-1] if upward else along
-            step = along[:-1] - along[1:]
-            flank = np.full(step.shape, -np.inf)
-            flank[1:] = step[:-1]
-            flank[:-1] = np.maximum(flank[:-1], step[1:])
+            flank = np.full((len(along) - 1, *along.shape[1:]), -np.inf)
+            flank[apart:] = along[: -apart - 1] - along[apart:-1]
+            flank[:-apart] = np.maximum(flank[:-apart], along[1:-apart] - along[1 + apart :])
             yield np.moveaxis(flank[::-1] if upward else flank, 0, axis)

@@ -29,7 +29,7 @@ _CARRIES = 0.1
 
 
 def free_standing(
-    surface: np.ndarray, cell_size: float, usual: float, largest: float = np.inf
+    surface: np.ndarray, cell_size: float, usual: float, largest: float = np.inf, apart: float = 0.0
 ) -> tuple[np.ndarray, float]:
     """Find the smooth segments of a surface that are bounded by steps down all round.
 
@@ -43,6 +43,8 @@ def free_standing(
         Shorter side (m) up to which low steps will do.
     largest : float
         Shorter side (m) over which nothing is taken for an object.
+    apart : float
+        Distance of the points (m), where that is more than a cell: between two of them slopes look like steps.
 
     Returns
     -------
@@ -51,7 +53,7 @@ def free_standing(
     size : float
         Shorter side (m) of the largest.
     """
-    least = max(_STEP, _STEEP * cell_size)
+    least = max(_STEP, _STEEP * max(cell_size, apart))
     segment, count = _segments(surface, least)
     width = _widths(segment, count) * cell_size
     wide = width > usual

@@ -105,6 +105,20 @@ def test_a_dike_is_terrain_though_windows_lift_it_off(rng):
     assert len(seeded) > 0.88 * len(upper_half)
 
 
+@pytest.mark.parametrize("spacing", [1.6, 2.4])
+def test_a_heap_of_soil_is_terrain_however_few_points_hold_it(spacing, rng):
+    """Cells of half the spacing hold every other rise twice as steep, and no rise beside it."""
+    plan = even(120, 120, spacing) + rng.uniform(-0.2, 0.2, (len(even(120, 120, spacing)), 2))
+    inward = 8 - np.hypot(*(plan - 60).T)
+    z = np.clip(0.7 * inward, 0, None) + rng.normal(0, 0.03, len(plan))
+    house = (np.abs(plan - 20) < 6).all(axis=1)
+    z[house] += 4.0
+    seeds, *_ = seeds_by_opening(np.column_stack([plan, z]), spacing / 2, None, Monitor(), spacing)
+    heap = inward > 0
+    assert heap[seeds].sum() > 0.9 * heap.sum()
+    assert not house[seeds].any()
+
+
 def test_pits_are_no_seeds(rng):
     plan = even(40, 40) + rng.uniform(-0.3, 0.3, (len(even(40, 40)), 2))
     xyz = np.column_stack([plan, rng.normal(0, 0.02, len(plan))])

@@ -51,6 +51,15 @@ def test_what_is_wider_than_usual_needs_walls_higher_than_quays(width, height, i
     assert free_standing(surface, 1.0, USUAL)[0].any() == is_object
 
 
+@pytest.mark.parametrize(("height", "is_object"), [(4.0, True), (2.0, False)])
+def test_steps_are_as_wide_as_points_are_apart(height, is_object):
+    """Between points 2.4 m apart a heap of soil of 40° rises by 2 m at once, as it seems on cells of half of that."""
+    surface = slope(60, 60)
+    thing = block(surface, slice(20, 40), slice(20, 40), height)
+    assert free_standing(surface, 1.2, USUAL)[0][thing].all()
+    assert free_standing(surface, 1.2, USUAL, apart=2.4)[0][thing].all() == is_object
+
+
 @pytest.mark.parametrize(("height", "is_object"), [(0.9, False), (1.1, True)])
 def test_a_step_is_a_meter_high_however_small_the_cells(height, is_object):
     surface = slope(60, 60)
