@@ -158,4 +158,4 @@ def test_footprints_are_valid_and_do_not_overlap(kind):
     assert all(one.isGeosValid() for one in made)
     assert QgsGeometry.unaryUnion(made).area() == pytest.approx(sum(one.area() for one in made), rel=1e-9)
     # Sheds of a dozen points and fronts along canals have no right angle.
-    assert np.mean(found.columns["regularized"]) > 0.8
+    assert np.mean(found.columns["regularized"]) > 0.85

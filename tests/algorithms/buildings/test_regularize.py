@@ -1,10 +1,13 @@
 """Wiggly outlines of known buildings become those buildings."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.buildings.outlines import signed_area
 from lidar_buildings.algorithms.buildings.regularize import (
+    chords,
     farthest,
     is_inside,
     is_valid,
@@ -92,21 +95,46 @@ def test_spikes_and_corners_that_no_point_has_hit_are_left_out(rng):
     assert farthest(np.array([[0, 0], [20, 0], [20, 12], [0, 12]]), ring) < 0.2
 
 
-@pytest.mark.parametrize("half_width", [0.2, 0.5, 0.8])
-def test_notches_as_wide_as_deep_are_left_out_where_they_are_small(rng, half_width):
-    """At a tolerance of 1 m, notches of up to 1.6 m by 1.3 m tell of points that are missing."""
-    notch = [[9 - half_width, 0], [9, 1.3], [9 + half_width, 0]]
-    ring = straight(wiggly(np.array([[0, 0], *notch, [20, 0], [20, 12], [0, 12], [0, 0]]), rng, 0.05, 0.2), 1.0)
-    assert len(ring) == 5
-    assert farthest(np.array([[0, 0], [20, 0], [20, 12], [0, 12]]), ring) < 0.2
+@pytest.mark.parametrize(("half_width", "depth"), [(0.2, 1.3), (0.5, 1.2), (0.55, 1.3)])
+def test_notches_as_wide_as_deep_are_left_out_where_they_are_small(half_width, depth):
+    """At a tolerance of 1 m, notches of up to 1.1 m by 1.3 m tell of points that are missing."""
+    notch = [[9 - half_width, 0], [9, depth], [9 + half_width, 0]]
+    truth = np.array([[0, 0], *notch, [20, 0], [20, 12], [0, 12], [0, 0]])
+    for seed in range(8):
+        ring = straight(wiggly(truth, np.random.default_rng(seed), 0.05, 0.2), 1.0)
+        assert len(ring) == 5
+        assert farthest(np.array([[0, 0], [20, 0], [20, 12], [0, 12]]), ring) < 0.25
 
 
-def test_bays_stay(rng):
-    """A bay of 4 m by 1.2 m on the long side of a house."""
-    truth = np.array([[0, 0], [8, 0], [8, -1.2], [12, -1.2], [12, 0], [20, 0], [20, 12], [0, 12], [0, 0]])
-    ring = straight(wiggly(truth, rng, 0.1))
-    assert len(ring) == 9
-    assert farthest(truth, ring) < 0.4
+def test_a_step_behind_a_spike_stays():
+    """Left and right of it, the wall is 45 cm off, nearly the tolerance."""
+    truth = np.array([[0, 0], [9, 0], [9.1, -1.5], [9.3, -1.5], [9.4, 0.45], [20, 0.45], [20, 12], [0, 12], [0, 0]])
+    for seed in range(8):
+        ring = straight(wiggly(truth, np.random.default_rng(seed), 0.05, 0.3))
+        assert farthest(np.array([[0, 0], [20, 0.45]]), ring) < 0.1
+
+
+def test_parallel_walls_a_little_apart_follow_each_other_in_one_corner():
+    """Two walls of one side, 45 cm apart: no step of two corners, which nobody has seen."""
+    ring = np.array([[x, 0.0] for x in range(10)] + [[x, 0.45] for x in range(10, 20)], float)
+    line = line_along(np.concatenate([ring, [[20, 0.45], [20, 12], [0, 12], [0, 0]]]))
+    walls = [line.fitted(a, b, 0.5) for a, b in ((0, 9), (10, 19), (20, 21), (21, 22))]
+    walls = [replace(wall, is_main=True) for wall in walls]
+    corners = np.array(straighten(line, walls, [0.0], 0.5)[1])
+    between = corners[(corners[:, 0] > 5) & (corners[:, 0] < 15) & (corners[:, 1] < 5)]
+    assert between[:, 1] == pytest.approx([0.225], abs=0.05)
+
+
+@pytest.mark.parametrize(("width", "depth", "off"), [(4.0, 1.2, 0.4), (2.0, 0.7, 0.8)])
+def test_bays_stay(width, depth, off):
+    """On the long side of a house, at a tolerance of 0.5 m."""
+    bay = [[8, 0], [8, -depth], [8 + width, -depth], [8 + width, 0]]
+    truth = np.array([[0, 0], *bay, [20, 0], [20, 12], [0, 12], [0, 0]])
+    for seed in range(12):
+        ring = straight(wiggly(truth, np.random.default_rng(seed), 0.05, 0.3))
+        assert len(ring) == 9
+        assert farthest(truth, ring) < off
+        assert signed_area(ring) == pytest.approx(240 + width * depth, abs=0.8)
 
 
 @pytest.mark.parametrize("radius", [7, 10, 20])
@@ -125,6 +153,48 @@ def test_a_curved_wall_is_a_chain_of_chords(rng, assert_valid, radius, degrees):
     after = np.roll(step, -1, axis=0)
     turn = np.arctan2(step[:, 0] * after[:, 1] - step[:, 1] * after[:, 0], (step * after).sum(axis=1))
     assert turn.min() > np.deg2rad(-2)
+
+
+@pytest.mark.parametrize(("length", "turns"), [(5.4, [-30, -18, -6, 6, 18, 30]), (2.1, [-45, -15, 15, 45])])
+def test_chords_of_a_bow_keep_their_directions(length, turns):
+    """One that happens to be nearly parallel to the house is not turned to it."""
+    steps = length * np.column_stack([np.cos(np.deg2rad(turns)), np.sin(np.deg2rad(turns))])
+    bow = np.concatenate([[[0.0, 0.0]], np.cumsum(steps, axis=0)])
+    truth = np.concatenate([bow, [[bow[-1, 0], 20], [0, 20], [0, 0]]])
+    for seed in range(6):
+        ring = straight(wiggly(truth, np.random.default_rng(seed), 0.03, 0.3))
+        step = np.diff(ring, axis=0)
+        bottom = step[(ring[1:, 1] + ring[:-1, 1] < 6) & (step[:, 0] > 0.5)]
+        assert len(bottom) >= 3
+        assert np.rad2deg(np.abs(np.arctan2(*bottom.T[::-1]))).min() > 4
+
+
+@pytest.mark.parametrize("degrees", [3, 5])
+def test_between_walls_that_turn_to_and_fro_there_is_no_curve(degrees):
+    """A wall of 5 m, nearly parallel to the house, between two that stand askew."""
+    angles = np.deg2rad([25, degrees, 25])
+    steps = np.array([[8.0], [5.0], [8.0]]) * np.column_stack([np.cos(angles), np.sin(angles)])
+    side = np.concatenate([[[0.0, 0.0]], np.cumsum(steps, axis=0)])
+    truth = np.concatenate([side, [[side[-1, 0], 25], [0, 25], [0, 0]]])
+    for seed in range(6):
+        ring = straight(wiggly(truth, np.random.default_rng(seed), 0.05, 0.3))
+        angle = np.rad2deg(np.arctan2(*np.diff(ring, axis=0).T[::-1]))
+        assert np.abs(angle).min() < 1.5
+
+
+def test_chords_follow_a_ring_better_than_its_own_points():
+    """A round tower: walls fitted to the points along it, not from one stray point to the next."""
+    angle = np.linspace(0, 2 * np.pi, 121)
+    circle = 8 * np.column_stack([np.cos(angle), np.sin(angle)])
+    circle[-1] = circle[0]
+    for seed in range(6):
+        ring = circle + np.random.default_rng(seed).uniform(-0.15, 0.15, circle.shape)
+        ring[-1] = ring[0]
+        made = chords(line_along(ring), 0.3)
+        made = np.concatenate([made, made[:1]])
+        assert is_valid([made])
+        assert len(made) < 24
+        assert signed_area(made) == pytest.approx(np.pi * 64, rel=0.015)
 
 
 def test_courtyard_is_straightened_too(rng, assert_valid):
