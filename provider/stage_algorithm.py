@@ -35,6 +35,7 @@ from .dependencies import missing_sentence
 from .errors import one_sentence
 from .feedback import FeedbackMonitor, announce, tell_unknown
 from .help import as_text, stage_help
+from .memory import tell_if_short
 from .outputs import check_targets, files_of, nothing_left_on_failure, write_for_qgis
 from .parameters import automatic_numbers, number_outputs, parameter, tunable_values, used_name
 from .paths import HELP, ICON
@@ -224,6 +225,7 @@ class StageAlgorithm(QgsProcessingAlgorithm):
         paths = self.job.paths
         share = 0.15 / max(1, len(paths))
         clouds = [read_cloud(path, monitor.part(i * share, (i + 1) * share), crs_units) for i, path in enumerate(paths)]
+        tell_if_short(sum(map(len, clouds)), monitor)
         reference = clouds.pop() if self.job.reference else None
         found = {source: find_source(self, source, parameters, context) for source in self.stage.sources}
         given = {source: layer for source, layer in found.items() if layer is not None}

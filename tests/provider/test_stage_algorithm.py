@@ -19,7 +19,7 @@ from qgis.core import (
 
 from lidar_buildings.algorithms import packages
 from lidar_buildings.algorithms.cloud.cloud import create_cloud, read_cloud, write_cloud
-from lidar_buildings.provider import clouds, outputs
+from lidar_buildings.provider import clouds, memory, outputs
 from lidar_buildings.provider.crs import crs_of, crs_units
 
 
@@ -263,6 +263,19 @@ def test_too_little_memory_is_told_in_a_sentence(provider, context, log, town_fi
     with pytest.raises(QgsProcessingException, match="^This needs more memory than there is; cut the cloud into tiles"):
         run("toytrouble", given, context, log)
     assert list(out.iterdir()) == []
+
+
+@pytest.mark.parametrize(("there", "told"), [(159_999.0, True), (160_000.0, False), (float("inf"), False)])
+def test_a_cloud_that_hardly_fits_into_memory_is_told(provider, context, log, town_file, out, monkeypatch, there, told):
+    monkeypatch.setattr(memory, "installed_memory", lambda: there)
+    run("toylift", {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz")}, context, log)
+    assert [warning.split(" may ")[0] for warning in log.warnings] == ["400 points"] * told
+
+
+def test_this_computers_memory_is_known_or_taken_for_enough(monkeypatch):
+    assert memory.installed_memory() > 1e8
+    monkeypatch.delattr(memory.os, "sysconf")
+    assert memory.installed_memory() == float("inf")
 
 
 def test_a_cancelled_stage_is_an_error_and_leaves_nothing(provider, context, log, town_file, out):
