@@ -285,7 +285,7 @@ class StageAlgorithm(QgsProcessingAlgorithm):
         if not sink.flushBuffer():
             raise QgsProcessingException(_unwritten(layer, target, sink))
         del sink
-        style_on_load(context, target, layer_style(layer))
+        style_on_load(context, target, layer_style(layer), layer.fields)
         return {name: target}
 
     def _write_raster(

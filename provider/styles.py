@@ -2,28 +2,39 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Optional, Union
 
-from qgis.core import QgsProcessingContext, QgsProcessingLayerPostProcessorInterface
+from qgis.core import QgsEditorWidgetSetup, QgsProcessingContext, QgsProcessingLayerPostProcessorInterface
 from qgis.PyQt import sip
 
 from ..algorithms.cloud.cloud import Cloud
-from ..algorithms.stage import Layer, Raster, Stage
+from ..algorithms.stage import Field, Layer, Raster, Stage
 from .paths import STYLES
+
+# Decimals of numbers in tables: millimeters.
+_DECIMALS = 3
 
 
 class Styler(QgsProcessingLayerPostProcessorInterface):
-    """Gives a loaded result the style of one file."""
+    """Gives a loaded result the style of one file, and its table the units of the fields and few decimals."""
 
-    def __init__(self, stem: str) -> None:
+    def __init__(self, stem: str, fields: Sequence[Field] = ()) -> None:
         super().__init__()
-        self.stem = stem
+        self.stem, self.fields = stem, fields
 
     def postProcessLayer(self, layer, context, feedback) -> None:  # noqa: N802 - QGIS asks for this name
         """Load the style, and say so in the log when it can't be."""
         message, loaded = layer.loadNamedStyle(str(STYLES / f"{self.stem}.qml"))
         if not loaded:
             feedback.pushWarning(f"The style {self.stem} can't be loaded: {message}")
+        for declared in self.fields:
+            index = layer.fields().indexOf(declared.name)
+            if declared.unit:
+                layer.setFieldAlias(index, f"{declared.name} ({declared.unit})")
+            if declared.type is float:
+                rounded = QgsEditorWidgetSetup("Range", {"Precision": _DECIMALS, "AllowNull": True})
+                layer.setEditorWidgetSetup(index, rounded)
         layer.triggerRepaint()
 
 
@@ -44,10 +55,12 @@ def layer_style(layer: Union[Layer, Raster]) -> Optional[str]:
     return stem if (STYLES / f"{stem}.qml").is_file() else None
 
 
-def style_on_load(context: QgsProcessingContext, target: str, stem: Optional[str]) -> None:
+def style_on_load(
+    context: QgsProcessingContext, target: str, stem: Optional[str], fields: Sequence[Field] = ()
+) -> None:
     """Have the result ``target`` styled when, and if, it is loaded."""
     if stem is None or not context.willLoadLayerOnCompletion(target):
         return
     _KEPT[:] = [styler for styler in _KEPT if not sip.isdeleted(styler)]
-    _KEPT.append(Styler(stem))
+    _KEPT.append(Styler(stem, fields))
     context.layerToLoadOnCompletionDetails(target).setPostProcessor(_KEPT[-1])
