@@ -110,6 +110,23 @@ def test_a_plane_grows_along_a_strip_too_thin_for_a_plane_of_its_own(rng):
     assert (ids[-70:] == 1).mean() > 0.95
 
 
+def test_a_plane_grows_past_a_few_points_that_lie_off_it(rng):
+    """A third of a voxel's points may do so: a bird, a twig."""
+    strip = rng.uniform([8, 3.7, 0], [12, 4.1, 0], (70, 3)) + rng.normal(0, 0.01, (70, 3)) * [0, 0, 1]
+    above = np.column_stack([np.arange(8.3, 12, 0.6), np.full(7, 3.9), np.full(7, 0.3)])
+    ids = segment(np.concatenate([plane(rng, 0, noise=0.01, density=40), above, strip]), voxel_size=0.6, tolerance=0.06)
+    assert (ids[-70:] == 1).mean() > 0.9
+    assert not ids[-77:-70].any()
+
+
+def test_a_plane_does_not_grow_along_single_points(rng):
+    """One in each voxel, all of them on it: so few lie there by chance."""
+    x, y = np.meshgrid(np.arange(8.3, 14, 0.6), np.arange(0.3, 8, 0.6))
+    single = np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)])
+    ids = segment(np.concatenate([plane(rng, 0, noise=0.01, density=40), single]), voxel_size=0.6, tolerance=0.06)
+    assert not ids[-len(single) :][single[:, 0] > 9.2].any()
+
+
 def test_a_plane_does_not_grow_into_leaves_beside_it(rng):
     crown = rng.uniform([8, 0, -2], [12, 8, 2], (6000, 3))
     ids = segment(np.concatenate([plane(rng, 0, noise=0.01, density=40), crown]), voxel_size=0.6, tolerance=0.06)

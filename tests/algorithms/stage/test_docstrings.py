@@ -62,3 +62,18 @@ def test_help_shows_tunables_as_the_dialog_does():
 
 def test_without_tunables_the_docstring_stays_as_it_is():
     assert toy_silence.__doc__ == "Say it all at once."
+
+
+def test_words_and_lines_within_a_section_are_its_text():
+    def toy(xyz, *, monitor=None):
+        pass
+
+    notes = "Returns\nof two kinds follow in a table.\n\nfirst  last\n-----\n1  2"
+    toy.__doc__ = (
+        f"Count.\n\nReferences\nto others come last.\n\nNotes\n-----\n{notes}\n\nReferences\n----------\nNobody."
+    )
+    words = stage("Toy", group="Toys", writes=("cluster_id",))(toy).stage
+    assert words.description == "References\nto others come last."
+    assert words.section("Notes") == notes
+    assert words.section("References") == "Nobody."
+    assert words.section("Returns") == ""

@@ -55,6 +55,13 @@ def test_what_does_not_fit_is_refused_in_one_sentence(kind, value, wanted):
         tunable(kind, None).check(value)
 
 
+def test_an_open_bound_is_none_of_the_values():
+    below = Param("Share", "Which.", low=0, high=1, open_high=True)
+    assert tunable(float, 0.5, below).check(0.0) == 0.0
+    with pytest.raises(ValueError, match=r"must be at least 0 and less than 1, got 1\.0\."):
+        tunable(float, 0.5, below).check(1.0)
+
+
 def test_words_must_be_among_the_choices():
     way = Param("Way", "Which.", choices=("up", "down"))
     for kind, value in ((str, "left"), (tuple, ("up", "left"))):
@@ -75,6 +82,8 @@ def test_nothing_is_a_value_of_automatic_tunables_alone():
         (WIDTH, "greater than 0 m and at most 4 m"),
         (Param("a", "b", unit="°", low=-1.5), "at least -1.5°"),
         (Param("a", "b", high=7, open_high=True), "less than 7"),
+        (Param("a", "b", high=10_000_000), "at most 10000000"),
+        (Param("a", "b", high=2.5), "at most 2.5"),
         (Param("a", "b", choices=("x", "y")), "one of x, y"),
         (Param("a", "b"), ""),
     ],

@@ -207,6 +207,16 @@ def test_the_slope_of_a_crest_is_that_of_its_flanks_and_a_plane_keeps_its_own():
     assert (crest < 0.5 + 1e-9).all()
 
 
+def test_a_roof_that_meets_a_steep_slope_is_none_where_it_is_high_over_it(rng):
+    """A house of 12 m on a slope of 0.5: 6 m over the terrain downhill, where it would be no steeper than that."""
+    plan = even(80, 80) + rng.uniform(-0.3, 0.3, (len(even(80, 80)), 2))
+    terrain = 0.5 * plan[:, 0]
+    z, is_roof = raise_roofs(plan, terrain, (34, 34, 12, 12, 0.5 * 46))
+    seeds, *_ = seeds_by_opening(np.column_stack([plan, z + rng.normal(0, 0.02, len(plan))]), 1.0, None, Monitor())
+    assert not (z - terrain > 5.0)[seeds].any()
+    assert (~is_roof[seeds]).sum() > 0.45 * (~is_roof).sum()
+
+
 def lifted_square(side=10, radius=4):
     """Return a level surface of 40 by 40 cells of 1 m and what windows lifted off it: a square from (15, 15)."""
     lifted = np.zeros((40, 40), np.int32)
