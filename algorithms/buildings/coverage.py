@@ -79,8 +79,8 @@ class Coverage:
         self.starts, self.ends = tracing.starts, tracing.ends
         self.group_of_triangle = _groups(tracing)
         self.across = tracing.beyond(tracing.face)
-        self.nodes = self._nodes()
         self._sort_rings()
+        self.nodes = self._nodes()
         self.polygons: list = [[] for _ in tracing.labels]
         self.is_straight = np.zeros(len(tracing.labels), bool)
         self.manners = _REGULAR if regularize else _AS_TRACED
@@ -107,18 +107,23 @@ class Coverage:
         for group, ring in tracing.rings(self.group_of_triangle):
             self.outer_of[group].append(ring)
 
-    def _nodes(self) -> set:
-        """Return the points where borders between buildings end."""
-        face = np.repeat(self.tracing.face, 3)
-        is_border = (face >= 0) & (face != self.across)
-        is_inner = is_border & (self.across >= 0)
+    def _nodes(self) -> list:
+        """Return for each group the points where borders between its buildings end.
+
+        Where groups touch in a point, it may be one for the one and none for the other.
+        """
+        face, group = np.repeat(self.tracing.face, 3), np.repeat(self.group_of_triangle, 3)
+        border = np.flatnonzero((face >= 0) & (face != self.across))
+        is_inner, count = self.across[border] >= 0, len(self.tracing.xy)
+        starts, ends = (group[border] * count + points[border] for points in (self.starts, self.ends))
+        places, inverse = np.unique(np.concatenate([starts, ends]), return_inverse=True)
         # Each border between two buildings has two half-edges, any other one.
-        degree = np.zeros(len(self.tracing.xy), np.int64)
-        for points in (self.starts, self.ends):
-            np.add.at(degree, points[is_border & ~is_inner], 2)
-            np.add.at(degree, points[is_inner], 1)
-        between = np.unique(self.starts[is_inner])
-        return set(between[degree[between] != 4].tolist())
+        degree = np.bincount(inverse, np.tile(np.where(is_inner, 1, 2), 2), len(places))
+        found = places[np.isin(places, starts[is_inner]) & (degree != 4)]
+        nodes: list = [set() for _ in range(self.n_groups)]
+        for number, point in zip(*(values.tolist() for values in np.divmod(found, count))):
+            nodes[number].add(point)
+        return nodes
 
     def _make(self, group: int) -> None:
         """Make the polygons of a group in the best manner that gives valid ones near the traced ones."""
@@ -212,7 +217,7 @@ class _Borders:
         self.tolerance = coverage.tolerance * manner.closeness
         # Through the points themselves, each border has its own and no other place.
         self.is_bare = manner.is_traced and not manner.outset
-        self.outer = coverage.outer_of[group]
+        self.outer, self.nodes = coverage.outer_of[group], coverage.nodes[group]
         self.place_of_edge = {
             edge: (number, at) for number, ring in enumerate(self.outer) for at, edge in enumerate(ring.tolist())
         }
@@ -251,7 +256,7 @@ class _Borders:
     def _runs(self, ring: np.ndarray) -> list:
         """Return the pieces of a ring of half-edges from node to node, and whether they are closed."""
         starts = self.coverage.starts[ring]
-        at = [i for i, point in enumerate(starts.tolist()) if point in self.coverage.nodes]
+        at = [i for i, point in enumerate(starts.tolist()) if point in self.nodes]
         if not at:
             return [(ring, True)]
         turned = np.roll(ring, -at[0])
