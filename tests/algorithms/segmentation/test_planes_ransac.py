@@ -135,6 +135,15 @@ def test_a_plane_does_not_grow_into_leaves_beside_it(rng):
     assert not ids[-6000:][crown[:, 0] > 9.2].any()
 
 
+def test_every_point_goes_to_the_nearest_plane(rng):
+    """At the ridge points lie within the tolerance of both."""
+    roof, is_north = gable(rng, density=40, noise=0.0)
+    ids = segment(roof, tolerance=0.15)
+    assert set(ids.tolist()) == {1, 2}
+    # Those on the ridge itself are as near to one as to the other but for the planes' last digits.
+    assert ((ids == ids[np.argmax(is_north)]) != is_north).mean() < 0.005
+
+
 def test_terraces_half_a_meter_apart_stay_apart(rng):
     """Joined are planes that are the same, not planes that are parallel."""
     xyz = plane(rng, 0, size=12)
