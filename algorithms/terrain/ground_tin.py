@@ -45,8 +45,8 @@ _ANGLE = 20.0
 # What granularity means: least cell (m), and cells per point spacing.
 _GRANULARITIES = {"coarse": (2.0, 1.0), "medium": (1.0, 1.0), "fine": (1.0, 0.5), "extra fine": (0.5, 0.5)}
 
-# Points are worked on in strips so many point spacings wide.
-_STRIP = 10.0
+# Points are put in the order of squares so many point spacings wide.
+_SQUARE = 10.0
 
 # Rounds end when they add less than this share of the nodes.
 _LEAST_GROWTH = 0.005
@@ -222,7 +222,7 @@ def classify_ground_tin(
     points = refuse_degenerate(xyz[usable])
     spacing = 1 / np.sqrt(point_density(points))
     # What is near in plan lies near in memory then: triangulation and searches are faster, far more so if it was not.
-    usable = usable[np.argsort(grid_over(points, _STRIP * spacing).number(points), kind="stable")]
+    usable = usable[np.argsort(grid_over(points, _SQUARE * spacing).number(points), kind="stable")]
     points = xyz[usable]
     last = _last_returns(return_number, number_of_returns, usable)
     granularity, cell_size = _cell(granularity, cell_size, spacing)
