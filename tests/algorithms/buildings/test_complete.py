@@ -138,6 +138,29 @@ def test_bushes_at_the_wall_of_a_tower_grow_no_higher_than_elsewhere(scene):
     assert (found[bush] == 1).all()
 
 
+def test_bushes_at_a_low_house_are_lower(scene):
+    """Under eaves of 4 m, what stands 1.5 m high is wall."""
+    roof = scene.roof(10, 10, 20, 20, 4.0)
+    outside = scene.xyz[roof, 0].min() - 0.25
+    wall = scene.box([outside, 12, 1.4], [outside + 0.05, 18, 2.4], 30)
+    bush = scene.box([outside - 0.35, 12, 0.6], [outside - 0.25, 18, 1.2], 30)
+    found, _ = scene.complete()
+    assert (found[wall] == 6).all()
+    assert (found[bush] == 1).all()
+
+
+def test_few_pulses_that_pass_make_no_crown(scene):
+    """A lorry at the wall, past whose edges a fifth of the pulses goes on."""
+    roof = scene.roof(10, 10, 20, 20, 5.0)
+    west = scene.xyz[roof, 0].min()
+    lorry = scene.box([west - 4, 12, 2.5], [west - 0.2, 18, 4.0], 500)
+    at_the_wall = lorry[scene.xyz[lorry, 0] > west - 0.25]
+    returns = np.ones((2, len(scene.xyz)), np.uint8)
+    returns[1, lorry[::5]] = 2
+    found, _ = scene.complete(return_number=returns[0], number_of_returns=returns[1])
+    assert (found[at_the_wall] == 6).all()
+
+
 def test_a_tree_beside_the_house_is_left_out(scene):
     scene.roof(10, 10, 20, 20, 5.0)
     crown = scene.box([21.5, 12, 2], [25, 18, 5], 200)

@@ -109,6 +109,32 @@ def test_low_parts_and_towers_are_no_houses(rng):
     assert len(outlined(rng, with_wings, 12)[0]) == 1
 
 
+def low_and_high(a, v, number):
+    """Garages of 60 m² between houses: half as high, and no houses themselves."""
+    return np.where(number % 2, 8.0, 4.0)
+
+
+def dormers_from_front_to_back(a, v, number):
+    """What is 2 m wide and 0.8 m higher ends before it would be a house."""
+    return 7 + 0.8 * (np.abs(a - WIDTH / 2) < 1)
+
+
+@pytest.mark.parametrize("roof", [low_and_high, dormers_from_front_to_back])
+def test_what_stands_side_by_side_and_is_no_house_is_no_row(rng, roof):
+    assert len(outlined(rng, roof, 12)[0]) == 1
+
+
+def test_no_house_is_narrower_than_houses_are(rng):
+    """Steps every 3 m: at least 3.5 m lie between two walls, so that every other step is left out."""
+
+    def narrow(a, v, number):
+        return 7 + 0.8 * ((a + number * WIDTH) // 3 % 2)
+
+    walls = sorted(place[:, 0].min() for place in outlined(rng, narrow, 12)[1])[1:]
+    assert len(walls) >= 3
+    assert np.diff(walls).min() > 3.3
+
+
 @pytest.mark.parametrize("elevation", [-300.0, 0.0, 3000.0])
 def test_without_heights_the_elevation_of_the_place_changes_nothing(rng, elevation):
     """Shares of heights were shares of elevations: in the mountains a wing was a house, below sea level none was."""
