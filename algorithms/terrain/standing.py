@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..packages import ndimage
+from ..packages import csgraph, ndimage, sparse
 
 # A step is at least so high (m) and so steep: lower than any eave, steeper than slopes that soil lies on.
 _STEP, _STEEP = 1.0, 1.0
@@ -20,6 +20,9 @@ _FREE_EDGE, _OPEN_EDGE, _CUT_EDGE = 0.9, 0.4, 0.35
 
 # So much of its steps down face others, those to the west some to the east: a terrace steps down on one side.
 _FACING = 0.2
+
+# Parts of a hall have steps down on more than this share of their open edge, each of them.
+_PART_EDGE = 0.5
 
 # Smaller segments (cells) are too rough to tell.
 _LEAST_CELLS = 4
@@ -54,28 +57,40 @@ def free_standing(
         Shorter side (m) of the largest.
     """
     least = max(_STEP, _STEEP * max(cell_size, apart))
-    segment, count = _segments(surface, least)
-    width = _widths(segment, count) * cell_size
+    segment = _segments(surface, least)
+    stands, width = _standing(surface, segment, least, usual / cell_size, largest / cell_size)
+    # Neither half of a hall that a row of skylights cuts in two stands while the other doesn't. Smaller roofs that are
+    # in parts are found without that, and what is rough joins by chance.
+    hall = _reunited(surface, segment, stands, least)
+    segment = np.where(_widths(hall)[hall] > usual / cell_size, len(stands) + hall, segment)
+    stands, width = _standing(surface, segment, least, usual / cell_size, largest / cell_size)
+    return stands[segment], float(width[stands].max(initial=0.0)) * cell_size
+
+
+def _standing(
+    surface: np.ndarray, segment: np.ndarray, least: float, usual: float, largest: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return which segments stand free, and the shorter side of each; sizes in cells."""
+    width = _widths(segment)
     wide = width > usual
     needed = np.where(wide, max(_HALL_STEP, least), least)
     needed[width > largest] = np.inf
-    stands = np.zeros(count + 1, bool)
+    stands = np.zeros(len(width), bool)
     # The highest come first; what stands at their walls is judged by the rest of its edge.
     while True:
         found = _stands(surface, segment, stands, needed) & ~stands
         if not found.any():
             break
         stands |= found
-    stands &= ~_carries(segment, stands, np.flatnonzero(stands & wide))
-    return stands[segment], float(width[stands].max(initial=0.0))
+    return stands & ~_carries(segment, stands, np.flatnonzero(stands & wide)), width
 
 
-def _segments(surface: np.ndarray, least: float) -> tuple[np.ndarray, int]:
+def _segments(surface: np.ndarray, least: float) -> np.ndarray:
     """Label (from 1) cells that join without a step; 0 are rough cells that have steps on all sides or nearly so."""
     beside = np.zeros(surface.shape, bool)
     for here, there in neighbors(surface.ndim):
         beside[here] |= np.abs(surface[here] - surface[there]) >= least
-    segment, count = ndimage.label(~beside)
+    segment, _ = ndimage.label(~beside)
     small = np.bincount(segment.ravel()) < _LEAST_CELLS
     segment[small[segment]] = 0
     # The cells at a step go to the segment beside them from which they differ least.
@@ -88,17 +103,47 @@ def _segments(surface: np.ndarray, least: float) -> tuple[np.ndarray, int]:
             best[here] = np.where(takes, step, best[here])
             grown[here] = np.where(takes, segment[there], grown[here])
         segment = grown
-    return segment, count
+    return segment
 
 
-def _widths(segment: np.ndarray, count: int) -> np.ndarray:
+def _reunited(surface: np.ndarray, segment: np.ndarray, stands: np.ndarray, least: float) -> np.ndarray:
+    """Give segments that meet without a step one number, if most of the edge of each steps down."""
+    count = len(stands)
+    _, open_, by_side = _edges(surface, segment, stands, np.full(count, least))
+    is_part = ~stands & (by_side.sum(axis=0) > _PART_EDGE * open_)
+    pairs = []
+    for here, there in neighbors(surface.ndim):
+        own, other = segment[here], segment[there]
+        level = is_part[own] & is_part[other] & (np.abs(surface[here] - surface[there]) < least)
+        pairs.append(np.stack([own[level], other[level]]))
+    one, other = np.concatenate(pairs, axis=1)
+    links = sparse.coo_matrix((np.ones(len(one)), (one, other)), (count, count))
+    # Components are numbered by their first segments: that of 0, which is no part, stays 0.
+    return csgraph.connected_components(links, directed=False)[1][segment]
+
+
+def _widths(segment: np.ndarray) -> np.ndarray:
     """Return the shorter side of each segment's box, in cells."""
-    boxes = ndimage.find_objects(segment, count)
+    boxes = ndimage.find_objects(segment)
     return np.array([0] + [min(side.stop - side.start for side in box) if box else 0 for box in boxes])
 
 
 def _stands(surface: np.ndarray, segment: np.ndarray, stands: np.ndarray, needed: np.ndarray) -> np.ndarray:
     """Return which segments have steps down that face one another on most of the edge that nothing hides."""
+    whole, open_, by_side = _edges(surface, segment, stands, needed)
+    cut = _cut(segment, len(stands))
+    whole += cut
+    down = by_side.sum(axis=0)
+    # Neighbors come along each axis both ways.
+    facing = 2 * np.minimum(by_side[::2], by_side[1::2]).sum(axis=0)
+    is_free = (down > 0) & (down >= _FREE_EDGE * open_) & (facing >= _FACING * down)
+    return is_free & (open_ >= _OPEN_EDGE * whole) & (cut <= _CUT_EDGE * whole)
+
+
+def _edges(
+    surface: np.ndarray, segment: np.ndarray, stands: np.ndarray, needed: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the length (cells) of each segment's edge, of what nothing hides of it, and of its steps to each side."""
     count = len(stands)
     whole, open_ = np.zeros((2, count))
     by_side = np.zeros((2 * surface.ndim, count))
@@ -111,13 +156,7 @@ def _stands(surface: np.ndarray, segment: np.ndarray, stands: np.ndarray, needed
         whole += np.bincount(own[edge], minlength=count)
         open_ += np.bincount(own[edge & ~hidden], minlength=count)
         by_side[side] = np.bincount(own[steps], minlength=count)
-    cut = _cut(segment, count)
-    whole += cut
-    down = by_side.sum(axis=0)
-    # Neighbors come along each axis both ways.
-    facing = 2 * np.minimum(by_side[::2], by_side[1::2]).sum(axis=0)
-    is_free = (down > 0) & (down >= _FREE_EDGE * open_) & (facing >= _FACING * down)
-    return is_free & (open_ >= _OPEN_EDGE * whole) & (cut <= _CUT_EDGE * whole)
+    return whole, open_, by_side
 
 
 def _cut(segment: np.ndarray, count: int) -> np.ndarray:

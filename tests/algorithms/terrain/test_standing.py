@@ -162,6 +162,31 @@ def test_a_house_with_a_penthouse_is_no_terrain():
     np.testing.assert_array_equal(free_standing(surface, 1.0, USUAL)[0], house)
 
 
+def cut_across(surface, row, columns, rng):
+    """Put a row of machines with gaps between them across a surface, too narrow to be anything but rough."""
+    for column in range(columns.start, columns.stop, 4):
+        surface[row : row + 3, column : column + 2] += rng.uniform(1.5, 4.0, (3, 2))
+
+
+def test_machines_right_across_a_roof_make_no_terrain_of_its_halves(rng):
+    """Each half goes on into the other without a step: they stand together or not at all."""
+    surface = slope(120, 120)
+    hall = block(surface, slice(20, 100), slice(20, 90), 9.0)
+    cut_across(surface, 58, slice(20, 90), rng)
+    found, size = free_standing(surface, 1.0, USUAL)
+    assert found[hall & (surface == 9.0)].mean() > 0.999
+    assert not found[~hall].any()
+    assert size == 70
+
+
+def test_a_terrace_is_no_half_of_a_roof(rng):
+    """It has walls on three sides; on the fourth, behind bushes in a row, it goes on into the hillside."""
+    surface = np.maximum(slope(160, 120, 0.2) - 16.0, 0.0)
+    terrace = block(surface, slice(20, 100), slice(20, 90), 4.0)
+    cut_across(surface, 98, slice(20, 90), rng)
+    assert not free_standing(surface, 1.0, USUAL)[0][terrace].any()
+
+
 def test_houses_in_the_angle_of_a_hall_do_not_stand_on_it():
     surface = slope(140, 140)
     hall = np.zeros(surface.shape, bool)
