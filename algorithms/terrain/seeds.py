@@ -131,10 +131,10 @@ def seeds_by_opening(
     windows = _windows(size / 2 / cell_size)
     free, found = free_standing(surface, cell_size, size, max_building_size or np.inf, spacing)
     first = np.full(surface.shape, _FIRST_SLOPE)
-    objects = free | (_lifted(surface, windows, first, cell_size, monitor.part(0, 0.3)) > 0)
+    # With what stands free taken away, a low roof beside a higher one is as narrow as it is.
+    objects = free | (_lifted(surface, windows, first, cell_size, monitor.part(0, 0.3), absent=free) > 0)
     for start in (0.3, 0.6):
         slope = _slope(_interpolated(surface, objects), cell_size)
-        # With what stands free taken away, a low roof beside a higher one is as narrow as it is.
         part = monitor.part(start, start + 0.3)
         lifted = _lifted(surface, windows, _SLOPE_SHARE * slope, cell_size, part, absent=free)
         objects = _without_joined(lifted, free, windows[-1], surface, slope, cell_size, spacing)

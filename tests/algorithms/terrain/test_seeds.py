@@ -168,6 +168,17 @@ def test_a_hall_larger_than_usual_is_found_as_it_stands_free(rng):
     assert size == 60.0
 
 
+def test_a_low_wing_along_a_hall_is_no_terrain(rng):
+    """It steps down on one side as a terrace does, by a canopy; with the hall it is wider than any window."""
+    plan = even(220, 220, 0.9) + rng.uniform(-0.2, 0.2, (245 * 245, 2))
+    z, is_roof = raise_roofs(
+        plan, np.zeros(len(plan)), (40, 40, 130, 110, 12.0), (45, 150, 120, 9, 5.5), (45, 159, 120, 2.5, 3.0)
+    )
+    seeds, stands_free, _ = seeds_by_opening(np.column_stack([plan, z]), 1.0, None, Monitor())
+    assert not stands_free[z == 5.5].any()
+    assert not is_roof[seeds].any()
+
+
 def test_a_flat_hill_as_large_as_a_hall_is_terrain(rng):
     xyz, is_top = scene_with_plateau(rng, bank=15.0)
     seeds, stands_free, size = seeds_by_opening(xyz, 1.4, None, Monitor())
