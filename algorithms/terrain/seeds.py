@@ -26,8 +26,12 @@ _FLAT_RISE = 1.0
 # Slope allowed beside that while the terrain's own is not known yet.
 _FIRST_SLOPE = 0.1
 
-# A pit steeper than this on all sides is multipath, not terrain (5 m deep in a cell of 1 m).
-_PIT_SLOPE = 5.0
+# A pit steeper than this on all sides is multipath, not terrain (5 m deep in a cell of 1 m), unless within so far (m)
+# this share of the cells is as deep: a tenth of the pulses reach the ground of dense forest, far fewer go astray.
+_PIT_SLOPE, _PIT_REACH, _PIT_SHARE = 5.0, 10.0, 0.1
+
+# Cells are looked at one by one up to so far, and in as many steps beyond.
+_PIT_STEPS = 10
 
 # A region that was removed joins the terrain where a step at its edge is not steeper than this plus
 # this share of the local slope, and it is terrain when half of its edge does.
@@ -153,10 +157,33 @@ def seeds_by_lowest(xyz: np.ndarray, max_building_size: float) -> np.ndarray:
 def _surface(xyz: np.ndarray, lowest: Lowest) -> tuple[np.ndarray, np.ndarray]:
     """Return the lowest surface without gaps and pits, and where it is a point's own height."""
     empty = lowest.index < 0
-    surface = _nearest(np.where(empty, np.inf, xyz[lowest.index, 2]), empty)
-    pits = surface + open_surface(-surface, 1) < -_PIT_SLOPE * lowest.cell_size
-    unknown = empty | pits
-    return _nearest(surface, unknown), ~unknown
+    height = np.where(empty, np.inf, xyz[lowest.index, 2])
+    unknown = empty | _pits(height, lowest.cell_size)
+    return _nearest(height, unknown), ~unknown
+
+
+def _pits(height: np.ndarray, cell_size: float) -> np.ndarray:
+    """Return which cells hold stray points far below all others around, by their heights (inf where empty).
+
+    Ground seen through the gaps of a forest is as far below the crowns beside it, but other gaps are near.
+    """
+    depth = _PIT_SLOPE * cell_size
+    surface = _nearest(height, np.isinf(height))
+    pits = (surface + open_surface(-surface, 1) < -depth) & np.isfinite(height)
+    row, column = np.nonzero(pits)
+    reach = max(1, round(_PIT_REACH / cell_size))
+    step = -(-reach // _PIT_STEPS)
+    offsets = step * np.arange(-(reach // step), reach // step + 1)
+    around = np.pad(height, reach, constant_values=np.inf)
+    level = height[row, column] + depth
+    n_deep, n_known = np.zeros((2, len(row)))
+    for down, right in np.stack(np.meshgrid(offsets, offsets), axis=-1).reshape(-1, 2):
+        other = around[row + reach + down, column + reach + right]
+        n_deep += other < level
+        n_known += np.isfinite(other)
+    # The cell itself is among them.
+    pits[row, column] = n_deep - 1 < _PIT_SHARE * n_known
+    return pits
 
 
 def _nearest(surface: np.ndarray, unknown: np.ndarray) -> np.ndarray:

@@ -129,6 +129,17 @@ def test_pits_are_no_seeds(rng):
     assert len(seeds) > 1000
 
 
+@pytest.mark.parametrize(("share", "is_terrain"), [(0.2, True), (0.03, False)])
+def test_gaps_of_a_forest_show_the_ground_and_stray_points_do_not(share, is_terrain, rng):
+    """Both lie twelve meters below all that is beside them; pulses that go astray are few."""
+    plan = even(80, 80, 1.0) + rng.uniform(0.0, 0.9, (len(even(80, 80, 1.0)), 2))
+    is_deep = rng.random(len(plan)) < share
+    z = 0.2 * plan[:, 0] + np.where(is_deep, 0.0, 12.0 + (rng.uniform(0, 4, len(plan)) if is_terrain else 0.0))
+    seeds, *_ = seeds_by_opening(np.column_stack([plan, z]), 1.0, None, Monitor())
+    assert (is_deep[seeds].sum() > 0.9 * is_deep.sum()) == is_terrain
+    assert is_deep[seeds].mean() == pytest.approx(float(is_terrain), abs=0.03)
+
+
 def test_gaps_without_points_change_nothing(rng):
     """A lake returns nothing; its shores are still ground."""
     plan = even(80, 80) + rng.uniform(-0.3, 0.3, (len(even(80, 80)), 2))
