@@ -24,6 +24,9 @@ _FACING = 0.2
 # Parts of a hall have steps down on more than this share of their open edge, each of them.
 _PART_EDGE = 0.5
 
+# What has a roof no higher than itself on more than this share of its edge rests on it.
+_RESTS = 0.5
+
 # Smaller segments (cells) are too rough to tell.
 _LEAST_CELLS = 4
 
@@ -55,16 +58,24 @@ def free_standing(
         Cells of such segments, on terrain of any slope.
     size : float
         Shorter side (m) of the largest.
+
+    Notes
+    -----
+    What is wider than usual is looked at more closely: its parts are judged together, and what is too rough to tell on
+    its roof belongs to it. Of smaller things windows see the whole.
     """
     least = max(_STEP, _STEEP * max(cell_size, apart))
     segment = _segments(surface, least)
     stands, width = _standing(surface, segment, least, usual / cell_size, largest / cell_size)
-    # Neither half of a hall that a row of skylights cuts in two stands while the other doesn't. Smaller roofs that are
-    # in parts are found without that, and what is rough joins by chance.
+    # Neither half of a hall that a row of skylights cuts in two stands while the other doesn't, nor does a hall
+    # beside a wing that is hardly lower.
     hall = _reunited(surface, segment, stands, least)
-    segment = np.where(_widths(hall)[hall] > usual / cell_size, len(stands) + hall, segment)
+    is_wide = _widths(hall)[hall] > usual / cell_size
+    segment = np.where(is_wide, len(stands) + hall, segment)
     stands, width = _standing(surface, segment, least, usual / cell_size, largest / cell_size)
-    return stands[segment], float(width[stands].max(initial=0.0)) * cell_size
+    free = stands[segment]
+    free |= _resting(surface, segment == 0, free & is_wide, least)
+    return free, float(width[stands].max(initial=0.0)) * cell_size
 
 
 def _standing(
@@ -107,19 +118,31 @@ def _segments(surface: np.ndarray, least: float) -> np.ndarray:
 
 
 def _reunited(surface: np.ndarray, segment: np.ndarray, stands: np.ndarray, least: float) -> np.ndarray:
-    """Give segments that meet without a step one number, if most of the edge of each steps down."""
+    """Give segments that meet without the step of a hall one number, if most of the edge of each steps down."""
     count = len(stands)
     _, open_, by_side = _edges(surface, segment, stands, np.full(count, least))
     is_part = ~stands & (by_side.sum(axis=0) > _PART_EDGE * open_)
     pairs = []
     for here, there in neighbors(surface.ndim):
         own, other = segment[here], segment[there]
-        level = is_part[own] & is_part[other] & (np.abs(surface[here] - surface[there]) < least)
+        level = is_part[own] & is_part[other] & (np.abs(surface[here] - surface[there]) < max(_HALL_STEP, least))
         pairs.append(np.stack([own[level], other[level]]))
     one, other = np.concatenate(pairs, axis=1)
     links = sparse.coo_matrix((np.ones(len(one)), (one, other)), (count, count))
     # Components are numbered by their first segments: that of 0, which is no part, stays 0.
     return csgraph.connected_components(links, directed=False)[1][segment]
+
+
+def _resting(surface: np.ndarray, rough: np.ndarray, roof: np.ndarray, least: float) -> np.ndarray:
+    """Return the rough cells that rest on a roof: machines and skylights, but no bushes at its walls."""
+    thing, count = ndimage.label(rough)
+    whole, on_roof = np.zeros((2, count + 1))
+    for here, there in neighbors(surface.ndim):
+        edge = rough[here] & ~rough[there]
+        no_higher = edge & roof[there] & (surface[there] - surface[here] < least)
+        whole += np.bincount(thing[here][edge], minlength=count + 1)
+        on_roof += np.bincount(thing[here][no_higher], minlength=count + 1)
+    return (on_roof > _RESTS * whole)[thing]
 
 
 def _widths(segment: np.ndarray) -> np.ndarray:

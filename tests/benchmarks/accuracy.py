@@ -175,8 +175,8 @@ def towns() -> None:
 
 
 def scenes() -> None:
-    """Print how well the default chain does on scenes unlike those that something was tried on."""
-    print("| scene of 120 m | points per m² | completeness | correctness | F | wrong, m² | ground missed, % |")
+    """Print how well the default chain does on scenes far from a usual town."""
+    print("| scene | points per m² | completeness | correctness | F | wrong, m² | ground missed, % |")
     print("| --- |" + " ---: |" * 6)
     for name, make, misfit in SCENES:
         for density in (4.0, 12.0):

@@ -1,4 +1,4 @@
-"""Scenes unlike any that something was tried on: simulated, with the truth, each a function of nothing."""
+"""Scenes far from a usual town, in which faults showed: simulated, with the truth, each a function of nothing."""
 
 from __future__ import annotations
 
@@ -114,6 +114,21 @@ def port() -> Scene:
     return quay
 
 
+def estate() -> Scene:
+    """Halls wider than 60 m with machines right across and with wings, some of them hardly lower."""
+    land = Scene(Relief(2 * SIDE, gradient=0.01))
+    for x, y, length, width, eave in ((70.0, 65.0, 105.0, 80.0, 6.5), (170.0, 170.0, 75.0, 95.0, 11.0)):
+        hall, site = Rect(x, y, length, width, 0.1), Site(land, Rect(x, y, length, width, 0.1), eave)
+        parts = [(0.0, 0.0, length, width, eave)]
+        parts += [(along, 4.0, 2.5, 2.0, eave + 1.8) for along in np.arange(4.0 - length / 2, length / 2, 7.0)]
+        parts += [(-12.0, across, 2.0, 3.0, eave + 1.4) for across in np.arange(4.0 - width / 2, width / 2, 8.0)]
+        parts += [(8.0, width / 2 + 6.0, 50.0, 12.0, eave - 1.4), (0.0, -width / 2 - 4.5, 60.0, 9.0, 4.5)]
+        parts += [(5.0, -width / 2 - 10.2, 40.0, 2.4, 3.0)]
+        solids = [site.solid(hall.part(*part[:4]), flat(hall.part(*part[:4]), site.floor + part[4])) for part in parts]
+        land.add_building("hall", hall.corners(), solids)
+    return land
+
+
 # Name, scene, and whether the strips don't fit together.
 SCENES: tuple[tuple[str, Callable[[], Scene], bool], ...] = (
     ("blocks of a city", city, False),
@@ -121,6 +136,7 @@ SCENES: tuple[tuple[str, Callable[[], Scene], bool], ...] = (
     ("terraced vineyard with huts", vineyard, False),
     ("houses in a closed forest", forest, False),
     ("huts on a slope of 38°", alps, False),
+    ("halls with machines and wings", estate, False),
     ("solar park, no building", solar_park, False),
     ("railway station with trains", station, False),
     ("container port", port, False),

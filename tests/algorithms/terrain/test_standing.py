@@ -169,14 +169,52 @@ def cut_across(surface, row, columns, rng):
 
 
 def test_machines_right_across_a_roof_make_no_terrain_of_its_halves(rng):
-    """Each half goes on into the other without a step: they stand together or not at all."""
+    """Each half goes on into the other without a step: they stand together or not at all, with the machines."""
     surface = slope(120, 120)
     hall = block(surface, slice(20, 100), slice(20, 90), 9.0)
     cut_across(surface, 58, slice(20, 90), rng)
     found, size = free_standing(surface, 1.0, USUAL)
-    assert found[hall & (surface == 9.0)].mean() > 0.999
-    assert not found[~hall].any()
+    np.testing.assert_array_equal(found, hall)
     assert size == 70
+
+
+def test_a_hall_and_a_wing_hardly_lower_stand_as_one():
+    """The step between them is none of a hall's, and the wing's own edge is half at the hall."""
+    surface = slope(140, 140)
+    hall = block(surface, slice(20, 100), slice(20, 90), 6.5)
+    wing = block(surface, slice(40, 80), slice(90, 102), 5.2)
+    found, size = free_standing(surface, 1.0, USUAL)
+    np.testing.assert_array_equal(found, hall | wing)
+    assert size == 80
+
+
+def test_plants_in_the_courtyard_of_a_hall_do_not_rest_on_it(rng):
+    surface = slope(140, 140)
+    hall = block(surface, slice(20, 100), slice(20, 90), 6.5)
+    hall[50:58, 50:58] = False
+    surface[50:58, 50:58] = rng.uniform(0, 4, (8, 8))
+    np.testing.assert_array_equal(free_standing(surface, 1.0, USUAL)[0], hall)
+
+
+def test_machines_on_smaller_roofs_are_left_to_the_windows(rng):
+    surface = slope(80, 80)
+    house = block(surface, slice(20, 50), slice(20, 50), 6.5)
+    surface[30:33, 30:33] += rng.uniform(2, 5, (3, 3))
+    np.testing.assert_array_equal(free_standing(surface, 1.0, USUAL)[0], house & (surface == 6.5))
+
+
+def test_plants_at_the_walls_of_a_hall_do_not_rest_on_it(rng):
+    """Shrubs are lower than its roof, and trees higher, but on most of their edge there is lawn."""
+    surface = slope(140, 140)
+    shrubs, trees = np.zeros((2, *surface.shape), bool)
+    shrubs[20:60, 90:98] = trees[100:110, 30:70] = True
+    surface[shrubs], surface[trees] = rng.uniform(0, 5, shrubs.sum()), rng.uniform(0, 18, trees.sum())
+    hall = block(surface, slice(20, 100), slice(20, 90), 6.5)
+    found = free_standing(surface, 1.0, USUAL)[0]
+    assert found[hall].all()
+    assert not found[shrubs].any()
+    # Leaves as high as the eaves and next to them can't be told from the roof.
+    assert not found[trees][2 * 40 :].any()
 
 
 def test_a_terrace_is_no_half_of_a_roof(rng):
