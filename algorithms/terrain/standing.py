@@ -30,8 +30,9 @@ _RESTS = 0.5
 # Smaller segments (cells) are too rough to tell.
 _LEAST_CELLS = 4
 
-# On terrain other things stand on more than this share of its area; on roofs, chimneys and machines on less.
-_CARRIES = 0.1
+# On terrain other things stand on more than this share of its area; on roofs, chimneys and machines on less, but for
+# those of podiums, whose walls are higher than quays and the walls of terraces (m).
+_CARRIES, _HIGHEST_QUAY = 0.1, 4.0
 
 
 def free_standing(
@@ -93,7 +94,9 @@ def _standing(
         if not found.any():
             break
         stands |= found
-    return stands & ~_carries(segment, stands, np.flatnonzero(stands & wide)), width
+    # An island with houses on it has quays all round; what has higher walls carries towers.
+    may_be_island = stands & wide & ~_stands(surface, segment, stands, np.full(len(width), max(_HIGHEST_QUAY, least)))
+    return stands & ~_carries(segment, stands, np.flatnonzero(may_be_island)), width
 
 
 def _segments(surface: np.ndarray, least: float) -> np.ndarray:

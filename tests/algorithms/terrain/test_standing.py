@@ -146,6 +146,16 @@ def test_an_island_with_houses_on_it_is_terrain_and_the_houses_are_not():
     np.testing.assert_array_equal(free_standing(surface, 1.0, USUAL)[0], houses)
 
 
+@pytest.mark.parametrize(("height", "is_object"), [(3.8, False), (4.2, True)])
+def test_a_podium_has_walls_higher_than_quays(height, is_object):
+    surface = slope(120, 120)
+    podium = block(surface, slice(10, 110), slice(10, 110), height)
+    towers = block(surface, slice(20, 50), slice(20, 50), 40.0) | block(surface, slice(60, 95), slice(60, 80), 60.0)
+    found = free_standing(surface, 1.0, USUAL)[0]
+    assert found[towers].all()
+    np.testing.assert_array_equal(found[~towers], (podium & is_object)[~towers])
+
+
 def test_machines_on_a_roof_make_no_terrain_of_it():
     surface = slope(120, 120)
     hall = block(surface, slice(10, 110), slice(10, 110), 8.0)
