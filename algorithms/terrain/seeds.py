@@ -130,13 +130,13 @@ def seeds_by_opening(
     classification of airborne LIDAR data. ISPRS Journal of Photogrammetry and Remote Sensing 77, 21-30.
     """
     lowest = lowest_points(xyz, cell_size)
-    surface, known = _surface(xyz, lowest)
+    surface, known = _surface(xyz, lowest, monitor.part(0, 0.1))
     size = max_building_size or USUAL_BUILDING
     windows = _windows(size / 2 / cell_size)
     free, found = free_standing(surface, cell_size, size, max_building_size or np.inf, spacing)
     first = np.full(surface.shape, _FIRST_SLOPE)
     # With what stands free taken away, a low roof beside a higher one is as narrow as it is.
-    objects = free | (_lifted(surface, windows, first, cell_size, monitor.part(0, 0.3), absent=free) > 0)
+    objects = free | (_lifted(surface, windows, first, cell_size, monitor.part(0.1, 0.3), absent=free) > 0)
     for start in (0.3, 0.6):
         slope = _slope(_interpolated(surface, objects), cell_size)
         part = monitor.part(start, start + 0.3)
@@ -154,15 +154,15 @@ def seeds_by_lowest(xyz: np.ndarray, max_building_size: float) -> np.ndarray:
     return lowest.points(lowest.index >= 0)
 
 
-def _surface(xyz: np.ndarray, lowest: Lowest) -> tuple[np.ndarray, np.ndarray]:
+def _surface(xyz: np.ndarray, lowest: Lowest, monitor: Monitor) -> tuple[np.ndarray, np.ndarray]:
     """Return the lowest surface without gaps and pits, and where it is a point's own height."""
     empty = lowest.index < 0
     height = np.where(empty, np.inf, xyz[lowest.index, 2])
-    unknown = empty | _pits(height, lowest.cell_size)
+    unknown = empty | _pits(height, lowest.cell_size, monitor)
     return _nearest(height, unknown), ~unknown
 
 
-def _pits(height: np.ndarray, cell_size: float) -> np.ndarray:
+def _pits(height: np.ndarray, cell_size: float, monitor: Monitor) -> np.ndarray:
     """Return which cells hold stray points far below all others around, by their heights (inf where empty).
 
     Ground seen through the gaps of a forest is as far below the crowns beside it, but other gaps are near.
@@ -177,10 +177,12 @@ def _pits(height: np.ndarray, cell_size: float) -> np.ndarray:
     around = np.pad(height, reach, constant_values=np.inf)
     level = height[row, column] + depth
     n_deep, n_known = np.zeros((2, len(row)))
-    for down, right in np.stack(np.meshgrid(offsets, offsets), axis=-1).reshape(-1, 2):
-        other = around[row + reach + down, column + reach + right]
-        n_deep += other < level
-        n_known += np.isfinite(other)
+    for done, down in enumerate(offsets, start=1):
+        for right in offsets:
+            other = around[row + reach + down, column + reach + right]
+            n_deep += other < level
+            n_known += np.isfinite(other)
+        monitor.progress(done / len(offsets))
     # The cell itself is among them.
     pits[row, column] = n_deep - 1 < _PIT_SHARE * n_known
     return pits

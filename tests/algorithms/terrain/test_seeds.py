@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.algorithms.terrain.seeds import (
     _lifted,
     _slope,
@@ -352,6 +352,15 @@ def test_progress_only_grows():
     seeds_by_opening(np.column_stack([plan, np.zeros(len(plan))]), 1.0, 30.0, monitor)
     assert monitor.heard == sorted(monitor.heard)
     assert monitor.heard[-1] == 1.0
+
+
+def test_the_search_for_pits_can_be_stopped(rng):
+    """In a dense forest there are as many as trees."""
+    plan, monitor = even(60, 60), Listening(stop_at=0.01)
+    z = np.where(rng.random(len(plan)) < 0.1, 0.0, rng.uniform(18, 22, len(plan)))
+    with pytest.raises(Cancelled):
+        seeds_by_opening(np.column_stack([plan, z]), 1.0, 30.0, monitor)
+    assert monitor.heard[-1] < 0.1
 
 
 def test_a_point_far_off_is_refused_instead_of_filling_memory(rng):
