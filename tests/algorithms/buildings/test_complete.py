@@ -128,22 +128,15 @@ def test_the_wall_between_a_roof_and_a_higher_one_belongs_to_the_building(scene)
     assert (found[too_far] == 1).all()
 
 
-def test_bushes_at_the_wall_of_a_tower_grow_no_higher_than_elsewhere(scene):
-    roof = scene.roof(10, 10, 20, 20, 15.0)
+@pytest.mark.parametrize(
+    ("eaves", "wall_from", "bush_to"), [pytest.param(15.0, 2.6, 2.4, id="tower"), pytest.param(4.0, 1.4, 1.2, id="low")]
+)
+def test_bushes_at_a_wall_are_low_and_no_higher_at_a_tower(scene, eaves, wall_from, bush_to):
+    """At low houses up to a third of the eaves, at higher ones 2.5 m: what stands above that is wall."""
+    roof = scene.roof(10, 10, 20, 20, eaves)
     outside = scene.xyz[roof, 0].min() - 0.25
-    wall = scene.box([outside, 12, 2.6], [outside + 0.05, 18, 4.9], 30)
-    bush = scene.box([outside - 0.35, 12, 0.6], [outside - 0.25, 18, 2.4], 30)
-    found, _ = scene.complete()
-    assert (found[wall] == 6).all()
-    assert (found[bush] == 1).all()
-
-
-def test_bushes_at_a_low_house_are_lower(scene):
-    """Under eaves of 4 m, what stands 1.5 m high is wall."""
-    roof = scene.roof(10, 10, 20, 20, 4.0)
-    outside = scene.xyz[roof, 0].min() - 0.25
-    wall = scene.box([outside, 12, 1.4], [outside + 0.05, 18, 2.4], 30)
-    bush = scene.box([outside - 0.35, 12, 0.6], [outside - 0.25, 18, 1.2], 30)
+    wall = scene.box([outside, 12, wall_from], [outside + 0.05, 18, wall_from + 1.0], 30)
+    bush = scene.box([outside - 0.35, 12, 0.6], [outside - 0.25, 18, bush_to], 30)
     found, _ = scene.complete()
     assert (found[wall] == 6).all()
     assert (found[bush] == 1).all()
