@@ -8,12 +8,12 @@ from typing import Annotated, Optional
 import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
-from ..cloud.cells import distinct, grid_over
+from ..cloud.cells import distinct, grid_over, plan_box
 from ..cloud.density import point_density
 from ..params import MaxBuildingSize
 from ..stage import Monitor, Param, stage
 from .seeds import USUAL_BUILDING, seeds_by_lowest, seeds_by_opening
-from .tin import Tin, node_residuals, robust_deviation
+from .tin import CORNERS, Tin, node_residuals, robust_deviation
 
 # A point may join the TIN within this many times the measured roughness of the surface; half of that will do where
 # this share of the point spacing, by which the surface bends where nothing was seen, makes it more.
@@ -232,14 +232,16 @@ def classify_ground_tin(
     size = by_terrain[0] if max_building_size is None else max_building_size
     angle = by_terrain[1] if iteration_angle is None else iteration_angle
 
-    growing = points[last]
-    start, stands_free, size = _start(growing, seeds, cell_size, spacing, size, monitor.part(0, 0.3))
+    start, stands_free, size = _start(points[last], seeds, cell_size, spacing, size, monitor.part(0, 0.3))
+    # Else the surface would climb the roofs of noisy clouds, a step at a time.
+    may_join = last.copy()
+    may_join[last] = ~stands_free
+    start = np.flatnonzero(last)[start]
     terrain = _terrain(size) if terrain is None else terrain
     rules = _Rules(angle, iteration_distance, _GROW_BEND * spacing, edge_length, scale)
-    is_node, distance = _grow(growing, start, stands_free, rules, monitor.part(0.3, 0.8))
+    surface, distance = _grow(points, start, may_join, rules, monitor.part(0.3, 0.9))
     bend, region = (np.inf, 0.0) if seeds == "lowest" else (_SWEEP_BEND * scale, _REGION * spacing)
-    is_ground, sweep_distance = _sweep(points, growing[is_node], sweep_distance, bend, region, monitor.part(0.8, 1))
-    is_ground[np.flatnonzero(last)[is_node]] = True
+    is_ground, sweep_distance = _sweep(surface, sweep_distance, bend, region)
     monitor.resolved(terrain=terrain, granularity=granularity, max_building_size=size, cell_size=cell_size)
     monitor.resolved(
         iteration_angle=angle, iteration_distance=distance, edge_length=edge_length, sweep_distance=sweep_distance
@@ -323,65 +325,74 @@ class _Rules:
 
 
 def _grow(
-    points: np.ndarray, start: np.ndarray, stands_free: np.ndarray, rules: _Rules, monitor: Monitor
-) -> tuple[np.ndarray, float]:
-    """Let the TIN of the points ``start`` grow; return which points are its nodes, and the last distance used.
-
-    What stands free doesn't join: on noisy clouds the surface would climb roofs, a step at a time.
-    """
-    is_start = np.zeros(len(points), bool)
-    is_start[start] = True
-    is_node = is_start.copy()
-    candidates: Optional[np.ndarray] = None
-    distance = 0.0
+    points: np.ndarray, start: np.ndarray, may_join: np.ndarray, rules: _Rules, monitor: Monitor
+) -> tuple[_Surface, float]:
+    """Let the TIN of the points ``start`` grow onto those that may join; return it and the last distance used."""
+    surface = _Surface(points, start, monitor.part(0, 0.5))
+    distance = rules.distance(surface.nodes)
+    is_near = np.abs(surface.above()) <= _CANDIDATE_DISTANCES * distance
+    is_near[start] = False
+    candidates = np.flatnonzero(is_near & may_join)
     for step in range(_MAX_ROUNDS):
-        nodes = points[is_node]
-        distance = rules.distance(nodes)
-        tin = Tin(nodes)
-        if candidates is None:
-            candidates = _near(tin, points, _CANDIDATE_DISTANCES * distance, monitor.part(0, 0.5))
-            candidates = candidates[~(is_node | stands_free)[candidates]]
-        part = monitor.part(0.5 + 0.5 * step / _MAX_ROUNDS, 0.5 + 0.5 * (step + 1) / _MAX_ROUNDS)
-        candidates, joining = _joining(tin, points, candidates, distance, rules, is_start[is_node], part)
-        is_node[joining] = True
-        part.progress(1.0)
-        if len(joining) <= _LEAST_GROWTH * len(nodes):
+        n_nodes = len(surface.nodes)
+        candidates, joining = _joining(surface, candidates, distance, rules, len(start))
+        surface.add(joining)
+        monitor.progress(0.5 + 0.5 * (step + 1) / _MAX_ROUNDS)
+        if len(joining) <= _LEAST_GROWTH * n_nodes:
             break
-    return is_node, float(distance)
+        distance = rules.distance(surface.nodes)
+    return surface, float(distance)
 
 
-def _near(tin: Tin, points: np.ndarray, distance: float, monitor: Monitor) -> np.ndarray:
-    """Return the indices of the points within ``distance`` of the surface."""
-    return np.flatnonzero(np.abs(_above(tin, points, monitor)) <= distance)
+class _Surface:
+    """A TIN that some of the points are nodes of, and where the others lie on it.
 
+    Attributes
+    ----------
+    points : ndarray of shape (n, 3), float64
+        All points (m).
+    facet : ndarray of shape (n,), int32
+        The facet under each.
+    is_node : ndarray of shape (n,), bool
+    """
 
-def _above(tin: Tin, points: np.ndarray, monitor: Monitor) -> np.ndarray:
-    """Return how far (m) points lie above their facets, measured across these."""
-    facet = tin.locate(points, monitor)
-    return (points[:, 2] - tin.elevation(points, facet)) * tin.steepness()[facet]
+    def __init__(self, points: np.ndarray, start: np.ndarray, monitor: Monitor) -> None:
+        self.points = points
+        self.tin = Tin(points[start], plan_box(points), monitor.part(0, 0.5))
+        self.facet = self.tin.locate(points, monitor.part(0.5, 1.0))
+        self.is_node = np.zeros(len(points), bool)
+        self.is_node[start] = True
+
+    @property
+    def nodes(self) -> np.ndarray:
+        """The nodes (m, 3), m."""
+        return self.points[self.is_node]
+
+    def add(self, joining: np.ndarray) -> None:
+        """Let the points with these indices become nodes."""
+        self.facet = self.tin.add(self.points, self.facet, joining)
+        self.is_node[joining] = True
+
+    def above(self) -> np.ndarray:
+        """Return how far (n,) the points lie above their facets, measured across these (m)."""
+        return (self.points[:, 2] - self.tin.elevation(self.points, self.facet)) * self.tin.steepness()[self.facet]
 
 
 def _joining(
-    tin: Tin,
-    points: np.ndarray,
-    candidates: np.ndarray,
-    distance: float,
-    rules: _Rules,
-    is_start: np.ndarray,
-    monitor: Monitor,
+    surface: _Surface, candidates: np.ndarray, distance: float, rules: _Rules, n_start: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the candidates that are left for later rounds, and those that join now, one per facet."""
-    facet = tin.locate(points[candidates], monitor)
+    tin, facet = surface.tin, surface.facet[candidates]
     # Small facets only get smaller, and a point beside a node makes a sliver and tells nothing new.
     is_open = tin.longest_edge()[facet] > rules.edge_length
     candidates, facet = candidates[is_open], facet[is_open]
-    apart = _to_nearest_node(tin, facet, points[candidates]) > rules.edge_length / 4
+    apart = _to_nearest_node(tin, facet, surface.points[candidates]) > rules.edge_length / 4
     candidates, facet = candidates[apart], facet[apart]
-    here = points[candidates]
+    here = surface.points[candidates]
     offset, angle = _offset_and_angle(tin, facet, here)
     fits = (offset <= distance) & (angle <= rules.max_angle)
     mirrored = np.flatnonzero(~fits)
-    angle[mirrored] = _mirrored_angle(tin, facet[mirrored], here[mirrored], distance, rules, is_start)
+    angle[mirrored] = _mirrored_angle(tin, facet[mirrored], here[mirrored], distance, rules, n_start)
     fits |= angle <= rules.max_angle
     # Ties go to the south-west, so that the points' order doesn't matter.
     order = np.lexsort((here[fits, 1], here[fits, 0], angle[fits], facet[fits]))
@@ -391,7 +402,7 @@ def _joining(
 
 
 def _mirrored_angle(
-    tin: Tin, facet: np.ndarray, here: np.ndarray, distance: float, rules: _Rules, is_start: np.ndarray
+    tin: Tin, facet: np.ndarray, here: np.ndarray, distance: float, rules: _Rules, n_start: int
 ) -> np.ndarray:
     """Return the angles (°) of points that lie beyond a breakline, at their mirror images; inf where they don't fit.
 
@@ -404,10 +415,10 @@ def _mirrored_angle(
     highest = corners[np.arange(len(corners)), np.argmax(tin.nodes[corners, 2], axis=1)]
     image = 2 * (tin.nodes[highest] + tin.shift) - here
     reach = np.linalg.norm(here[:, :2] - image[:, :2], axis=1) / 2
-    can = (corners < tin.n_nodes).all(axis=1) & (reach < rules.reach)
-    can[can] = is_start[highest[can]] & (here[can, 2] > tin.elevation(here[can], facet[can]))
+    can = (corners >= CORNERS).all(axis=1) & (reach < rules.reach)
+    can[can] = (highest[can] < CORNERS + n_start) & (here[can, 2] > tin.elevation(here[can], facet[can]))
     of, image = np.flatnonzero(can), image[can]
-    there = tin.locate(image)
+    there = tin.locate_near(image, highest[of])
     offset, found = _offset_and_angle(tin, there, image)
     level = (tin.steepness() > np.cos(np.radians(_LEVEL))) & ~tin.is_extrapolated()
     fits = (offset <= _MIRROR_SHARE * distance) & level[there]
@@ -427,25 +438,24 @@ def _to_nearest_node(tin: Tin, facet: np.ndarray, here: np.ndarray) -> np.ndarra
     return np.linalg.norm(tin.nodes[tin.facets[facet]] - (here - tin.shift)[:, None], axis=2).min(axis=1)
 
 
-def _sweep(
-    points: np.ndarray, nodes: np.ndarray, distance: Optional[float], bend: float, region: float, monitor: Monitor
-) -> tuple[np.ndarray, float]:
-    """Return which points lie within ``distance`` of the TIN of ``nodes``, and that distance.
+def _sweep(surface: _Surface, distance: Optional[float], bend: float, region: float) -> tuple[np.ndarray, float]:
+    """Return which points lie within ``distance`` of the surface or are its nodes, and that distance.
 
     Where it is measured, points of higher strips are ground too, looked for in squares of ``region`` (m; 0 is not).
     """
-    higher = np.zeros(len(points), bool)
     is_measured = distance is None
     if distance is None:
         # So few have no neighbors to differ from.
-        roughness = robust_deviation(node_residuals(nodes) if len(nodes) > 3 else np.zeros(1))
+        roughness = robust_deviation(node_residuals(surface.nodes) if len(surface.nodes) > 3 else np.zeros(1))
         distance = min(_SWEEP_DEVIATIONS * roughness, _SWEEP_NOISE * roughness + bend)
     if distance == 0:
-        return higher, 0.0
-    above = _above(Tin(nodes), points, monitor)
+        return surface.is_node, 0.0
+    above = surface.above()
+    is_ground = surface.is_node | (np.abs(above) <= distance)
     if is_measured and region:
-        higher = _of_higher_strips(above, distinct(grid_over(points, region).number(points))[1], distance)
-    return (np.abs(above) <= distance) | higher, float(distance)
+        square = distinct(grid_over(surface.points, region).number(surface.points))[1]
+        is_ground |= _of_higher_strips(above, square, distance)
+    return is_ground, float(distance)
 
 
 def _of_higher_strips(above: np.ndarray, square: np.ndarray, distance: float) -> np.ndarray:

@@ -16,7 +16,7 @@ from ..cloud.cells import grid_over, plan_box
 from ..packages import spatial
 from ..stage import Monitor
 from ..threads import in_chunks
-from .tin import Tin
+from .tin import CORNERS, Tin
 
 # Nodes and places of a tile at most: large ones hold more memory, small ones cost more overhead.
 _NODES, _PLACES = 20_000, 40_000
@@ -82,8 +82,8 @@ class TiledTin:
             left = left[wrong]
             if is_start:
                 # The few places that are left, in gaps of the ground, need the nodes around the gaps only.
-                corners = np.unique(tin.facets[facets[is_wrong]])
-                rows, is_start = rows[corners[corners < len(rows)]], False
+                ends = np.unique(tin.facets[facets[is_wrong]])
+                rows, is_start = rows[ends[ends >= CORNERS] - CORNERS], False
                 intruders = np.append(intruders, self._nearest(places[left]))
             rows = np.union1d(rows, intruders)
 

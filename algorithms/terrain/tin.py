@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-from typing import Any, Optional
+from typing import Any, Callable, Optional
 
 import numpy as np
 
@@ -11,11 +10,15 @@ from ..cloud.cells import plan_box
 from ..packages import spatial
 from ..stage import Monitor
 from ..threads import in_chunks
+from .triangulation import Triangulation, circles, triangulate
 
 _CHUNK = 100_000
 
 # Far more steps than a walk from the nearest node takes.
 _MAX_STEPS = 1000
+
+# The far corners come before the nodes.
+CORNERS = 4
 
 
 class Tin:
@@ -30,33 +33,71 @@ class Tin:
         Nodes (m), m >= 1; of nodes at one place in plan, one counts.
     box : ndarray of shape (2, 2), float64, optional
         Least and greatest easting and northing (m) that the far corners surround; those of the nodes when absent.
+    monitor : Monitor, optional
+        Hears progress.
+
+    Attributes
+    ----------
+    nodes : ndarray of shape (4 + m, 3), float64
+        Corners and nodes (m), from the shift.
+    shift : ndarray of shape (3,), float64
+        The middle of the box, at elevation 0 (m).
     """
 
-    def __init__(self, nodes: np.ndarray, box: Optional[np.ndarray] = None) -> None:
+    def __init__(self, nodes: np.ndarray, box: Optional[np.ndarray] = None, monitor: Optional[Monitor] = None) -> None:
         low, high = box = plan_box(nodes) if box is None else box
-        # Qhull works in absolute coordinates: shifted ones keep their digits.
+        # Squares of coordinates keep their digits where these are small.
         self.shift = np.append(box.mean(axis=0), 0.0)
-        self.n_nodes = len(nodes)
         self.reach = reach = 3 * float((high - low).max()) + 10.0
         corners = np.array([[-reach, -reach], [reach, -reach], [reach, reach], [-reach, reach]])
-        self._node_tree = spatial.cKDTree(nodes[:, :2] - self.shift[:2])
-        heights = nodes[self._node_tree.query(corners)[1], 2]
-        self.nodes = np.vstack([nodes - self.shift, np.column_stack([corners, heights])])
-        self.delaunay = spatial.Delaunay(self.nodes[:, :2])
-        self._weights = self._barycentric()
-        # Qhull leaves out nodes at the place of another, and names a facet for them that may be far off.
-        self._start = self.delaunay.vertex_to_simplex.copy()
-        twin, _, kept = self.delaunay.coplanar.T
-        self._start[twin] = self._start[kept]
+        nodes = nodes - self.shift
+        nearest = [np.argmin(np.linalg.norm(nodes[:, :2] - corner, axis=1)) for corner in corners]
+        self.nodes = np.vstack([np.column_stack([corners, nodes[nearest, 2]]), nodes])
+        self._take(triangulate(self.nodes[:, :2], monitor))
+
+    def add(self, points: np.ndarray, facet: np.ndarray, joining: np.ndarray) -> np.ndarray:
+        """Let some of the points join the nodes.
+
+        Parameters
+        ----------
+        points : ndarray of shape (n, 3), float64
+            Points (m), those that join within the box.
+        facet : ndarray of shape (n,), int32
+            The facet under each point.
+        joining : ndarray of shape (m,), int64
+            Indices of the points that join.
+
+        Returns
+        -------
+        ndarray of shape (n,), int32
+            The facet that is under each point then.
+        """
+        new = points[joining] - self.shift
+        mesh, became = self._mesh.with_places(new[:, :2], facet[joining])
+        corner = self.facets[:, 0]
+        self.nodes = np.vstack([self.nodes, new])
+        self._take(mesh)
+        now = became[facet]
+        gone = np.flatnonzero(now < 0)
+        now[gone] = self.locate_near(points[gone], corner[facet[gone]])
+        return now
+
+    def _take(self, mesh: Triangulation) -> None:
+        """Take the facets of a triangulation of the nodes, and what is found from them."""
+        self._mesh = mesh
+        self._weights, self._planes = self._barycentric(), self._gradients()
+        # A facet of each node, -1 of those at the place of another.
+        self._at_node = np.full(len(self.nodes), -1, np.int32)
+        self._at_node[self.facets] = np.arange(len(self.facets))[:, None]
 
     @property
     def facets(self) -> np.ndarray:
         """Node numbers (f, 3) of the facets."""
-        return self.delaunay.simplices
+        return self._mesh.facets
 
     def is_extrapolated(self) -> np.ndarray:
         """Return for each facet (f,) whether it lies outside the hull of the nodes."""
-        return (self.facets >= self.n_nodes).any(axis=1)
+        return (self.facets < CORNERS).any(axis=1)
 
     def locate(self, xyz: np.ndarray, monitor: Optional[Monitor] = None) -> np.ndarray:
         """Return the facet (n,), int32, under each point.
@@ -65,17 +106,28 @@ class Tin:
         chunk together: a step or two for nearly all of them. Beyond the far corners the facet
         is the one at the nearest place between them.
         """
+        used = CORNERS + np.flatnonzero(self._at_node[CORNERS:] >= 0)
+        tree = spatial.cKDTree(self.nodes[used, :2])
+        return self._located(xyz, lambda rows, plan: used[tree.query(plan)[1]], monitor or Monitor())
+
+    def locate_near(self, xyz: np.ndarray, node: np.ndarray) -> np.ndarray:
+        """Return the facet (n,), int32, under each point, for points that are near a node (n,) known by number."""
+        return self._located(xyz, lambda rows, plan: node[rows], Monitor())
+
+    def _located(
+        self, xyz: np.ndarray, node: Callable[[np.ndarray, np.ndarray], np.ndarray], monitor: Monitor
+    ) -> np.ndarray:
+        """Return the facets under points; ``node`` tells from which nodes the points of some rows and places start."""
         found = np.empty(len(xyz), np.int32)
 
         def walk(rows: np.ndarray) -> None:
-            plan = xyz[rows, :2] - self.shift[:2]
-            found[rows] = self._walk(np.clip(plan, -0.99 * self.reach, 0.99 * self.reach))
+            plan = np.clip(xyz[rows, :2] - self.shift[:2], -0.99 * self.reach, 0.99 * self.reach)
+            found[rows] = self._walk(plan, self._at_node[node(rows, plan)])
 
-        in_chunks(walk, np.arange(len(xyz)), _CHUNK, monitor or Monitor())
+        in_chunks(walk, np.arange(len(xyz)), _CHUNK, monitor)
         return found
 
-    def _walk(self, plan: np.ndarray) -> np.ndarray:
-        facet = self._start[self._node_tree.query(plan)[1]]
+    def _walk(self, plan: np.ndarray, facet: np.ndarray) -> np.ndarray:
         walking = np.arange(len(plan))
         for _ in range(_MAX_STEPS):
             across = self._leaving(plan[walking], facet[walking])
@@ -83,21 +135,27 @@ class Tin:
             walking, across = walking[outside], across[outside]
             if not len(walking):
                 return facet
-            facet[walking] = self.delaunay.neighbors[facet[walking], across]
-        # Facets of nearly collinear nodes can send a point round in circles; Qhull's own search ends.
-        facet[walking] = self.delaunay.find_simplex(plan[walking], bruteforce=True)
+            facet[walking] = self._mesh.neighbors[facet[walking], across]
+        # Facets of nearly collinear nodes can send a point round in circles; it lies where it is outside least.
+        for row in walking:
+            weights = self._weights_of(plan[row], np.arange(len(self.facets)))
+            facet[row] = np.nanargmax(weights.min(axis=0))
         return facet
 
     def _leaving(self, plan: np.ndarray, facet: np.ndarray) -> np.ndarray:
         """Return the side (0-2) by which each point lies outside its facet most, -1 where it lies inside."""
+        weights = self._weights_of(plan, facet)
+        side = np.argmin(weights, axis=0)
+        least = np.take_along_axis(weights, side[None], axis=0)[0]
+        return np.where(least < -1e-9, side, -1)
+
+    def _weights_of(self, plan: np.ndarray, facet: np.ndarray) -> np.ndarray:
+        """Return the weights (3, n) of the corners of facets at places, negative beyond the side across from one."""
         to_weights = self._weights[facet]
         offset = plan - to_weights[:, 4:]
         first = to_weights[:, 0] * offset[:, 0] + to_weights[:, 1] * offset[:, 1]
         second = to_weights[:, 2] * offset[:, 0] + to_weights[:, 3] * offset[:, 1]
-        weights = np.stack([first, second, 1 - first - second])
-        side = np.argmin(weights, axis=0)
-        least = np.take_along_axis(weights, side[None], axis=0)[0]
-        return np.where(least < -1e-9, side, -1)
+        return np.stack([first, second, 1 - first - second])
 
     def _barycentric(self) -> np.ndarray:
         """Return what turns plan coordinates into weights of a facet's first two nodes (f, 6): 2 x 2 and origin."""
@@ -129,16 +187,9 @@ class Tin:
 
         No node lies inside of them. Where the nodes lie on a line, neither is finite.
         """
-        a, b, c = np.swapaxes(self.nodes[self.facets[facets], :2], 0, 1)
-        u, v = b - a, c - a
-        uu, vv = np.einsum("ij,ij->i", u, u), np.einsum("ij,ij->i", v, v)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            scale = 0.5 / (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
-            to_center = np.column_stack([v[:, 1] * uu - u[:, 1] * vv, u[:, 0] * vv - v[:, 0] * uu]) * scale[:, None]
-        return a + to_center, np.linalg.norm(to_center, axis=1)
+        return circles(self.nodes[:, :2], self.facets[facets])
 
-    @cached_property
-    def _planes(self) -> tuple[np.ndarray, np.ndarray]:
+    def _gradients(self) -> tuple[np.ndarray, np.ndarray]:
         """Return gradient (f, 2) and level at the shifted origin (f,) of each facet."""
         a, b, c = np.swapaxes(self.nodes[self.facets], 0, 1)
         u, v = b - a, c - a

@@ -96,7 +96,7 @@ def test_what_stands_free_does_not_join_the_surface_however_near_it_is(is_free, 
     on_top = np.abs(plan - 10).max(axis=1) < 4
     points = np.column_stack([plan, np.where(on_top, 0.3, 0.0)])
     rules = _Rules(max_angle=20.0, max_distance=0.5, bend=0.0, edge_length=0.5, reach=1.0)
-    is_node, _ = _grow(points, np.flatnonzero(~on_top), on_top & is_free, rules, Monitor())
+    is_node = _grow(points, np.flatnonzero(~on_top), ~(on_top & is_free), rules, Monitor())[0].is_node
     assert is_node[on_top].any() != is_free
     assert is_node[~on_top].all()
 
@@ -107,7 +107,7 @@ def test_points_beside_nodes_of_their_facet_do_not_join(rng):
     corners = np.array([[x, y, 0.1] for x in range(0, 21, 4) for y in range(0, 21, 4)], float)
     rules = _Rules(max_angle=45.0, max_distance=0.5, bend=0.0, edge_length=2.0, reach=1.0)
     both = np.concatenate([corners, points])
-    is_node, _ = _grow(both, np.arange(len(corners)), np.zeros(len(both), bool), rules, Monitor())
+    is_node = _grow(both, np.arange(len(corners)), np.ones(len(both), bool), rules, Monitor())[0].is_node
     joined = points[is_node[len(corners) :]]
     assert len(joined) > 50
     assert np.linalg.norm(joined[:, None] - corners, axis=2).min() > 0.5

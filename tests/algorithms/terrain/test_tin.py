@@ -39,7 +39,25 @@ def test_elevation_inside_the_hull_is_that_of_scipy(nodes, places):
 
 def test_facets_are_those_that_qhull_finds(nodes, places):
     tin = Tin(nodes)
-    np.testing.assert_array_equal(tin.locate(places), tin.delaunay.find_simplex(places[:, :2] - tin.shift[:2]))
+    whole = Delaunay(tin.nodes[:, :2])
+    found = whole.simplices[whole.find_simplex(places[:, :2] - tin.shift[:2])]
+    np.testing.assert_array_equal(np.sort(tin.facets[tin.locate(places)], axis=1), np.sort(found, axis=1))
+
+
+def test_nodes_that_join_change_the_surface_as_if_they_had_been_there(nodes, places):
+    box = np.array([[0.0, 0], [100, 60]])
+    points = np.concatenate([nodes[300:], places])
+    tin, whole = Tin(nodes[:300], box), Tin(nodes, box)
+    before = tin.locate(points)
+    facet = tin.add(points, before, np.arange(100))
+    expected = whole.locate(points)
+    corners = [np.sort(at.nodes[at.facets[of], 0]) for at, of in ((tin, facet), (whole, expected))]
+    # Nodes that join lie in several facets.
+    np.testing.assert_array_equal(corners[0][100:], corners[1][100:])
+    np.testing.assert_allclose(tin.elevation(points, facet)[:100], nodes[300:, 2], atol=1e-9)
+    own = ~whole.is_extrapolated()[expected]
+    np.testing.assert_allclose(tin.elevation(points, facet)[own], whole.elevation(points, expected)[own], atol=1e-9)
+    np.testing.assert_array_equal(tin.locate_near(points, np.full(len(points), 7))[100:], facet[100:])
 
 
 def test_chunks_change_nothing(nodes, places, monkeypatch):
