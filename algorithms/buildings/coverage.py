@@ -12,19 +12,10 @@ from typing import Optional
 import numpy as np
 
 from ..stage import Monitor
+from .lines import Line, Wall, simplify
 from .outlines import Tracing, pieces_of, signed_area
-from .regularize import (
-    Line,
-    Wall,
-    chords,
-    is_near,
-    is_valid,
-    main_directions,
-    meet_in_corners,
-    segments_meet,
-    simplify,
-    straighten,
-)
+from .regularize import chords, is_near, main_directions, straighten
+from .segments import is_valid, meet_in_corners, segments_meet
 
 
 @dataclass(frozen=True)

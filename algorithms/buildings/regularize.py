@@ -1,17 +1,15 @@
-"""Straight walls and right angles: lines of samples along an outline turned into corners.
-
-Samples are places (m, 2) on an outline, one for each of its edges, with the length of that edge as weight. The outline
-has the building on its left.
-"""
+"""Straight walls and right angles: walls along an outline turned to main directions, and the corners between them."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Optional
 
 import numpy as np
 
+from .lines import Line, Wall, cross, line_along, simplify
 from .outlines import signed_area
+from .segments import distances_to, is_valid
 
 # Walls closer than this to a main direction may be meant to have it; others are diagonals and keep their own.
 _MAX_TURN = np.deg2rad(22.5)
@@ -40,83 +38,6 @@ _SHIFT = 0.6
 
 # Walls up to so many tolerances long don't know their direction well.
 _SHORT = 4.5
-
-# Pairs of segments or of points and segments that are compared at once.
-_PAIRS_AT_ONCE = 1_000_000
-
-
-@dataclass(frozen=True)
-class Wall:
-    """A line along an outline: unit direction, a point on it, length, its samples (first, last), whether main."""
-
-    direction: np.ndarray
-    point: np.ndarray
-    length: float
-    first: int
-    last: int
-    is_main: bool = False
-
-    @property
-    def angle(self) -> float:
-        """Direction (rad) from east."""
-        return float(np.arctan2(self.direction[1], self.direction[0]))
-
-    def offset(self, point: np.ndarray) -> float:
-        """Return how far a point lies to the left of this line."""
-        return _cross(self.direction, point - self.point)
-
-    def foot(self, point: np.ndarray) -> np.ndarray:
-        """Return the place on this line that is nearest to a point."""
-        return self.point + ((point - self.point) @ self.direction) * self.direction
-
-
-@dataclass(frozen=True)
-class Line:
-    """Samples (m, 2) along an outline or a part of it, with their weights (m,).
-
-    A closed one has no end; of an open one the first and last sample are its ends.
-    """
-
-    samples: np.ndarray
-    weights: np.ndarray
-    is_closed: bool
-
-    def rows(self, first: int, last: int) -> np.ndarray:
-        """Return the samples from ``first`` to ``last``, which may be beyond the end of a closed line."""
-        return np.arange(first, last + 1) % len(self.samples)
-
-    def walls(self, tolerance: float) -> list:
-        """Return the straight pieces that stay within ``tolerance`` (m) of the samples, fitted to them."""
-        bends = simplify(self.samples, tolerance, self.is_closed)
-        if self.is_closed:
-            bends = np.append(bends, bends[0] + len(self.samples))
-        return [self.fitted(int(a), int(b), tolerance) for a, b in zip(bends, bends[1:])]
-
-    def fitted(self, first: int, last: int, tolerance: float, direction: Optional[np.ndarray] = None) -> Wall:
-        """Return the wall along the samples from ``first`` to ``last``, of a given direction or their own."""
-        rows = self.rows(first, last)
-        places, weights = self.samples[rows], self.weights[rows]
-        chord = places[-1] - places[0]
-        length = float(np.hypot(*chord))
-        along = (places - places[0]) @ (chord / max(length, 1e-9))
-        # Corners are rounded by half the tolerance, a spacing: what lies there belongs to no wall.
-        inner = np.abs(along - length / 2) <= length / 2 - tolerance / 2
-        if inner.sum() >= 3:
-            places, weights = places[inner], weights[inner]
-        if direction is None:
-            direction = _principal(places, weights, chord)
-        across = direction[0] * (places[:, 1] - places[0, 1]) - direction[1] * (places[:, 0] - places[0, 0])
-        middle = _median(across, weights) * np.array([-direction[1], direction[0]])
-        center = places[0] + ((places.mean(axis=0) - places[0]) @ direction) * direction
-        return Wall(direction, center + middle, length, first, last)
-
-
-def line_along(ring: np.ndarray, outset: float = 0.0) -> Line:
-    """Return the samples in the middle of the edges of a closed ring, moved outward by ``outset`` (m)."""
-    step = np.diff(ring, axis=0)
-    length = np.hypot(*step.T)
-    outward = np.column_stack([step[:, 1], -step[:, 0]]) / np.maximum(length, 1e-9)[:, None]
-    return Line(ring[:-1] + step / 2 + outset * outward, length, is_closed=True)
 
 
 def regularize_outline(rings: list, tolerance: float, outset: float = 0.0) -> Optional[list]:
@@ -164,12 +85,6 @@ def is_near(places: np.ndarray, line: Line, limit: float) -> bool:
     far = distances_to(line.samples, places) > limit
     # Spikes, which have no area, are left out: they are a small part of a building, or it is no good.
     return bool((distances_to(places, raw) <= limit).all() and line.weights[far].sum() <= 0.1 * line.weights.sum())
-
-
-def simplify_ring(ring: np.ndarray, tolerance: float) -> np.ndarray:
-    """Return the closed ring with the vertices of Douglas and Peucker that keep it within ``tolerance`` (m)."""
-    rows = simplify(ring[:-1], tolerance, is_closed=True)
-    return ring[np.append(rows, rows[0])]
 
 
 def main_directions(walls: list) -> list:
@@ -244,58 +159,9 @@ def chords(line: Line, tolerance: float) -> np.ndarray:
     return np.array(_without_loops(list(places), 8 * tolerance))
 
 
-def simplify(places: np.ndarray, tolerance: float, is_closed: bool) -> np.ndarray:
-    """Return the rows of the vertices of Douglas and Peucker that keep a line within ``tolerance`` (m), ascending."""
-    count = len(places)
-    # The two ends of the longest extent are corners of a closed line in any case.
-    start = int(np.argmax(((places - places.mean(axis=0)) ** 2).sum(axis=1))) if is_closed else 0
-    turned = np.roll(places, -start, axis=0)
-    if is_closed:
-        turned = np.concatenate([turned, turned[:1]])
-    last = len(turned) - 1
-    far = int(np.argmax(((turned - turned[0]) ** 2).sum(axis=1))) if is_closed else last
-    is_kept = np.zeros(last + 1, bool)
-    is_kept[[0, far, last]] = True
-    spans = [(0, far), (far, last)]
-    while spans:
-        low, high = spans.pop()
-        if high - low < 2:
-            continue
-        distance = edge_distances(turned[low + 1 : high], turned[low : low + 1], turned[high : high + 1])[:, 0]
-        at = int(np.argmax(distance))
-        if distance[at] > tolerance:
-            middle = low + 1 + at
-            is_kept[middle] = True
-            spans += [(low, middle), (middle, high)]
-    kept = np.flatnonzero(is_kept[:-1] if is_closed else is_kept)
-    return np.sort((kept + start) % count)
-
-
 def _following(walls: list, line: Line) -> list:
     """Return the pairs of walls that follow each other."""
     return list(zip(walls, [*walls[1:], walls[0]] if line.is_closed else walls[1:]))
-
-
-def _cross(a: np.ndarray, b: np.ndarray) -> float:
-    return float(a[0] * b[1] - a[1] * b[0])
-
-
-def _principal(places: np.ndarray, weights: np.ndarray, chord: np.ndarray) -> np.ndarray:
-    """Return the unit direction of places, along the chord where they have none of their own."""
-    moved = places - np.average(places, axis=0, weights=weights)
-    xx, yy, xy = weights @ moved[:, 0] ** 2, weights @ moved[:, 1] ** 2, weights @ (moved[:, 0] * moved[:, 1])
-    angle = 0.5 * np.arctan2(2 * xy, xx - yy)
-    direction = np.array([np.cos(angle), np.sin(angle)])
-    along = float(direction @ chord)
-    if len(places) < 3 or abs(along) < 0.9 * np.hypot(*chord):
-        return chord / max(float(np.hypot(*chord)), 1e-9)
-    return direction if along > 0 else -direction
-
-
-def _median(values: np.ndarray, weights: np.ndarray) -> float:
-    order = np.argsort(values)
-    total = np.cumsum(weights[order]) - weights[order] / 2
-    return float(np.interp(total[-1] / 2 + weights[order[-1]] / 4, total, values[order]))
 
 
 def _turned(line: Line, walls: list, directions: list, tolerance: float) -> list:
@@ -320,7 +186,7 @@ def _turned(line: Line, walls: list, directions: list, tolerance: float) -> list
 def _along_curves(walls: list, line: Line) -> list:
     """Return which walls are chords of a curve: the walls before and after them turn a little to the same side."""
     turns = [
-        _cross(here.direction, there.direction) if here.direction @ there.direction > 0 else 1.0
+        cross(here.direction, there.direction) if here.direction @ there.direction > 0 else 1.0
         for here, there in _following(walls, line)
     ]
     is_bend = [_LEAST_BEND <= abs(turn) <= _MOST_BEND for turn in turns]
@@ -367,7 +233,7 @@ def _without_spikes(walls: list, line: Line, tolerance: float) -> list:
     while len(walls) > 3 and i < len(walls) - (not line.is_closed):
         j = (i + 1) % len(walls)
         here, there = walls[i], walls[j]
-        sine = abs(_cross(here.direction, there.direction))
+        sine = abs(cross(here.direction, there.direction))
         is_small = sine * min(here.length, there.length) ** 2 / 2 < (_SMALL * tolerance) ** 2
         most = _SMALL_SPIKE if is_small else _SPIKE
         if here.direction @ there.direction < 0 and sine < most:
@@ -387,7 +253,7 @@ def _merged(line: Line, walls: list, tolerance: float) -> list:
             if len(walls) - ahead < (3 if line.is_closed else 1) or (j < i and not line.is_closed):
                 continue
             here, there = walls[i], walls[j]
-            is_along = abs(_cross(here.direction, there.direction)) < _PARALLEL and here.direction @ there.direction > 0
+            is_along = abs(cross(here.direction, there.direction)) < _PARALLEL and here.direction @ there.direction > 0
             if (
                 is_along
                 and abs(here.offset(there.point)) <= _STEP * tolerance
@@ -417,7 +283,7 @@ def _rebroken(line: Line, walls: list, tolerance: float) -> list:
     breaks = {}
     count = len(line.samples)
     for number, (here, there) in enumerate(_following(walls, line)):
-        turn = _cross(here.direction, there.direction)
+        turn = cross(here.direction, there.direction)
         if abs(turn) < _PARALLEL:
             continue
         corner = _crossing(here, there, turn)
@@ -440,12 +306,12 @@ def _rebroken(line: Line, walls: list, tolerance: float) -> list:
 
 
 def _crossing(here: Wall, there: Wall, turn: float) -> np.ndarray:
-    return here.point + _cross(there.point - here.point, there.direction) / turn * here.direction
+    return here.point + cross(there.point - here.point, there.direction) / turn * here.direction
 
 
 def _joined(here: Wall, there: Wall, line: Line, tolerance: float) -> list:
     """Return the corner between two walls, or the two ends of the jog between walls that are nearly parallel."""
-    turn = _cross(here.direction, there.direction)
+    turn = cross(here.direction, there.direction)
     bend = line.samples[there.first % len(line.samples)]
     if abs(turn) >= _PARALLEL:
         corner = _crossing(here, there, turn)
@@ -465,11 +331,11 @@ def _without_loops(corners: list, longest: float) -> list:
         count = len(corners)
         for ahead in (2, 3):
             a, b, c, d = (corners[(i + k) % count] for k in (0, 1, ahead, ahead + 1))
-            turn = _cross(b - a, d - c)
+            turn = cross(b - a, d - c)
             way = sum(np.hypot(*(corners[(i + k) % count] - corners[(i + k + 1) % count])) for k in range(1, ahead))
             if ahead + 2 > count or way > longest or not turn:
                 continue
-            share, other = _cross(c - a, d - c) / turn, _cross(c - a, b - a) / turn
+            share, other = cross(c - a, d - c) / turn, cross(c - a, b - a) / turn
             if 0 <= share <= 1 and 0 <= other <= 1:
                 corners[(i + 1) % count] = a + share * (b - a)
                 gone = {(i + k) % count for k in range(2, ahead + 1)}
@@ -478,90 +344,3 @@ def _without_loops(corners: list, longest: float) -> list:
                 break
         i += 1
     return corners
-
-
-def is_valid(rings: list) -> bool:
-    """Return whether no two segments of an outline meet but neighbors in their corner, and holes are inside."""
-    starts = np.concatenate([ring[:-1] for ring in rings])
-    ends = np.concatenate([ring[1:] for ring in rings])
-    if (np.hypot(*(ends - starts).T) < 1e-6).any():
-        return False
-    first = np.cumsum([0, *(len(ring) - 1 for ring in rings)])
-    following = np.arange(1, len(starts) + 1)
-    following[first[1:] - 1] = first[:-1]
-    step = max(1, _PAIRS_AT_ONCE // len(starts))
-    for low in range(0, len(starts), step):
-        rows = np.arange(low, min(low + step, len(starts)))
-        meet = _meet(starts[rows], ends[rows], starts, ends)
-        others = np.arange(len(starts))
-        apart = (others > rows[:, None]) & (following[rows, None] != others) & (following[others] != rows[:, None])
-        if (meet & apart).any():
-            return False
-    return all(is_inside(hole[0], rings[0]) for hole in rings[1:])
-
-
-def segments_meet(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> bool:
-    """Return whether any of the segments ab (n, 2) has a point in common with one of the segments cd (m, 2)."""
-    step = max(1, _PAIRS_AT_ONCE // len(c))
-    return any(_meet(a[low : low + step], b[low : low + step], c, d).any() for low in range(0, len(a), step))
-
-
-def meet_in_corners(starts: np.ndarray, ends: np.ndarray) -> bool:
-    """Return whether segments (n, 2), some of them there and back, have no points in common but their ends."""
-    is_back = (starts[:, 0] > ends[:, 0]) | ((starts[:, 0] == ends[:, 0]) & (starts[:, 1] > ends[:, 1]))
-    a, b = np.where(is_back[:, None], ends, starts), np.where(is_back[:, None], starts, ends)
-    a, b = np.split(np.unique(np.column_stack([a, b]), axis=0), 2, axis=1)
-    step = max(1, _PAIRS_AT_ONCE // len(a))
-    for low in range(0, len(a), step):
-        c, d = a[low : low + step], b[low : low + step]
-        share = np.zeros((len(c), len(a)), bool)
-        for one in (c, d):
-            for other in (a, b):
-                share |= (one[:, None] == other).all(axis=-1)
-        if (_meet(c, d, a, b) & ~share).any():
-            return False
-    return True
-
-
-def is_inside(point: np.ndarray, ring: np.ndarray) -> bool:
-    """Return whether a point (2,) lies inside a ring, by the parity of the walls to its east."""
-    (x0, y0), (x1, y1) = ring[:-1].T, ring[1:].T
-    crosses = (y0 > point[1]) != (y1 > point[1])
-    slope = np.divide(x1 - x0, y1 - y0, out=np.zeros_like(x0), where=crosses)
-    return bool(np.sum(crosses & (point[0] < x0 + (point[1] - y0) * slope)) % 2)
-
-
-def distances_to(points: np.ndarray, line: np.ndarray) -> np.ndarray:
-    """Return the distances (n,) (m) of points (n, 2) to the nearest place on a line (m, 2)."""
-    step = max(1, _PAIRS_AT_ONCE // len(line))
-    chunks = [points[low : low + step] for low in range(0, len(points), step)]
-    return np.concatenate([edge_distances(chunk, line[:-1], line[1:]).min(axis=1) for chunk in chunks])
-
-
-def farthest(points: np.ndarray, line: np.ndarray) -> float:
-    """Return the largest distance (m) of points (n, 2) to the nearest place on a line."""
-    return float(distances_to(points, line).max())
-
-
-def edge_distances(points: np.ndarray, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
-    """Return the distances (n, m) of points to segments."""
-    along = ends - starts
-    square = np.maximum(np.einsum("ij,ij->i", along, along), 1e-30)
-    offset = points[:, None] - starts
-    share = np.clip(np.einsum("nmi,mi->nm", offset, along) / square, 0, 1)
-    return np.hypot(*np.moveaxis(offset - share[..., None] * along, -1, 0))
-
-
-def _meet(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> np.ndarray:
-    """Return whether the segments ab (n, 2) and cd (m, 2) have a point in common, bool (n, m)."""
-
-    def side(p, q, r):
-        """Sign of the side of the line pq that r is on; zero within rounding."""
-        cross = (q - p)[..., 0] * (r - p)[..., 1] - (q - p)[..., 1] * (r - p)[..., 0]
-        return np.sign(np.where(np.abs(cross) < 1e-9, 0, cross))
-
-    a, b, c, d = a[:, None], b[:, None], c[None], d[None]
-    crossing = (side(a, b, c) * side(a, b, d) <= 0) & (side(c, d, a) * side(c, d, b) <= 0)
-    # Segments on one line pass that test wherever they are: their boxes must meet too.
-    boxes = (np.minimum(a, b) <= np.maximum(c, d)) & (np.minimum(c, d) <= np.maximum(a, b))
-    return crossing & boxes.all(axis=-1)

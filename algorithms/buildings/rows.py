@@ -13,8 +13,10 @@ import numpy as np
 
 from ..packages import csgraph, ndimage, sparse, spatial
 from ..stage import Monitor
+from .lines import line_along
 from .outlines import Tracing
-from .regularize import edge_distances, line_along, main_directions, segments_meet
+from .regularize import main_directions
+from .segments import edge_distances, segments_meet
 
 # Heights are looked at on a grid of this step (m, and in spacings), smoothed along the line over so much (m).
 _STEP, _STEP_SPACINGS, _ALONG = 0.25, 0.6, 1.0

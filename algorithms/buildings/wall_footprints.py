@@ -13,7 +13,8 @@ from ..features.noise import SurfaceSample
 from ..params import MinBuildingArea, Seed
 from ..stage import Features, Field, Layer, Monitor, Param, stage
 from .outlines import perimeter, signed_area, trace_outlines
-from .regularize import is_inside, regularize_outline
+from .regularize import regularize_outline
+from .segments import is_inside
 from .wall_outline import Limits, WallEdge, WallOutline, closed, outline_walls
 
 WALL, ROOF = "wall", "roof"

@@ -11,8 +11,10 @@ from ..cloud.cells import refuse_sparse
 from ..packages import ndimage
 from ..stage import Monitor
 from .arrangement import Arrangement, keys_of, sides_of
+from .lines import simplify_ring
 from .outlines import signed_area
-from .regularize import edge_distances, regularize_outline, simplify_ring
+from .regularize import regularize_outline
+from .segments import edge_distances
 from .wall_lines import Scale, WallLine, find_lines, merge_lines, square_up, wall_scale
 
 # Cells in which roofs are held against walls (m), larger ones where they would be too many, and how far around them

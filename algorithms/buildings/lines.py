@@ -1,0 +1,144 @@
+"""Lines of samples along an outline, and the straight walls that they are made of.
+
+Samples are places (m, 2) on an outline, one for each of its edges, with the length of that edge as weight. The outline
+has the building on its left.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Optional
+
+import numpy as np
+
+from .segments import edge_distances
+
+
+@dataclass(frozen=True)
+class Wall:
+    """A line along an outline: unit direction, a point on it, length, its samples (first, last), whether main."""
+
+    direction: np.ndarray
+    point: np.ndarray
+    length: float
+    first: int
+    last: int
+    is_main: bool = False
+
+    @property
+    def angle(self) -> float:
+        """Direction (rad) from east."""
+        return float(np.arctan2(self.direction[1], self.direction[0]))
+
+    def offset(self, point: np.ndarray) -> float:
+        """Return how far a point lies to the left of this line."""
+        return cross(self.direction, point - self.point)
+
+    def foot(self, point: np.ndarray) -> np.ndarray:
+        """Return the place on this line that is nearest to a point."""
+        return self.point + ((point - self.point) @ self.direction) * self.direction
+
+
+@dataclass(frozen=True)
+class Line:
+    """Samples (m, 2) along an outline or a part of it, with their weights (m,).
+
+    A closed one has no end; of an open one the first and last sample are its ends.
+    """
+
+    samples: np.ndarray
+    weights: np.ndarray
+    is_closed: bool
+
+    def rows(self, first: int, last: int) -> np.ndarray:
+        """Return the samples from ``first`` to ``last``, which may be beyond the end of a closed line."""
+        return np.arange(first, last + 1) % len(self.samples)
+
+    def walls(self, tolerance: float) -> list:
+        """Return the straight pieces that stay within ``tolerance`` (m) of the samples, fitted to them."""
+        bends = simplify(self.samples, tolerance, self.is_closed)
+        if self.is_closed:
+            bends = np.append(bends, bends[0] + len(self.samples))
+        return [self.fitted(int(a), int(b), tolerance) for a, b in zip(bends, bends[1:])]
+
+    def fitted(self, first: int, last: int, tolerance: float, direction: Optional[np.ndarray] = None) -> Wall:
+        """Return the wall along the samples from ``first`` to ``last``, of a given direction or their own."""
+        rows = self.rows(first, last)
+        places, weights = self.samples[rows], self.weights[rows]
+        chord = places[-1] - places[0]
+        length = float(np.hypot(*chord))
+        along = (places - places[0]) @ (chord / max(length, 1e-9))
+        # Corners are rounded by half the tolerance, a spacing: what lies there belongs to no wall.
+        inner = np.abs(along - length / 2) <= length / 2 - tolerance / 2
+        if inner.sum() >= 3:
+            places, weights = places[inner], weights[inner]
+        if direction is None:
+            direction = _principal(places, weights, chord)
+        across = direction[0] * (places[:, 1] - places[0, 1]) - direction[1] * (places[:, 0] - places[0, 0])
+        middle = _median(across, weights) * np.array([-direction[1], direction[0]])
+        center = places[0] + ((places.mean(axis=0) - places[0]) @ direction) * direction
+        return Wall(direction, center + middle, length, first, last)
+
+
+def line_along(ring: np.ndarray, outset: float = 0.0) -> Line:
+    """Return the samples in the middle of the edges of a closed ring, moved outward by ``outset`` (m)."""
+    step = np.diff(ring, axis=0)
+    length = np.hypot(*step.T)
+    outward = np.column_stack([step[:, 1], -step[:, 0]]) / np.maximum(length, 1e-9)[:, None]
+    return Line(ring[:-1] + step / 2 + outset * outward, length, is_closed=True)
+
+
+def simplify_ring(ring: np.ndarray, tolerance: float) -> np.ndarray:
+    """Return the closed ring with the vertices of Douglas and Peucker that keep it within ``tolerance`` (m)."""
+    rows = simplify(ring[:-1], tolerance, is_closed=True)
+    return ring[np.append(rows, rows[0])]
+
+
+def simplify(places: np.ndarray, tolerance: float, is_closed: bool) -> np.ndarray:
+    """Return the rows of the vertices of Douglas and Peucker that keep a line within ``tolerance`` (m), ascending."""
+    count = len(places)
+    # The two ends of the longest extent are corners of a closed line in any case.
+    start = int(np.argmax(((places - places.mean(axis=0)) ** 2).sum(axis=1))) if is_closed else 0
+    turned = np.roll(places, -start, axis=0)
+    if is_closed:
+        turned = np.concatenate([turned, turned[:1]])
+    last = len(turned) - 1
+    far = int(np.argmax(((turned - turned[0]) ** 2).sum(axis=1))) if is_closed else last
+    is_kept = np.zeros(last + 1, bool)
+    is_kept[[0, far, last]] = True
+    spans = [(0, far), (far, last)]
+    while spans:
+        low, high = spans.pop()
+        if high - low < 2:
+            continue
+        distance = edge_distances(turned[low + 1 : high], turned[low : low + 1], turned[high : high + 1])[:, 0]
+        at = int(np.argmax(distance))
+        if distance[at] > tolerance:
+            middle = low + 1 + at
+            is_kept[middle] = True
+            spans += [(low, middle), (middle, high)]
+    kept = np.flatnonzero(is_kept[:-1] if is_closed else is_kept)
+    return np.sort((kept + start) % count)
+
+
+def cross(a: np.ndarray, b: np.ndarray) -> float:
+    """Return the cross product of two vectors (2,): positive where the second turns left of the first."""
+    return float(a[0] * b[1] - a[1] * b[0])
+
+
+def _principal(places: np.ndarray, weights: np.ndarray, chord: np.ndarray) -> np.ndarray:
+    """Return the unit direction of places, along the chord where they have none of their own."""
+    moved = places - np.average(places, axis=0, weights=weights)
+    xx, yy, xy = weights @ moved[:, 0] ** 2, weights @ moved[:, 1] ** 2, weights @ (moved[:, 0] * moved[:, 1])
+    angle = 0.5 * np.arctan2(2 * xy, xx - yy)
+    direction = np.array([np.cos(angle), np.sin(angle)])
+    along = float(direction @ chord)
+    if len(places) < 3 or abs(along) < 0.9 * np.hypot(*chord):
+        return chord / max(float(np.hypot(*chord)), 1e-9)
+    return direction if along > 0 else -direction
+
+
+def _median(values: np.ndarray, weights: np.ndarray) -> float:
+    order = np.argsort(values)
+    total = np.cumsum(weights[order]) - weights[order] / 2
+    return float(np.interp(total[-1] / 2 + weights[order[-1]] / 4, total, values[order]))

@@ -1,0 +1,95 @@
+"""Segments in plan: whether they meet, whether rings of them are valid, and how far points are from them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+# Pairs of segments or of points and segments that are compared at once.
+_PAIRS_AT_ONCE = 1_000_000
+
+
+def is_valid(rings: list) -> bool:
+    """Return whether no two segments of an outline meet but neighbors in their corner, and holes are inside."""
+    starts = np.concatenate([ring[:-1] for ring in rings])
+    ends = np.concatenate([ring[1:] for ring in rings])
+    if (np.hypot(*(ends - starts).T) < 1e-6).any():
+        return False
+    first = np.cumsum([0, *(len(ring) - 1 for ring in rings)])
+    following = np.arange(1, len(starts) + 1)
+    following[first[1:] - 1] = first[:-1]
+    step = max(1, _PAIRS_AT_ONCE // len(starts))
+    for low in range(0, len(starts), step):
+        rows = np.arange(low, min(low + step, len(starts)))
+        meet = _meet(starts[rows], ends[rows], starts, ends)
+        others = np.arange(len(starts))
+        apart = (others > rows[:, None]) & (following[rows, None] != others) & (following[others] != rows[:, None])
+        if (meet & apart).any():
+            return False
+    return all(is_inside(hole[0], rings[0]) for hole in rings[1:])
+
+
+def segments_meet(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> bool:
+    """Return whether any of the segments ab (n, 2) has a point in common with one of the segments cd (m, 2)."""
+    step = max(1, _PAIRS_AT_ONCE // len(c))
+    return any(_meet(a[low : low + step], b[low : low + step], c, d).any() for low in range(0, len(a), step))
+
+
+def meet_in_corners(starts: np.ndarray, ends: np.ndarray) -> bool:
+    """Return whether segments (n, 2), some of them there and back, have no points in common but their ends."""
+    is_back = (starts[:, 0] > ends[:, 0]) | ((starts[:, 0] == ends[:, 0]) & (starts[:, 1] > ends[:, 1]))
+    a, b = np.where(is_back[:, None], ends, starts), np.where(is_back[:, None], starts, ends)
+    a, b = np.split(np.unique(np.column_stack([a, b]), axis=0), 2, axis=1)
+    step = max(1, _PAIRS_AT_ONCE // len(a))
+    for low in range(0, len(a), step):
+        c, d = a[low : low + step], b[low : low + step]
+        share = np.zeros((len(c), len(a)), bool)
+        for one in (c, d):
+            for other in (a, b):
+                share |= (one[:, None] == other).all(axis=-1)
+        if (_meet(c, d, a, b) & ~share).any():
+            return False
+    return True
+
+
+def is_inside(point: np.ndarray, ring: np.ndarray) -> bool:
+    """Return whether a point (2,) lies inside a ring, by the parity of the walls to its east."""
+    (x0, y0), (x1, y1) = ring[:-1].T, ring[1:].T
+    crosses = (y0 > point[1]) != (y1 > point[1])
+    slope = np.divide(x1 - x0, y1 - y0, out=np.zeros_like(x0), where=crosses)
+    return bool(np.sum(crosses & (point[0] < x0 + (point[1] - y0) * slope)) % 2)
+
+
+def distances_to(points: np.ndarray, line: np.ndarray) -> np.ndarray:
+    """Return the distances (n,) (m) of points (n, 2) to the nearest place on a line (m, 2)."""
+    step = max(1, _PAIRS_AT_ONCE // len(line))
+    chunks = [points[low : low + step] for low in range(0, len(points), step)]
+    return np.concatenate([edge_distances(chunk, line[:-1], line[1:]).min(axis=1) for chunk in chunks])
+
+
+def farthest(points: np.ndarray, line: np.ndarray) -> float:
+    """Return the largest distance (m) of points (n, 2) to the nearest place on a line."""
+    return float(distances_to(points, line).max())
+
+
+def edge_distances(points: np.ndarray, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
+    """Return the distances (n, m) of points to segments."""
+    along = ends - starts
+    square = np.maximum(np.einsum("ij,ij->i", along, along), 1e-30)
+    offset = points[:, None] - starts
+    share = np.clip(np.einsum("nmi,mi->nm", offset, along) / square, 0, 1)
+    return np.hypot(*np.moveaxis(offset - share[..., None] * along, -1, 0))
+
+
+def _meet(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> np.ndarray:
+    """Return whether the segments ab (n, 2) and cd (m, 2) have a point in common, bool (n, m)."""
+
+    def side(p, q, r):
+        """Sign of the side of the line pq that r is on; zero within rounding."""
+        cross = (q - p)[..., 0] * (r - p)[..., 1] - (q - p)[..., 1] * (r - p)[..., 0]
+        return np.sign(np.where(np.abs(cross) < 1e-9, 0, cross))
+
+    a, b, c, d = a[:, None], b[:, None], c[None], d[None]
+    crossing = (side(a, b, c) * side(a, b, d) <= 0) & (side(c, d, a) * side(c, d, b) <= 0)
+    # Segments on one line pass that test wherever they are: their boxes must meet too.
+    boxes = (np.minimum(a, b) <= np.maximum(c, d)) & (np.minimum(c, d) <= np.maximum(a, b))
+    return crossing & boxes.all(axis=-1)
