@@ -54,9 +54,11 @@ def _octagon(surface: np.ndarray, radius: int, running: Callable, outside: float
 def _along_diagonals(surface: np.ndarray, length: int, rising: bool, running: Callable, outside: float) -> np.ndarray:
     """Run a one-dimensional filter along the diagonals: sheared, they are columns."""
     rows, columns = surface.shape
-    row = np.arange(rows)[:, None]
-    shift = row if rising else rows - 1 - row
-    sheared = np.full((rows, columns + rows - 1), outside)
-    target = np.arange(columns)[None, :] + shift
-    sheared[row, target] = surface
-    return running(sheared, length, axis=0, mode="constant", cval=outside)[row, target]
+    width = rows + columns - 1
+    # What starts one cell later in each row of this width starts in the same column of rows that are a cell longer.
+    sheared, filtered = np.full(rows * (width + 1), outside), np.empty(rows * (width + 1))
+    order = slice(None, None, 1 if rising else -1)
+    sheared.reshape(rows, width + 1)[:, :columns] = surface[order]
+    whole, out = (flat[: rows * width].reshape(rows, width) for flat in (sheared, filtered))
+    running(whole, length, axis=0, output=out, mode="constant", cval=outside)
+    return filtered.reshape(rows, width + 1)[order, :columns]

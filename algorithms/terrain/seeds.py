@@ -8,7 +8,7 @@ from typing import Optional
 
 import numpy as np
 
-from ..cloud.cells import refuse_sparse
+from ..cloud.cells import plan_box, refuse_sparse
 from ..packages import ndimage
 from ..stage import Monitor
 from .opening import open_surface
@@ -59,7 +59,7 @@ _SLOPE_SMOOTHING, _SLOPE_SCALE = 2.0, 4.0
 
 @dataclass
 class Lowest:
-    """Lowest points of cells, ``index`` (rows, columns), -1 where empty; cell size (m) and each point's cell (n, 2)."""
+    """Lowest points of cells, ``index`` (rows, columns), -1 where empty; cell size (m), number of each point's cell."""
 
     index: np.ndarray
     cell_size: float
@@ -72,17 +72,24 @@ class Lowest:
 
     def at_points(self, values: np.ndarray) -> np.ndarray:
         """Return the value (n,) of each point's cell."""
-        return values[tuple(self.cell.T)]
+        return values.ravel()[self.cell]
 
 
 def lowest_points(xyz: np.ndarray, cell_size: float) -> Lowest:
     """Return the lowest point of each square cell of ``cell_size`` (m); refuse points that are spread too thinly."""
     refuse_sparse(xyz, cell_size)
-    cell = np.floor((xyz[:, :2] - xyz[:, :2].min(axis=0)) / cell_size).astype(np.int64)
-    index = np.full(cell.max(axis=0) + 1, -1, np.int64)
-    # Written from the highest to the lowest, the last one stays; ties go to the south-west, whatever the order.
-    order = np.lexsort((-xyz[:, 1], -xyz[:, 0], -xyz[:, 2]))
-    index[tuple(cell[order].T)] = order
+    x, y, z = xyz.T
+    low = plan_box(xyz)[0]
+    row, column = (np.floor((axis - least) / cell_size).astype(np.int32) for axis, least in zip((x, y), low))
+    shape = int(row.max()) + 1, int(column.max()) + 1
+    cell = np.ravel_multi_index((row, column), shape)
+    least = np.full(shape, np.inf)
+    np.minimum.at(least.ravel(), cell, z)
+    as_low = np.flatnonzero(z == least.ravel()[cell])
+    # The last one that is written stays: ties go to the south-west, whatever the order.
+    as_low = as_low[np.lexsort((-y[as_low], -x[as_low]))]
+    index = np.full(shape, -1, np.int64)
+    index.ravel()[cell[as_low]] = as_low
     return Lowest(index, cell_size, cell)
 
 
@@ -133,13 +140,13 @@ def seeds_by_opening(
     surface, known = _surface(xyz, lowest, monitor.part(0, 0.1))
     size = max_building_size or USUAL_BUILDING
     windows = _windows(size / 2 / cell_size)
-    free, found = free_standing(surface, cell_size, size, max_building_size or np.inf, spacing)
+    free, found = free_standing(surface, cell_size, size, max_building_size or np.inf, spacing, monitor.part(0.1, 0.3))
     first = np.full(surface.shape, _FIRST_SLOPE)
     # With what stands free taken away, a low roof beside a higher one is as narrow as it is.
-    objects = free | (_lifted(surface, windows, first, cell_size, monitor.part(0.1, 0.3), absent=free) > 0)
-    for start in (0.3, 0.6):
+    objects = free | (_lifted(surface, windows, first, cell_size, monitor.part(0.3, 0.5), absent=free) > 0)
+    for start in (0.5, 0.75):
         slope = _slope(_interpolated(surface, objects), cell_size)
-        part = monitor.part(start, start + 0.3)
+        part = monitor.part(start, start + 0.25)
         lifted = _lifted(surface, windows, _SLOPE_SHARE * slope, cell_size, part, absent=free)
         objects = _without_joined(lifted, free, windows[-1], surface, slope, cell_size, spacing)
     monitor.progress(1.0)

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Optional
 
 import numpy as np
 
 from ..packages import csgraph, ndimage, sparse
+from ..stage import Monitor
 
 # A step is at least so high (m) and so steep: lower than any eave, steeper than slopes that soil lies on.
 _STEP, _STEEP = 1.0, 1.0
@@ -27,6 +30,9 @@ _PART_EDGE = 0.5
 # What has a roof no higher than itself on more than this share of its edge rests on it.
 _RESTS = 0.5
 
+# Neighbors come along both axes, both ways.
+_SIDES = 4
+
 # Smaller segments (cells) are too rough to tell.
 _LEAST_CELLS = 4
 
@@ -35,8 +41,36 @@ _LEAST_CELLS = 4
 _CARRIES, _HIGHEST_QUAY = 0.1, 4.0
 
 
+@dataclass(frozen=True)
+class _Edges:
+    """The edges of segments, cell by cell.
+
+    Segment on this and on the other side, m each; how far (m) this one is higher, and the direction to the other.
+    """
+
+    own: np.ndarray
+    other: np.ndarray
+    step: np.ndarray
+    side: np.ndarray
+
+    def lengths(self, stands: np.ndarray, needed: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the length (cells) of each segment's edge, of what nothing hides of it, and its steps to each side."""
+        count = len(stands)
+        down = self.step >= needed[self.own]
+        hidden = ~down & (stands[self.other] | (self.other == 0))
+        whole = np.bincount(self.own, minlength=count)
+        open_ = np.bincount(self.own[~hidden], minlength=count)
+        by_side = np.bincount(self.own[down] + count * self.side[down], minlength=_SIDES * count)
+        return whole, open_, by_side.reshape(_SIDES, count)
+
+
 def free_standing(
-    surface: np.ndarray, cell_size: float, usual: float, largest: float = np.inf, apart: float = 0.0
+    surface: np.ndarray,
+    cell_size: float,
+    usual: float,
+    largest: float = np.inf,
+    apart: float = 0.0,
+    monitor: Optional[Monitor] = None,
 ) -> tuple[np.ndarray, float]:
     """Find the smooth segments of a surface that are bounded by steps down all round.
 
@@ -52,6 +86,8 @@ def free_standing(
         Shorter side (m) over which nothing is taken for an object.
     apart : float
         Distance of the points (m), where that is more than a cell: between two of them slopes look like steps.
+    monitor : Monitor, optional
+        Hears progress.
 
     Returns
     -------
@@ -65,17 +101,23 @@ def free_standing(
     What is wider than usual is looked at more closely: its parts are judged together, and what is too rough to tell on
     its roof belongs to it. Of smaller things windows see the whole.
     """
+    monitor = monitor or Monitor()
     least = max(_STEP, _STEEP * max(cell_size, apart))
     segment = _segments(surface, least)
+    monitor.progress(0.3)
     stands, width = _standing(surface, segment, least, usual / cell_size, largest / cell_size)
+    monitor.progress(0.5)
     # Neither half of a hall that a row of skylights cuts in two stands while the other doesn't, nor does a hall
     # beside a wing that is hardly lower.
     hall = _reunited(surface, segment, stands, least)
     is_wide = _widths(hall)[hall] > usual / cell_size
     segment = np.where(is_wide, len(stands) + hall, segment)
+    monitor.progress(0.7)
     stands, width = _standing(surface, segment, least, usual / cell_size, largest / cell_size)
     free = stands[segment]
+    monitor.progress(0.9)
     free |= _resting(surface, segment == 0, free & is_wide, least)
+    monitor.progress(1.0)
     return free, float(width[stands].max(initial=0.0)) * cell_size
 
 
@@ -88,14 +130,15 @@ def _standing(
     needed = np.where(wide, max(_HALL_STEP, least), least)
     needed[width > largest] = np.inf
     stands = np.zeros(len(width), bool)
+    edges, cut = _edges(surface, segment), _cut(segment, len(width))
     # The highest come first; what stands at their walls is judged by the rest of its edge.
     while True:
-        found = _stands(surface, segment, stands, needed) & ~stands
+        found = _stands(edges, cut, stands, needed) & ~stands
         if not found.any():
             break
         stands |= found
     # An island with houses on it has quays all round; what has higher walls carries towers.
-    may_be_island = stands & wide & ~_stands(surface, segment, stands, np.full(len(width), max(_HIGHEST_QUAY, least)))
+    may_be_island = stands & wide & ~_stands(edges, cut, stands, np.full(len(width), max(_HIGHEST_QUAY, least)))
     return stands & ~_carries(segment, stands, np.flatnonzero(may_be_island)), width
 
 
@@ -123,14 +166,11 @@ def _segments(surface: np.ndarray, least: float) -> np.ndarray:
 def _reunited(surface: np.ndarray, segment: np.ndarray, stands: np.ndarray, least: float) -> np.ndarray:
     """Give segments that meet without the step of a hall one number, if most of the edge of each steps down."""
     count = len(stands)
-    _, open_, by_side = _edges(surface, segment, stands, np.full(count, least))
+    edges = _edges(surface, segment)
+    _, open_, by_side = edges.lengths(stands, np.full(count, least))
     is_part = ~stands & (by_side.sum(axis=0) > _PART_EDGE * open_)
-    pairs = []
-    for here, there in neighbors(surface.ndim):
-        own, other = segment[here], segment[there]
-        level = is_part[own] & is_part[other] & (np.abs(surface[here] - surface[there]) < max(_HALL_STEP, least))
-        pairs.append(np.stack([own[level], other[level]]))
-    one, other = np.concatenate(pairs, axis=1)
+    level = is_part[edges.own] & is_part[edges.other] & (np.abs(edges.step) < max(_HALL_STEP, least))
+    one, other = edges.own[level], edges.other[level]
     links = sparse.coo_matrix((np.ones(len(one)), (one, other)), (count, count))
     # Components are numbered by their first segments: that of 0, which is no part, stays 0.
     return csgraph.connected_components(links, directed=False)[1][segment]
@@ -154,11 +194,10 @@ def _widths(segment: np.ndarray) -> np.ndarray:
     return np.array([0] + [min(side.stop - side.start for side in box) if box else 0 for box in boxes])
 
 
-def _stands(surface: np.ndarray, segment: np.ndarray, stands: np.ndarray, needed: np.ndarray) -> np.ndarray:
+def _stands(edges: _Edges, cut: np.ndarray, stands: np.ndarray, needed: np.ndarray) -> np.ndarray:
     """Return which segments have steps down that face one another on most of the edge that nothing hides."""
-    whole, open_, by_side = _edges(surface, segment, stands, needed)
-    cut = _cut(segment, len(stands))
-    whole += cut
+    whole, open_, by_side = edges.lengths(stands, needed)
+    whole = whole + cut
     down = by_side.sum(axis=0)
     # Neighbors come along each axis both ways.
     facing = 2 * np.minimum(by_side[::2], by_side[1::2]).sum(axis=0)
@@ -166,23 +205,14 @@ def _stands(surface: np.ndarray, segment: np.ndarray, stands: np.ndarray, needed
     return is_free & (open_ >= _OPEN_EDGE * whole) & (cut <= _CUT_EDGE * whole)
 
 
-def _edges(
-    surface: np.ndarray, segment: np.ndarray, stands: np.ndarray, needed: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the length (cells) of each segment's edge, of what nothing hides of it, and of its steps to each side."""
-    count = len(stands)
-    whole, open_ = np.zeros((2, count))
-    by_side = np.zeros((2 * surface.ndim, count))
+def _edges(surface: np.ndarray, segment: np.ndarray) -> _Edges:
+    """Return the edges of all segments but 0."""
+    parts = []
     for side, (here, there) in enumerate(neighbors(surface.ndim)):
-        own, other = segment[here], segment[there]
-        edge = (own > 0) & (own != other)
-        step = surface[here] - surface[there]
-        steps = edge & (step >= needed[own])
-        hidden = edge & ~steps & (stands[other] | (other == 0))
-        whole += np.bincount(own[edge], minlength=count)
-        open_ += np.bincount(own[edge & ~hidden], minlength=count)
-        by_side[side] = np.bincount(own[steps], minlength=count)
-    return whole, open_, by_side
+        edge = (segment[here] > 0) & (segment[here] != segment[there])
+        step = surface[here][edge] - surface[there][edge]
+        parts.append((segment[here][edge], segment[there][edge], step, np.full(len(step), side)))
+    return _Edges(*(np.concatenate(part) for part in zip(*parts)))
 
 
 def _cut(segment: np.ndarray, count: int) -> np.ndarray:

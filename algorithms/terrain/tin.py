@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, Optional
+from typing import Callable, Optional
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from ..stage import Monitor
 from ..threads import in_chunks
 from .triangulation import Triangulation, circles, triangulate
 
-_CHUNK = 100_000
+_CHUNK, _FIT_CHUNK = 100_000, 20_000
 
 # Far more steps than a walk from the nearest node takes.
 _MAX_STEPS = 1000
@@ -218,14 +218,22 @@ def node_residuals(nodes: np.ndarray, n_neighbors: int = 8) -> np.ndarray:
         Residuals (m): measurement noise and what the surface bends within its own spacing.
     """
     count = min(n_neighbors, len(nodes) - 1)
-    tree: Any = spatial.cKDTree(nodes[:, :2])
-    neighbors = tree.query(nodes[:, :2], k=count + 1, workers=-1)[1][:, 1:]
-    offsets = nodes[neighbors] - nodes[:, None]
-    # The plane through offsets is level + slope . (x, y); a whisker on the diagonal keeps collinear neighbors solvable.
-    design = np.concatenate([offsets[..., :2], np.ones((*offsets.shape[:2], 1))], axis=2)
-    normal = np.einsum("nki,nkj->nij", design, design) + 1e-6 * np.eye(3)
-    right = np.einsum("nki,nk->ni", design, offsets[..., 2])
-    return -np.linalg.solve(normal, right[..., None])[:, 2, 0]
+    tree = spatial.cKDTree(nodes[:, :2])
+    residuals = np.empty(len(nodes))
+
+    def fit(rows: np.ndarray) -> None:
+        neighbors = tree.query(nodes[rows, :2], k=count + 1)[1][:, 1:]
+        design = nodes[neighbors] - nodes[rows, None]
+        heights = design[..., 2].copy()
+        # The plane through offsets is slope . (x, y) + level.
+        design[..., 2] = 1.0
+        # A whisker on the diagonal keeps collinear neighbors solvable.
+        normal = np.swapaxes(design, 1, 2) @ design + 1e-6 * np.eye(3)
+        right = np.swapaxes(design, 1, 2) @ heights[..., None]
+        residuals[rows] = -np.linalg.solve(normal, right)[:, 2, 0]
+
+    in_chunks(fit, np.arange(len(nodes)), _FIT_CHUNK, Monitor())
+    return residuals
 
 
 def robust_deviation(residuals: np.ndarray, floor: float = 0.01) -> float:
