@@ -23,6 +23,9 @@ from ..threads import in_chunks
 # Places of a tile at most: so many take half the time for each that a hundred thousand take.
 _PLACES = 3000
 
+# Up to so many places are triangulated at once sooner.
+_FEW = 30_000
+
 # Surroundings of a tile, in distances between places: nearly all circles on its border end there.
 _MARGIN = 3.0
 
@@ -80,6 +83,12 @@ class Triangulation:
 
 def triangulate(plan: np.ndarray, monitor: Optional[Monitor] = None) -> Triangulation:
     """Return the Delaunay triangulation of places (n, 2), m, that are not all on one line."""
+    mended = _by_tiles(plan, monitor or Monitor()) if len(plan) > _FEW else None
+    return _by_qhull(plan) if mended is None else mended
+
+
+def _by_tiles(plan: np.ndarray, monitor: Monitor) -> Optional[Triangulation]:
+    """Return the triangulation of places made of those of tiles, None where these don't fit together."""
     different = np.unique(np.ascontiguousarray(plan, float).view(complex), return_index=True)[1]
     tiles = list(_tiles(plan, different))
     parts: list[Triangulation] = [None] * len(tiles)  # type: ignore[list-item]
@@ -88,15 +97,12 @@ def triangulate(plan: np.ndarray, monitor: Optional[Monitor] = None) -> Triangul
         for tile in some:
             parts[tile] = _part(plan, *tiles[tile])
 
-    mended = None
-    if len(tiles) > 1:
-        in_chunks(fill, np.arange(len(tiles)), 4, monitor or Monitor())
-        part = _joined(parts)
-        is_done = np.zeros(len(plan), bool)
-        is_done[part.facets] = True
-        is_done[_open_sides(part)[2]] = False
-        mended = _mended(part, different[~is_done[different]])
-    return _by_qhull(plan) if mended is None else mended
+    in_chunks(fill, np.arange(len(tiles)), 4, monitor)
+    part = _joined(parts)
+    is_done = np.zeros(len(plan), bool)
+    is_done[part.facets] = True
+    is_done[_open_sides(part)[2]] = False
+    return _mended(part, different[~is_done[different]])
 
 
 def circles(plan: np.ndarray, facets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
