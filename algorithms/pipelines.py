@@ -179,7 +179,11 @@ _PIPELINES = (
             Step("ground", "classify_ground_tin"),
             Step("height", "compute_height_above_ground"),
             Step("roofs", "segment_roofs"),
-            Step("buildings", "classify_buildings", {"neighborhood": "surface", "max_penetration": 0.4}),
+            Step(
+                "buildings",
+                "classify_buildings",
+                {"neighborhood": "surface", "max_penetration": 0.4, "min_share_around": 0.4},
+            ),
             Step("complete", "complete_buildings"),
             Step("footprints", "extract_footprints"),
         ),

@@ -76,6 +76,7 @@ WITHOUT_UNIT = {
     "deviations",
     "forest",
     "min_roof_share",
+    "min_share_around",
     "holes",
     "map_changes",
     "max_penetration",

@@ -13,7 +13,7 @@ from ..features.eigen import neighborhood_eigenvalues, shannon_entropy_lps, symm
 from ..features.noise import SurfaceSample
 from ..packages import cluster
 from ..params import MinBuildingArea, PointDensity, Seed
-from ..segmentation.extent import join_beside, penetration, plan_areas, share_going_on
+from ..segmentation.extent import join_beside, penetration, plan_areas, share_around, share_going_on
 from ..stage import Measure, Monitor, Param, stage
 from .decisions import Clusters, build_report
 from .reasons import Reason
@@ -92,6 +92,16 @@ def classify_buildings(
             open_low=True,
         ),
     ] = 1.0,
+    min_share_around: Annotated[
+        float,
+        Param(
+            "Minimum share of buildings around",
+            "At least so much of what stands within a few meters of a building is of buildings too, itself among it; "
+            "around a smooth spot of a crown, less is. 0 is the method as published.",
+            low=0,
+            high=1,
+        ),
+    ] = 0.0,
     density: PointDensity = None,
     seed: Seed = 0,
     monitor=None,
@@ -144,6 +154,9 @@ def classify_buildings(
     tells nothing. There entropy alone decides, as long as few of the pulses go on. And a cluster smaller than the
     smallest building is one only beside another: crowns have smooth spots, but no large ones.
 
+    The fewer points there are, the larger spots are smooth by chance. So what stands around a building counts too, with
+    the project's minimum share: around a spot of a crown these are leaves, for the most part.
+
     Small things can look like a roof by chance: a car does. What confidence has above 0.5 therefore grows with the
     size of the cluster, to half at twice the points of the smallest building, which changes no decision.
 
@@ -184,6 +197,8 @@ def classify_buildings(
         goes_on = share_going_on(cluster_id - 1, return_number, number_of_returns)[ids - 1]
         sides = _Sides(xyz, cluster_id, ids, density, min_area)
         sure, reasons = _by_both(sure, reasons, through, goes_on, max_penetration, sides)
+    if min_share_around > 0:
+        sure, reasons = _not_amid_others(sure, reasons, xyz, cluster_id, ids, min_share_around)
     sure = _supported(sure, size / (min_area * density))
 
     entropy[clustered] = values
@@ -239,6 +254,16 @@ def _by_both(
     }
     reasons = np.select(list(found.values()), list(found), Reason.ROUGH).astype(np.uint8)
     return np.where(is_building, np.where(is_solid, both, sure), np.minimum(both, 0.5)), reasons
+
+
+def _not_amid_others(
+    sure: np.ndarray, reasons: np.ndarray, xyz: np.ndarray, cluster_id: np.ndarray, ids: np.ndarray, least: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return how sure each cluster is a building, and the reason, given how much around it is of buildings."""
+    chosen = np.zeros(ids[-1], bool)
+    chosen[ids - 1] = sure > 0.5
+    amid_others = (sure > 0.5) & (share_around(xyz, cluster_id - 1, chosen)[ids - 1] < least)
+    return np.where(amid_others, 0.5, sure), np.where(amid_others, np.uint8(Reason.AMID_OTHERS), reasons)
 
 
 @dataclass(frozen=True)

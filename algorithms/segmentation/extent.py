@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from itertools import product
 from typing import Optional
 
 import numpy as np
 
-from ..cloud.cells import Grid, find_cells, grid_over
+from ..cloud.cells import Grid, distinct, find_cells, grid_over
 from ..packages import ndimage
 
 # Cells in which area and what lies beneath are counted, in point spacings, and their least size (m).
@@ -17,6 +18,10 @@ _BENEATH = 1.0
 
 # A group lies beside others when so much of it does: the edge of a dormer does, the tip of a crown's branch doesn't.
 _BESIDE = 0.2
+
+# What stands around a group is counted in boxes of this width, depth and height (m), and the 26 next to each: a house
+# or a tree is as wide, and trees are twice as high.
+_BOX = np.array([2.0, 2.0, 4.0])
 
 
 def _cell_size(density: float) -> float:
@@ -132,6 +137,40 @@ def join_beside(xyz: np.ndarray, group: np.ndarray, strong: np.ndarray, weak: np
         if not joins.any():
             return taken
         taken |= joins
+
+
+def share_around(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray) -> np.ndarray:
+    """Return how much of what stands around each group of points belongs to the chosen groups.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points (m).
+    group : ndarray of shape (n,), int
+        Group of each point from 0, negative for none; at least one point has a group.
+    chosen : ndarray of shape (group.max() + 1,), bool
+        Which groups are meant.
+
+    Returns
+    -------
+    ndarray of shape (group.max() + 1,)
+        The mean over the points of a group: the share of chosen groups among all grouped points within two to four
+        meters in plan and twice that in height, its own among them. 0 for groups without points.
+    """
+    member = np.flatnonzero(group >= 0)
+    owner = group[member]
+    # With an empty border the numbers of boxes next to one another differ by the same steps everywhere.
+    box = np.floor((xyz[member] - xyz[member].min(axis=0)) / _BOX).astype(np.int64) + 1
+    shape = tuple((box.max(axis=0) + 2).tolist())
+    boxes, which = distinct(np.ravel_multi_index(tuple(box.T), shape))
+    own, whole = (np.bincount(which, weight, len(boxes)) for weight in (chosen[owner], None))
+    own_around, around = np.zeros((2, len(boxes)))
+    for step in product((-1, 0, 1), repeat=3):
+        there, found = find_cells(boxes, boxes + (step[0] * shape[1] + step[1]) * shape[2] + step[2])
+        own_around += np.where(found, own[there], 0)
+        around += np.where(found, whole[there], 0)
+    size = np.bincount(owner, minlength=len(chosen))
+    return np.bincount(owner, (own_around / around)[which], len(chosen)) / np.maximum(size, 1)
 
 
 def _near(grid: Grid, cell: np.ndarray, chosen: np.ndarray) -> np.ndarray:

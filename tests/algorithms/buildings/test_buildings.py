@@ -418,6 +418,24 @@ def test_a_smooth_spot_smaller_than_a_building_is_one_only_beside_another(rng):
     assert (smaller[cluster_id == 3] == 6).all()
 
 
+@pytest.mark.parametrize("east", [0.0, 13.7])
+def test_a_smooth_spot_amid_leaves_is_no_building_and_a_roof_beside_a_tree_is(rng, east):
+    """In a crown some points lie on a plane by chance: leaves stand all around them, and around no roof."""
+    wood = np.concatenate([crown(rng, x, y, 4, 6, 1500) for x in (0, 5) for y in (0, 5)])
+    spot = roof(rng, 1, 1, 3, 3, elevation=8.5, density=12)
+    roofs = [roof(rng, x, 0, 3, 3, elevation=2.5, density=12) for x in (30, 50)]
+    tree = crown(rng, 54, 3, 2.5, 4, 300)
+    house = roof(rng, 70, 0, 10, 10, density=12)
+    leaning = crown(rng, 82, 5, 4, 6, 1500)
+    xyz, cluster_id = clusters(wood, spot, *roofs, tree, house, leaning)
+    reasons = [
+        reasons_of(xyz + [east, 0, 0], cluster_id, n_neighbors=12, min_share_around=least)[0] for least in (0.0, 0.4)
+    ]
+    rough, plane = Reason.ROUGH, Reason.PLANE
+    assert reasons[0] == [rough, plane, plane, plane, rough, plane, rough]
+    assert reasons[1] == [rough, Reason.AMID_OTHERS, plane, plane, rough, plane, rough]
+
+
 # --- properties ------------------------------------------------------------------------------------------------------
 
 
