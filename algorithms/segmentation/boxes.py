@@ -123,17 +123,32 @@ def connected(boxes: Boxes, is_near: Callable[[np.ndarray], np.ndarray], monitor
     """
     component = np.arange(len(boxes))
     half = [offset for offset in around() if offset > (0, 0, 0)]
-    rounds = [(most, offset) for most in (1, None) for offset in half]
-    for done, (most, offset) in enumerate(rounds, start=1):
-        here, there = boxes.beside(boxes, offset)
-        apart = component[here] != component[there]
-        here, there = here[apart], there[apart]
-        touching = np.zeros(len(here), bool)
-        for pair, a, b in boxes.pairs(here, boxes, there, most):
-            touching[pair[is_near(boxes.xyz[a] - boxes.xyz[b])]] = True
-        component = _joined(component, here[touching], there[touching])
-        monitor.progress(done / len(rounds))
+    left: list[tuple[np.ndarray, np.ndarray]] = []
+    for done, offset in enumerate(half, start=1):
+        apart, component = _compared(boxes, boxes.beside(boxes, offset), component, is_near, 1)
+        left.append(apart)
+        monitor.progress(done / (2 * len(half)))
+    for done, apart in enumerate(left, start=1):
+        component = _compared(boxes, apart, component, is_near, None)[1]
+        monitor.progress(0.5 + done / (2 * len(half)))
     return component
+
+
+def _compared(
+    boxes: Boxes,
+    pairs: tuple[np.ndarray, np.ndarray],
+    component: np.ndarray,
+    is_near: Callable[[np.ndarray], np.ndarray],
+    most: Optional[int],
+) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
+    """Join boxes in which ``most`` points each show that they touch; return the pairs still apart, and components."""
+    here, there = pairs
+    apart = component[here] != component[there]
+    here, there = here[apart], there[apart]
+    touching = np.zeros(len(here), bool)
+    for pair, a, b in boxes.pairs(here, boxes, there, most):
+        touching[pair[is_near(boxes.xyz[a] - boxes.xyz[b])]] = True
+    return (here[~touching], there[~touching]), _joined(component, here[touching], there[touching])
 
 
 def _joined(component: np.ndarray, here: np.ndarray, there: np.ndarray) -> np.ndarray:

@@ -127,9 +127,10 @@ def _links(
     # Spread over the ranks, so that links cross from one scan line to the next.
     ranks = np.unique(np.linspace(1, planes.neighbors.shape[1] - 1, _LINKS - 1).astype(int))
     planes.neighbors = planes.neighbors[:, ranks]
-    n_links, there = np.zeros(len(xyz) + 1, np.int64), []
-    for start in range(0, len(xyz), _CHUNK):
-        rows = np.arange(start, min(start + _CHUNK, len(xyz)))
+    n_links = np.zeros(len(xyz) + 1, np.int64)
+    there: list[np.ndarray] = [np.empty(0, np.int32)] * -(-len(xyz) // _CHUNK)
+
+    def work(rows: np.ndarray) -> None:
         neighbors = planes.neighbors[rows]
         is_link = on_surface[rows, None] & on_surface[neighbors]
         for column, neighbor in enumerate(neighbors.T):
@@ -140,9 +141,10 @@ def _links(
             same &= planes.distance(xyz[a], plane[b]) <= _SAME_SURFACE * noise
             is_link[pair, column] = same
         n_links[rows + 1] = is_link.sum(axis=1)
-        there.append(neighbors[is_link])
-        monitor.progress(start / len(xyz))
+        there[rows[0] // _CHUNK] = neighbors[is_link]
+
+    in_chunks(work, np.arange(len(xyz)), _CHUNK, monitor)
     columns = np.concatenate(there)
-    del there
+    there.clear()
     # The weights are of the type that the search for components would turn them to.
     return sparse.csr_matrix((np.ones(len(columns)), columns, np.cumsum(n_links)), (len(xyz), len(xyz)))
