@@ -50,7 +50,7 @@ _TEXTS = {
     Reason.TOO_NARROW: "No building: narrower everywhere than the narrowest building, as walls and railings are.",
     Reason.TOO_LOW: "No building: too near the ground to belong to the roof at its place.",
     Reason.MOSTLY_OTHER: "No building: most of what stands in the outline lies on no roof surface, as in crowns.",
-    Reason.AMID_OTHERS: "No building: most of what stands around it is none, so that a smooth spot tells little.",
+    Reason.AMID_OTHERS: "No building: most of what stands around it is none, as around smooth spots of crowns.",
     Reason.ALIKE: "Undecided: all clusters have the same entropy.",
     Reason.WITHOUT_ENTROPY: "Undecided: its points have no extent, so they have no entropy.",
 }
