@@ -37,17 +37,22 @@ def ordered(facets):
     return np.unique(np.sort(facets, axis=1), axis=0)
 
 
+def cross(u, v):
+    """Return the areas that vectors in plan span; numpy 2 has no product of two dimensions without a warning."""
+    return u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
+
+
 def under(mesh, places):
     """Return a facet that holds each place, by its sides."""
     a, b, c = np.swapaxes(mesh.plan[mesh.facets], 0, 1)[:, None]
-    sides = [np.cross(end - start, places[:, None] - start) for start, end in ((a, b), (b, c), (c, a))]
+    sides = [cross(end - start, places[:, None] - start) for start, end in ((a, b), (b, c), (c, a))]
     return np.argmax(np.min(sides, axis=0) >= 0, axis=1)
 
 
 def is_delaunay(mesh):
     """Tell whether facets cover the square between the corners once and have empty circles and the right neighbors."""
     a, b, c = np.swapaxes(mesh.plan[mesh.facets], 0, 1)
-    area = np.cross(b - a, c - a) / 2
+    area = cross(b - a, c - a) / 2
     center, radius = circles(mesh.plan, mesh.facets)
     distance = np.linalg.norm(mesh.plan[None] - center[:, None], axis=2)
     facet, corner = np.nonzero(mesh.neighbors >= 0)
