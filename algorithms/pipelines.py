@@ -170,8 +170,8 @@ _PIPELINES = (
         summary="Find the buildings in a point cloud: classified points and footprints, with nothing to set.",
         description=(
             "Noise, ground and heights first; then roof surfaces and clusters of everything else above the ground, "
-            "told apart by their mean entropy; then whole buildings with their walls, and their outlines. Every "
-            "threshold is derived from the density and the noise of the cloud."
+            "told apart by their mean entropy; then whole buildings with their walls, and their outlines. Distances "
+            "and tolerances follow the density and the noise of the cloud."
         ),
         references=_SANTOS,
         steps=(
