@@ -79,8 +79,8 @@ def lowest_points(xyz: np.ndarray, cell_size: float) -> Lowest:
     """Return the lowest point of each square cell of ``cell_size`` (m); refuse points that are spread too thinly."""
     refuse_sparse(xyz, cell_size)
     x, y, z = xyz.T
-    low = plan_box(xyz)[0]
-    row, column = (np.floor((axis - least) / cell_size).astype(np.int32) for axis, least in zip((x, y), low))
+    west, south = plan_box(xyz)[0]
+    row, column = (np.floor((axis - start) / cell_size).astype(np.int32) for axis, start in ((x, west), (y, south)))
     shape = int(row.max()) + 1, int(column.max()) + 1
     cell = np.ravel_multi_index((row, column), shape)
     least = np.full(shape, np.inf)

@@ -12,10 +12,14 @@ from ..stage import Monitor
 from ..threads import in_chunks
 from .triangulation import Triangulation, circles, triangulate
 
+# Points looked for and planes fitted at once, on each core: their arrays stay small beside the cloud.
 _CHUNK, _FIT_CHUNK = 100_000, 20_000
 
 # Far more steps than a walk from the nearest node takes.
 _MAX_STEPS = 1000
+
+# On a side of a facet weights are 0 but for rounding: what is less negative than this lies inside.
+_ROUNDING = 1e-9
 
 # The far corners come before the nodes.
 CORNERS = 4
@@ -42,13 +46,15 @@ class Tin:
         Corners and nodes (m), from the shift.
     shift : ndarray of shape (3,), float64
         The middle of the box, at elevation 0 (m).
+    reach : float
+        How far (m) the corners lie from there to the east, west, north and south.
     """
 
     def __init__(self, nodes: np.ndarray, box: Optional[np.ndarray] = None, monitor: Optional[Monitor] = None) -> None:
-        low, high = box = plan_box(nodes) if box is None else box
+        box = plan_box(nodes) if box is None else box
         # Squares of coordinates keep their digits where these are small.
         self.shift = np.append(box.mean(axis=0), 0.0)
-        self.reach = reach = 3 * float((high - low).max()) + 10.0
+        self.reach = reach = 3 * float((box[1] - box[0]).max()) + 10.0
         corners = np.array([[-reach, -reach], [reach, -reach], [reach, reach], [-reach, reach]])
         nodes = nodes - self.shift
         nearest = [np.argmin(np.linalg.norm(nodes[:, :2] - corner, axis=1)) for corner in corners]
@@ -147,7 +153,7 @@ class Tin:
         weights = self._weights_of(plan, facet)
         side = np.argmin(weights, axis=0)
         least = np.take_along_axis(weights, side[None], axis=0)[0]
-        return np.where(least < -1e-9, side, -1)
+        return np.where(least < -_ROUNDING, side, -1)
 
     def _weights_of(self, plan: np.ndarray, facet: np.ndarray) -> np.ndarray:
         """Return the weights (3, n) of the corners of facets at places, negative beyond the side across from one."""

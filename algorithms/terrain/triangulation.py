@@ -20,10 +20,10 @@ from ..packages import csgraph, sparse, spatial
 from ..stage import Monitor
 from ..threads import in_chunks
 
-# Places of a tile at most: so many take half the time for each that a hundred thousand take.
+# Places of a tile at most: each takes half the time that it takes among a hundred thousand.
 _PLACES = 3000
 
-# Up to so many places are triangulated at once sooner.
+# Up to so many places take less time at once than in tiles.
 _FEW = 30_000
 
 # Surroundings of a tile, in distances between places: nearly all circles on its border end there.
@@ -66,18 +66,18 @@ class Triangulation:
     def _spoilt(self, plan: np.ndarray, facet: np.ndarray) -> np.ndarray:
         """Return the facets (f,) that have one of the new places in their circles, found from one to the next."""
         spoilt = np.zeros(len(self.facets), bool)
-        place, before, before_that = np.arange(len(plan)), np.empty(0, np.int64), np.empty(0, np.int64)
-        while len(place):
+        pairs, before = np.arange(len(plan)) * len(spoilt) + facet, np.empty(0, np.int64)
+        while len(pairs):
+            place, facet = np.divmod(pairs, len(spoilt))
             center, radius = circles(self.plan, self.facets[facet])
             distance = np.linalg.norm(plan[place] - center, axis=1)
             # A new place lies in a facet without a circle, whose corners are on a line, at its edge.
             inside = ~(distance > radius * (1 + _ROUNDING))
             spoilt[facet[inside]] = True
-            around = self.neighbors[facet[inside]]
-            pairs = (np.repeat(place[inside], 3) * len(spoilt) + around.ravel())[around.ravel() >= 0]
-            pairs = np.setdiff1d(pairs, np.concatenate([before, before_that]))
-            before, before_that = pairs, before
-            place, facet = np.divmod(pairs, len(spoilt))
+            around = self.neighbors[facet[inside]].ravel()
+            beside = (np.repeat(place[inside], 3) * len(spoilt) + around)[around >= 0]
+            # What lies beside the facets of a step was found in that step, in the one before, or is new.
+            pairs, before = np.setdiff1d(beside, np.concatenate([pairs, before])), pairs
         return spoilt
 
 
