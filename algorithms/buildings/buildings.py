@@ -134,7 +134,8 @@ def classify_buildings(
         Mean entropy of the point's cluster; NaN elsewhere.
     confidence : ndarray of shape (n,), float32
         How sure the cluster is a building, 0 to 1: the distance of its entropy from the upper mean over the sum of
-        its distances from both (and solidity and size, see Notes); 0.5 is undecided. NaN elsewhere.
+        its distances from both (and solidity and size, see Notes). More than 0.5 is a building; what is none in
+        spite of its entropy has 0.5 at most, what is undecided 0.5. NaN elsewhere.
     reason : ndarray of shape (n,), uint8
         Why the point's cluster is called building or not, see :class:`~.reasons.Reason`; 0 outside clusters.
     report : Report
@@ -154,8 +155,8 @@ def classify_buildings(
     tells nothing. There entropy alone decides, as long as few of the pulses go on. And a cluster smaller than the
     smallest building is one only beside another: crowns have smooth spots, but no large ones.
 
-    The fewer points there are, the larger spots are smooth by chance. So what stands around a building counts too, with
-    the project's minimum share: around a spot of a crown these are leaves, for the most part.
+    The minimum share of buildings around is this project's, too: the fewer points there are, the larger are the spots
+    of crowns that are smooth by chance. What stands around these are leaves, for the most part.
 
     Small things can look like a roof by chance: a car does. What confidence has above 0.5 therefore grows with the
     size of the cluster, to half at twice the points of the smallest building, which changes no decision.
@@ -189,16 +190,14 @@ def classify_buildings(
     else:
         split = _two_means(means, seed, monitor)
     monitor.resolved(building_entropy=split.building, other_entropy=split.other)
+    places = _Places(xyz, cluster_id - 1, ids - 1, density, return_number, number_of_returns)
+    sure, reasons = _by_entropy(means, split)
     through = None
     if max_penetration < 1 and split.separates:
-        through = penetration(xyz, cluster_id - 1, density, return_number, number_of_returns)[ids - 1]
-    sure, reasons = _by_entropy(means, split)
-    if through is not None:
-        goes_on = share_going_on(cluster_id - 1, return_number, number_of_returns)[ids - 1]
-        sides = _Sides(xyz, cluster_id, ids, density, min_area)
-        sure, reasons = _by_both(sure, reasons, through, goes_on, max_penetration, sides)
+        through = places.penetration()
+        sure, reasons = _by_both(sure, reasons, through, max_penetration, places, min_area)
     if min_share_around > 0:
-        sure, reasons = _not_amid_others(sure, reasons, xyz, cluster_id, ids, min_share_around)
+        sure, reasons = _not_amid_others(sure, reasons, places, min_share_around)
     sure = _supported(sure, size / (min_area * density))
 
     entropy[clustered] = values
@@ -231,19 +230,19 @@ def _by_entropy(means: np.ndarray, split: _Split) -> tuple[np.ndarray, np.ndarra
 
 
 def _by_both(
-    sure: np.ndarray, reasons: np.ndarray, through: np.ndarray, goes_on: np.ndarray, most: float, sides: _Sides
+    sure: np.ndarray, reasons: np.ndarray, through: np.ndarray, most: float, places: _Places, min_area: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return how sure each cluster is a building by its entropy and by how much passes through, and the reason.
 
-    ``through`` is the penetration of each cluster, ``most`` the greatest allowed, and ``goes_on`` the share of its
-    points that are not the last of their pulse.
+    ``through`` is the penetration of each cluster, ``most`` the greatest allowed.
     """
     undefined = reasons == Reason.WITHOUT_ENTROPY
     is_planar = (sure > 0.5) & ~undefined
     # A cluster without entropy stays undecided, however solid it is.
     both = np.where(undefined, 0.5, _with_solidity(sure, through, most))
     is_solid = both > 0.5
-    is_building = sides.standing_or_beside(is_solid, is_planar & (goes_on < _SPLIT_AT_EDGES))
+    beside_only = is_planar & (places.share_going_on() < _SPLIT_AT_EDGES)
+    is_building = places.standing_or_beside(is_solid, beside_only, min_area)
     found = {
         Reason.WITHOUT_ENTROPY: undefined,
         Reason.SOLID_PLANE: is_building & is_solid & is_planar,
@@ -257,41 +256,61 @@ def _by_both(
 
 
 def _not_amid_others(
-    sure: np.ndarray, reasons: np.ndarray, xyz: np.ndarray, cluster_id: np.ndarray, ids: np.ndarray, least: float
+    sure: np.ndarray, reasons: np.ndarray, places: _Places, least: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return how sure each cluster is a building, and the reason, given how much around it is of buildings."""
-    chosen = np.zeros(ids[-1], bool)
-    chosen[ids - 1] = sure > 0.5
-    amid_others = (sure > 0.5) & (share_around(xyz, cluster_id - 1, chosen)[ids - 1] < least)
+    is_building = sure > 0.5
+    amid_others = is_building & (places.share_around(is_building) < least)
     return np.where(amid_others, 0.5, sure), np.where(amid_others, np.uint8(Reason.AMID_OTHERS), reasons)
 
 
 @dataclass(frozen=True)
-class _Sides:
-    """Where clusters lie, to ask which lie beside which."""
+class _Places:
+    """Where clusters (m,) lie among all points, to ask what is beneath, beside and around them.
+
+    ``group`` (n,) is the cluster of each point, negative for none; ``numbers`` (m,) are those that have points.
+    """
 
     xyz: np.ndarray
-    cluster_id: np.ndarray
-    ids: np.ndarray
+    group: np.ndarray
+    numbers: np.ndarray
     density: float
-    min_area: float
+    return_number: Optional[np.ndarray]
+    number_of_returns: Optional[np.ndarray]
 
-    def standing_or_beside(self, is_solid: np.ndarray, is_plane: np.ndarray) -> np.ndarray:
+    def penetration(self) -> np.ndarray:
+        """Return how much of the beam passes through each cluster."""
+        through = penetration(self.xyz, self.group, self.density, self.return_number, self.number_of_returns)
+        return through[self.numbers]
+
+    def share_going_on(self) -> np.ndarray:
+        """Return the share of each cluster's points that are not the last of their pulse."""
+        return share_going_on(self.group, self.return_number, self.number_of_returns)[self.numbers]
+
+    def share_around(self, is_chosen: np.ndarray) -> np.ndarray:
+        """Return how much of what stands around each cluster is of the chosen ones (m,)."""
+        return share_around(self.xyz, self.group, self._by_number(is_chosen))[self.numbers]
+
+    def standing_or_beside(self, is_solid: np.ndarray, is_plane: np.ndarray, min_area: float) -> np.ndarray:
         """Return the solid clusters of a building's size, and those beside them that are solid or else plane."""
-        group = self.cluster_id - 1
-        area = plan_areas(self.xyz[group >= 0], group[group >= 0], self.density)
-        solid, plane = np.zeros((2, len(area)), bool)
-        solid[self.ids - 1], plane[self.ids - 1] = is_solid, is_plane
-        taken = join_beside(self.xyz, group, solid & (area >= self.min_area), solid | plane, self.density)
-        return taken[self.ids - 1]
+        member = self.group >= 0
+        is_large = plan_areas(self.xyz[member], self.group[member], self.density) >= min_area
+        solid, plane = self._by_number(is_solid), self._by_number(is_plane)
+        return join_beside(self.xyz, self.group, solid & is_large, solid | plane, self.density)[self.numbers]
+
+    def _by_number(self, mask: np.ndarray) -> np.ndarray:
+        """Return a mask of the clusters with False at the numbers between them that none has."""
+        every = np.zeros(int(self.numbers[-1]) + 1, bool)
+        every[self.numbers] = mask
+        return every
 
 
-def _with_solidity(sure: np.ndarray, penetration: np.ndarray, most: float) -> np.ndarray:
+def _with_solidity(sure: np.ndarray, through: np.ndarray, most: float) -> np.ndarray:
     """Return the geometric mean of the entropy's confidence and of solidity, 0 at twice the penetration allowed."""
-    solid = np.clip(1 - penetration / (2 * most), 0, 1)
+    solid = np.clip(1 - through / (2 * most), 0, 1)
     # Geometric, so that neither makes up for the other: a dense crown stops the beam and is no roof.
     both = np.sqrt(sure * solid)
-    return np.where(penetration <= most, both, np.minimum(both, 0.5))
+    return np.where(through <= most, both, np.minimum(both, 0.5))
 
 
 def _supported(sure: np.ndarray, size: np.ndarray) -> np.ndarray:

@@ -196,10 +196,10 @@ def complete_buildings(
     number = np.where(inside, building[cell], columns.beside[cell])
     # What stands between a roof and the next higher one is the wall of the higher.
     is_under = xyz[:, 2] <= columns.highest[cell]
-    is_plant = ~inside & _may_be_bush(height_above_ground, height_above_ground - above)
+    may_be_plant = _may_be_bush(height_above_ground, height_above_ground - above)
     if return_number is not None and number_of_returns is not None:
-        is_plant |= ~inside & columns.is_beside_crown(cell, raised, return_number < number_of_returns)[cell]
-    belongs |= raised & (number > 0) & is_under & ~is_plant
+        may_be_plant |= columns.is_beside_crown(cell, raised, return_number < number_of_returns)[cell]
+    belongs |= raised & (number > 0) & is_under & (inside | ~may_be_plant)
     result[belongs] = PointClass.BUILDING
     cluster_id[belongs] = number[belongs]
     monitor.progress(1.0)
@@ -313,9 +313,7 @@ def _numbered(
     is_large = np.bincount(region.ravel(), minlength=count + 1) * cell_size**2 >= min_area
     # The distance to the nearest cell outside is 1 in a strip of one or two cells, 2 in one of three or four.
     inward = ndimage.maximum(ndimage.distance_transform_edt(covered), region, np.arange(count + 1))
-    kept = is_large & ((2 * inward - 1) * cell_size >= min_width)
-    kept[0] = False
-    number = np.where(kept, np.cumsum(kept), 0).astype(np.int32)
+    number = _numbers(is_large & ((2 * inward - 1) * cell_size >= min_width))
     return number[region], np.where(is_large, Reason.TOO_NARROW, Reason.TOO_SMALL).astype(np.uint8)[region]
 
 
@@ -331,10 +329,14 @@ def _mostly_roof(
     number = building[cell]
     count = building.max() + 1
     share = np.bincount(number[on_roof], minlength=count) / np.maximum(np.bincount(number[stands], minlength=count), 1)
-    kept = share >= least
-    kept[0] = False
-    kept_number = np.where(kept, np.cumsum(kept), 0).astype(np.int32)[building]
-    return kept_number, np.where((building > 0) & (kept_number == 0), np.uint8(Reason.MOSTLY_OTHER), refused)
+    kept = _numbers(share >= least)[building]
+    return kept, np.where((building > 0) & (kept == 0), np.uint8(Reason.MOSTLY_OTHER), refused)
+
+
+def _numbers(kept: np.ndarray) -> np.ndarray:
+    """Return the new numbers (m,), int32, of regions: from 1 for those that are kept, 0 for others and for region 0."""
+    kept = kept & (np.arange(len(kept)) > 0)
+    return np.where(kept, np.cumsum(kept), 0).astype(np.int32)
 
 
 def _roof_top(
