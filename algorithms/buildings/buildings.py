@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Annotated, Optional
+from dataclasses import dataclass, replace
+from typing import Annotated, Optional, Union
 
 import numpy as np
 
 from ..cloud.asprs import PointClass
-from ..cloud.density import point_density
-from ..features.eigen import neighborhood_eigenvalues, shannon_entropy_lps, symmetric_eigenvalues
+from ..cloud.density import even_density, point_density
+from ..features.eigen import Nearest, neighborhood_eigenvalues, shannon_entropy_lps, symmetric_eigenvalues
 from ..features.noise import SurfaceSample
+from ..features.wide import Wide
 from ..packages import cluster
 from ..params import MinBuildingArea, PointDensity, Seed
 from ..segmentation.extent import join_beside, penetration, plan_areas, share_around, share_going_on
@@ -20,6 +21,10 @@ from .reasons import Reason
 
 # Half as sure as what was measured says are clusters with so many times the points of the smallest building.
 _SUPPORTED = 2.0
+
+# An entropy needs half as many points again as a plane: three shares come from it and not one direction. On lines,
+# where neighbors tell little that is new, it needs twice as many.
+_TIMES, _TIMES_ON_LINES = 1.5, 2.0
 
 # Entropies that differ by less than this are alike.
 _ALIKE = 1e-3
@@ -167,9 +172,10 @@ def classify_buildings(
     entropy and the k-means concept, section 2.4.
     """
     clustered = np.flatnonzero(cluster_id > 0)
-    density = point_density(xyz) if density is None else density
-    if n_neighbors is None:
-        n_neighbors = _neighbors(xyz, density, min_area, neighborhood)
+    if density is None:
+        density = point_density(xyz) if neighborhood == "published" else even_density(xyz)
+    around = _around(xyz, density, min_area, neighborhood) if n_neighbors is None else Nearest(n_neighbors)
+    n_neighbors = around.count
     monitor.resolved(density=density, n_neighbors=n_neighbors)
 
     entropy = np.full(len(xyz), np.nan, np.float32)
@@ -180,7 +186,7 @@ def classify_buildings(
         monitor.warn("There are no clusters, so no buildings were found.")
         return result.astype(np.uint8), entropy, cluster_entropy, confidence, why, build_report(Clusters.none())
 
-    values = shannon_entropy_lps(neighborhood_eigenvalues(xyz[clustered], None, n_neighbors, monitor))
+    values = shannon_entropy_lps(neighborhood_eigenvalues(xyz[clustered], around, monitor=monitor))
     ids, position, size = np.unique(cluster_id[clustered], return_inverse=True, return_counts=True)
     means = _cluster_means(values, position, len(ids))
     if guard:
@@ -209,13 +215,13 @@ def classify_buildings(
     return result.astype(np.uint8), entropy, cluster_entropy, confidence, why, build_report(made)
 
 
-def _neighbors(xyz: np.ndarray, density: float, min_area: float, neighborhood: str) -> int:
-    """Return the size of neighborhoods: the points of the smallest building, or the fewest that show a plane."""
+def _around(xyz: np.ndarray, density: float, min_area: float, neighborhood: str) -> Union[Nearest, Wide]:
+    """Return the neighborhood: as many points as the smallest building has, or the fewest that show a plane."""
     if neighborhood == "published":
-        return max(3, round(min_area * density))
-    # An entropy needs half as many again as a plane: three shares come from it and not one direction.
+        return Nearest(max(3, round(min_area * density)))
     sample = SurfaceSample(xyz)
-    return round(1.5 * sample.n_neighbors(density, sample.noise()))
+    plane = sample.neighborhood(density, sample.noise())
+    return replace(plane, count=round((_TIMES_ON_LINES if isinstance(plane, Wide) else _TIMES) * plane.count))
 
 
 def _by_entropy(means: np.ndarray, split: _Split) -> tuple[np.ndarray, np.ndarray]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
 from ..cloud.cells import refuse_sparse
-from ..cloud.density import point_density
+from ..cloud.density import even_density
 from ..packages import ndimage
 from ..params import MinBuildingArea, PointDensity
 from ..stage import Param, stage
@@ -164,7 +164,7 @@ def complete_buildings(
     Santos, R. C. dos, Pessoa, G. G., Carrilho, A. C., Galo, M., 2019. Building detection from LiDAR data using
     entropy and the k-means concept, section 4 (critical regions).
     """
-    density = point_density(xyz) if density is None else density
+    density = even_density(xyz) if density is None else density
     spacing = 1 / np.sqrt(density)
     gap = float(np.clip(_GAP_SPACINGS * spacing, _LEAST_GAP, _MOST_GAP)) if gap is None else gap
     monitor.resolved(density=density, gap=gap)

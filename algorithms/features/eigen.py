@@ -50,6 +50,11 @@ class Nearest:
 
     count: int
 
+    @property
+    def n_named(self) -> int:
+        """How many neighbors :meth:`moments` names of a cloud with enough points: all."""
+        return self.count
+
     def check(self, xyz: np.ndarray, tree: Any) -> None:
         """Take every cloud."""
 
@@ -155,18 +160,18 @@ def reduce_neighborhoods(
 
 
 def neighborhood_eigenvalues(
-    xyz: np.ndarray, tree: Any = None, n_neighbors: int = 50, monitor: Optional[Monitor] = None
+    xyz: np.ndarray, neighborhood: Neighborhood, tree: Any = None, monitor: Optional[Monitor] = None
 ) -> np.ndarray:
-    """Return the eigenvalues of the covariance of each point with its nearest neighbors.
+    """Return the eigenvalues of the covariance of each point with its neighbors.
 
     Parameters
     ----------
     xyz : ndarray of shape (n, 3)
         Coordinates (m), of any magnitude.
+    neighborhood : Neighborhood
+        Which points belong to a point, itself among them.
     tree : scipy.spatial.cKDTree, optional
         Tree of ``xyz``, built when absent.
-    n_neighbors : int
-        Points per neighborhood, the point itself among them.
     monitor : Monitor, optional
         Hears progress.
 
@@ -180,7 +185,7 @@ def neighborhood_eigenvalues(
     def keep(rows: np.ndarray, shapes: Shapes) -> None:
         eigenvalues[rows] = defined_eigenvalues(shapes.covariances, shapes.counts)
 
-    reduce_neighborhoods(xyz, Nearest(n_neighbors), keep, tree, monitor)
+    reduce_neighborhoods(xyz, neighborhood, keep, tree, monitor)
     return eigenvalues
 
 

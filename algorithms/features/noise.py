@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Union
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from ..packages import spatial
 from ..stage import Monitor
 from ..threads import in_chunks
 from .eigen import Nearest, symmetric_eigenvalues
+from .wide import LEAST_WIDTH, MOST_ACROSS_LINES, Wide
 
 # Points whose surroundings are looked at, about.
 _SAMPLE = 20_000
@@ -31,8 +32,11 @@ _REACH_DEVIATIONS, LEAST_NEIGHBORS = 8.0, 8
 # Leaves and twigs look smooth over less than this (m); roofs are planes over more.
 _LEAST_REACH = 0.5
 
-# A neighborhood is two-dimensional when it is at least so wide for its length; 60 points always are.
-_LEAST_WIDTH, _MOST_ACROSS_LINES = 0.45, 60
+# Points lie on lines where of the smooth neighborhoods more than this share is narrow.
+_NARROW_SHARE = 0.2
+
+# Half of the points lying more than so many times as densely as the cloud at large, it is their density that counts.
+_UNEVEN = 2.0
 
 # Half a meter around holds so many at 125 points/m²; with more, every neighborhood would cost and tell nothing new.
 _MOST_NEIGHBORS = 100
@@ -112,12 +116,11 @@ class SurfaceSample:
         reach = float(np.median(self.tree.query(own, k=[count], workers=-1)[0]))
         return count / (np.pi * reach**2) if reach > 0 else float("inf")
 
-    def n_neighbors(self, density: float, noise: float) -> int:
-        """Return how many nearest points tell the plane of a surface.
+    def neighborhood(self, density: float, noise: float) -> Union[Nearest, Wide]:
+        """Return which points tell the plane of a surface.
 
         Few where points are precise, more where they are noisy or dense: the smooth side of a crown is a plane too
-        when it is looked at closely enough. And enough to cross scan lines: scanners put points close together along
-        a line and leave gaps between the lines, and a neighborhood that holds one line only has no plane.
+        when it is looked at closely enough. And enough to cross scan lines, where the points lie on such.
 
         Parameters
         ----------
@@ -128,20 +131,22 @@ class SurfaceSample:
 
         Returns
         -------
-        int
-            The least count, from 8 to 100, that reaches half a meter and eight times the noise and with which four
-            fifths of the smooth neighborhoods are at least 0.45 times as wide as long (or 60); at most all points.
+        Nearest or Wide
+            So many nearest points, from 8 to 100 and at most all, as reach half a meter and eight times the noise; and
+            not fewer than are wide where less than four fifths of the smooth neighborhoods of so many are.
         """
+        own = self.density()
         reach = max(_LEAST_REACH, _REACH_DEVIATIONS * noise)
-        count = min(max(int(np.ceil(np.pi * reach**2 * density)), LEAST_NEIGHBORS), _MOST_NEIGHBORS)
-        while count < min(_MOST_ACROSS_LINES, len(self)):
-            eigenvalues = self._variances(count)
-            smooth = eigenvalues[:, 2] <= np.quantile(eigenvalues[:, 2], _SMOOTH_SHARE + 0.1)
-            width = np.sqrt(eigenvalues[smooth, 1] / np.maximum(eigenvalues[smooth, 0], 1e-12))
-            if np.quantile(width, 0.2) >= _LEAST_WIDTH:
-                break
-            count = min(int(np.ceil(count * 1.5)), _MOST_ACROSS_LINES)
-        return min(count, len(self))
+        expected = np.pi * reach**2 * (own if own > _UNEVEN * density else density)
+        count = min(max(int(np.ceil(min(expected, _MOST_NEIGHBORS))), LEAST_NEIGHBORS), len(self))
+        return Wide(count) if count < min(MOST_ACROSS_LINES, len(self)) and self._on_lines(count) else Nearest(count)
+
+    def _on_lines(self, count: int) -> bool:
+        """Return whether smooth neighborhoods of ``count`` points are narrow, because points lie on lines."""
+        eigenvalues = self._variances(count)
+        smooth = eigenvalues[:, 2] <= np.quantile(eigenvalues[:, 2], _SMOOTH_SHARE + 0.1)
+        width = np.sqrt(eigenvalues[smooth, 1] / np.maximum(eigenvalues[smooth, 0], 1e-12))
+        return bool(np.quantile(width, _NARROW_SHARE) < LEAST_WIDTH)
 
     def _variances(self, count: int) -> np.ndarray:
         """Return the variances (s, 3), descending, of the ``count`` points nearest to each point of the sample, m²."""

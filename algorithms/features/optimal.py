@@ -56,7 +56,7 @@ class Optimal:
         """Return the :class:`Shapes` of the best of the offsets (m, k) in x, y and z, nearest first, as a row."""
         x, y, z = offsets = [np.ascontiguousarray(offset.T) for offset in offsets]
         scales = np.arange(min(self.low, len(x)), len(x) + 1, self.step)
-        covariances = _nested_covariances(offsets, scales)
+        covariances = nested_covariances(offsets, scales)
         best = _first_least(eigenentropies(covariances))
         every = np.arange(x.shape[1])
         made, counts = covariances[:, best, every].T, scales[best]
@@ -67,7 +67,7 @@ class Optimal:
         return made, counts, ranges[last, every], np.sqrt(np.maximum.accumulate(x * x + y * y)[last, every])
 
 
-def _nested_covariances(offsets: list, scales: np.ndarray) -> np.ndarray:
+def nested_covariances(offsets: list, scales: np.ndarray) -> np.ndarray:
     """Return the covariances (6, s, m) of the first ``scales`` (s,) of offsets (k, m) in x, y and z.
 
     One running sum over the neighbors, in order of their distance, has the moments of all scales in it.

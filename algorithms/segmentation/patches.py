@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Union
 
 import numpy as np
 
 from ..features.eigen import Nearest, smallest_eigenvectors, symmetric_eigenvalues
 from ..features.noise import LEAST_NEIGHBORS, SurfaceSample
+from ..features.wide import Wide
 from ..packages import csgraph, sparse, spatial
 from ..stage import Monitor
 from ..threads import in_chunks
@@ -68,7 +69,7 @@ def segment_patches(xyz: np.ndarray, density: float, noise: float, max_slope: fl
     if len(xyz) < LEAST_NEIGHBORS:
         return np.full(len(xyz), -1, np.int32)
     tree = spatial.cKDTree(xyz)
-    planes = _local_planes(xyz, tree, SurfaceSample(xyz, tree).n_neighbors(density, noise), monitor.part(0, 0.6))
+    planes = _local_planes(xyz, tree, SurfaceSample(xyz, tree).neighborhood(density, noise), monitor.part(0, 0.6))
     del tree  # What is large goes as soon as it can: the links below are large, too.
     plane = _smoothest_plane(xyz, planes, noise, monitor.part(0.6, 0.8))
     on_surface = (planes.deviation[plane] <= _SMOOTH * noise) & (plane >= 0)
@@ -79,25 +80,24 @@ def segment_patches(xyz: np.ndarray, density: float, noise: float, max_slope: fl
     return np.where(on_surface, component, -1).astype(np.int32)
 
 
-def _local_planes(xyz: np.ndarray, tree: Any, n_neighbors: int, monitor: Monitor) -> LocalPlanes:
+def _local_planes(xyz: np.ndarray, tree: Any, neighborhood: Union[Nearest, Wide], monitor: Monitor) -> LocalPlanes:
     columns = np.ascontiguousarray(xyz.T)
-    nearest = Nearest(n_neighbors)
     planes = LocalPlanes(
         np.empty((len(xyz), 3)),
         np.empty((len(xyz), 3)),
         np.empty(len(xyz)),
-        np.empty((len(xyz), n_neighbors), np.int32),
+        np.empty((len(xyz), neighborhood.n_named), np.int32),
     )
 
     def work(rows: np.ndarray) -> None:
-        neighbors, centers, covariances = nearest.moments(columns, tree, rows)
+        neighbors, centers, covariances = neighborhood.moments(columns, tree, rows)
         eigenvalues = symmetric_eigenvalues(covariances)
         planes.neighbors[rows] = neighbors
         planes.center[rows] = centers
         planes.normal[rows] = smallest_eigenvectors(covariances, eigenvalues)
         planes.deviation[rows] = np.sqrt(eigenvalues[:, 2])
 
-    in_chunks(work, tree.indices, nearest.rows_per_chunk(len(xyz)), monitor)
+    in_chunks(work, tree.indices, neighborhood.rows_per_chunk(len(xyz)), monitor)
     # Coincident neighbors have no normal and so no plane.
     undefined = ~np.isfinite(planes.normal).all(axis=1)
     planes.normal[undefined], planes.deviation[undefined] = 0.0, np.inf

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..buildings.reasons import Reason
 from ..cloud.asprs import NOISE
-from ..cloud.density import point_density
+from ..cloud.density import even_density
 from ..features.noise import SurfaceSample
 from ..params import PointDensity
 from ..stage import Param, stage
@@ -104,7 +104,7 @@ def segment_roofs(
     Santos, R. C. dos, Pessoa, G. G., Carrilho, A. C., Galo, M., 2019. Building detection from LiDAR data using
     entropy and the k-means concept, section 4. Sampath, A., Shan, J., 2007, as in "Segment regions".
     """
-    density = point_density(xyz) if density is None else density
+    density = even_density(xyz) if density is None else density
     noise = SurfaceSample(xyz).roughness(density) if noise is None else noise
     monitor.resolved(density=density, noise=noise)
     used = np.flatnonzero(~np.isin(classification, NOISE))

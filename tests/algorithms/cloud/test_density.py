@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.cloud.density import point_density, point_spacing
+from lidar_buildings.algorithms.cloud.density import even_density, point_density, point_spacing
 
 
 @pytest.mark.parametrize("density", [0.2, 2, 20, 200])
@@ -47,3 +47,48 @@ def test_a_wall_stored_to_centimeters(rng):
 def test_points_at_one_place_are_refused():
     with pytest.raises(ValueError, match=r"no extent in plan \(points: 7\), so it has no density; choose"):
         point_density(np.column_stack([np.ones(7), np.ones(7), np.arange(7)]))
+
+
+@pytest.mark.parametrize("density", [0.5, 5, 50])
+def test_evenly_spread_points_have_one_density(density, rng):
+    xyz = rng.uniform(0, np.sqrt(20_000 / density), (20_000, 3))
+    assert even_density(xyz) == point_density(xyz)
+
+
+def test_waters_and_gaps_between_strips_change_nothing(rng):
+    """A river of a tenth of the area, and a hundred ponds."""
+    xyz = rng.uniform(0, 100, (50_000, 3))
+    pond = np.hypot(xyz[:, 0] % 10 - 5, xyz[:, 1] % 10 - 5) < 1.5
+    xyz = xyz[~pond & (np.abs(xyz[:, 0] - 40) > 5)]
+    assert even_density(xyz) == point_density(xyz)
+
+
+def test_lines_are_as_dense_as_their_gaps_let_them(rng):
+    """Lines 2 m apart with a point every 12.5 cm: cells of 1.5 times half a meter miss most of them."""
+    x, y = np.meshgrid(np.arange(0, 100, 0.125), np.arange(0, 100, 2.0))
+    xyz = np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)]) + rng.normal(0, 0.02, (x.size, 3))
+    turned = xyz @ np.array([[0.8, 0.6, 0], [-0.6, 0.8, 0], [0, 0, 1]])
+    for cloud in (xyz, turned, turned + [600_000, 5_000_000, 0]):
+        assert point_density(cloud) > 3.9
+        assert even_density(cloud) < 3
+
+
+def test_a_sparse_half_is_what_counts(rng):
+    """Half at 2 points per m² and half at 20: scales of 11 per m² would leave the sparse half in pieces."""
+    sparse, dense = rng.uniform(0, 60, (7200, 2)), rng.uniform(0, 60, (72_000, 2)) + [60, 0]
+    xyz = np.concatenate([sparse, dense])
+    assert 2 <= even_density(xyz) < 0.6 * point_density(xyz)
+
+
+def test_pairs_are_hardly_more_than_their_halves(rng):
+    once = rng.uniform(0, 80, (12_800, 2))
+    xyz = np.concatenate([once, once + rng.normal(0, 0.03, once.shape)])
+    assert even_density(once) == point_density(once)
+    assert 2 <= even_density(xyz) < 3.2
+
+
+def test_the_density_is_never_less_than_a_quarter(rng):
+    """Clumps far apart: where they are, they are dense."""
+    middles = rng.uniform(0, 500, (300, 1, 2))
+    xyz = (middles + rng.normal(0, 0.3, (300, 50, 2))).reshape(-1, 2)
+    assert even_density(xyz) >= point_density(xyz) / 4.01

@@ -73,7 +73,7 @@ def test_eigenvalues_are_exact_for_points_lines_planes_and_volumes_far_away(step
         local = ((steps[:, :2] @ axes[:2]) + thickness * steps[:, 2:] * axes[2]) / 1024
     xyz = local + [600_000, 5_000_000, 100]
     exact = exact_covariance(xyz)
-    found = eigen.neighborhood_eigenvalues(xyz, n_neighbors=9)
+    found = eigen.neighborhood_eigenvalues(xyz, eigen.Nearest(9))
     size = sum(exact[i][i] for i in range(3))
     if size == 0:
         assert np.isnan(found).all()
@@ -120,13 +120,13 @@ def test_special_shapes_are_exact(diagonal, expected):
 
 def test_line_square_and_coincident_points():
     line = np.column_stack([np.arange(20) * 0.5, np.zeros(20), np.zeros(20)]) + [6e5, 5e6, 100]
-    first, second, third = eigen.neighborhood_eigenvalues(line, n_neighbors=5).T
+    first, second, third = eigen.neighborhood_eigenvalues(line, eigen.Nearest(5)).T
     assert first == pytest.approx(np.full(20, 0.5))  # 0.5² (4 + 1 + 0 + 1 + 4) / 5
     assert second == pytest.approx(0, abs=1e-15)
     assert third == pytest.approx(0, abs=1e-15)
-    assert np.isnan(eigen.neighborhood_eigenvalues(np.ones((10, 3)), n_neighbors=5)).all()
-    assert np.isnan(eigen.neighborhood_eigenvalues(line[:2], n_neighbors=5)).all()
-    assert np.isnan(eigen.neighborhood_eigenvalues(line[:1], n_neighbors=1)).all()
+    assert np.isnan(eigen.neighborhood_eigenvalues(np.ones((10, 3)), eigen.Nearest(5))).all()
+    assert np.isnan(eigen.neighborhood_eigenvalues(line[:2], eigen.Nearest(5))).all()
+    assert np.isnan(eigen.neighborhood_eigenvalues(line[:1], eigen.Nearest(1))).all()
 
 
 def test_nearest_neighborhoods_are_those_of_brute_force(rng):
@@ -134,7 +134,7 @@ def test_nearest_neighborhoods_are_those_of_brute_force(rng):
     distance = np.linalg.norm(xyz[:, None] - xyz, axis=2)
     covariances = brute_covariances(xyz, np.argsort(distance, axis=1)[:, :12])
     expected = np.linalg.eigvalsh(covariances)[:, ::-1]
-    np.testing.assert_allclose(eigen.neighborhood_eigenvalues(xyz, n_neighbors=12), expected, atol=1e-12)
+    np.testing.assert_allclose(eigen.neighborhood_eigenvalues(xyz, eigen.Nearest(12)), expected, atol=1e-12)
 
 
 def test_radius_neighborhoods_are_those_of_brute_force(rng):
@@ -155,10 +155,10 @@ def test_radius_neighborhoods_are_those_of_brute_force(rng):
 
 def test_chunks_and_point_order_change_nothing(rng, monkeypatch):
     xyz = rng.uniform(0, 10, (500, 3))
-    whole = eigen.neighborhood_eigenvalues(xyz, cKDTree(xyz), 10)
+    whole = eigen.neighborhood_eigenvalues(xyz, eigen.Nearest(10), cKDTree(xyz))
     monkeypatch.setattr(eigen, "_CHUNK_NEIGHBORS", 64)
     order = rng.permutation(500)
-    np.testing.assert_allclose(eigen.neighborhood_eigenvalues(xyz[order], n_neighbors=10), whole[order], atol=1e-13)
+    np.testing.assert_allclose(eigen.neighborhood_eigenvalues(xyz[order], eigen.Nearest(10)), whole[order], atol=1e-13)
 
 
 def test_entropy_of_equation_6_by_hand():

@@ -6,7 +6,9 @@ from scipy.spatial import cKDTree
 
 from lidar_buildings.algorithms.features import eigen
 from lidar_buildings.algorithms.features import noise as module
+from lidar_buildings.algorithms.features.eigen import Nearest
 from lidar_buildings.algorithms.features.noise import SurfaceSample
+from lidar_buildings.algorithms.features.wide import Wide
 
 FAR = np.array([600_000.0, 5_000_000.0, 0.0])
 
@@ -17,8 +19,8 @@ def surface_noise(xyz):
 
 
 def surface_neighbors(xyz, density, noise):
-    """Return the neighbors that a sample of the points asks for."""
-    return SurfaceSample(xyz).n_neighbors(density, noise)
+    """Return the neighborhood that a sample of the points asks for."""
+    return SurfaceSample(xyz).neighborhood(density, noise)
 
 
 def plane(rng, deviation, slope=0.0, count=4000, side=30.0):
@@ -93,7 +95,7 @@ def test_a_sample_is_enough(rng, small_sample):
     assert len(sample.rows) == len(whole.rows)
     assert sample.noise() == pytest.approx(whole.noise(), rel=0.05)
     assert sample.density() == pytest.approx(whole.density(), rel=0.05)
-    assert sample.n_neighbors(4.2, 0.15) == whole.n_neighbors(4.2, 0.15)
+    assert sample.neighborhood(4.2, 0.15) == whole.neighborhood(4.2, 0.15)
 
 
 def test_neighbors_of_the_sample_are_those_of_the_cloud(rng, small_sample):
@@ -145,34 +147,45 @@ def test_only_some_points_are_looked_at_at_once(rng, monkeypatch):
 
 
 def test_scattered_precise_points_need_few_neighbors(rng):
-    assert surface_neighbors(plane(rng, 0.02), 4.4, 0.02) in (8, 12)
+    assert surface_neighbors(plane(rng, 0.02), 4.4, 0.02) == Nearest(8)
 
 
 def test_noisy_points_need_as_many_as_reach_eight_times_the_noise(rng):
     """8 times 15 cm is a circle of 4.5 m², which holds 20 points."""
-    assert surface_neighbors(plane(rng, 0.15), 4.4, 0.15) == int(np.ceil(np.pi * 1.2**2 * 4.4))
+    assert surface_neighbors(plane(rng, 0.15), 4.4, 0.15) == Nearest(int(np.ceil(np.pi * 1.2**2 * 4.4)))
 
 
 def test_dense_points_need_as_many_as_reach_half_a_meter(rng):
     """Half a meter around is 0.785 m²: 24 points at 30 per m², and a hundred at the most."""
-    assert surface_neighbors(plane(rng, 0.02), 30.0, 0.02) == 24
-    assert surface_neighbors(plane(rng, 0.02), 1000.0, 0.02) == 100
+    assert surface_neighbors(plane(rng, 0.02), 30.0, 0.02) == Nearest(24)
+    assert surface_neighbors(plane(rng, 0.02), 1000.0, 0.02) == Nearest(100)
+
+
+def test_where_half_of_the_points_lie_far_more_densely_theirs_is_the_density(rng):
+    """At 40 points per m² half a meter holds 32; that the whole cloud is taken for one of 5 says nothing about them."""
+    dense, sparse = plane(rng, 0.02, count=16_000, side=20), plane(rng, 0.02, count=2000) + [50, 0, 0]
+    xyz = np.concatenate([dense, sparse])
+    assert 25 <= surface_neighbors(xyz, 5.0, 0.02).count <= 40
+    assert surface_neighbors(sparse, 2.0, 0.02) == Nearest(8)
+
+
+def scan_lines(rng):
+    """Return points every 10 cm on lines 1 m apart."""
+    x, y = np.meshgrid(np.arange(0, 30, 0.1), np.arange(0, 30, 1.0))
+    return np.column_stack([x.ravel(), y.ravel(), rng.normal(0, 0.02, x.size)])
 
 
 def test_points_along_scan_lines_need_neighbors_on_several_lines(rng):
-    """Points every 10 cm on lines 1 m apart: 12 nearest points are one line, which has no plane."""
-    x, y = np.meshgrid(np.arange(0, 30, 0.1), np.arange(0, 30, 1.0))
-    lines = np.column_stack([x.ravel(), y.ravel(), rng.normal(0, 0.02, x.size)])
-    assert 25 <= surface_neighbors(lines, 10.0, 0.02) <= 60
+    """The 8 or 12 nearest points are one line, which has no plane."""
+    assert surface_neighbors(scan_lines(rng), 10.0, 0.02) == Wide(8)
 
 
 def test_lines_over_half_of_the_cloud_are_enough_to_look_across_them(rng):
     """Four fifths of the neighborhoods must be wide, those between points that are not in lines are not enough."""
-    x, y = np.meshgrid(np.arange(0, 30, 0.1), np.arange(0, 30, 1.0))
-    lines = np.column_stack([x.ravel(), y.ravel(), rng.normal(0, 0.02, x.size)])
+    lines = scan_lines(rng)
     scattered = rng.uniform([0, 40, 0], [30, 70, 0], lines.shape) + rng.normal(0, 0.02, lines.shape) * [0, 0, 1]
-    assert surface_neighbors(scattered, 10.0, 0.02) == 8
-    assert 25 <= surface_neighbors(np.concatenate([lines, scattered]), 10.0, 0.02) <= 60
+    assert surface_neighbors(scattered, 10.0, 0.02) == Nearest(8)
+    assert surface_neighbors(np.concatenate([lines, scattered]), 10.0, 0.02) == Wide(8)
 
 
 def test_density_on_a_grid_by_hand():
@@ -196,8 +209,9 @@ def test_roofs_are_rougher_than_the_smoothest_surfaces(density, noise, expected,
     assert sample.roughness(density) == pytest.approx(expected)
 
 
-def test_neighbors_are_at_most_sixty_and_all_points():
+def test_neighbors_are_at_most_all_points():
     line = np.outer(np.arange(200.0), [1, 0, 0])
-    assert surface_neighbors(line, 1.0, 0.01) == 60
-    assert surface_neighbors(line[:20], 1.0, 0.01) == 20
-    assert surface_neighbors(line[:5], 1.0, 0.01) == 5
+    assert surface_neighbors(line, 1.0, 0.01) == Wide(8)
+    assert surface_neighbors(line[:8], 1.0, 0.01) == Nearest(8)
+    assert surface_neighbors(line[:5], 1.0, 0.01) == Nearest(5)
+    assert surface_neighbors(np.zeros((20, 3)), 1.0, 0.01) == Nearest(20)

@@ -55,6 +55,23 @@ def test_points_beside_ridge_and_eaves_belong_to_their_side(rng):
     assert np.isin(patch[near], largest(patch, 2)).mean() > 0.95
 
 
+@pytest.mark.parametrize("gap", [1.5, 2.0])
+def test_a_gable_on_lines_that_zigzag_is_two_patches(gap, rng):
+    """A point every 25 cm on lines that part from one another and meet again: no number of points suits all places."""
+    x, line = np.meshgrid(np.arange(0.1, 12, 0.25), np.arange(-4, 20 / gap))
+    way = np.abs(x % 12 - 6) / 6 * gap
+    y = gap * line + np.where(line % 2, way, -way)
+    plan = np.column_stack([x.ravel(), y.ravel()]) + rng.normal(0, 0.02, (x.size, 2))
+    plan = plan[(plan[:, 1] > 0) & (plan[:, 1] < 16)]
+    to_ridge = plan[:, 1] - 8
+    z = 9 - np.abs(to_ridge) * np.tan(np.radians(40)) + rng.normal(0, 0.015, len(plan))
+    patch = segment_patches(np.column_stack([plan, z]), 4 / gap, 0.04, 75.0, Monitor())
+    shares = []
+    for side in (to_ridge < -1, to_ridge > 1):
+        shares += [np.bincount(patch[side] + 1)[1:].max(initial=0) / side.sum()]
+    assert min(shares) > 0.9
+
+
 @pytest.mark.parametrize(("density", "most"), [(2, 0.25), (8, 0.04), (20, 0.02), (50, 0.02)])
 def test_leaves_are_no_patch(density, most, rng):
     shares = []
