@@ -230,7 +230,7 @@ class _Borders:
         """Make chords of the rings that are not straight, which stay within the tolerance of the traced ones."""
         for number, line in enumerate(self.lines):
             if not self.is_straight[number] and not self.manner.is_traced:
-                self.rings[number] = chords(line, self.tolerance / 2)
+                self.rings[number] = chords(line, self.tolerance)
 
     def _arcs(self, group: int) -> dict:
         """Return the borders between buildings of the group by their first half-edge."""
@@ -255,12 +255,11 @@ class _Borders:
 
     def _straighten(self) -> bool:
         """Make borders straight where that stays close to the traced ones; return whether there is a main direction."""
-        walls = [line.walls(self.tolerance) for line in self.lines]
-        directions = main_directions([wall for one in walls for wall in one])
+        directions = main_directions([wall for line in self.lines for wall in line.walls(self.tolerance)])
         if not directions:
             return False
         for number, line in enumerate(self.lines):
-            _, corners = straighten(line, walls[number], directions, self.tolerance)
+            _, corners = straighten(line, line.walls(self.tolerance, directions), directions, self.tolerance)
             ring = np.array(corners).reshape(-1, 2)
             if is_near(ring, line, self.limit):
                 self.rings[number], self.is_straight[number] = ring, True
@@ -274,7 +273,8 @@ class _Borders:
             # A border of a few points has no direction of its own.
             if arc.is_closed or length.sum() > 2 * self.tolerance:
                 line = Line(samples, length, arc.is_closed)
-                arc.walls, arc.corners = straighten(line, line.walls(self.tolerance), directions, self.tolerance)
+                walls = line.walls(self.tolerance, directions)
+                arc.walls, arc.corners = straighten(line, walls, directions, self.tolerance)
         return True
 
     def _place_nodes(self) -> None:
@@ -404,23 +404,24 @@ def _hit(ring: np.ndarray, raw: np.ndarray, walls: list[Wall], limit: float) -> 
     """Return where the longest wall meets an open ring near a place, or the place on the ring that is nearest to it."""
     starts, ends = ring, np.roll(ring, -1, axis=0)
     along = ends - starts
-    target = raw
+    square = np.maximum((along**2).sum(axis=1), 1e-30)
+    share = np.clip(((raw - starts) * along).sum(axis=1) / square, 0, 1)
+    places = starts + share[:, None] * along
+    away = np.hypot(*(places - raw).T)
+    nearest = int(np.argmin(away))
     if walls:
         wall = max(walls, key=lambda one: one.length)
         start_offset = wall.direction[0] * (starts - wall.point)[:, 1] - wall.direction[1] * (starts - wall.point)[:, 0]
         end_offset = np.roll(start_offset, -1)
         crosses = np.flatnonzero((start_offset > 0) != (end_offset > 0))
-        share = start_offset[crosses] / (start_offset[crosses] - end_offset[crosses])
-        places = starts[crosses] + share[:, None] * along[crosses]
-        distance = np.hypot(*(places - raw).T)
-        if len(crosses) and distance.min() <= limit:
+        part = start_offset[crosses] / (start_offset[crosses] - end_offset[crosses])
+        hits = starts[crosses] + part[:, None] * along[crosses]
+        distance = np.hypot(*(hits - raw).T)
+        # Where the ring steps along that wall, a little to one side of it, it is met at the wrong end of the step.
+        if len(crosses) and distance.min() <= min(limit, away[nearest] + limit / 2):
             best = int(np.argmin(distance))
-            return int(crosses[best]), float(share[best]), places[best]
-    square = np.maximum((along**2).sum(axis=1), 1e-30)
-    share = np.clip(((target - starts) * along).sum(axis=1) / square, 0, 1)
-    places = starts + share[:, None] * along
-    best = int(np.argmin(((places - target) ** 2).sum(axis=1)))
-    return best, float(share[best]), places[best]
+            return int(crosses[best]), float(part[best]), hits[best]
+    return nearest, float(share[nearest]), places[nearest]
 
 
 def _meeting_place(raw: np.ndarray, walls: list[Wall], limit: float) -> np.ndarray:

@@ -53,7 +53,7 @@ _BESIDE = 3.0
 
 # A place is under a roof that has, within so many spacings, this share of the points it has around the so many of its
 # points that are nearest; a roof has at least this share of what the mean spacing lets expect.
-_AROUND, _NEAREST, _UNDER, _DENSE = 2.0, 24, 0.85, 0.6
+_AROUND, _NEAREST, _UNDER, _DENSE = 2.0, 24, 0.7, 0.6
 
 # Points farther apart than so many spacings are never joined: what lies between such gaps can be done by itself.
 _APART = 8.0
@@ -158,10 +158,11 @@ def extract_footprints(
     -----
     Points with another of their building more than a meter (or three spacings) higher beside them are walls: they count
     as points of the building but don't widen its outline. A roof ends half-way between its outermost points and the
-    ground seen beside them, at most half a point spacing from its points. Walls are fitted to all points along them,
-    and turned to a main direction only where that moves their ends by about a point spacing at most; chords of curves
-    are not. Outlines without a right angle, or that straight walls would change too much, become chords of what was
-    traced, within about the tolerance. Clusters whose points lie on one line have no area and give no polygon.
+    ground seen beside them, at most half a point spacing from its points. Walls are as few as describe the outline,
+    those in main directions preferred, each fitted to all points along it, and turned to a main direction only where
+    that moves its ends by about a point spacing at most; chords of curves are not. Outlines without a right angle, or
+    that straight walls would change too much, become chords of what was traced, within about the tolerance. Clusters
+    whose points lie on one line have no area and give no polygon.
 
     With 'Split rows', houses of a row are parted along straight lines from one side of a building to the other, in its
     main directions, where over 60 % of what is not low two roofs rise away from the line, parallel ones step by 0.4 m
@@ -173,6 +174,7 @@ def extract_footprints(
     ----------
     Santos et al. (2019), Extraction of building roof boundaries from LiDAR data using an adaptive alpha shape.
     Santos et al. (2019), Building detection from LiDAR data using entropy and the k-means concept.
+    Perez and Vidal (1994), Optimum polygonal approximation of digitized curves.
     """
     is_building = classification == PointClass.BUILDING
     building = np.flatnonzero(is_building & (cluster_id is None or cluster_id > 0))

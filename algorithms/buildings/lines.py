@@ -6,12 +6,17 @@ has the building on its left.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Optional
 
 import numpy as np
 
 from .segments import edge_distances
+
+# A wall has to bring the squares of the distances to the samples, over the length of the line, down by so much
+# (tolerances, cubed). Walls are looked for between places that describe the line to this share of the tolerance.
+_PRICE, _FINE = 0.5, 0.25
 
 
 @dataclass(frozen=True)
@@ -54,12 +59,39 @@ class Line:
         """Return the samples from ``first`` to ``last``, which may be beyond the end of a closed line."""
         return np.arange(first, last + 1) % len(self.samples)
 
-    def walls(self, tolerance: float) -> list:
-        """Return the straight pieces that stay within ``tolerance`` (m) of the samples, fitted to them."""
-        bends = simplify(self.samples, tolerance, self.is_closed)
+    def walls(self, tolerance: float, directions: Sequence[float] = ()) -> list:
+        """Return the walls that the line is best made of, wiggles of ``tolerance`` (m) aside, fitted to its samples.
+
+        Those along main ``directions`` (rad) or square to them are preferred.
+        """
+        bends = self.bends(tolerance, directions).tolist()
+        return [self.fitted(first, last, tolerance) for first, last in zip(bends, bends[1:])]
+
+    def bends(self, tolerance: float, directions: Sequence[float] = ()) -> np.ndarray:
+        """Return the samples from which walls go to the next: the squares of distances and a price per wall are least.
+
+        The first is repeated at the end of a closed line, a round later.
+
+        References
+        ----------
+        Perez and Vidal (1994), Optimum polygonal approximation of digitized curves.
+        Killick, Fearnhead and Eckley (2012), Optimal detection of changepoints with a linear computational cost.
+        """
+        rows = simplify(self.samples, _FINE * tolerance, self.is_closed)
         if self.is_closed:
-            bends = np.append(bends, bends[0] + len(self.samples))
-        return [self.fitted(int(a), int(b), tolerance) for a, b in zip(bends, bends[1:])]
+            # A place that is sure to be a bend, if there is any: the farthest one.
+            away = self.samples[rows] - self.samples.mean(axis=0)
+            start = int(np.argmax((away**2).sum(axis=1)))
+            rows = np.concatenate([rows[start:], rows[: start + 1] + len(self.samples)])
+        return rows[_cheapest_chain(self._moments(rows), _PRICE * tolerance**3, directions)]
+
+    def _moments(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the sums (k, 6) of weights and their moments up to rows in order: without, and with the row itself."""
+        within = self.rows(rows[0], rows[-1])
+        x, y = (self.samples[within] - self.samples.mean(axis=0)).T
+        moments = self.weights[within] * np.stack([np.ones(len(x)), x, y, x * x, x * y, y * y])
+        sums = np.cumsum(np.pad(moments, ((0, 0), (1, 0))), axis=1).T
+        return sums[rows - rows[0]], sums[rows - rows[0] + 1]
 
     def fitted(self, first: int, last: int, tolerance: float, direction: Optional[np.ndarray] = None) -> Wall:
         """Return the wall along the samples from ``first`` to ``last``, of a given direction or their own."""
@@ -119,6 +151,40 @@ def simplify(places: np.ndarray, tolerance: float, is_closed: bool) -> np.ndarra
             spans += [(low, middle), (middle, high)]
     kept = np.flatnonzero(is_kept[:-1] if is_closed else is_kept)
     return np.sort((kept + start) % count)
+
+
+def _cheapest_chain(moments: tuple[np.ndarray, np.ndarray], price: float, directions: Sequence[float]) -> list:
+    """Return the positions, from the first to the last, between which walls cost least.
+
+    A wall costs its ``price`` (m³) and its squares; one that has none of the ``directions`` costs the price again.
+    """
+    before, after = moments
+    angles = np.concatenate([directions, np.add(directions, np.pi / 2)])
+    normals = np.stack([np.sin(angles) ** 2, -2 * np.sin(angles) * np.cos(angles), np.cos(angles) ** 2])
+    cost, came = np.zeros(len(before)), np.zeros(len(before), np.int64)
+    open_ = np.zeros(1, np.int64)
+    for here in range(1, len(before)):
+        spread = _spread(after[here] - before[open_])
+        xx, xy, yy = spread
+        squares = (xx + yy) / 2 - np.hypot((xx - yy) / 2, xy)
+        if len(angles):
+            squares = np.minimum(squares + price, (spread.T @ normals).min(axis=1))
+        total = cost[open_] + np.maximum(squares, 0.0)
+        best = int(np.argmin(total))
+        cost[here], came[here] = total[best] + price, open_[best]
+        # A wall that costs more than going on from here in two will do so farther on, too.
+        open_ = np.append(open_[total <= cost[here] + price * bool(len(angles))], here)
+    chain = [len(before) - 1]
+    while chain[-1]:
+        chain.append(int(came[chain[-1]]))
+    return chain[::-1]
+
+
+def _spread(moments: np.ndarray) -> np.ndarray:
+    """Return the sums (3, n) of squares about the mean: xx, xy, yy."""
+    weight, x, y, xx, xy, yy = moments.T
+    weight = np.maximum(weight, 1e-12)
+    return np.stack([xx - x * x / weight, xy - x * y / weight, yy - y * y / weight])
 
 
 def cross(a: np.ndarray, b: np.ndarray) -> float:

@@ -18,11 +18,23 @@ _MAX_TURN = np.deg2rad(22.5)
 # 10° of one direction and its normal, and a second direction needs a wing or a street of its own.
 _SUPPORT, _MIN_SHARE, _MIN_FURTHER_SHARE = np.deg2rad(10), 0.35, 0.15
 
+# Diagonals up to so many tolerances long between parallel walls are steps.
+_FILLER = 2.25
+
+# A corner may be cut by a wall of this share of the walls beside it.
+_CUT = 0.5
+
 # Sine of the angle between walls that are taken for parallel, about a degree.
 _PARALLEL = 0.02
 
 # Sine of the angle in which two walls are a spike or a notch, 30°, or 60° where it is small.
 _SPIKE, _SMALL_SPIKE = 0.5, 0.87
+
+# A spike is nowhere wider than so many tolerances: the sharp end of a building is none.
+_NARROW = 3.0
+
+# Cosine of the angle below which a corner is sharp, 60°.
+_SHARP = 0.5
 
 # A step between parallel walls that is no larger (tolerances) is none.
 _STEP = 0.75
@@ -58,13 +70,13 @@ def regularize_outline(rings: list, tolerance: float, outset: float = 0.0) -> Op
         Rings in the same order, valid together; holes too small for three walls are left out.
     """
     lines = [line_along(ring, outset) for ring in rings]
-    walls = [line.walls(tolerance) for line in lines]
-    directions = main_directions([wall for one in walls for wall in one])
+    directions = main_directions([wall for line in lines for wall in line.walls(tolerance)])
     if not directions:
         return None
     made: list = []
-    for line, own in zip(lines, walls):
-        corners = np.array(straighten(line, own, directions, tolerance)[1]).reshape(-1, 2)
+    for line in lines:
+        walls = line.walls(tolerance, directions)
+        corners = np.array(straighten(line, walls, directions, tolerance)[1]).reshape(-1, 2)
         if len(corners) < 3 and made:
             continue
         if not is_near(corners, line, 2 * tolerance):
@@ -97,13 +109,14 @@ def main_directions(walls: list) -> list:
     is_left, found, least = np.ones(len(walls), bool), [], _MIN_SHARE
     # Four times the angle is the same for walls that are parallel or square to each other.
     apart = np.abs(np.angle(np.exp(4j * (angle[:, None] - angle)))) / 4
+    corners = _right_angles(length, angle)
     while is_left.any():
         near = (apart <= _SUPPORT) & is_left[:, None]
         close = (apart <= _SUPPORT / 4) & is_left[:, None]
-        share = np.where(is_left, length @ near, 0.0)
+        has_corner = (near[corners[:, 0]] & near[corners[:, 1]]).any(axis=0)
+        share = np.where(is_left & has_corner, length @ near, 0.0)
         best = int(np.argmax(share))
-        square = np.abs(np.cos(angle - np.roll(angle, 1))) < np.sin(_SUPPORT)
-        if share[best] < least * length.sum() or not (square & near[best] & np.roll(near[best], 1)).any():
+        if share[best] < least * length.sum():
             break
         # What the most nearly agree on, not the mean of all: a wall that is a few degrees off doesn't bend the others.
         used = near[best] & (apart[int(np.argmax(np.where(near[best], length @ close, 0.0)))] <= _SUPPORT / 4)
@@ -112,6 +125,18 @@ def main_directions(walls: list) -> list:
         is_left &= ~near[:, best]
         least = _MIN_FURTHER_SHARE
     return found
+
+
+def _right_angles(length: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """Return the pairs (p, 2) of walls that follow each other at a right angle, but for a cut corner between them."""
+    here = np.arange(len(length))
+    found = []
+    for step in (1, 2):
+        there = np.roll(here, -step)
+        is_square = np.abs(np.cos(angle - angle[there])) < np.sin(_SUPPORT)
+        is_cut = np.roll(length, -1) < _CUT**2 * np.minimum(length, length[there])
+        found.append(np.column_stack([here, there])[is_square & (is_cut | (step == 1))])
+    return np.concatenate(found)
 
 
 def straighten(line: Line, walls: list, directions: list, tolerance: float) -> tuple[list, list]:
@@ -221,8 +246,8 @@ def _without_fillers(walls: list, line: Line, tolerance: float) -> list:
         is_end = not line.is_closed and number in (0, len(walls) - 1)
         is_corner = abs(before.direction @ after.direction) < _PARALLEL
         is_step = before.direction @ after.direction > 1 - _PARALLEL
-        longest = tolerance * (1.75 * is_corner + 2.25 * is_step)
-        if is_end or here.is_main or here.length > longest or not (before.is_main and after.is_main):
+        is_small = here.length <= tolerance * (2 * _SMALL * is_corner + _FILLER * is_step)
+        if is_end or here.is_main or not is_small or not (before.is_main and after.is_main):
             kept.append(here)
     return kept
 
@@ -236,7 +261,8 @@ def _without_spikes(walls: list, line: Line, tolerance: float) -> list:
         sine = abs(cross(here.direction, there.direction))
         is_small = sine * min(here.length, there.length) ** 2 / 2 < (_SMALL * tolerance) ** 2
         most = _SMALL_SPIKE if is_small else _SPIKE
-        if here.direction @ there.direction < 0 and sine < most:
+        is_narrow = sine * min(here.length, there.length) < _NARROW * tolerance
+        if here.direction @ there.direction < 0 and sine < most and is_narrow:
             del walls[i if here.length < there.length else j]
             i = max(i - 2, 0)
         else:
@@ -315,8 +341,10 @@ def _joined(here: Wall, there: Wall, line: Line, tolerance: float) -> list:
     bend = line.samples[there.first % len(line.samples)]
     if abs(turn) >= _PARALLEL:
         corner = _crossing(here, there, turn)
-        # Walls that are nearly parallel meet far away: a step between them is truer than that corner.
-        if np.hypot(*(corner - bend)) <= 2 * tolerance:
+        # Walls that are nearly parallel meet far away, and sharp ends beyond what was seen: a step between them, or a
+        # blunt end, is truer than that corner.
+        is_sharp = here.direction @ there.direction < -_SHARP
+        if np.hypot(*(corner - bend)) <= (1 if is_sharp else 2) * tolerance:
             return [corner]
     ends = [here.foot(bend), there.foot(bend)]
     if here.direction @ there.direction > 0 and np.hypot(*(ends[1] - ends[0])) <= tolerance:

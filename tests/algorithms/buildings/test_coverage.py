@@ -65,18 +65,20 @@ def nearest(corners, rings):
 @pytest.mark.parametrize(("density", "degrees"), [(2, 0), (4, 77), (8, 31), (15, 200), (50, 45)])
 def test_corners_of_known_buildings(name, density, degrees, rng):
     truth = [turned(ring, degrees) + [600_000, 5_000_000] for ring in SHAPES[name]]
-    xyz, classification, _ = scanned([truth], density, rng)
-    found = extract_footprints(xyz, classification)
-    assert found.columns["regularized"] == [1]
-    made, real = polygon(found.geometries[0]), polygon(closed(truth))
-    assert made.isGeosValid()
-    assert len(found.geometries[0]) == len(truth)
-    spacing = density**-0.5
-    # A house of 14 m by 9 m has a hundred points at 2 per m².
-    assert np.median(nearest(np.concatenate(truth), found.geometries[0])) < spacing * (1.5 if density < 4 else 1.0)
-    beyond = made.symDifference(real).area() / real.length()
-    assert beyond < (0.6 if density < 4 else 0.4) * spacing
-    assert made.hausdorffDistance(real) < 2.5 * spacing
+    spacing, apart = density**-0.5, []
+    # A house of 14 m by 9 m has a hundred points at 2 per m²: one draw tells little.
+    for _ in range(3 if density < 4 else 1):
+        xyz, classification, _ = scanned([truth], density, rng)
+        found = extract_footprints(xyz, classification)
+        assert found.columns["regularized"] == [1]
+        made, real = polygon(found.geometries[0]), polygon(closed(truth))
+        assert made.isGeosValid()
+        assert len(found.geometries[0]) == len(truth)
+        beyond = made.symDifference(real).area() / real.length()
+        assert beyond < (0.6 if density < 4 else 0.4) * spacing
+        assert made.hausdorffDistance(real) < 2.5 * spacing
+        apart.append(nearest(np.concatenate(truth), found.geometries[0]))
+    assert np.median(apart) < spacing
 
 
 @pytest.mark.parametrize("density", [2, 4, 15])
