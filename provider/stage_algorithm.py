@@ -47,6 +47,12 @@ from .vectors import SOURCE_TYPES, fields_of, plain, qgis_features, wkb_type
 
 INPUT, INPUTS, REFERENCE, OUTPUT, REPORT = "INPUT", "INPUTS", "REFERENCE", "OUTPUT", "REPORT"
 
+# How far the progress is when clouds are read, when the stage is done, and when the cloud is written.
+_READ, _RUN, _WRITTEN = 0.15, 0.8, 0.97
+
+# Features that are written between two looks at whether to stop.
+_BETWEEN_CHECKS = 1000
+
 
 @dataclass
 class _Job:
@@ -203,9 +209,8 @@ class StageAlgorithm(QgsProcessingAlgorithm):
             outcome, place = self._run(parameters, context, monitor)
             results = self._numbers(outcome, monitor)
             if self.stage.makes_cloud:
-                results[OUTPUT] = self._write_cloud(
-                    outcome.cloud, parameters, context, monitor.part(0.8, 0.97), written
-                )
+                part = monitor.part(_RUN, _WRITTEN)
+                results[OUTPUT] = self._write_cloud(outcome.cloud, parameters, context, part, written)
             for layer in self.stage.layers:
                 features = outcome.layers[layer.name]
                 results.update(self._write_layer(layer, features, place, parameters, context, monitor))
@@ -223,7 +228,7 @@ class StageAlgorithm(QgsProcessingAlgorithm):
 
     def _run(self, parameters: dict, context: QgsProcessingContext, monitor: Monitor) -> tuple[Outcome, Place]:
         paths = self.job.paths
-        share = 0.15 / max(1, len(paths))
+        share = _READ / max(1, len(paths))
         clouds = [read_cloud(path, monitor.part(i * share, (i + 1) * share), crs_units) for i, path in enumerate(paths)]
         tell_if_short(sum(map(len, clouds)), monitor)
         reference = clouds.pop() if self.job.reference else None
@@ -231,12 +236,12 @@ class StageAlgorithm(QgsProcessingAlgorithm):
         given = {source: layer for source, layer in found.items() if layer is not None}
         place = place_of_cloud(clouds[0]) if clouds else place_of_layers(given, monitor)
         sources = {
-            source.name: read_source(source, layer, place, context, monitor.part(0.15, 0.15))
+            source.name: read_source(source, layer, place, context, monitor.part(_READ, _READ))
             for source, layer in given.items()
         }
         cloud = clouds if self.stage.merges else clouds[0] if clouds else None
         tunables = self.job.tunables
-        outcome = run_stage(self.stage, cloud, reference, monitor.part(0.15, 0.8), sources, **tunables)
+        outcome = run_stage(self.stage, cloud, reference, monitor.part(_READ, _RUN), sources, **tunables)
         return outcome, place_of_cloud(outcome.cloud) if outcome.cloud is not None else place
 
     def _numbers(self, outcome: Outcome, monitor: Monitor) -> dict:
@@ -277,8 +282,8 @@ class StageAlgorithm(QgsProcessingAlgorithm):
             raise QgsProcessingException(self.invalidSinkError(parameters, name))
         monitor.resolved(**{layer.name: len(features)})
         for row, feature in enumerate(qgis_features(layer, features, place.to_map)):
-            if row % 1000 == 0:
-                monitor.progress(0.97)
+            if row % _BETWEEN_CHECKS == 0:
+                monitor.progress(_WRITTEN)
             if not sink.addFeature(feature, QgsFeatureSink.Flag.FastInsert):
                 raise QgsProcessingException(_unwritten(layer, target, sink))
         # The file is closed with the sink, complete for the next step of a model.
@@ -303,7 +308,7 @@ class StageAlgorithm(QgsProcessingAlgorithm):
             return {}
         target = self.parameterAsOutputLayer(parameters, name, context)
         written += files_of(self.parameterDefinition(name), target)
-        write_raster(raster, surface, place, Path(target), monitor.part(0.97, 0.97))
+        write_raster(raster, surface, place, Path(target), monitor.part(_WRITTEN, _WRITTEN))
         style_on_load(context, target, layer_style(raster))
         return {name: target}
 
@@ -332,7 +337,8 @@ def shown_help(text: str) -> str:
     return as_text(text) if on_command_line() else text
 
 
-def _helped(definition, text: str):
+def _helped(definition: QgsProcessingParameterDefinition, text: str) -> QgsProcessingParameterDefinition:
+    """Return the parameter with its tooltip."""
     definition.setHelp(text)
     return definition
 

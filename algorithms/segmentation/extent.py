@@ -25,6 +25,7 @@ _BOX = np.array([2.0, 2.0, 4.0])
 
 
 def _cell_size(density: float) -> float:
+    """Return the side (m) of the cells that area and what lies beneath are counted in."""
     return max(_LEAST_CELL, _CELL_SPACINGS / np.sqrt(density))
 
 
@@ -182,6 +183,7 @@ def _near(grid: Grid, cell: np.ndarray, chosen: np.ndarray) -> np.ndarray:
 
 
 def _share_with_points_beneath(xyz: np.ndarray, group: np.ndarray, density: float) -> np.ndarray:
+    """Return the share of each group's cells in which some point lies well beneath the lowest of the group."""
     cell = grid_over(xyz, _cell_size(density)).number(xyz)
     cells, index = np.unique(cell, return_inverse=True)
     lowest = ndimage.minimum(xyz[:, 2], index, np.arange(len(cells)))

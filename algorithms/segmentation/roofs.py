@@ -114,7 +114,9 @@ def segment_roofs(
     is_roof, is_terrain = _roofs(xyz, patch, height_above_ground, density, min_height, min_area)
     segment_id = _renumbered(patch, is_roof)
 
-    raised, goes_on = height_above_ground >= min(_RAISED, min_height), np.append(is_terrain, False)[patch]
+    raised = height_above_ground >= min(_RAISED, min_height)
+    # Points of no patch, -1, find the last entry.
+    goes_on = np.append(is_terrain, False)[patch]
     is_other = raised & (segment_id == 0) & ~goes_on
     others = used[is_other[used]]
     reach = 2 / np.sqrt(density)
