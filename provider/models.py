@@ -186,6 +186,7 @@ def _add_parameters(
     definitions: dict[str, QgsProcessingParameterDefinition],
     layout: _Layout,
 ) -> None:
+    """Add the parameters that a step is the first to take, laid out beside its box."""
     names = _first_taken(pipeline, step)
     last = layout.rows(len(names)) * layout.columns - 1
     layers = _layers_taken(pipeline, step)
@@ -206,6 +207,7 @@ def _add_step(
     step: Step,
     layout: _Layout,
 ) -> None:
+    """Add the child algorithm of a step, its parameters wired to those of the model and to earlier steps."""
     child = QgsProcessingModelChildAlgorithm(f"{PROVIDER}:{step.stage.id}")
     child.setChildId(step.name)
     child.setDescription(step.stage.title)
@@ -251,6 +253,7 @@ def _from_child(step_name: str, output: str) -> QgsProcessingModelChildParameter
 def _model_outputs(
     pipeline: Pipeline, outputs_of_step: list[Output], middle: QPointF
 ) -> dict[str, QgsProcessingModelOutput]:
+    """Return what the model shows of a step, laid out to the right of its box."""
     outputs = {}
     for i, made in enumerate(outputs_of_step):
         shown = output_title(pipeline, made)
@@ -331,6 +334,7 @@ class PipelineAlgorithm(QgsProcessingModelAlgorithm):
     def _mended(
         self, definition: QgsProcessingParameterDefinition, helps: dict[str, str]
     ) -> QgsProcessingParameterDefinition:
+        """Return a parameter of the model with its help, an output under the name that the chain gives it."""
         if definition.name() in (INPUT, INPUTS):
             return input_parameter(self.pipeline.merges)
         mended = definition.clone()
@@ -424,6 +428,7 @@ class PipelineAlgorithm(QgsProcessingModelAlgorithm):
         return super().checkParameterValues(self._with_defaults(parameters), context)
 
     def _check(self, parameters: dict, context: QgsProcessingContext) -> None:
+        """Refuse with a ValueError what can be refused before the first step."""
         missing = missing_sentence()
         if missing:
             raise ValueError(missing)

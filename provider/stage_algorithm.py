@@ -134,6 +134,7 @@ class StageAlgorithm(QgsProcessingAlgorithm):
         self._add_numbers()
 
     def _add_destinations(self) -> None:
+        """Declare what the stage writes: cloud, layers, rasters, report."""
         stage = self.stage
         if stage.makes_cloud:
             cloud = QgsProcessingParameterPointCloudDestination(OUTPUT, cloud_title([stage]))
@@ -156,6 +157,7 @@ class StageAlgorithm(QgsProcessingAlgorithm):
             self.addParameter(_helped(page, "A page that shows the numbers."))
 
     def _add_numbers(self) -> None:
+        """Declare the numbers that the stage returns: what automatic tunables took, and its measures."""
         for name, title in number_outputs(self.stage).items():
             self.addOutput(QgsProcessingOutputNumber(name, title))
 
@@ -184,6 +186,7 @@ class StageAlgorithm(QgsProcessingAlgorithm):
         return True
 
     def _job(self, parameters: dict, context: QgsProcessingContext) -> _Job:
+        """Return what a run needs; refuse with a ValueError what can be refused before it."""
         missing = missing_sentence()
         if missing:
             raise ValueError(missing)
@@ -223,10 +226,12 @@ class StageAlgorithm(QgsProcessingAlgorithm):
         return results
 
     def _target_files(self, parameters: dict) -> list:
+        """Return the files that a run may write."""
         definitions = self.destinationParameterDefinitions()
         return [path for d in definitions for path in files_of(d, parameters.get(d.name()))]
 
     def _run(self, parameters: dict, context: QgsProcessingContext, monitor: Monitor) -> tuple[Outcome, Place]:
+        """Read clouds and layers and run the stage; return what it made, and where on Earth that lies."""
         paths = self.job.paths
         share = _READ / max(1, len(paths))
         clouds = [read_cloud(path, monitor.part(i * share, (i + 1) * share), crs_units) for i, path in enumerate(paths)]
@@ -245,6 +250,7 @@ class StageAlgorithm(QgsProcessingAlgorithm):
         return outcome, place_of_cloud(outcome.cloud) if outcome.cloud is not None else place
 
     def _numbers(self, outcome: Outcome, monitor: Monitor) -> dict:
+        """Return the numbers by the names of their outputs."""
         numbers = {}
         for tunable in automatic_numbers(self.stage):
             given = self.job.tunables[tunable.name]
@@ -257,6 +263,7 @@ class StageAlgorithm(QgsProcessingAlgorithm):
     def _write_cloud(
         self, cloud: Cloud, parameters: dict, context: QgsProcessingContext, monitor: Monitor, written: list
     ) -> str:
+        """Write the cloud and return its file; what is written under a name found here joins ``written``."""
         target = self.parameterAsOutputLayer(parameters, OUTPUT, context)
         written += files_of(self.parameterDefinition(OUTPUT), target)
         shown = write_for_qgis(cloud, target, context, monitor)
@@ -272,6 +279,7 @@ class StageAlgorithm(QgsProcessingAlgorithm):
         context: QgsProcessingContext,
         monitor: Monitor,
     ) -> dict:
+        """Write a layer, if it is wanted; return its output. Features are in meters from the origin of the place."""
         name = layer.name.upper()
         if parameters.get(name) is None:
             return {}
@@ -303,6 +311,7 @@ class StageAlgorithm(QgsProcessingAlgorithm):
         monitor: Monitor,
         written: list,
     ) -> dict:
+        """Write a raster, if it is wanted; return its output."""
         name = raster.name.upper()
         if parameters.get(name) is None:
             return {}
@@ -313,6 +322,7 @@ class StageAlgorithm(QgsProcessingAlgorithm):
         return {name: target}
 
     def _write_report(self, html: str, parameters: dict, context: QgsProcessingContext) -> dict:
+        """Write the page of numbers, if it is wanted; return its output."""
         target = self.parameterAsFileOutput(parameters, REPORT, context)
         if not target:
             return {}

@@ -166,6 +166,7 @@ def read_transforms(text: str, n_clouds: int) -> list[Optional[Transform]]:
 
 
 def _transform(name: str, text: str) -> Optional[Transform]:
+    """Return the movement that six numbers, the 16 of a matrix or a file of these tell; None for no text."""
     if not text:
         return None
     numbers = _numbers(text)

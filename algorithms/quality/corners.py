@@ -387,6 +387,7 @@ def _nearest_first(
 
 
 def _values(old: _Corners, link: _Link, moved: np.ndarray) -> dict[str, float]:
+    """Return the measures of the comparison; those of distances are NaN without corners that match."""
     distance = np.hypot(*moved.T)
     undefined = not len(distance)
     return {

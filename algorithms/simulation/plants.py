@@ -46,6 +46,7 @@ def in_forest(scene: Scene, places: np.ndarray, share: float) -> np.ndarray:
 
 
 def _plant_forest(scene: Scene, share: float, rng: np.random.Generator, monitor: Monitor) -> None:
+    """Plant trees and bushes over a share of the scene, one about every few meters where there is room."""
     steps = np.arange(_FOREST_SPACING / 2, scene.size, _FOREST_SPACING)
     places = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
     places = places + rng.uniform(-0.35, 0.35, places.shape) * _FOREST_SPACING

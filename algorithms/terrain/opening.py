@@ -39,6 +39,7 @@ def open_surface(surface: np.ndarray, radius: int, absent: Optional[np.ndarray] 
 
 
 def _octagon(surface: np.ndarray, radius: int, running: Callable, outside: float) -> np.ndarray:
+    """Run minima or maxima over an octagon; ``outside`` counts beyond the border along diagonals."""
     # A regular octagon of that radius: the diagonal half-length is 0.29 of it.
     diagonal = round(0.293 * radius)
     straight = radius - 2 * diagonal

@@ -134,6 +134,7 @@ class Tin:
         return found
 
     def _walk(self, plan: np.ndarray, facet: np.ndarray) -> np.ndarray:
+        """Return the facets (n,) under places (n, 2), m from the shift; the walks begin at ``facet`` (n,)."""
         walking = np.arange(len(plan))
         for _ in range(_MAX_STEPS):
             across = self._leaving(plan[walking], facet[walking])
