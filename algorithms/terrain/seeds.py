@@ -9,7 +9,7 @@ from typing import Optional
 import numpy as np
 
 from ..cloud.cells import plan_box, refuse_sparse
-from ..packages import ndimage
+from ..packages import csgraph, ndimage, sparse
 from ..stage import Monitor
 from .opening import open_surface
 from .standing import free_standing, neighbors
@@ -39,6 +39,10 @@ _JOIN_SLOPE, _JOIN_SHARE, _JOINED = 0.3, 0.5, 0.5
 
 # What joins the terrain does so on at least this share of its whole edge, other objects beside it included.
 _JOINED_OF_ALL = 0.25
+
+# A part of it is terrain, whatever its edge, if this share of it is no more than a step above the terrain around:
+# objects stand off the ground everywhere. Parts end at steeper steps than the second; few cells tell nothing.
+_TOUCHING, _PART_SLOPE, _LEAST_PART = 0.25, 0.4, 4
 
 # Where the surface goes on as steeply as at the step itself, up to this slope, the step is a bank rather than a wall.
 _STEEPEST_BANK = 2.0
@@ -100,7 +104,7 @@ def seeds_by_opening(
 
     What stands free with steps down all round is an object, and so is what a window lifts off the surface by more
     than terrain of the local slope allows; of the latter, what joins the terrain smoothly on half of its edge comes
-    back.
+    back, and so do smooth parts that lie in the terrain around.
 
     Parameters
     ----------
@@ -149,6 +153,7 @@ def seeds_by_opening(
         part = monitor.part(start, start + 0.25)
         lifted = _lifted(surface, windows, _SLOPE_SHARE * slope, cell_size, part, absent=free)
         objects = _without_joined(lifted, free, windows[-1], surface, slope, cell_size, spacing)
+    objects = _without_touching(objects, free, surface, _PART_SLOPE * max(cell_size, spacing))
     monitor.progress(1.0)
     # What is seen through a roof as through a pit lies lower than the surface there.
     stands_free = lowest.at_points(free) & (xyz[:, 2] >= lowest.at_points(surface))
@@ -297,6 +302,36 @@ def _without_joined(
         terrain[0] = False
         objects &= ~terrain[region] | free
     return objects
+
+
+def _without_touching(objects: np.ndarray, free: np.ndarray, surface: np.ndarray, step: float) -> np.ndarray:
+    """Return the objects but for smooth parts that are no higher than the terrain around on a share of their area.
+
+    Parts end at a ``step`` (m) or a higher one: of a bank and the bushes on it, what windows lifted off together, the
+    bank comes back alone. What stands ``free`` stays.
+    """
+    part = _smooth_parts(objects & ~free, surface, step)
+    above = surface - _interpolated(surface, objects)
+    touching, area = np.bincount(part.ravel(), (above <= _STEP).ravel()), np.bincount(part.ravel())
+    terrain = (touching >= _TOUCHING * area) & (area >= _LEAST_PART)
+    terrain[0] = False
+    return objects & ~terrain[part]
+
+
+def _smooth_parts(chosen: np.ndarray, surface: np.ndarray, step: float) -> np.ndarray:
+    """Label (from 1) the chosen cells that join by less than ``step`` (m) from cell to cell; 0 are all others."""
+    number = np.cumsum(chosen).reshape(chosen.shape) - 1
+    pairs = []
+    for axis in range(surface.ndim):
+        here, there = (slice(None),) * axis + (slice(None, -1),), (slice(None),) * axis + (slice(1, None),)
+        level = chosen[here] & chosen[there] & (np.abs(surface[here] - surface[there]) < step)
+        pairs.append(np.stack([number[here][level], number[there][level]]))
+    one, other = np.concatenate(pairs, axis=1)
+    count = int(chosen.sum())
+    links = sparse.coo_matrix((np.ones(len(one), bool), (one, other)), (count, count))
+    part = np.zeros(chosen.shape, np.int64)
+    part[chosen] = csgraph.connected_components(links, directed=False)[1] + 1
+    return part
 
 
 def _flanks(surface: np.ndarray, apart: int) -> Iterator[np.ndarray]:

@@ -9,6 +9,7 @@ from lidar_buildings.algorithms.terrain.seeds import (
     _slope,
     _windows,
     _without_joined,
+    _without_touching,
     lowest_points,
     seeds_by_lowest,
     seeds_by_opening,
@@ -284,6 +285,41 @@ def test_what_stands_free_stays_an_object_in_a_region_that_comes_back():
     free[20:26, 20:26] = True
     np.testing.assert_array_equal(stays_lifted(surface, lifted, free=free), free)
     np.testing.assert_array_equal(stays_lifted(surface, np.zeros_like(lifted), free=free), free)
+
+
+@pytest.mark.parametrize(("height", "stays"), [(0.05, False), (0.15, True), (-1.0, False)])
+def test_a_part_at_the_height_of_the_terrain_comes_back_and_what_stands_beside_it_does_not(height, stays):
+    """The windows took the strip between two hedges together with these."""
+    surface, lifted = lifted_square()
+    surface[15:18, 15:25] = surface[22:25, 15:25] = 2.0
+    surface[18:22, 15:25] = height
+    objects = lifted > 0
+    expected = objects & ((surface == 2.0) | stays)
+    np.testing.assert_array_equal(_without_touching(objects, np.zeros_like(objects), surface, 0.4), expected)
+
+
+@pytest.mark.parametrize(("touching", "stays"), [(3, False), (2, True)])
+def test_a_part_that_comes_back_is_no_higher_than_the_terrain_on_a_quarter(touching, stays):
+    """Of ten rows of a bank so many are as low; the others rise by 0.35 m each, one smooth part."""
+    surface, lifted = lifted_square()
+    rise = 0.35 * np.maximum(np.arange(10) - touching + 1, 0)
+    surface[15:25, 15:25] = rise[:, None]
+    objects = lifted > 0
+    np.testing.assert_array_equal(_without_touching(objects, np.zeros_like(objects), surface, 0.4), objects & stays)
+
+
+@pytest.mark.parametrize(("size", "stays"), [(2, False), (1, True)])
+def test_single_cells_tell_nothing_of_the_terrain(size, stays):
+    """A crown's lowest leaf may hang as low as the ground beside it."""
+    surface, lifted = lifted_square(side=size)
+    objects = lifted > 0
+    np.testing.assert_array_equal(_without_touching(objects, np.zeros_like(objects), surface, 0.4), objects & stays)
+
+
+def test_what_stands_free_does_not_come_back_however_low_it_is():
+    surface, lifted = lifted_square()
+    objects = lifted > 0
+    np.testing.assert_array_equal(_without_touching(objects, objects, surface, 0.4), objects)
 
 
 @pytest.mark.parametrize(("slope", "stays"), [(1.2, False), (1.9, False), (2.3, True)])
