@@ -2,8 +2,9 @@
 """Print how good the results are: ``accuracy.py [table …]``, all by default.
 
 ``buildings``, ``ground`` and ``noise`` are of real clouds, ``harder`` of the same with fewer points or more noise,
-``objects`` of real houses, trees, cars, fences and poles on simulated ground, ``towns``, ``scenes``, ``villages`` and
-``confidence`` of simulated scenes, whose truth is exact.
+``uneven`` of the same with points on lines, in bands or in pairs, ``objects`` of real houses, trees, cars, fences and
+poles on simulated ground, ``towns``, ``scenes``, ``villages`` and ``confidence`` of simulated scenes, whose truth is
+exact.
 
 Each table comes as Markdown for people, and as the Python lines that the tests hold the program to.
 """
@@ -27,6 +28,7 @@ from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 from lidar_buildings.tests.algorithms import test_map_footprints  # noqa: E402
 from lidar_buildings.tests.benchmarks.real_objects import CAR, FENCE, POLE, TREE, scene  # noqa: E402
 from lidar_buildings.tests.benchmarks.scenes import SCENES, scanned  # noqa: E402
+from lidar_buildings.tests.benchmarks.uneven import evenly, in_bands, in_pairs, on_lines, on_zigzags  # noqa: E402
 from lidar_buildings.tests.real import test_buildings, test_ground, test_noise  # noqa: E402
 from lidar_buildings.tests.real.clouds import (  # noqa: E402
     DATA,
@@ -88,6 +90,37 @@ def harder() -> None:
         figures = [found[rate] for rate in ("completeness", "correctness", "F")]
         wrong = (result.classification == PointClass.BUILDING) & (true != PointClass.BUILDING)
         print(row(name.split("/")[1], told(change), len(true), *figures, int(wrong.sum()), area_of(cloud, wrong)))
+
+
+# How points are spread (m, points per square meter).
+SPREADS = {
+    "lines 1 m apart": (on_lines, 1.0, 0.25),
+    "lines 1.5 m apart": (on_lines, 1.5, 0.3),
+    "lines 2 m apart": (on_lines, 2.0, 0.25),
+    "zigzag lines": (on_zigzags, 1.5, 0.3),
+    "bands": (in_bands, 2.0, 20.0),
+    "pairs": (in_pairs, 2.0),
+}
+
+
+def uneven() -> None:
+    """Print how well the default chain does where points are spread unevenly, and where as many as on lines evenly."""
+    print("| cloud | spread | points | completeness | correctness | F |\n| --- | --- |" + " ---: |" * 4)
+    for name in ("buildings/ahn3-delft", "buildings/ahn-amsterdam-1", "buildings/ign-stbarth"):
+        xyz = made_harder(name)[0].get("xyz")
+        for spread, (choose, *how) in SPREADS.items():
+            chosen = choose(xyz, *how)
+            print(row(name.split("/")[1], spread, *_rates_of(name, *chosen)), flush=True)
+            if "lines" in spread:
+                even = evenly(xyz, len(chosen[0]))
+                print(row(name.split("/")[1], "as many, evenly", *_rates_of(name, *even)), flush=True)
+
+
+def _rates_of(name: str, rows: np.ndarray, xyz: np.ndarray) -> tuple[float, ...]:
+    """Return the number of points, completeness, correctness and F of a cloud of these points of another."""
+    whole, true = made_harder(name)
+    returns = {name: whole.get(name)[rows] for name in ("return_number", "number_of_returns")}
+    return len(rows), *_found(create_cloud({"xyz": xyz, **returns}), true[rows])[:3]
 
 
 def area_of(cloud: Cloud, chosen: np.ndarray) -> float:
@@ -254,7 +287,7 @@ def paste(name: str, values: dict[str, str]) -> None:
 
 
 SIMULATED = {table.__name__: table for table in (towns, scenes, villages, confidence)}
-TABLES = {**{table.__name__: table for table in (buildings, harder, objects, ground, noise)}, **SIMULATED}
+TABLES = {**{table.__name__: table for table in (buildings, harder, uneven, objects, ground, noise)}, **SIMULATED}
 
 
 def main() -> None:
