@@ -322,8 +322,8 @@ def _smooth_parts(chosen: np.ndarray, surface: np.ndarray, step: float) -> np.nd
     """Label (from 1) the chosen cells that join by less than ``step`` (m) from cell to cell; 0 are all others."""
     number = np.cumsum(chosen).reshape(chosen.shape) - 1
     pairs = []
-    for axis in range(surface.ndim):
-        here, there = (slice(None),) * axis + (slice(None, -1),), (slice(None),) * axis + (slice(1, None),)
+    # Neighbors come along each axis both ways.
+    for here, there in list(neighbors(surface.ndim))[::2]:
         level = chosen[here] & chosen[there] & (np.abs(surface[here] - surface[there]) < step)
         pairs.append(np.stack([number[here][level], number[there][level]]))
     one, other = np.concatenate(pairs, axis=1)
