@@ -180,11 +180,10 @@ def extract_footprints(
     building = np.flatnonzero(is_building & (cluster_id is None or cluster_id > 0))
     found = Features([], {field.name: [] for field in _FIELDS})
     if not len(building):
-        monitor.warn(
-            "No point of class 6 (building) has a ClusterID, so there are no footprints."
-            if is_building.any()
-            else "No point is called building (class 6), so there are no footprints."
+        what = (
+            "point of class 6 (building) has a ClusterID" if is_building.any() else "point is called building (class 6)"
         )
+        monitor.warn(f"No {what}, so there are no footprints.")
     if not len(building) or not np.ptp(xyz[building, :2], axis=0).any():
         return found
     spacing = point_spacing(xyz[building])
@@ -199,12 +198,7 @@ def extract_footprints(
     cluster = np.ones(len(building), np.int64) if cluster_id is None else cluster_id[building].astype(np.int64)
     is_roof = _is_roof(xyz[building], cluster, spacing)
     bare = _bare_points(xyz, classification, building[is_roof], spacing)
-    measured = {
-        "height": height_above_ground,
-        "entropy": cluster_entropy,
-        "confidence": confidence,
-        "reason": reason,
-    }
+    measured = {"height": height_above_ground, "entropy": cluster_entropy, "confidence": confidence, "reason": reason}
     edges = []
     parts = _parts(xyz, building, bare, max(_APART * spacing, max_edge or 0.0))
     for done, (rows, beside) in enumerate(parts):
@@ -215,9 +209,8 @@ def extract_footprints(
         traced = trace_outlines(xyz[points, :2], label, spacing, max_edge, min_area, min_hole_area)
         if traced is not None and len(traced.labels):
             if split_rows:
-                lowest = min(xyz[building[rows], 2].min(), xyz[points, 2].min())
-                height = xyz[points, 2] - lowest if height_above_ground is None else height_above_ground[points]
-                traced = split_into_houses(traced, height.astype(np.float64), spacing, tolerance, part.part(0.0, 0.6))
+                height = _heights(xyz, height_above_ground, points, building[rows])
+                traced = split_into_houses(traced, height, spacing, tolerance, part.part(0.0, 0.6))
             edges.append(traced.max_edge)
             coverage = Coverage(traced, tolerance, regularize, part.part(0.6, 1.0))
             _describe(found, xyz, building[rows], points, traced, coverage, measured, spacing)
@@ -225,6 +218,15 @@ def extract_footprints(
     if max_edge is None and edges:
         monitor.resolved(max_edge=float(np.median(edges)))
     return _sorted(found, min_area)
+
+
+def _heights(
+    xyz: np.ndarray, height_above_ground: Optional[np.ndarray], points: np.ndarray, of_buildings: np.ndarray
+) -> np.ndarray:
+    """Return the heights (n,) of points above the ground; where it is not known, above the lowest of all given (m)."""
+    if height_above_ground is not None:
+        return height_above_ground[points].astype(np.float64)
+    return xyz[points, 2] - min(xyz[of_buildings, 2].min(), xyz[points, 2].min())
 
 
 def _is_roof(xyz: np.ndarray, cluster: np.ndarray, spacing: float) -> np.ndarray:
