@@ -32,7 +32,7 @@ _MAX_MEAN_NEIGHBORS = 20_000
 
 
 class Neighborhood(Protocol):
-    """Which points describe a point: :class:`Nearest`, :class:`Within` or :class:`~.optimal.Optimal`."""
+    """Which points describe a point: :class:`Nearest`, :class:`Within`, the best number, or as many as are wide."""
 
     def check(self, xyz: np.ndarray, tree: Any) -> None:
         """Raise ValueError when the cloud makes no sense with it."""
