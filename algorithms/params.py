@@ -25,8 +25,8 @@ PointDensity = Annotated[
         unit="points/m²",
         low=0,
         open_low=True,
-        automatic="measured, points per occupied area; 'Segment roofs', 'Complete buildings' and surface neighborhoods take "
-        "less where points lie on lines, in pairs or in dense strips, so that distances reach over the gaps.",
+        automatic="measured, points per occupied area; 'Segment roofs', 'Complete buildings' and surface neighborhoods "
+        "take less where points lie on lines, in pairs or in dense strips, so that distances reach over the gaps.",
         advanced=True,
     ),
 ]
