@@ -35,6 +35,10 @@ _EXPECTED, _ANY = 0.6, 0.05
 # Roof sides may wiggle by so much (m).
 _WIGGLE = 0.4
 
+# Holes at the edge of a roof bite pieces out of its outline; straight sides that may lie so many wiggles off go over
+# them, wider ones only where the first make no outline.
+_OVER_BITES = (1.5, 2.0)
+
 # So many points, on this share of it, move a wall that the roof lets expect.
 _FEW, _LEAST_COVERED = 5, 0.2
 
@@ -168,8 +172,7 @@ def outline_walls(
 
 def _sides(traced: list, spacing: float) -> np.ndarray:
     """Return the sides of the roof (k, 2, 2) (m): start and end, the building to the left."""
-    # Holes at the edge of a roof bite pieces out of its outline, which straight sides go over.
-    straight = (regularize_outline(traced, wiggle, spacing / 2) for wiggle in (_WIGGLE, 2 * _WIGGLE))
+    straight = (regularize_outline(traced, times * _WIGGLE, spacing / 2) for times in _OVER_BITES)
     rings = next((rings for rings in straight if rings), None) or [simplify_ring(ring, _WIGGLE) for ring in traced]
     return _edges_of(rings)
 
