@@ -130,7 +130,11 @@ def test_bays_stay(width, depth, off):
 @pytest.mark.parametrize("radius", [7, 10, 20])
 @pytest.mark.parametrize("degrees", [0, 30])
 def test_a_curved_wall_is_a_chain_of_chords(rng, assert_valid, radius, degrees):
-    """A house with a round end: its walls stay straight, and the curve turns to one side only."""
+    """A house with a round end: its walls stay straight, and the curve turns to one side only.
+
+    A chord of length L on a curve of radius R adds 4/45 L (L²/8R)² to the squares, and costs tolerance³ as it lies in
+    no main direction. At R = 20 m the sum is least with L = 6.2 m: ten chords, three walls and the first corner again.
+    """
     angle = np.linspace(-np.pi / 2, np.pi / 2, 60)
     end = [20, radius] + radius * np.column_stack([np.cos(angle), np.sin(angle)])
     truth = turned(np.concatenate([[[0, 0]], end, [[0, 2 * radius], [0, 0]]]), degrees)
@@ -138,7 +142,7 @@ def test_a_curved_wall_is_a_chain_of_chords(rng, assert_valid, radius, degrees):
     assert_valid([ring])
     assert farthest(truth, ring) < 0.75
     assert farthest(ring, truth) < 0.75
-    assert len(ring) < 16
+    assert len(ring) <= 15
     step = np.diff(ring, axis=0)
     after = np.roll(step, -1, axis=0)
     turn = np.arctan2(step[:, 0] * after[:, 1] - step[:, 1] * after[:, 0], (step * after).sum(axis=1))
@@ -147,7 +151,10 @@ def test_a_curved_wall_is_a_chain_of_chords(rng, assert_valid, radius, degrees):
 
 @pytest.mark.parametrize(("length", "turns"), [(5.4, [-30, -18, -6, 6, 18, 30]), (3.0, [-45, -15, 15, 45])])
 def test_chords_of_a_bow_keep_their_directions(length, turns):
-    """One that happens to be nearly parallel to the house is not turned to it."""
+    """One that happens to be nearly parallel to the house is not turned to it.
+
+    Those that cost least on such bows, as above, are 6.8 and 3.8 m long; far shorter ones would be joined.
+    """
     steps = length * np.column_stack([np.cos(np.deg2rad(turns)), np.sin(np.deg2rad(turns))])
     bow = np.concatenate([[[0.0, 0.0]], np.cumsum(steps, axis=0)])
     truth = np.concatenate([bow, [[bow[-1, 0], 20], [0, 20], [0, 0]]])

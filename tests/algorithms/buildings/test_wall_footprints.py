@@ -115,7 +115,7 @@ def test_a_bend_is_seldom_cut_off_where_the_roof_has_holes_and_the_walls_few_poi
     for seed in range(16, 28):
         arrays, true = holed_bend(seed)
         cut.append(errors(extract_wall_footprints(**arrays)[0], true).max() > 0.5)
-    assert sum(cut) <= 2
+    assert sum(cut) <= 1
 
 
 def test_right_angles_are_right_and_others_are_kept(rng):
@@ -300,16 +300,16 @@ def test_a_long_row_across_the_grid_is_no_mistake(rng):
 
 def test_the_outline_of_one_building_tells_how_far_it_is_and_can_be_stopped(rng):
     """One with sixty walls took two minutes in which nobody could stop it."""
-    teeth = [(x + dx, 8 + dy) for x in (12, 0) for dx, dy in ((12, 6), (6, 6), (6, 0), (0, 0))]
-    arrays, _ = building(rng, ((0, 0), (24, 0), *teeth), per_meter=8, density=10)
+    teeth = [(x + dx, 8 + dy) for x in (24, 12, 0) for dx, dy in ((12, 6), (6, 6), (6, 0), (0, 0))]
+    arrays, _ = building(rng, ((0, 0), (36, 0), *teeth), per_meter=8, density=10)
     monitor = Listening()
     footprints, _ = extract_wall_footprints(**arrays, monitor=monitor)
-    assert footprints.columns["edges"] == [10]
+    assert footprints.columns["edges"] == [14]
     assert monitor.heard == sorted(monitor.heard)
     assert 0 < monitor.heard[0] < 0.1
     assert monitor.heard[-1] == 1
     # Once for each wall found and each outline tried.
-    assert len(monitor.heard) > 15
+    assert len(monitor.heard) > 25
     for stop_at in (0.01, 0.35, 0.6):
         with pytest.raises(Cancelled):
             extract_wall_footprints(**arrays, monitor=Listening(stop_at))
