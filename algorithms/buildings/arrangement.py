@@ -8,8 +8,9 @@ import numpy as np
 
 from ..packages import csgraph, sparse
 
-# Costs become whole numbers for the flow, to this precision.
-_STEPS = 1000
+# Costs become whole numbers of 32 bits for the flow, to this precision. Those of a cell's sides on the rectangle, four
+# at most, and its own are added there: none may be more than a fifth of what fits.
+_STEPS, _LARGEST_COST = 1000, 3e5
 
 
 @dataclass(frozen=True)
@@ -167,7 +168,8 @@ class Arrangement:
         right = np.where(right == n, sink, right)
         rows = np.concatenate([left, right, np.full(n, source), cells])
         columns = np.concatenate([right, left, cells, np.full(n, sink)])
-        capacity = np.rint(np.concatenate([cost, cost, if_outside, if_inside]) * _STEPS).astype(np.int32)
+        costs = np.minimum(np.concatenate([cost, cost, if_outside, if_inside]), _LARGEST_COST)
+        capacity = np.rint(costs * _STEPS).astype(np.int32)
         graph = sparse.csr_matrix((capacity, (rows, columns)), shape=(n + 2, n + 2))
         residual = graph - csgraph.maximum_flow(graph, source, sink).flow
         residual.data = np.maximum(residual.data, 0)

@@ -15,7 +15,7 @@ from ..stage import Features, Field, Layer, Monitor, Param, stage
 from .outlines import perimeter, signed_area, trace_outlines
 from .regularize import regularize_outline
 from .segments import is_inside
-from .wall_outline import Limits, WallEdge, WallOutline, closed, outline_walls
+from .wall_outline import Limits, WallEdge, WallOutline, closed, outline_walls, share_seen
 
 WALL, ROOF = "wall", "roof"
 
@@ -282,36 +282,38 @@ def _parts(rings: list[list[WallEdge]]) -> list[list[list[WallEdge]]]:
 def _add(
     footprints: Features,
     edges: Features,
-    parts: list[list[WallEdge]],
+    rings: list[list[WallEdge]],
     building: _Building,
     outline: Optional[WallOutline],
     height: Optional[np.ndarray],
 ) -> None:
-    """Append a footprint and its edges."""
-    rings = [closed(ring) for ring in parts]
-    footprints.geometries.append([ring + building.origin for ring in rings])
-    all_edges = [edge for ring in parts for edge in ring]
-    quality = np.array([edge.quality for edge in all_edges])
-    points = np.array([edge.points for edge in all_edges])
+    """Append a footprint, its rings told as edges with the exterior first, and the edges themselves."""
+    corners = [closed(ring) for ring in rings]
+    footprints.geometries.append([ring + building.origin for ring in corners])
+    own_edges = [edge for ring in rings for edge in ring]
+    quality = np.array([edge.quality for edge in own_edges])
+    points = np.array([edge.points for edge in own_edges])
     described = {
         "id": len(footprints.geometries),
         "cluster_id": building.number,
         "source": ROOF if outline is None else WALL,
-        "area": sum(map(signed_area, rings)),
-        "perimeter": sum(map(perimeter, rings)),
-        "edges": len(all_edges),
+        "area": sum(map(signed_area, corners)),
+        "perimeter": sum(map(perimeter, corners)),
+        "edges": len(own_edges),
         "edges_seen": int((quality >= _SEEN).sum()),
-        "quality": WallOutline(parts, 0.0).seen,
+        "quality": share_seen(rings),
         "worst_quality": float(quality.min()),
-        "deviation": _pooled(np.array([edge.deviation for edge in all_edges]), points),
+        "deviation": _pooled(np.array([edge.deviation for edge in own_edges]), points),
         "overhang": float("nan") if outline is None else outline.overhang,
         "height": float("nan") if height is None else float(np.median(height[building.roof_rows])),
         "points": int(points.sum()),
     }
     for name, value in described.items():
         footprints.columns[name].append(value)
-    for ring in parts:
-        _add_edges(edges, ring, len(footprints), building.origin)
+    first = 1
+    for ring in rings:
+        _add_edges(edges, ring, len(footprints), first, building.origin)
+        first += len(ring)
 
 
 def _pooled(deviation: np.ndarray, points: np.ndarray) -> float:
@@ -320,9 +322,9 @@ def _pooled(deviation: np.ndarray, points: np.ndarray) -> float:
     return float(np.sqrt(np.average(deviation[seen] ** 2, weights=points[seen]))) if seen.any() else float("nan")
 
 
-def _add_edges(edges: Features, ring: list[WallEdge], footprint: int, origin: np.ndarray) -> None:
-    first = edges.columns["footprint"].count(footprint) if len(edges) else 0
-    for number, (before, edge) in enumerate(zip([ring[-1], *ring], ring), start=first + 1):
+def _add_edges(edges: Features, ring: list[WallEdge], footprint: int, first: int, origin: np.ndarray) -> None:
+    """Append the edges of one ring of a footprint, numbered from ``first``."""
+    for number, (before, edge) in enumerate(zip([ring[-1], *ring], ring), start=first):
         edges.geometries.append(np.array([edge.start, edge.end]) + origin)
         described = {
             "id": len(edges.geometries),

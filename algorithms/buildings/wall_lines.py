@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Optional
+from typing import Any, Optional
 
 import numpy as np
 
@@ -32,6 +32,10 @@ _SAME, _BUILT, _MOST = 3.0, np.deg2rad(0.7), np.deg2rad(8.0)
 # The way a wall runs shows in the points within this distance (m), where they are at least so much longer than wide;
 # points of a wall run within this angle of it (cosine), those of bushes and corners any way.
 _AROUND, _LONGER, _ALONG = 0.6, 2.0, np.cos(np.deg2rad(30.0))
+
+# Pairs of near points held at once, about 80 bytes each: in plan the points of a wall lie on top of one another, so
+# that each has hundreds around it.
+_PAIRS_AT_ONCE = 500_000
 
 # Lines are one wall where one line fits the points of both to this share of the tolerance.
 _ONE_WALL = 0.45
@@ -140,7 +144,7 @@ def find_lines(
         Lines through at least the minimum length of wall, most of it covered by points.
     """
     lines: list[WallLine] = []
-    ways = _ways(xy)
+    ways = _ways(xy, monitor.part(0.0, 0.3))
     left = np.flatnonzero(ways.any(axis=1))
     least = max(6, int(min_length / scale.bin))
     while len(left) >= least:
@@ -149,7 +153,7 @@ def find_lines(
             break
         lines.append(line)
         left = left[~np.isin(left, line.points)]
-        monitor.progress(1 - len(left) / len(xy))
+        monitor.progress(1 - 0.7 * len(left) / len(xy))
     return lines
 
 
@@ -158,14 +162,27 @@ def _is_wall(line: WallLine, scale: Scale, min_length: float) -> bool:
     return bool(end - start >= min_length and scale.covered(line.along, start, end) >= _LEAST_COVERED)
 
 
-def _ways(xy: np.ndarray) -> np.ndarray:
+def _ways(xy: np.ndarray, monitor: Monitor) -> np.ndarray:
     """Return the unit vector (n, 2) along which the points around each point lie; 0 where they lie along none."""
-    pairs = spatial.cKDTree(xy).sparse_distance_matrix(spatial.cKDTree(xy), _AROUND, output_type="ndarray")
-    point, offset = pairs["i"], xy[pairs["j"]] - xy[pairs["i"]]
-    count = np.bincount(point, minlength=len(xy))
-    mean = [np.bincount(point, offset[:, k], len(xy)) / count for k in (0, 1)]
+    tree = spatial.cKDTree(xy)
+    ways = np.empty((len(xy), 2))
+    pairs = np.cumsum(tree.query_ball_point(xy[tree.indices], _AROUND, return_length=True))
+    parts = np.split(tree.indices, np.searchsorted(pairs, np.arange(_PAIRS_AT_ONCE, pairs[-1], _PAIRS_AT_ONCE)))
+    for done, rows in enumerate(parts, start=1):
+        if len(rows):
+            ways[rows] = _ways_of(rows, xy, tree)
+        monitor.progress(done / len(parts))
+    return ways
+
+
+def _ways_of(rows: np.ndarray, xy: np.ndarray, tree: Any) -> np.ndarray:
+    """Return what :func:`_ways` does for some of the points; ``tree`` is that of all."""
+    pairs = spatial.cKDTree(xy[rows]).sparse_distance_matrix(tree, _AROUND, output_type="ndarray")
+    point, offset = pairs["i"], xy[pairs["j"]] - xy[rows[pairs["i"]]]
+    count = np.bincount(point, minlength=len(rows))
+    mean = [np.bincount(point, offset[:, k], len(rows)) / count for k in (0, 1)]
     xx, xy_, yy = (
-        np.bincount(point, offset[:, a] * offset[:, b], len(xy)) / count - mean[a] * mean[b]
+        np.bincount(point, offset[:, a] * offset[:, b], len(rows)) / count - mean[a] * mean[b]
         for a, b in ((0, 0), (0, 1), (1, 1))
     )
     # Half the angle of (xx - yy, 2 xy) is that of the larger eigenvector.

@@ -83,10 +83,15 @@ class WallOutline:
 
     @property
     def seen(self) -> float:
-        """Share of the outline that has wall points."""
-        edges = [edge for ring in self.rings for edge in ring]
-        length = np.array([np.hypot(*(edge.end - edge.start)) for edge in edges])
-        return float(np.sum(length * [edge.quality for edge in edges]) / length.sum())
+        """Share of the outline that has wall points, 0 to 1."""
+        return share_seen(self.rings)
+
+
+def share_seen(rings: list[list[WallEdge]]) -> float:
+    """Return the share of the length of rings that has wall points, 0 to 1."""
+    edges = [edge for ring in rings for edge in ring]
+    length = np.array([np.hypot(*(edge.end - edge.start)) for edge in edges])
+    return float(np.sum(length * [edge.quality for edge in edges]) / length.sum())
 
 
 @dataclass(frozen=True)
@@ -239,8 +244,10 @@ def _through_few(line: WallLine, half: float, walls: np.ndarray, scale: Scale) -
     beside = np.flatnonzero((np.abs(across) <= _EAVE) & (np.abs(along) <= half))
     if not len(beside):
         return line
-    together = np.abs(across[beside, None] - across[beside]) <= scale.tolerance / 2
-    best = beside[together[np.argmax(together.sum(axis=1))]]
+    place, near = across[beside], scale.tolerance / 2
+    ordered = np.sort(place)
+    count = np.searchsorted(ordered, place + near, side="right") - np.searchsorted(ordered, place - near)
+    best = beside[np.abs(place - place[np.argmax(count)]) <= near]
     if len(best) < _FEW or scale.covered(along[best], -half, half) < _LEAST_COVERED:
         return line
     moved = line.point + np.mean(across[best]) * line.normal

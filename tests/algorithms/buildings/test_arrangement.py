@@ -94,3 +94,14 @@ def test_no_other_choice_of_cells_is_cheaper(seed):
     least = min(total(np.array(choice, bool)) for choice in itertools.product((False, True), repeat=n))
     # Costs are rounded to a thousandth each.
     assert found == pytest.approx(least, abs=0.001 * (len(cost) + 2 * n))
+
+
+@pytest.mark.parametrize("forbidden", [1e3, 3e6, 1e12])
+def test_costs_beyond_32_bits_forbid_as_smaller_ones_do(forbidden):
+    """Square meters beside large roofs cost more than fits, and such cells were taken for free."""
+    cells = Arrangement(np.zeros((1, 2)), np.array([(0.0, 1.0)]), LOW, HIGH)
+    cost = np.ones(len(cells.edges))
+    kept_out = cells.cheapest(cost, np.array([0.0, forbidden]), np.array([50.0, 0.0]))
+    kept_in = cells.cheapest(cost, np.array([50.0, 0.0]), np.array([0.0, forbidden]))
+    assert kept_out.tolist() == [True, False]
+    assert kept_in.tolist() == [False, True]

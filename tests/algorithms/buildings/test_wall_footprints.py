@@ -1,10 +1,14 @@
 """Footprints of walls that were made point by point, so that every corner is known."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.buildings.outlines import signed_area
 from lidar_buildings.algorithms.buildings.wall_footprints import extract_wall_footprints
+from lidar_buildings.algorithms.buildings.wall_lines import Scale, WallLine
+from lidar_buildings.algorithms.buildings.wall_outline import _through_few
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.tests.monitors import Listening
 
@@ -116,6 +120,20 @@ def test_a_bend_is_seldom_cut_off_where_the_roof_has_holes_and_the_walls_few_poi
         arrays, true = holed_bend(seed)
         cut.append(errors(extract_wall_footprints(**arrays)[0], true).max() > 0.5)
     assert sum(cut) <= 1
+
+
+def test_an_expected_wall_moves_to_most_of_the_points_beside_it_in_little_memory(rng):
+    """A hedge before a wall that nobody saw has thousands of points: pairs of them all took gigabytes."""
+    hedge = np.column_stack([rng.uniform(-5, 5, 4000), rng.uniform(-0.3, 0.3, 4000)])
+    face = np.column_stack([rng.uniform(-5, 5, 3000), rng.normal(0.17, 0.01, 3000)])
+    expected = WallLine(np.zeros(2), np.array([1.0, 0.0]), np.zeros(0, np.int64), np.zeros(0), np.nan, True)
+    walls = np.concatenate([hedge, face])
+    tracemalloc.start()
+    line = _through_few(expected, 5.0, walls, Scale(0.1, 0.5))
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert line.point[1] == pytest.approx(0.17, abs=0.02)
+    assert peak < 200 * len(walls)
 
 
 def test_right_angles_are_right_and_others_are_kept(rng):

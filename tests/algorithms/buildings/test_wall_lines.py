@@ -1,8 +1,11 @@
 """Lines through wall points: where they are, that they stop where walls do, and which of them are square."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
+from lidar_buildings.algorithms.buildings import wall_lines
 from lidar_buildings.algorithms.buildings.wall_lines import find_lines, merge_lines, square_up, wall_scale
 from lidar_buildings.algorithms.stage import Monitor
 
@@ -38,6 +41,25 @@ def test_lines_lie_on_the_walls_within_what_noise_allows(rng, per_meter, noise):
         assert abs(place - wanted) < 6 * noise / np.sqrt(len(line.points))
         assert line.deviation == pytest.approx(noise, rel=0.35)
         assert np.rad2deg(np.arccos(np.abs(line.direction).max())) < 6 * np.rad2deg(line.angle_deviation)
+
+
+def test_memory_follows_the_points_and_not_their_pairs(rng):
+    """A wall three meters high, seen from near by, has hundreds of points within a step of each in plan."""
+    xy = wall(rng, (0, 0), (4, 0), 1000)
+    tracemalloc.start()
+    lines = found_in(xy)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert len(lines) == 1
+    assert peak < 60e6
+
+
+def test_walls_are_the_same_however_many_pairs_are_held(rng, monkeypatch):
+    xy = np.concatenate([wall(rng, (0, 0), (6, 0), 40), wall(rng, (0, 3), (5, 4), 40), rng.uniform(0, 6, (100, 2))])
+    at_once = found_in(xy)
+    monkeypatch.setattr(wall_lines, "_PAIRS_AT_ONCE", 500)
+    in_parts = found_in(xy)
+    assert [line.points.tolist() for line in in_parts] == [line.points.tolist() for line in at_once]
 
 
 def test_scattered_points_are_no_wall(rng):
