@@ -11,11 +11,23 @@ from ..algorithms.stage import Cancelled, Monitor, Param, Stage
 
 
 class FeedbackMonitor(Monitor):
-    """A monitor that speaks through a QgsProcessingFeedback and stops when the user cancels."""
+    """A monitor that speaks through a QgsProcessingFeedback and stops when the user cancels.
 
-    def __init__(self, feedback: QgsProcessingFeedback, stage: Optional[Stage] = None) -> None:
+    Parameters
+    ----------
+    feedback : QgsProcessingFeedback
+        What shows progress and the log.
+    stage : Stage, optional
+        The stage that runs: its labels and units are those of the log.
+    given : dict, optional
+        Its tunables; those with a value were set by the user, and the log doesn't call them automatic.
+    """
+
+    def __init__(
+        self, feedback: QgsProcessingFeedback, stage: Optional[Stage] = None, given: Optional[dict[str, Any]] = None
+    ) -> None:
         super().__init__()
-        self._feedback, self._stage = feedback, stage
+        self._feedback, self._stage, self._given = feedback, stage, given or {}
 
     def progress(self, fraction: float) -> None:
         """Move the progress bar, or raise :class:`Cancelled`."""
@@ -24,10 +36,11 @@ class FeedbackMonitor(Monitor):
         self._feedback.setProgress(100.0 * fraction)
 
     def resolved(self, **values: Any) -> None:
-        """Log and keep the values that automatic tunables took."""
+        """Keep the values that stages tell, and log those that the user didn't give."""
         super().resolved(**values)
         for name, value in values.items():
-            self._feedback.pushInfo(self._sentence(name, value))
+            if self._given.get(name) is None:
+                self._feedback.pushInfo(self._sentence(name, value))
 
     def warn(self, sentence: str) -> None:
         """Log and keep a warning."""

@@ -207,7 +207,7 @@ class StageAlgorithm(QgsProcessingAlgorithm):
         """Read, run the stage, write; all or nothing."""
         announce(self.stage.title, feedback)
         tell_unknown(self, parameters, feedback)
-        monitor = FeedbackMonitor(feedback, self.stage)
+        monitor = FeedbackMonitor(feedback, self.stage, self.job.tunables)
         with one_sentence(), nothing_left_on_failure(self._target_files(parameters)) as written:
             outcome, place = self._run(parameters, context, monitor)
             results = self._numbers(outcome, monitor)

@@ -54,9 +54,9 @@ def toy_lift(
     Nobody (2000), Nothing.
     """
     monitor.progress(0.5)
-    if base is None:
-        base = float(xyz[:, 2].min())
-        monitor.resolved(base=base)
+    base = float(xyz[:, 2].min()) if base is None else base
+    # Many stages tell all values that they go by, given or not.
+    monitor.resolved(base=base)
     chosen = np.isin(classification, [{"ground": 2, "building": 6}[word] for word in only])
     lifted = xyz[:, 2] - base + times * step * (1 if sign == "up" else -1) * chosen
     return np.full(len(xyz), step) if flat else lifted
