@@ -148,14 +148,24 @@ def merged_layout(layouts: list[Layout]) -> Layout:
     point_format = min(i for i in range(len(FIELDS)) if names <= set(Layout(i).names))
     extras: dict[str, ExtraField] = {}
     for field in (field for layout in layouts for field in layout.extras):
-        if not field.is_scalar or not field.name:
+        if not _has_numbers(field):
             # Bytes of unknown meaning and vectors are kept where tiles have the same of them.
-            extras.setdefault(f"{field.name} {field.dtype}", field)
+            extras.setdefault(_name_among_all(field), field)
             continue
         same = extras.setdefault(field.name, field.without_range())
         if not field.same_numbers(same):
             extras[field.name] = new_field(field.name, "f8", field.description)
     return Layout(point_format, tuple(extras.values()))
+
+
+def _has_numbers(field: ExtraField) -> bool:
+    """Whether a field is one number with a name, by which the same one is known in other files."""
+    return field.is_scalar and bool(field.name)
+
+
+def _name_among_all(field: ExtraField) -> str:
+    """Return what tells a field from the others of files that are merged: its name, or name and type."""
+    return field.name if _has_numbers(field) else f"{field.name} {field.dtype}"
 
 
 def convert(points: np.ndarray, source: Layout, target: Layout, out: np.ndarray) -> None:
@@ -164,15 +174,13 @@ def convert(points: np.ndarray, source: Layout, target: Layout, out: np.ndarray)
     Extra numbers that the source lacks become NaN where they can, else 0.
     """
     source.copy_standard(points, target, out)
-    given = {
-        (field.name if field.is_scalar else f"{field.name} {field.dtype}"): i for i, field in enumerate(source.extras)
-    }
+    given = {_name_among_all(field): i for i, field in enumerate(source.extras)}
     for i, field in enumerate(target.extras):
-        at = given.get(field.name if field.is_scalar else f"{field.name} {field.dtype}")
+        at = given.get(_name_among_all(field))
         if at is None:
             if field.is_scalar and field.dtype.kind == "f":
                 out[f"extra{i}"] = np.nan
             continue
         stored = points[f"extra{at}"]
-        same = not field.is_scalar or source.extras[at].same_numbers(field)
+        same = not _has_numbers(field) or source.extras[at].same_numbers(field)
         out[f"extra{i}"] = stored if same else source.extras[at].decode(stored)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Callable, Optional
 
@@ -15,6 +16,9 @@ _PAIRS_AT_ONCE = 1_000_000
 
 # Boxes this many steps away can still hold a point that is near.
 _REACH = 2
+
+# Numbers of boxes are of 64 bits.
+_MOST_BOXES = 2**63 - 1
 
 Offset = tuple[int, int, int]
 
@@ -37,12 +41,23 @@ class Boxes:
         Number of each occupied box, ascending.
     start, size : ndarray of shape (b,)
         Where a box's points start in ``order``, and how many they are.
+
+    Raises
+    ------
+    ValueError
+        If the points are spread so far that there are more boxes than numbers.
     """
 
     def __init__(self, xyz: np.ndarray, side) -> None:
         box = np.floor((xyz - xyz.min(axis=0)) / side).astype(np.int64)
         # Room on all sides keeps neighbors from wrapping around.
         self.shape = box.max(axis=0) + 2 * _REACH + 1
+        if math.prod(self.shape.tolist()) > _MOST_BOXES:
+            spread = " by ".join(f"{extent:,.0f}" for extent in np.ptp(xyz, axis=0))
+            raise ValueError(
+                f"The points are spread over {spread} m, too far to be looked at in boxes of {np.min(side):.2g} m; "
+                "remove points that lie far off, or choose larger distances."
+            )
         key = self._key(box)
         order = np.argsort(key, kind="stable")
         self._fill(order, xyz[order], key[order])

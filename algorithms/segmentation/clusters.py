@@ -79,7 +79,7 @@ def segment_clusters(
     Raises
     ------
     ValueError
-        If a minimum height is asked for and heights are missing.
+        If a minimum height is asked for and heights are missing, or the points are spread too far for the distance.
 
     Notes
     -----

@@ -80,7 +80,7 @@ def segment_regions(
     Raises
     ------
     ValueError
-        If a minimum height is asked for and heights are missing.
+        If a minimum height is asked for and heights are missing, or the points are spread too far for the distances.
 
     Notes
     -----

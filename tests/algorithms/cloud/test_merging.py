@@ -156,6 +156,17 @@ def test_extra_dimensions_are_united(make_las):
     np.testing.assert_array_equal(stored[2][100:], clouds[1].points["extra0"])
 
 
+def test_extra_numbers_without_a_name_keep_their_places(make_las):
+    """All of a point's nameless numbers once got the value of the last one; kinds 2 is int8, 4 int16, 6 int32."""
+    nameless = extras(("", 2, {}), ("", 4, {}), ("", 6, {}))
+    clouds = [read_cloud(make_las(name=name, extra=7, vlrs=nameless)) for name in ("a.las", "b.las")]
+    union = merge_records(clouds, None)
+    assert [field.dtype.itemsize for field in union.header.layout.extras] == [1, 2, 4]
+    for i in range(3):
+        parts = [cloud.points[f"extra{i}"] for cloud in clouds]
+        np.testing.assert_array_equal(union.points[f"extra{i}"], np.concatenate(parts))
+
+
 def test_what_stages_have_set_is_kept_and_known_dimensions_have_one_name(make_las):
     aliased = make_las(name="a.las", extra=2, vlrs=extras(("height above ground", 4, {"options": 8, "scale": 0.01})))
     clouds = [read_cloud(aliased), read_cloud(make_las(name="b.las")), read_cloud(make_las(name="c.las"))]

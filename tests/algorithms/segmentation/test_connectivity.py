@@ -67,6 +67,14 @@ def test_exactly_the_distance_apart_is_not_linked(direction):
     assert connect(pair * (1 - 1e-12), 2.5, 2.5, Monitor()).tolist() == [0, 0]
 
 
+def test_points_with_more_boxes_than_numbers_are_refused():
+    """Boxes 2^20 apart in each row of 2^22 rows had the same number of 64 bits: such points were one component."""
+    side = np.sqrt(2) * (1 + 1e-6)
+    far = np.array([[0.0, 0, 0], [2.0**20, 0, 0], [0, 2.0**22 - 5, 2.0**22 - 5]])
+    with pytest.raises(ValueError, match="spread over 1,048,576 by 4,194,299 by 4,194,299 m, .*remove points"):
+        connect(far, side, 1.0, Monitor())
+
+
 def test_both_distances_must_be_kept():
     """Near in plan but not in height, near in height but not in plan, and far by the sphere's radius only."""
     xyz = np.array([[0, 0, 0], [0, 0, 0.6], [1.2, 0, 0], [0.9, 0, 0.4]])
