@@ -50,6 +50,9 @@ INPUT, INPUTS, REFERENCE, OUTPUT, REPORT = "INPUT", "INPUTS", "REFERENCE", "OUTP
 # How far the progress is when clouds are read, when the stage is done, and when the cloud is written.
 _READ, _RUN, _WRITTEN = 0.15, 0.8, 0.97
 
+# What an optional output is that nobody asks for: left out, or written without a value on the command line.
+_UNWANTED = (None, "")
+
 # Features that are written between two looks at whether to stop.
 _BETWEEN_CHECKS = 1000
 
@@ -281,7 +284,7 @@ class StageAlgorithm(QgsProcessingAlgorithm):
     ) -> dict:
         """Write a layer, if it is wanted; return its output. Features are in meters from the origin of the place."""
         name = layer.name.upper()
-        if parameters.get(name) is None:
+        if parameters.get(name) in _UNWANTED:
             return {}
         sink, target = self.parameterAsSink(
             parameters, name, context, fields_of(layer), wkb_type(layer, features), place.crs
@@ -313,7 +316,7 @@ class StageAlgorithm(QgsProcessingAlgorithm):
     ) -> dict:
         """Write a raster, if it is wanted; return its output."""
         name = raster.name.upper()
-        if parameters.get(name) is None:
+        if parameters.get(name) in _UNWANTED:
             return {}
         target = self.parameterAsOutputLayer(parameters, name, context)
         written += files_of(self.parameterDefinition(name), target)

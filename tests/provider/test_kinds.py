@@ -415,6 +415,15 @@ def test_a_raster_is_a_cog_at_its_place(provider, context, log, town_file, out):
     np.testing.assert_array_equal(values, wanted)
 
 
+@pytest.mark.parametrize("nothing", [None, ""])
+def test_results_named_without_a_file_are_not_made(provider, context, log, town_file, out, nothing):
+    """``FLOOR=`` on the command line was an error that named no file."""
+    given = {"INPUT": str(town_file), "TOP": str(out / "top.tif"), "FLOOR": nothing}
+    assert run("toyheights", given, context, log) == {"TOP": str(out / "top.tif")}
+    given = {"OUTPUT": str(out / "a.las"), "TRUTH": nothing}
+    assert run("toymake", given, context, log) == {"OUTPUT": str(out / "a.las")}
+
+
 def test_a_raster_in_feet_and_where_there_is_nothing(provider, context, log, town, tmp_path, out):
     write_cloud(create_cloud(town, QgsCoordinateReferenceSystem(FOOT).toWkt()), tmp_path / "feet.las")
     run("toypicture", {"INPUT": str(tmp_path / "feet.las"), "PICTURE": str(out / "a.tif")}, context, log)
