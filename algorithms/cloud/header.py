@@ -250,10 +250,12 @@ class _Reader:
         if header.minor >= 4:
             header.evlrs_at, n_evlrs, count, *returns = _LONG.unpack_from(self.raw, SIZES[3])
             header.count, header.returns = (count, tuple(returns)) if count else (header.count, header.returns)
-            if n_evlrs * _EVLR.size > self.total - header.evlrs_at:
+            if n_evlrs * _EVLR.size > max(self.total - header.evlrs_at, 0):
                 raise _truncated(self.path, f"{n_evlrs} EVLRs should start at byte {header.evlrs_at} of {self.total}")
-            self.stream.seek(header.evlrs_at)
-            header.evlrs = [self._record(_EVLR, self.total) for _ in range(n_evlrs)]
+            # Without any, some writers leave a place that is none.
+            if n_evlrs:
+                self.stream.seek(header.evlrs_at)
+                header.evlrs = [self._record(_EVLR, self.total) for _ in range(n_evlrs)]
         if header.waveforms_at and header.encoding & _WAVEFORMS_INSIDE and header.find(WAVEFORMS) is None:
             self.stream.seek(header.waveforms_at)
             header.evlrs.append(self._record(_EVLR, self.total))

@@ -117,8 +117,8 @@ def segment_planes_ransac(
     Raises
     ------
     ValueError
-        If a minimum height is asked for and heights are missing, the least slope is above the largest, or the points are
-        spread too far for the voxels.
+        If a minimum height is asked for and heights are missing, the least slope is above the largest, or the points
+        are spread too far for the voxels.
 
     Notes
     -----

@@ -56,6 +56,12 @@ def test_a_look_at_the_header_finds_what_is_wrong(good, tmp_path, kind):
         check_readable(tmp_path / "none.las")
 
 
+@pytest.mark.parametrize("place", [10**12, 2**64 - 1])
+def test_where_records_would_start_that_a_file_has_none_of_does_not_matter(good, tmp_path, place):
+    (tmp_path / "a.las").write_bytes(patched(good[".las"], 235, "<Q", place))
+    assert len(read_cloud(tmp_path / "a.las")) == 60_000
+
+
 def test_a_damaged_record_does_not_spoil_the_sentence(good, tmp_path):
     """Its name is whatever bytes are there, line breaks and other signs that can't be shown among them."""
     path = tmp_path / "a.laz"
