@@ -9,16 +9,13 @@ import numpy as np
 from ..cloud.asprs import NOISE, PointClass
 from ..cloud.density import point_density
 from ..params import MinBuildingArea, PointDensity, SplitHeight
-from ..segmentation.clusters import dbscan
+from ..segmentation.clusters import dbscan, points_at_corner
 from ..segmentation.extent import plan_areas
 from ..stage import Monitor, Param, stage
 
 # Surfaces of one roof lie within this distance (m), or so many point spacings; roofs of two buildings seldom do.
 # Farther apart than a lane is wide (m) they never are one roof, however few points there are.
 _LEAST_GAP, _GAP_SPACINGS, _MOST_GAP = 0.6, 3.0, 5.0
-
-# The corner of a roof sees a quarter of the points that its middle sees.
-_CORNER = 0.25
 
 
 @stage(
@@ -116,7 +113,7 @@ def _clusters(xyz: np.ndarray, gap: float, min_area: float, density: float, moni
     if not len(xyz):
         monitor.progress(1.0)
         return np.zeros(0, np.int32)
-    cluster = dbscan(xyz, gap, max(1, round(_CORNER * np.pi * gap**2 * density)), monitor)
+    cluster = dbscan(xyz, gap, points_at_corner(gap, density), monitor)
     count = int(cluster.max()) + 1
     if not count:
         return np.zeros(len(xyz), np.int32)

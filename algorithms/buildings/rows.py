@@ -11,7 +11,8 @@ from typing import Optional
 
 import numpy as np
 
-from ..packages import csgraph, ndimage, sparse, spatial
+from ..groups import components
+from ..packages import ndimage, spatial
 from ..stage import Monitor
 from .lines import line_along
 from .outlines import Tracing
@@ -357,8 +358,7 @@ def _pairs(tracing: Tracing, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def _pieces(pairs: np.ndarray, count: int) -> np.ndarray:
     """Return the piece, from 0, of each of ``count`` things that pairs of them hold together."""
-    graph = sparse.coo_matrix((np.ones(len(pairs), bool), tuple(pairs.T)), (count, count))
-    return csgraph.connected_components(graph, directed=False)[1]
+    return components(pairs[:, 0], pairs[:, 1], count)[1]
 
 
 def _crossed(ends: np.ndarray, segments: np.ndarray) -> list:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..cloud.density import point_spacing
 from ..features.noise import SurfaceSample
+from ..groups import members
 from ..params import MinBuildingArea, Seed
 from ..stage import Features, Field, Layer, Monitor, Param, stage
 from .outlines import perimeter, signed_area, trace_outlines
@@ -249,21 +250,13 @@ class _Building:
 
 def _buildings(xyz: np.ndarray, cluster_id: np.ndarray, wall_of: Optional[np.ndarray]) -> list[_Building]:
     """Return the buildings that have a roof, by number."""
-    roofs, walls = _by_number(cluster_id), {} if wall_of is None else _by_number(wall_of)
+    roofs, walls = members(cluster_id), {} if wall_of is None else members(wall_of)
     buildings = []
     for number, rows in roofs.items():
         roof, own = (xyz[part[np.lexsort(xyz[part].T)], :2] for part in (rows, walls.get(number, rows[:0])))
         origin = roof.min(axis=0)
         buildings.append(_Building(number, origin, roof - origin, own - origin, rows))
     return buildings
-
-
-def _by_number(number: np.ndarray) -> dict[int, np.ndarray]:
-    """Return the positions of each number from 1, ascending."""
-    positive = np.flatnonzero(number > 0)
-    order = positive[np.argsort(number[positive], kind="stable")]
-    parts = np.split(order, np.flatnonzero(np.diff(number[order])) + 1)
-    return {int(number[part[0]]): part for part in parts if len(part)}
 
 
 def _bare(rings: list) -> list[list[WallEdge]]:

@@ -6,7 +6,7 @@ from typing import Annotated, Optional
 
 import numpy as np
 
-from ..cloud.asprs import NOISE, PointClass
+from ..cloud.asprs import PointClass
 from ..features.eigen import (
     Nearest,
     Neighborhood,
@@ -17,8 +17,10 @@ from ..features.eigen import (
     smallest_eigenvectors,
 )
 from ..features.noise import SurfaceSample
+from ..groups import members
 from ..packages import spatial
 from ..params import SplitHeight
+from ..segmentation.candidates import NO_OBJECTS
 from ..stage import Monitor, Param, stage
 
 # A wall is smooth to this many deviations of the noise; leaves and corners are not.
@@ -33,8 +35,6 @@ _ROOF_CELL, _NEAR = 0.25, 2.0
 
 # The hull of a roof without area: one side that everything is outside of.
 _NOWHERE = np.array([[0.0, 0.0, np.inf]])
-
-_OTHERS = (PointClass.GROUND, PointClass.WATER, PointClass.IGNORED_GROUND, *NOISE)
 
 
 @stage(
@@ -162,7 +162,7 @@ def classify_walls(
     monitor.progress(0.2)
     wall_of = np.zeros(len(xyz), np.int32)
     is_low = (height_above_ground >= min_height) & (height_above_ground < split_height)
-    low = np.flatnonzero(is_low & (cluster_id == 0) & ~np.isin(classification, _OTHERS))
+    low = np.flatnonzero(is_low & (cluster_id == 0) & ~np.isin(classification, NO_OBJECTS))
     owner = _owners(xyz[low, :2], xyz[:, :2], cluster_id, margin)
     low, owner = low[owner > 0], owner[owner > 0]
     monitor.progress(0.4)
@@ -200,22 +200,19 @@ def _owners(xy: np.ndarray, all_xy: np.ndarray, cluster_id: np.ndarray, margin: 
     nearest = spatial.cKDTree(places).query(xy - start, distance_upper_bound=_NEAR + margin, workers=-1)[1]
     found = np.flatnonzero(nearest < len(first))
     owner[found] = cluster_id[roof[first]][nearest[found]]
-    order = found[np.argsort(owner[found], kind="stable")]
-    for part in np.split(order, np.flatnonzero(np.diff(owner[order])) + 1):
-        if len(part):
-            sides = hulls.get(int(owner[part[0]]), _NOWHERE)
-            owner[part[((xy[part] - start) @ sides[:, :2].T + sides[:, 2] > margin).any(axis=1)]] = 0
+    for number, part in members(owner).items():
+        sides = hulls.get(number, _NOWHERE)
+        owner[part[((xy[part] - start) @ sides[:, :2].T + sides[:, 2] > margin).any(axis=1)]] = 0
     return owner
 
 
 def _hulls(xy: np.ndarray, cluster_id: np.ndarray) -> dict[int, np.ndarray]:
     """Return the sides (k, 3) of each cluster's convex hull: outward unit normal and offset, n·p + d <= 0 inside."""
     hulls = {}
-    order = np.argsort(cluster_id, kind="stable")
-    for part in np.split(order, np.flatnonzero(np.diff(cluster_id[order])) + 1):
+    for number, part in members(cluster_id).items():
         # A roof that is a line has no hull.
         if len(part) >= 3 and np.linalg.eigvalsh(np.cov(xy[part].T))[0] > 1e-6:
-            hulls[int(cluster_id[part[0]])] = spatial.ConvexHull(xy[part]).equations
+            hulls[number] = spatial.ConvexHull(xy[part]).equations
     return hulls
 
 

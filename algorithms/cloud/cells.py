@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..packages import csgraph, sparse
+from ..groups import components
 
 # A raster larger than this, in cells and in cells for each point, is a mistake in the coordinates.
 _MOST_CELLS, _MOST_CELLS_PER_POINT = 10_000_000, 20
@@ -131,9 +131,7 @@ def connected_cells(grid: Grid, cells: np.ndarray) -> tuple[int, np.ndarray]:
         beside, found = find_cells(cells, cells + step)
         here.append(np.flatnonzero(found))
         there.append(beside[found])
-    rows, columns = np.concatenate(here), np.concatenate(there)
-    pairs = sparse.coo_matrix((np.ones(len(rows), bool), (rows, columns)), (len(cells), len(cells)))
-    return csgraph.connected_components(pairs, directed=False)
+    return components(np.concatenate(here), np.concatenate(there), len(cells))
 
 
 def find_cells(cells: np.ndarray, wanted: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -64,8 +64,9 @@ class Cloud:
         self.wkt = wkt_of(header)
         self.sources = sources or []
         self._changes: dict[str, np.ndarray] = {}
-        low = self._meters(np.array([points[axis].min() for axis in "XYZ"], float)[None])[0]
-        self.origin = np.append(np.floor(low[:2] / _ORIGIN_STEP) * _ORIGIN_STEP, 0.0)
+        low = np.array([points[axis].min() for axis in "XY"]) * (header.scale[:2] * units.horizontal)
+        low += header.offset[:2] * units.horizontal
+        self.origin = np.append(np.floor(low / _ORIGIN_STEP) * _ORIGIN_STEP, 0.0)
 
     def __len__(self) -> int:
         return len(self.points)
@@ -78,10 +79,6 @@ class Cloud:
     @property
     def _factors(self) -> np.ndarray:
         return np.array([self.units.horizontal, self.units.horizontal, self.units.vertical])
-
-    def _meters(self, steps: np.ndarray, origin: Union[float, np.ndarray] = 0.0) -> np.ndarray:
-        """Return integer coordinates (m, 3) as meters from ``origin``."""
-        return steps * (self.header.scale * self._factors) + (self.header.offset * self._factors - origin)
 
     def has(self, name: str) -> bool:
         """Whether the cloud has the dimension of that Python name, read or set."""

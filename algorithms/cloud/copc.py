@@ -8,6 +8,7 @@ from typing import BinaryIO, Callable
 
 import numpy as np
 
+from ..groups import run_starts
 from ..stage import Monitor
 from .header import COPC_HIERARCHY, COPC_INFO, LASZIP, WAVEFORMS, WKT_BIT, Header, Record
 from .las import AT_ONCE, Tally, finish
@@ -152,7 +153,7 @@ def _levels(codes: np.ndarray, monitor: Monitor) -> np.ndarray:
         monitor.progress(1 - len(left) / len(codes))
         current = codes[left]
         taken = _in_leaves(current >> np.uint64(3 * (_BITS - level)), level)
-        first = _starts(current >> np.uint64(3 * (_BITS - level - _GRID_LEVELS)))
+        first = run_starts(current >> np.uint64(3 * (_BITS - level - _GRID_LEVELS)))
         lengths = np.diff(np.append(first, len(current)))
         taken[first + (random.random(len(first)) * lengths).astype(np.int64)] = True
         levels[left[taken]] = level
@@ -164,14 +165,9 @@ def _levels(codes: np.ndarray, monitor: Monitor) -> np.ndarray:
 
 def _in_leaves(nodes: np.ndarray, level: int) -> np.ndarray:
     """Return which points lie in nodes that hold all that is left, bool (n,)."""
-    first = _starts(nodes)
+    first = run_starts(nodes)
     counts = np.diff(np.append(first, len(nodes)))
     return np.repeat((counts <= _LEAF_POINTS) | (level == _DEEPEST), counts)
-
-
-def _starts(values: np.ndarray) -> np.ndarray:
-    """Return where runs of equal values begin."""
-    return np.flatnonzero(np.concatenate(([True], values[1:] != values[:-1])))
 
 
 def _nodes(codes: np.ndarray, levels: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

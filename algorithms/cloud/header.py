@@ -110,10 +110,6 @@ class Header:
         vlrs = [record for record in self.vlrs if record.key not in keys]
         return replace(self, vlrs=vlrs, evlrs=[record for record in self.evlrs if record.key not in keys])
 
-    def as_version_4(self) -> Header:
-        """Return the header of the same file as LAS 1.4."""
-        return replace(self, minor=4) if self.minor < 4 else self
-
     def with_layout(self, layout: Layout) -> Header:
         """Return the header for records of ``layout``, its Extra Bytes VLR included and in its old place."""
         payload = payload_of(layout.extras)

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..cloud.cells import Grid, connected_cells, distinct, find_cells, grid_over, plan_box
-from ..packages import csgraph, sparse, spatial
+from ..groups import components
+from ..packages import spatial
 from ..stage import Monitor
 
 # Points so near to each other (m, and point spacings) are one thing: chimneys and what stands on roofs are lower,
@@ -114,9 +115,7 @@ def _things(xyz: np.ndarray, link: float) -> np.ndarray:
             beside, found = find_cells(voxels, voxels + step)
             here.append(np.flatnonzero(found))
             there.append(beside[found])
-    rows, columns = np.concatenate(here), np.concatenate(there)
-    pairs = sparse.coo_matrix((np.ones(len(rows), bool), (rows, columns)), (len(voxels), len(voxels)))
-    return csgraph.connected_components(pairs, directed=False)[1][voxel]
+    return components(np.concatenate(here), np.concatenate(there), len(voxels))[1][voxel]
 
 
 def _loose(xyz: np.ndarray, thing: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarray:

@@ -9,6 +9,7 @@ from typing import Annotated, Optional
 
 import numpy as np
 
+from ..groups import items, run_starts
 from ..stage import Monitor, Param, stage
 from ..threads import in_chunks
 
@@ -46,9 +47,8 @@ class _Sorted:
 
     def rows(self, voxels: np.ndarray) -> np.ndarray:
         """Return the positions of the points of some voxels, voxel after voxel."""
-        count = self.count[voxels]
-        first = np.cumsum(count) - count
-        return self.order[np.repeat(self.starts[voxels] - first, count) + np.arange(count.sum())]
+        voxel, item = items(self.count[voxels])
+        return self.order[self.starts[voxels][voxel] + item]
 
     def chunks(self, voxels: np.ndarray) -> list[np.ndarray]:
         """Cut a list of voxels into some that have about as many points as are worked on at once."""
@@ -150,7 +150,7 @@ def downsample_voxels(
         which = np.repeat(np.arange(len(these)), count)
         # The places inside each voxel, their sum, and the point nearest to their mean.
         place = _places(xyz.take(rows, axis=0), voxel_size)
-        total = np.add.reduceat(place, _firsts(which), axis=0)
+        total = np.add.reduceat(place, run_starts(which), axis=0)
         nearest = _nearest(place, total, which, _TOUCH / voxel_size * _STEPS, (gps_time, return_number), rows)
         selected[these] = rows[nearest]
         shift = total / count[:, None] - place[nearest]
@@ -166,7 +166,7 @@ def downsample_voxels(
 def _by_voxel(xyz: np.ndarray, size: float, monitor: Monitor) -> _Sorted:
     key = _keys(xyz, size, monitor)
     order = np.argsort(key, kind="stable")
-    starts = _firsts(key[order])
+    starts = run_starts(key[order])
     return _Sorted(order, starts, np.diff(starts, append=len(order)))
 
 
@@ -253,14 +253,14 @@ def _nearest(
     # Whole numbers: the two points of a pair are equally near to the last bit.
     away = (place * count[:, None] - total[which]).astype(float)
     distance = np.sqrt(np.einsum("ij,ij->i", away, away)) / count
-    least = np.minimum.reduceat(distance, _firsts(which))
+    least = np.minimum.reduceat(distance, run_starts(which))
     left = np.flatnonzero(distance <= (least + touch)[which])
     for values in _criteria(place, times, rows):
         if len(left) == len(total):
             break
-        least = np.minimum.reduceat(values[left], _firsts(which[left]))
+        least = np.minimum.reduceat(values[left], run_starts(which[left]))
         left = left[values[left] == least[which[left]]]
-    return left[_firsts(which[left])]
+    return left[run_starts(which[left])]
 
 
 def _criteria(place: np.ndarray, times: tuple, rows: np.ndarray) -> Iterator[np.ndarray]:
@@ -271,20 +271,15 @@ def _criteria(place: np.ndarray, times: tuple, rows: np.ndarray) -> Iterator[np.
             yield np.nan_to_num(dimension[rows])
 
 
-def _firsts(which: np.ndarray) -> np.ndarray:
-    """Return where in ``which`` (m,), which is sorted, each number comes first."""
-    return np.flatnonzero(np.diff(which, prepend=-1))
-
-
 def _majority(classes: np.ndarray, which: np.ndarray) -> np.ndarray:
     """Return the most frequent class of each voxel, the lowest of those equally frequent."""
-    firsts = _firsts(which)
+    firsts = run_starts(which)
     made = np.minimum.reduceat(classes, firsts).astype(np.uint8)
     is_mixed = made != np.maximum.reduceat(classes, firsts)
     among = is_mixed[which]
     pair, count = np.unique(which[among] * 256 + classes[among], return_counts=True)
     voxel, kind = np.divmod(pair, 256)
     order = np.lexsort((kind, -count, voxel))
-    first = order[_firsts(voxel[order])]
+    first = order[run_starts(voxel[order])]
     made[voxel[first]] = kind[first]
     return made

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..groups import items
 from ..stage import Monitor
 
 # So many pairs of edges are worked on at a time (each takes about 150 bytes).
@@ -98,7 +99,7 @@ def _meeting_boxes(first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, n
     # A box that begins farther west than the widest is wide ends before this one.
     widest = float((second[:, 1, 0] - second[:, 0, 0]).max())
     low = np.searchsorted(west, first[:, 0, 0] - widest)
-    one, step = _counted(np.searchsorted(west, first[:, 1, 0], side="right") - low)
+    one, step = items(np.searchsorted(west, first[:, 1, 0], side="right") - low)
     other = order[low[one] + step]
     meet = (first[one, 0] <= second[other, 1]).all(axis=1) & (second[other, 0] <= first[one, 1]).all(axis=1)
     one, other = one[meet], other[meet]
@@ -106,15 +107,9 @@ def _meeting_boxes(first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, n
     return one[by_both], other[by_both]
 
 
-def _counted(counts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return each position as often as its count says, and how often it has come before."""
-    position = np.repeat(np.arange(len(counts)), counts)
-    return position, np.arange(len(position)) - np.repeat(np.cumsum(counts) - counts, counts)
-
-
 def _shared(first: Polygons, second: Polygons, one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Return the area that each pair of polygons shares."""
-    pair, step = _counted(first.size[one] * second.size[other])
+    pair, step = items(first.size[one] * second.size[other])
     row, column = np.divmod(step, second.size[other[pair]])
     # From a corner of the pair: large coordinates would lose the area's digits.
     origin = first.box[one[pair], 0][:, None]

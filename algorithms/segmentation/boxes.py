@@ -8,7 +8,7 @@ from typing import Callable, Optional
 
 import numpy as np
 
-from ..packages import csgraph, sparse
+from ..groups import components, run_starts
 from ..stage import Monitor
 
 # Point pairs compared at once: 130 bytes each, so 130 MB.
@@ -64,9 +64,7 @@ class Boxes:
 
     def _fill(self, order: np.ndarray, xyz: np.ndarray, key: np.ndarray) -> None:
         self.order, self.xyz = order, xyz
-        is_start = np.ones(len(key), bool)
-        is_start[1:] = key[1:] != key[:-1]
-        self.start = np.flatnonzero(is_start)
+        self.start = run_starts(key)
         self.keys, self.size = key[self.start], np.diff(self.start, append=len(key))
 
     def __len__(self) -> int:
@@ -170,9 +168,7 @@ def _joined(component: np.ndarray, here: np.ndarray, there: np.ndarray) -> np.nd
     """Return the components after joining those of the boxes ``here`` and ``there``."""
     if not len(here):
         return component
-    count = int(component.max()) + 1
-    links = sparse.coo_matrix((np.ones(len(here), bool), (component[here], component[there])), (count, count))
-    return csgraph.connected_components(links, directed=False)[1][component]
+    return components(component[here], component[there], int(component.max()) + 1)[1][component]
 
 
 def by_first_point(component: np.ndarray) -> np.ndarray:

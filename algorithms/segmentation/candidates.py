@@ -8,7 +8,8 @@ import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
 
-_LEFT_OUT = (PointClass.GROUND, PointClass.WATER, PointClass.IGNORED_GROUND, *NOISE)
+# Nothing that stands on the ground is of these classes.
+NO_OBJECTS = (PointClass.GROUND, PointClass.WATER, PointClass.IGNORED_GROUND, *NOISE)
 
 
 def candidates(classification: np.ndarray, height_above_ground: Optional[np.ndarray], min_height: float) -> np.ndarray:
@@ -19,7 +20,7 @@ def candidates(classification: np.ndarray, height_above_ground: Optional[np.ndar
     ValueError
         If a minimum height is asked for and heights are missing.
     """
-    is_candidate = ~np.isin(classification, _LEFT_OUT)
+    is_candidate = ~np.isin(classification, NO_OBJECTS)
     if min_height > 0:
         if height_above_ground is None:
             raise ValueError(

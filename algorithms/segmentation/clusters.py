@@ -94,12 +94,16 @@ def segment_clusters(
     used = candidates(classification, height_above_ground, min_height)
     density = point_density(xyz) if density is None else density
     radius = _RADIUS_SPACINGS / float(np.sqrt(density)) if radius is None else radius
-    if min_points is None:
-        min_points = max(1, round(_CORNER * np.pi * radius**2 * density))
+    min_points = points_at_corner(radius, density) if min_points is None else min_points
     monitor.resolved(density=density, radius=radius, min_points=min_points)
     cluster_id = np.zeros(len(xyz), np.int32)
     cluster_id[used] = dbscan(xyz[used], radius, min_points, monitor) + 1
     return cluster_id
+
+
+def points_at_corner(radius: float, density: float) -> int:
+    """Return how many points, at least 1, lie within ``radius`` (m) of the corner of a level surface."""
+    return max(1, round(_CORNER * np.pi * radius**2 * density))
 
 
 def dbscan(xyz: np.ndarray, radius: float, min_points: int, monitor: Monitor) -> np.ndarray:

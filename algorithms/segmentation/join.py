@@ -6,6 +6,7 @@ from typing import Optional
 
 import numpy as np
 
+from ..groups import items
 from ..stage import Monitor
 from ..threads import in_chunks
 from .boxes import Boxes, around
@@ -100,9 +101,7 @@ def _product(
     here: np.ndarray, there: np.ndarray, start: np.ndarray, count: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return every piece of the voxels ``here`` with every piece of those ``there``."""
-    pairs = count[here] * count[there]
-    which = np.repeat(np.arange(len(here)), pairs)
-    place = np.arange(len(which)) - np.repeat(np.cumsum(pairs) - pairs, pairs)
+    which, place = items(count[here] * count[there])
     first, second = np.divmod(place, count[there][which])
     return start[here[which]] + first, start[there[which]] + second
 
@@ -198,7 +197,6 @@ def _planes_around(
     start = np.cumsum(count) - count
     keys = []
     for here, there in around_each:
-        which = np.repeat(np.arange(len(here)), count[there])
-        place = np.arange(len(which)) - np.repeat(np.cumsum(count[there]) - count[there], count[there])
+        which, place = items(count[there])
         keys.append(here[which] * n_planes + group[start[there[which]] + place])
     return np.divmod(np.unique(np.concatenate(keys)), max(n_planes, 1))

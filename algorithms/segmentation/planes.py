@@ -7,10 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
+from ..features.blocks import PAIRS
 from ..features.eigen import smallest_eigenvectors, symmetric_eigenvalues
-
-# xx, yy, zz, xy, xz, yz.
-PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,10 @@
-"""Which points lie in which boxes, and other bookkeeping of one to many."""
+"""Which points lie in which boxes, and which echo of a pulse is which."""
 
 from __future__ import annotations
 
 import numpy as np
+
+from ..groups import items, run_starts
 
 
 def in_boxes(points: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -33,22 +35,15 @@ def in_boxes(points: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.
     starts = np.searchsorted(key[order], np.arange(shape[0] * shape[1] + 1))
     start = np.clip((low[box] - first) // cell, 0, shape - 1).astype(np.int64)
     end = np.clip((high[box] - first) // cell, 0, shape - 1).astype(np.int64)
-    which, column = _expand(end[:, 0] - start[:, 0] + 1)
+    which, column = items(end[:, 0] - start[:, 0] + 1)
     run = (start[which, 0] + column) * shape[1]
     begin, stop = starts[run + start[which, 1]], starts[run + end[which, 1] + 1]
-    again, offset = _expand(stop - begin)
+    again, offset = items(stop - begin)
     point, box = order[begin[again] + offset], box[which[again]]
     inside = ((points[point] >= low[box]) & (points[point] <= high[box])).all(axis=1)
     return point[inside], box[inside]
 
 
-def _expand(counts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return, for each of ``counts[i]`` items of i, i and the item's number from 0."""
-    owner = np.repeat(np.arange(len(counts)), counts)
-    return owner, np.arange(len(owner)) - np.repeat(np.cumsum(counts) - counts, counts)
-
-
 def rank(owner: np.ndarray) -> np.ndarray:
     """Return the number of each among those of its owner, from 0; ``owner`` (n,) is sorted."""
-    first = np.flatnonzero(np.diff(owner, prepend=-1))
-    return np.arange(len(owner)) - np.repeat(first, np.diff(first, append=len(owner)))
+    return items(np.diff(run_starts(owner), append=len(owner)))[1]
