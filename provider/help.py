@@ -206,8 +206,7 @@ def _dimensions(stage: Stage) -> str:
 def source_text(source: Source) -> str:
     """Return what a vector layer that is read is for, as HTML."""
     needed = "; may be left empty" if source.optional else ""
-    what = {"Polygon": "polygons", "LineString": "lines", "Point": "points"}[source.geometry]
-    title = f"<b>{source.name.upper()}</b>: {html.escape(source.title)}, a layer of {what}{needed}."
+    title = f"<b>{source.name.upper()}</b>: {html.escape(source.title)}, a layer of {source.things}{needed}."
     return f"{title} {inline(source.help)}"
 
 

@@ -35,7 +35,6 @@ _TYPES = {
     "LineString": Qgis.GeometryType.Line,
     "Point": Qgis.GeometryType.Point,
 }
-_WORDS = {"Polygon": "polygons", "LineString": "lines", "Point": "points"}
 _BETWEEN_CHECKS = 1000
 _WKB_POINT, _WKB_LINE, _WKB_POLYGON = 1, 2, 3
 _Z_OF_OLD_WKB = 0x80000000
@@ -70,14 +69,14 @@ def find_source(
     if QgsVariantUtils.isNull(value) or value == "":
         if source.optional:
             return None
-        raise ValueError(f"{source.title} ({name}) is missing; choose a layer of {_WORDS[source.geometry]}.")
+        raise ValueError(f"{source.title} ({name}) is missing; choose a layer of {source.things}.")
     found = algorithm.parameterAsSource(parameters, name, context)
     if found is None:
         raise ValueError(f"{source.title} ({name}) must be a vector layer; there is none at {value}.")
     kind = QgsWkbTypes.geometryType(found.wkbType())
     if kind not in (_TYPES[source.geometry], Qgis.GeometryType.Unknown):
         raise ValueError(
-            f"{source.title} ({name}) must be a layer of {_WORDS[source.geometry]}, got {found.sourceName()!r} with "
+            f"{source.title} ({name}) must be a layer of {source.things}, got {found.sourceName()!r} with "
             f"{QgsWkbTypes.geometryDisplayString(kind).lower()} geometries; choose another."
         )
     return found
@@ -188,13 +187,13 @@ def read_source(
         left_out += not parts
     if left_out and not rows:
         raise ValueError(
-            f"{source.title} has no usable feature: none of {count} has a valid geometry of {_WORDS[source.geometry]}; "
+            f"{source.title} has no usable feature: none of {count} has a valid geometry of {source.things}; "
             "run 'Fix geometries' on the layer, or choose another."
         )
     if left_out:
         monitor.warn(
             f"{source.title}: {left_out} of {count} features are left out; "
-            f"they have no valid geometry of {_WORDS[source.geometry]}."
+            f"they have no valid geometry of {source.things}."
         )
     names = layer.fields().names()
     return Features(geometries, {name: _column([row[i] for row in rows]) for i, name in enumerate(names)})

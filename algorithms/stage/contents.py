@@ -51,6 +51,11 @@ class Source:
     help: str
     optional: bool = False
 
+    @property
+    def things(self) -> str:
+        """What people call its geometries: polygons, lines or points."""
+        return {"Polygon": "polygons", "LineString": "lines", "Point": "points"}[self.geometry]
+
 
 @dataclass
 class Features:
