@@ -61,7 +61,7 @@ def classify_buildings(
     n_neighbors: Annotated[
         Optional[int],
         Param(
-            "Neighbors",
+            "Nearest points",
             "Points of the neighborhood in which the entropy of a point is measured, itself among them (N).",
             low=3,
             high=10_000,

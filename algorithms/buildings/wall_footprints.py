@@ -77,12 +77,12 @@ def extract_wall_footprints(
     min_area: MinBuildingArea = 6.0,
     min_length: Annotated[
         float,
-        Param("Shortest wall", "Length of the shortest wall that is looked for.", unit="m", low=0.2, high=100),
+        Param("Minimum wall length", "Length of the shortest wall that is looked for.", unit="m", low=0.2, high=100),
     ] = 1.2,
     max_overhang: Annotated[
         float,
         Param(
-            "Widest overhang",
+            "Maximum overhang",
             "How far roofs may jut out over their walls; what lies deeper under a roof is inside.",
             unit="m",
             low=0,
@@ -92,7 +92,7 @@ def extract_wall_footprints(
     min_seen: Annotated[
         float,
         Param(
-            "Least share of walls seen",
+            "Minimum share of walls seen",
             "Where less of the perimeter has wall points, the outline of the roof is given instead.",
             low=0,
             high=1,

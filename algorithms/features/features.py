@@ -89,7 +89,7 @@ def compute_features(
     min_neighbors: Annotated[
         int,
         Param(
-            "Fewest nearest points",
+            "Minimum nearest points",
             "Smallest neighborhood that is tried by the neighborhood 'optimal'; fewer than ten describe noise.",
             low=3,
             high=1000,
@@ -98,7 +98,7 @@ def compute_features(
     max_neighbors: Annotated[
         int,
         Param(
-            "Most nearest points",
+            "Maximum nearest points",
             "Largest neighborhood that is tried by the neighborhood 'optimal'; time grows with it.",
             low=3,
             high=1000,
@@ -157,8 +157,8 @@ def compute_features(
     Raises
     ------
     ValueError
-        If no feature is chosen, a radius holds more than 20,000 points on average, or the fewest nearest points
-        are more than the most.
+        If no feature is chosen, a radius holds more than 20,000 points on average, or the minimum of nearest
+        points is above their maximum.
 
     Notes
     -----
@@ -170,7 +170,7 @@ def compute_features(
     Where the cloud has fewer points than a neighborhood asks for, it is made of all of them. Of several points equally
     far at the end of a neighborhood of 'nearest', each counts in part, so that their order in the cloud decides
     nothing, as long as they are among the 1.3 (sqrt(k) + 1)² nearest; the features of extent are those of all of them.
-    'optimal' tries the fewest, then a step more, up to the most nearest points, and takes the one with the least
+    'optimal' tries the minimum of nearest points, then a step more, up to the maximum, and takes the one with the least
     eigenentropy; of several that differ by rounding only, the smallest.
 
     References

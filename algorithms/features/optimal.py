@@ -34,8 +34,7 @@ class Optimal:
         """Raise ValueError when there is no number to choose."""
         if self.low > self.high:
             raise ValueError(
-                f"The least number of nearest points ({self.low}) is larger than the greatest ({self.high}); "
-                "exchange the two."
+                f"The minimum of nearest points ({self.low}) is above the maximum ({self.high}); exchange the two."
             )
 
     def rows_per_chunk(self, n_points: int) -> int:

@@ -9,6 +9,9 @@ import numpy as np
 from ..cloud.asprs import parse_classes
 from ..stage import Monitor, Param, stage
 
+# Numbers of 32 bits, and times in seconds from 1970, are smaller.
+_LARGEST = 10_000_000_000
+
 _NO_LIMIT = "none; the log tells what the cloud has."
 
 
@@ -62,20 +65,20 @@ def filter_points(
     low: Annotated[
         Optional[float],
         Param(
-            "Least value",
+            "Minimum value",
             "Keep points that have at least this in the dimension.",
-            low=-1e9,
-            high=1e9,
+            low=-_LARGEST,
+            high=_LARGEST,
             automatic=_NO_LIMIT,
         ),
     ] = None,
     high: Annotated[
         Optional[float],
         Param(
-            "Largest value",
+            "Maximum value",
             "Keep points that have at most this in the dimension.",
-            low=-1e9,
-            high=1e9,
+            low=-_LARGEST,
+            high=_LARGEST,
             automatic=_NO_LIMIT,
         ),
     ] = None,
@@ -108,7 +111,7 @@ def filter_points(
     Raises
     ------
     ValueError
-        If a limit is set on heights or on a dimension that is not there, or the least is above the largest.
+        If a limit is set on heights or on a dimension that is not there, or a minimum is above its maximum.
 
     Notes
     -----
@@ -129,7 +132,9 @@ def filter_points(
     kept &= _within(height_above_ground, min_height, max_height, ("min_height", "max_height"), monitor)
     monitor.progress(0.6)
     if values is None and (low is not None or high is not None):
-        raise ValueError("Least and largest value are limits of a dimension; name it (Intensity, NormalZ) or set none.")
+        raise ValueError(
+            "Minimum and maximum value are limits of a dimension; name it (Intensity, NormalZ) or set none."
+        )
     kept &= _within(values, low, high, ("low", "high"), monitor)
     if not len(numbers) and not invert and {min_height, max_height, low, high} == {None}:
         monitor.warn("No limit is set (no classes, heights or values of a dimension), so all points stay.")
@@ -148,7 +153,7 @@ def _within(
         if limit is None and len(defined):
             monitor.resolved(**{name: float(found())})
     if low is not None and high is not None and low > high:
-        raise ValueError(f"The least of the limits ({low:g}) is above the largest ({high:g}); exchange them.")
+        raise ValueError(f"The minimum ({low:g}) is above the maximum ({high:g}); exchange them.")
     within = np.ones(len(values), bool)
     if low is not None:
         within &= values >= low

@@ -41,7 +41,7 @@ def simulate_town(
         Param(
             "Pulse density",
             "Laser pulses on average; on open ground each of them gives a point, in trees several, on water few.",
-            unit="points/m²",
+            unit="pulses/m²",
             low=0.5,
             high=100,
         ),

@@ -71,8 +71,8 @@ class Param:
         return " and ".join(part for part in (low, high) if part)
 
     def written(self, number: float) -> str:
-        """Return a number with the unit, as people write it: 4 m², 20°."""
-        digits = f"{number:d}" if isinstance(number, int) else f"{number:g}"
+        """Return a number with the unit, as people write it: 4 m², 20°, 10,000 m."""
+        digits = f"{number:,d}" if isinstance(number, int) else f"{number:g}"
         return digits + self.unit if self.unit == "°" else f"{digits} {self.unit}".rstrip()
 
 

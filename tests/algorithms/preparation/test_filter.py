@@ -77,12 +77,19 @@ def test_a_filter_without_limits_says_that_it_filters_nothing():
     assert told == [[sentence], [sentence], [], [], []]
 
 
+def test_limits_may_be_as_large_as_values_are():
+    """Times of some scanners count from 1970 and are past 10^9."""
+    times = 1.7e9 + np.arange(6.0)
+    made = filter_points(XYZ, CLASSES, None, times, dimension="GpsTime", low=1.7e9 + 2, high=1.7e9 + 4)
+    assert made.tolist() == [2, 3, 4]
+
+
 def test_limits_of_what_is_not_there_are_refused():
     with pytest.raises(ValueError, match="need HeightAboveGround; run 'Height above ground' first or set none"):
         kept(max_height=2.5)
     with pytest.raises(ValueError, match="are limits of a dimension; name it"):
         kept(high=2.5)
-    with pytest.raises(ValueError, match=r"least of the limits \(3\) is above the largest \(2.5\); exchange them"):
+    with pytest.raises(ValueError, match=r"minimum \(3\) is above the maximum \(2.5\); exchange them"):
         kept(HEIGHTS, min_height=3.0, max_height=2.5)
     with pytest.raises(ValueError, match="Classes must be numbers from 0 to 255 and ranges such as 64-67, got 'roof'"):
         kept(classes="roof")

@@ -82,7 +82,7 @@ def test_nothing_is_a_value_of_automatic_tunables_alone():
         (WIDTH, "greater than 0 m and at most 4 m"),
         (Param("a", "b", unit="°", low=-1.5), "at least -1.5°"),
         (Param("a", "b", high=7, open_high=True), "less than 7"),
-        (Param("a", "b", high=10_000_000), "at most 10000000"),
+        (Param("a", "b", high=10_000_000), "at most 10,000,000"),
         (Param("a", "b", high=2.5), "at most 2.5"),
         (Param("a", "b", choices=("x", "y")), "one of x, y"),
         (Param("a", "b"), ""),
