@@ -171,48 +171,51 @@ def classify_buildings(
     Santos, R. C. dos, Pessoa, G. G., Carrilho, A. C., Galo, M., 2019. Building detection from LiDAR data using
     entropy and the k-means concept, section 2.4.
     """
-    clustered = np.flatnonzero(cluster_id > 0)
     if density is None:
         density = point_density(xyz) if neighborhood == "published" else even_density(xyz)
     around = _around(xyz, density, min_area, neighborhood) if n_neighbors is None else Nearest(n_neighbors)
-    n_neighbors = around.count
-    monitor.resolved(density=density, n_neighbors=n_neighbors)
-
-    entropy = np.full(len(xyz), np.nan, np.float32)
-    cluster_entropy, confidence = entropy.copy(), entropy.copy()
+    monitor.resolved(density=density, n_neighbors=around.count)
     result = np.where(classification == PointClass.BUILDING, np.uint8(PointClass.UNCLASSIFIED), classification)
     why = np.zeros(len(xyz), np.uint8) if reason is None else np.where(cluster_id > 0, 0, reason).astype(np.uint8)
+    clustered = np.flatnonzero(cluster_id > 0)
     if not len(clustered):
         monitor.warn("There are no clusters, so no buildings were found.")
-        return result.astype(np.uint8), entropy, cluster_entropy, confidence, why, build_report(Clusters.none())
+        undefined = (np.full(len(xyz), np.nan, np.float32) for _ in range(3))
+        return result.astype(np.uint8), *undefined, why, build_report(Clusters.none())
 
+    # 1. The mean entropy of each cluster, and the two means that tell buildings from everything else.
     values = shannon_entropy_lps(neighborhood_eigenvalues(xyz[clustered], around, monitor=monitor))
     ids, position, size = np.unique(cluster_id[clustered], return_inverse=True, return_counts=True)
     means = _cluster_means(values, position, len(ids))
     if guard:
-        reach = np.sqrt(n_neighbors / (np.pi * density))
-        roughness = SurfaceSample(xyz).roughness(density)
-        split = _held_means(means, *reference_entropies(n_neighbors, roughness / reach), monitor)
+        split = _held_means(means, *_usual_entropies(xyz, around.count, density), monitor)
     else:
         split = _two_means(means, seed, monitor)
     monitor.resolved(building_entropy=split.building, other_entropy=split.other)
+
+    # 2. What each cluster is.
     places = _Places(xyz, cluster_id - 1, ids - 1, density, return_number, number_of_returns)
     sure, reasons = _by_entropy(means, split)
-    through = None
-    if max_penetration < 1 and split.separates:
-        through = places.penetration()
+    through = places.penetration() if max_penetration < 1 and split.separates else None
+    if through is not None:
         sure, reasons = _by_both(sure, reasons, through, max_penetration, places, min_area)
     if min_share_around > 0:
         sure, reasons = _not_amid_others(sure, reasons, places, min_share_around)
     sure = _supported(sure, size / (min_area * density))
 
-    entropy[clustered] = values
-    cluster_entropy[clustered] = means[position]
-    confidence[clustered] = sure[position]
+    # 3. Its points are the same.
     why[clustered] = reasons[position]
     result[clustered[(sure > 0.5)[position]]] = PointClass.BUILDING
+    measures = (_at_points(of, clustered, len(xyz)) for of in (values, means[position], sure[position]))
     made = Clusters(means, through, reasons, split.building, split.other, max_penetration, split.is_given)
-    return result.astype(np.uint8), entropy, cluster_entropy, confidence, why, build_report(made)
+    return result.astype(np.uint8), *measures, why, build_report(made)
+
+
+def _at_points(values: np.ndarray, rows: np.ndarray, n_points: int) -> np.ndarray:
+    """Return values (n_points,), float32, of which those of some ``rows`` are known, NaN elsewhere."""
+    whole = np.full(n_points, np.nan, np.float32)
+    whole[rows] = values
+    return whole
 
 
 def _around(xyz: np.ndarray, density: float, min_area: float, neighborhood: str) -> Union[Nearest, Wide]:
@@ -222,6 +225,12 @@ def _around(xyz: np.ndarray, density: float, min_area: float, neighborhood: str)
     sample = SurfaceSample(xyz)
     plane = sample.neighborhood(density, sample.noise())
     return replace(plane, count=round((_TIMES_ON_LINES if isinstance(plane, Wide) else _TIMES) * plane.count))
+
+
+def _usual_entropies(xyz: np.ndarray, n_neighbors: int, density: float) -> tuple[float, float]:
+    """Return the mean entropy of planes as rough as the cloud's surfaces, and that of volumes."""
+    reach = np.sqrt(n_neighbors / (np.pi * density))
+    return reference_entropies(n_neighbors, SurfaceSample(xyz).roughness(density) / reach)
 
 
 def _by_entropy(means: np.ndarray, split: _Split) -> tuple[np.ndarray, np.ndarray]:

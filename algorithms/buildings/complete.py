@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Annotated, Optional
 
 import numpy as np
@@ -169,10 +170,9 @@ def complete_buildings(
     gap = float(np.clip(_GAP_SPACINGS * spacing, _LEAST_GAP, _MOST_GAP)) if gap is None else gap
     monitor.resolved(density=density, gap=gap)
     result = np.where(classification == PointClass.BUILDING, np.uint8(PointClass.UNCLASSIFIED), classification)
-    cluster_id = np.zeros(len(xyz), np.int32)
     is_roof = classification == PointClass.BUILDING
     if not is_roof.any():
-        return result.astype(np.uint8), cluster_id, confidence, reason
+        return result.astype(np.uint8), np.zeros(len(xyz), np.int32), confidence, reason
 
     cell_size = max(_LEAST_CELL, _CELL_SPACINGS * spacing)
     refuse_sparse(xyz, cell_size)
@@ -189,19 +189,11 @@ def complete_buildings(
     columns = _Columns(building, _roof_top(cell, xyz[:, 2], is_roof, covered), cell_size)
     monitor.progress(0.6)
 
-    above = xyz[:, 2] - columns.top[cell]
-    inside = raised & (building[cell] > 0)
-    belongs = inside & (above <= roof_clearance)
-    belongs |= inside & (above <= structure_height) & columns.is_sparse(cell, inside & (above > roof_clearance))[cell]
-    number = np.where(inside, building[cell], columns.beside[cell])
-    # What stands between a roof and the next higher one is the wall of the higher.
-    is_under = xyz[:, 2] <= columns.highest[cell]
-    may_be_plant = _may_be_bush(height_above_ground, height_above_ground - above)
-    if return_number is not None and number_of_returns is not None:
-        may_be_plant |= columns.is_beside_crown(cell, raised, return_number < number_of_returns)[cell]
-    belongs |= raised & (number > 0) & is_under & (inside | ~may_be_plant)
-    result[belongs] = PointClass.BUILDING
-    cluster_id[belongs] = number[belongs]
+    has_returns = return_number is not None and number_of_returns is not None
+    goes_on = return_number < number_of_returns if has_returns else None
+    points = _Points(cell, xyz[:, 2], height_above_ground, raised, goes_on)
+    cluster_id = columns.owners(points, roof_clearance, structure_height)
+    result[cluster_id > 0] = PointClass.BUILDING
     monitor.progress(1.0)
     refusal = np.where(building[cell] > 0, Reason.TOO_LOW, refused[cell])
     return result.astype(np.uint8), cluster_id, *_explained(confidence, reason, is_roof, cluster_id, refusal)
@@ -233,6 +225,29 @@ def _may_be_bush(height: np.ndarray, roof: np.ndarray) -> np.ndarray:
     return height < np.minimum(_BUSHES * roof, _HIGHEST_BUSHES)
 
 
+@dataclass(frozen=True)
+class _Points:
+    """All points (n,), as they are held against buildings.
+
+    Attributes
+    ----------
+    cell : tuple of two ndarrays of shape (n,)
+        Row and column of the cell that each is in.
+    elevation, height : ndarray of shape (n,)
+        Elevation and height above ground, m.
+    raised : ndarray of shape (n,), bool
+        Higher than the foot of a wall, and no noise.
+    goes_on : ndarray of shape (n,), bool, optional
+        Whether the pulse went on to another return; None where returns are not known.
+    """
+
+    cell: tuple[np.ndarray, np.ndarray]
+    elevation: np.ndarray
+    height: np.ndarray
+    raised: np.ndarray
+    goes_on: Optional[np.ndarray]
+
+
 class _Columns:
     """The cells of buildings: whose they are, whose roof they stand beside, and how high it and the highest near is."""
 
@@ -243,6 +258,23 @@ class _Columns:
         self.highest = ndimage.maximum_filter(np.where(building > 0, top, -np.inf), reach)
         beside = ndimage.grey_dilation(building, footprint=_EIGHT)
         self.beside = np.where(building > 0, 0, beside)
+
+    def owners(self, points: _Points, clearance: float, structure_height: float) -> np.ndarray:
+        """Return the building (n,), int32, that each point belongs to; 0 is none.
+
+        Points up to the clearance (m) above the roof do, those up to the height of structures (m) where they are few.
+        """
+        above = points.elevation - self.top[points.cell]
+        inside = points.raised & (self.building[points.cell] > 0)
+        stands_above = inside & (above > clearance)
+        is_chimney = stands_above & (above <= structure_height) & self.is_sparse(points.cell, stands_above)[points.cell]
+        may_be_plant = _may_be_bush(points.height, points.height - above)
+        if points.goes_on is not None:
+            may_be_plant |= self.is_beside_crown(points.cell, points.raised, points.goes_on)[points.cell]
+        # What stands between a roof and the next higher one is the wall of the higher.
+        is_wall = points.raised & (points.elevation <= self.highest[points.cell]) & (inside | ~may_be_plant)
+        owner = np.where(inside, self.building[points.cell], self.beside[points.cell])
+        return np.where((inside & (above <= clearance)) | is_chimney | is_wall, owner, 0).astype(np.int32)
 
     def is_sparse(self, cell: tuple[np.ndarray, np.ndarray], stands_above: np.ndarray) -> np.ndarray:
         """Return the cells around which the points that stand above the roof cover a small part of it."""
