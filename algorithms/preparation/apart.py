@@ -1,8 +1,8 @@
 """Points that belong to nothing: what hangs in the air over the scene, and what lies under its ground.
 
-Both are told by what a scanner can't do rather than by numbers of points: nothing solid hangs free in the air, and the
-laser doesn't see through the ground. A plume or a flock lets most pulses pass, so that among the points of its
-columns its own are few; a roof or a crown stops most of them, seen or not what carries it.
+Both are told by what can't be rather than by numbers of points: nothing solid hangs free in the air, and the laser
+doesn't see through the ground. Among all points of a column of air, those of a plume or a flock are few, since most
+pulses pass it; those of a roof or a crown are most, whether or not what carries it was seen.
 """
 
 from __future__ import annotations
@@ -16,37 +16,70 @@ from ..groups import components
 from ..packages import spatial
 from ..stage import Monitor
 
-# Points so near to each other (m, and point spacings) are one thing: chimneys and what stands on roofs are lower,
-# points along masts and wires closer.
+# Points at most so far from each other are one thing (m; point spacings where that is more): chimneys and what stands
+# on roofs are lower, points along masts and wires closer.
 _LINK, _LINK_SPACINGS = 2.4, 3.5
+
 # A thing that stops a smaller share of the pulses than this is loose.
 _SOLID_SHARE = 0.3
-# Cells, in point spacings, whose points tell the share: 16 of the scene in each.
-_SHARE_SPACINGS = 4.0
-# Three points in so small a space (m, and point spacings) are the head of a lamp; birds fly farther apart.
-_COMPACT, _COMPACT_SPACINGS = 1.0, 1.5
-# Wires are lines, roofs of glass are planes: points so near (m) to one, per length along it.
-_THIN, _THIN_RATIO = 0.3, 0.1
-# A wire that gives few points: so many of them in a tube of that radius (m, across and up) over this length (m).
-_TUBE_POINTS, _TUBE_ACROSS, _TUBE_UP, _TUBE_LENGTH, _TUBE_REACH = 5, 0.35, 0.6, 12.0, 16.0
-_TUBE_NEIGHBORS = 24
 
-# Depth (m) under the ground within which points are those of grass, ruts and the scanner's own noise.
+# The share is told by columns so many point spacings wide, 16 points of the scene in each; columns that the edge of the
+# cloud cuts count as half full.
+_SHARE_SPACINGS, _LEAST_IN_COLUMN = 4.0, 8
+
+# Three points or more in so small a space (m; point spacings where that is more) are the head of a lamp: birds fly
+# farther apart.
+_COMPACT, _COMPACT_SPACINGS = 1.0, 1.5
+
+# Wires are lines and roofs of glass planes: points deviate by no more than this (m) across a plane, and across either
+# by no more than this share of their deviation along it.
+_THIN, _THIN_RATIO = 0.3, 0.1
+
+# Wires in bundles are lines near by only: around more than this share of the points, the so many nearest ones vary
+# across a line by less than this share of their variance along it.
+_BUNDLE_SHARE, _BUNDLE_NEIGHBORS, _BUNDLE_RATIO = 0.5, 8, 0.1
+
+# A wire that gives few points shows where so many of them lie near a line through two of them, no farther off it than
+# this across and up (m), and reach over this length (m).
+_TUBE_POINTS, _TUBE_ACROSS, _TUBE_UP, _TUBE_LENGTH = 5, 0.35, 0.6, 12.0
+
+# Lines are tried through a point and so many nearest ones, no nearer (m), where the direction would be chance, and no
+# farther than this.
+_TUBE_NEIGHBORS, _TUBE_NEAREST, _TUBE_REACH = 24, 1.0, 16.0
+
+# Depth under the ground (m; point spacings where that is more) within which points are those of grass, ruts and the
+# scanner's own noise.
 _DEPTH, _DEPTH_SPACINGS = 0.45, 0.4
+
 # Cells of the ground close by, in point spacings: four points in each, the lowest of which is its level.
 _CLOSE_SPACINGS = 2.0
-# Cells of the surroundings (m, and point spacings), where ground is seen even among trees, and how large a part of
-# them may lie lower: more points under the ground than these are believed.
+
+# Cells of the surroundings (m; point spacings where that is more), where ground is seen even among trees. This share of
+# their points may lie lower than their level: more points under the ground are believed.
 _AROUND, _AROUND_SPACINGS, _AROUND_PART = 10.0, 16.0, 0.02
-# Ground and roofs are that smooth (m) from cell to cell, crowns are not; what lies no deeper (m) under a smooth surface
-# is under it and not beside it.
-_SMOOTH, _SHALLOW, _ON_GROUND = 0.3, 2.0, 0.5
+
+# Ground and roofs differ by no more than this (m) from cell to cell, crowns by more.
+_SMOOTH = 0.3
+
+# A smooth surface is ground if it is no higher (m) than this above the ground seen around. What lies no deeper (m)
+# under it than the second figure is under it and not beside it.
+_ON_GROUND, _SHALLOW = 0.5, 2.0
+
+# Low points hide others beneath the surface that they pull down: so often it is looked again without those found.
 _ROUNDS = 3
-# So many others in a flat disk of that half height (m) and radius (point spacings; m, within which it grows to so many
-# spacings) make a point part of a surface: ground that is seen here and there between leaves. A wider one would reach
-# from a point under a slope to where the slope is as low.
-_SUPPORT_POINTS, _SUPPORT_HEIGHT, _SUPPORT_SPACINGS = 3, 0.3, 2.5
-_SUPPORT_REACH, _SUPPORT_MOST_SPACINGS = 1.25, 5.0
+
+# Ground that is seen here and there between leaves: so many others in a flat disk of this half height (m) around it
+# make a point part of a surface.
+_SUPPORT_POINTS, _SUPPORT_HEIGHT = 3, 0.3
+
+# The radius of that disk is so many point spacings, in dense clouds up to this (m) and up to so many spacings. A wider
+# one would reach from a point under a slope to where the slope is as low.
+_SUPPORT_SPACINGS, _SUPPORT_REACH, _SUPPORT_MOST_SPACINGS = 2.5, 1.25, 5.0
+
+# What was found is a floor after all if so many points are at least this share of all in their cells, or in a trench:
+# in more cells than so many, side by side.
+_FLOOR_POINTS, _FLOOR_SHARE, _FLOOR_CELLS = 5, 0.5, 8
+
 # Cells at once, so that memory stays small.
 _CHUNK = 50_000
 
@@ -126,7 +159,9 @@ def _loose(xyz: np.ndarray, thing: np.ndarray, spacing: float, monitor: Monitor)
     cells, which = distinct(cell)
     in_cell = np.bincount(which)
     pairs = np.unique(thing[small].astype(np.int64) * len(cells) + which[small])
-    in_columns = np.bincount(pairs // len(cells), np.maximum(in_cell[pairs % len(cells)], 8), len(n_points))
+    in_columns = np.bincount(
+        pairs // len(cells), np.maximum(in_cell[pairs % len(cells)], _LEAST_IN_COLUMN), len(n_points)
+    )
     is_loose = (in_columns > 0) & (n_points < _SOLID_SHARE * in_columns)
 
     order = small[np.argsort(thing[small], kind="stable")]
@@ -155,15 +190,15 @@ def _has_form(points: np.ndarray, compact: float) -> bool:
     deviation = np.sqrt(np.maximum(np.linalg.eigvalsh(np.cov(points.T)), 0))
     is_line = deviation[1] <= _THIN_RATIO * deviation[2]
     is_plane = len(points) >= 2 * _TUBE_POINTS and deviation[0] <= min(_THIN, _THIN_RATIO * deviation[1])
-    return bool(is_line or is_plane or _share_of_lines(points) > 0.5)
+    return bool(is_line or is_plane or _share_of_lines(points) > _BUNDLE_SHARE)
 
 
 def _share_of_lines(points: np.ndarray) -> float:
     """Return the share of points whose nearest ones lie along a line, as those of bundled wires do."""
-    near = points[spatial.cKDTree(points).query(points, min(8, len(points)))[1]]
+    near = points[spatial.cKDTree(points).query(points, min(_BUNDLE_NEIGHBORS, len(points)))[1]]
     near -= near.mean(axis=1, keepdims=True)
     eigenvalues = np.linalg.eigvalsh(np.einsum("nki,nkj->nij", near, near))
-    return float((eigenvalues[:, 1] < 0.1 * eigenvalues[:, 2]).mean())
+    return float((eigenvalues[:, 1] < _BUNDLE_RATIO * eigenvalues[:, 2]).mean())
 
 
 def _is_open(xyz: np.ndarray, is_loose: np.ndarray, rows: np.ndarray, link: float) -> np.ndarray:
@@ -203,7 +238,7 @@ def _on_wires(points: np.ndarray) -> np.ndarray:
         off = places[others] - points[row]
         along = off[1:, :2]
         length = np.linalg.norm(along, axis=1)
-        usable = length > 1.0
+        usable = length > _TUBE_NEAREST
         along, rise = along[usable] / length[usable, None], off[1:, 2][usable] / length[usable]
         at = along @ off[:, :2].T
         across = np.abs(along[:, :1] * off[:, 1] - along[:, 1:] * off[:, 0])
@@ -398,12 +433,13 @@ def _middle(values: np.ndarray) -> np.ndarray:
 
 
 def _is_floor(grid: Grid, cells: np.ndarray, which: np.ndarray, n_points: np.ndarray) -> np.ndarray:
-    """Return which points belong to a floor: most points of five or more cells, or of a narrow trench."""
+    """Return which points, in the cells ``which``, belong to a floor; ``n_points`` are all points of each cell."""
     own, inverse, count = np.unique(which, return_inverse=True, return_counts=True)
     groups, group = connected_cells(grid, cells[own])
     if not groups:
         return np.zeros(len(which), bool)
     low = np.bincount(group, count, groups)
     all_points = np.bincount(group, n_points[own], groups)
-    is_floor = ((low >= 5) & (low >= 0.5 * all_points)) | (np.bincount(group, minlength=groups) > 8)
+    is_trench = np.bincount(group, minlength=groups) > _FLOOR_CELLS
+    is_floor = ((low >= _FLOOR_POINTS) & (low >= _FLOOR_SHARE * all_points)) | is_trench
     return is_floor[group][inverse]

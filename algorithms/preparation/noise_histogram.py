@@ -9,7 +9,7 @@ import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
 from ..cloud.cells import Grid, grid_over, plan_box
-from ..cloud.density import point_density
+from ..cloud.density import point_spacing
 from ..packages import spatial
 from ..params import IsolatedPoints
 from ..stage import Monitor, Param, stage
@@ -22,7 +22,8 @@ _POINTS_PER_CELL = 450
 _GAP_BINS = 2
 
 # So many points close together are a thing, be it as thin as the head of a lamp; birds and stray returns come alone.
-_GROUP_SIZE = 3
+# Close is so many point spacings, and a meter at least.
+_GROUP_SIZE, _GROUP_SPACINGS = 3, 3.0
 
 
 @stage(
@@ -126,30 +127,18 @@ def classify_noise_histogram(
         monitor.warn("No noise was looked for: the points that are not noise already have no extent in plan.")
         return made
     points = xyz[used]
-    density = point_density(points)
-    cell_size, bin_height = _automatic(cell_size, bin_height, density, monitor)
+    spacing = point_spacing(points)
+    cell_size, bin_height = _automatic(cell_size, bin_height, spacing, monitor)
     monitor.progress(0.2)
-
-    # 1. Which heights the scene reaches around each cell.
-    grid = grid_over(points, cell_size)
-    cell = grid.number(points)
-    level = np.floor((points[:, 2] - points[:, 2].min()) / bin_height).astype(np.int64)
-    histogram = _pooled_histogram(grid, cell, level)
-    monitor.progress(0.5)
-    cells, low, high = _scene_range(grid, histogram, min_frequency, max_clearance / bin_height)
-    if not len(cells):
+    beyond = _beyond_scene(points, cell_size, bin_height, min_frequency, max_clearance, monitor.part(0.2, 0.7))
+    if beyond is None:
         monitor.warn(f"No noise was found: no bin of the histograms has {min_frequency} points.")
         return made
-
-    # 2. What lies beyond is noise, but for groups of points that hang in the air.
-    at = np.searchsorted(cells, cell)
-    is_low, is_high = level < low[at], level > high[at]
-    hanging = np.flatnonzero(is_high & (level <= high[at] + max_clearance / bin_height))
-    is_high[hanging[_in_group(points[hanging], max(1.0, 3 / float(np.sqrt(density))))]] = False
-
-    # 3. What belongs to nothing, at whatever height.
+    is_low, is_high, is_near = beyond
+    hanging = np.flatnonzero(is_high & is_near)
+    is_high[hanging[_in_group(points[hanging], max(1.0, _GROUP_SPACINGS * spacing))]] = False
     if isolated:
-        add_isolated(points, is_low, is_high, 1 / float(np.sqrt(density)), monitor.part(0.7, 1.0))
+        add_isolated(points, is_low, is_high, spacing, monitor.part(0.7, 1.0))
     made[used[is_low]] = PointClass.LOW_NOISE
     made[used[is_high]] = PointClass.HIGH_NOISE
     monitor.resolved(low_noise=int(is_low.sum()), high_noise=int(is_high.sum()))
@@ -158,17 +147,42 @@ def classify_noise_histogram(
 
 
 def _automatic(
-    cell_size: Optional[float], bin_height: Optional[float], density: float, monitor: Monitor
+    cell_size: Optional[float], bin_height: Optional[float], spacing: float, monitor: Monitor
 ) -> tuple[float, float]:
     """Return the cell size and bin height to use, and tell those that were not given."""
     if cell_size is None:
-        cell_size = float(np.sqrt(_POINTS_PER_CELL / density))
+        cell_size = float(np.sqrt(_POINTS_PER_CELL)) * spacing
         monitor.resolved(cell_size=cell_size)
     if bin_height is None:
         # On a thin cloud a roof has few points; higher bins keep them together.
-        bin_height = max(1.0, 2 / float(np.sqrt(density)))
+        bin_height = max(1.0, 2 * spacing)
         monitor.resolved(bin_height=bin_height)
     return cell_size, bin_height
+
+
+def _beyond_scene(
+    points: np.ndarray,
+    cell_size: float,
+    bin_height: float,
+    min_frequency: int,
+    max_clearance: float,
+    monitor: Monitor,
+) -> Optional[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """Return which points (n,) lie below the scene, which above it, and which not too far above to belong to it.
+
+    None where no bin has enough points to tell the scene.
+    """
+    grid = grid_over(points, cell_size)
+    cell = grid.number(points)
+    level = np.floor((points[:, 2] - points[:, 2].min()) / bin_height).astype(np.int64)
+    histogram = _pooled_histogram(grid, cell, level)
+    monitor.progress(0.6)
+    clearance = max_clearance / bin_height
+    cells, low, high = _scene_range(grid, histogram, min_frequency, clearance)
+    if not len(cells):
+        return None
+    at = np.searchsorted(cells, cell)
+    return level < low[at], level > high[at], level <= high[at] + clearance
 
 
 @dataclass(frozen=True)

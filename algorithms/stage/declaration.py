@@ -141,26 +141,32 @@ def stage(
     def declare(function: Callable) -> Callable:
         declared = _declared(function, title, group, tags, makes)
         _check_declaration(declared)
-        signature = inspect.signature(function)
-
-        @functools.wraps(function)
-        def checked(*args: Any, **kwargs: Any) -> Any:
-            bound = signature.bind(*args, **kwargs)
-            check_arrays(bound.arguments, (*declared.reads, *declared.optional), merges, title)
-            layers = {source.name: bound.arguments.get(source.name) for source in declared.sources}
-            given_layers(declared.name, declared.sources, layers)
-            for name, tunable in declared.tunables.items():
-                if name in bound.arguments:
-                    bound.arguments[name] = tunable.check(bound.arguments[name])
-            if bound.arguments.get("monitor") is None:
-                bound.arguments["monitor"] = Monitor()
-            return function(*bound.args, **bound.kwargs)
-
+        checked = _checked(function, declared)
         checked.stage = replace(declared, function=checked)  # type: ignore[attr-defined]
         checked.__doc__ = with_tunables(declared.doc, declared.tunables.values())
         return checked
 
     return declare
+
+
+def _checked(function: Callable, declared: Stage) -> Callable:
+    """Return the function with a check of what it is called with, in the words of its declaration."""
+    signature = inspect.signature(function)
+
+    @functools.wraps(function)
+    def checked(*args: Any, **kwargs: Any) -> Any:
+        bound = signature.bind(*args, **kwargs)
+        check_arrays(bound.arguments, (*declared.reads, *declared.optional), declared.merges, declared.title)
+        layers = {source.name: bound.arguments.get(source.name) for source in declared.sources}
+        given_layers(declared.name, declared.sources, layers)
+        for name, tunable in declared.tunables.items():
+            if name in bound.arguments:
+                bound.arguments[name] = tunable.check(bound.arguments[name])
+        if bound.arguments.get("monitor") is None:
+            bound.arguments["monitor"] = Monitor()
+        return function(*bound.args, **bound.kwargs)
+
+    return checked
 
 
 def _declared(function: Callable, title: str, group: str, tags: str, makes: dict[str, Any]) -> Stage:
