@@ -342,7 +342,7 @@ def test_density_is_told(scene):
 
 def test_a_point_far_off_is_refused_instead_of_filling_memory(rng):
     xyz = np.vstack([rng.uniform(0, 20, (500, 3)), [[300_000.0, 300_000.0, 5.0]]])
-    with pytest.raises(ValueError, match="which is nearly empty; remove points that lie far off"):
+    with pytest.raises(ValueError, match="which is nearly empty in cells of .* m; remove points that lie far off"):
         complete_buildings(xyz, np.full(501, 6, np.uint8), np.full(501, 5.0, np.float32))
 
 

@@ -112,7 +112,7 @@ def test_bad_clouds_are_refused(rng):
     xyz, classes = slope_with_house(rng)
     with pytest.raises(ValueError, match="no ground points"):
         rasterize_terrain(xyz, np.ones(len(xyz)))
-    with pytest.raises(ValueError, match="nearly empty"):
+    with pytest.raises(ValueError, match="nearly empty in cells of .* m; .* set larger cells"):
         rasterize_terrain(np.vstack([xyz, [1e6, 1e6, 0]]), np.append(classes, 2), cell_size=0.5)
 
 
