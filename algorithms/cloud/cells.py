@@ -101,8 +101,8 @@ def refuse_sparse(xyz: np.ndarray, size: float) -> None:
     width, height = np.ptp(xyz[:, :2], axis=0)
     if (width / size + 1) * (height / size + 1) > max(_MOST_CELLS, _MOST_CELLS_PER_POINT * len(xyz)):
         raise ValueError(
-            f"The {len(xyz)} points are spread over {width:,.0f} m by {height:,.0f} m, which is nearly empty in cells of "
-            f"{size:.2g} m; remove points that lie far off in plan, cut the cloud into pieces, or set larger cells."
+            f"The {len(xyz)} points are spread over {width:,.0f} m by {height:,.0f} m, which is nearly empty in cells "
+            f"of {size:.2g} m; remove points that lie far off in plan, cut the cloud into pieces, or set larger cells."
         )
 
 
