@@ -6,6 +6,7 @@ from scipy.spatial import cKDTree
 
 from lidar_buildings.algorithms.buildings.buildings import classify_buildings, reference_entropies
 from lidar_buildings.algorithms.buildings.reasons import Reason
+from lidar_buildings.algorithms.cloud.density import even_density, point_density
 from lidar_buildings.algorithms.features.noise import SurfaceSample
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.tests.monitors import Listening
@@ -118,6 +119,17 @@ def test_neighbors_are_area_times_density(garden, min_area, density, expected):
     assert monitor.values["n_neighbors"] == expected
     by_hand = classify_buildings(xyz, ones(xyz), cluster_id, n_neighbors=expected)
     np.testing.assert_array_equal(by_density[1], by_hand[1])
+
+
+@pytest.mark.parametrize(("neighborhood", "density"), [("published", point_density), ("surface", even_density)])
+def test_gaps_between_scan_lines_count_for_surfaces_and_not_as_published(neighborhood, density, rng):
+    """On lines 2 m apart points are dense where they lie, which the paper's N = Ar_min d goes by."""
+    xyz, cluster_id = clusters(roof(rng, 0, 0, 30, 30, 0.0, 8), roof(rng, 10, 10))
+    xyz[:, 1] = 2 * np.round(xyz[:, 1] / 2)
+    monitor = Monitor()
+    classify_buildings(xyz, ones(xyz), cluster_id - 1, neighborhood=neighborhood, monitor=monitor)
+    assert monitor.values["density"] == density(xyz)
+    assert even_density(xyz) < 0.6 * point_density(xyz)
 
 
 # --- what is found ---------------------------------------------------------------------------------------------------

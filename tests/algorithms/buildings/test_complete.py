@@ -5,6 +5,7 @@ import pytest
 
 from lidar_buildings.algorithms.buildings.complete import complete_buildings
 from lidar_buildings.algorithms.buildings.reasons import Reason
+from lidar_buildings.algorithms.cloud.density import point_density
 from lidar_buildings.algorithms.stage import Monitor
 
 FAR = np.array([600_000.0, 5_000_000.0, 0.0])
@@ -338,6 +339,14 @@ def test_density_is_told(scene):
     monitor = Monitor()
     scene.complete(monitor=monitor)
     assert monitor.values["density"] == pytest.approx(10, rel=0.05)
+
+
+def test_gaps_between_scan_lines_are_no_gaps_of_the_cloud(scene):
+    """On lines 2 m apart points are dense where they lie, and scales of the roofs must cross the gaps all the same."""
+    scene.xyz[:, 1] = 2 * np.round(scene.xyz[:, 1] / 2)
+    monitor = Monitor()
+    scene.complete(monitor=monitor)
+    assert monitor.values["density"] < 0.6 * point_density(scene.xyz)
 
 
 def test_a_point_far_off_is_refused_instead_of_filling_memory(rng):

@@ -188,6 +188,16 @@ def test_lines_over_half_of_the_cloud_are_enough_to_look_across_them(rng):
     assert surface_neighbors(np.concatenate([lines, scattered]), 10.0, 0.02) == Wide(8)
 
 
+@pytest.mark.parametrize(("share", "expected"), [(0.1, Nearest(8)), (1 / 3, Wide(8))])
+def test_more_than_a_fifth_of_the_neighborhoods_must_be_narrow(share, expected, rng):
+    """On lines, as rough as the grid beside them, lies so much of the cloud; all other neighborhoods are wide."""
+    x, y = np.meshgrid(np.arange(0, 60, 0.2), np.arange(0, 60 * share, 1.5))
+    along, across = np.meshgrid(*2 * [np.arange(np.sqrt(x.size / share - x.size)) / 2])
+    xyz = np.column_stack([np.append(x, along + 100), np.append(y, across), np.zeros(x.size + along.size)])
+    xyz += rng.normal(0, [0.05, 0.05, 0.005], xyz.shape)
+    assert surface_neighbors(xyz, 4.0, 0.01) == expected
+
+
 def test_density_on_a_grid_by_hand():
     """At 1 m from each other: one at no distance, four at 1 m, four at 1.4 m and more than three at 2 m."""
     x, y = np.meshgrid(np.arange(40.0), np.arange(40.0))

@@ -5,6 +5,7 @@ import pytest
 
 from lidar_buildings.algorithms.buildings.buildings import classify_buildings
 from lidar_buildings.algorithms.buildings.reasons import Reason
+from lidar_buildings.algorithms.cloud.density import point_density
 from lidar_buildings.algorithms.segmentation.roofs import segment_roofs
 from lidar_buildings.algorithms.stage import Monitor
 
@@ -173,3 +174,12 @@ def test_automatic_values_are_told(rng):
     segment_roofs(xyz, ones(xyz), height, monitor=monitor)
     assert monitor.values["density"] == pytest.approx(8, rel=0.06)
     assert 0.02 < monitor.values["noise"] < 0.05
+
+
+def test_gaps_between_scan_lines_are_no_gaps_of_the_cloud(rng):
+    """On lines 2 m apart points are dense where they lie, and scales of the roofs must cross the gaps all the same."""
+    monitor = Monitor()
+    xyz, height, _ = village(rng, 8)
+    xyz[:, 1] = 2 * np.round(xyz[:, 1] / 2)
+    segment_roofs(xyz, ones(xyz), height, monitor=monitor)
+    assert monitor.values["density"] < 0.6 * point_density(xyz)
