@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.algorithms.terrain import seeds as module
 from lidar_buildings.algorithms.terrain.seeds import (
     _lifted,
     _slope,
@@ -320,6 +321,30 @@ def test_what_stands_free_does_not_come_back_however_low_it_is():
     surface, lifted = lifted_square()
     objects = lifted > 0
     np.testing.assert_array_equal(_without_touching(objects, objects, surface, 0.4), objects)
+
+
+def test_a_lane_between_two_houses_on_a_pier_is_terrain(rng):
+    """The pier is narrower than the windows and 4 m high; the lane joins the shore on less than a quarter of its edge.
+
+    As far as that is nearer than the water, it lies in the terrain around.
+    """
+    plan = even(90, 110) + rng.uniform(-0.3, 0.3, (len(even(90, 110)), 2))
+    x, y = plan.T - [[45], [70]]
+    is_pier, is_lane = (np.abs(x) < 15) & (y > 0) & (y < 30), (np.abs(x) < 3) & (y > 0) & (y < 30)
+    z = np.where(is_pier | (y < 0), 4.0, 0.0)
+    z[is_pier & ~is_lane & (y > 1)] = 12.0
+    seeds, *_ = seeds_by_opening(np.column_stack([plan, z + rng.normal(0, 0.02, len(plan))]), 1.0, None, Monitor())
+    assert (is_lane & (y < 15))[seeds].sum() > 0.8 * 6 * 15
+    assert not (z > 4.0)[seeds].any()
+
+
+@pytest.mark.parametrize(("spacing", "step"), [(0.0, 0.4), (2.5, 1.0)])
+def test_parts_end_at_steep_steps_from_point_to_point(spacing, step, monkeypatch):
+    """Between cells, which hold a point each or less, they are as steep."""
+    monkeypatch.setattr(module, "_without_touching", lambda objects, *given: steps.append(given[-1]) or objects)
+    steps = []
+    seeds_by_opening(np.column_stack([even(30, 30), np.zeros(len(even(30, 30)))]), 1.0, None, Monitor(), spacing)
+    assert steps == [pytest.approx(step)]
 
 
 @pytest.mark.parametrize(("slope", "stays"), [(1.2, False), (1.9, False), (2.3, True)])
