@@ -222,23 +222,37 @@ def test_main_direction_is_that_of_the_longest_walls(rng):
         assert found == pytest.approx([np.deg2rad(30)])
 
 
-def test_a_sharp_end_is_no_spike(rng):
-    """A wedge of 25° keeps its walls; its tip may be blunt, and goes nowhere beyond the points."""
-    truth = np.array([[0, 0], [24, 0], [24, 24 * np.tan(np.deg2rad(25))], [0, 0]])
+@pytest.mark.parametrize("end", [[[24, 0], [24, 24 * np.tan(np.deg2rad(25))]], [[24, 0], [24, 8], [20, 9.33]]])
+def test_a_sharp_end_is_no_spike(rng, end):
+    """A wedge of 25° keeps its three or four walls; its tip may be blunt, and goes nowhere beyond the points."""
+    truth = np.array([[0, 0], *end, [0, 0]])
     ring = straight(wiggly(truth, rng, noise=0.05, step=0.3))
     assert len(ring) <= 5
-    assert farthest(np.array([[12.0, 0], [24, 0], [24, 11.19], [12, 5.6]]), ring) < 0.2
+    assert farthest(np.array([[12.0, 0], *end, [12, 5.6]]), ring) < 0.2
     assert farthest(truth[:1], ring) < 1.3
     assert ring[:, 0].min() > -0.1
 
 
-def test_a_sharp_corner_that_was_not_seen_ends_blunt():
-    """Points end 0.9 m before two walls at an angle of 30° would meet."""
-    x = np.arange(3.4, 14, 0.3)
-    slope = np.tan(np.deg2rad(30))
-    ring = np.concatenate([np.column_stack([x, 0 * x]), np.column_stack([x, x * slope])[::-1]])
+@pytest.mark.parametrize(("width", "depth", "stays"), [(1.2, 3.0, False), (1.8, 4.0, True)])
+def test_spikes_are_narrower_than_three_tolerances(width, depth, stays):
+    """The wider triangle on a wall is a bay, and of the other less is left than it is wide."""
+    spike = [[8, 0], [8 + width / 2, -depth], [8 + width, 0]]
+    truth = np.array([[0, 0], *spike, [20, 0], [20, 12], [0, 12], [0, 0]])
+    for seed in range(6):
+        ring = straight(wiggly(truth, np.random.default_rng(seed), 0.05, 0.3))
+        assert (farthest(truth, ring) < 0.2) == stays
+        assert stays or ring[:, 1].min() > -width
+
+
+@pytest.mark.parametrize(("degrees", "unseen", "is_blunt"), [(30, 0.7, True), (50, 0.6, True), (65, 0.5, False)])
+def test_a_sharp_corner_that_was_not_seen_ends_blunt(degrees, unseen, is_blunt):
+    """Points end so far before two walls would meet, of which the step to the corner is more than the tolerance."""
+    along = np.arange(unseen, 14, 0.3)[:, None]
+    direction = np.array([np.cos(np.deg2rad(degrees)), np.sin(np.deg2rad(degrees))])
+    ring = np.concatenate([along * [1, 0], (along * direction)[::-1]])
     made = straight(np.concatenate([ring, ring[:1]]))
-    assert made[:, 0].min() > 3.4 - 0.5
+    assert (np.hypot(*made.T).min() > unseen - 0.25) == is_blunt
+    assert is_blunt or len(made) == 4
 
 
 def test_a_right_angle_is_found_beside_a_longer_wall_that_has_none():
