@@ -184,7 +184,7 @@ def classify_buildings(
         return result.astype(np.uint8), *undefined, why, build_report(Clusters.none())
 
     # 1. The mean entropy of each cluster, and the two means that tell buildings from everything else.
-    values = shannon_entropy_lps(neighborhood_eigenvalues(xyz[clustered], around, monitor=monitor))
+    values = shannon_entropy_lps(neighborhood_eigenvalues(xyz[clustered], around, monitor=monitor.part(0, 0.85)))
     ids, position, size = np.unique(cluster_id[clustered], return_inverse=True, return_counts=True)
     means = _cluster_means(values, position, len(ids))
     if guard:
@@ -196,12 +196,16 @@ def classify_buildings(
     # 2. What each cluster is.
     places = _Places(xyz, cluster_id - 1, ids - 1, density, return_number, number_of_returns)
     sure, reasons = _by_entropy(means, split)
+    monitor.progress(0.9)
     through = places.penetration() if max_penetration < 1 and split.separates else None
     if through is not None:
+        monitor.progress(0.94)
         sure, reasons = _by_both(sure, reasons, through, max_penetration, places, min_area)
+    monitor.progress(0.98)
     if min_share_around > 0:
         sure, reasons = _not_amid_others(sure, reasons, places, min_share_around)
     sure = _supported(sure, size / (min_area * density))
+    monitor.progress(1.0)
 
     # 3. Its points are the same.
     why[clustered] = reasons[position]

@@ -65,21 +65,13 @@ def point_density(xyz: np.ndarray) -> float:
 def even_density(xyz: np.ndarray) -> float:
     """Return the density (points/m²) of the evenly spread cloud that would leave about as much of its area empty.
 
-    Parameters
-    ----------
-    xyz : ndarray of shape (n, 2 or 3)
-        Coordinates (m), n >= 1.
+    Argument and errors as of :func:`point_density`.
 
     Returns
     -------
     float
         That of :func:`point_density` where points are spread evenly; down to a quarter of it where they lie on lines
         with gaps in between, in pairs, or in places far denser than in others.
-
-    Raises
-    ------
-    ValueError
-        If all points lie at one place in plan, where density means nothing.
 
     Notes
     -----

@@ -7,8 +7,7 @@ from typing import Optional
 
 import numpy as np
 
-from ..cloud.cells import Grid, distinct, find_cells, grid_over
-from ..packages import ndimage
+from ..cloud.cells import distinct, find_cells, grid_over
 
 # Cells in which area and what lies beneath are counted, in point spacings, and their least size (m).
 _CELL_SPACINGS, _LEAST_CELL = 1.5, 0.3
@@ -112,14 +111,10 @@ def join_beside(xyz: np.ndarray, group: np.ndarray, strong: np.ndarray, weak: np
 
     Parameters
     ----------
-    xyz : ndarray of shape (n, 3), float64
-        Points (m).
-    group : ndarray of shape (n,), int
-        Group of each point from 0, negative for none; at least one point has a group.
+    xyz, group, density
+        As of :func:`penetration`.
     strong, weak : ndarray of shape (group.max() + 1,), bool
         Which groups are taken in any case, and which ones beside others.
-    density : float
-        Points per square meter.
 
     Returns
     -------
@@ -130,14 +125,17 @@ def join_beside(xyz: np.ndarray, group: np.ndarray, strong: np.ndarray, weak: np
     member = group >= 0
     count = grid.rows * grid.columns
     owner, cell = np.divmod(np.unique(group[member].astype(np.int64) * count + grid.number(xyz[member])), count)
+    cells, which = distinct(cell)
     size = np.maximum(np.bincount(owner, minlength=len(strong)), 1)
-    taken = strong.copy()
-    while True:
-        near = _near(grid, cell, np.unique(cell[taken[owner]]))
-        joins = weak & ~taken & (np.bincount(owner, near, len(strong)) >= _BESIDE * size)
-        if not joins.any():
-            return taken
+    near, taken, joins = np.zeros(len(cells), bool), strong.copy(), strong
+    while joins.any():
+        fresh = np.unique(cell[joins[owner]])
+        for step in (0, *grid.around):
+            there, found = find_cells(cells, fresh + step)
+            near[there[found]] = True
+        joins = weak & ~taken & (np.bincount(owner, near[which], len(strong)) >= _BESIDE * size)
         taken |= joins
+    return taken
 
 
 def share_around(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray) -> np.ndarray:
@@ -145,10 +143,8 @@ def share_around(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray) -> np.n
 
     Parameters
     ----------
-    xyz : ndarray of shape (n, 3), float64
-        Points (m).
-    group : ndarray of shape (n,), int
-        Group of each point from 0, negative for none; at least one point has a group.
+    xyz, group
+        As of :func:`penetration`.
     chosen : ndarray of shape (group.max() + 1,), bool
         Which groups are meant.
 
@@ -174,22 +170,20 @@ def share_around(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray) -> np.n
     return np.bincount(owner, (own_around / around)[which], len(chosen)) / np.maximum(size, 1)
 
 
-def _near(grid: Grid, cell: np.ndarray, chosen: np.ndarray) -> np.ndarray:
-    """Return which cells are among the ``chosen`` (ascending) or next to one."""
-    near = find_cells(chosen, cell)[1]
-    for step in grid.around:
-        near |= find_cells(chosen, cell + step)[1]
-    return near
-
-
 def _share_with_points_beneath(xyz: np.ndarray, group: np.ndarray, density: float) -> np.ndarray:
     """Return the share of each group's cells in which some point lies well beneath the lowest of the group."""
-    cell = grid_over(xyz, _cell_size(density)).number(xyz)
-    cells, index = np.unique(cell, return_inverse=True)
-    lowest = ndimage.minimum(xyz[:, 2], index, np.arange(len(cells)))
+    cells, which = distinct(grid_over(xyz, _cell_size(density)).number(xyz))
+    lowest = _least(xyz[:, 2], which, len(cells))
     member = np.flatnonzero(group >= 0)
-    pairs, position = np.unique(group[member].astype(np.int64) * len(cells) + index[member], return_inverse=True)
-    bottom = ndimage.minimum(xyz[member, 2], position, np.arange(len(pairs)))
+    pairs, of_pair = distinct(group[member].astype(np.int64) * len(cells) + which[member])
+    bottom = _least(xyz[member, 2], of_pair, len(pairs))
     owner, where = np.divmod(pairs, len(cells))
     occupied = np.bincount(owner)
     return np.bincount(owner, lowest[where] < bottom - _BENEATH) / np.maximum(occupied, 1)
+
+
+def _least(values: np.ndarray, which: np.ndarray, count: int) -> np.ndarray:
+    """Return the least of the values of each number from 0 to ``count``."""
+    least = np.full(count, np.inf)
+    np.minimum.at(least, which, values)
+    return least

@@ -484,10 +484,15 @@ def test_entropies_of_planes_and_volumes_are_those_of_large_samples(rng):
         assert expected == pytest.approx(np.mean(drawn), abs=4 * np.std(drawn) / 10)
 
 
-def test_cancel_gets_through(garden):
+@pytest.mark.parametrize("stop_at", [0.0, 0.9, 0.94, 0.98])
+def test_cancel_gets_through(garden, stop_at):
+    """Also between penetration, what lies beside and what stands around, which take a second each of large clouds."""
     xyz, cluster_id = garden
+    monitor, tunables = Listening(stop_at), {"max_penetration": 0.4, "min_share_around": 0.4}
     with pytest.raises(Cancelled):
-        classify_buildings(xyz, ones(xyz), cluster_id, monitor=Listening(stop_at=0.0))
+        classify_buildings(xyz, ones(xyz), cluster_id, monitor=monitor, **tunables)
+    assert stop_at in {0.0, monitor.heard[-1]}
+    assert monitor.heard == sorted(monitor.heard)
 
 
 def test_solid_clusters_are_undecided_where_nothing_tells_them_apart(rng):

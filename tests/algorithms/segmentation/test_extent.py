@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.segmentation.extent import share_around
+from lidar_buildings.algorithms.segmentation.extent import join_beside, penetration, plan_areas, share_around
 
 
 def test_shares_by_hand():
@@ -33,3 +33,36 @@ def test_shares_as_when_every_box_is_compared_with_every_other(seed):
     of_point = (near & chosen[group[members]][None]).sum(axis=1) / near.sum(axis=1)
     expected = [of_point[group[members] == g].mean() if (group == g).any() else 0 for g in range(6)]
     np.testing.assert_allclose(share_around(xyz, group, chosen), expected)
+
+
+def at_cells(*columns, z=5.0):
+    """Return points in square cells of 1.5 m, one each, in columns of a row at height z."""
+    return np.column_stack([1.51 * np.array(columns), np.zeros(len(columns)), np.full(len(columns), z)])
+
+
+def test_areas_are_cells_of_one_and_a_half_spacings_that_hold_points():
+    group = np.array([0, 0, 0, 2, 2])
+    np.testing.assert_allclose(plan_areas(at_cells(0, 1, 1, 1, 7), group, 1.0), [2 * 2.25, 0, 2 * 2.25])
+
+
+@pytest.mark.parametrize(("depth", "expected"), [(0.9, 0.0), (1.1, 2 / 5)])
+def test_penetration_by_hand(depth, expected):
+    """Of five cells of a group two have points of no or another group so far beneath; one point of ten goes on."""
+    group = np.repeat([1, 1, -1, 0], [5, 5, 1, 1])
+    own = at_cells(0, 1, 2, 3, 4)
+    xyz = np.concatenate([own, own + [0, 0, 2], at_cells(1, z=5 - depth), at_cells(3, z=5 - depth)])
+    assert penetration(xyz, group, 1.0).tolist() == [0.0, expected]
+    of_pulse = np.where(np.arange(12) == 7, 2, 1)
+    assert penetration(xyz, group, 1.0, np.ones(12), of_pulse)[1] == pytest.approx((expected + 0.1) / 2)
+
+
+def test_groups_join_beside_others_on_a_fifth_of_their_cells():
+    """In a row: a strong group, a weak one of five cells, one beside that, one of six; and one over a strong one."""
+    groups = [(0,), (1, 2, 3, 4, 5), (6, 7), (8, 9, 10, 11, 12, 13), (30,), (30,)]
+    xyz = at_cells(*[column for columns in groups for column in columns])
+    group = np.repeat(np.arange(6), [len(columns) for columns in groups])
+    strong, weak = np.isin(np.arange(6), [0, 4]), np.ones(6, bool)
+    assert np.flatnonzero(~join_beside(xyz, group, strong, weak, 1.0)).tolist() == [3]
+    # Without the second the third is beside nothing.
+    assert np.flatnonzero(~join_beside(xyz, group, strong, weak & (np.arange(6) != 1), 1.0)).tolist() == [1, 2, 3]
+    assert np.flatnonzero(~join_beside(xyz, np.where(group == 1, -1, group), strong, weak, 1.0)).tolist() == [1, 2, 3]
