@@ -19,41 +19,48 @@ from .outlines import Tracing
 from .regularize import main_directions
 from .segments import edge_distances, segments_meet
 
-# Heights are looked at on a grid of this step (m, and in spacings), smoothed along the line over so much (m).
+# Heights are looked at on a grid of this step (m, and in spacings; the larger), smoothed along a line over so much (m).
 _STEP, _STEP_SPACINGS, _ALONG = 0.25, 0.6, 1.0
 
 # The roof beside a line is what lies so far from it (m): beyond the wall itself, before the ridge of a narrow house.
 _NEAR, _FAR = 0.3, 1.6
 
-# Slope (tangent) from which a roof rises, and within which two are parallel.
-_RISE, _PARALLEL = 0.25, 0.35
-
-# Steps between parallel roofs, between any two, and what a wall stands above them (m).
-_LEAST_STEP, _LARGE_STEP, _PARAPET = 0.4, 1.0, 0.3
-
-# Heights (m) by which samples may be off the line fitted to a roof, and its greatest slope beside a large step.
-_ROUGH, _STEEPEST = 0.25, 1.5
-
-# A step goes on for so far (m) on both sides, by half at least: what ends before is a dormer.
-_WIDE = 2.5
-
-# The lower of two houses of a row is at least so high beside their wall (share of the higher): lower parts are wings.
-_LEAST_SHARE = 0.75
-
-# So much of a wall (share) is seen where it has roofs beside it that are at least so high (share of the median height).
-_SEEN, _HIGH = 0.6, 0.5
-
-# Lengths of party walls (m), distance of one from the next, and area (m²) of what they part: a house, not a part of it.
-_SHORTEST, _DEEPEST, _NARROWEST, _WIDEST, _HOUSE = 4.0, 22.0, 3.5, 13.0, 25.0
-
-# Cosine of the angle between walls of one row, 10°.
-_NEARLY = 0.985
-
-# Lines this close (m) are the same wall: the one, of those with so much (share) for them, that parts the roofs best.
-_SAME, _STRONG = 0.8, 0.5
-
 # Points farther apart (m) don't show the roof on either side of a wall, which takes two places of the grid at least.
 MAX_SPACING = _FAR / (2 * _STEP_SPACINGS)
+
+# A roof rises from this slope (tangent) on; two slopes that differ by less are parallel.
+_RISE, _PARALLEL = 0.25, 0.35
+
+# A wall is seen where two parallel roofs differ in height by the first figure, any two by the second, or where it
+# stands above both by the third (m).
+_LEAST_STEP, _LARGE_STEP, _PARAPET = 0.4, 1.0, 0.3
+
+# Heights are those of a roof where they deviate by less than this (m) from a line. Beside a large step roofs are no
+# steeper than the second figure (tangent).
+_ROUGH, _STEEPEST = 0.25, 1.5
+
+# Half of a step is still there so far (m) from it: what ends before is a dormer.
+_WIDE = 2.5
+
+# Of two houses of a row, the lower has at least this share of the other's height beside their wall: lower parts are
+# wings.
+_LEAST_SHARE = 0.75
+
+# A wall is seen on at least this share of the part that has roofs beside it at least so high (share of the median).
+_SEEN, _HIGH = 0.6, 0.5
+
+# Shortest and longest party wall (m), and the least and largest distance to the next one (m).
+_SHORTEST, _DEEPEST, _NARROWEST, _WIDEST = 4.0, 22.0, 3.5, 13.0
+
+# The least area (m²) of a house; what is smaller is a part of one.
+_HOUSE = 25.0
+
+# Walls of one row are parallel to 10° (cosine).
+_NEARLY = 0.985
+
+# Lines this close (m) are the same wall. Of those at least so strong (share of the strongest) the one that parts the
+# roofs best is taken.
+_SAME, _STRONG = 0.8, 0.5
 
 # What a wall cuts off at the outline is no more than this (spacings squared, each of them two triangles): it stays with
 # the house beside it.
@@ -96,19 +103,27 @@ def split_rows(
     for number, (own, rows) in enumerate(zip(rings, rows_of)):
         if area[rows].sum() >= 3 * _HOUSE:
             part = monitor.part(number / len(rings), (number + 1) / len(rings))
-            walls = [wall for ring in own for wall in line_along(ring).walls(tolerance)]
-            angles = main_directions(walls)
-            found = [
-                _lines(
-                    tracing, rows, height, angle, spacing, part.part(0.7 * k / len(angles), 0.7 * (k + 1) / len(angles))
-                )
-                for k, angle in enumerate(angles)
-            ]
+            found = _found_walls(tracing, rows, own, height, spacing, tolerance, part.part(0.0, 0.7))
             pieces = _parted(tracing, rows, area[rows], found, _SCRAP * spacing**2, part.part(0.7, 1.0))
             face[rows] = np.where(pieces > 0, len(labels) + pieces - 1, number)
             labels += [tracing.labels[number]] * int(pieces.max())
         monitor.progress((number + 1) / len(rings))
     return replace(tracing, face=face, labels=np.array(labels, tracing.labels.dtype))
+
+
+def _found_walls(
+    tracing: Tracing,
+    rows: np.ndarray,
+    rings: list,
+    height: np.ndarray,
+    spacing: float,
+    tolerance: float,
+    monitor: Monitor,
+) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Return for each main direction of a face, given by its rows and rings, what :func:`_lines` finds along it."""
+    angles = main_directions([wall for ring in rings for wall in line_along(ring).walls(tolerance)])
+    parts = [monitor.part(k / len(angles), (k + 1) / len(angles)) for k in range(len(angles))]
+    return [_lines(tracing, rows, height, angle, spacing, part) for angle, part in zip(angles, parts)]
 
 
 def _lines(

@@ -17,54 +17,68 @@ from .regularize import regularize_outline
 from .segments import edge_distances
 from .wall_lines import Scale, WallLine, find_lines, merge_lines, square_up, wall_scale
 
-# Cells in which roofs are held against walls (m), larger ones where they would be too many, and how far around them
-# there is room (m).
+# Side of the cells in which a roof is held against walls (m); where they would be more than so many, larger ones are
+# taken. Around the roof there is so much room (m).
 _CELL, _LARGEST_CELL, _MOST_CELLS, _ROOM = 0.25, 1.0, 5e5, 2.0
 
-# A square meter outside the roof costs so many meters of wall that nobody sees; one that is left out although it lies
-# under the roof and inside of where walls are expected by this distance (m), and one deep under it, these.
-_OUTSIDE, _INSIDE, _WELL_INSIDE, _DEEP = 5.0, 1.0, 0.3, 2.0
-
-# Under a small roof, what is deeper than this share of its deepest place is deep, however narrow the overhang. The
-# deepest place itself costs more than any wall.
-_DEEPER, _CERTAIN = 0.6, 1e5
-
-# What isn't seen of a wall costs this share where the roof lets expect it; any edge costs a little.
+# What an outline costs, in meters of wall that nobody sees: the cheapest one is taken.
+# A square meter in the outline that is no roof. Room for noise and for the roof's own ragged edge (m) costs nothing.
+_OUTSIDE, _BEYOND = 5.0, 0.4
+# A square meter left out although it lies farther under the roof than the overhang and this distance (m) together.
+_INSIDE, _WELL_INSIDE = 1.0, 0.3
+# More for one farther under it than the largest overhang, or than this share of the depth of the deepest place, where
+# the roof is small.
+_DEEP, _DEEPER = 2.0, 0.6
+# More than any wall: the deepest place left out, and the sides of the rectangle that everything lies in.
+_CERTAIN = 1e5
+# A meter of unseen wall where the roof says that there is one, and of any wall on top, seen or not.
 _EXPECTED, _ANY = 0.6, 0.05
+# A corner, and on top one that isn't square to within this (cosine of the angle between its walls).
+_CORNER_COST, _SKEW_COST, _SQUARE = 0.6, 1.5, np.sin(np.deg2rad(2.0))
 
-# Roof sides may wiggle by so much (m).
+# Sides of a roof may wiggle by so much (m).
 _WIGGLE = 0.4
 
-# Holes at the edge of a roof bite pieces out of its outline; straight sides that may lie so many wiggles off go over
-# them, wider ones only where the first make no outline.
+# Holes at the edge of a roof bite pieces out of its outline. Straight sides that may lie so many wiggles off go over
+# them; wider ones are taken only where the first make no outline.
 _OVER_BITES = (1.5, 2.0)
 
-# So many points, on this share of it, move a wall that the roof lets expect.
+# Where the roof says that there is a wall, so many points that cover this share of it are enough to show where.
 _FEW, _LEAST_COVERED = 5, 0.2
-
-# What lies this far (m) beyond the roof is outside: room for noise and for the roof's own ragged edge.
-_BEYOND = 0.4
 
 # A wall shows no farther (m) beyond the roof than noise makes it.
 _FLUSH = 0.2
 
-# Sides of the roof within this angle of a wall (radians) run like it; within the second they are its eave, if
-# they lie where it is expected to within the first distance (m), and as expected within the second.
-_LIKE, _EAVE_ANGLE, _EAVE, _AS_EXPECTED = np.deg2rad(8.0), np.deg2rad(3.0), 0.3, 0.15
+# A side of the roof runs like a wall within this angle (radians), and is its eave within the second one.
+_LIKE, _EAVE_ANGLE = np.deg2rad(8.0), np.deg2rad(3.0)
 
-# A corner must save so many meters of unseen wall, and so many more where it isn't square to within this angle.
-_CORNER_COST, _SKEW_COST, _SQUARE = 0.6, 1.5, np.sin(np.deg2rad(2.0))
+# The eave of a wall lies within this distance (m) of where it is expected, and as expected within the second.
+_EAVE, _AS_EXPECTED = 0.3, 0.15
 
-# So many sides of lines that places are on are told at once.
-_AT_ONCE = 10_000_000
-
-# Corners are left out of the test of an edge, by this much or by this share of a short edge.
+# Corners are left out where an edge is judged: so much on both sides (m), no more than this share of a short edge.
 _CORNER, _CORNER_SHARE = 0.4, 0.25
+
+# Places times lines that are looked at at once.
+_AT_ONCE = 10_000_000
 
 
 @dataclass(frozen=True)
 class WallEdge:
-    """One edge of a footprint: its ends, how much of it was seen, its points, their deviation and its own (m)."""
+    """One edge of a footprint.
+
+    Attributes
+    ----------
+    start, end : ndarray of shape (2,)
+        Its corners, m.
+    quality : float
+        Share of it that has wall points, corners left out, 0 to 1.
+    points : int
+        Wall points on it.
+    deviation : float
+        Standard deviation of these across it, m; NaN without any.
+    precision : float
+        Standard deviation of its own place across, m; NaN without points.
+    """
 
     start: np.ndarray
     end: np.ndarray
@@ -195,13 +209,13 @@ def _edges_of(rings: list) -> np.ndarray:
 
 
 def _expectation(line: WallLine, sides: np.ndarray, overhang: float) -> WallLine:
-    """Return a wall with the mark of one that lies where a side of the roof lets expect it."""
+    """Return a wall, marked as expected where it lies as a side of the roof says that it should."""
     expected = any(_is_eave_of(line, _expected(side, overhang, []), _AS_EXPECTED) for side in sides)
     return replace(line, expected=expected)
 
 
 def _expected(side: np.ndarray, overhang: float, seen: list[WallLine]) -> WallLine:
-    """Return the line, without points, where a side of the roof lets expect a wall that runs like those seen."""
+    """Return the line, without points, where a wall below a side of the roof should be; it runs like those seen."""
     start, end = side
     direction = _like_walls((end - start) / np.hypot(*(end - start)), seen)
     middle = (start + end) / 2 + overhang * np.array([-direction[1], direction[0]])
@@ -216,7 +230,7 @@ def _like_walls(direction: np.ndarray, seen: list[WallLine]) -> np.ndarray:
 
 
 def _is_eave_of(wall: WallLine, line: WallLine, within: float) -> bool:
-    """Return whether a wall is the one that a side of the roof lets expect, to ``within`` (m)."""
+    """Return whether a wall is the one that is expected on a ``line``, to ``within`` (m)."""
     parallel = abs(wall.direction @ line.direction) >= np.cos(_EAVE_ANGLE)
     return bool(parallel and abs(float(wall.across(line.point[None])[0])) <= within)
 
@@ -277,7 +291,7 @@ class _Patches:
         return replace(self, is_left=self.is_left[:, chosen])
 
     def costs_in(self, cells: Arrangement) -> tuple[np.ndarray, np.ndarray]:
-        """Return for each cell how little the roof likes it inside, and outside."""
+        """Return what each cell costs inside the outline, and outside, as far as the roof tells."""
         cell, count = cells.cells_at(self.is_left), len(cells.rings)
         known = cell >= 0
         if_inside, if_outside = (
@@ -287,7 +301,7 @@ class _Patches:
 
 
 def _patches(lines: list[WallLine], case: _Case, monitor: Monitor) -> _Patches:
-    """Return what the roof says of each patch between lines: the places in it are looked at once, for all outlines."""
+    """Return what each patch between lines costs inside an outline and outside; its places are looked at only once."""
     places, depth = case.cover.places, case.cover.depth.ravel()
     points, directions = _points_and_directions(lines)
     size = max(1, _AT_ONCE // max(1, len(lines)))
