@@ -56,6 +56,20 @@ SplitHeight = Annotated[
     ),
 ]
 
+SurfaceNoise = Annotated[
+    Optional[float],
+    Param(
+        "Surface noise",
+        "Standard deviation of the points across a smooth surface; roofs and walls are smooth to three of them.",
+        unit="m",
+        low=0,
+        high=10,
+        open_low=True,
+        automatic="measured on the smoothest fifth of the cloud, at least 0.02 m; 0.05 point spacings on top.",
+        advanced=True,
+    ),
+]
+
 MinClusterHeight = Annotated[
     float,
     Param(

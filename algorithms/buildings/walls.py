@@ -19,7 +19,7 @@ from ..features.eigen import (
 from ..features.noise import SurfaceSample
 from ..groups import members
 from ..packages import spatial
-from ..params import SplitHeight
+from ..params import SplitHeight, SurfaceNoise
 from ..segmentation.candidates import NO_OBJECTS
 from ..stage import Monitor, Param, stage
 
@@ -87,19 +87,7 @@ def classify_walls(
             open_low=True,
         ),
     ] = 0.5,
-    noise: Annotated[
-        Optional[float],
-        Param(
-            "Surface noise",
-            "Standard deviation of the points across a smooth surface; walls are smooth to three of them.",
-            unit="m",
-            low=0,
-            high=10,
-            open_low=True,
-            automatic="measured on the smoothest fifth of the cloud, at least 0.02 m; 0.05 point spacings on top.",
-            advanced=True,
-        ),
-    ] = None,
+    noise: SurfaceNoise = None,
     margin: Annotated[
         float,
         Param(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Annotated
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from ..buildings.reasons import Reason
 from ..cloud.asprs import NOISE
 from ..cloud.density import even_density
 from ..features.noise import SurfaceSample
-from ..params import PointDensity
+from ..params import PointDensity, SurfaceNoise
 from ..stage import Param, stage
 from .connectivity import connect, number_large
 from .extent import plan_areas
@@ -54,19 +54,7 @@ def segment_roofs(
         float,
         Param("Maximum slope", "Slope of the steepest roof.", unit="°", low=0, high=90),
     ] = 75.0,
-    noise: Annotated[
-        Optional[float],
-        Param(
-            "Surface noise",
-            "Standard deviation of the points across a smooth surface.",
-            unit="m",
-            low=0,
-            high=10,
-            open_low=True,
-            automatic="measured on the smoothest fifth of the cloud, at least 0.02 m; 0.05 point spacings on top.",
-            advanced=True,
-        ),
-    ] = None,
+    noise: SurfaceNoise = None,
     density: PointDensity = None,
     monitor=None,
 ):

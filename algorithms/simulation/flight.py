@@ -7,29 +7,15 @@ from typing import Annotated, Optional
 from ..params import Seed
 from ..stage import Monitor, Param, stage
 from .drone import SCANNERS, fly, plan_flight, pulses_per_line
+from .scanner import MAX_PULSES, RECORDED
 from .site import build_site
-
-# So many pulses (about 100 bytes each) still fit into the memory of an office computer.
-_MAX_PULSES = 5e7
-
-_CREATED = (
-    "xyz",
-    "classification",
-    "return_number",
-    "number_of_returns",
-    "intensity",
-    "scan_angle",
-    "point_source_id",
-    "gps_time",
-    "segment_id",
-)
 
 
 @stage(
     "Simulate drone flight",
     group="Simulation",
     tags="synthetic,UAV,UAS,line scanner,facade,demo,example,test,truth,teaching,scene,generate",
-    creates=_CREATED,
+    creates=RECORDED,
 )
 def simulate_flight(
     *,
@@ -137,9 +123,9 @@ def simulate_flight(
     monitor = monitor or Monitor()
     wanted = tuple(SCANNERS) if scanners == "both" else (scanners,)
     pulses = len(wanted) * duration * line_rate * pulses_per_line(angular_step)
-    if pulses > _MAX_PULSES:
+    if pulses > MAX_PULSES:
         raise ValueError(
-            f"A flight of {duration:g} s has {pulses / 1e6:.0f} million pulses, more than {_MAX_PULSES / 1e6:.0f} "
+            f"A flight of {duration:g} s has {pulses / 1e6:.0f} million pulses, more than {MAX_PULSES / 1e6:.0f} "
             "million; lower the duration or the line rate, or take a larger angular step."
         )
     scene = build_site(trees, slope, seed)
@@ -156,4 +142,4 @@ def simulate_flight(
     )
     if not len(made["xyz"]):
         raise ValueError(f"Nothing is within {max_range:g} m of the scanner; raise the maximum range.")
-    return tuple(made[name] for name in _CREATED)
+    return tuple(made[name] for name in RECORDED)

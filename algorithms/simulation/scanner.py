@@ -17,6 +17,22 @@ from .scene import Scene
 
 PATTERNS = ("lines", "zigzag", "random")
 
+# The dimensions that scanners record, and the true class and object of each point.
+RECORDED = (
+    "xyz",
+    "classification",
+    "return_number",
+    "number_of_returns",
+    "intensity",
+    "scan_angle",
+    "point_source_id",
+    "gps_time",
+    "segment_id",
+)
+
+# So many pulses (about 100 bytes each) still fit into the memory of an office computer.
+MAX_PULSES = 5e7
+
 # Height over the ground (m) and speed (m/s) of a survey flight, and what a strip takes beside the way (s).
 _HEIGHT = 600.0
 _SPEED = 60.0

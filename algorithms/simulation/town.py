@@ -7,29 +7,14 @@ from typing import Annotated, Optional
 from ..params import Seed
 from ..stage import Monitor, Param, stage
 from .layout import MAX_BUILDINGS, build_town
-from .scanner import PATTERNS, scan
-
-# So many pulses (about 100 bytes each) still fit into the memory of an office computer.
-_MAX_PULSES = 5e7
-
-_CREATED = (
-    "xyz",
-    "classification",
-    "return_number",
-    "number_of_returns",
-    "intensity",
-    "scan_angle",
-    "point_source_id",
-    "gps_time",
-    "segment_id",
-)
+from .scanner import MAX_PULSES, PATTERNS, RECORDED, scan
 
 
 @stage(
     "Simulate town",
     group="Simulation",
     tags="synthetic,scanner,airborne,demo,example,test,truth,teaching,scene,generate",
-    creates=_CREATED,
+    creates=RECORDED,
 )
 def simulate_town(
     *,
@@ -193,10 +178,10 @@ def simulate_town(
     True
     """
     monitor = monitor or Monitor()
-    if density * size**2 > _MAX_PULSES:
+    if density * size**2 > MAX_PULSES:
         raise ValueError(
             f"A town of {size:g} m with {density:g} pulses per m² has {density * size**2 / 1e6:.0f} million pulses, "
-            f"more than {_MAX_PULSES / 1e6:.0f} million; lower size or density."
+            f"more than {MAX_PULSES / 1e6:.0f} million; lower size or density."
         )
     scene = build_town(
         size=size,
@@ -223,4 +208,4 @@ def simulate_town(
         seed=seed,
         monitor=monitor.part(0.15, 1.0),
     )
-    return tuple(getattr(made, name) for name in _CREATED)
+    return tuple(getattr(made, name) for name in RECORDED)
