@@ -24,7 +24,7 @@ from qgis.core import (
 from qgis.PyQt.QtCore import QUrl
 from qgis.PyQt.QtGui import QIcon
 
-from ..algorithms.cloud.cloud import Cloud, read_cloud
+from ..algorithms.cloud.cloud import Cloud, count_points, read_cloud
 from ..algorithms.cloud.dimensions import DIMENSIONS
 from ..algorithms.cloud.outputs import replacing
 from ..algorithms.run import Outcome, run_stage
@@ -236,9 +236,10 @@ class StageAlgorithm(QgsProcessingAlgorithm):
     def _run(self, parameters: dict, context: QgsProcessingContext, monitor: Monitor) -> tuple[Outcome, Place]:
         """Read clouds and layers and run the stage; return what it made, and where on Earth that lies."""
         paths = self.job.paths
+        # Where memory ends while they are read, nothing can be told any more.
+        tell_if_short(sum(map(count_points, paths)), monitor)
         share = _READ / max(1, len(paths))
         clouds = [read_cloud(path, monitor.part(i * share, (i + 1) * share), crs_units) for i, path in enumerate(paths)]
-        tell_if_short(sum(map(len, clouds)), monitor)
         reference = clouds.pop() if self.job.reference else None
         found = {source: find_source(self, source, parameters, context) for source in self.stage.sources}
         given = {source: layer for source, layer in found.items() if layer is not None}

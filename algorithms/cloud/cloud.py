@@ -349,6 +349,19 @@ def read_extent(path: Union[str, Path]) -> tuple[np.ndarray, np.ndarray, str]:
     return np.min(low, axis=0), np.max(high, axis=0), wkt_of(headers[0])
 
 
+def count_points(path: Union[str, Path]) -> int:
+    """Return the number of points of a file or of all its tiles, as the headers tell it.
+
+    Raises
+    ------
+    ValueError
+        In one sentence, what is wrong with the file or with a tile of it.
+    """
+    path = Path(path)
+    with _readable(path):
+        return sum(open_header(source).count for source in _sources(path))
+
+
 @contextmanager
 def _readable(path: Path) -> Iterator[None]:
     try:

@@ -22,7 +22,7 @@ from qgis.PyQt.QtCore import Qt
 
 from lidar_buildings.algorithms import packages
 from lidar_buildings.algorithms.cloud.cloud import create_cloud, read_cloud, write_cloud
-from lidar_buildings.provider import clouds, memory, outputs
+from lidar_buildings.provider import clouds, memory, outputs, stage_algorithm
 from lidar_buildings.provider.crs import crs_of, crs_units
 
 
@@ -273,6 +273,17 @@ def test_a_cloud_that_hardly_fits_into_memory_is_told(provider, context, log, to
     monkeypatch.setattr(memory, "installed_memory", lambda: there)
     run("toylift", {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz")}, context, log)
     assert [warning.split(" may ")[0] for warning in log.warnings] == ["400 points"] * told
+
+
+def test_it_is_told_before_the_cloud_is_read(provider, context, log, town_file, out, monkeypatch):
+    def read(*arguments):
+        raise MemoryError
+
+    monkeypatch.setattr(memory, "installed_memory", lambda: 1.0)
+    monkeypatch.setattr(stage_algorithm, "read_cloud", read)
+    with pytest.raises(QgsProcessingException, match="^This needs more memory than there is"):
+        run("toylift", {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz")}, context, log)
+    assert [warning.split(" may ")[0] for warning in log.warnings] == ["400 points"]
 
 
 def test_this_computers_memory_is_known_or_taken_for_enough(monkeypatch):
