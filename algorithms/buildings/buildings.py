@@ -101,8 +101,8 @@ def classify_buildings(
         float,
         Param(
             "Minimum share of buildings around",
-            "At least so much of what stands within a few meters of a building is of buildings too, itself among it; "
-            "around a smooth spot of a crown, less is. 0 is the method as published.",
+            "Share of the points standing within a few meters of a building that must be of buildings, its own among "
+            "them. Around smooth spots of crowns it is less. 0 is the method as published.",
             low=0,
             high=1,
         ),

@@ -106,8 +106,8 @@ def complete_buildings(
         float,
         Param(
             "Minimum share of roof surfaces",
-            "At least so much of what stands in a building's outline lies on roof surfaces; of a crown with a smooth "
-            "side, less does. 0 takes any.",
+            "Share of the points standing in a building's outline that must lie on roof surfaces. In crowns with a "
+            "smooth side it is less. 0 takes any.",
             low=0,
             high=1,
         ),
