@@ -198,9 +198,9 @@ def _principal(places: np.ndarray, weights: np.ndarray, chord: np.ndarray) -> np
     xx, yy, xy = weights @ moved[:, 0] ** 2, weights @ moved[:, 1] ** 2, weights @ (moved[:, 0] * moved[:, 1])
     angle = 0.5 * np.arctan2(2 * xy, xx - yy)
     direction = np.array([np.cos(angle), np.sin(angle)])
-    along = float(direction @ chord)
-    if len(places) < 3 or abs(along) < 0.9 * np.hypot(*chord):
-        return chord / max(float(np.hypot(*chord)), 1e-9)
+    along, length = float(direction @ chord), float(np.hypot(*chord))
+    if abs(along) < 0.9 * length:
+        return chord / length
     return direction if along > 0 else -direction
 
 

@@ -36,17 +36,14 @@ def segments_meet(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) ->
 
 def meet_in_corners(starts: np.ndarray, ends: np.ndarray) -> bool:
     """Return whether segments (n, 2), some of them there and back, have no points in common but their ends."""
-    is_back = (starts[:, 0] > ends[:, 0]) | ((starts[:, 0] == ends[:, 0]) & (starts[:, 1] > ends[:, 1]))
-    a, b = np.where(is_back[:, None], ends, starts), np.where(is_back[:, None], starts, ends)
-    a, b = np.split(np.unique(np.column_stack([a, b]), axis=0), 2, axis=1)
-    step = max(1, _PAIRS_AT_ONCE // len(a))
-    for low in range(0, len(a), step):
-        c, d = a[low : low + step], b[low : low + step]
-        share = np.zeros((len(c), len(a)), bool)
-        for one in (c, d):
-            for other in (a, b):
+    step = max(1, _PAIRS_AT_ONCE // len(starts))
+    for low in range(0, len(starts), step):
+        a, b = starts[low : low + step], ends[low : low + step]
+        share = np.zeros((len(a), len(starts)), bool)
+        for one in (a, b):
+            for other in (starts, ends):
                 share |= (one[:, None] == other).all(axis=-1)
-        if (_meet(c, d, a, b) & ~share).any():
+        if (_meet(a, b, starts, ends) & ~share).any():
             return False
     return True
 

@@ -113,3 +113,23 @@ def test_simplified_line_stays_within_the_tolerance(rng):
     assert len(simple) < 12
     assert (np.diff(rows) > 0).all()
     assert farthest(raw, simple) <= 0.5
+
+
+@pytest.mark.parametrize("start", [0, 1, 40, 150])
+def test_where_a_closed_line_begins_its_simplified_one_is_the_same(start, rng):
+    raw = np.roll(traced(L_SHAPE, rng).samples, start, axis=0)
+    rows = simplify(raw, 0.5, is_closed=True)
+    expected = simplify(np.roll(raw, -start, axis=0), 0.5, is_closed=True)
+    assert sorted(((rows - start) % len(raw)).tolist()) == expected.tolist()
+
+
+def test_of_a_closed_line_the_longest_extent_is_left_at_any_tolerance(rng):
+    raw = traced(L_SHAPE, rng, noise=0.0).samples
+    np.testing.assert_allclose(np.sort(raw[simplify(raw, 50.0, is_closed=True)], axis=0), [[0, 0], [20, 16]], atol=0.3)
+
+
+@pytest.mark.parametrize("corner", [[2.0, 2.0], [1.0, 5.0]])
+def test_a_wall_whose_samples_have_no_direction_has_that_of_its_ends(corner):
+    """They are spread at 45° or 90° to the way from the first to the last."""
+    line = Line(np.array([[0.0, 0.0], corner, [2.0, 0.0]]), np.ones(3), False)
+    np.testing.assert_allclose(line.fitted(0, 2, 0.5).direction, [1, 0], atol=1e-9)
