@@ -5,9 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.buildings.lines import line_along
+from lidar_buildings.algorithms.buildings.lines import Line, Wall, line_along
 from lidar_buildings.algorithms.buildings.outlines import signed_area
-from lidar_buildings.algorithms.buildings.regularize import chords, main_directions, regularize_outline, straighten
+from lidar_buildings.algorithms.buildings.regularize import (
+    _without_loops,
+    chords,
+    main_directions,
+    regularize_outline,
+    straighten,
+)
 from lidar_buildings.algorithms.buildings.segments import farthest, is_valid
 
 L_SHAPE = np.array([[0, 0], [20, 0], [20, 8], [9, 8], [9, 16], [0, 16], [0, 0]], float)
@@ -270,3 +276,123 @@ def test_corners_that_are_cut_are_right_angles_all_the_same():
     walls = line_along(ring).walls(0.1)
     assert len(walls) == 8
     assert main_directions(walls) == pytest.approx([np.deg2rad(25)], abs=1e-3)
+
+
+def polygon(*sides):
+    """Return the walls of a closed outline by length and direction (degrees), which is all that directions go by."""
+    turned = [(length, np.array([np.cos(np.deg2rad(angle)), np.sin(np.deg2rad(angle))])) for length, angle in sides]
+    return [Wall(direction, np.zeros(2), length, 0, 0) for length, direction in turned]
+
+
+@pytest.mark.parametrize(
+    ("long", "short", "cut", "has_main"),
+    [
+        (5.0, 5.0, 2.4, True),
+        (5.0, 5.0, 2.6, False),
+        # A cut of less than half of the one wall beside it, and of more than half of the other.
+        (9.0, 3.0, 2.0, False),
+    ],
+)
+def test_a_cut_corner_is_less_than_half_as_long_as_the_walls_beside_it(long, short, cut, has_main):
+    """Eight walls that turn by 45° each: what is cut less than that is a rectangle, and else an octagon."""
+    sides = [(length, 45 * i) for i, length in enumerate([long, cut, short, cut, long, cut, short, cut])]
+    assert len(main_directions(polygon(*sides))) == has_main
+    assert len(main_directions(polygon(*sides[1:], sides[0]))) == has_main
+
+
+def test_a_boat_has_no_main_direction():
+    """Its sides, bent by 6°, are most of the outline, but there is no right angle."""
+    sides = [(12, -3), (12, 3), (4, 60), (4, 120), (12, 177), (12, 183), (4, 240), (4, 300)]
+    assert main_directions(polygon(*sides)) == []
+
+
+@pytest.mark.parametrize(("run", "rise", "is_step"), [(0.4, 0.8, True), (1.4, 1.4, False)])
+def test_short_diagonals_between_parallel_walls_are_steps(run, rise, is_step):
+    """At a tolerance of 0.5 m: one of 0.9 m stands for a wall across, one of 2 m is as it looks."""
+    truth = np.array([[0, 0], [9, 0], [9 + run, rise], [20, rise], [20, 12], [0, 12], [0, 0]])
+    for seed in range(6):
+        ring = straight(wiggly(truth, np.random.default_rng(seed), 0.03, 0.2))
+        angle = np.rad2deg(np.arctan2(*np.diff(ring, axis=0).T[::-1]))
+        assert len(ring) == 7
+        assert (np.abs((angle + 45) % 90 - 45).max() < 1) == is_step
+        assert is_step or farthest(ring, truth) < 0.1
+
+
+def test_stairs_of_main_directions_are_no_diagonals():
+    """Each step of 1 m is as short as a diagonal that is left out."""
+    truth = np.array([[0, 0], [8, 0], [8, 1], [9, 1], [9, 2], [20, 2], [20, 12], [0, 12], [0, 0]])
+    for seed in range(6):
+        ring = straight(wiggly(truth, np.random.default_rng(seed), 0.05, 0.3))
+        assert len(ring) == 9
+        assert farthest(truth, ring) < 0.1
+
+
+def test_a_cut_corner_of_a_bay_without_main_directions_stays():
+    """Where neither wall beside it has a main direction, nothing says that there was a right angle."""
+    side, front = (np.array([np.cos(angle), np.sin(angle)]) for angle in np.deg2rad([110, 200]))
+    left = np.array([16, 12]) + 5 * side + 6 * front
+    back = left - side * (left[1] - 12) / side[1]
+    corner = np.array([16, 12]) + 5 * side
+    truth = [
+        [0, 0],
+        [30, 0],
+        [30, 12],
+        [16, 12],
+        corner - 0.9 * side,
+        corner + 0.9 * front,
+        left,
+        back,
+        [0, 12],
+        [0, 0],
+    ]
+    for seed in range(6):
+        ring = straight(wiggly(np.array(truth), np.random.default_rng(seed), 0.02, 0.1))
+        assert farthest(np.array(truth), ring) < 0.1
+        assert farthest(ring, np.array(truth)) < 0.1
+
+
+def test_a_border_keeps_the_wall_it_begins_with():
+    """A diagonal of 1.1 m has no wall before it, so that it cuts no corner."""
+    corners = np.array([[0, 0], [0.8, 0.8], [10, 0.8], [10, 9]])
+    places = np.concatenate([np.linspace(a, b, 90) for a, b in zip(corners, corners[1:])])
+    line = Line(places, np.full(len(places), 0.1), is_closed=False)
+    walls, _ = straighten(line, line.walls(0.5, [0.0]), [0.0], 0.5)
+    assert np.rad2deg([wall.angle for wall in walls]) == pytest.approx([45, 0, 90], abs=3)
+
+
+def test_slanting_sides_of_a_bay_are_no_spikes():
+    """They lead back a little, and what is between each and the front is as narrow as a spike, but not as sharp."""
+    bay = [[8, 0], [7.1, -1.2], [13.9, -1.2], [13, 0]]
+    truth = np.array([[0, 0], *bay, [20, 0], [20, 12], [0, 12], [0, 0]])
+    for seed in range(6):
+        ring = straight(wiggly(truth, np.random.default_rng(seed), 0.05, 0.3))
+        assert farthest(truth, ring) < 0.2
+
+
+@pytest.mark.parametrize("fin", [[[24, 0], [21.2, 1.1], [21, 12]], [[21, 0], [21.2, 10.9], [24, 12]]])
+def test_a_fin_at_the_end_of_a_wall_is_a_spike(fin):
+    """Three meters of it go on beyond the corner; the wall itself, before or after, is long."""
+    truth = np.array([[0, 0], *fin, [0, 12], [0, 0]])
+    for seed in range(6):
+        ring = straight(wiggly(truth, np.random.default_rng(seed), 0.05, 0.3))
+        assert len(ring) == 5
+        assert farthest(np.array([[0, 0], [21, 0], [21, 12], [0, 12]]), ring) < 0.3
+
+
+@pytest.mark.parametrize(
+    ("loop", "cut"),
+    [
+        # The third side crosses the first, or the fourth does.
+        ([[10, 0], [10, -0.4], [9.5, 0.4]], [[9.75, 0], [9.5, 0.4]]),
+        ([[10, 0], [10.3, -0.3], [9.7, -0.3], [9.7, 5]], [[9.7, 0], [9.7, 5]]),
+    ],
+)
+def test_loops_on_a_short_way_are_cut_off(loop, cut):
+    ring = np.array([[0, 0], *loop, [5, 10], [0, 10]])
+    way = np.hypot(*np.diff(ring[1:-2] if len(loop) == 3 else ring[1:-3], axis=0).T).sum()
+    for start in range(len(ring)):
+        turned = list(np.roll(ring, start, axis=0))
+        found = np.array(_without_loops(turned, 1.01 * way))
+        expected = np.array([[0, 0], *cut, [5, 10], [0, 10]])
+        np.testing.assert_allclose(found[np.lexsort(found.T)], expected[np.lexsort(expected.T)], atol=1e-9)
+        assert len(_without_loops(turned, 0.3)) == len(ring)
