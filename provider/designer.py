@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from processing.gui.ContextAction import ContextAction
 
-from .models import PipelineAlgorithm
+from .pipeline_algorithm import PipelineAlgorithm
 
 
 class OpenInDesigner(ContextAction):

@@ -1,61 +1,33 @@
-"""Pipelines as Processing models: written from ``pipelines.py``, shipped, and loaded as algorithms."""
+"""Pipelines as Processing models, drawn and written from ``pipelines.py``."""
 
 from __future__ import annotations
 
 import uuid
 from pathlib import Path
-from typing import Any, Optional
 
 from qgis.core import (
     Qgis,
-    QgsProcessing,
-    QgsProcessingAlgorithm,
-    QgsProcessingContext,
-    QgsProcessingException,
-    QgsProcessingFeedback,
     QgsProcessingModelAlgorithm,
     QgsProcessingModelChildAlgorithm,
     QgsProcessingModelChildParameterSource,
     QgsProcessingModelGroupBox,
     QgsProcessingModelOutput,
     QgsProcessingModelParameter,
-    QgsProcessingOutputNumber,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterMultipleLayers,
     QgsProcessingParameterPointCloudLayer,
 )
-from qgis.PyQt.QtCore import QPointF, QSizeF, QUrl
-from qgis.PyQt.QtGui import QColor, QIcon
+from qgis.PyQt.QtCore import QPointF, QSizeF
+from qgis.PyQt.QtGui import QColor
 
-from ..algorithms.cloud.cloud import check_readable
 from ..algorithms.pipelines import Output, Pipeline, Step
 from . import paths
-from .crs import crs_units
-from .dependencies import missing_sentence
-from .errors import one_sentence
-from .feedback import ChainFeedback, tell_unknown
 from .help import lower_first, pipeline_help, step_title
-from .outputs import check_targets, files_of, nothing_left_on_failure
-from .parameters import number_outputs, parameter, parameter_name, tunable_values
-from .sources import refuse_elsewhere, source_files, source_name, source_parameter
-from .stage_algorithm import (
-    INPUT,
-    INPUTS,
-    OUTPUT,
-    REPORT,
-    cloud_title,
-    input_parameter,
-    input_paths,
-    on_command_line,
-    shown_help,
-)
+from .parameters import parameter, parameter_name
+from .sources import source_name, source_parameter
+from .stage_algorithm import INPUT, INPUTS, OUTPUT, cloud_title
 
 PROVIDER = "lidarbuildings"
-
-
-def step_output_name(step: Step, name: str) -> str:
-    """Return the composite's name of a step's output, ``GROUND_CELL_SIZE_USED``."""
-    return f"{step.name.upper()}_{name}"
 
 
 def step_label(step: Step, label: str) -> str:
@@ -282,203 +254,6 @@ def _frame(step: Step, layout: _Layout, height: float) -> QgsProcessingModelGrou
     return box
 
 
-# Outputs of this rank or a higher one are what the result comes from.
-_FROM_BETWEEN = 3
-
-
-def _rank(output: Output) -> int:
-    """Return where an output stands in the dialog: cloud, layers, reports; rasters and kept clouds come last."""
-    if output.of == OUTPUT.lower():
-        return 0 if output.name == output.of else 4
-    rasters = [raster.name for raster in output.step.stage.rasters]
-    return 2 if output.of == REPORT.lower() else _FROM_BETWEEN if output.of in rasters else 1
-
-
 def model_file(pipeline: Pipeline) -> Path:
     """Return where the model of a pipeline is shipped."""
     return paths.MODELS / f"{pipeline.id}.model3"
-
-
-class PipelineAlgorithm(QgsProcessingModelAlgorithm):
-    """A shipped model with its pipeline's id and title.
-
-    A model loaded as it is has its title as id, refuses LAS and LAZ where QGIS has no PDAL,
-    ignores its own defaults and names its outputs by their titles; this class mends these and nothing else.
-    """
-
-    def __init__(self, pipeline: Pipeline) -> None:
-        super().__init__()
-        self.pipeline = pipeline
-        if not self.fromFile(str(model_file(pipeline))):
-            raise QgsProcessingException(
-                f"The model {model_file(pipeline).name} of the plugin can't be read; install it again."
-            )
-        self._mend_parameters()
-        if on_command_line():
-            # Of models it shows this alone.
-            self.setHelpContent({"ALG_DESC": f"{pipeline.summary}\n{self.shortHelpString()}"})
-
-    def _mend_parameters(self) -> None:
-        """Let the input take any path, and name outputs by their names instead of their titles."""
-        # A model's file holds no tooltips.
-        helps = {name: definition.help() for name, definition in pipeline_parameters(self.pipeline).items()}
-        helps.update({source_name(source): source.help for source in self.pipeline.sources.values()})
-        mended = [self._mended(definition, helps) for definition in self.parameterDefinitions()]
-        order = [output.name.upper() for output in sorted(self.pipeline.outputs, key=_rank)]
-        mended.sort(key=lambda made: order.index(made.name()) if made.isDestination() else -1)
-        for definition in self.parameterDefinitions():
-            self.removeParameter(definition.name())
-        for definition in mended:
-            self.addParameter(definition)
-
-    def _mended(
-        self, definition: QgsProcessingParameterDefinition, helps: dict[str, str]
-    ) -> QgsProcessingParameterDefinition:
-        """Return a parameter of the model with its help, an output under the name that the chain gives it."""
-        if definition.name() in (INPUT, INPUTS):
-            return input_parameter(self.pipeline.merges)
-        mended = definition.clone()
-        mended.setHelp(helps.get(definition.name(), definition.help()))
-        if definition.isDestination():
-            facts = definition.metadata()
-            made = self.childAlgorithm(facts["_modelChildId"]).modelOutput(facts["_modelChildOutputName"])
-            output = self._output(made.childId(), made.childOutputName().lower())
-            mended.setName(output.name.upper())
-            if mended.name() != OUTPUT:
-                mended.setFlags(mended.flags() | Qgis.ProcessingParameterFlag.Optional)
-                # Who wants what the result comes from asks for it.
-                mended.setCreateByDefault(_rank(output) < _FROM_BETWEEN)
-        return mended
-
-    def _output(self, step_name: str, of: str) -> Output:
-        return next(output for output in self.pipeline.outputs if (output.step.name, output.of) == (step_name, of))
-
-    def as_model(self) -> QgsProcessingModelAlgorithm:
-        """Return the plain model, as the designer edits it."""
-        model = QgsProcessingModelAlgorithm()
-        model.fromFile(str(model_file(self.pipeline)))
-        model.setSourceFilePath("")
-        return model
-
-    def createInstance(self) -> PipelineAlgorithm:  # noqa: N802 - QGIS asks for these names
-        """Return a new algorithm of the same pipeline."""
-        return PipelineAlgorithm(self.pipeline)
-
-    def initAlgorithm(self, configuration: Optional[dict] = None) -> None:  # noqa: N802
-        """Declare the numbers of the steps (used values, measures) as outputs of the whole."""
-        for step in self.pipeline.steps:
-            for name, title in number_outputs(step.stage).items():
-                self.addOutput(QgsProcessingOutputNumber(step_output_name(step, name), step_label(step, title)))
-
-    def name(self) -> str:
-        """Return the id, frozen: saved models depend on it."""
-        return self.pipeline.id
-
-    def displayName(self) -> str:  # noqa: N802
-        """Return the title."""
-        return self.pipeline.title
-
-    def group(self) -> str:
-        """Return the group's title."""
-        return self.pipeline.group
-
-    def groupId(self) -> str:  # noqa: N802
-        """Return the group's id."""
-        return self.pipeline.group.lower().replace(" ", "")
-
-    def tags(self) -> list:
-        """Return words that the toolbox finds the pipeline by."""
-        return [tag.strip() for tag in self.pipeline.tags.split(",") if tag.strip()]
-
-    def icon(self) -> QIcon:
-        """Return the plugin's icon."""
-        return QIcon(str(paths.ICON))
-
-    def svgIconPath(self) -> str:  # noqa: N802
-        """Return the icon's file."""
-        return str(paths.ICON)
-
-    def shortDescription(self) -> str:  # noqa: N802
-        """Return what the pipeline is for."""
-        return self.pipeline.summary
-
-    def shortHelpString(self) -> str:  # noqa: N802
-        """Return the help that the dialog shows beside the parameters."""
-        return shown_help(pipeline_help(self.pipeline))
-
-    def helpUrl(self) -> str:  # noqa: N802
-        """Return the help page, which comes with the plugin."""
-        return QUrl.fromLocalFile(str(paths.HELP / f"{self.pipeline.id}.html")).toString()
-
-    def asPythonCommand(self, parameters: dict, context: QgsProcessingContext) -> str:  # noqa: N802
-        """Return the call that the dialog copies; of a model as such QGIS knows none."""
-        return QgsProcessingAlgorithm.asPythonCommand(self, parameters, context)
-
-    def canExecute(self) -> tuple[bool, str]:  # noqa: N802
-        """Whether all packages are there, and how to install what is missing."""
-        missing = missing_sentence()
-        return (False, missing) if missing else super().canExecute()
-
-    def checkParameterValues(self, parameters: dict, context: QgsProcessingContext) -> tuple[bool, str]:  # noqa: N802
-        """Refuse what can be refused before the run, in the words that the run would use."""
-        try:
-            self._check(parameters, context)
-        except ValueError as error:
-            return False, str(error)
-        return super().checkParameterValues(self._with_defaults(parameters), context)
-
-    def _check(self, parameters: dict, context: QgsProcessingContext) -> None:
-        """Refuse with a ValueError what can be refused before the first step."""
-        missing = missing_sentence()
-        if missing:
-            raise ValueError(missing)
-        given = self._with_defaults(parameters)
-        for step in self.pipeline.steps:
-            named = {name: self.pipeline.parameter(step, name).upper() for name in step.stage.tunables}
-            tunable_values(self, step.stage, given, context, named)
-        clouds = input_paths(self, self.pipeline.merges, given, context) if self.pipeline.reads_cloud else []
-        read = [*clouds, *source_files(self, self.pipeline.sources.values(), given, context)]
-        check_targets(self.destinationParameterDefinitions(), given, read)
-        for cloud in clouds:
-            # Now, as QGIS opens the input of a model as a layer too, and a damaged COPC can hang it.
-            check_readable(cloud, crs_units)
-        if clouds:
-            refuse_elsewhere(self, self.pipeline.sources.values(), clouds, given, context)
-
-    def _with_defaults(self, parameters: dict) -> dict:
-        """Return ``parameters`` with the model's defaults, where QGIS would take the child's.
-
-        What one step makes and another one reads is temporary where nobody keeps it.
-        """
-        names = [name.upper() for name in self.pipeline.parameters]
-        defaults = {name: self.parameterDefinition(name).defaultValue() for name in names}
-        temporary = dict.fromkeys(self._not_kept(parameters), QgsProcessing.TEMPORARY_OUTPUT)
-        return {**defaults, **parameters, **temporary}
-
-    def _not_kept(self, parameters: dict) -> list[str]:
-        """Return the names of outputs that nobody asks for and a step makes for another one."""
-        needed = [output.name.upper() for output in self.pipeline.outputs if self.pipeline.needs(output)]
-        return [name for name in needed if name != OUTPUT and parameters.get(name) in (None, "")]
-
-    def processAlgorithm(  # noqa: N802
-        self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback
-    ) -> dict:
-        """Run the graph; all or nothing."""
-        tell_unknown(self, parameters, feedback)
-        with one_sentence(), nothing_left_on_failure(self._target_files(parameters)):
-            self._check(parameters, context)
-            results = super().processAlgorithm(self._with_defaults(parameters), context, ChainFeedback(feedback))
-        gone = self._not_kept(parameters)
-        made = {name: value for name, value in results.items() if value is not None and name not in gone}
-        return {**made, **self._numbers(results.get("CHILD_RESULTS", {}))}
-
-    def _target_files(self, parameters: dict) -> list:
-        definitions = self.destinationParameterDefinitions()
-        return [path for d in definitions for path in files_of(d, parameters.get(d.name()))]
-
-    def _numbers(self, child_results: dict[str, dict[str, Any]]) -> dict:
-        numbers = {}
-        for step in self.pipeline.steps:
-            for name in number_outputs(step.stage):
-                numbers[step_output_name(step, name)] = child_results.get(step.name, {}).get(name)
-        return numbers

@@ -8,8 +8,8 @@ from qgis.PyQt.QtGui import QIcon
 from ..algorithms.pipelines import PIPELINES
 from ..algorithms.stages import STAGES
 from .dependencies import missing_sentence
-from .models import PipelineAlgorithm
 from .paths import ICON
+from .pipeline_algorithm import PipelineAlgorithm
 from .rasters import EXTENSIONS as RASTER_EXTENSIONS
 from .stage_algorithm import StageAlgorithm
 

@@ -21,8 +21,6 @@ from qgis.core import (
     QgsProcessingParameterPointCloudDestination,
     QgsProcessingParameterRasterDestination,
 )
-from qgis.PyQt.QtCore import QUrl
-from qgis.PyQt.QtGui import QIcon
 
 from ..algorithms.cloud.cloud import Cloud, count_points, read_cloud
 from ..algorithms.cloud.dimensions import DIMENSIONS
@@ -32,13 +30,13 @@ from ..algorithms.stage import Features, Layer, Monitor, Raster, Stage, Surface
 from .clouds import CloudParameter, CloudsParameter, cloud_path, cloud_paths
 from .crs import crs_units
 from .dependencies import missing_sentence
+from .described import Described
 from .errors import one_sentence
 from .feedback import FeedbackMonitor, announce, tell_unknown
 from .help import as_text, stage_help
 from .memory import tell_if_short
 from .outputs import check_targets, files_of, nothing_left_on_failure, write_for_qgis
 from .parameters import automatic_numbers, number_outputs, parameter, tunable_values, used_name
-from .paths import HELP, ICON
 from .places import Place, place_of_cloud, place_of_layers
 from .rasters import write_raster
 from .sources import find_source, read_source, refuse_elsewhere, source_files, source_parameter
@@ -71,56 +69,20 @@ class _Job:
         return [*self.inputs, *([self.reference] if self.reference else [])]
 
 
-class StageAlgorithm(QgsProcessingAlgorithm):
+class StageAlgorithm(Described, QgsProcessingAlgorithm):
     """A stage as a Processing algorithm; everything it shows comes from the stage's declaration."""
 
     def __init__(self, stage: Stage) -> None:
         super().__init__()
-        self.stage = stage
+        self.stage = self.described = stage
 
     def createInstance(self) -> StageAlgorithm:  # noqa: N802 - QGIS asks for these names
         """Return a new algorithm of the same stage."""
         return StageAlgorithm(self.stage)
 
-    def name(self) -> str:
-        """Return the id, frozen: saved models depend on it."""
-        return self.stage.id
-
-    def displayName(self) -> str:  # noqa: N802
-        """Return the title."""
-        return self.stage.title
-
-    def group(self) -> str:
-        """Return the group's title."""
-        return self.stage.group
-
-    def groupId(self) -> str:  # noqa: N802
-        """Return the group's id."""
-        return self.stage.group.lower().replace(" ", "")
-
-    def tags(self) -> list:
-        """Return words that the toolbox finds the stage by."""
-        return [tag.strip() for tag in self.stage.tags.split(",") if tag.strip()]
-
-    def icon(self) -> QIcon:
-        """Return the plugin's icon."""
-        return QIcon(str(ICON))
-
-    def svgIconPath(self) -> str:  # noqa: N802
-        """Return the icon's file."""
-        return str(ICON)
-
-    def shortDescription(self) -> str:  # noqa: N802
-        """Return the first paragraph of the docstring."""
-        return self.stage.summary
-
     def shortHelpString(self) -> str:  # noqa: N802
         """Return the help that the dialog shows beside the parameters."""
         return shown_help(stage_help(self.stage))
-
-    def helpUrl(self) -> str:  # noqa: N802
-        """Return the help page, which comes with the plugin."""
-        return QUrl.fromLocalFile(str(HELP / f"{self.stage.id}.html")).toString()
 
     def initAlgorithm(self, configuration: Optional[dict] = None) -> None:  # noqa: N802
         """Declare inputs, tunables and outputs."""

@@ -10,7 +10,7 @@ from qgis.core import QgsApplication
 import lidar_buildings
 from lidar_buildings.algorithms import packages
 from lidar_buildings.provider import dependencies
-from lidar_buildings.provider.models import PipelineAlgorithm
+from lidar_buildings.provider.pipeline_algorithm import PipelineAlgorithm
 from lidar_buildings.provider.plugin import Plugin
 
 
