@@ -11,7 +11,8 @@ Conventions, written once and kept by every stage:
 * A neighborhood holds the point itself.
 * Ids (``segment_id``, ``cluster_id``) run from 1; 0 is none. Undefined measures are NaN.
 * Classes are those of :class:`~.cloud.asprs.PointClass`; noise (7, 18) is never used by a later stage.
-* Withheld points never reach a stage: the runner leaves them out and keeps them in the file.
+* Withheld points never reach a stage: the runner leaves them out. They stay in the file, unless the stage makes a cloud
+  of other points (``selects``, ``merges``).
 """
 
 from __future__ import annotations

@@ -1,1 +1,1 @@
-"""Before anything else: outliers."""
+"""Before anything else: clouds merged, filtered and evened out, and noise found."""

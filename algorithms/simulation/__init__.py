@@ -1,1 +1,1 @@
-"""Scanned towns with known truth."""
+"""Scanned or photographed scenes with known truth."""
