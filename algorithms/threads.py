@@ -10,6 +10,17 @@ import numpy as np
 
 from .stage import Monitor
 
+# Each thread holds arrays of its own, up to 20 MB: with one for each core of a large server they would take more memory
+# than the cloud.
+_MOST_THREADS = 32
+
+
+def n_threads() -> int:
+    """Return how many threads work at once: one for each core that this process may use, at most 32."""
+    # Where batch systems and containers give a process some of the cores, only Linux tells which.
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return min(cores, _MOST_THREADS)
+
 
 def in_chunks(work: Callable[[np.ndarray], None], rows: np.ndarray, size: int, monitor: Monitor) -> None:
     """Call ``work`` with ``size`` of ``rows`` at a time, in threads, and tell the progress.
@@ -23,7 +34,7 @@ def in_chunks(work: Callable[[np.ndarray], None], rows: np.ndarray, size: int, m
         work(rows)
         monitor.progress(1.0)
         return
-    pool = ThreadPoolExecutor(os.cpu_count() or 1)
+    pool = ThreadPoolExecutor(n_threads())
     try:
         for done, _ in enumerate(pool.map(work, chunks), start=1):
             monitor.progress(done / len(chunks))

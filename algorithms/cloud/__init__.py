@@ -1,1 +1,1 @@
-"""The point cloud: files, dimensions, classes, units, neighborhoods."""
+"""The point cloud: files, dimensions, classes, units, cells and density."""

@@ -5,8 +5,9 @@ import threading
 import numpy as np
 import pytest
 
+from lidar_buildings.algorithms import threads
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
-from lidar_buildings.algorithms.threads import in_chunks
+from lidar_buildings.algorithms.threads import in_chunks, n_threads
 from lidar_buildings.tests.monitors import Listening
 
 
@@ -36,6 +37,18 @@ def test_one_chunk_makes_no_thread():
     assert where == [threading.current_thread()]
     in_chunks(lambda rows: where.append(threading.current_thread()), np.arange(5), 4, Monitor())
     assert threading.current_thread() not in where[1:]
+
+
+@pytest.mark.parametrize(("cores", "wanted"), [({0}, 1), (set(range(6)), 6), (set(range(192)), 32)])
+def test_threads_are_as_many_as_cores_may_be_used_and_not_too_many(monkeypatch, cores, wanted):
+    monkeypatch.setattr(threads.os, "sched_getaffinity", lambda process: cores, raising=False)
+    assert n_threads() == wanted
+
+
+def test_without_a_word_of_the_system_all_cores_are_used(monkeypatch):
+    monkeypatch.delattr(threads.os, "sched_getaffinity", raising=False)
+    monkeypatch.setattr(threads.os, "cpu_count", lambda: 3)
+    assert n_threads() == 3
 
 
 def test_a_cancellation_ends_the_rest():
