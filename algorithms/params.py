@@ -90,18 +90,6 @@ IgnoredClasses = Annotated[
     ),
 ]
 
-AssessmentCellSize = Annotated[
-    Optional[float],
-    Param(
-        "Cell size",
-        "Side of the cells that are compared from above.",
-        unit="m",
-        low=0.05,
-        high=100,
-        automatic="0.5 m where the cloud has more than 6 points per m² of its bounding rectangle, 1 m elsewhere.",
-    ),
-]
-
 MaxBuildingSize = Annotated[
     Optional[float],
     Param(

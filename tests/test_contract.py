@@ -442,7 +442,7 @@ def test_arrays_that_do_not_belong_together_are_refused(stage):
             stage.function(changed(arrays[0], lambda xyz: xyz[:, :2]), *arrays[1:], **layers)
         with pytest.raises(ValueError, match=r"1 of \d+ points have coordinates that are not finite"):
             stage.function(changed(arrays[0], nowhere), *arrays[1:], **layers)
-    with pytest.raises(ValueError, match=r"The (point|reference) cloud( 1)? has no points\."):
+    with pytest.raises(ValueError, match=r"The (point|reference) cloud( 1)? has no points; choose another\."):
         stage.function(*(changed(array, lambda values: values[:0]) for array in arrays), **layers)
     for i, array in enumerate(arrays):
         if i and array is not None:

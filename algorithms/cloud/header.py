@@ -184,7 +184,9 @@ def read_header(path: Path) -> Header:
     with path.open("rb") as stream:
         raw = stream.read(SIZES[4])
         if raw[:4] != b"LASF":
-            raise ValueError(f"{path.name} is not a LAS or LAZ file: it starts with {raw[:4]!r} instead of b'LASF'.")
+            raise ValueError(
+                f"{path.name} is not a LAS or LAZ file: it starts with {raw[:4]!r} instead of b'LASF'; choose another."
+            )
         if len(raw) < SIZES[0]:
             raise _truncated(path, f"its header has {len(raw)} bytes of {SIZES[0]}")
         return _Reader(path, stream, raw, total).header()

@@ -53,7 +53,9 @@ def _tile(path: Path, href: str) -> Path:
         )
     tile = path.parent / href
     if kind_of(tile) not in (LAS, LAZ, COPC):
-        raise ValueError(f"{path.name} names the tile {href}, which is no LAS, LAZ or COPC file.")
+        raise ValueError(
+            f"{path.name} names the tile {href}, which is no LAS, LAZ or COPC file; build {path.name} of others."
+        )
     if not tile.is_file():
         raise ValueError(
             f"{path.name} names the tile {href}, which is missing; put it back or build {path.name} again."

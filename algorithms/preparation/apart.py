@@ -276,6 +276,7 @@ def under_ground(xyz: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarra
         # Without the points found before, which are the lowest of their cells, their companions stand out.
         lowest = xyz[order[start + np.minimum(n_found, n_points - 1)]]
         lowest[n_found == n_points] = np.nan
+        # Below the surface close by, below the ground around, and not beside others of the same height.
         surface = _close_surface(grid, cells, lowest, middle, near)
         rows = _deep(xyz, which, np.flatnonzero(_mask(len(cells), near)[which] & ~found), surface, depth)
         around = _surroundings(lowest[n_found < n_points], xyz[rows], size)

@@ -202,7 +202,7 @@ def _content(name: str, path: str) -> str:
             return stream.read(_LONGEST_FILE)
     except (OSError, UnicodeDecodeError) as error:
         why = getattr(error, "strerror", None) or "it is not text"
-        raise ValueError(f"{name} is neither numbers nor a text file that can be read ({why}).") from None
+        raise ValueError(f"{name} is neither numbers nor a text file that can be read ({why}); correct it.") from None
 
 
 def _from_angles(angles: np.ndarray) -> np.ndarray:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated, Optional
 
 import numpy as np
 
 from ..cloud.asprs import PointClass, parse_classes
 from ..cloud.cells import Grid, connected_cells, find_cells, grid_over
-from ..params import AssessmentCellSize, IgnoredClasses, MinBuildingArea
-from ..stage import Features, Field, Layer, Measure, Report, stage
+from ..params import IgnoredClasses, MinBuildingArea
+from ..stage import Features, Field, Layer, Measure, Param, Report, stage
 from .cell_outlines import outline_cells
 from .matching import compared_points
 from .page import Row, build_page, draw_map, outcome_of, percent
@@ -35,6 +36,9 @@ _MEASURES = (
     Measure("objects_predicted", "Objects in the input"),
     Measure("cell_size", "Cell size", "m"),
 )
+
+# Side of cells (m) where there are more points per m² than the third figure, and elsewhere.
+_FINE, _COARSE, _DENSE = 0.5, 1.0, 6.0
 
 # What an object of the layer is, by what came of it.
 FOUND, MISSED, INVENTED, MISSED_PART, INVENTED_PART = "found", "missed", "invented", "missed part", "invented part"
@@ -72,7 +76,17 @@ def assess_buildings(
     reference_classification,
     *,
     ignored_classes: IgnoredClasses = "7, 17, 18, 26, 64-67",
-    cell_size: AssessmentCellSize = None,
+    cell_size: Annotated[
+        Optional[float],
+        Param(
+            "Cell size",
+            "Side of the cells that are compared from above.",
+            unit="m",
+            low=0.05,
+            high=100,
+            automatic="0.5 m where the cloud has more than 6 points per m² of its bounding rectangle, 1 m elsewhere.",
+        ),
+    ] = None,
     min_area: MinBuildingArea = 10.0,
     monitor=None,
 ):
@@ -125,7 +139,8 @@ def assess_buildings(
     )
     predicted, true = called == PointClass.BUILDING, true == PointClass.BUILDING
     if cell_size is None:
-        cell_size = 0.5 if len(xyz) / max(float(np.ptp(xyz[:, :2], axis=0).prod()), 1.0) > 6 else 1.0
+        per_square_meter = len(xyz) / max(float(np.ptp(xyz[:, :2], axis=0).prod()), 1.0)
+        cell_size = _FINE if per_square_meter > _DENSE else _COARSE
         monitor.resolved(cell_size=cell_size)
     monitor.progress(0.3)
     grid = grid_over(xyz, cell_size)

@@ -54,7 +54,7 @@ def _check_array(name: str, array: np.ndarray, cloud: str, lengths: dict[str, tu
     if len(array) != length:
         raise ValueError(f"{name} has {len(array)} values, {first} has {length}; they must be of the same points.")
     if length == 0:
-        raise ValueError(f"The {cloud} has no points.")
+        raise ValueError(f"The {cloud} has no points; choose another.")
 
 
 def _check_coordinates(name: str, array: np.ndarray) -> None:

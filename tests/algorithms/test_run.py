@@ -387,7 +387,7 @@ def test_one_cloud_can_not_be_merged(cloud):
 
 def test_an_empty_cloud_is_told_by_its_number():
     xyz, classes = np.zeros((2, 3)), np.zeros(2)
-    with pytest.raises(ValueError, match=r"^The point cloud 2 has no points\.$"):
+    with pytest.raises(ValueError, match=r"^The point cloud 2 has no points; choose another\.$"):
         merge_toy([xyz, xyz[:0]], [classes, classes[:0]])
 
 
