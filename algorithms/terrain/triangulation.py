@@ -166,7 +166,6 @@ def _part(plan: np.ndarray, rows: np.ndarray, box: np.ndarray, seen: np.ndarray)
     x, y = center.T
     (left, bottom), (right, top) = seen
     is_known = (x - radius > left) & (x + radius < right) & (y - radius > bottom) & (y + radius < top)
-    is_known &= (found.neighbors >= 0).all(axis=1)
     return _chosen(plan, facets, found.neighbors, is_known & _within(center, box))[0]
 
 

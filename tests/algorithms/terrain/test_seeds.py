@@ -121,17 +121,38 @@ def test_a_heap_of_soil_is_terrain_however_few_points_hold_it(spacing, rng):
     assert not house[seeds].any()
 
 
-def test_pits_are_no_seeds(rng):
+@pytest.mark.parametrize(("depth", "is_pit"), [(4.0, False), (6.0, True)])
+def test_pits_are_no_seeds(depth, is_pit, rng):
+    """Single points of multipath lie deeper than five cells; a shaft doesn't."""
     plan = even(40, 40) + rng.uniform(-0.3, 0.3, (len(even(40, 40)), 2))
     xyz = np.column_stack([plan, rng.normal(0, 0.02, len(plan))])
-    multipath = np.array([100, 1500, 2222])
-    xyz[multipath, 2] = -9.0
+    deep = np.array([100, 1500, 2222])
+    xyz[deep, 2] = -depth
     seeds, *_ = seeds_by_opening(xyz, 1.0, 30.0, Monitor())
-    assert not np.isin(multipath, seeds).any()
+    assert (~np.isin(deep, seeds)).all() == is_pit
     assert len(seeds) > 1000
 
 
-@pytest.mark.parametrize(("share", "is_terrain"), [(0.2, True), (0.03, False)])
+def test_a_narrow_yard_is_no_pit(rng):
+    """Four meters wide in a building 15 m high, it is less than a tenth of all around, but no single place."""
+    plan = even(80, 80) + rng.uniform(-0.3, 0.3, (len(even(80, 80)), 2))
+    inward = 15 - np.abs(plan - 40).max(axis=1)
+    is_yard = inward > 13
+    z = np.where((inward > 0) & ~is_yard, 15.0, 0.0) + rng.normal(0, 0.02, len(plan))
+    seeds, *_ = seeds_by_opening(np.column_stack([plan, z]), 1.0, None, Monitor())
+    assert is_yard[seeds].sum() >= 9
+
+
+def test_what_lies_deep_farther_off_makes_no_terrain_of_stray_points(rng):
+    """On a terrace some points lie as deep as the plain; at its edge they may be of it, but not 15 m from there."""
+    plan = even(100, 60, 1.0) + rng.uniform(0.0, 0.9, (len(even(100, 60, 1.0)), 2))
+    is_stray = (rng.random(len(plan)) < 0.03) & (plan[:, 0] < 45)
+    z = np.where((plan[:, 0] < 60) & ~is_stray, 12.0, 0.0) + rng.normal(0, 0.02, len(plan))
+    seeds, *_ = seeds_by_opening(np.column_stack([plan, z]), 1.0, None, Monitor())
+    assert is_stray[seeds].sum() <= 0.05 * is_stray.sum()
+
+
+@pytest.mark.parametrize(("share", "is_terrain"), [(0.15, True), (0.06, False)])
 def test_gaps_of_a_forest_show_the_ground_and_stray_points_do_not(share, is_terrain, rng):
     """Both lie twelve meters below all that is beside them; pulses that go astray are few."""
     plan = even(80, 80, 1.0) + rng.uniform(0.0, 0.9, (len(even(80, 80, 1.0)), 2))

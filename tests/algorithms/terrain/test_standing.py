@@ -156,20 +156,31 @@ def test_a_podium_has_walls_higher_than_quays(height, is_object):
     np.testing.assert_array_equal(found[~towers], (podium & is_object)[~towers])
 
 
-def test_machines_on_a_roof_make_no_terrain_of_it():
+@pytest.mark.parametrize(("height", "length"), [(8.0, 8), (3.5, 20)])
+def test_machines_on_a_roof_make_no_terrain_of_it(height, length):
+    """Also of one that is no higher than a quay, if they cover less than a tenth."""
     surface = slope(120, 120)
-    hall = block(surface, slice(10, 110), slice(10, 110), 8.0)
+    hall = block(surface, slice(10, 110), slice(10, 110), height)
     for row in range(20, 100, 20):
-        block(surface, slice(row, row + 5), slice(40, 48), 2.0)
+        block(surface, slice(row, row + 8), slice(40, 40 + length), 2.0)
     np.testing.assert_array_equal(free_standing(surface, 1.0, USUAL)[0], hall)
 
 
-def test_a_house_with_a_penthouse_is_no_terrain():
+@pytest.mark.parametrize("height", [3.0, 6.0])
+def test_a_house_with_a_penthouse_is_no_terrain(height):
     """Islands are wide: on what is not, anything may stand."""
     surface = slope(60, 60)
-    house = block(surface, slice(20, 40), slice(20, 40), 6.0)
+    house = block(surface, slice(20, 40), slice(20, 40), height)
     block(surface, slice(24, 36), slice(24, 36), 3.0)
     np.testing.assert_array_equal(free_standing(surface, 1.0, USUAL)[0], house)
+
+
+def test_houses_that_stand_by_themselves_are_no_parts_of_a_hall():
+    """Two of 25 m by 50 m side by side, with a step of 1.5 m between, where halls of more than 30 m are ruled out."""
+    surface = slope(100, 100)
+    houses = block(surface, slice(20, 70), slice(20, 70), 6.0)
+    surface[20:70, 45:70] += 1.5
+    np.testing.assert_array_equal(free_standing(surface, 1.0, 30.0, largest=30.0)[0], houses)
 
 
 def cut_across(surface, row, columns, rng):
