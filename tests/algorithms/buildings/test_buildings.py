@@ -132,6 +132,16 @@ def test_gaps_between_scan_lines_count_for_surfaces_and_not_as_published(neighbo
     assert even_density(xyz) < 0.6 * point_density(xyz)
 
 
+@pytest.mark.parametrize(("gap", "expected"), [(0.4, 12), (2.0, 14)])
+def test_entropies_of_surfaces_need_half_as_many_points_again_as_planes_and_more_on_lines(gap, expected, rng):
+    """Precise and sparse points need 8 for a plane: on a grid 12, on lines with a point every 40 cm 14."""
+    x, y = np.meshgrid(np.arange(0, 30, 0.4), np.arange(0, 30, gap))
+    xyz = np.column_stack([x.ravel(), y.ravel(), rng.normal(0, 0.01, x.size)])
+    monitor = Monitor()
+    classify_buildings(xyz, ones(xyz), ones(xyz), neighborhood="surface", density=5.0, monitor=monitor)
+    assert monitor.values["n_neighbors"] == expected
+
+
 # --- what is found ---------------------------------------------------------------------------------------------------
 
 

@@ -161,11 +161,13 @@ def test_dense_points_need_as_many_as_reach_half_a_meter(rng):
     assert surface_neighbors(plane(rng, 0.02), 1000.0, 0.02) == Nearest(100)
 
 
-def test_where_half_of_the_points_lie_far_more_densely_theirs_is_the_density(rng):
-    """At 40 points per m² half a meter holds 32; that the whole cloud is taken for one of 5 says nothing about them."""
+@pytest.mark.parametrize(("density", "is_own"), [(25.0, False), (14.0, True), (5.0, True)])
+def test_where_half_of_the_points_lie_far_more_densely_theirs_is_the_density(density, is_own, rng):
+    """Half a meter holds 32 at 40 points per m², which counts where the cloud is taken for one of less than half."""
     dense, sparse = plane(rng, 0.02, count=16_000, side=20), plane(rng, 0.02, count=2000) + [50, 0, 0]
     xyz = np.concatenate([dense, sparse])
-    assert 25 <= surface_neighbors(xyz, 5.0, 0.02).count <= 40
+    assert (25 <= surface_neighbors(xyz, density, 0.02).count <= 40) == is_own
+    assert is_own or surface_neighbors(xyz, density, 0.02).count == np.ceil(np.pi / 4 * density)
     assert surface_neighbors(sparse, 2.0, 0.02) == Nearest(8)
 
 

@@ -77,6 +77,8 @@ def test_a_line_alone_stays_one_and_ends_at_sixty():
     counts = found(Wide(8), line)[3]
     assert (counts == 60).all()
     assert (found(Wide(8), line[:20])[3] == 20).all()
+    assert (found(Wide(8), line[:5])[3] == 5).all()
+    assert (found(Wide(80), line)[3] == 80).all()
 
 
 def test_points_at_one_place_are_no_error():
