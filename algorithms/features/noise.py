@@ -144,7 +144,7 @@ class SurfaceSample:
     def _on_lines(self, count: int) -> bool:
         """Return whether smooth neighborhoods of ``count`` points are narrow, because points lie on lines."""
         eigenvalues = self._variances(count)
-        smooth = eigenvalues[:, 2] <= np.quantile(eigenvalues[:, 2], _SMOOTH_SHARE + 0.1)
+        smooth = eigenvalues[:, 2] <= np.quantile(eigenvalues[:, 2], _SMOOTH_SHARE)
         width = np.sqrt(eigenvalues[smooth, 1] / np.maximum(eigenvalues[smooth, 0], 1e-12))
         return bool(np.quantile(width, _NARROW_SHARE) < LEAST_WIDTH)
 

@@ -179,7 +179,7 @@ def test_other_points_keep_their_class_and_old_buildings_do_not(garden):
 def test_cluster_numbers_may_have_gaps(garden):
     xyz, cluster_id = garden
     numbers = np.array([0, 900, 7, 31, 2, 100_000, 15])[cluster_id]
-    for tunables in ({}, {"max_penetration": 0.4}):
+    for tunables in ({}, {"max_penetration": 0.4, "min_share_around": 0.4}):
         expected = classify_buildings(xyz, ones(xyz), cluster_id, **tunables)
         for one, other in zip(classify_buildings(xyz, ones(xyz), numbers, **tunables), expected):
             np.testing.assert_array_equal(one, other)
@@ -427,6 +427,15 @@ def test_a_narrow_roof_beside_a_building_is_one_in_spite_of_the_ground_seen_past
     assert not (classify_buildings(xyz, ones(xyz), cluster_id, ones(xyz), several, **tunables)[0][part == 3] == 6).any()
 
 
+def test_a_crown_beside_a_building_is_none_though_few_of_its_pulses_go_on(rng):
+    """What joins a building in spite of the ground beneath has to be planar."""
+    house, tree, others = roof(rng, 0, 0, 12, 12), crown(rng, 13.5, 6, 2.0), [crown(rng, 40, 20 * i) for i in range(3)]
+    xyz, part = clusters(house, tree, *others, roof(rng, 11.5, 0, 8, 12, 0.0, 20.0))
+    cluster_id = np.where(part < 6, part, 0)
+    reasons, *_ = reasons_of(xyz, cluster_id, max_penetration=0.4, n_neighbors=12, density=6.0)
+    assert reasons == [Reason.SOLID_PLANE] + [Reason.ROUGH] * 4
+
+
 def test_a_smooth_spot_smaller_than_a_building_is_one_only_beside_another(rng):
     house, spot = roof(rng, 0, 0, 12, 12, density=12), roof(rng, 12, 0, 1.6, 1.6, density=12)
     alone = spot + [30.0, 0, 0]
@@ -450,12 +459,16 @@ def test_a_smooth_spot_amid_leaves_is_no_building_and_a_roof_beside_a_tree_is(rn
     house = roof(rng, 70, 0, 10, 10, density=12)
     leaning = crown(rng, 82, 5, 4, 6, 1500)
     xyz, cluster_id = clusters(wood, spot, *roofs, tree, house, leaning)
-    reasons = [
-        reasons_of(xyz + [east, 0, 0], cluster_id, n_neighbors=12, min_share_around=least)[0] for least in (0.0, 0.4)
-    ]
+    reasons, confidence = zip(
+        *(
+            reasons_of(xyz + [east, 0, 0], cluster_id, n_neighbors=12, min_share_around=least)[:2]
+            for least in (0.0, 0.4)
+        )
+    )
     rough, plane = Reason.ROUGH, Reason.PLANE
     assert reasons[0] == [rough, plane, plane, plane, rough, plane, rough]
     assert reasons[1] == [rough, Reason.AMID_OTHERS, plane, plane, rough, plane, rough]
+    assert confidence[1][1] == 0.5 < confidence[0][1]
 
 
 # --- properties ------------------------------------------------------------------------------------------------------

@@ -318,6 +318,16 @@ def test_short_diagonals_between_parallel_walls_are_steps(run, rise, is_step):
         assert is_step or farthest(ring, truth) < 0.1
 
 
+@pytest.mark.parametrize("mirror", [1, -1])
+def test_short_diagonals_beside_a_wall_that_is_askew_stay(mirror):
+    """A wall that is 8° off the main direction before or after one tells of no step."""
+    truth = np.array([[0, 0], [9, 0], [9.4, 0.8], [20, 0.8 + 10.6 * np.tan(np.deg2rad(8))], [20, 12], [0, 12], [0, 0]])
+    truth = (truth * [mirror, 1])[::mirror]
+    for seed in range(6):
+        ring = straight(wiggly(truth, np.random.default_rng(seed), 0.03, 0.2))
+        assert farthest(truth, ring) < 0.2
+
+
 def test_stairs_of_main_directions_are_no_diagonals():
     """Each step of 1 m is as short as a diagonal that is left out."""
     truth = np.array([[0, 0], [8, 0], [8, 1], [9, 1], [9, 2], [20, 2], [20, 12], [0, 12], [0, 0]])
