@@ -32,6 +32,9 @@ from .vectors import check_layer
 _NO_FILE = re.compile(r"^[A-Za-z]{2,}:")
 _TABLE_IN_FILE = re.compile(r"^ogr:dbname='([^']+)'")
 
+# Formats that are several files, by the extension of the one that is named.
+_BESIDE = {".shp": (".dbf", ".shx", ".prj", ".cpg"), ".tab": (".dat", ".map", ".id", ".ind")}
+
 # The smallest results, an empty GeoPackage among them, need about so much (bytes).
 _LEAST_SPACE = 2**18
 
@@ -56,7 +59,9 @@ def files_of(definition, value: Any) -> list:
     path = target_path(value)
     if path is None:
         return []
-    return [path, copc_path(path)] if _is_cloud(definition) and kind_of(path) else [path]
+    if _is_cloud(definition):
+        return [path, copc_path(path)] if kind_of(path) else [path]
+    return [path, *(path.with_suffix(suffix) for suffix in _BESIDE.get(path.suffix.lower(), ()))]
 
 
 def _is_cloud(definition) -> bool:

@@ -255,15 +255,17 @@ class StageAlgorithm(Described, QgsProcessingAlgorithm):
         if sink is None:
             raise QgsProcessingException(self.invalidSinkError(parameters, name))
         monitor.resolved(**{layer.name: len(features)})
-        for row, feature in enumerate(qgis_features(layer, features, place.to_map)):
-            if row % _BETWEEN_CHECKS == 0:
-                monitor.progress(_WRITTEN)
-            if not sink.addFeature(feature, QgsFeatureSink.Flag.FastInsert):
+        try:
+            for row, feature in enumerate(qgis_features(layer, features, place.to_map)):
+                if row % _BETWEEN_CHECKS == 0:
+                    monitor.progress(_WRITTEN)
+                if not sink.addFeature(feature, QgsFeatureSink.Flag.FastInsert):
+                    raise QgsProcessingException(_unwritten(layer, target, sink))
+            if not sink.flushBuffer():
                 raise QgsProcessingException(_unwritten(layer, target, sink))
-        # The file is closed with the sink, complete for the next step of a model.
-        if not sink.flushBuffer():
-            raise QgsProcessingException(_unwritten(layer, target, sink))
-        del sink
+        finally:
+            # The file is closed with the sink: complete for the next step of a model, or free to be removed.
+            del sink
         style_on_load(context, target, layer_style(layer), layer.fields)
         return {name: target}
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import itertools
 import os
 
 import numpy as np
@@ -28,6 +29,7 @@ from lidar_buildings.provider import rasters, stage_algorithm
 from lidar_buildings.provider.places import place_of_cloud
 from lidar_buildings.provider.sources import find_source, read_source
 from lidar_buildings.provider.styles import layer_style
+from lidar_buildings.provider.vectors import qgis_features
 from lidar_buildings.tests.provider.test_stage_algorithm import run
 from lidar_buildings.tests.provider.toys import TOYS
 
@@ -544,6 +546,23 @@ def test_what_a_layers_format_says_is_told(provider, context, log, town_file, ou
     monkeypatch.setattr(stage_algorithm.StageAlgorithm, "parameterAsSink", lambda *_: (Full(), target))
     with pytest.raises(QgsProcessingException, match=r"can't be written to .*a\.gpkg \(no space\); free some space or"):
         run("toyoutline", {"INPUT": str(town_file), "FOOTPRINTS": target}, context, log)
+
+
+@pytest.mark.parametrize("name", ["a.shp", "a.gpkg", "a.geojson", "a.tab"])
+@pytest.mark.parametrize("n_written", [0, 10])
+def test_a_layer_while_or_after_which_something_fails_is_removed(
+    provider, context, log, out, monkeypatch, name, n_written
+):
+    """Of a shapefile the attributes stayed behind, of a GeoPackage its journal, which nobody had closed."""
+
+    def some(*arguments):
+        yield from itertools.islice(qgis_features(*arguments), n_written)
+        raise ValueError("No more; look below.")
+
+    monkeypatch.setattr(stage_algorithm, "qgis_features", some)
+    with pytest.raises(QgsProcessingException, match=r"^No more; look below.$"):
+        run("toymake", {"OUTPUT": str(out / "a.las"), "TRUTH": str(out / name)}, context, log)
+    assert list(out.iterdir()) == []
 
 
 def test_a_raster_after_which_something_fails_is_removed(provider, context, log, town_file, out, monkeypatch):
