@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Annotated, Optional, Union
 
 import numpy as np
@@ -14,7 +15,14 @@ from ..features.noise import SurfaceSample
 from ..features.wide import Wide
 from ..packages import cluster
 from ..params import MinBuildingArea, PointDensity, Seed
-from ..segmentation.extent import join_beside, penetration, plan_areas, share_around, share_going_on
+from ..segmentation.extent import (
+    join_beside,
+    penetration,
+    plan_areas,
+    share_around,
+    share_beneath,
+    share_going_on,
+)
 from ..stage import Measure, Monitor, Param, stage
 from .decisions import Clusters, build_report
 from .reasons import Reason
@@ -31,6 +39,9 @@ _ALIKE = 1e-3
 
 # The entropies of planes and volumes count as so many clusters; two means in one dimension settle in a few rounds.
 _HELD_BY, _MOST_ROUNDS = 100, 100
+
+# Crowns have no smooth spots so many times as large as the smallest building: what the beam passes there is glass.
+_TOO_LARGE_FOR_LEAVES = 10.0
 
 # At the edges of a roof some pulses split; in leaves most do. Less of a roof's points than this go on.
 _SPLIT_AT_EDGES = 0.3
@@ -158,7 +169,9 @@ def classify_buildings(
     then the geometric mean of what its entropy and its penetration say, and none with more penetration than the
     maximum is a building, except beside one: dormers, eaves and parapets are all edge, and what is seen past them
     tells nothing. There entropy alone decides, as long as few of the pulses go on. And a cluster smaller than the
-    smallest building is one only beside another: crowns have smooth spots, but no large ones.
+    smallest building is one only beside another: crowns have smooth spots, but no large ones. A plane of ten times
+    that size is a roof of glass where the beam passes, or a row of wires: there the geometric mean of the entropy's
+    confidence and of the share of points that the plane stopped decides, if it is more.
 
     The minimum share of buildings around is this project's, too: the fewer points there are, the larger are the spots
     of crowns that are smooth by chance. What stands around these are leaves, for the most part.
@@ -259,11 +272,15 @@ def _by_both(
     is_planar = (sure > 0.5) & ~undefined
     # A cluster without entropy stays undecided, however solid it is.
     both = np.where(undefined, 0.5, _with_solidity(sure, through, most))
+    is_large = is_planar & (places.areas >= _TOO_LARGE_FOR_LEAVES * min_area)
+    as_glass = np.where(is_large, np.sqrt(sure * (1 - places.share_beneath(is_large))), 0)
+    is_glass, both = both <= 0.5, np.maximum(both, as_glass)
     is_solid = both > 0.5
     beside_only = is_planar & (places.share_going_on() < _SPLIT_AT_EDGES)
     is_building = places.standing_or_beside(is_solid, beside_only, min_area)
     found = {
         Reason.WITHOUT_ENTROPY: undefined,
+        Reason.LARGE_PLANE: is_building & is_solid & is_glass,
         Reason.SOLID_PLANE: is_building & is_solid & is_planar,
         Reason.SOLID: is_building & is_solid,
         Reason.BESIDE: is_building,
@@ -297,10 +314,24 @@ class _Places:
     return_number: Optional[np.ndarray]
     number_of_returns: Optional[np.ndarray]
 
+    @cached_property
+    def areas(self) -> np.ndarray:
+        """The area (m²) of each cluster."""
+        member = self.group >= 0
+        return plan_areas(self.xyz[member], self.group[member], self.density)[self.numbers]
+
     def penetration(self) -> np.ndarray:
         """Return how much of the beam passes through each cluster."""
         through = penetration(self.xyz, self.group, self.density, self.return_number, self.number_of_returns)
         return through[self.numbers]
+
+    def share_beneath(self, is_chosen: np.ndarray) -> np.ndarray:
+        """Return the share of the points that passed each of the chosen clusters (m,), 0 for others."""
+        shares = np.zeros(len(self.numbers))
+        if is_chosen.any():
+            group = np.where(np.append(self._by_number(is_chosen), False)[self.group], self.group, -1)
+            shares[is_chosen] = share_beneath(self.xyz, group, self.density)[self.numbers[is_chosen]]
+        return shares
 
     def share_going_on(self) -> np.ndarray:
         """Return the share of each cluster's points that are not the last of their pulse."""
@@ -312,10 +343,9 @@ class _Places:
 
     def standing_or_beside(self, is_solid: np.ndarray, is_plane: np.ndarray, min_area: float) -> np.ndarray:
         """Return the solid clusters of a building's size, and those beside them that are solid or else plane."""
-        member = self.group >= 0
-        is_large = plan_areas(self.xyz[member], self.group[member], self.density) >= min_area
-        solid, plane = self._by_number(is_solid), self._by_number(is_plane)
-        return join_beside(self.xyz, self.group, solid & is_large, solid | plane, self.density)[self.numbers]
+        strong = self._by_number(is_solid & (self.areas >= min_area))
+        weak = self._by_number(is_solid | is_plane)
+        return join_beside(self.xyz, self.group, strong, weak, self.density)[self.numbers]
 
     def _by_number(self, mask: np.ndarray) -> np.ndarray:
         """Return a mask of the clusters with False at the numbers between them that none has."""

@@ -14,6 +14,7 @@ class Reason(IntEnum):
     SOLID = 3
     ATTACHED = 4
     BESIDE = 5
+    LARGE_PLANE = 6
     ROUGH = 11
     PENETRATED = 12
     INTO_GROUND = 13
@@ -33,7 +34,7 @@ class Reason(IntEnum):
     @property
     def is_building(self) -> bool:
         """Whether it is a reason for calling something a building."""
-        return Reason.PLANE <= self <= Reason.BESIDE
+        return Reason.PLANE <= self <= Reason.LARGE_PLANE
 
 
 _TEXTS = {
@@ -43,6 +44,7 @@ _TEXTS = {
     Reason.SOLID: "Building: the entropy is not low, but next to nothing of the beam passes through.",
     Reason.ATTACHED: "Building: belongs to the roof above, beneath or beside it.",
     Reason.BESIDE: "Building: low entropy, as planes have, and beside one, so what is seen past its edges counts not.",
+    Reason.LARGE_PLANE: "Building: a plane too large for a crown, though part of the beam passes, as through glass.",
     Reason.ROUGH: "No building: high entropy, as crowns have.",
     Reason.PENETRATED: "No building: low entropy, but the beam passes through.",
     Reason.INTO_GROUND: "No building: the surface goes on into the ground.",

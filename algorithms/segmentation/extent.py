@@ -9,11 +9,12 @@ import numpy as np
 
 from ..cloud.cells import distinct, find_cells, grid_over
 
-# Cells in which area and what lies beneath are counted, in point spacings, and their least size (m).
+# Cells in which area and what lies beneath are counted, in point spacings; for the area they have a least size (m).
 _CELL_SPACINGS, _LEAST_CELL = 1.5, 0.3
 
-# What lies at least so far beneath a group lies under it and not on it, m.
-_BENEATH = 1.0
+# What lies at least so far beneath a group lies under it and not on it, m. What passes a surface and what it stops are
+# counted in cells at least so wide (m): between two wires most of it passes.
+_BENEATH, _LEAST_COLUMN = 1.0, 1.0
 
 # A group lies beside others when so much of it does: the edge of a dormer does, the tip of a crown's branch doesn't.
 _BESIDE = 0.2
@@ -24,7 +25,7 @@ _BOX = np.array([2.0, 2.0, 4.0])
 
 
 def _cell_size(density: float) -> float:
-    """Return the side (m) of the cells that area and what lies beneath are counted in."""
+    """Return the side (m) of the cells that area is counted in."""
     return max(_LEAST_CELL, _CELL_SPACINGS / np.sqrt(density))
 
 
@@ -80,12 +81,36 @@ def penetration(
     Notes
     -----
     The beam passes through leaves and not through roofs. Along edges there are points beneath a roof
-    too, so a roof has a small share and not none.
+    too, so a roof has a small share and not none. Cells hold as many points at any density: were there more,
+    each would sooner have some beneath.
     """
-    beneath = _share_with_points_beneath(xyz, group, density)
+    owner, _, beneath = _columns(xyz, group, _CELL_SPACINGS / np.sqrt(density))
+    beneath = np.bincount(owner, beneath > 0) / np.maximum(np.bincount(owner), 1)
     if not _numbered(number_of_returns):
         return beneath
     return (beneath + share_going_on(group, return_number, number_of_returns)) / 2
+
+
+def share_beneath(xyz: np.ndarray, group: np.ndarray, density: float) -> np.ndarray:
+    """Return the share of points that passed each group of points, 0 to 1, whatever the density.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        All points of the cloud (m).
+    group : ndarray of shape (n,), int
+        Group of each point from 0, negative for none; at least one point has a group.
+    density : float
+        Points per square meter.
+
+    Returns
+    -------
+    ndarray of shape (group.max() + 1,)
+        Of the points of a group and those well beneath them in its cells, the latter's share.
+    """
+    owner, own, beneath = _columns(xyz, group, max(_LEAST_COLUMN, _CELL_SPACINGS / np.sqrt(density)))
+    passed = np.bincount(owner, beneath)
+    return passed / np.maximum(passed + np.bincount(owner, own), 1)
 
 
 def share_going_on(
@@ -170,20 +195,19 @@ def share_around(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray) -> np.n
     return np.bincount(owner, (own_around / around)[which], len(chosen)) / np.maximum(size, 1)
 
 
-def _share_with_points_beneath(xyz: np.ndarray, group: np.ndarray, density: float) -> np.ndarray:
-    """Return the share of each group's cells in which some point lies well beneath the lowest of the group."""
-    cells, which = distinct(grid_over(xyz, _cell_size(density)).number(xyz))
-    lowest = _least(xyz[:, 2], which, len(cells))
-    member = np.flatnonzero(group >= 0)
-    pairs, of_pair = distinct(group[member].astype(np.int64) * len(cells) + which[member])
-    bottom = _least(xyz[member, 2], of_pair, len(pairs))
-    owner, where = np.divmod(pairs, len(cells))
-    occupied = np.bincount(owner)
-    return np.bincount(owner, lowest[where] < bottom - _BENEATH) / np.maximum(occupied, 1)
-
-
-def _least(values: np.ndarray, which: np.ndarray, count: int) -> np.ndarray:
-    """Return the least of the values of each number from 0 to ``count``."""
-    least = np.full(count, np.inf)
-    np.minimum.at(least, which, values)
-    return least
+def _columns(xyz: np.ndarray, group: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the group of each cell of ``size`` (m) of a group, its points there, and the points well beneath them."""
+    cell, member, count = grid_over(xyz, size).number(xyz), group >= 0, int(group.max()) + 1
+    # Sorted by cells, so that the groups in a point's cell are found by searching.
+    pairs, which = distinct(cell[member] * count + group[member])
+    where, owner = np.divmod(pairs, count)
+    bottom = np.full(len(pairs), np.inf)
+    np.minimum.at(bottom, which, xyz[member, 2])
+    first = np.searchsorted(where, cell)
+    groups_there = np.searchsorted(where, cell, "right") - first
+    beneath = np.zeros(len(pairs), np.int64)
+    for nth in range(groups_there.max()):
+        some = np.flatnonzero(groups_there > nth)
+        pair = first[some] + nth
+        beneath += np.bincount(pair[xyz[some, 2] < bottom[pair] - _BENEATH], minlength=len(pairs))
+    return owner, np.bincount(which), beneath

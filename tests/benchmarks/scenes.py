@@ -18,6 +18,9 @@ from lidar_buildings.algorithms.stage import Monitor
 
 SIDE = 120.0
 
+# Of the pulses that meet glass so many come back from the floor.
+PASSING = 0.5
+
 # Of strips that were not adjusted to one another, every second lies so much higher (m).
 MISFIT = 0.08
 
@@ -129,6 +132,19 @@ def estate() -> Scene:
     return land
 
 
+def greenhouses() -> Scene:
+    """A nursery of four bays, a hall and a garden house of glass, and two houses."""
+    nursery = Scene(Relief(SIDE, gradient=0.02))
+    for y in (20.0, 28.0, 36.0, 44.0):
+        _house(nursery, Rect(40.0, y, 50.0, 8.0, 0.0), 4.0, 22.0, "glass")
+    _house(nursery, Rect(90.0, 40.0, 20.0, 15.0, 0.1), 8.0, kind="glass")
+    _house(nursery, Rect(90.0, 75.0, 14.0, 8.0, 0.1), 3.0, 30.0, "glass")
+    for x in (30.0, 60.0):
+        _house(nursery, Rect(x, 80.0, 11.0, 8.0, 0.2), 5.0, 35.0)
+    plant_trees(nursery, 20.0, 0.1, np.random.default_rng(7), Monitor())
+    return nursery
+
+
 # Name, scene, and whether the strips don't fit together.
 SCENES: tuple[tuple[str, Callable[[], Scene], bool], ...] = (
     ("blocks of a city", city, False),
@@ -137,6 +153,7 @@ SCENES: tuple[tuple[str, Callable[[], Scene], bool], ...] = (
     ("houses in a closed forest", forest, False),
     ("huts on a slope of 38°", alps, False),
     ("halls with machines and wings", estate, False),
+    ("halls of glass", greenhouses, False),
     ("solar park, no building", solar_park, False),
     ("railway station with trains", station, False),
     ("container port", port, False),
@@ -145,17 +162,22 @@ SCENES: tuple[tuple[str, Callable[[], Scene], bool], ...] = (
 
 def scanned(make: Callable[[], Scene], misfit: bool, density: float) -> Scan:
     """Return the points of a scene at ``density`` pulses per m²."""
-    made = scan(make(), density=density)
+    scene = make()
+    made = scan(scene, density=density)
     made.xyz[:, 2] += MISFIT * (misfit & (made.point_source_id % 2 == 0))
+    glass = [building.object_id for building in scene.buildings if building.kind == "glass"]
+    passes = np.isin(made.segment_id, glass) & (np.random.default_rng(0).random(len(made.xyz)) < PASSING)
+    made.xyz[passes, 2] = scene.relief.ground(*made.xyz[passes, :2].T)
+    made.classification[passes] = PointClass.GROUND
     return made
 
 
-def _house(scene: Scene, rect: Rect, eave: float, pitch: float = 0.0) -> None:
+def _house(scene: Scene, rect: Rect, eave: float, pitch: float = 0.0, kind: str = "house") -> None:
     """Put up a building with a flat roof, or a gable roof of ``pitch`` (°)."""
     site = Site(scene, rect, eave)
     top = site.floor + eave
     tops = gable(rect, top, float(np.tan(np.deg2rad(pitch)))) if pitch else flat(rect, top)
-    scene.add_building("house", rect.corners(), [site.solid(rect, tops)])
+    scene.add_building(kind, rect.corners(), [site.solid(rect, tops)])
 
 
 def _put(scene: Scene, rect: Rect, height: float) -> None:

@@ -272,9 +272,9 @@ def test_clusters_without_extent_have_no_entropy_and_are_no_building(count, guar
 
 
 def test_a_planar_cluster_with_ground_beneath_is_no_building(rng):
-    """A canopy as flat as a roof: its entropy says building, the points beneath it say leaves."""
-    solid, canopy = roof(rng, 0, 0, 12, 12), roof(rng, 30, 0, 12, 12)
-    ground = roof(rng, 30, 0, 12, 12, elevation=0.0)
+    """A spot of a crown as flat as a roof: its entropy says building, the points beneath it say leaves."""
+    solid, canopy = roof(rng, 0, 0, 12, 12), roof(rng, 30, 0, 5, 5)
+    ground = roof(rng, 30, 0, 5, 5, elevation=0.0)
     xyz, part = clusters(solid, canopy, crown(rng, 20, 40), ground)
     cluster_id = np.where(part == 4, 0, part)
     published = classify_buildings(xyz, ones(xyz), cluster_id)[0]
@@ -287,13 +287,32 @@ def test_a_planar_cluster_with_ground_beneath_is_no_building(rng):
 
 def test_returns_that_are_not_the_last_tell_penetration_too(rng):
     """The same points, once returned in one piece and once the first of two."""
-    xyz, cluster_id = clusters(roof(rng, 0, 0, 12, 12), roof(rng, 30, 0, 12, 12), crown(rng, 20, 40))
+    xyz, cluster_id = clusters(roof(rng, 0, 0, 12, 12), roof(rng, 30, 0, 5, 5), crown(rng, 20, 40))
     single, several = np.ones(len(xyz), int), np.where(cluster_id == 2, 2, 1)
     tunables = {"max_penetration": 0.4, "n_neighbors": 12}
     for of_pulse, expected in ((single, True), (several, False)):
         found = classify_buildings(xyz, ones(xyz), cluster_id, single, of_pulse, **tunables)[0]
         assert (found[cluster_id == 1] == 6).all()
         assert (found[cluster_id == 2] == 6).all() == expected
+
+
+@pytest.mark.parametrize("density", [4.0, 12.0, 40.0, 80.0])
+@pytest.mark.parametrize("is_numbered", [True, False])
+def test_a_roof_of_glass_is_a_building_at_any_density(rng, density, is_numbered):
+    """Half of the beam passes. Of wires in a plane more does, and spots of crowns are smaller."""
+    glass, floor = (roof(rng, 0, 0, 12, 10, z, 0.5 * density) for z in (5, 0))
+    spot, leaves = (roof(rng, 0, 30, 5, 5, z, 0.5 * density) for z in (5, 3))
+    wires, field = roof(rng, 30, 0, 4, 20, 9, 0.1 * density), roof(rng, 30, 0, 4, 20, 0, 0.9 * density)
+    crowns = [crown(rng, 50, y, count=round(30 * density)) for y in (0, 10, 20)]
+    xyz, part = clusters(glass, spot, wires, *crowns, floor, leaves, field)
+    cluster_id = np.where(part > 6, 0, part)
+    # Of pulses that come back from above half go on.
+    first_of_two = np.where((cluster_id > 0) & (rng.random(len(xyz)) < 0.5), 1, 2)
+    returns = (first_of_two, np.full(len(xyz), 2)) if is_numbered else ()
+    tunables = {"max_penetration": 0.4, "neighborhood": "surface", "density": density}
+    reasons, confidence, _ = reasons_of(xyz, cluster_id, *returns, **tunables)
+    assert reasons == [Reason.LARGE_PLANE, Reason.PENETRATED, Reason.PENETRATED] + [Reason.ROUGH] * 3
+    assert confidence[0] > 0.6
 
 
 # --- reasons and confidence ------------------------------------------------------------------------------------------
@@ -320,11 +339,11 @@ def test_reasons_of_the_published_method(garden):
 
 def test_reasons_with_penetration(rng):
     """A roof, a canopy as flat as a roof, a crown, and a rough thing that nothing passes through."""
-    ground = roof(rng, 30, 0, 12, 12, elevation=0.0)
+    ground = roof(rng, 30, 0, 5, 5, elevation=0.0)
     crowns = [crown(rng, 20, 40), crown(rng, 40, 40), crown(rng, 60, 40)]
     under = np.column_stack([rng.uniform([10, 30], [70, 50], (6000, 2)), np.zeros(6000)])
     rubble = roof(rng, 80, 0, 12, 12, noise=0.2)
-    parts = [roof(rng, 0, 0, 12, 12), roof(rng, 30, 0, 12, 12), rubble, *crowns, ground, under]
+    parts = [roof(rng, 0, 0, 12, 12), roof(rng, 30, 0, 5, 5), rubble, *crowns, ground, under]
     xyz, part = clusters(*parts)
     cluster_id = np.where(part > 6, 0, part)
     reasons, confidence, report = reasons_of(xyz, cluster_id, max_penetration=0.4)

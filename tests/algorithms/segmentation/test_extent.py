@@ -1,9 +1,15 @@
-"""What stands around groups of points: by hand, and by comparing every box with every other."""
+"""What stands around groups of points, and what lies beneath: by hand, and by comparing everything with everything."""
 
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.segmentation.extent import join_beside, penetration, plan_areas, share_around
+from lidar_buildings.algorithms.segmentation.extent import (
+    join_beside,
+    penetration,
+    plan_areas,
+    share_around,
+    share_beneath,
+)
 
 
 def test_shares_by_hand():
@@ -66,3 +72,40 @@ def test_groups_join_beside_others_on_a_fifth_of_their_cells():
     # Without the second the third is beside nothing.
     assert np.flatnonzero(~join_beside(xyz, group, strong, weak & (np.arange(6) != 1), 1.0)).tolist() == [1, 2, 3]
     assert np.flatnonzero(~join_beside(xyz, np.where(group == 1, -1, group), strong, weak, 1.0)).tolist() == [1, 2, 3]
+
+
+def test_what_lies_beneath_by_hand():
+    """Cells of 1.5 m: a group of two points over three more than a meter lower, one less than that, one beside."""
+    xyz = np.array([[0, 0, 5], [1, 1, 6], [0, 1, 3.9], [1, 0, 3.9], [0.5, 0.5, 0], [0.2, 0.2, 4.2], [3.2, 0, 0]], float)
+    group = np.array([0, 0, -1, -1, -1, -1, -1])
+    np.testing.assert_allclose(share_beneath(xyz, group, density=1.0), [3 / 5])
+    np.testing.assert_allclose(penetration(xyz, group, density=1.0), [1])
+    # Over another group, which has less beneath.
+    group = np.array([0, 0, 2, 2, -1, -1, -1])
+    np.testing.assert_allclose(share_beneath(xyz, group, density=1.0), [3 / 5, 0, 1 / 3])
+
+
+@pytest.mark.parametrize(("size", "density"), [(1.0, 6.0), (1.5, 1.0)])
+def test_what_lies_beneath_as_when_every_point_is_compared_with_every_other(rng, size, density):
+    xyz = rng.normal(0, 1, (600, 3)) * [3, 3, 4] + [6e5, 5e6, 100]
+    group = rng.integers(-1, 4, 600)
+    cell = np.floor((xyz[:, :2] - xyz[:, :2].min(axis=0)) / size)
+    same = (cell[:, None] == cell[None]).all(axis=2)
+    expected = []
+    for number in range(4):
+        own = same & (group == number)[None]
+        bottom = np.where(own, xyz[None, :, 2], np.inf).min(axis=1)
+        passed = np.isfinite(bottom) & (xyz[:, 2] < bottom - 1)
+        expected.append(passed.sum() / (passed.sum() + (group == number).sum()))
+    np.testing.assert_allclose(share_beneath(xyz, group, density), expected)
+
+
+@pytest.mark.parametrize("density", [4.0, 12.0, 40.0, 80.0])
+def test_what_passes_a_surface_is_the_same_at_any_density(rng, density):
+    """A third of the points of 20 m by 20 m lie on the ground, the others on a roof."""
+    plan = rng.uniform(0, 20, (int(400 * density), 2))
+    passes = rng.random(len(plan)) < 1 / 3
+    xyz, group = np.column_stack([plan, np.where(passes, 0.0, 5.0)]), np.where(passes, -1, 0)
+    assert share_beneath(xyz, group, density)[0] == pytest.approx(1 / 3, abs=0.04)
+    # Cells hold 2.25 points on the mean; of those with a roof point 1 - exp(-0.75) have one beneath.
+    assert penetration(xyz, group, density)[0] == pytest.approx(0.53, abs=0.05)
