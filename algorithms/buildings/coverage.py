@@ -28,13 +28,13 @@ class _Manner:
     outset: float = 1.0
 
 
-# Where one fails, the next is tried: straight, closer to the traced borders, at the outermost points; then chords of
-# the traced borders in their own directions, and of the outermost points; last, through the points.
+# Where one fails, the next is tried: straight, also closer to the traced borders; chords of these in their own
+# directions, also closer, also at the outermost points; last, through the points.
 _REGULAR = (
     _Manner(is_straight=True),
     _Manner(is_straight=True, closeness=0.5),
-    _Manner(is_straight=True, closeness=0.5, outset=0.0),
     _Manner(),
+    _Manner(closeness=0.5),
     _Manner(closeness=0.5, outset=0.0),
     _Manner(is_traced=True, outset=0.0),
 )
@@ -142,18 +142,24 @@ class Coverage:
         return len(polygons) == 1 or self.manner[group] == self._last or meet_in_corners(*self._segments(group))
 
     def _part_groups(self) -> None:
-        """Give groups whose outlines run into each other's a lesser manner, the smaller one first, until none do."""
+        """Give groups whose outlines run into each other's a lesser manner until none do.
+
+        The smaller one goes first. Where none of its manners helps, the larger one runs over its points and has to.
+        """
         boxes = [self._box(group) for group in range(self.n_groups)]
+        size = [self._area(group) for group in range(self.n_groups)]
         left = list(range(self.n_groups))
         while left:
-            lesser = set()
-            for one, other in self._meeting(left, np.array(boxes)):
-                small, large = sorted((one, other), key=lambda group: (self._area(group), group))
-                if self.manner[small] < self._last or self.manner[large] < self._last:
-                    lesser.add(small if self.manner[small] < self._last else large)
-            left = sorted(lesser)
+            manner = {}
+            for one, other in sorted(self._meeting(left, np.array(boxes))):
+                small, large = sorted((one, other), key=lambda group: (size[group], group))
+                if self.manner[small] < self._last:
+                    manner[small] = self.manner[small] + 1
+                elif self.manner[large] < self._last:
+                    manner.update({small: 0, large: self.manner[large] + 1})
+            left = sorted(manner)
             for group in left:
-                self.manner[group] += 1
+                self.manner[group] = manner[group]
                 self._make(group)
                 boxes[group] = self._box(group)
 
@@ -255,7 +261,8 @@ class _Borders:
 
     def _straighten(self) -> bool:
         """Make borders straight where that stays close to the traced ones; return whether there is a main direction."""
-        directions = main_directions([wall for line in self.lines for wall in line.walls(self.tolerance)])
+        # Closer walls have other directions by chance: those of a round tower would find a right angle.
+        directions = main_directions([wall for line in self.lines for wall in line.walls(self.coverage.tolerance)])
         if not directions:
             return False
         for number, line in enumerate(self.lines):

@@ -160,9 +160,9 @@ def extract_footprints(
     as points of the building but don't widen its outline. A roof ends half-way between its outermost points and the
     ground seen beside them, at most half a point spacing from its points. Walls are as few as describe the outline,
     those in main directions preferred, each fitted to all points along it, and turned to a main direction only where
-    that moves its ends by about a point spacing at most; chords of curves are not. Outlines without a right angle, or
-    that straight walls would change too much, become chords of what was traced, within about the tolerance. Clusters
-    whose points lie on one line have no area and give no polygon.
+    that moves its ends by about a point spacing at most; chords of curves are not. Outlines without a right angle and
+    without parallel walls that are most of them, or that straight walls would change too much, become chords of what
+    was traced, within about the tolerance. Clusters whose points lie on one line have no area and give no polygon.
 
     With 'Split rows', houses of a row are parted along straight lines from one side of a building to the other, in its
     main directions, where over 60 % of what is not low two roofs rise away from the line, parallel ones step by 0.4 m

@@ -15,8 +15,9 @@ from .segments import distances_to, is_valid
 _MAX_TURN = np.deg2rad(22.5)
 
 # What supports a direction, and the share of an outline that makes it a main one: by chance 22 % of a circle is within
-# 10° of one direction and its normal, and a second direction needs a wing or a street of its own.
-_SUPPORT, _MIN_SHARE, _MIN_FURTHER_SHARE = np.deg2rad(10), 0.35, 0.15
+# 10° of one direction and its normal, and a second direction needs a wing or a street of its own. Where no corner is
+# square, parallel walls that are most of the outline make one.
+_SUPPORT, _MIN_SHARE, _MIN_FURTHER_SHARE, _MOST = np.deg2rad(10), 0.35, 0.15, 0.6
 
 # Diagonals up to so many tolerances long between parallel walls are steps.
 _FILLER = 2.25
@@ -102,7 +103,8 @@ def is_near(places: np.ndarray, line: Line, limit: float) -> bool:
 def main_directions(walls: list) -> list:
     """Return the directions (rad, in [0, pi/2)) that most walls, in order, have or are square to, the strongest first.
 
-    There is none without a right angle: a round tower turns little at every corner.
+    There is none without a right angle or, as most of an outline, parallel walls: a round tower turns little at every
+    corner.
     """
     # A long wall tells more of a direction than many short ones.
     length, angle = np.array([wall.length for wall in walls]) ** 2, np.array([wall.angle for wall in walls])
@@ -110,11 +112,13 @@ def main_directions(walls: list) -> list:
     # Four times the angle is the same for walls that are parallel or square to each other.
     apart = np.abs(np.angle(np.exp(4j * (angle[:, None] - angle)))) / 4
     corners = _right_angles(length, angle)
+    is_parallel = np.abs(np.sin(angle[:, None] - angle)) <= np.sin(_SUPPORT / 2)
+    is_most = length @ is_parallel >= _MOST * length.sum()
     while is_left.any():
         near = (apart <= _SUPPORT) & is_left[:, None]
         close = (apart <= _SUPPORT / 4) & is_left[:, None]
         has_corner = (near[corners[:, 0]] & near[corners[:, 1]]).any(axis=0)
-        share = np.where(is_left & has_corner, length @ near, 0.0)
+        share = np.where(is_left & (has_corner | is_most), length @ near, 0.0)
         best = int(np.argmax(share))
         if share[best] < least * length.sum():
             break

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from qgis.core import QgsGeometry, QgsPointXY
 
+from lidar_buildings.algorithms.buildings.coverage import Coverage
 from lidar_buildings.algorithms.buildings.footprints import extract_footprints
 from lidar_buildings.algorithms.simulation.layout import build_town
 from lidar_buildings.algorithms.simulation.scanner import scan
@@ -143,6 +144,34 @@ def test_houses_with_a_gap_stay_apart_and_do_not_overlap(rng):
     found = extract_footprints(*scanned(houses, 15, rng))
     first, second = (polygon(rings) for rings in found.geometries)
     assert first.distance(second) == pytest.approx(0.8, abs=0.35)
+
+
+def test_an_outline_that_runs_over_the_points_of_a_smaller_one_gives_way(monkeypatch):
+    """Whatever becomes of the smaller one, they meet until the larger one has its second manner."""
+    coverage = object.__new__(Coverage)
+    coverage.n_groups, coverage.manners, coverage.manner = 2, range(4), np.zeros(2, int)
+    tried = []
+    monkeypatch.setattr(coverage, "_area", (90, 10).__getitem__)
+    monkeypatch.setattr(coverage, "_box", lambda group: (0, 0, 1, 1))
+    monkeypatch.setattr(coverage, "_make", lambda group: tried.append(coverage.manner.tolist()))
+    monkeypatch.setattr(coverage, "_meeting", lambda groups, boxes: {(0, 1)} if coverage.manner[0] < 1 else set())
+    coverage._part_groups()
+    assert coverage.manner.tolist() == [1, 0]
+    assert tried[:3] == [[0, 1], [0, 2], [0, 3]]
+
+
+@pytest.mark.parametrize(("density", "radius"), [(15, 5), (40, 4), (40, 7)])
+def test_a_round_tower_is_a_few_chords(density, radius):
+    """Walls closer to what was traced have right angles by chance: along these it would be a stair of 20 corners."""
+    angle = np.deg2rad(np.arange(0, 360, 5))
+    ring = radius * np.column_stack([np.cos(angle), np.sin(angle)])
+    draws = [scanned([[ring]], density, np.random.default_rng(seed)) for seed in range(10)]
+    found = [extract_footprints(xyz, classification) for xyz, classification, _ in draws]
+    assert sum(one.columns["regularized"][0] for one in found) <= 1
+    # Chords that stay within 1.75 spacings.
+    few = np.pi / np.arccos(1 - 1.75 * density**-0.5 / radius)
+    assert max(len(one.geometries[0][0]) - 1 for one in found) < 2.2 * few
+    assert np.mean([polygon(one.geometries[0]).hausdorffDistance(polygon([ring])) for one in found]) < 2 * density**-0.5
 
 
 def test_order_place_and_direction_change_nothing(rng):

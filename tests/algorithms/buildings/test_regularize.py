@@ -290,7 +290,7 @@ def polygon(*sides):
         (5.0, 5.0, 2.4, True),
         (5.0, 5.0, 2.6, False),
         # A cut of less than half of the one wall beside it, and of more than half of the other.
-        (9.0, 3.0, 2.0, False),
+        (4.5, 3.0, 2.0, False),
     ],
 )
 def test_a_cut_corner_is_less_than_half_as_long_as_the_walls_beside_it(long, short, cut, has_main):
@@ -298,6 +298,14 @@ def test_a_cut_corner_is_less_than_half_as_long_as_the_walls_beside_it(long, sho
     sides = [(length, 45 * i) for i, length in enumerate([long, cut, short, cut, long, cut, short, cut])]
     assert len(main_directions(polygon(*sides))) == has_main
     assert len(main_directions(polygon(*sides[1:], sides[0]))) == has_main
+
+
+@pytest.mark.parametrize(("length", "apart", "is_main"), [(6, 0, True), (6, 4, True), (6, 7, False), (4.5, 0, False)])
+def test_parallel_walls_that_are_most_of_an_outline_need_no_right_angle(length, apart, is_main):
+    """A shed with pointed ends, in squares of its lengths: where its sides are short, it may be a round thing."""
+    sides = [(length, 20), (3, 80), (3, 140), (length, 200 + apart), (3, 260), (3, 320)]
+    found = main_directions(polygon(*sides))
+    assert found == ([pytest.approx(np.deg2rad(20 + apart / 2), abs=0.04)] if is_main else [])
 
 
 def test_a_boat_has_no_main_direction():
