@@ -107,6 +107,14 @@ def test_a_dike_is_terrain_though_windows_lift_it_off(rng):
     assert len(seeded) > 0.88 * len(upper_half)
 
 
+def test_a_steep_ridge_is_terrain_as_its_slope_is_measured_anew(rng):
+    """Rock at 50°: most of it is lifted off as by windows over flat terrain, and not by those that know its slope."""
+    plan = even(120, 60, 0.9) + rng.uniform(-0.4, 0.4, (len(even(120, 60, 0.9)), 2))
+    z = 1.2 * np.clip(30 - np.abs(plan[:, 0] - 60), 0, 27) + rng.normal(0, 0.02, len(plan))
+    seeds, *_ = seeds_by_opening(np.column_stack([plan, z]), 1.0, None, Monitor())
+    assert (z > 1.0)[seeds].sum() > 0.5 * 60 * 60
+
+
 @pytest.mark.parametrize("spacing", [1.6, 2.4])
 def test_a_heap_of_soil_is_terrain_however_few_points_hold_it(spacing, rng):
     """Cells of half the spacing hold every other rise twice as steep, and no rise beside it."""
