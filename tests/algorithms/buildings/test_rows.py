@@ -185,3 +185,43 @@ def test_large_buildings_are_looked_at_piece_by_piece(rng, monkeypatch):
     for stop_at in (0.1, 0.3, 0.45):
         with pytest.raises(Cancelled):
             extract_footprints(xyz, classification, split_rows=True, monitor=Listening(stop_at))
+
+
+def step_of(height, left=0.0, right=0.0, low=8.0):
+    """Return a roof across a wall at 0: so much higher there, and rising so much per meter to the left and right."""
+    return lambda x: low + np.where(x < 0, -left * x, height + right * x)
+
+
+@pytest.mark.parametrize(
+    ("seen", "unseen"),
+    [
+        # A valley from a slope of 0.25 on.
+        (step_of(0.0, 0.3, 0.3), step_of(0.0, 0.2, 0.2)),
+        # A step of 0.4 m between roofs whose slopes differ by less than 0.35, and one of 1 m between all but
+        # the sides of a ridge and those steeper than 1.5.
+        (step_of(0.45), step_of(0.35)),
+        (step_of(0.7, -0.1, 0.4), step_of(0.7, -0.1, 0.5)),
+        (step_of(1.1, 0.0, 0.6), step_of(0.9, 0.0, 0.6)),
+        (step_of(2.0, -0.2, -0.3), step_of(2.0, -0.3, -0.3)),
+        (step_of(1.2, -1.4, low=20.0), step_of(1.2, -1.6, low=20.0)),
+        # A wall 0.3 m above both roofs.
+        (lambda x: 8 + 0.4 * (np.abs(x) < 0.2), lambda x: 8 + 0.2 * (np.abs(x) < 0.2)),
+        # Roofs deviate by less than 0.25 m from a line.
+        (
+            lambda x: step_of(0.9)(x) + 0.18 * np.cos(4 * np.pi * x),
+            lambda x: step_of(0.9)(x) + 0.32 * np.cos(4 * np.pi * x),
+        ),
+        # Half of the step is still there 2.5 m from it.
+        (lambda x: step_of(0.9)(x) - 0.9 * (x > 2.8), lambda x: step_of(0.9)(x) - 0.9 * (x > 2.3)),
+        # The lower house has three quarters of the other's height.
+        (step_of(1.6, low=5.0), step_of(1.6, low=4.5)),
+    ],
+)
+def test_what_looks_like_a_wall_between_two_houses(seen, unseen):
+    """On a grid of 25 cm, with the wall in the middle of 20 m."""
+    across = 0.25 * np.arange(-40, 41)
+    for roof, is_wall in ((seen, True), (unseen, False)):
+        for turned in (1, -1):
+            height = np.tile(roof(across)[::turned], (20, 1))
+            strength, *_ = rows._evidence(height, np.ones(height.shape, bool), 0.25)
+            assert (strength[10, 40] > 0) == is_wall
