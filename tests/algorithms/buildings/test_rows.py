@@ -225,3 +225,26 @@ def test_what_looks_like_a_wall_between_two_houses(seen, unseen):
             height = np.tile(roof(across)[::turned], (20, 1))
             strength, *_ = rows._evidence(height, np.ones(height.shape, bool), 0.25)
             assert (strength[10, 40] > 0) == is_wall
+
+
+@pytest.mark.parametrize(
+    ("depth", "seen", "low", "is_wall"),
+    [
+        # A wall is from 4 to 22 m long.
+        (5.0, 5.0, 0.0, True),
+        (3.5, 3.5, 0.0, False),
+        (21.0, 21.0, 0.0, True),
+        (23.0, 23.0, 0.0, False),
+        # It is seen on three fifths, of what is no low part of a house.
+        (12.0, 8.5, 0.0, True),
+        (12.0, 6.0, 0.0, False),
+        (12.0, 6.0, 4.0, True),
+    ],
+)
+def test_how_long_a_wall_is_and_how_much_of_it_is_seen(depth, seen, low, is_wall):
+    """A step of 0.8 m across a row, of which so much is seen, and so much is beside roofs that are lower than 4 m."""
+    along = 0.25 * np.arange(round(depth / 0.25))[:, None]
+    roof = 8 + np.where((np.arange(81) >= 40) & (along < seen), 0.8, 0.0)
+    roof[along[:, 0] >= depth - low] = 3.0
+    column, *_ = rows._runs_of_walls(roof, np.ones(roof.shape, bool), 4.0, 0.25)
+    assert (40 in column.tolist()) == is_wall
