@@ -55,6 +55,9 @@ def _octagon(surface: np.ndarray, radius: int, running: Callable, outside: float
 def _along_diagonals(surface: np.ndarray, length: int, rising: bool, running: Callable, outside: float) -> np.ndarray:
     """Run a one-dimensional filter along the diagonals: sheared, they are columns."""
     rows, columns = surface.shape
+    if rows > columns:
+        # It takes rows times the sum of both; the diagonals of the transposed surface are the same.
+        return _along_diagonals(surface.T, length, rising, running, outside).T
     width = rows + columns - 1
     # What starts one cell later in each row of this width starts in the same column of rows that are a cell longer.
     sheared, filtered = np.full(rows * (width + 1), outside), np.empty(rows * (width + 1))

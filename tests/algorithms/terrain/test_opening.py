@@ -1,5 +1,7 @@
 """The fast opening against scipy's slow one with the same octagon, and what any opening must do."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 from scipy import ndimage
@@ -132,3 +134,15 @@ def test_the_level_of_a_surface_is_that_of_its_opening(radius, rng):
         np.testing.assert_array_equal(open_surface(surface + level, radius), open_surface(surface, radius) + level)
         moved = open_surface(surface + level, radius, absent)
         np.testing.assert_array_equal(moved, open_surface(surface, radius, absent) + level)
+
+
+def test_a_narrow_strip_takes_as_little_memory_along_as_across(rng):
+    strip = rng.normal(size=(4000, 40))
+    opened, peaks = [], []
+    for surface in (strip, np.ascontiguousarray(strip.T)):
+        tracemalloc.start()
+        opened.append(open_surface(surface, 8))
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    np.testing.assert_array_equal(opened[0], opened[1].T)
+    assert max(peaks) < 1.5 * min(peaks) < 20 * strip.nbytes
