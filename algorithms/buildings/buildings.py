@@ -46,6 +46,9 @@ _TOO_LARGE_FOR_LEAVES = 10.0
 # At the edges of a roof some pulses split; in leaves most do. Less of a roof's points than this go on.
 _SPLIT_AT_EDGES = 0.3
 
+# Balconies and terraces, past which walls and lower floors are seen, have at least so much of buildings around.
+_AMID_BUILDINGS = 0.5
+
 
 @stage(
     "Classify buildings",
@@ -113,7 +116,8 @@ def classify_buildings(
         Param(
             "Minimum share of buildings around",
             "Share of the points standing within a few meters of a building that must be of buildings, its own among "
-            "them. Around smooth spots of crowns it is less. 0 is the method as published.",
+            "them. Around smooth spots of crowns it is less. Where it is looked at, planes that the beam passes are "
+            "buildings amid others (balconies). 0 is the method as published.",
             low=0,
             high=1,
         ),
@@ -174,7 +178,9 @@ def classify_buildings(
     confidence and of the share of points that the plane stopped decides, if it is more.
 
     The minimum share of buildings around is this project's, too: the fewer points there are, the larger are the spots
-    of crowns that are smooth by chance. What stands around these are leaves, for the most part.
+    of crowns that are smooth by chance. What stands around these are leaves, for the most part. Around a balcony or a
+    terrace, which the beam seems to pass, are buildings: of the size of one, it is part of them when half of the
+    points around are of other clusters that are.
 
     Small things can look like a roof by chance: a car does. What confidence has above 0.5 therefore grows with the
     size of the cluster, to half at twice the points of the smallest building, which changes no decision.
@@ -208,7 +214,8 @@ def classify_buildings(
 
     # 2. What each cluster is.
     places = _Places(xyz, cluster_id - 1, ids - 1, density, return_number, number_of_returns)
-    sure, reasons = _by_entropy(means, split)
+    planar, reasons = _by_entropy(means, split)
+    sure = planar
     monitor.progress(0.9)
     through = places.penetration() if max_penetration < 1 and split.separates else None
     if through is not None:
@@ -216,7 +223,7 @@ def classify_buildings(
         sure, reasons = _by_both(sure, reasons, through, max_penetration, places, min_area)
     monitor.progress(0.98)
     if min_share_around > 0:
-        sure, reasons = _not_amid_others(sure, reasons, places, min_share_around)
+        sure, reasons = _by_surroundings(sure, planar, reasons, places, min_share_around, min_area)
     sure = _supported(sure, size / (min_area * density))
     monitor.progress(1.0)
 
@@ -291,13 +298,19 @@ def _by_both(
     return np.where(is_building, np.where(is_solid, both, sure), np.minimum(both, 0.5)), reasons
 
 
-def _not_amid_others(
-    sure: np.ndarray, reasons: np.ndarray, places: _Places, least: float
+def _by_surroundings(
+    sure: np.ndarray, planar: np.ndarray, reasons: np.ndarray, places: _Places, least: float, min_area: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return how sure each cluster is a building, and the reason, given how much around it is of buildings."""
+    """Return how sure each cluster is a building, and the reason, given how much around it is of buildings.
+
+    ``planar`` is how sure its entropy alone is.
+    """
     is_building = sure > 0.5
-    amid_others = is_building & (places.share_around(is_building) < least)
-    return np.where(amid_others, 0.5, sure), np.where(amid_others, np.uint8(Reason.AMID_OTHERS), reasons)
+    share = places.share_around(is_building)
+    amid_others = is_building & (share < least)
+    amid_buildings = (reasons == Reason.PENETRATED) & (places.areas >= min_area) & (share >= _AMID_BUILDINGS)
+    reasons = np.select([amid_others, amid_buildings], [Reason.AMID_OTHERS, Reason.BESIDE], reasons)
+    return np.select([amid_others, amid_buildings], [0.5, planar], sure), reasons.astype(np.uint8)
 
 
 @dataclass(frozen=True)

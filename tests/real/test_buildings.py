@@ -19,8 +19,8 @@ REACHED = {
     "buildings/ahn3-delft": (96.2, 70.3),
     "buildings/ahn3-delft-4": (95.4, 62.0),
     "buildings/ign-stbarth": (89.9, 76.9),
-    "buildings/ign-stbarth-4": (91.0, 65.9),
-    "buildings/ahn-amsterdam-1": (97.0, 70.5),
+    "buildings/ign-stbarth-4": (91.1, 65.9),
+    "buildings/ahn-amsterdam-1": (97.2, 70.5),
     "buildings/ign-chalet": (94.5, 81.5),
 }
 # Area (m²) called building where there is none, in cells of 0.5 m.

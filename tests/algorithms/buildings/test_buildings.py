@@ -490,6 +490,29 @@ def test_a_smooth_spot_amid_leaves_is_no_building_and_a_roof_beside_a_tree_is(rn
     assert confidence[1][1] == 0.5 < confidence[0][1]
 
 
+@pytest.mark.parametrize(
+    ("side", "around", "reason"),
+    [(3.0, roof, Reason.BESIDE), (3.0, crown, Reason.PENETRATED), (1.5, roof, Reason.PENETRATED)],
+)
+def test_balconies_amid_buildings_are_part_of_them(rng, side, around, reason):
+    """A floor past which what is below is seen, apart from the roofs around: such spots amid crowns are leaves."""
+    balcony = roof(rng, -side / 2, -side / 2, side, side, density=12)
+    below = balcony - [0, 0, 3]
+    places = [(x, y) for x in (-4, 4) for y in (-4, 0, 4)]
+    if around is roof:
+        parts = [roof(rng, x - 1.5, y - 2, 3, 4, elevation=7.5, density=24) for x, y in places]
+    else:
+        parts = [crown(rng, x, y, 1.5, 7) for x, y in places]
+    far = roof(rng, 30, 0, density=12), crown(rng, 30, 30)
+    xyz, cluster_id = clusters(balcony, *far, *parts, below)
+    cluster_id[-len(below) :] = 0
+    tunables = {"n_neighbors": 12, "max_penetration": 0.4}
+    before, after = (reasons_of(xyz, cluster_id, min_share_around=least, **tunables)[0] for least in (0.0, 0.4))
+    assert before[0] == Reason.PENETRATED
+    assert after[0] == reason
+    assert before[1:] == after[1:]
+
+
 # --- properties ------------------------------------------------------------------------------------------------------
 
 
