@@ -52,7 +52,7 @@ _STEP, _STEP_SPACINGS = 1.0, 3.0
 _BESIDE = 3.0
 
 # A place is under a roof that has, within so many spacings, this share of the points it has around the so many of its
-# points that are nearest; a roof has at least this share of what the mean spacing lets expect.
+# points that are nearest; a roof has at least this share of what the mean spacing would give.
 _AROUND, _NEAREST, _UNDER, _DENSE = 2.0, 24, 0.7, 0.6
 
 # Points farther apart than so many spacings are never joined: what lies between such gaps can be done by itself.

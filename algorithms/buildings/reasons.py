@@ -43,7 +43,8 @@ _TEXTS = {
     Reason.SOLID_PLANE: "Building: low entropy, as planes have, and it stops the beam.",
     Reason.SOLID: "Building: the entropy is not low, but next to nothing of the beam passes through.",
     Reason.ATTACHED: "Building: belongs to the roof above, beneath or beside it.",
-    Reason.BESIDE: "Building: low entropy, as planes have, and beside one, so what is seen past its edges counts not.",
+    Reason.BESIDE: "Building: low entropy, as planes have, and beside or amid buildings, where what is seen past its "
+    "edges tells nothing.",
     Reason.LARGE_PLANE: "Building: a plane too large for a crown, though part of the beam passes, as through glass.",
     Reason.ROUGH: "No building: high entropy, as crowns have.",
     Reason.PENETRATED: "No building: low entropy, but the beam passes through.",

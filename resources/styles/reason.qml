@@ -7,7 +7,7 @@
       <category value="2" label="Building: low entropy, as planes have, and it stops the beam" color="0,68,136,255" pointSize="0" render="true"/>
       <category value="3" label="Building: the entropy is not low, but next to nothing of the beam passes through" color="102,153,204,255" pointSize="0" render="true"/>
       <category value="4" label="Building: belongs to the roof above, beneath or beside it" color="170,200,230,255" pointSize="0" render="true"/>
-      <category value="5" label="Building: low entropy, as planes have, and beside one, so what is seen past its edges counts not" color="51,119,187,255" pointSize="0" render="true"/>
+      <category value="5" label="Building: low entropy, as planes have, and beside or amid buildings, where what is seen past its edges tells nothing" color="51,119,187,255" pointSize="0" render="true"/>
       <category value="6" label="Building: a plane too large for a crown, though part of the beam passes, as through glass" color="68,170,187,255" pointSize="0" render="true"/>
       <category value="11" label="No building: high entropy, as crowns have" color="221,170,51,255" pointSize="0" render="true"/>
       <category value="12" label="No building: low entropy, but the beam passes through" color="153,119,0,255" pointSize="0" render="true"/>
