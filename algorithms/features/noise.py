@@ -8,6 +8,7 @@ import numpy as np
 
 from ..cloud.cells import plan_box
 from ..cloud.density import point_spacing
+from ..cloud.rounding import rounding_deviation
 from ..packages import spatial
 from ..stage import Monitor
 from ..threads import in_chunks
@@ -86,7 +87,7 @@ class SurfaceSample:
         return self.columns.shape[1]
 
     def noise(self) -> float:
-        """Return the standard deviation of points across the smooth surfaces, m, at least 0.01.
+        """Return the standard deviation of points across the smooth surfaces, m, at least 0.01 and that of rounding.
 
         Notes
         -----
@@ -95,10 +96,11 @@ class SurfaceSample:
         forest they do. In a cloud of planes and nothing else that is 0.77 of the true noise.
         """
         count = min(_NEIGHBORS, len(self))
+        least = max(_LEAST_NOISE, rounding_deviation(self.columns[2]))
         if count <= 3:
-            return _LEAST_NOISE
+            return least
         across = self._variances(count)[:, 2] * count / (count - 3)
-        smooth, smoothest = np.maximum(np.sqrt(np.quantile(across, (_SMOOTH_SHARE, _SMOOTHEST_SHARE))), _LEAST_NOISE)
+        smooth, smoothest = np.maximum(np.sqrt(np.quantile(across, (_SMOOTH_SHARE, _SMOOTHEST_SHARE))), least)
         return float(min(smooth, _MOST_ROUGHER * smoothest))
 
     def roughness(self, density: float) -> float:

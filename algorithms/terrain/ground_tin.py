@@ -10,6 +10,7 @@ import numpy as np
 from ..cloud.asprs import NOISE, PointClass
 from ..cloud.cells import distinct, grid_over, plan_box
 from ..cloud.density import point_density
+from ..cloud.rounding import rounding_deviation
 from ..params import MaxBuildingSize
 from ..stage import Monitor, Param, stage
 from .seeds import USUAL_BUILDING, seeds_by_lowest, seeds_by_opening
@@ -52,8 +53,9 @@ _SQUARE = 10.0
 _LEAST_GROWTH = 0.005
 _MAX_ROUNDS = 50
 
-# Coordinates are stored to a centimeter or finer: what deviates less from a line in plan is one, m.
-_LEAST_WIDTH = 0.01
+# Coordinates are stored to a centimeter or finer (m): what deviates less from a line in plan is one, and no surface
+# is known to be smoother.
+_LEAST_WIDTH = _LEAST_ROUGHNESS = 0.01
 
 # Candidates farther than this from the first TIN (in iteration distances) never come near it later.
 _CANDIDATE_DISTANCES = 5.0
@@ -238,10 +240,10 @@ def classify_ground_tin(
     may_join[last] = ~stands_free
     start = np.flatnonzero(last)[start]
     terrain = _terrain(size) if terrain is None else terrain
-    rules = _Rules(angle, iteration_distance, _GROW_BEND * spacing, edge_length, scale)
+    rules = _Rules(angle, iteration_distance, _GROW_BEND * spacing, edge_length, scale, _least_roughness(points))
     surface, distance = _grow(points, start, may_join, rules, monitor.part(0.3, 0.9))
     bend, region = (np.inf, 0.0) if seeds == "lowest" else (_SWEEP_BEND * scale, _REGION * spacing)
-    is_ground, sweep_distance = _sweep(surface, sweep_distance, bend, region)
+    is_ground, sweep_distance = _sweep(surface, sweep_distance, bend, region, rules.least)
     monitor.resolved(terrain=terrain, granularity=granularity, max_building_size=size, cell_size=cell_size)
     monitor.resolved(
         iteration_angle=angle, iteration_distance=distance, edge_length=edge_length, sweep_distance=sweep_distance
@@ -300,12 +302,17 @@ def _terrain(size: float) -> str:
     return next((kind for kind in kinds if size <= _TERRAINS[kind][0]), kinds[-1])
 
 
+def _least_roughness(points: np.ndarray) -> float:
+    """Return the roughness (m) below which none can be told."""
+    return max(_LEAST_ROUGHNESS, rounding_deviation(points[:, 2]))
+
+
 @dataclass(frozen=True)
 class _Rules:
     """When a point joins.
 
-    Largest angle (°) and distance (m; None is measured, and ``bend`` comes on top), open edges (m), and from how far
-    a mirror image is taken (m).
+    Largest angle (°) and distance (m; None is measured, and ``bend`` comes on top), open edges (m), from how far
+    a mirror image is taken (m), and the least roughness of a surface (m).
     """
 
     max_angle: float
@@ -313,6 +320,7 @@ class _Rules:
     bend: float
     edge_length: float
     reach: float
+    least: float = _LEAST_ROUGHNESS
 
     def distance(self, nodes: np.ndarray) -> float:
         """Return the largest distance (m) at which a point joins the TIN of ``nodes``."""
@@ -320,7 +328,7 @@ class _Rules:
             return self.max_distance
         if len(nodes) <= 3:
             return np.inf
-        rough = _GROW_DEVIATIONS * robust_deviation(node_residuals(nodes))
+        rough = _GROW_DEVIATIONS * robust_deviation(node_residuals(nodes), self.least)
         return max(rough, rough / 2 + self.bend)
 
 
@@ -438,7 +446,9 @@ def _to_nearest_node(tin: Tin, facet: np.ndarray, here: np.ndarray) -> np.ndarra
     return np.linalg.norm(tin.nodes[tin.facets[facet]] - (here - tin.shift)[:, None], axis=2).min(axis=1)
 
 
-def _sweep(surface: _Surface, distance: Optional[float], bend: float, region: float) -> tuple[np.ndarray, float]:
+def _sweep(
+    surface: _Surface, distance: Optional[float], bend: float, region: float, least: float
+) -> tuple[np.ndarray, float]:
     """Return which points lie within ``distance`` of the surface or are its nodes, and that distance.
 
     Where it is measured, points of higher strips are ground too, looked for in squares of ``region`` (m; 0 is not).
@@ -446,7 +456,8 @@ def _sweep(surface: _Surface, distance: Optional[float], bend: float, region: fl
     is_measured = distance is None
     if distance is None:
         # So few have no neighbors to differ from.
-        roughness = robust_deviation(node_residuals(surface.nodes) if len(surface.nodes) > 3 else np.zeros(1))
+        residuals = node_residuals(surface.nodes) if len(surface.nodes) > 3 else np.zeros(1)
+        roughness = robust_deviation(residuals, least)
         distance = min(_SWEEP_DEVIATIONS * roughness, _SWEEP_NOISE * roughness + bend)
     if distance == 0:
         return surface.is_node, 0.0

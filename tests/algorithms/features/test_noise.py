@@ -46,6 +46,14 @@ def test_no_noise_is_a_centimeter(rng):
     assert surface_noise(plane(rng, 0.0)) == 0.01
 
 
+@pytest.mark.parametrize("slope", [0.02, 0.5])
+def test_rounded_heights_are_as_rough_as_rounding_makes_them(slope, rng):
+    """On nearly level ground all points around most points lie on one level, as smooth as can be."""
+    xyz = plane(rng, 0.02, slope, count=20_000, side=200.0)
+    xyz[:, 2] = np.round(xyz[:, 2] / 0.3) * 0.3
+    assert surface_noise(xyz) == pytest.approx(0.3 / np.sqrt(12), rel=0.1)
+
+
 def test_the_plane_of_twelve_points_by_hand(rng):
     """Twelve points have one neighborhood: the figure is its least squares across, for 12 - 3 degrees of freedom."""
     xyz = rng.normal(size=(12, 3)) * [3, 2, 0.3]

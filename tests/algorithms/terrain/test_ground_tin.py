@@ -69,6 +69,14 @@ def test_a_terrace_is_ground_on_both_levels_up_to_its_step(rng):
     assert is_ground[from_step <= 2].mean() > 0.8
 
 
+@pytest.mark.parametrize("step", [0.1, 0.3])
+def test_the_levels_of_rounded_heights_are_all_ground(step, rng):
+    """A slope of 3 %: most of the surface looks perfectly smooth, a step every so many meters."""
+    xyz, is_house = scan(rng, lambda x, y: 0.03 * x, HOUSES, density=8)
+    xyz[:, 2] = np.round(xyz[:, 2] / step) * step
+    assert max(errors(classify_ground_tin(xyz, unclassified(xyz)), is_house)) < 0.01
+
+
 def test_a_courtyard_is_ground(rng):
     xyz, _ = scan(rng, TERRAINS["slope"])
     from_middle = np.abs(xyz[:, :2] - 40).max(axis=1)
