@@ -190,7 +190,7 @@ def test_a_cloud_smaller_than_its_neighborhoods_is_told(neighborhood, told):
 
 def test_fewest_more_than_most_is_one_sentence(gable):
     with pytest.raises(
-        ValueError, match=r"nearest points \(30\) is larger than the greatest \(20\); exchange the two\.$"
+        ValueError, match=r"minimum of nearest points \(30\) is above the maximum \(20\); exchange the two\.$"
     ):
         compute_features(gable, neighborhood="optimal", min_neighbors=30, max_neighbors=20)
     compute_features(gable, min_neighbors=30, max_neighbors=20)  # of no interest where they are not used
