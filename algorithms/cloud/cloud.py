@@ -342,9 +342,7 @@ def read_extent(path: Union[str, Path]) -> tuple[np.ndarray, np.ndarray, str]:
     ValueError
         In one sentence, what is wrong with the file or with a tile of it.
     """
-    path = Path(path)
-    with _readable(path):
-        headers = [open_header(source) for source in _sources(path)]
+    headers = _headers(Path(path))
     low, high = ([getattr(header, name) for header in headers] for name in ("low", "high"))
     return np.min(low, axis=0), np.max(high, axis=0), wkt_of(headers[0])
 
@@ -357,9 +355,13 @@ def count_points(path: Union[str, Path]) -> int:
     ValueError
         In one sentence, what is wrong with the file or with a tile of it.
     """
-    path = Path(path)
+    return sum(header.count for header in _headers(Path(path)))
+
+
+def _headers(path: Path) -> list[Header]:
+    """Return the headers of a file or of all its tiles."""
     with _readable(path):
-        return sum(open_header(source).count for source in _sources(path))
+        return [open_header(source) for source in _sources(path)]
 
 
 @contextmanager

@@ -94,14 +94,7 @@ def penetration(
 def share_beneath(xyz: np.ndarray, group: np.ndarray, density: float) -> np.ndarray:
     """Return the share of points that passed each group of points, 0 to 1, whatever the density.
 
-    Parameters
-    ----------
-    xyz : ndarray of shape (n, 3), float64
-        All points of the cloud (m).
-    group : ndarray of shape (n,), int
-        Group of each point from 0, negative for none; at least one point has a group.
-    density : float
-        Points per square meter.
+    Arguments as of :func:`penetration`.
 
     Returns
     -------

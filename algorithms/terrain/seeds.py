@@ -9,7 +9,8 @@ from typing import Optional
 import numpy as np
 
 from ..cloud.cells import plan_box, refuse_sparse
-from ..packages import csgraph, ndimage, sparse
+from ..groups import components
+from ..packages import ndimage
 from ..stage import Monitor
 from .opening import open_surface
 from .standing import free_standing, neighbors
@@ -327,10 +328,8 @@ def _smooth_parts(chosen: np.ndarray, surface: np.ndarray, step: float) -> np.nd
         level = chosen[here] & chosen[there] & (np.abs(surface[here] - surface[there]) < step)
         pairs.append(np.stack([number[here][level], number[there][level]]))
     one, other = np.concatenate(pairs, axis=1)
-    count = int(chosen.sum())
-    links = sparse.coo_matrix((np.ones(len(one), bool), (one, other)), (count, count))
     part = np.zeros(chosen.shape, np.int64)
-    part[chosen] = csgraph.connected_components(links, directed=False)[1] + 1
+    part[chosen] = components(one, other, int(chosen.sum()))[1] + 1
     return part
 
 
