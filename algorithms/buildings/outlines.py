@@ -11,7 +11,8 @@ from typing import Any, Optional
 
 import numpy as np
 
-from ..packages import csgraph, sparse, spatial
+from ..groups import components
+from ..packages import spatial
 
 # Between this percentile of the points' own spacing and the longest edge: room for what chance leaves open.
 _PERCENTILE, _ROOM = 95, 2.0
@@ -218,9 +219,7 @@ def _majority(labels: np.ndarray) -> np.ndarray:
 def pieces_of(value: np.ndarray, neighbors: np.ndarray) -> np.ndarray:
     """Return the number (t,) from 0 of the piece that each triangle is in: those of one value that share edges."""
     rows, sides = np.nonzero((neighbors >= 0) & (value[neighbors] == value[:, None]))
-    pairs = rows, neighbors[rows, sides]
-    graph = sparse.coo_matrix((np.ones(len(rows), bool), pairs), (len(value), len(value)))
-    return csgraph.connected_components(graph, directed=False)[1]
+    return components(rows, neighbors[rows, sides], len(value))[1]
 
 
 def _absorb(

@@ -9,7 +9,8 @@ import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
 from ..cloud.cells import refuse_sparse
-from ..packages import csgraph, ndimage, sparse
+from ..groups import components
+from ..packages import ndimage
 from ..stage import Param, stage
 from .cloth import Cloth
 from .ground_tin import refuse_degenerate
@@ -207,7 +208,6 @@ def _let_down(cloth: Cloth) -> np.ndarray:
         for one, other in ((here, there), (there, here)):
             is_held[number[one][smooth & hangs[one] & ~cloth.is_movable[other]]] = True
     rows, columns = (np.concatenate(ends) for ends in zip(*links))
-    graph = sparse.coo_matrix((np.ones(len(rows), bool), (rows, columns)), (part.size, part.size))
-    n_groups, group = csgraph.connected_components(graph, directed=False)
+    n_groups, group = components(rows, columns, part.size)
     comes_down = np.bincount(group, is_held, n_groups)[group].reshape(part.shape) > 0
     return np.where(comes_down, cloth.floor, cloth.height)

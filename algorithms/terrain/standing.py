@@ -8,7 +8,8 @@ from typing import Optional
 
 import numpy as np
 
-from ..packages import csgraph, ndimage, sparse
+from ..groups import components
+from ..packages import ndimage
 from ..stage import Monitor
 
 # A step is at least so high (m) and so steep: lower than any eave, steeper than slopes that soil lies on.
@@ -170,10 +171,8 @@ def _reunited(surface: np.ndarray, segment: np.ndarray, stands: np.ndarray, leas
     _, open_, by_side = edges.lengths(stands, np.full(count, least))
     is_part = ~stands & (by_side.sum(axis=0) > _PART_EDGE * open_)
     level = is_part[edges.own] & is_part[edges.other] & (np.abs(edges.step) < max(_HALL_STEP, least))
-    one, other = edges.own[level], edges.other[level]
-    links = sparse.coo_matrix((np.ones(len(one)), (one, other)), (count, count))
     # Components are numbered by their first segments: that of 0, which is no part, stays 0.
-    return csgraph.connected_components(links, directed=False)[1][segment]
+    return components(edges.own[level], edges.other[level], count)[1][segment]
 
 
 def _resting(surface: np.ndarray, rough: np.ndarray, roof: np.ndarray, least: float) -> np.ndarray:

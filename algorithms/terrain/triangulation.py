@@ -16,7 +16,8 @@ from typing import Optional
 import numpy as np
 
 from ..cloud.cells import find_cells, plan_box
-from ..packages import csgraph, sparse, spatial
+from ..groups import components
+from ..packages import spatial
 from ..stage import Monitor
 from ..threads import in_chunks
 
@@ -209,8 +210,7 @@ def _mended(part: Triangulation, rows: np.ndarray) -> Optional[Triangulation]:
     # What borders don't part is in the same hole or in none.
     neighbors = np.where(outside | inside, -1, patch.neighbors)
     links = neighbors >= 0
-    pairs = np.nonzero(links)[0], neighbors[links]
-    which = csgraph.connected_components(sparse.coo_matrix((np.ones(len(pairs[0])), pairs), (len(facets),) * 2))[1]
+    which = components(np.nonzero(links)[0], neighbors[links], len(facets))[1]
     fills = ~np.isin(which, which[outside.any(axis=1)])
     whole = _joined([part, _chosen(part.plan, facets, neighbors, fills)[0]])
     return whole if inside.sum() == len(border) and _is_whole(whole) else None
