@@ -19,8 +19,9 @@ _STEP, _STEEP = 1.0, 1.0
 _HALL_STEP = 2.0
 
 # A segment stands free with steps down on this share of its open edge; so much of its edge must be open, that is
-# not hidden behind what stands higher or is too rough to tell; and at most so much may be where the cloud ends.
-_FREE_EDGE, _OPEN_EDGE, _CUT_EDGE = 0.9, 0.4, 0.35
+# not hidden behind what stands higher or is too rough to tell; and where the end of the cloud cuts it off, so much
+# of the outline that is left.
+_FREE_EDGE, _OPEN_EDGE, _OPEN_IF_CUT = 0.9, 0.4, 0.7
 
 # So much of its steps down face others, those to the west some to the east: a terrace steps down on one side.
 _FACING = 0.2
@@ -40,6 +41,23 @@ _LEAST_CELLS = 4
 # On terrain other things stand on more than this share of its area; on roofs, chimneys and machines on less, but for
 # those of podiums, whose walls are higher than quays and the walls of terraces (m).
 _CARRIES, _HIGHEST_QUAY = 0.1, 4.0
+
+
+@dataclass(frozen=True)
+class _Cut:
+    """What tells a roof that the end of the cloud cuts off, on at most this share of its outline.
+
+    Steps are so many times as high as the least ones, and may have to face one another: at a corner of the cloud
+    none do. Walls so high and steep are no quays, terraces or slopes.
+    """
+
+    share: float
+    steps: float
+    must_face: bool
+
+
+_ALMOST_WHOLE = _Cut(0.35, 1.0, True)
+_CUTS = (_ALMOST_WHOLE, _Cut(0.5, 2.0, True), _Cut(0.55, 4.0, False), _Cut(0.7, 6.0, False))
 
 
 @dataclass(frozen=True)
@@ -109,15 +127,16 @@ def free_standing(
     stands, width = _standing(surface, segment, least, usual / cell_size, largest / cell_size)
     monitor.progress(0.5)
     # Neither half of a hall that a row of skylights cuts in two stands while the other doesn't, nor does a hall
-    # beside a wing that is hardly lower.
+    # beside a wing that is hardly lower. Windows don't see the whole of a smaller one that the cloud's end cuts.
     hall = _reunited(surface, segment, stands, least)
-    is_wide = _widths(hall)[hall] > usual / cell_size
-    segment = np.where(is_wide, len(stands) + hall, segment)
+    is_hall = (_sides(hall).min(axis=0) > usual / cell_size) | (_ends(hall, hall.max() + 1) > 0)
+    in_hall = is_hall[hall] & (hall > 0)
+    segment = np.where(in_hall, len(stands) + hall, segment)
     monitor.progress(0.7)
     stands, width = _standing(surface, segment, least, usual / cell_size, largest / cell_size)
     free = stands[segment]
     monitor.progress(0.9)
-    free |= _resting(surface, segment == 0, free & is_wide, least)
+    free |= _resting(surface, segment == 0, free & in_hall, least)
     monitor.progress(1.0)
     return free, float(width[stands].max(initial=0.0)) * cell_size
 
@@ -126,20 +145,22 @@ def _standing(
     surface: np.ndarray, segment: np.ndarray, least: float, usual: float, largest: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return which segments stand free, and the shorter side of each; sizes in cells."""
-    width = _widths(segment)
+    sides = _sides(segment)
+    width = sides.min(axis=0)
     wide = width > usual
     needed = np.where(wide, max(_HALL_STEP, least), least)
     needed[width > largest] = np.inf
     stands = np.zeros(len(width), bool)
-    edges, cut = _edges(surface, segment), _cut(segment, len(width))
+    edges, ends = _edges(surface, segment), _ends(segment, len(width))
     # The highest come first; what stands at their walls is judged by the rest of its edge.
     while True:
-        found = _stands(edges, cut, stands, needed) & ~stands
+        found = _stands(edges, ends, sides, stands, needed, least) & ~stands
         if not found.any():
             break
         stands |= found
     # An island with houses on it has quays all round; what has higher walls carries towers.
-    may_be_island = stands & wide & ~_stands(edges, cut, stands, np.full(len(width), max(_HIGHEST_QUAY, least)))
+    walls = np.full(len(width), max(_HIGHEST_QUAY, least))
+    may_be_island = stands & wide & ~_stands(edges, ends, sides, stands, walls, least)
     return stands & ~_carries(segment, stands, np.flatnonzero(may_be_island)), width
 
 
@@ -187,21 +208,32 @@ def _resting(surface: np.ndarray, rough: np.ndarray, roof: np.ndarray, least: fl
     return (on_roof > _RESTS * whole)[thing]
 
 
-def _widths(segment: np.ndarray) -> np.ndarray:
-    """Return the shorter side of each segment's box, in cells."""
+def _sides(segment: np.ndarray) -> np.ndarray:
+    """Return the sides (2, number of segments) of each segment's box, in cells."""
     boxes = ndimage.find_objects(segment)
-    return np.array([0] + [min(side.stop - side.start for side in box) if box else 0 for box in boxes])
+    return np.array([(0, 0)] + [tuple(side.stop - side.start for side in box) if box else (0, 0) for box in boxes]).T
 
 
-def _stands(edges: _Edges, cut: np.ndarray, stands: np.ndarray, needed: np.ndarray) -> np.ndarray:
-    """Return which segments have steps down that face one another on most of the edge that nothing hides."""
-    whole, open_, by_side = edges.lengths(stands, needed)
-    whole = whole + cut
-    down = by_side.sum(axis=0)
-    # Neighbors come along each axis both ways.
-    facing = 2 * np.minimum(by_side[::2], by_side[1::2]).sum(axis=0)
-    is_free = (down > 0) & (down >= _FREE_EDGE * open_) & (facing >= _FACING * down)
-    return is_free & (open_ >= _OPEN_EDGE * whole) & (cut <= _CUT_EDGE * whole)
+def _stands(
+    edges: _Edges, ends: np.ndarray, sides: np.ndarray, stands: np.ndarray, needed: np.ndarray, least: float
+) -> np.ndarray:
+    """Return which segments have steps down on most of the edge that nothing hides, and enough of that.
+
+    ``ends`` is how much of each one's edge is the end of the cloud, ``sides`` are those of its box, in cells.
+    """
+    found = np.zeros(len(stands), bool)
+    for cut in _CUTS:
+        whole, open_, by_side = edges.lengths(stands, np.maximum(needed, cut.steps * least))
+        down = by_side.sum(axis=0)
+        # Neighbors come along each axis both ways.
+        may_stand = 2 * np.minimum(by_side[::2], by_side[1::2]).sum(axis=0) >= _FACING * down
+        # The outline of its box is no longer for a jagged edge, nor for what stands inside.
+        outline = np.minimum(whole + ends, 2 * sides.sum(axis=0))
+        needs_open = _OPEN_EDGE * (whole + ends) if cut is _ALMOST_WHOLE else _OPEN_IF_CUT * (outline - ends)
+        may_stand |= (not cut.must_face) & (ends > _ALMOST_WHOLE.share * outline)
+        may_stand &= (ends <= cut.share * outline) & (open_ >= needs_open)
+        found |= may_stand & (down > 0) & (down >= _FREE_EDGE * open_)
+    return found
 
 
 def _edges(surface: np.ndarray, segment: np.ndarray) -> _Edges:
@@ -214,13 +246,13 @@ def _edges(surface: np.ndarray, segment: np.ndarray) -> _Edges:
     return _Edges(*(np.concatenate(part) for part in zip(*parts)))
 
 
-def _cut(segment: np.ndarray, count: int) -> np.ndarray:
+def _ends(segment: np.ndarray, count: int) -> np.ndarray:
     """Return how much of each segment's edge is the edge of the raster, in cells."""
-    cut = np.zeros(count)
+    ends = np.zeros(count)
     for axis in range(segment.ndim):
         for side in (0, -1):
-            cut += np.bincount(np.take(segment, side, axis).ravel(), minlength=count)
-    return cut
+            ends += np.bincount(np.take(segment, side, axis).ravel(), minlength=count)
+    return ends
 
 
 def _carries(segment: np.ndarray, stands: np.ndarray, which: np.ndarray) -> np.ndarray:

@@ -85,9 +85,9 @@ def test_what_has_fewer_than_four_cells_off_its_edge_is_too_rough_to_tell(side, 
 @pytest.mark.parametrize(("length", "is_object"), [(4, True), (12, False)])
 def test_what_the_terrain_is_above_on_more_than_a_tenth_of_the_edge_is_a_terrace(length, is_object):
     surface = slope(80, 80)
-    house = block(surface, slice(30, 50), slice(30, 50), 4.0)
-    surface[2:30, 30 : 30 + length] = 6.0  # a bank up to the wall
-    surface[:2] = 6.0
+    house = block(surface, slice(30, 50), slice(30, 50), 3.8)
+    surface[24:30, 30 : 30 + length] = 5.9  # a bank up to the wall
+    surface[:24] = 5.9
     assert free_standing(surface, 1.0, USUAL)[0][house].all() == is_object
 
 
@@ -112,12 +112,12 @@ def test_a_fifth_of_the_steps_must_face_others(seen, is_object):
     assert free_standing(surface, 1.0, USUAL)[0][house].all() == is_object
 
 
-@pytest.mark.parametrize(("rows", "is_object"), [(60, True), (30, False)])
-def test_a_third_of_the_edge_may_lie_where_the_cloud_ends(rows, is_object):
-    """A building of 25 m that crosses a cloud as long as that."""
+@pytest.mark.parametrize(("rows", "height", "is_object"), [(60, 1.2, True), (30, 1.8, False), (30, 2.2, True)])
+def test_a_third_of_the_edge_may_lie_where_the_cloud_ends(rows, height, is_object):
+    """A building of 25 m that crosses a cloud as long as that; half of it may, if it is no causeway."""
     for turned in (np.asarray, np.transpose):
         surface = slope(rows, 80)
-        crossing = block(surface, slice(None), slice(30, 55), 4.0)
+        crossing = block(surface, slice(None), slice(30, 55), height)
         np.testing.assert_array_equal(free_standing(turned(surface), 1.0, USUAL)[0], turned(crossing & is_object))
 
 
@@ -281,11 +281,72 @@ def test_terraces_and_hills_are_terrain():
 
 def test_a_house_at_the_end_of_the_cloud_stands_free_on_its_other_sides():
     surface = slope(60, 60)
-    house = block(surface, slice(0, 14), slice(20, 34), 5.0)
+    house = block(surface, slice(0, 14), slice(20, 34), 1.5)
+    np.testing.assert_array_equal(free_standing(surface, 1.0, USUAL)[0], house)
+
+
+@pytest.mark.parametrize(
+    ("rows", "columns", "lowest"),
+    [
+        (slice(0, 10), slice(10, 50), 2.0),  # of its outline 0.4 is cut off, and the sides left over face one another
+        (slice(40, 60), slice(40, 60), 4.0),  # a corner: half, and none do
+        (slice(30, 60), slice(0, 60), 6.0),  # two thirds: one side is left
+        (slice(15, 60), slice(0, 60), np.inf),  # more: it may be the terrain from which something is dug out
+    ],
+)
+def test_the_more_of_a_building_is_cut_off_the_higher_its_walls_must_be(rows, columns, lowest):
+    for height in (1.2, 1.8, 2.2, 3.8, 4.2, 5.8, 6.2, 9.0):
+        for turned in (np.asarray, np.transpose, np.rot90):
+            surface = slope(60, 60)
+            building = block(surface, rows, columns, height)
+            expected = turned(building & (height > lowest))
+            np.testing.assert_array_equal(free_standing(turned(surface), 1.0, USUAL)[0], expected)
+
+
+@pytest.mark.parametrize(("apart", "is_object"), [(0.5, True), (2.0, False)])
+def test_the_walls_of_what_is_cut_off_are_steeper_than_slopes(apart, is_object):
+    """Between points 2 m apart a rise of 5 m may be a bank of 68°."""
+    surface = slope(60, 60)
     corner = block(surface, slice(40, 60), slice(40, 60), 5.0)
-    found = free_standing(surface, 1.0, USUAL)[0]
-    assert found[house].all()
-    assert not found[corner].any()
+    np.testing.assert_array_equal(free_standing(surface, 1.0, USUAL, apart=apart)[0], corner & is_object)
+
+
+@pytest.mark.parametrize(("seen", "is_object"), [(9, True), (7, False)])
+def test_of_what_is_cut_off_seven_tenths_of_the_rest_must_be_seen(seen, is_object):
+    """A corner of 20 m by 20 m, on one side behind a tower."""
+    surface = slope(60, 60)
+    corner = block(surface, slice(40, 60), slice(40, 60), 6.0)
+    surface[28:40, 40 + seen : 60] = 30.0
+    assert free_standing(surface, 1.0, USUAL)[0][corner].all() == is_object
+
+
+def test_machines_make_no_terrain_of_a_building_that_is_cut_off():
+    """Their edges are longer than what is seen of the roof's around them."""
+    surface = slope(60, 60)
+    building = block(surface, slice(29, 60), slice(8, 52), 2.2)
+    for row in (33, 43):
+        for column in (12, 22, 32, 42):
+            block(surface, slice(row, row + 6), slice(column, column + 6), 3.0)
+    np.testing.assert_array_equal(free_standing(surface, 1.0, USUAL)[0], building)
+
+
+def test_a_square_open_to_the_end_of_the_cloud_is_terrain():
+    """Houses stand on it, and on one side, which is a third of its own edge, it steps down to a canal."""
+    surface = slope(60, 60)
+    square = block(surface, slice(20, 60), slice(0, 60), 2.5)
+    houses = np.zeros(surface.shape, bool)
+    for row in (26, 44):
+        for column in (6, 24, 42):
+            houses |= block(surface, slice(row, row + 12), slice(column, column + 12), 7.0)
+    np.testing.assert_array_equal(free_standing(surface, 1.0, USUAL)[0], houses & square)
+
+
+def test_halves_of_a_smaller_roof_stand_together_where_the_cloud_ends(rng):
+    """Windows of its size would not fit in the cloud."""
+    surface = slope(60, 60)
+    roof = block(surface, slice(10, 60), slice(8, 60), 9.0)
+    cut_across(surface, 33, slice(8, 60), rng)
+    np.testing.assert_array_equal(free_standing(surface, 1.0, USUAL)[0], roof)
 
 
 @pytest.mark.parametrize("side", [40, 80])
