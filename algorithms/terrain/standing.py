@@ -23,6 +23,9 @@ _HALL_STEP = 2.0
 # of the outline that is left.
 _FREE_EDGE, _OPEN_EDGE, _OPEN_IF_CUT = 0.9, 0.4, 0.7
 
+# Walls are as high as they must be on this share of all steps down; on the others a wing may stand.
+_HIGH = 0.75
+
 # So much of its steps down face others, those to the west some to the east: a terrace steps down on one side.
 _FACING = 0.2
 
@@ -47,7 +50,7 @@ _CARRIES, _HIGHEST_QUAY = 0.1, 4.0
 class _Cut:
     """What tells a roof that the end of the cloud cuts off, on at most this share of its outline.
 
-    Steps are so many times as high as the least ones, and may have to face one another: at a corner of the cloud
+    Most steps are so many times as high as the least ones, and may have to face one another: at a corner of the cloud
     none do. Walls so high and steep are no quays, terraces or slopes.
     """
 
@@ -221,19 +224,20 @@ def _stands(
 
     ``ends`` is how much of each one's edge is the end of the cloud, ``sides`` are those of its box, in cells.
     """
+    whole, open_, by_side = edges.lengths(stands, needed)
+    down = by_side.sum(axis=0)
+    # The outline of its box is no longer for a jagged edge, nor for what stands inside.
+    outline = np.minimum(whole + ends, 2 * sides.sum(axis=0))
     found = np.zeros(len(stands), bool)
     for cut in _CUTS:
-        whole, open_, by_side = edges.lengths(stands, np.maximum(needed, cut.steps * least))
-        down = by_side.sum(axis=0)
+        high = edges.lengths(stands, np.maximum(needed, cut.steps * least))[2]
         # Neighbors come along each axis both ways.
-        may_stand = 2 * np.minimum(by_side[::2], by_side[1::2]).sum(axis=0) >= _FACING * down
-        # The outline of its box is no longer for a jagged edge, nor for what stands inside.
-        outline = np.minimum(whole + ends, 2 * sides.sum(axis=0))
+        faces = 2 * np.minimum(high[::2], high[1::2]).sum(axis=0) >= _FACING * high.sum(axis=0)
+        may_stand = faces | ((ends > _ALMOST_WHOLE.share * outline) & (not cut.must_face))
         needs_open = _OPEN_EDGE * (whole + ends) if cut is _ALMOST_WHOLE else _OPEN_IF_CUT * (outline - ends)
-        may_stand |= (not cut.must_face) & (ends > _ALMOST_WHOLE.share * outline)
-        may_stand &= (ends <= cut.share * outline) & (open_ >= needs_open)
-        found |= may_stand & (down > 0) & (down >= _FREE_EDGE * open_)
-    return found
+        is_seen = (ends <= cut.share * outline) & (open_ >= needs_open)
+        found |= may_stand & is_seen & (high.sum(axis=0) >= _HIGH * down)
+    return found & (down > 0) & (down >= _FREE_EDGE * open_)
 
 
 def _edges(surface: np.ndarray, segment: np.ndarray) -> _Edges:
