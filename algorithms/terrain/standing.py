@@ -23,8 +23,8 @@ _HALL_STEP = 2.0
 # of the outline that is left.
 _FREE_EDGE, _OPEN_EDGE, _OPEN_IF_CUT = 0.9, 0.4, 0.7
 
-# Walls are as high as they must be on this share of all steps down; on the others a wing may stand.
-_HIGH = 0.75
+# Walls are as high as they must be on this share of all steps down; beside the others a wing may stand.
+_HIGH = 0.5
 
 # So much of its steps down face others, those to the west some to the east: a terrace steps down on one side.
 _FACING = 0.2

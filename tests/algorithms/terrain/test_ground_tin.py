@@ -77,6 +77,20 @@ def test_the_levels_of_rounded_heights_are_all_ground(step, rng):
     assert max(errors(classify_ground_tin(xyz, unclassified(xyz)), is_house)) < 0.01
 
 
+@pytest.mark.parametrize(
+    "houses",
+    [[(0, 15, 50, WIDTH, 7)], [(0, 30, WIDTH, WIDTH, 9)], [(30, 25, WIDTH, WIDTH, 7), (20, 40, 30, 70, 4.5)]],
+    ids=["corner", "side", "corner with a wing"],
+)
+@pytest.mark.parametrize("density", [1.5, 8])
+def test_a_hall_that_the_end_of_the_cloud_cuts_off_is_no_ground(houses, density, rng):
+    """Windows of its size don't fit in what is left of it."""
+    xyz, is_hall = scan(rng, TERRAINS["level"], houses, density)
+    missed, wrong = errors(classify_ground_tin(xyz, unclassified(xyz)), is_hall)
+    assert wrong == 0
+    assert missed < 0.01
+
+
 def test_a_courtyard_is_ground(rng):
     xyz, _ = scan(rng, TERRAINS["slope"])
     from_middle = np.abs(xyz[:, :2] - 40).max(axis=1)

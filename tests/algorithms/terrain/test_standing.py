@@ -311,6 +311,14 @@ def test_the_walls_of_what_is_cut_off_are_steeper_than_slopes(apart, is_object):
     np.testing.assert_array_equal(free_standing(surface, 1.0, USUAL, apart=apart)[0], corner & is_object)
 
 
+@pytest.mark.parametrize(("height", "is_object"), [(4.2, True), (3.8, False)])
+def test_half_of_what_is_left_of_the_walls_must_be_high(height, is_object):
+    """At the corner of the cloud, on a slope: one wall is as high as that all along, the other where it begins."""
+    surface = slope(60, 60, 0.1)
+    corner = block(surface, slice(40, 60), slice(40, 60), height)
+    np.testing.assert_array_equal(free_standing(surface, 1.0, USUAL)[0], corner & is_object)
+
+
 @pytest.mark.parametrize(("seen", "is_object"), [(9, True), (7, False)])
 def test_of_what_is_cut_off_seven_tenths_of_the_rest_must_be_seen(seen, is_object):
     """A corner of 20 m by 20 m, on one side behind a tower."""
