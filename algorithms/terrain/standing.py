@@ -121,7 +121,8 @@ def free_standing(
     Notes
     -----
     What is wider than usual is looked at more closely: its parts are judged together, and what is too rough to tell on
-    its roof belongs to it. Of smaller things windows see the whole.
+    its roof belongs to it. Of smaller things windows see the whole, but for those that the end of the cloud cuts off:
+    the more of one is cut off, the higher its walls must be.
     """
     monitor = monitor or Monitor()
     least = max(_STEP, _STEEP * max(cell_size, apart))
