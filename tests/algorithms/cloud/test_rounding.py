@@ -21,7 +21,8 @@ def test_some_levels_may_be_empty(rng):
 
 
 def test_heights_that_are_not_rounded_have_no_step(rng):
-    assert rounding_deviation(rng.uniform(0, 40, 50)) == 0
+    for count in (50, 500, 5000):
+        assert rounding_deviation(rng.uniform(0, 40, count)) == 0
     assert rounding_deviation(rng.uniform(0, 40, 100_000)) < 1e-3
 
 
