@@ -89,15 +89,3 @@ IgnoredClasses = Annotated[
         "separated by commas (7, 64-67); empty counts every point.",
     ),
 ]
-
-MaxBuildingSize = Annotated[
-    Optional[float],
-    Param(
-        "Maximum building size",
-        "The shorter side of the largest building; smaller keeps more of narrow hilltops.",
-        unit="m",
-        low=1,
-        high=1000,
-        automatic="60 m, and any size for what stands free of the terrain on nearly all sides; or as the terrain says.",
-    ),
-]

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+# Coordinates are stored to a centimeter or finer (m).
+LEAST_DEVIATION = 0.01
+
 # A few even levels are those of flat roofs, and higher steps (m) those of storeys: nobody rounds so coarsely.
 _LEAST_LEVELS, _MOST_STEP = 10, 0.5
 
@@ -31,3 +34,8 @@ def rounding_deviation(elevation: np.ndarray) -> float:
     step = float(np.median(steps))
     is_even = np.abs(steps - step) <= _EVEN * step
     return step / float(np.sqrt(12)) if step <= _MOST_STEP and is_even.mean() >= _EVEN_SHARE else 0.0
+
+
+def least_deviation(elevation: np.ndarray) -> float:
+    """Return the standard deviation (m) that no surface of a cloud of these heights (m) is known to be below."""
+    return max(LEAST_DEVIATION, rounding_deviation(elevation))

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..cloud.cells import plan_box
 from ..cloud.density import point_spacing
-from ..cloud.rounding import rounding_deviation
+from ..cloud.rounding import least_deviation
 from ..packages import spatial
 from ..stage import Monitor
 from ..threads import in_chunks
@@ -45,9 +45,6 @@ _MOST_NEIGHBORS = 100
 # A fifth of the surroundings of nearly any cloud with ground in it is open ground or roof. In a closed forest less is:
 # surfaces differ in roughness by less than so many times the smoothest twentieth, and crowns by more.
 _SMOOTH_SHARE, _SMOOTHEST_SHARE, _MOST_ROUGHER = 0.2, 0.05, 3.0
-
-# Coordinates are stored to a centimeter or a millimeter: no noise below that can be told.
-_LEAST_NOISE = 0.01
 
 # Roof tiles, gravel and gutters are rougher than the smoothest surfaces, by which the noise is measured,
 # and the more so the farther apart the points are (m; share of the point spacing).
@@ -96,7 +93,7 @@ class SurfaceSample:
         forest they do. In a cloud of planes and nothing else that is 0.77 of the true noise.
         """
         count = min(_NEIGHBORS, len(self))
-        least = max(_LEAST_NOISE, rounding_deviation(self.columns[2]))
+        least = least_deviation(self.columns[2])
         if count <= 3:
             return least
         across = self._variances(count)[:, 2] * count / (count - 3)

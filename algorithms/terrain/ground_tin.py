@@ -10,8 +10,7 @@ import numpy as np
 from ..cloud.asprs import NOISE, PointClass
 from ..cloud.cells import distinct, grid_over, plan_box
 from ..cloud.density import point_density
-from ..cloud.rounding import rounding_deviation
-from ..params import MaxBuildingSize
+from ..cloud.rounding import LEAST_DEVIATION, least_deviation
 from ..stage import Monitor, Param, stage
 from .seeds import USUAL_BUILDING, seeds_by_lowest, seeds_by_opening
 from .tin import CORNERS, Tin, node_residuals, robust_deviation
@@ -52,10 +51,6 @@ _SQUARE = 10.0
 # Rounds end when they add less than this share of the nodes.
 _LEAST_GROWTH = 0.005
 _MAX_ROUNDS = 50
-
-# Coordinates are stored to a centimeter or finer (m): what deviates less from a line in plan is one, and no surface
-# is known to be smoother.
-_LEAST_WIDTH = _LEAST_ROUGHNESS = 0.01
 
 # Candidates farther than this from the first TIN (in iteration distances) never come near it later.
 _CANDIDATE_DISTANCES = 5.0
@@ -102,7 +97,18 @@ def classify_ground_tin(
             choices=("opening", "lowest"),
         ),
     ] = "opening",
-    max_building_size: MaxBuildingSize = None,
+    max_building_size: Annotated[
+        Optional[float],
+        Param(
+            "Maximum building size",
+            "The shorter side of the largest building; smaller keeps more of narrow hilltops.",
+            unit="m",
+            low=1,
+            high=1000,
+            automatic="60 m, and any size for what stands free of the terrain on nearly all sides; or as the terrain "
+            "says.",
+        ),
+    ] = None,
     cell_size: Annotated[
         Optional[float],
         Param(
@@ -240,7 +246,7 @@ def classify_ground_tin(
     may_join[last] = ~stands_free
     start = np.flatnonzero(last)[start]
     terrain = _terrain(size) if terrain is None else terrain
-    rules = _Rules(angle, iteration_distance, _GROW_BEND * spacing, edge_length, scale, _least_roughness(points))
+    rules = _Rules(angle, iteration_distance, _GROW_BEND * spacing, edge_length, scale, least_deviation(points[:, 2]))
     surface, distance = _grow(points, start, may_join, rules, monitor.part(0.3, 0.9))
     bend, region = (np.inf, 0.0) if seeds == "lowest" else (_SWEEP_BEND * scale, _REGION * spacing)
     is_ground, sweep_distance = _sweep(surface, sweep_distance, bend, region, rules.least)
@@ -262,7 +268,7 @@ def refuse_degenerate(points: np.ndarray) -> np.ndarray:
         )
     centered = points[:, :2] - points[:, :2].mean(axis=0)
     extent = np.linalg.svd(centered.T @ centered, compute_uv=False)
-    if extent[1] <= _LEAST_WIDTH**2 * len(points):
+    if extent[1] <= LEAST_DEVIATION**2 * len(points):
         raise ValueError(
             f"All {len(points)} points lie on one line or at one place in plan; ground needs an area, "
             "choose a larger cloud, or reproject this one to meters if its coordinates are degrees."
@@ -302,11 +308,6 @@ def _terrain(size: float) -> str:
     return next((kind for kind in kinds if size <= _TERRAINS[kind][0]), kinds[-1])
 
 
-def _least_roughness(points: np.ndarray) -> float:
-    """Return the roughness (m) below which none can be told."""
-    return max(_LEAST_ROUGHNESS, rounding_deviation(points[:, 2]))
-
-
 @dataclass(frozen=True)
 class _Rules:
     """When a point joins.
@@ -320,7 +321,7 @@ class _Rules:
     bend: float
     edge_length: float
     reach: float
-    least: float = _LEAST_ROUGHNESS
+    least: float = LEAST_DEVIATION
 
     def distance(self, nodes: np.ndarray) -> float:
         """Return the largest distance (m) at which a point joins the TIN of ``nodes``."""

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.cloud.rounding import rounding_deviation
+from lidar_buildings.algorithms.cloud.rounding import LEAST_DEVIATION, least_deviation, rounding_deviation
 
 
 @pytest.mark.parametrize("step", [0.001, 0.01, 0.1, 0.25, 0.3, 0.3048])
@@ -29,3 +29,8 @@ def test_heights_that_are_not_rounded_have_no_step(rng):
 @pytest.mark.parametrize("levels", [[0.0], [0.0, 0.3], np.arange(8) * 0.3, np.arange(30) * 3.0])
 def test_flat_roofs_and_storeys_are_no_rounding(levels):
     assert rounding_deviation(np.repeat(levels, 100)) == 0
+
+
+@pytest.mark.parametrize(("step", "least"), [(0.001, LEAST_DEVIATION), (0.3, 0.3 / np.sqrt(12))])
+def test_no_surface_is_known_to_be_smoother_than_what_is_stored(rng, step, least):
+    assert least_deviation(np.round(rng.uniform(0, 40, 50_000) / step) * step) == pytest.approx(least)
