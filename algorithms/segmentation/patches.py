@@ -57,7 +57,7 @@ def segment_patches(xyz: np.ndarray, density: float, noise: float, max_slope: fl
     noise : float
         Standard deviation of points across a smooth surface, m.
     max_slope : float
-        Steepest patch, degrees.
+        Steepest patch, degrees; 90 is any.
     monitor : Monitor
         Hears progress.
 
@@ -73,7 +73,7 @@ def segment_patches(xyz: np.ndarray, density: float, noise: float, max_slope: fl
     del tree  # What is large goes as soon as it can: the links below are large, too.
     plane = _smoothest_plane(xyz, planes, noise, monitor.part(0.6, 0.8))
     on_surface = (planes.deviation[plane] <= _SMOOTH * noise) & (plane >= 0)
-    on_surface &= planes.normal[plane, 2] >= np.cos(np.radians(max_slope))
+    on_surface &= planes.normal[plane, 2] >= np.sin(np.radians(90 - max_slope))
     links = _links(xyz, planes, plane, on_surface, noise, monitor.part(0.8, 1))
     del planes, plane
     component = csgraph.connected_components(links, directed=False)[1]
@@ -136,7 +136,9 @@ def _links(
         for column, neighbor in enumerate(neighbors.T):
             pair = is_link[:, column].nonzero()[0]
             a, b = rows[pair], neighbor[pair]
-            same = np.einsum("ij,ij->i", planes.normal[plane[a]], planes.normal[plane[b]]) >= _SAME_DIRECTION
+            # Of walls either side may be the upper one.
+            along = np.einsum("ij,ij->i", planes.normal[plane[a]], planes.normal[plane[b]])
+            same = np.abs(along) >= _SAME_DIRECTION
             same &= planes.distance(xyz[b], plane[a]) <= _SAME_SURFACE * noise
             same &= planes.distance(xyz[a], plane[b]) <= _SAME_SURFACE * noise
             is_link[pair, column] = same

@@ -52,7 +52,14 @@ def segment_roofs(
     ] = 2.0,
     max_slope: Annotated[
         float,
-        Param("Maximum slope", "Slope of the steepest roof.", unit="°", low=0, high=90),
+        Param(
+            "Maximum slope",
+            "Slope of the steepest roof surface. Up to 90° walls are surfaces, too, so that towers are not lost in the "
+            "trees that they touch; outlines then get less even.",
+            unit="°",
+            low=0,
+            high=90,
+        ),
     ] = 75.0,
     noise: SurfaceNoise = None,
     density: PointDensity = None,

@@ -109,6 +109,20 @@ def test_steeper_than_the_maximum_slope_is_no_patch(slope, is_patch, rng):
     assert on_patch.mean() > 0.95 if is_patch else on_patch.mean() < 0.05
 
 
+@pytest.mark.parametrize("noise", [0.0, 0.02])
+def test_upright_walls_are_patches_that_end_at_the_corner(noise, rng):
+    """Normals of walls point a little up to either side by chance, and no wall may fall apart for that."""
+    along, up = rng.uniform([0, 0], [8, 10], (1600, 2)).T
+    across = rng.normal(0, noise, 1600)
+    is_north = np.arange(1600) < 800
+    xyz = np.column_stack([np.where(is_north, along, across), np.where(is_north, across, along), up])
+    patch = segment_patches(xyz, 10.0, 0.02, 90.0, Monitor())
+    one, other = (np.bincount(patch[side & (patch >= 0)]).argmax() for side in (is_north, ~is_north))
+    assert one != other
+    assert (patch[is_north] == one).mean() > 0.95
+    assert (patch[~is_north] == other).mean() > 0.95
+
+
 def test_points_above_a_roof_are_not_on_it(rng):
     plan = rng.uniform(0, 12, (1500, 2))
     xyz = np.column_stack([plan, rng.normal(4, 0.02, 1500)])

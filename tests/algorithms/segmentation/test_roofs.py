@@ -77,6 +77,25 @@ def test_roofs_keep_their_numbers_as_clusters_and_the_rest_follows(rng):
     assert is_leaf[cluster == crown].all()
 
 
+@pytest.mark.parametrize(("max_slope", "apart"), [(90.0, True), (75.0, False)])
+def test_a_wall_is_told_from_the_crown_that_touches_it_unless_it_is_too_steep(max_slope, apart, rng):
+    """A wall 6 m wide and 12 m high above a hedge of 2 m, and a crown of 3 m radius that reaches it."""
+    along, up = rng.uniform([0, 2], [6, 14], (700, 2)).T
+    wall = np.column_stack([along + 10, rng.normal(10, 0.02, 700), up])
+    field = np.column_stack([rng.uniform(0, SIDE, (9000, 2)), np.zeros(9000)])
+    xyz = np.concatenate([field, wall])
+    xyz, height, is_crown = with_tree(rng, xyz, xyz[:, 2], at=(13, 12.8), crown=8.0)
+    is_wall = ~is_crown & (xyz[:, 2] > 0)
+    _, cluster, _ = segment_roofs(xyz, ones(xyz), height, max_slope=max_slope)
+    of_wall, of_crown = (np.bincount(cluster[one]).argmax() for one in (is_wall, is_crown))
+    assert of_wall > 0
+    assert of_crown > 0
+    assert (of_wall != of_crown) == apart
+    if apart:
+        assert (cluster[is_wall] == of_wall).mean() > 0.9
+        assert (cluster[is_crown] == of_crown).mean() > 0.9
+
+
 def test_low_and_small_surfaces_are_no_roofs(rng):
     xyz, height, truth = village(rng)
     is_flat = truth == FLAT
