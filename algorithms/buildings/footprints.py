@@ -45,8 +45,9 @@ _EAVE, _RIDGE = 25, 98
 # They lie this close to it (m), and it rises by no more than this (tangent), or it is none.
 _PLANE, _INNER, _FLAT, _STEEPEST = 12, 2.0, 0.15, 2.5
 
-# A point so far (m, and in spacings) under the roof beside it is no part of the roof.
-_STEP, _STEP_SPACINGS = 1.0, 3.0
+# A point so far (m, and in spacings) under the roof beside it is no part of the roof, unless it belongs to a steep one:
+# the roof rises to it by less than this (tangent).
+_STEP, _STEP_SPACINGS, _UPRIGHT = 1.0, 3.0, 3.0
 
 # Bare points that are farther from a roof than so many spacings tell nothing of where it ends.
 _BESIDE = 3.0
@@ -84,7 +85,7 @@ def extract_footprints(
     max_edge: Annotated[
         Optional[float],
         Param(
-            "Longest edge",
+            "Maximum edge length",
             "Points farther apart are not joined. Longer edges close gaps and round off corners that point inward.",
             unit="m",
             low=0.01,
@@ -145,7 +146,7 @@ def extract_footprints(
     confidence : ndarray of shape (n,), optional
         Sureness of being a building, 0 to 1, for the attributes only.
     reason : ndarray of shape (n,), optional
-        Why points are called building, see :class:`~.reasons.Reason`, for the attributes only.
+        Why points are called building, see :class:`~.reasons.Reason`, for the attributes and to tell walls.
 
     Returns
     -------
@@ -156,13 +157,14 @@ def extract_footprints(
 
     Notes
     -----
-    Points with another of their building more than a meter (or three spacings) higher beside them are walls: they count
-    as points of the building but don't widen its outline. A roof ends half-way between its outermost points and the
-    ground seen beside them, at most half a point spacing from its points. Walls are as few as describe the outline,
-    those in main directions preferred, each fitted to all points along it, and turned to a main direction only where
-    that moves its ends by about a point spacing at most; chords of curves are not. Outlines without a right angle and
-    without parallel walls that are most of them, or that straight walls would change too much, become chords of what
-    was traced, within about the tolerance. Clusters whose points lie on one line have no area and give no polygon.
+    Points with another of their building more than a meter (or three spacings) higher beside them, at more than 72° or
+    if they were only attached to the building, are walls: they count as points of the building but don't widen its
+    outline. A roof ends half-way between its outermost points and the ground seen beside them, at most half a point
+    spacing from its points. Walls are as few as describe the outline, those in main directions preferred, each fitted
+    to all points along it, and turned to a main direction only where that moves its ends by about a point spacing at
+    most; chords of curves are not. Outlines without a right angle and without parallel walls that are most of them, or
+    that straight walls would change too much, become chords of what was traced, within about the tolerance. Clusters
+    whose points lie on one line have no area and give no polygon.
 
     With 'Split rows', houses of a row are parted along straight lines from one side of a building to the other, in its
     main directions, where over 60 % of what is not low two roofs rise away from the line, parallel ones step by 0.4 m
@@ -196,7 +198,8 @@ def extract_footprints(
         )
 
     cluster = np.ones(len(building), np.int64) if cluster_id is None else cluster_id[building].astype(np.int64)
-    is_roof = _is_roof(xyz[building], cluster, spacing)
+    is_attached = np.zeros(len(building), bool) if reason is None else reason[building] == Reason.ATTACHED
+    is_roof = _is_roof(xyz[building], cluster, is_attached, spacing)
     bare = _bare_points(xyz, classification, building[is_roof], spacing)
     measured = {"height": height_above_ground, "entropy": cluster_entropy, "confidence": confidence, "reason": reason}
     edges = []
@@ -229,20 +232,25 @@ def _heights(
     return xyz[points, 2] - min(xyz[of_buildings, 2].min(), xyz[points, 2].min())
 
 
-def _is_roof(xyz: np.ndarray, cluster: np.ndarray, spacing: float) -> np.ndarray:
-    """Return which points have none of their cluster far above them in their cell of one spacing or beside it."""
+def _is_roof(xyz: np.ndarray, cluster: np.ndarray, is_attached: np.ndarray, spacing: float) -> np.ndarray:
+    """Return which points have none of their cluster far and steeply above them in their cell of one spacing or beside.
+
+    Above those that were attached to a building, none may be far. Only the highest point of each cell is looked at.
+    """
     grid = grid_over(xyz, spacing)
     # One number for cell and cluster; a cluster's cells are as far from the next one's as the grid is large.
     number = np.unique(cluster, return_inverse=True)[1].ravel()
     cell = grid.number(xyz) + number * (grid.rows * grid.columns)
     order = np.lexsort((xyz[:, 2], cell))
     last = np.flatnonzero(np.diff(cell[order], append=-1))
-    cells, top = cell[order][last], xyz[order[last], 2]
-    highest = top.copy()
-    for step in grid.around:
-        position, found = find_cells(cells, cells + step)
-        highest[found] = np.maximum(highest[found], top[position[found]])
-    return xyz[:, 2] >= highest[np.searchsorted(cells, cell)] - max(_STEP, _STEP_SPACINGS * spacing)
+    cells, top = cell[order][last], xyz[order[last]]
+    step, is_roof = max(_STEP, _STEP_SPACINGS * spacing), np.ones(len(xyz), bool)
+    steepest = np.where(is_attached, 0.0, _UPRIGHT)
+    for offset in (0, *grid.around):
+        position, found = find_cells(cells, cell + offset)
+        x, y, rise = (top[position[found]] - xyz[found]).T
+        is_roof[found] &= rise <= np.maximum(step, steepest[found] * np.hypot(x, y))
+    return is_roof
 
 
 def _bare_points(xyz: np.ndarray, classification: np.ndarray, roof: np.ndarray, spacing: float) -> np.ndarray:

@@ -122,6 +122,36 @@ def test_walls_do_not_widen_the_outline(village, rng):
     assert after.columns["points"] == [1200]
 
 
+def test_what_was_attached_below_the_eaves_hardly_widens_the_outline(rng):
+    """Bushes 30 cm from a house and 1.1 m below its eaves, where a steep roof could end, on 8 m of its wall."""
+    grown = []
+    for _ in range(6):
+        house = roof(rng, 0, 0, 10, 8, 6.0)
+        bushes = np.column_stack([rng.uniform(1, 9, 200), rng.uniform(-0.35, -0.3, 200), np.full(200, 4.9)])
+        xyz, area = np.concatenate([house, bushes]), []
+        for count, reason in ((len(house), 0), (len(xyz), Reason.SOLID_PLANE), (len(xyz), Reason.ATTACHED)):
+            reasons = np.repeat([Reason.SOLID_PLANE, reason], [len(house), 200])[:count]
+            made = extract_footprints(xyz[:count], np.full(count, 6), reason=reasons, regularize=False)
+            area += made.columns["area"]
+        grown.append(np.array(area[1:]) - area[0])
+    as_roof, attached = np.mean(grown, axis=0)
+    assert as_roof == pytest.approx(8 * 0.35, rel=0.4)
+    assert attached < 0.5 * as_roof
+
+
+@pytest.mark.parametrize("density", [4, 12, 40])
+def test_steep_roofs_are_no_walls(rng, density):
+    """A spire of 70° on a tower of 7 m, and a house whose roof rises by 62° from the ground."""
+    plan = rng.uniform(0, 7, (49 * density, 2))
+    spire = np.column_stack([plan, 15 + (3.5 - np.abs(plan - 3.5).max(axis=1)) * np.tan(np.radians(70))])
+    plan = rng.uniform(0, [12, 8], (96 * density, 2))
+    house = np.column_stack([plan + [20, 0], (4 - np.abs(plan[:, 1] - 4)) * np.tan(np.radians(62))])
+    xyz = np.concatenate([spire, house])
+    found = extract_footprints(xyz, np.full(len(xyz), 6))
+    assert [len(rings) for rings in found.geometries] == [1, 1]
+    assert found.columns["area"] == pytest.approx([49, 96], rel=0.12)
+
+
 def test_what_is_seen_under_the_eaves_does_not_end_the_roof(rng):
     """A second flight line looks 1.5 m under the eaves of a house of 12 m by 8 m, at half the density."""
     areas = []
