@@ -3,8 +3,8 @@
 
 ``buildings``, ``ground`` and ``noise`` are of real clouds, ``harder`` of the same with fewer points or more noise,
 ``uneven`` of the same with points on lines, in bands or in pairs, ``pieces`` of squares cut out of clouds, ``objects``
-of real houses, trees, cars, fences and poles on simulated ground, ``towns``, ``scenes``, ``villages`` and
-``confidence`` of simulated scenes, whose truth is exact.
+of real houses, trees, cars, fences and poles on simulated ground, ``footprints`` of outlines, ``towns``,
+``scenes``, ``villages`` and ``confidence`` of simulated scenes, whose truth is exact.
 
 Each table comes as Markdown for people, and as the Python lines that the tests hold the program to.
 """
@@ -12,6 +12,7 @@ Each table comes as Markdown for people, and as the Python lines that the tests 
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from pathlib import Path
 from typing import Any
@@ -213,6 +214,46 @@ def ground() -> None:
     paste("REACHED_IN_TOWN", {name: f"{totals[name]:.1f}" for name in test_ground.REACHED_IN_TOWN})
 
 
+def footprints() -> None:
+    """Print how many corners outlines have, and how far those of Delft are from its class 6 and from its map."""
+    # QGIS reads the map, and wants no screen for that.
+    os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
+    from qgis.core import QgsApplication
+
+    from lidar_buildings.tests.real import test_footprints
+
+    application = QgsApplication([], False)
+    application.initQgis()
+    print(
+        "| cloud | footprints | straightened | corners per m | sharper than 45° |\n| --- | ---: | ---: | ---: | ---: |"
+    )
+    for name in test_buildings.REACHED:
+        made = detected(name).layers["footprints"]
+        corners, n_sharp = _corners(made.geometries)
+        straight = sum(made.columns["regularized"])
+        print(row(name.split("/")[1], len(made), straight, f"{corners:.2f}", n_sharp), flush=True)
+    print("\n| Delft, classes | IoU with class 6 | corners of houses, m | of blocks, m |\n| --- | ---: | ---: | ---: |")
+    reached = {}
+    for kind in test_footprints.REACHED:
+        medians = [float(np.median(test_footprints.map_distances(kind, level)[1])) for level in (0, 1)]
+        figures = [f"{test_footprints.cell_iou(kind):.3f}", *(f"{median:.2f}" for median in medians)]
+        print(row(kind, *figures), flush=True)
+        reached[kind] = f"({', '.join(figures)})"
+    paste("REACHED", reached)
+    application.exitQgis()
+
+
+def _corners(geometries: list) -> tuple[float, int]:
+    """Return the corners of polygons per meter of their rings, and how many are sharper than 45°."""
+    count, length, n_sharp = 0, 0.0, 0
+    for ring in (ring for rings in geometries for ring in rings):
+        sides = np.diff(ring, axis=0)
+        turn = np.angle(np.exp(1j * np.diff(np.arctan2(*sides[[*range(len(sides)), 0]].T[::-1]))))
+        count, length = count + len(sides), length + float(np.hypot(*sides.T).sum())
+        n_sharp += int((np.abs(turn) > np.deg2rad(135)).sum())
+    return count / length, n_sharp
+
+
 def noise() -> None:
     """Print what of the rejected points each noise filter finds."""
     print("| filter | completeness | correctness | F |\n| --- |" + " ---: |" * 3)
@@ -336,7 +377,7 @@ def paste(name: str, values: dict[str, str]) -> None:
 
 SIMULATED = {table.__name__: table for table in (towns, scenes, villages, confidence)}
 TABLES = {
-    **{table.__name__: table for table in (buildings, harder, uneven, pieces, objects, ground, noise)},
+    **{table.__name__: table for table in (buildings, harder, uneven, pieces, objects, footprints, ground, noise)},
     **SIMULATED,
 }
 

@@ -123,6 +123,13 @@ def _covered(rings, shape):
     return odd
 
 
+def map_distances(kind, level):
+    """Return how many buildings of the map are found, and how far their corners are; level 0 is houses, 1 blocks."""
+    found, cloud = footprints(kind)
+    made = [polygon([cloud.to_map(ring) for ring in rings]) for rings in found.geometries]
+    return corner_distances(made, base_map()[level])
+
+
 @pytest.mark.parametrize("kind", REACHED)
 def test_footprints_cover_what_is_building(kind):
     reached = cell_iou(kind)
@@ -132,9 +139,7 @@ def test_footprints_cover_what_is_building(kind):
 @pytest.mark.parametrize("kind", REACHED)
 @pytest.mark.parametrize(("level", "least"), [(0, 8), (1, 8)])
 def test_corners_are_those_of_the_map(kind, level, least):
-    found, cloud = footprints(kind)
-    made = [polygon([cloud.to_map(ring) for ring in rings]) for rings in found.geometries]
-    matched, distances = corner_distances(made, base_map()[level])
+    matched, distances = map_distances(kind, level)
     assert matched >= least
     assert np.median(distances) <= min(REACHED[kind][1 + level] + CORNER_MARGIN, MOST_CORNER[level])
 
