@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-# Coordinates are stored to a centimeter or finer (m).
+# Coordinates are stored to a centimeter or finer (m): what deviates less from a line or a plane can't be told from one.
 LEAST_DEVIATION = 0.01
 
 # A few even levels are those of flat roofs, and higher steps (m) those of storeys: nobody rounds so coarsely.

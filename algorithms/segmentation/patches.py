@@ -136,9 +136,9 @@ def _links(
         for column, neighbor in enumerate(neighbors.T):
             pair = is_link[:, column].nonzero()[0]
             a, b = rows[pair], neighbor[pair]
-            # Of walls either side may be the upper one.
-            along = np.einsum("ij,ij->i", planes.normal[plane[a]], planes.normal[plane[b]])
-            same = np.abs(along) >= _SAME_DIRECTION
+            # Normals point upward, those of walls to either side by chance.
+            cosine = np.einsum("ij,ij->i", planes.normal[plane[a]], planes.normal[plane[b]])
+            same = np.abs(cosine) >= _SAME_DIRECTION
             same &= planes.distance(xyz[b], plane[a]) <= _SAME_SURFACE * noise
             same &= planes.distance(xyz[a], plane[b]) <= _SAME_SURFACE * noise
             is_link[pair, column] = same

@@ -79,7 +79,7 @@ def test_roofs_keep_their_numbers_as_clusters_and_the_rest_follows(rng):
 
 @pytest.mark.parametrize(("max_slope", "apart"), [(90.0, True), (75.0, False)])
 def test_a_wall_is_told_from_the_crown_that_touches_it_unless_it_is_too_steep(max_slope, apart, rng):
-    """A wall 6 m wide and 12 m high above a hedge of 2 m, and a crown of 3 m radius that reaches it."""
+    """A wall 6 m wide, seen from 2 to 14 m above the ground, and a crown of 3 m radius that reaches it."""
     along, up = rng.uniform([0, 2], [6, 14], (700, 2)).T
     wall = np.column_stack([along + 10, rng.normal(10, 0.02, 700), up])
     field = np.column_stack([rng.uniform(0, SIDE, (9000, 2)), np.zeros(9000)])
