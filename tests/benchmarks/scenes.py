@@ -9,11 +9,11 @@ import numpy as np
 
 from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.simulation.houses import Site
-from lidar_buildings.algorithms.simulation.plants import plant_hedge, plant_trees
+from lidar_buildings.algorithms.simulation.plants import plant_hedge, plant_tree, plant_trees
 from lidar_buildings.algorithms.simulation.relief import Relief
 from lidar_buildings.algorithms.simulation.scanner import Scan, scan
 from lidar_buildings.algorithms.simulation.scene import Scene
-from lidar_buildings.algorithms.simulation.solids import Rect, Solid, flat, gable, lean_to
+from lidar_buildings.algorithms.simulation.solids import Rect, Solid, flat, gable, hip, lean_to
 from lidar_buildings.algorithms.stage import Monitor
 
 SIDE = 120.0
@@ -145,6 +145,36 @@ def greenhouses() -> Scene:
     return nursery
 
 
+def churches() -> Scene:
+    """Three churches with spires of 68° to 77°, four towers among trees, two of them with spires, and garden walls."""
+    parish, rng = Scene(Relief(SIDE, gradient=0.03)), np.random.default_rng(8)
+    for x, y, turn, side, eave, pitch in (
+        (30, 25, 0.2, 6, 18, 4),
+        (80, 25, 1.1, 7, 22, 2.5),
+        (35, 60, 2.0, 5, 14, 4.5),
+    ):
+        nave = Rect(x, y, 24.0, 10.0, turn)
+        site, tower = Site(parish, nave, 8.0), nave.part(-12.0 - side / 2, 0.0, side, side)
+        roofs = (nave, gable(nave, site.floor + 8.0, 1.1)), (tower, hip(tower, site.floor + eave, pitch))
+        parish.add_building("church", nave.corners(), [site.solid(*roof) for roof in roofs])
+    for x, y, turn, side, eave, pitch in (
+        (75, 62, 0.3, 5.0, 14, 4.5),
+        (95, 60, 0.1, 4.5, 10, 4.0),
+        (105, 90, 0.7, 6.0, 20, 1.0),
+        (20, 95, 0.5, 5.0, 16, 0.05),
+    ):
+        parts = [Rect(x, y, side, side, turn + diagonal) for diagonal in (0.0, np.pi / 4)]
+        site = Site(parish, parts[0], eave)
+        roofs = [site.solid(part, hip(part, site.floor + eave, pitch)) for part in parts]
+        parish.add_building("tower", parts[0].corners(), roofs)
+        for across in (-4.5, 4.5):
+            foot = parts[0].at(1.5, across)
+            plant_tree(parish, (*map(float, foot), float(parish.relief.ground(*foot))), eave - 3.0, rng)
+    for x, y, length, height in ((60, 112, 30, 2.6), (100, 112, 20, 4.0), (60, 76, 8, 6.0), (60, 50, 14, 2.2)):
+        _put(parish, Rect(x, y, length, 0.4, 0.3), height)
+    return parish
+
+
 # Name, scene, and whether the strips don't fit together.
 SCENES: tuple[tuple[str, Callable[[], Scene], bool], ...] = (
     ("blocks of a city", city, False),
@@ -154,6 +184,7 @@ SCENES: tuple[tuple[str, Callable[[], Scene], bool], ...] = (
     ("huts on a slope of 38°", alps, False),
     ("halls with machines and wings", estate, False),
     ("halls of glass", greenhouses, False),
+    ("churches and towers", churches, False),
     ("solar park, no building", solar_park, False),
     ("railway station with trains", station, False),
     ("container port", port, False),
