@@ -311,11 +311,14 @@ def test_the_walls_of_what_is_cut_off_are_steeper_than_slopes(apart, is_object):
     np.testing.assert_array_equal(free_standing(surface, 1.0, USUAL, apart=apart)[0], corner & is_object)
 
 
-@pytest.mark.parametrize(("height", "is_object"), [(4.2, True), (3.8, False)])
-def test_half_of_what_is_left_of_the_walls_must_be_high(height, is_object):
-    """At the corner of the cloud, on a slope: one wall is as high as that all along, the other where it begins."""
+@pytest.mark.parametrize(
+    ("rows", "height", "is_object"),
+    [(slice(40, 60), 4.2, True), (slice(40, 60), 3.8, False), (slice(20), 5.95, True), (slice(20), 5.7, False)],
+)
+def test_half_of_what_is_left_of_the_walls_must_be_high(rows, height, is_object):
+    """At a corner of the cloud, on a slope: 4 m are 23, 0, 20 and 18 of 40 m of walls, which get lower uphill."""
     surface = slope(60, 60, 0.1)
-    corner = block(surface, slice(40, 60), slice(40, 60), height)
+    corner = block(surface, rows, slice(40, 60), height)
     np.testing.assert_array_equal(free_standing(surface, 1.0, USUAL)[0], corner & is_object)
 
 
