@@ -99,7 +99,7 @@ def free_standing(
     Parameters
     ----------
     surface : ndarray of shape (rows, columns), float64
-        Lowest elevation of each cell, m.
+        Lowest elevation of each cell, m; NaN beyond the end of the cloud.
     cell_size : float
         m.
     usual : float
@@ -133,7 +133,7 @@ def free_standing(
     # Neither half of a hall that a row of skylights cuts in two stands while the other doesn't, nor does a hall
     # beside a wing that is hardly lower. Windows don't see the whole of a smaller one that the cloud's end cuts.
     hall = _reunited(surface, segment, stands, least)
-    is_hall = (_sides(hall).min(axis=0) > usual / cell_size) | (_ends(hall, hall.max() + 1) > 0)
+    is_hall = (_sides(hall).min(axis=0) > usual / cell_size) | (_ends(surface, hall, hall.max() + 1) > 0)
     in_hall = is_hall[hall] & (hall > 0)
     segment = np.where(in_hall, len(stands) + hall, segment)
     monitor.progress(0.7)
@@ -155,7 +155,7 @@ def _standing(
     needed = np.where(wide, max(_HALL_STEP, least), least)
     needed[width > largest] = np.inf
     stands = np.zeros(len(width), bool)
-    edges, ends = _edges(surface, segment), _ends(segment, len(width))
+    edges, ends = _edges(surface, segment), _ends(surface, segment, len(width))
     # The highest come first; what stands at their walls is judged by the rest of its edge.
     while True:
         found = _stands(edges, ends, sides, stands, needed, least) & ~stands
@@ -170,7 +170,7 @@ def _standing(
 
 def _segments(surface: np.ndarray, least: float) -> np.ndarray:
     """Label (from 1) cells that join without a step; 0 are rough cells that have steps on all sides or nearly so."""
-    beside = np.zeros(surface.shape, bool)
+    beside = np.isnan(surface)
     for here, there in neighbors(surface.ndim):
         beside[here] |= np.abs(surface[here] - surface[there]) >= least
     segment, _ = ndimage.label(~beside)
@@ -202,10 +202,10 @@ def _reunited(surface: np.ndarray, segment: np.ndarray, stands: np.ndarray, leas
 
 def _resting(surface: np.ndarray, rough: np.ndarray, roof: np.ndarray, least: float) -> np.ndarray:
     """Return the rough cells that rest on a roof: machines and skylights, but no bushes at its walls."""
-    thing, count = ndimage.label(rough)
+    thing, count = ndimage.label(rough & ~np.isnan(surface))
     whole, on_roof = np.zeros((2, count + 1))
     for here, there in neighbors(surface.ndim):
-        edge = rough[here] & ~rough[there]
+        edge = (thing[here] > 0) & ~rough[there]
         no_higher = edge & roof[there] & (surface[there] - surface[here] < least)
         whole += np.bincount(thing[here][edge], minlength=count + 1)
         on_roof += np.bincount(thing[here][no_higher], minlength=count + 1)
@@ -245,15 +245,17 @@ def _edges(surface: np.ndarray, segment: np.ndarray) -> _Edges:
     """Return the edges of all segments but 0."""
     parts = []
     for side, (here, there) in enumerate(neighbors(surface.ndim)):
-        edge = (segment[here] > 0) & (segment[here] != segment[there])
+        edge = (segment[here] > 0) & (segment[here] != segment[there]) & ~np.isnan(surface[there])
         step = surface[here][edge] - surface[there][edge]
         parts.append((segment[here][edge], segment[there][edge], step, np.full(len(step), side)))
     return _Edges(*(np.concatenate(part) for part in zip(*parts)))
 
 
-def _ends(segment: np.ndarray, count: int) -> np.ndarray:
-    """Return how much of each segment's edge is the edge of the raster, in cells."""
+def _ends(surface: np.ndarray, segment: np.ndarray, count: int) -> np.ndarray:
+    """Return how much of each segment's edge is the end of the surface, in cells."""
     ends = np.zeros(count)
+    for here, there in neighbors(segment.ndim):
+        ends += np.bincount(segment[here][np.isnan(surface[there])], minlength=count)
     for axis in range(segment.ndim):
         for side in (0, -1):
             ends += np.bincount(np.take(segment, side, axis).ravel(), minlength=count)

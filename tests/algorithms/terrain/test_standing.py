@@ -388,3 +388,21 @@ def test_a_surface_of_one_row_or_one_cell_has_nothing_that_stands(shape):
     assert found.shape == shape
     assert not found.any()
     assert size == 0.0
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_the_cloud_may_end_within_the_raster(seed):
+    """Blocks of any size, some cut off, and rough patches on and beside them."""
+    rng = np.random.default_rng(seed)
+    surface = slope(80, 90, 0.05)
+    for side in rng.integers(6, 60, 8):
+        row, column = rng.integers(-20, 75, 2)
+        rows, columns = slice(max(row, 0), max(row + side, 1)), slice(max(column, 0), max(column + side // 2, 1))
+        block(surface, rows, columns, rng.uniform(1, 12))
+    rough = np.kron(rng.random((8, 9)) < 0.1, np.ones((10, 10))) > 0
+    surface[rough] += rng.uniform(0, 4, rough.sum())
+    found, size = free_standing(surface, 1.0, 40.0)
+    framed, framed_size = free_standing(np.pad(surface, (3, 9), constant_values=np.nan), 1.0, 40.0)
+    np.testing.assert_array_equal(framed, np.pad(found, (3, 9)))
+    assert framed_size == size
+    assert found.any()
