@@ -59,6 +59,15 @@ def plan_box(xyz: np.ndarray) -> np.ndarray:
     return np.array([[column.min() for column in columns], [column.max() for column in columns]])
 
 
+def turned_in_plan(places: np.ndarray, angle: float) -> np.ndarray:
+    """Return places (n, 2 or 3) turned counterclockwise by an angle (°) about the vertical through zero."""
+    if not angle:
+        return places
+    x, y, *z = places.T
+    cos, sin = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+    return np.column_stack([cos * x - sin * y, sin * x + cos * y, *z])
+
+
 def distinct(numbers: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return each number once, ascending, and which of these every number is.
 

@@ -7,7 +7,7 @@ from typing import Optional
 
 import numpy as np
 
-from ..cloud.cells import plan_box, refuse_sparse
+from ..cloud.cells import plan_box, refuse_sparse, turned_in_plan
 from ..stage import Monitor
 from .objects import Opening, nearest_known
 from .opening import open_surface
@@ -115,7 +115,7 @@ def seeds_by_opening(
     box, slope, views = plan_box(xyz), None, []
     angles = [angle for angle in _TURNS if _is_compact(box, angle)]
     for done, angle in enumerate(angles):
-        cells = _Cells(_turned(xyz, angle), box, angle, cell_size, spacing)
+        cells = _Cells(turned_in_plan(xyz, angle), box, angle, cell_size, spacing)
         part = monitor.part(done / len(angles), (done + 1) / len(angles))
         views.append(_view(cells, max_building_size, slope, part))
         # It changes little from cell to cell: what the first view measured will do.
@@ -168,7 +168,7 @@ class _Cells:
     def outside(self, lowest: Lowest) -> np.ndarray:
         """Return which cells lie outside the box."""
         place = np.indices(lowest.index.shape).reshape(2, -1).T
-        center = _turned((place + 0.5) * self.size + lowest.origin, -self.angle)
+        center = turned_in_plan((place + 0.5) * self.size + lowest.origin, -self.angle)
         beyond = (center < self.box[0] - self.size) | (center > self.box[1] + self.size)
         return beyond.any(axis=1).reshape(lowest.index.shape)
 
@@ -196,15 +196,6 @@ def _is_compact(box: np.ndarray, angle: float) -> bool:
     sides = np.ptp(box, axis=0)
     cos, sin = np.cos(np.radians(angle)), np.sin(np.radians(angle))
     return bool((cos * sides + sin * sides[::-1]).prod() <= _MOST_TURNED * sides.prod())
-
-
-def _turned(places: np.ndarray, angle: float) -> np.ndarray:
-    """Return places (n, 2 or 3) turned counterclockwise by an angle (°) about the vertical through zero."""
-    if not angle:
-        return places
-    x, y, *z = places.T
-    cos, sin = np.cos(np.radians(angle)), np.sin(np.radians(angle))
-    return np.column_stack([cos * x - sin * y, sin * x + cos * y, *z])
 
 
 def seeds_by_lowest(xyz: np.ndarray, max_building_size: float) -> np.ndarray:

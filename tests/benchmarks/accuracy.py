@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Print how good the results are: ``accuracy.py [table …]``, all by default.
 
-``buildings``, ``ground`` and ``noise`` are of real clouds, ``harder`` of the same with fewer points or more noise,
+``buildings``, ``ground`` and ``noise`` are of real clouds, ``turned`` of the same when cells fall elsewhere, ``harder``
+of the same with fewer points or more noise,
 ``uneven`` of the same with points on lines, in bands or in pairs, ``pieces`` of squares cut out of clouds, ``objects``
 of real houses, trees, cars, fences and poles on simulated ground, ``footprints`` of outlines, ``towns``,
 ``scenes``, ``villages`` and ``confidence`` of simulated scenes, whose truth is exact.
@@ -22,6 +23,7 @@ import numpy as np  # noqa: E402
 
 import conftest  # noqa: E402, F401 - registers the checkout as the package lidar_buildings
 from lidar_buildings.algorithms.cloud.asprs import PointClass  # noqa: E402
+from lidar_buildings.algorithms.cloud.cells import turned_in_plan  # noqa: E402
 from lidar_buildings.algorithms.cloud.cloud import Cloud, create_cloud, read_cloud  # noqa: E402
 from lidar_buildings.algorithms.pipelines import PIPELINES, run_pipeline  # noqa: E402
 from lidar_buildings.algorithms.run import run_stage  # noqa: E402
@@ -214,6 +216,41 @@ def ground() -> None:
     paste("REACHED_IN_TOWN", {name: f"{totals[name]:.1f}" for name in test_ground.REACHED_IN_TOWN})
 
 
+# Angles (°) by which clouds are turned, so that cells fall elsewhere.
+GROUND_TURNS, BUILDING_TURNS = np.arange(0.0, 90.0, 8.0), np.arange(0.0, 90.0, 15.0)
+
+
+def turned() -> None:
+    """Print what the errors of the ground filter and F of buildings are in the mean of positions, and how they vary."""
+    print("| cloud | measure, % | mean | least | greatest |\n| --- | --- |" + " ---: |" * 3)
+    totals = np.array([[_total_error(name, angle) for name in test_ground.REACHED] for angle in GROUND_TURNS])
+    for name, errors in (*zip(test_ground.REACHED, totals.T), ("ground/mean of them", totals.mean(axis=1))):
+        print(row(name.split("/")[1], "total error", *_spread(errors)), flush=True)
+    for name in test_buildings.REACHED:
+        rates = [_found(_turned(name, angle), truth(name))[2] for angle in BUILDING_TURNS]
+        print(row(name.split("/")[1], "F", *_spread(np.array(rates))), flush=True)
+
+
+def _turned(name: str, angle: float) -> Cloud:
+    """Return a real cloud that was turned by an angle (°)."""
+    cloud = read_cloud(path_of(name))
+    returns = {name: cloud.get(name) for name in ("return_number", "number_of_returns")}
+    return create_cloud({"xyz": turned_in_plan(cloud.get("xyz"), angle), **returns})
+
+
+def _total_error(name: str, angle: float) -> float:
+    """Return the total error (%) of the ground filter on a cloud that was turned."""
+    cloud = _turned(name, angle)
+    run_stage(STAGES["classify_ground_tin"], cloud)
+    is_found, is_true = (of == PointClass.GROUND for of in (cloud.get("classification"), truth(name)))
+    return 100.0 * float((is_found != is_true).mean())
+
+
+def _spread(figures: np.ndarray) -> tuple[str, ...]:
+    """Return the mean, the least and the greatest of some figures, as cells of a table."""
+    return tuple(f"{figure:.2f}" for figure in (figures.mean(), figures.min(), figures.max()))
+
+
 def footprints() -> None:
     """Print how many corners outlines have, and how far those of Delft are from its class 6 and from its map."""
     # QGIS reads the map, and wants no screen for that.
@@ -377,7 +414,10 @@ def paste(name: str, values: dict[str, str]) -> None:
 
 SIMULATED = {table.__name__: table for table in (towns, scenes, villages, confidence)}
 TABLES = {
-    **{table.__name__: table for table in (buildings, harder, uneven, pieces, objects, footprints, ground, noise)},
+    **{
+        table.__name__: table
+        for table in (buildings, turned, harder, uneven, pieces, objects, footprints, ground, noise)
+    },
     **SIMULATED,
 }
 

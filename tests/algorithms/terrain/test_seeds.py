@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from lidar_buildings.algorithms.cloud.cells import turned_in_plan
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.algorithms.terrain import seeds as module
 from lidar_buildings.algorithms.terrain.seeds import _View, lowest_points, seeds_by_lowest, seeds_by_opening
@@ -387,6 +388,6 @@ def test_every_lowest_point_of_a_steep_slope_is_terrain_in_each_direction(angle)
 
 
 def seen_from(angle, plan, z):
-    turned = module._turned(np.column_stack([plan, z]), angle)
+    turned = turned_in_plan(np.column_stack([plan, z]), angle)
     cells = module._Cells(turned, np.array([plan.min(axis=0), plan.max(axis=0)]), angle, 1.0, 0.7)
     return module._view(cells, None, None, Monitor())
