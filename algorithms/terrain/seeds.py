@@ -23,8 +23,8 @@ _PIT_STEPS = 10
 # Without a largest building given, windows go up to this size (m); larger halls stand free.
 USUAL_BUILDING = 60.0
 
-# Where cells fall decides on single bushes and roofs: they are laid in three directions (°), and what most of them say
-# counts. The box of a narrow strip, turned, is more than so many times as large, and hardly filled.
+# Where cells fall decides on single bushes and roofs, so that they are laid in three directions (°), which decide
+# together. The box of a narrow strip, turned, is more than so many times as large, and hardly filled.
 _TURNS, _MOST_TURNED = (0.0, 30.0, 60.0), 2.5
 
 
@@ -103,8 +103,8 @@ def seeds_by_opening(
     Progressive opening after Pingel et al. (2013), with a threshold that follows the slope of the result before, a
     coarse one first; the return of smoothly joined regions is this project's, and so are the segments that
     stand free. By these, low houses with large roofs on a slope are found, which windows shave down little by little,
-    and halls that no window is large enough for. All this is done on cells that are laid in three directions: what
-    most of them tell counts, so that hardly anything depends on where cells fall. Narrow strips have one direction.
+    and halls that no window is large enough for. All this is done on cells that are laid in three directions, which
+    decide together, so that less depends on where cells fall. Narrow strips have one direction.
 
     References
     ----------
@@ -121,8 +121,9 @@ def seeds_by_opening(
         # It changes little from cell to cell: what the first view measured will do.
         slope = views[0].slope
     candidates = views[0].candidates
-    is_terrain = sum(view.says_terrain[candidates] for view in views) > 0
-    stands_free = 2 * sum(view.stands_free.astype(np.int8) for view in views) > len(views)
+    # The first direction is that of the box: it tells best what the end of the cloud cuts off.
+    stands_free = views[0].stands_free | np.logical_and.reduce([view.stands_free for view in views[1:] or views])
+    is_terrain = (sum(view.says_terrain[candidates] for view in views) > 0) & ~stands_free[candidates]
     size = max(max_building_size or USUAL_BUILDING, float(np.median([view.size for view in views])))
     return candidates[is_terrain], stands_free, size
 

@@ -336,11 +336,14 @@ def test_a_point_is_terrain_where_more_directions_say_so_than_say_it_is_none(ver
 
 
 @pytest.mark.parametrize(
-    ("free", "stands"), [((0, 0, 0), False), ((1, 0, 0), False), ((0, 1, 1), True), ((1, 1, 1), True)]
+    ("free", "stands"),
+    [((0, 0, 0), False), ((0, 1, 0), False), ((0, 0, 1), False), ((0, 1, 1), True), ((1, 0, 0), True), ((1,), True)],
 )
-def test_what_stands_free_does_so_in_most_directions(free, stands, monkeypatch):
-    _, stands_free, _ = seeds_of_views(monkeypatch, [{"stands_free": one} for one in free])
+def test_what_stands_free_does_so_in_the_first_direction_or_in_all_others(free, stands, monkeypatch):
+    monkeypatch.setattr(module, "_TURNS", (0.0, 30.0, 60.0)[: len(free)])
+    seeds, stands_free, _ = seeds_of_views(monkeypatch, [{"stands_free": one} for one in free])
     assert stands_free.all() == stands_free.any() == stands
+    assert seeds.tolist() == ([] if stands else [1])
 
 
 @pytest.mark.parametrize(("sizes", "size"), [((0, 0, 100), 60), ((80, 0, 100), 80), ((100, 100, 0), 100)])
