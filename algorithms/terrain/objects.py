@@ -40,6 +40,9 @@ _TOUCHING, _PART_SLOPE, _LEAST_PART = 0.25, 0.4, 4
 # Where the surface goes on as steeply as at the step itself, up to this slope, the step is a bank rather than a wall.
 _STEEPEST_BANK = 2.0
 
+# Soil lies on slopes up to this.
+_STEEPEST_SOIL = 1.0
+
 # Windows over this share of the largest lift off spits and hilltops rather than houses.
 _LARGE_WINDOW = 0.5
 
@@ -179,7 +182,8 @@ def _without_joined(
     """Return what stands free, and the lifted cells but for regions that join the terrain smoothly on half their edge.
 
     A step is smooth if it is low, or if the surface goes on as steeply on one of its sides: the flank of a bank. It is
-    one from point to point, so that this is looked for a spacing on, where that is more than a cell.
+    one from point to point, so that this is looked for a spacing on, where that is more than a cell. The eaves of a
+    roof that reaches down to the ground don't count.
     What smaller windows and what larger windows lifted off make regions of their own: a house stays
     lifted off, though the spit of land on which it stands comes back.
     """
@@ -191,15 +195,20 @@ def _without_joined(
     for group in (objects & ~is_large, is_large):
         region, count = ndimage.label(group)
         whole, edge, joined = np.zeros(count + 1), np.zeros(count + 1), np.zeros(count + 1)
-        for (here, there), flank in zip(neighbors(surface.ndim), _flanks(surface, apart)):
+        eaves = []
+        for (here, there), (inner, outer) in zip(neighbors(surface.ndim), _flanks(surface, apart)):
             outward = (region[here] > 0) & (region[there] != region[here])
             at_edge = outward & ~objects[there]
             step = surface[here] - surface[there]
-            is_bank = step < np.minimum(flank + _JOIN_SLOPE * bank, _STEEPEST_BANK * bank)
+            is_bank = step < np.minimum(np.maximum(inner, outer) + _JOIN_SLOPE * bank, _STEEPEST_BANK * bank)
             smooth = at_edge & ((step < allowed[here]) | is_bank)
             whole += np.bincount(region[here][outward], minlength=count + 1)
             edge += np.bincount(region[here][at_edge], minlength=count + 1)
             joined += np.bincount(region[here][smooth], minlength=count + 1)
+            is_eave = smooth & (inner >= _STEEPEST_SOIL * bank) & (outer < _STEEPEST_SOIL * bank)
+            eaves.append(np.bincount(region[here][is_eave], minlength=count + 1))
+        # A roof that reaches down to the ground rises from two sides that face one another, steeper than soil.
+        joined -= 2 * (np.minimum(*eaves[:2]) + np.minimum(*eaves[2:]))
         terrain = (joined >= _JOINED * np.maximum(edge, 1)) & (joined >= _JOINED_OF_ALL * whole)
         terrain[0] = False
         objects &= ~terrain[region] | free
@@ -234,13 +243,16 @@ def _smooth_parts(chosen: np.ndarray, surface: np.ndarray, step: float) -> np.nd
     return part
 
 
-def _flanks(surface: np.ndarray, apart: int) -> Iterator[np.ndarray]:
-    """Yield, in the order of ``neighbors``, the larger rise (m) of so many cells before and after each step."""
+def _flanks(surface: np.ndarray, apart: int) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Yield, in the order of ``neighbors``, the fall (m) over so many cells up to each step, and from there on.
+
+    It is -inf where the surface ends.
+    """
     for axis in range(surface.ndim):
         for upward in (False, True):
             along = np.moveaxis(surface, axis, 0)
             along = along[::-1] if upward else along
-            flank = np.full((len(along) - 1, *along.shape[1:]), -np.inf)
-            flank[apart:] = along[: -apart - 1] - along[apart:-1]
-            flank[:-apart] = np.maximum(flank[:-apart], along[1:-apart] - along[1 + apart :])
-            yield np.moveaxis(flank[::-1] if upward else flank, 0, axis)
+            inner, outer = np.full((2, len(along) - 1, *along.shape[1:]), -np.inf)
+            inner[apart:] = along[: -apart - 1] - along[apart:-1]
+            outer[:-apart] = along[1:-apart] - along[1 + apart :]
+            yield tuple(np.moveaxis(flank[::-1] if upward else flank, 0, axis) for flank in (inner, outer))

@@ -410,6 +410,18 @@ def test_a_quarry_is_ground_on_its_floor_its_benches_and_around(rng):
     assert is_ground[is_face].mean() > 0.75
 
 
+@pytest.mark.parametrize("density", [3, 12, 40])
+def test_roofs_that_reach_down_to_the_ground_are_none_at_any_density(density, rng):
+    """A roof of 60°, 12 m long, whose eaves lie 0.2 m above the ground."""
+    xyz, _ = scan(rng, TERRAINS["level"], density=density)
+    along, across = np.abs(xyz[:, 0] - 40), np.abs(xyz[:, 1] - 40)
+    is_roof = (along < 6) & (across < 4)
+    xyz[is_roof, 2] += 0.2 + 1.75 * (4 - across[is_roof])
+    missed, wrong = errors(classify_ground_tin(xyz, unclassified(xyz)), is_roof)
+    assert wrong < 0.1
+    assert missed < 0.01
+
+
 def test_an_edge_between_two_slopes_is_ground(rng):
     """A bank of 45° between two levels: its upper edge lies beyond the reach of any facet below."""
     bank = lambda x, y: np.clip(x - 40, 0, 5)  # noqa: E731

@@ -130,6 +130,25 @@ def test_flanks_as_steep_as_the_step_make_a_bank_of_it_up_to_a_slope_of_two(slop
     np.testing.assert_array_equal(stays_lifted(pyramid, lifted), (lifted > 0) & stays)
 
 
+@pytest.mark.parametrize("turned", [np.asarray, np.transpose])
+@pytest.mark.parametrize(("slope", "stays"), [(0.9, False), (1.1, True), (1.7, True)])
+def test_a_roof_that_reaches_down_to_the_ground_is_steeper_than_soil_on_both_sides(slope, stays, turned):
+    """Its gables are walls, and its eaves half of its edge."""
+    surface, lifted = lifted_square()
+    surface[lifted > 0] = (slope * (5 - np.abs(np.arange(40) - 19.5)) * np.ones((40, 1)))[lifted > 0]
+    np.testing.assert_array_equal(stays_lifted(turned(surface), lifted), (lifted > 0) & stays)
+
+
+@pytest.mark.parametrize("fall", [0.0, 1.7])
+def test_a_steep_bank_on_one_side_is_no_eave(fall):
+    """On the other side the surface is level, or falls on beyond the edge."""
+    surface, lifted = lifted_square()
+    columns = np.arange(40.0)
+    surface[:] = 1.7 * np.clip(columns - 14.5, 0, 5) - fall * np.maximum(columns - 19, 0)
+    surface[:15] = surface[25:] = -90.0
+    np.testing.assert_array_equal(stays_lifted(surface, lifted), np.zeros_like(lifted, bool))
+
+
 @pytest.mark.parametrize(("slope", "stays"), [(0.0, True), (0.5, True), (0.7, False)])
 def test_on_slopes_higher_steps_are_smooth(slope, stays):
     """A step of 0.6 m joins where terrain may rise by 0.3 m and half its slope from cell to cell."""
