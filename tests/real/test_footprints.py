@@ -21,7 +21,7 @@ MAP = DATA / "footprints" / "delft-bgt.gpkg"
 # With the true class 6 and with that of the whole chain: intersection over union with the cells of 0.5 m in which the
 # topmost point is true class 6, and the median distance (m) of the map's corners to the nearest corner of the
 # footprint, for single houses and for whole blocks.
-REACHED = {"truth": (0.927, 0.33, 0.43), "chain": (0.901, 0.48, 0.57)}
+REACHED = {"truth": (0.927, 0.33, 0.43), "chain": (0.902, 0.48, 0.57)}
 MARGIN, CORNER_MARGIN = 0.01, 0.1
 
 # What the stage is for, whatever was reached.
