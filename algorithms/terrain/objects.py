@@ -40,8 +40,8 @@ _TOUCHING, _PART_SLOPE, _LEAST_PART = 0.25, 0.4, 4
 # Where the surface goes on as steeply as at the step itself, up to this slope, the step is a bank rather than a wall.
 _STEEPEST_BANK = 2.0
 
-# Soil lies on slopes up to this.
-_STEEPEST_SOIL = 1.0
+# Soil lies on slopes up to 45°, and looks no steeper than this where its lowest points lie unevenly in their cells.
+_STEEPEST_SOIL = 1.2
 
 # Windows over this share of the largest lift off spits and hilltops rather than houses.
 _LARGE_WINDOW = 0.5
@@ -189,6 +189,9 @@ def _without_joined(
     """
     apart = max(1, round(spacing / cell_size))
     bank = apart * cell_size
+    # Within a cell the lowest point may lie anywhere: over two of them that matters less.
+    eave = max(2, apart)
+    steep = _STEEPEST_SOIL * eave * cell_size
     allowed = (_JOIN_SLOPE + _JOIN_SHARE * slope) * cell_size
     objects = (lifted > 0) | free
     is_large = lifted > _LARGE_WINDOW * largest
@@ -196,7 +199,8 @@ def _without_joined(
         region, count = ndimage.label(group)
         whole, edge, joined = np.zeros(count + 1), np.zeros(count + 1), np.zeros(count + 1)
         eaves = []
-        for (here, there), (inner, outer) in zip(neighbors(surface.ndim), _flanks(surface, apart)):
+        falls = zip(neighbors(surface.ndim), _flanks(surface, apart), _flanks(surface, eave))
+        for (here, there), (inner, outer), (roof, beyond) in falls:
             outward = (region[here] > 0) & (region[there] != region[here])
             at_edge = outward & ~objects[there]
             step = surface[here] - surface[there]
@@ -205,7 +209,7 @@ def _without_joined(
             whole += np.bincount(region[here][outward], minlength=count + 1)
             edge += np.bincount(region[here][at_edge], minlength=count + 1)
             joined += np.bincount(region[here][smooth], minlength=count + 1)
-            is_eave = smooth & (inner >= _STEEPEST_SOIL * bank) & (outer < _STEEPEST_SOIL * bank)
+            is_eave = smooth & (roof >= steep) & (beyond < steep)
             eaves.append(np.bincount(region[here][is_eave], minlength=count + 1))
         # A roof that reaches down to the ground rises from two sides that face one another, steeper than soil.
         joined -= 2 * (np.minimum(*eaves[:2]) + np.minimum(*eaves[2:]))

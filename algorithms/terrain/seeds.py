@@ -60,7 +60,7 @@ def lowest_points(xyz: np.ndarray, cell_size: float) -> Lowest:
     least = np.full(shape, np.inf)
     np.minimum.at(least.ravel(), cell, z)
     as_low = np.flatnonzero(z == least.ravel()[cell])
-    # The last one that is written stays: ties go to the south-west, whatever the order.
+    # The last one that is written stays: ties go to the least x, then y, whatever the order.
     as_low = as_low[np.lexsort((-y[as_low], -x[as_low]))]
     index = np.full(shape, -1, np.int64)
     index.ravel()[cell[as_low]] = as_low
@@ -113,19 +113,18 @@ def seeds_by_opening(
     """
     refuse_sparse(xyz, cell_size)
     box, slope, views = plan_box(xyz), None, []
-    angles = [angle for angle in _TURNS if _is_compact(box, angle)]
+    angles = _TURNS if _is_compact(box) else _TURNS[:1]
     for done, angle in enumerate(angles):
         cells = _Cells(turned_in_plan(xyz, angle), box, angle, cell_size, spacing)
         part = monitor.part(done / len(angles), (done + 1) / len(angles))
         views.append(_view(cells, max_building_size, slope, part))
-        # It changes little from cell to cell: what the first view measured will do.
+        # The slope changes little from cell to cell: what the first direction measured will do.
         slope = views[0].slope
     candidates = views[0].candidates
     # The first direction is that of the box: it tells best what the end of the cloud cuts off.
     stands_free = views[0].stands_free | np.logical_and.reduce([view.stands_free for view in views[1:] or views])
     is_terrain = (sum(view.says_terrain[candidates] for view in views) > 0) & ~stands_free[candidates]
-    size = max(max_building_size or USUAL_BUILDING, float(np.median([view.size for view in views])))
-    return candidates[is_terrain], stands_free, size
+    return candidates[is_terrain], stands_free, max(max_building_size or USUAL_BUILDING, views[0].size)
 
 
 @dataclass(frozen=True)
@@ -137,7 +136,7 @@ class _View:
     candidates : ndarray of shape (m,), int64
         Lowest points of the cells, without pits.
     says_terrain : ndarray of shape (n,), int8
-        1 for points on the lowest surface where it is terrain, 0 over it, -1 where it is an object.
+        1 for points on or below the lowest surface where it is terrain, 0 over it, -1 where it is an object.
     stands_free : ndarray of shape (n,), bool
         Which points lie where it stands free, or over that.
     size : float
@@ -155,9 +154,18 @@ class _View:
 
 @dataclass(frozen=True)
 class _Cells:
-    """Points that were turned by an angle (°) with the ``box`` around them, and cells over them.
+    """Square cells over points that were turned.
 
-    Spacing of the points and size of the cells in m.
+    Attributes
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        The points as they are turned, m.
+    box : ndarray of shape (2, 2), float64
+        The least and greatest easting and northing (m) that they had before.
+    angle : float
+        By how much they were turned, °.
+    size, spacing : float
+        Size of the cells and spacing of the points, m.
     """
 
     xyz: np.ndarray
@@ -168,10 +176,13 @@ class _Cells:
 
     def outside(self, lowest: Lowest) -> np.ndarray:
         """Return which cells lie outside the box."""
-        place = np.indices(lowest.index.shape).reshape(2, -1).T
-        center = turned_in_plan((place + 0.5) * self.size + lowest.origin, -self.angle)
-        beyond = (center < self.box[0] - self.size) | (center > self.box[1] + self.size)
-        return beyond.any(axis=1).reshape(lowest.index.shape)
+        cos, sin = np.cos(np.radians(self.angle)), np.sin(np.radians(self.angle))
+        middles = (start + self.size * (np.arange(n) + 0.5) for n, start in zip(lowest.index.shape, lowest.origin))
+        x, y = np.meshgrid(*middles, indexing="ij", sparse=True)
+        outside = np.zeros(lowest.index.shape, bool)
+        for place, low, high in zip((cos * x + sin * y, cos * y - sin * x), *self.box):
+            outside |= (place < low - self.size) | (place > high + self.size)
+        return outside
 
 
 def _view(cells: _Cells, max_building_size: Optional[float], slope: Optional[np.ndarray], monitor: Monitor) -> _View:
@@ -192,11 +203,11 @@ def _view(cells: _Cells, max_building_size: Optional[float], slope: Optional[np.
     return _View(lowest.points(~unknown), says_terrain, stands_free, found, slope)
 
 
-def _is_compact(box: np.ndarray, angle: float) -> bool:
-    """Return whether the box around a ``box`` that was turned by an angle (°) is not much larger."""
+def _is_compact(box: np.ndarray) -> bool:
+    """Return whether the box around a turned ``box`` (2, 2) is not so much larger that cells over it are too many."""
     sides = np.ptp(box, axis=0)
-    cos, sin = np.cos(np.radians(angle)), np.sin(np.radians(angle))
-    return bool((cos * sides + sin * sides[::-1]).prod() <= _MOST_TURNED * sides.prod())
+    turns = ((np.cos(angle), np.sin(angle)) for angle in np.radians(_TURNS))
+    return all((cos * sides + sin * sides[::-1]).prod() <= _MOST_TURNED * sides.prod() for cos, sin in turns)
 
 
 def seeds_by_lowest(xyz: np.ndarray, max_building_size: float) -> np.ndarray:

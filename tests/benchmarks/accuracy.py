@@ -2,10 +2,10 @@
 """Print how good the results are: ``accuracy.py [table …]``, all by default.
 
 ``buildings``, ``ground`` and ``noise`` are of real clouds, ``turned`` of the same when cells fall elsewhere, ``harder``
-of the same with fewer points or more noise,
-``uneven`` of the same with points on lines, in bands or in pairs, ``pieces`` of squares cut out of clouds, ``objects``
-of real houses, trees, cars, fences and poles on simulated ground, ``footprints`` of outlines, ``towns``,
-``scenes``, ``villages`` and ``confidence`` of simulated scenes, whose truth is exact.
+of the same with fewer points or more noise, ``uneven`` of the same with points on lines, in bands or in pairs,
+``pieces`` of squares cut out of clouds, ``objects`` of real houses, trees, cars, fences and poles on simulated ground,
+``footprints`` of outlines, ``towns``, ``scenes``, ``villages`` and ``confidence`` of simulated scenes, whose truth is
+exact.
 
 Each table comes as Markdown for people, and as the Python lines that the tests hold the program to.
 """
@@ -234,7 +234,7 @@ def turned() -> None:
 def _turned(name: str, angle: float) -> Cloud:
     """Return a real cloud that was turned by an angle (°)."""
     cloud = read_cloud(path_of(name))
-    returns = {name: cloud.get(name) for name in ("return_number", "number_of_returns")}
+    returns = {dimension: cloud.get(dimension) for dimension in ("return_number", "number_of_returns")}
     return create_cloud({"xyz": turned_in_plan(cloud.get("xyz"), angle), **returns})
 
 
