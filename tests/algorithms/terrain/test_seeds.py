@@ -261,7 +261,7 @@ def test_a_lane_between_two_houses_on_a_pier_is_terrain(rng):
     assert not (z > 4.0)[seeds].any()
 
 
-@pytest.mark.parametrize("slope", [0.8, 1.0])
+@pytest.mark.parametrize("slope", [0.8, 1.0, 1.1])
 def test_banks_as_steep_as_soil_lies_are_terrain_on_both_sides(slope, rng):
     """However unevenly the lowest points lie in their cells: eaves are no steeper than their flanks look there."""
     plan = even(90, 90) + rng.uniform(-0.35, 0.35, (len(even(90, 90)), 2))
