@@ -76,6 +76,11 @@ class Opening:
     cell_size: float
     spacing: float
 
+    @property
+    def windows(self) -> list[int]:
+        """Radii of the windows, in cells."""
+        return _windows(self.largest / 2 / self.cell_size)
+
     def slope(self, monitor: Monitor) -> np.ndarray:
         """Return the slope of the terrain (rise over run), measured twice, each time without the objects before."""
         first = np.full(self.surface.shape, _FIRST_SLOPE)
@@ -97,12 +102,10 @@ class Opening:
 
     def _not_joined(self, slope: np.ndarray, monitor: Monitor) -> np.ndarray:
         lifted = self._lifted(_SLOPE_SHARE * slope, monitor)
-        largest = _windows(self.largest / 2 / self.cell_size)[-1]
-        return _without_joined(lifted, self.free, largest, self.surface, slope, self.cell_size, self.spacing)
+        return _without_joined(lifted, self.free, self.windows[-1], self.surface, slope, self.cell_size, self.spacing)
 
     def _lifted(self, slope: np.ndarray, monitor: Monitor) -> np.ndarray:
-        windows = _windows(self.largest / 2 / self.cell_size)
-        return _lifted(self.surface, windows, slope, self.cell_size, monitor, absent=self.free)
+        return _lifted(self.surface, self.windows, slope, self.cell_size, monitor, absent=self.free)
 
 
 def nearest_known(surface: np.ndarray, unknown: np.ndarray) -> np.ndarray:

@@ -23,6 +23,10 @@ REACHED = {
     "buildings/ahn-amsterdam-1": (97.2, 70.5),
     "buildings/ign-chalet": (94.5, 81.5),
 }
+# Where an earlier state was better for the default, it stays the bound: it was luckier with where cells fell, and
+# the mean of six positions (accuracy.py turned) is the same.
+BEST = {"buildings/ahn3-delft-4": 95.4, "buildings/ign-stbarth-4": 91.1}
+
 # Area (m²) called building where there is none, in cells of 0.5 m.
 REACHED_WITHOUT_BUILDINGS = {
     "buildings/ign-forest-none": 0.0,
@@ -75,7 +79,7 @@ def f_score(name, pipeline="detect_buildings"):
 
 @pytest.mark.parametrize("name", REACHED)
 def test_buildings_are_found_as_well_as_before(name):
-    assert f_score(name) >= max(REACHED[name][0] - MARGIN, FLOORS[name])
+    assert f_score(name) >= max(BEST.get(name, REACHED[name][0]) - MARGIN, FLOORS[name])
 
 
 @pytest.mark.parametrize("name", REACHED)
