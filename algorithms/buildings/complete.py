@@ -21,9 +21,6 @@ _CELL_SPACINGS, _LEAST_CELL = 1.2, 0.5
 # Points lower than this stand on the ground (kerbs, plants, steps) and are no wall, m.
 _WALL_FOOT = 0.5
 
-# Of what stands in the outline of a building, points higher than this are looked for on its roof surfaces, m.
-_RAISED = 1.0
-
 # Gaps are closed over so many point spacings, and no less and no more than so far (m).
 _GAP_SPACINGS, _LEAST_GAP, _MOST_GAP = 4.0, 3.0, 20.0
 
@@ -106,12 +103,12 @@ def complete_buildings(
         float,
         Param(
             "Minimum share of roof surfaces",
-            "Share of the points standing in a building's outline that must lie on roof surfaces. In crowns with a "
-            "smooth side it is less. 0 takes any.",
+            "Share of the points at the height of a building's roof, as far above and below it as the clearance, that "
+            "must lie on roof surfaces. In crowns with a smooth side it is less. 0 takes any.",
             low=0,
             high=1,
         ),
-    ] = 0.4,
+    ] = 0.6,
     density: PointDensity = None,
     monitor=None,
 ):
@@ -183,10 +180,11 @@ def complete_buildings(
     covered = _covered(cell, is_roof, ~raised & ~is_noise, gap, cell_size)
     monitor.progress(0.3)
     building, refused = _numbered(covered, min_area, min_width, cell_size)
+    top = _roof_top(cell, xyz[:, 2], is_roof, covered)
     if segment_id is not None:
-        on_roof, stands = is_roof & (segment_id > 0), height_above_ground >= _RAISED
-        building, refused = _mostly_roof(building, refused, cell, stands, on_roof, min_roof_share)
-    columns = _Columns(building, _roof_top(cell, xyz[:, 2], is_roof, covered), cell_size)
+        at_roof = raised & (np.abs(xyz[:, 2] - top[cell]) <= roof_clearance)
+        building, refused = _mostly_roof(building, refused, cell, at_roof, is_roof & (segment_id > 0), min_roof_share)
+    columns = _Columns(building, top, cell_size)
     monitor.progress(0.6)
 
     has_returns = return_number is not None and number_of_returns is not None
@@ -353,14 +351,14 @@ def _mostly_roof(
     building: np.ndarray,
     refused: np.ndarray,
     cell: tuple[np.ndarray, np.ndarray],
-    stands: np.ndarray,
-    on_roof: np.ndarray,
+    at_roof: np.ndarray,
+    on_surface: np.ndarray,
     least: float,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return what :func:`_numbered` does, without buildings of which less than ``least`` of what stands is roof."""
+    """Return what :func:`_numbered` does, without buildings with less than ``least`` of their roof on surfaces."""
     number = building[cell]
-    count = building.max() + 1
-    share = np.bincount(number[on_roof], minlength=count) / np.maximum(np.bincount(number[stands], minlength=count), 1)
+    whole, part = (np.bincount(number[of], minlength=building.max() + 1) for of in (at_roof, at_roof & on_surface))
+    share = part / np.maximum(whole, 1)
     kept = _numbers(share >= least)[building]
     return kept, np.where((building > 0) & (kept == 0), np.uint8(Reason.MOSTLY_OTHER), refused)
 
