@@ -24,7 +24,7 @@ _BESIDE = 0.2
 _BOX = np.array([2.0, 2.0, 4.0])
 
 
-def _cell_size(density: float) -> float:
+def cell_size(density: float) -> float:
     """Return the side (m) of the cells that area is counted in."""
     return max(_LEAST_CELL, _CELL_SPACINGS / np.sqrt(density))
 
@@ -46,7 +46,7 @@ def plan_areas(xyz: np.ndarray, group: np.ndarray, density: float) -> np.ndarray
     ndarray of shape (group.max() + 1,)
         Occupied cells times their area.
     """
-    size = _cell_size(density)
+    size = cell_size(density)
     grid = grid_over(xyz, size)
     pairs = np.unique(group.astype(np.int64) * (grid.rows * grid.columns) + grid.number(xyz))
     return np.bincount(pairs // (grid.rows * grid.columns), minlength=int(group.max()) + 1) * size**2
@@ -139,7 +139,7 @@ def join_beside(xyz: np.ndarray, group: np.ndarray, strong: np.ndarray, weak: np
     ndarray of shape (group.max() + 1,), bool
         Groups taken. A weak one is, when a fifth of its cells are cells of groups taken or next to one.
     """
-    grid = grid_over(xyz, _cell_size(density))
+    grid = grid_over(xyz, cell_size(density))
     member = group >= 0
     count = grid.rows * grid.columns
     owner, cell = np.divmod(np.unique(group[member].astype(np.int64) * count + grid.number(xyz[member])), count)

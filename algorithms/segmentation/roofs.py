@@ -13,6 +13,7 @@ from ..features.noise import SurfaceSample
 from ..params import PointDensity, SurfaceNoise
 from ..stage import Param, stage
 from .connectivity import connect, number_large
+from .decks import part_decks
 from .extent import plan_areas
 from .patches import segment_patches
 
@@ -107,10 +108,15 @@ def segment_roofs(
     patch = np.full(len(xyz), -1, np.int32)
     patch[used] = segment_patches(xyz[used], density, noise, max_slope, monitor.part(0, 0.8))
     is_roof, is_terrain = _roofs(xyz, patch, height_above_ground, density, min_height, min_area)
+    # Points of no patch, -1, find the last entry.
+    joined = np.where(np.append(is_terrain, False)[patch], patch, -1)
+    deck = part_decks(xyz, joined, height_above_ground, density, min_height, min_area)
+    if (deck >= 0).any():
+        patch = np.where(deck >= 0, deck + len(is_roof), patch)
+        is_roof, is_terrain = _roofs(xyz, patch, height_above_ground, density, min_height, min_area)
     segment_id = _renumbered(patch, is_roof)
 
     raised = height_above_ground >= min(_RAISED, min_height)
-    # Points of no patch, -1, find the last entry.
     goes_on = np.append(is_terrain, False)[patch]
     is_other = raised & (segment_id == 0) & ~goes_on
     others = used[is_other[used]]

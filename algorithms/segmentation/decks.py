@@ -1,0 +1,85 @@
+"""Decks and the ramps that join them to the ground: parted where one is narrow beside the other."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..cloud.cells import Grid, connected_cells, distinct, find_cells, grid_over
+from ..packages import ndimage
+from .extent import cell_size
+
+# A ramp is at most so wide beside the deck that it leads up to; a bridge is as wide as its ends.
+_MOST_OF_WIDTH = 0.5
+
+# Cells along a line, each beside one across it by a side: times their size they are as long as this, over all directions.
+_LENGTH = np.pi / 4
+
+
+def part_decks(
+    xyz: np.ndarray, patch: np.ndarray, height: np.ndarray, density: float, min_height: float, min_area: float
+) -> np.ndarray:
+    """Part decks from what they go on into by a ramp: the road to a parking deck, the bank behind a terrace.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points (m), n >= 1.
+    patch : ndarray of shape (n,), int32
+        Patch of each point from 0, all of them smooth surfaces that go on into the ground; -1 for points of no such.
+    height : ndarray of shape (n,)
+        Heights above ground, m.
+    density : float
+        Points per square meter.
+    min_height, min_area : float
+        A deck lies at least so high (m), and is at least so large (m²).
+
+    Returns
+    -------
+    ndarray of shape (n,), int32
+        Deck of each point from 0, -1 where it lies on none.
+    """
+    deck = np.full(len(xyz), -1, np.int32)
+    member = np.flatnonzero(patch >= 0)
+    if not len(member) or not (height[member] >= min_height).any():
+        return deck
+    grid = grid_over(xyz, cell_size(density))
+    # One copy of the grid for each patch: its empty border keeps them apart.
+    cells, which = distinct(patch[member].astype(np.int64) * (grid.rows * grid.columns) + grid.number(xyz[member]))
+    # The highest point of a cell: at the edge of a deck it is the deck's.
+    level = np.full(len(cells), -np.inf)
+    np.maximum.at(level, which, height[member])
+    high = np.flatnonzero(level >= min_height)
+    count, part = connected_cells(grid, cells[high])
+    if not count:
+        return deck
+    area = np.bincount(part) * grid.size**2
+    contact = _LENGTH * np.bincount(part, _goes_down(grid, cells, level, min_height)[high], count) * grid.size
+    # No circle in a part is larger than the part: most are seen to be too narrow without looking for the largest.
+    may_be = (area >= min_area) & (contact <= _MOST_OF_WIDTH * 2 * np.sqrt(area / np.pi))
+    number = np.full(count, -1, np.int32)
+    for candidate in np.flatnonzero(may_be):
+        if contact[candidate] < _MOST_OF_WIDTH * _width(grid, cells[high[part == candidate]]):
+            number[candidate] = number.max() + 1
+    deck_of_cell = np.full(len(cells), -1, np.int32)
+    deck_of_cell[high] = number[part]
+    deck[member] = deck_of_cell[which]
+    return deck
+
+
+def _goes_down(grid: Grid, cells: np.ndarray, level: np.ndarray, least: float) -> np.ndarray:
+    """Return from which of the ``cells`` the surface goes on to one lower than ``least`` (m), and no steeper than 45°."""
+    goes_down = np.zeros(len(cells), bool)
+    for step in (-grid.columns, -1, 1, grid.columns):
+        there, found = find_cells(cells, cells + step)
+        goes_down |= found & (level[there] < least) & (level - level[there] <= grid.size)
+    return goes_down
+
+
+def _width(grid: Grid, cells: np.ndarray) -> float:
+    """Return the diameter (m) of the largest circle in a connected part, its holes filled."""
+    row, column = np.divmod(cells, grid.columns)
+    row, column = row - row.min() + 1, column - column.min() + 1
+    mask = np.zeros((row.max() + 2, column.max() + 2), bool)
+    mask[row, column] = True
+    inward = ndimage.distance_transform_edt(ndimage.binary_fill_holes(mask)).max()
+    return float(2 * inward - 1) * grid.size
