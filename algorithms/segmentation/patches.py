@@ -41,7 +41,9 @@ class LocalPlanes:
         return np.abs(np.einsum("ij,ij->i", points - self.center[plane], self.normal[plane]))
 
 
-def segment_patches(xyz: np.ndarray, density: float, noise: float, max_slope: float, monitor: Monitor) -> np.ndarray:
+def segment_patches(
+    xyz: np.ndarray, density: float, noise: float, max_slope: float, monitor: Monitor
+) -> tuple[np.ndarray, np.ndarray]:
     """Group points that lie on smooth surfaces.
 
     Each point takes the smoothest plane among those of its neighbors that hold it, so that
@@ -63,21 +65,27 @@ def segment_patches(xyz: np.ndarray, density: float, noise: float, max_slope: fl
 
     Returns
     -------
-    ndarray of shape (n,), int32
+    patch : ndarray of shape (n,), int32
         Patch of each point from 0, -1 where it lies on no smooth surface.
+    roughness : ndarray of shape (n,), float32
+        Standard deviation of points across the plane that each is held by, m; where none holds it, it means nothing.
     """
     if len(xyz) < LEAST_NEIGHBORS:
-        return np.full(len(xyz), -1, np.int32)
+        return np.full(len(xyz), -1, np.int32), np.zeros(len(xyz), np.float32)
     tree = spatial.cKDTree(xyz)
-    planes = _local_planes(xyz, tree, SurfaceSample(xyz, tree).neighborhood(density, noise), monitor.part(0, 0.6))
+    neighborhood = SurfaceSample(xyz, tree).neighborhood(density, noise)
+    planes = _local_planes(xyz, tree, neighborhood, monitor.part(0, 0.6))
     del tree  # What is large goes as soon as it can: the links below are large, too.
     plane = _smoothest_plane(xyz, planes, noise, monitor.part(0.6, 0.8))
     on_surface = (planes.deviation[plane] <= _SMOOTH * noise) & (plane >= 0)
     on_surface &= planes.normal[plane, 2] >= np.sin(np.radians(90 - max_slope))
     links = _links(xyz, planes, plane, on_surface, noise, monitor.part(0.8, 1))
+    # Three of its points make a plane and tell nothing of how far others lie off it.
+    across = planes.deviation * np.sqrt(neighborhood.count / (neighborhood.count - 3))
+    roughness = across.astype(np.float32)[plane]
     del planes, plane
     component = csgraph.connected_components(links, directed=False)[1]
-    return np.where(on_surface, component, -1).astype(np.int32)
+    return np.where(on_surface, component, -1).astype(np.int32), roughness
 
 
 def _local_planes(xyz: np.ndarray, tree: Any, neighborhood: Union[Nearest, Wide], monitor: Monitor) -> LocalPlanes:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Annotated
 
 import numpy as np
@@ -14,7 +16,7 @@ from ..params import PointDensity, SurfaceNoise
 from ..stage import Param, stage
 from .connectivity import connect, number_large
 from .decks import part_decks
-from .extent import plan_areas
+from .extent import join_beside, plan_areas
 from .patches import segment_patches
 
 # Points lower than this stand on the ground (kerbs, cars' bonnets, low plants), m.
@@ -22,6 +24,10 @@ _RAISED = 1.5
 
 # A surface of which more than this share lies lower than this (m) goes on into the ground: a bridge, a ramp, a slope.
 _LOW_SHARE, _LOW = 0.1, 0.5
+
+# Tiles, ribs and gravel are no rougher than this (m), crops and crowns with smooth spots are; what is rougher must lie
+# beside a smoother surface so large (m²), of which there are some by chance, too.
+_ROUGHEST, _SMOOTH_AREA = 0.055, 4.0
 
 
 @stage(
@@ -105,18 +111,16 @@ def segment_roofs(
     monitor.resolved(density=density, noise=noise)
     used = np.flatnonzero(~np.isin(classification, NOISE))
 
-    patch = np.full(len(xyz), -1, np.int32)
-    patch[used] = segment_patches(xyz[used], density, noise, max_slope, monitor.part(0, 0.8))
-    is_roof, is_terrain = _roofs(xyz, patch, height_above_ground, density, min_height, min_area)
-    # Points of no patch, -1, find the last entry.
-    joined = np.where(np.append(is_terrain, False)[patch], patch, -1)
-    deck = part_decks(xyz, joined, height_above_ground, density, min_height, min_area)
-    if (deck >= 0).any():
-        patch = np.where(deck >= 0, deck + len(is_roof), patch)
-        is_roof, is_terrain = _roofs(xyz, patch, height_above_ground, density, min_height, min_area)
+    patch, roughness = np.full(len(xyz), -1, np.int32), np.zeros(len(xyz), np.float32)
+    patch[used], roughness[used] = segment_patches(xyz[used], density, noise, max_slope, monitor.part(0, 0.8))
+    patches = _Patches(xyz, patch, height_above_ground, density).with_decks(min_height, min_area)
+    patch, is_terrain = patches.number, patches.is_terrain
+    is_roof = patches.roofs(min_height, min_area) & ~is_terrain
+    is_roof = patches.smooth_or_beside(is_roof, roughness, max(_ROUGHEST, noise))
     segment_id = _renumbered(patch, is_roof)
 
     raised = height_above_ground >= min(_RAISED, min_height)
+    # Points of no patch, -1, find the last entry.
     goes_on = np.append(is_terrain, False)[patch]
     is_other = raised & (segment_id == 0) & ~goes_on
     others = used[is_other[used]]
@@ -128,19 +132,56 @@ def segment_roofs(
     return segment_id, cluster_id, np.where(raised & goes_on, np.uint8(Reason.INTO_GROUND), np.uint8(0))
 
 
-def _roofs(
-    xyz: np.ndarray, patch: np.ndarray, height: np.ndarray, density: float, min_height: float, min_area: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return for each patch whether it is a roof, and whether it goes on into the ground."""
-    member = patch >= 0
-    if not member.any():
-        return np.zeros(0, bool), np.zeros(0, bool)
-    number = patch[member]
-    size = np.maximum(np.bincount(number), 1)
-    mean_height = np.bincount(number, height[member]) / size
-    is_terrain = np.bincount(number, height[member] < _LOW) / size > _LOW_SHARE
-    area = plan_areas(xyz[member], number, density)
-    return (area >= min_area) & (mean_height >= min_height) & ~is_terrain, is_terrain
+@dataclass(frozen=True)
+class _Patches:
+    """Smooth surfaces: of which each point is (n,), from 0 and -1 for none, with heights above ground (m)."""
+
+    xyz: np.ndarray
+    number: np.ndarray
+    height: np.ndarray
+    density: float
+
+    def mean(self, values: np.ndarray) -> np.ndarray:
+        """Return the mean of what the points of each patch have."""
+        on_patch = self.number[self._member]
+        return np.bincount(on_patch, values[self._member]) / np.maximum(np.bincount(on_patch), 1)
+
+    @cached_property
+    def areas(self) -> np.ndarray:
+        """The area (m²) of each, seen from above."""
+        if not self._member.any():
+            return np.zeros(0)
+        return plan_areas(self.xyz[self._member], self.number[self._member], self.density)
+
+    @cached_property
+    def is_terrain(self) -> np.ndarray:
+        """Which of them go on into the ground."""
+        return self.mean(self.height < _LOW) > _LOW_SHARE
+
+    def with_decks(self, min_height: float, min_area: float) -> _Patches:
+        """Return them with decks apart from the ramps that lead up to them."""
+        joined = np.where(self._of(self.is_terrain), self.number, -1)
+        deck = part_decks(self.xyz, joined, self.height, self.density, min_height, min_area)
+        return replace(self, number=np.where(deck >= 0, deck + len(self.is_terrain), self.number).astype(np.int32))
+
+    def roofs(self, min_height: float, min_area: float) -> np.ndarray:
+        """Return which of them are high and large enough."""
+        return (self.areas >= min_area) & (self.mean(self.height) >= min_height)
+
+    def smooth_or_beside(self, chosen: np.ndarray, roughness: np.ndarray, most: float) -> np.ndarray:
+        """Return which of the chosen are as smooth as roofs, or lie beside such; ``roughness`` (n,) and ``most`` in m."""
+        if not chosen.any():
+            return chosen
+        is_smooth = chosen & (self.mean(roughness) <= most) & (self.areas >= _SMOOTH_AREA)
+        return join_beside(self.xyz, np.where(self._of(chosen), self.number, -1), is_smooth, chosen, self.density)
+
+    @cached_property
+    def _member(self) -> np.ndarray:
+        return self.number >= 0
+
+    def _of(self, mask: np.ndarray) -> np.ndarray:
+        """Return which points are of patches that a mask has."""
+        return np.append(mask, False)[self.number]
 
 
 def _high(component: np.ndarray, height: np.ndarray, min_height: float) -> np.ndarray:
