@@ -6,12 +6,19 @@ import numpy as np
 
 from ..cloud.cells import Grid, connected_cells, distinct, find_cells, grid_over
 from ..packages import ndimage
-from .extent import cell_size
+
+# Cells so wide that no gap between scan lines, or between points by chance, parts what hangs together: in spacings of
+# points, and at least (m).
+_CELL_SPACINGS, _LEAST_CELL = 3.0, 1.0
+
+# A ramp rises no more than this over its length, and the wall of a deck does.
+_STEEPEST = 0.5
 
 # A ramp is at most so wide beside the deck that it leads up to; a bridge is as wide as its ends.
 _MOST_OF_WIDTH = 0.5
 
-# Cells along a line, each beside one across it by a side: times their size they are as long as this, over all directions.
+# Cells on one side of a line that touch one on the other: their length is that of the line times this, on the average
+# over its directions.
 _LENGTH = np.pi / 4
 
 
@@ -42,37 +49,41 @@ def part_decks(
     member = np.flatnonzero(patch >= 0)
     if not len(member) or not (height[member] >= min_height).any():
         return deck
-    grid = grid_over(xyz, cell_size(density))
+    grid = grid_over(xyz, max(_LEAST_CELL, _CELL_SPACINGS / np.sqrt(density)))
     # One copy of the grid for each patch: its empty border keeps them apart.
     cells, which = distinct(patch[member].astype(np.int64) * (grid.rows * grid.columns) + grid.number(xyz[member]))
     # The highest point of a cell: at the edge of a deck it is the deck's.
-    level = np.full(len(cells), -np.inf)
+    level, top = np.full((2, len(cells)), -np.inf)
     np.maximum.at(level, which, height[member])
-    high = np.flatnonzero(level >= min_height)
+    np.maximum.at(top, which, xyz[member, 2])
+    is_low = level < min_height
+    high = np.flatnonzero(~is_low)
     count, part = connected_cells(grid, cells[high])
     if not count:
         return deck
     area = np.bincount(part) * grid.size**2
-    contact = _LENGTH * np.bincount(part, _goes_down(grid, cells, level, min_height)[high], count) * grid.size
+    contact = _LENGTH * np.bincount(part, _goes_on(grid, cells, top, is_low)[high], count) * grid.size
     # No circle in a part is larger than the part: most are seen to be too narrow without looking for the largest.
-    may_be = (area >= min_area) & (contact <= _MOST_OF_WIDTH * 2 * np.sqrt(area / np.pi))
+    may_be = (area >= min_area) & (contact > 0) & (contact <= _MOST_OF_WIDTH * 2 * np.sqrt(area / np.pi))
     number = np.full(count, -1, np.int32)
     for candidate in np.flatnonzero(may_be):
         if contact[candidate] < _MOST_OF_WIDTH * _width(grid, cells[high[part == candidate]]):
             number[candidate] = number.max() + 1
     deck_of_cell = np.full(len(cells), -1, np.int32)
     deck_of_cell[high] = number[part]
-    deck[member] = deck_of_cell[which]
+    # At its edge a deck shares cells with what lies at its foot.
+    is_deck = xyz[member, 2] >= top[which] - grid.size
+    deck[member[is_deck]] = deck_of_cell[which[is_deck]]
     return deck
 
 
-def _goes_down(grid: Grid, cells: np.ndarray, level: np.ndarray, least: float) -> np.ndarray:
-    """Return from which of the ``cells`` the surface goes on to one lower than ``least`` (m), and no steeper than 45°."""
-    goes_down = np.zeros(len(cells), bool)
+def _goes_on(grid: Grid, cells: np.ndarray, top: np.ndarray, chosen: np.ndarray) -> np.ndarray:
+    """Return from which ``cells`` the surface goes on to a chosen one as a ramp does; ``top`` is their elevation."""
+    goes_on = np.zeros(len(cells), bool)
     for step in (-grid.columns, -1, 1, grid.columns):
         there, found = find_cells(cells, cells + step)
-        goes_down |= found & (level[there] < least) & (level - level[there] <= grid.size)
-    return goes_down
+        goes_on |= found & chosen[there] & (np.abs(top - top[there]) <= _STEEPEST * grid.size)
+    return goes_on
 
 
 def _width(grid: Grid, cells: np.ndarray) -> float:

@@ -7,7 +7,7 @@ from typing import Optional
 
 import numpy as np
 
-from ..cloud.cells import distinct, find_cells, grid_over
+from ..cloud.cells import connected_cells, distinct, find_cells, grid_over
 
 # Cells in which area and what lies beneath are counted, in point spacings; for the area they have a least size (m).
 _CELL_SPACINGS, _LEAST_CELL = 1.5, 0.3
@@ -24,7 +24,7 @@ _BESIDE = 0.2
 _BOX = np.array([2.0, 2.0, 4.0])
 
 
-def cell_size(density: float) -> float:
+def _cell_size(density: float) -> float:
     """Return the side (m) of the cells that area is counted in."""
     return max(_LEAST_CELL, _CELL_SPACINGS / np.sqrt(density))
 
@@ -46,7 +46,7 @@ def plan_areas(xyz: np.ndarray, group: np.ndarray, density: float) -> np.ndarray
     ndarray of shape (group.max() + 1,)
         Occupied cells times their area.
     """
-    size = cell_size(density)
+    size = _cell_size(density)
     grid = grid_over(xyz, size)
     pairs = np.unique(group.astype(np.int64) * (grid.rows * grid.columns) + grid.number(xyz))
     return np.bincount(pairs // (grid.rows * grid.columns), minlength=int(group.max()) + 1) * size**2
@@ -139,7 +139,7 @@ def join_beside(xyz: np.ndarray, group: np.ndarray, strong: np.ndarray, weak: np
     ndarray of shape (group.max() + 1,), bool
         Groups taken. A weak one is, when a fifth of its cells are cells of groups taken or next to one.
     """
-    grid = grid_over(xyz, cell_size(density))
+    grid = grid_over(xyz, _cell_size(density))
     member = group >= 0
     count = grid.rows * grid.columns
     owner, cell = np.divmod(np.unique(group[member].astype(np.int64) * count + grid.number(xyz[member])), count)
@@ -186,6 +186,35 @@ def share_around(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray) -> np.n
         around += np.where(found, whole[there], 0)
     size = np.bincount(owner, minlength=len(chosen))
     return np.bincount(owner, (own_around / around)[which], len(chosen)) / np.maximum(size, 1)
+
+
+def share_joined(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray, density: float) -> np.ndarray:
+    """Return how much of all that each group of points hangs together with belongs to the chosen groups.
+
+    Parameters
+    ----------
+    xyz, group, density
+        As of :func:`penetration`.
+    chosen : ndarray of shape (group.max() + 1,), bool
+        Which groups are meant.
+
+    Returns
+    -------
+    ndarray of shape (group.max() + 1,)
+        Of the cells that touch one another, seen from above, the share with points of chosen groups; the mean over the
+        cells of a group, 0 for groups without points.
+    """
+    grid = grid_over(xyz, _cell_size(density))
+    member = group >= 0
+    count = grid.rows * grid.columns
+    owner, cell = np.divmod(distinct(group[member].astype(np.int64) * count + grid.number(xyz[member]))[0], count)
+    cells, which = distinct(cell)
+    part = connected_cells(grid, cells)[1]
+    is_chosen = np.zeros(len(cells), bool)
+    is_chosen[which[chosen[owner]]] = True
+    share = np.bincount(part, is_chosen) / np.bincount(part)
+    size = np.maximum(np.bincount(owner, minlength=len(chosen)), 1)
+    return np.bincount(owner, share[part[which]], len(chosen)) / size
 
 
 def _columns(xyz: np.ndarray, group: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -16,7 +16,7 @@ from ..params import PointDensity, SurfaceNoise
 from ..stage import Param, stage
 from .connectivity import connect, number_large
 from .decks import part_decks
-from .extent import join_beside, plan_areas
+from .extent import plan_areas, share_joined
 from .patches import segment_patches
 
 # Points lower than this stand on the ground (kerbs, cars' bonnets, low plants), m.
@@ -25,9 +25,12 @@ _RAISED = 1.5
 # A surface of which more than this share lies lower than this (m) goes on into the ground: a bridge, a ramp, a slope.
 _LOW_SHARE, _LOW = 0.1, 0.5
 
-# Tiles, ribs and gravel are no rougher than this (m), crops and crowns with smooth spots are; what is rougher must lie
-# beside a smoother surface so large (m²), of which there are some by chance, too.
-_ROUGHEST, _SMOOTH_AREA = 0.055, 4.0
+# Tiles, ribs and gravel are no rougher than this (m), and where the cloud is noisier, than so many times the noise.
+# Crops and crowns are, however smooth spots of them are by chance.
+_ROUGHEST, _TIMES_NOISE = 0.055, 1.5
+
+# Of roofs that hang together at least so much is as smooth as that: eaves, dormers and machines are rougher.
+_SMOOTH_SHARE = 0.3
 
 
 @stage(
@@ -107,7 +110,9 @@ def segment_roofs(
     entropy and the k-means concept, section 4. Sampath, A., Shan, J., 2007, as in "Segment regions".
     """
     density = even_density(xyz) if density is None else density
-    noise = SurfaceSample(xyz).roughness(density) if noise is None else noise
+    sample = SurfaceSample(xyz)
+    most_rough = max(_ROUGHEST, _TIMES_NOISE * (sample.noise() if noise is None else noise))
+    noise = sample.roughness(density) if noise is None else noise
     monitor.resolved(density=density, noise=noise)
     used = np.flatnonzero(~np.isin(classification, NOISE))
 
@@ -116,7 +121,7 @@ def segment_roofs(
     patches = _Patches(xyz, patch, height_above_ground, density).with_decks(min_height, min_area)
     patch, is_terrain = patches.number, patches.is_terrain
     is_roof = patches.roofs(min_height, min_area) & ~is_terrain
-    is_roof = patches.smooth_or_beside(is_roof, roughness, max(_ROUGHEST, noise))
+    is_roof = patches.smooth(is_roof, roughness, most_rough)
     segment_id = _renumbered(patch, is_roof)
 
     raised = height_above_ground >= min(_RAISED, min_height)
@@ -168,12 +173,13 @@ class _Patches:
         """Return which of them are high and large enough."""
         return (self.areas >= min_area) & (self.mean(self.height) >= min_height)
 
-    def smooth_or_beside(self, chosen: np.ndarray, roughness: np.ndarray, most: float) -> np.ndarray:
-        """Return which of the chosen are as smooth as roofs, or lie beside such; ``roughness`` (n,) and ``most`` in m."""
+    def smooth(self, chosen: np.ndarray, roughness: np.ndarray, most: float) -> np.ndarray:
+        """Return which of the chosen hang together with surfaces no rougher than ``most``; ``roughness`` (n,) in m."""
         if not chosen.any():
             return chosen
-        is_smooth = chosen & (self.mean(roughness) <= most) & (self.areas >= _SMOOTH_AREA)
-        return join_beside(self.xyz, np.where(self._of(chosen), self.number, -1), is_smooth, chosen, self.density)
+        group = np.where(self._of(chosen), self.number, -1)
+        is_smooth = chosen & (self.mean(roughness) <= most)
+        return chosen & (share_joined(self.xyz, group, is_smooth, self.density) >= _SMOOTH_SHARE)
 
     @cached_property
     def _member(self) -> np.ndarray:

@@ -423,3 +423,15 @@ def test_what_is_mostly_no_roof_surface_is_no_building(scene, high, kept):
     assert (reason[: len(spot)][spot] == (Reason.SOLID_PLANE if kept else Reason.MOSTLY_OTHER)).all()
     assert complete_buildings(*given, min_roof_share=0.0)[1].any()
     assert complete_buildings(scene.xyz, scene.classification, height)[1].any()
+
+
+@pytest.mark.parametrize(("low", "high"), [(6.3, 12.0), (0.6, 3.7)])
+def test_leaves_above_a_roof_and_walls_below_don_t_count_as_its_share(scene, low, high):
+    """A shed of 36 m² at 5 m, and ten times as many points a good meter above it, or below."""
+    spot = scene.roof(10, 10, 16, 16, 5.0)
+    count = 10 * int(spot.sum())
+    scene.box([10, 10, low], [16, 16, high], count)
+    segment_id = np.append(spot.astype(np.int32), np.zeros(count, np.int32))
+    height = scene.xyz[:, 2].astype(np.float32)
+    classification = complete_buildings(scene.xyz, scene.classification, height, None, None, segment_id)[0]
+    assert (classification[: len(spot)][spot] == 6).all()

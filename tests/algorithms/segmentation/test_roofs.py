@@ -119,6 +119,73 @@ def test_what_goes_on_into_the_ground_is_no_roof(rng):
     assert reason.dtype == np.uint8
 
 
+def deck(rng, density, ramp_width, turn):
+    """Return points and heights of a deck of 24 m by 20 m, 3 m high, with a ramp of 20 m up to it from a field."""
+    plan = rng.uniform(-30, 30, (int(3600 * density), 2))
+    x, y = plan.T
+    is_deck = (x > 0) & (x < 24) & (np.abs(y) < 10)
+    is_ramp = (x <= 0) & (x > -20) & (np.abs(y) < ramp_width / 2)
+    height = np.where(is_deck, 3.0, np.where(is_ramp, 3.0 + 0.15 * x, 0.0))
+    cos, sin = np.cos(np.radians(turn)), np.sin(np.radians(turn))
+    xyz = np.column_stack([cos * x - sin * y, sin * x + cos * y, height + rng.normal(0, 0.02, len(x))])
+    return xyz, height, is_deck
+
+
+@pytest.mark.parametrize("density", [3, 12, 40])
+@pytest.mark.parametrize("turn", [0, 30, 45])
+def test_a_deck_with_a_narrow_ramp_is_a_roof(density, turn, rng):
+    xyz, height, is_deck = deck(rng, density, 6.0, turn)
+    segment, _, reason = segment_roofs(xyz, ones(xyz), height)
+    assert (segment[is_deck] > 0).mean() > 0.95
+    # Of the ramp its upper end belongs to the deck.
+    is_ramp = (height > 0) & (height < 1.6)
+    assert not segment[is_ramp | (height == 0)].any()
+    assert (reason[is_ramp & (height >= 1.5)] == Reason.INTO_GROUND).mean() > 0.9
+
+
+@pytest.mark.parametrize("density", [3, 12, 40])
+@pytest.mark.parametrize("turn", [0, 30, 45])
+def test_a_deck_with_a_ramp_as_wide_as_itself_is_none(density, turn, rng):
+    """A quay, a terrace in a slope, the head of a bridge."""
+    xyz, height, is_deck = deck(rng, density, 20.0, turn)
+    segment, _, reason = segment_roofs(xyz, ones(xyz), height)
+    assert not segment.any()
+    assert (reason[is_deck] == Reason.INTO_GROUND).mean() > 0.95
+
+
+def test_cars_parked_on_a_deck_make_it_no_narrower(rng):
+    """With holes every 6 m no circle of more than 6 m lies between them, and the ramp is 5 m wide."""
+    xyz, height, is_deck = deck(rng, 12, 5.0, 0)
+    is_car = is_deck & ((xyz[:, :2] % 6) < 2.2).all(axis=1)
+    segment, _, _ = segment_roofs(xyz[~is_car], ones(xyz[~is_car]), height[~is_car])
+    assert (segment[is_deck[~is_car]] > 0).mean() > 0.95
+
+
+@pytest.mark.parametrize("density", [2, 3, 4, 6, 12])
+def test_crops_are_no_roofs(density, rng):
+    """A field of 40 m, 3 m high, of whose leaves four fifths lie within 0.3 m of the top and the others below."""
+    plan = rng.uniform(0, 60, (3600 * density, 2))
+    is_field = (np.abs(plan - 30) < 20).all(axis=1)
+    top = 3.0 - np.abs(rng.normal(0, 0.25, len(plan))) - (rng.random(len(plan)) < 0.2) * rng.uniform(0, 2, len(plan))
+    height = np.where(is_field, np.maximum(top, 0.3), 0.0)
+    xyz = np.column_stack([plan, height + rng.normal(0, 0.02, len(plan))])
+    assert (segment_roofs(xyz, ones(xyz), height)[0] > 0).sum() < 0.02 * is_field.sum()
+
+
+@pytest.mark.parametrize("beside", [True, False])
+def test_rough_surfaces_are_roofs_beside_smooth_ones_only(beside, rng):
+    """A roof of 8 m by 4 m at 3 m, 9 cm rough, at the wall of a smooth one of 10 m at 5 m, or 4 m away from it."""
+    plan = rng.uniform(0, 40, (6400, 2))
+    is_smooth = (np.abs(plan - 20) < 5).all(axis=1)
+    is_rough = (np.abs(plan[:, 0] - (27 if beside else 31)) < 2) & (np.abs(plan[:, 1] - 20) < 4)
+    height = np.select([is_smooth, is_rough], [5.0, 3.0], 0.0)
+    xyz = np.column_stack([plan, height + rng.normal(0, np.where(is_rough, 0.09, 0.02))])
+    segment, _, _ = segment_roofs(xyz, ones(xyz), height)
+    assert (segment[is_smooth] > 0).mean() > 0.95
+    assert ((segment[is_rough] > 0).mean() > 0.5) == beside
+    assert segment[is_rough].any() == beside
+
+
 def test_roofs_and_crowns_are_given_no_reason_yet(rng):
     xyz, height, _ = village(rng)
     xyz, height, _ = with_tree(rng, xyz, height, (4, 4))
