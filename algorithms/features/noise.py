@@ -48,7 +48,7 @@ _SMOOTH_SHARE, _SMOOTHEST_SHARE, _MOST_ROUGHER = 0.2, 0.05, 3.0
 
 # Roof tiles, gravel and gutters are rougher than the smoothest surfaces, by which the noise is measured,
 # and the more so the farther apart the points are (m; share of the point spacing).
-_LEAST_ROUGHNESS, _ROUGHNESS_OF_SPACING = 0.02, 0.08
+_LEAST_ROUGHNESS, _ROUGHNESS_OF_SPACING = 0.02, 0.05
 
 
 class SurfaceSample:

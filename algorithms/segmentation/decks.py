@@ -9,7 +9,7 @@ from ..packages import ndimage
 
 # Cells so wide that no gap between scan lines, or between points by chance, parts what hangs together: in spacings of
 # points, and at least (m).
-_CELL_SPACINGS, _LEAST_CELL = 3.0, 1.0
+_CELL_SPACINGS, _LEAST_CELL = 3.0, 2.0
 
 # A ramp rises no more than this over its length, and the wall of a deck does.
 _STEEPEST = 0.5

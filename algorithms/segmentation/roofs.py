@@ -25,6 +25,9 @@ _RAISED = 1.5
 # A surface of which more than this share lies lower than this (m) goes on into the ground: a bridge, a ramp, a slope.
 _LOW_SHARE, _LOW = 0.1, 0.5
 
+# Points are held against planes of neighbors, which are off by so much of the point spacing where the points lie.
+_BORROWED = 0.06
+
 # Tiles, ribs and gravel are no rougher than this (m), and where the cloud is noisier, than so many times the noise.
 # Crops and crowns are, however smooth spots of them are by chance.
 _ROUGHEST, _TIMES_NOISE = 0.055, 1.5
@@ -110,9 +113,12 @@ def segment_roofs(
     entropy and the k-means concept, section 4. Sampath, A., Shan, J., 2007, as in "Segment regions".
     """
     density = even_density(xyz) if density is None else density
-    sample = SurfaceSample(xyz)
-    most_rough = max(_ROUGHEST, _TIMES_NOISE * (sample.noise() if noise is None else noise))
-    noise = sample.roughness(density) if noise is None else noise
+    if noise is None:
+        sample = SurfaceSample(xyz)
+        noise = float(np.hypot(sample.roughness(density), _BORROWED / np.sqrt(density)))
+        most_rough = max(_ROUGHEST, noise, _TIMES_NOISE * sample.noise())
+    else:
+        most_rough = max(_ROUGHEST, _TIMES_NOISE * noise)
     monitor.resolved(density=density, noise=noise)
     used = np.flatnonzero(~np.isin(classification, NOISE))
 

@@ -9,6 +9,7 @@ from lidar_buildings.algorithms.segmentation.extent import (
     plan_areas,
     share_around,
     share_beneath,
+    share_joined,
 )
 
 
@@ -109,3 +110,12 @@ def test_what_passes_a_surface_is_the_same_at_any_density(rng, density):
     assert share_beneath(xyz, group, density)[0] == pytest.approx(1 / 3, abs=0.04)
     # Cells hold 2.25 points on the mean; of those with a roof point 1 - exp(-0.75) have one beneath.
     assert penetration(xyz, group, density)[0] == pytest.approx(0.53, abs=0.05)
+
+
+def test_shares_of_what_hangs_together_by_hand():
+    """Four cells in a row, one of them of two groups, and two cells apart: of each row so much is of the chosen."""
+    xyz = at_cells(0, 1, 2, 2, 3, 7, 8, 20)
+    group = np.array([0, 0, 0, 1, 1, 2, 3, -1])
+    np.testing.assert_allclose(share_joined(xyz, group, np.array([0, 1, 0, 1], bool), 1.0), [0.5, 0.5, 0.5, 0.5])
+    np.testing.assert_allclose(share_joined(xyz, group, np.array([1, 0, 0, 0], bool), 1.0), [0.75, 0.75, 0, 0])
+    np.testing.assert_allclose(share_joined(xyz, group, np.ones(5, bool), 1.0), [1, 1, 1, 1, 0])
