@@ -25,8 +25,9 @@ _RAISED = 1.5
 # A surface of which more than this share lies lower than this (m) goes on into the ground: a bridge, a ramp, a slope.
 _LOW_SHARE, _LOW = 0.1, 0.5
 
-# Points are held against planes of neighbors, which are off by so much of the point spacing where the points lie.
-_BORROWED = 0.06
+# With fewer points per square meter than this, planes reach farther than half a meter. Points are held against planes
+# of neighbors, and these are off by so much of the point spacing beyond.
+_DENSE, _FARTHER = 10.0, 0.09
 
 # Tiles, ribs and gravel are no rougher than this (m), and where the cloud is noisier, than so many times the noise.
 # Crops and crowns are, however smooth spots of them are by chance.
@@ -113,12 +114,7 @@ def segment_roofs(
     entropy and the k-means concept, section 4. Sampath, A., Shan, J., 2007, as in "Segment regions".
     """
     density = even_density(xyz) if density is None else density
-    if noise is None:
-        sample = SurfaceSample(xyz)
-        noise = float(np.hypot(sample.roughness(density), _BORROWED / np.sqrt(density)))
-        most_rough = max(_ROUGHEST, noise, _TIMES_NOISE * sample.noise())
-    else:
-        most_rough = max(_ROUGHEST, _TIMES_NOISE * noise)
+    noise, most_rough = _tolerances(xyz, density) if noise is None else (noise, max(_ROUGHEST, _TIMES_NOISE * noise))
     monitor.resolved(density=density, noise=noise)
     used = np.flatnonzero(~np.isin(classification, NOISE))
 
@@ -141,6 +137,14 @@ def segment_roofs(
     cluster_id = segment_id.copy()
     cluster_id[others] = np.where(ids > 0, ids + segment_id.max(initial=0), 0)
     return segment_id, cluster_id, np.where(raised & goes_on, np.uint8(Reason.INTO_GROUND), np.uint8(0))
+
+
+def _tolerances(xyz: np.ndarray, density: float) -> tuple[float, float]:
+    """Return how far points may lie off planes of neighbors (one deviation), and how rough roofs may be, m."""
+    sample = SurfaceSample(xyz)
+    farther = np.sqrt(max(0.0, 1 / density - 1 / _DENSE))
+    noise = float(np.hypot(sample.roughness(density), _FARTHER * farther))
+    return noise, max(_ROUGHEST, noise, _TIMES_NOISE * sample.noise())
 
 
 @dataclass(frozen=True)
