@@ -65,7 +65,8 @@ SurfaceNoise = Annotated[
         low=0,
         high=10,
         open_low=True,
-        automatic="measured on the smoothest fifth of the cloud, at least 0.02 m; 0.05 point spacings on top.",
+        automatic="measured on the smoothest fifth of the cloud, at least 0.02 m; 0.05 point spacings on top, and more "
+        "for roofs with less than 10 points/m².",
         advanced=True,
     ),
 ]

@@ -52,7 +52,7 @@ _TEXTS = {
     Reason.TOO_SMALL: "No building: smaller than the smallest building, with all that touches it.",
     Reason.TOO_NARROW: "No building: narrower everywhere than the narrowest building, as walls and railings are.",
     Reason.TOO_LOW: "No building: too near the ground to belong to the roof at its place.",
-    Reason.MOSTLY_OTHER: "No building: most of what stands in the outline lies on no roof surface, as in crowns.",
+    Reason.MOSTLY_OTHER: "No building: too little of what lies at the height of the roof is on surfaces, as in crowns.",
     Reason.AMID_OTHERS: "No building: most of what stands around it is none, as around smooth spots of crowns.",
     Reason.ALIKE: "Undecided: all clusters have the same entropy.",
     Reason.WITHOUT_ENTROPY: "Undecided: its points have no extent, so they have no entropy.",

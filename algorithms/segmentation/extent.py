@@ -207,7 +207,7 @@ def share_joined(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray, density
     grid = grid_over(xyz, _cell_size(density))
     member = group >= 0
     count = grid.rows * grid.columns
-    owner, cell = np.divmod(distinct(group[member].astype(np.int64) * count + grid.number(xyz[member]))[0], count)
+    owner, cell = np.divmod(np.unique(group[member].astype(np.int64) * count + grid.number(xyz[member])), count)
     cells, which = distinct(cell)
     part = connected_cells(grid, cells)[1]
     is_chosen = np.zeros(len(cells), bool)

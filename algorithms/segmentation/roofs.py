@@ -82,8 +82,10 @@ def segment_roofs(
     """Gather the points above the ground into roof surfaces and clusters of everything else.
 
     A roof surface is a patch on which neighbors share a plane, that is large and high enough and does not go on
-    into the ground as bridges and ramps do. What is left above the ground (crowns, hedges, wires, roof edges) is
-    clustered by distance, so that both kinds can be told apart by their entropy afterwards.
+    into the ground as bridges and slopes do; a deck with a narrow ramp is parted from it. Surfaces rougher than roofs
+    are, smooth spots of crops and crowns, are none unless they hang together with smoother ones. What is left above
+    the ground (crowns, hedges, wires, roof edges) is clustered by distance, so that both kinds can be told apart by
+    their entropy afterwards.
 
     Parameters
     ----------
