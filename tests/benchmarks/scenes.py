@@ -25,6 +25,13 @@ PASSING = 0.5
 MISFIT = 0.08
 
 
+# A field of maize: where it is, its height and how far below that most leaves lie (m), a fifth of them up to 2 m deeper.
+FIELD, MAIZE, LEAVES = Rect(60.0, 62.0, 90.0, 44.0, 0.0), 2.8, 0.25
+
+# Of the pulses that meet maize so many come back from the ground.
+THROUGH_MAIZE = 0.1
+
+
 @dataclass(frozen=True)
 class Steps(Relief):
     """A slope whose rise is gathered in steps so high (m), at even distances."""
@@ -175,6 +182,14 @@ def churches() -> Scene:
     return parish
 
 
+def farm() -> Scene:
+    """Three houses at a field of maize."""
+    land = Scene(Relief(SIDE, gradient=0.02))
+    for x, y in ((25.0, 20.0), (95.0, 22.0), (60.0, 103.0)):
+        _house(land, Rect(x, y, 14.0, 9.0, 0.2), 4.0, 35.0)
+    return land
+
+
 # Name, scene, and whether the strips don't fit together.
 SCENES: tuple[tuple[str, Callable[[], Scene], bool], ...] = (
     ("blocks of a city", city, False),
@@ -185,6 +200,7 @@ SCENES: tuple[tuple[str, Callable[[], Scene], bool], ...] = (
     ("halls with machines and wings", estate, False),
     ("halls of glass", greenhouses, False),
     ("churches and towers", churches, False),
+    ("farm with a field of maize", farm, False),
     ("solar park, no building", solar_park, False),
     ("railway station with trains", station, False),
     ("container port", port, False),
@@ -200,7 +216,21 @@ def scanned(make: Callable[[], Scene], misfit: bool, density: float) -> Scan:
     passes = np.isin(made.segment_id, glass) & (np.random.default_rng(0).random(len(made.xyz)) < PASSING)
     made.xyz[passes, 2] = scene.relief.ground(*made.xyz[passes, :2].T)
     made.classification[passes] = PointClass.GROUND
+    if make is farm:
+        _sow(made)
     return made
+
+
+def _sow(made: Scan) -> None:
+    """Let maize grow in the field."""
+    rng = np.random.default_rng(0)
+    in_field = FIELD.contains(*made.xyz[:, :2].T) & (made.classification == PointClass.GROUND)
+    leaves = np.flatnonzero(in_field & (rng.random(len(in_field)) >= THROUGH_MAIZE))
+    below = np.abs(rng.normal(0, LEAVES, len(leaves))) + (rng.random(len(leaves)) < 0.2) * rng.uniform(
+        0, 2, len(leaves)
+    )
+    made.xyz[leaves, 2] += np.maximum(MAIZE - below, 0.3)
+    made.classification[leaves] = PointClass.MEDIUM_VEGETATION
 
 
 def _house(scene: Scene, rect: Rect, eave: float, pitch: float = 0.0, kind: str = "house") -> None:
