@@ -25,7 +25,7 @@ PASSING = 0.5
 MISFIT = 0.08
 
 
-# A field of maize: where it is, its height and how far below that most leaves lie (m), a fifth of them up to 2 m deeper.
+# A field of maize: where it is, its height and how far below that most leaves are (m), a fifth of them up to 2 m more.
 FIELD, MAIZE, LEAVES = Rect(60.0, 62.0, 90.0, 44.0, 0.0), 2.8, 0.25
 
 # Of the pulses that meet maize so many come back from the ground.
