@@ -80,7 +80,9 @@ HARDER: tuple[tuple[str, dict[str, Any]], ...] = (
     ("buildings/ahn-amsterdam-1", {"returns": False}),
     ("buildings/ahn-amsterdam-1", {"keep": 0.25}),
     ("buildings/ign-stbarth", {"noise": 0.1}),
+    ("buildings/ahn3-delft", {"noise": 0.1}),
     ("buildings/ign-bridge-none", {"keep": 0.25}),
+    *((f"buildings/{name}", {"step": 0.3}) for name in ("ign-chalet", "ahn-amsterdam-1", "ign-stbarth")),
 )
 
 

@@ -87,15 +87,19 @@ def classified(name: str, stage: str) -> Result:
     return Result(cloud, outcome.layers, time.perf_counter() - start)
 
 
-def made_harder(name: str, keep: float = 1.0, noise: float = 0.0, returns: bool = True) -> tuple[Cloud, np.ndarray]:
+def made_harder(
+    name: str, keep: float = 1.0, noise: float = 0.0, returns: bool = True, step: float = 0.0
+) -> tuple[Cloud, np.ndarray]:
     """Return a cloud with a share of its points, normal noise (m) in their heights, and returns or none; and its truth.
 
-    The same every time. What else the file tells of its points is left out.
+    Heights are rounded to steps (m) where these are given. The same every time. What else the file tells of its points is left out.
     """
     cloud, rng = read_cloud(path_of(name)), np.random.default_rng(0)
     kept = rng.random(len(cloud)) < keep
     xyz = cloud.get("xyz")[kept]
     xyz[:, 2] += rng.normal(0.0, noise, len(xyz))
+    if step:
+        xyz[:, 2] = np.round(xyz[:, 2] / step) * step
     counted = ("return_number", "number_of_returns") if returns else ()
     return create_cloud({"xyz": xyz, **{name: cloud.get(name)[kept] for name in counted}}), truth(name)[kept]
 
