@@ -90,9 +90,9 @@ def classified(name: str, stage: str) -> Result:
 def made_harder(
     name: str, keep: float = 1.0, noise: float = 0.0, returns: bool = True, step: float = 0.0
 ) -> tuple[Cloud, np.ndarray]:
-    """Return a cloud with a share of its points, normal noise (m) in their heights, and returns or none; and its truth.
+    """Return a cloud with a share of its points, noise (m) in their heights or steps (m), and returns or none; its truth.
 
-    Heights are rounded to steps (m) where these are given. The same every time. What else the file tells of its points is left out.
+    The same every time. What else the file tells of its points is left out.
     """
     cloud, rng = read_cloud(path_of(name)), np.random.default_rng(0)
     kept = rng.random(len(cloud)) < keep
