@@ -90,7 +90,7 @@ def classified(name: str, stage: str) -> Result:
 def made_harder(
     name: str, keep: float = 1.0, noise: float = 0.0, returns: bool = True, step: float = 0.0
 ) -> tuple[Cloud, np.ndarray]:
-    """Return a cloud with a share of its points, noise (m) in their heights or steps (m), and returns or none; its truth.
+    """Return a cloud with a share of its points, noise or steps in its heights (m), and returns or none; and its truth.
 
     The same every time. What else the file tells of its points is left out.
     """
