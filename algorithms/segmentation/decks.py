@@ -44,10 +44,16 @@ def part_decks(
     -------
     ndarray of shape (n,), int32
         Deck of each point from 0, -1 where it lies on none.
+
+    Notes
+    -----
+    A deck is a high part of a patch that goes on to lower parts along less than half of its width. A bridge goes on at
+    both of its ends, as wide as it is.
     """
     deck = np.full(len(xyz), -1, np.int32)
-    member = np.flatnonzero(patch >= 0)
-    if not len(member) or not (height[member] >= min_height).any():
+    is_high = np.bincount(patch + 1, height >= min_height) > 0
+    member = np.flatnonzero((patch >= 0) & is_high[patch + 1])
+    if not len(member):
         return deck
     grid = grid_over(xyz, max(_LEAST_CELL, _CELL_SPACINGS / np.sqrt(density)))
     # One copy of the grid for each patch: its empty border keeps them apart.
@@ -59,8 +65,6 @@ def part_decks(
     is_low = level < min_height
     high = np.flatnonzero(~is_low)
     count, part = connected_cells(grid, cells[high])
-    if not count:
-        return deck
     area = np.bincount(part) * grid.size**2
     contact = _LENGTH * np.bincount(part, _goes_on(grid, cells, top, is_low)[high], count) * grid.size
     # No circle in a part is larger than the part: most are seen to be too narrow without looking for the largest.
@@ -72,7 +76,7 @@ def part_decks(
     deck_of_cell = np.full(len(cells), -1, np.int32)
     deck_of_cell[high] = number[part]
     # At its edge a deck shares cells with what lies at its foot.
-    is_deck = xyz[member, 2] >= top[which] - grid.size
+    is_deck = xyz[member, 2] >= top[which] - _STEEPEST * grid.size
     deck[member[is_deck]] = deck_of_cell[which[is_deck]]
     return deck
 
