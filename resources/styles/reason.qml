@@ -15,7 +15,7 @@
       <category value="14" label="No building: smaller than the smallest building, with all that touches it" color="238,153,170,255" pointSize="0" render="true"/>
       <category value="15" label="No building: narrower everywhere than the narrowest building, as walls and railings are" color="187,85,102,255" pointSize="0" render="true"/>
       <category value="16" label="No building: too near the ground to belong to the roof at its place" color="153,68,85,255" pointSize="0" render="true"/>
-      <category value="17" label="No building: most of what stands in the outline lies on no roof surface, as in crowns" color="119,51,68,255" pointSize="0" render="true"/>
+      <category value="17" label="No building: too little of what lies at the height of the roof is on surfaces, as in crowns" color="119,51,68,255" pointSize="0" render="true"/>
       <category value="18" label="No building: most of what stands around it is none, as around smooth spots of crowns" color="136,34,85,255" pointSize="0" render="true"/>
       <category value="21" label="Undecided: all clusters have the same entropy" color="120,120,120,255" pointSize="0" render="true"/>
       <category value="22" label="Undecided: its points have no extent, so they have no entropy" color="80,80,80,255" pointSize="0" render="true"/>

@@ -6,6 +6,7 @@ import pytest
 from lidar_buildings.algorithms.buildings.buildings import classify_buildings
 from lidar_buildings.algorithms.buildings.reasons import Reason
 from lidar_buildings.algorithms.cloud.density import point_density
+from lidar_buildings.algorithms.segmentation.decks import part_decks
 from lidar_buildings.algorithms.segmentation.roofs import segment_roofs
 from lidar_buildings.algorithms.stage import Monitor
 
@@ -151,6 +152,32 @@ def test_a_deck_with_a_ramp_as_wide_as_itself_is_none(density, turn, rng):
     segment, _, reason = segment_roofs(xyz, ones(xyz), height)
     assert not segment.any()
     assert (reason[is_deck] == Reason.INTO_GROUND).mean() > 0.95
+
+
+def test_a_bridge_on_scan_lines_is_none(rng):
+    """A deck 8 m wide over a river 40 m wide and 4 m deep, on lines 1.2 m apart, across which it hangs together."""
+    x, y = rng.uniform([-60, -40], [60, 40], (115_200, 2)).T
+    x = np.round(x / 1.2) * 1.2 + rng.normal(0, 0.03, len(x))
+    is_road = np.abs(y) < 4
+    ground = -4 * np.clip((22 - np.abs(x)) / 6, 0, 1)
+    z = np.where(is_road, 0, ground) + rng.normal(0, 0.02, len(x))
+    turned = np.column_stack([x * np.cos(0.5) - y * np.sin(0.5), x * np.sin(0.5) + y * np.cos(0.5), z])
+    assert not segment_roofs(turned, ones(z), np.where(is_road, -ground, 0))[0].any()
+
+
+def test_a_high_part_without_a_ramp_to_be_seen_stays_with_its_patch(rng):
+    plan = rng.uniform(0, 40, (6400, 2))
+    is_high, is_between = plan[:, 0] < 15, (plan[:, 0] >= 15) & (plan[:, 0] < 25)
+    xyz = np.column_stack([plan, 3.0 * is_high])[~is_between]
+    patch = np.zeros(len(xyz), np.int32)
+    assert (part_decks(xyz, patch, xyz[:, 2], 4.0, 2.0, 2.0) == -1).all()
+
+
+@pytest.mark.parametrize("noise", [0.1, 0.15])
+def test_roofs_are_no_rougher_than_the_noise_of_the_cloud(noise, rng):
+    xyz, height, truth = village(rng, 40, noise)
+    segment, _, _ = segment_roofs(xyz, ones(xyz), height)
+    assert (segment[truth > 0] > 0).mean() > 0.75
 
 
 def test_cars_parked_on_a_deck_make_it_no_narrower(rng):
