@@ -21,6 +21,9 @@ _CELL_SPACINGS, _LEAST_CELL = 1.2, 0.5
 # Points lower than this stand on the ground (kerbs, plants, steps) and are no wall, m.
 _WALL_FOOT = 0.5
 
+# Points so far above and below the roof of a building are looked for on its surfaces, m.
+_AT_ROOF = 1.0
+
 # Gaps are closed over so many point spacings, and no less and no more than so far (m).
 _GAP_SPACINGS, _LEAST_GAP, _MOST_GAP = 4.0, 3.0, 20.0
 
@@ -103,8 +106,8 @@ def complete_buildings(
         float,
         Param(
             "Minimum share of roof surfaces",
-            "Share of the points at the height of a building's roof, as far above and below it as the clearance, that "
-            "must lie on roof surfaces. In crowns with a smooth side it is less. 0 takes any.",
+            "Share of the points up to a meter above and below a building's roof that must lie on roof surfaces. In "
+            "crowns with a smooth side it is less. 0 takes any.",
             low=0,
             high=1,
         ),
@@ -182,7 +185,7 @@ def complete_buildings(
     building, refused = _numbered(covered, min_area, min_width, cell_size)
     top = _roof_top(cell, xyz[:, 2], is_roof, covered)
     if segment_id is not None:
-        at_roof = raised & (np.abs(xyz[:, 2] - top[cell]) <= roof_clearance)
+        at_roof = raised & (np.abs(xyz[:, 2] - top[cell]) <= _AT_ROOF)
         building, refused = _mostly_roof(building, refused, cell, at_roof, is_roof & (segment_id > 0), min_roof_share)
     columns = _Columns(building, top, cell_size)
     monitor.progress(0.6)

@@ -80,10 +80,11 @@ def segment_patches(
     on_surface = (planes.deviation[plane] <= _SMOOTH * noise) & (plane >= 0)
     on_surface &= planes.normal[plane, 2] >= np.sin(np.radians(90 - max_slope))
     links = _links(xyz, planes, plane, on_surface, noise, monitor.part(0.8, 1))
-    # Three of its points make a plane and tell nothing of how far others lie off it.
+    # Three of its points make a plane and tell nothing of how far others lie off it. Wide neighborhoods hold more
+    # points than this: there it is a little too much.
     across = planes.deviation * np.sqrt(neighborhood.count / (neighborhood.count - 3))
     roughness = across.astype(np.float32)[plane]
-    del planes, plane
+    del planes, plane, across
     component = csgraph.connected_components(links, directed=False)[1]
     return np.where(on_surface, component, -1).astype(np.int32), roughness
 

@@ -29,12 +29,13 @@ _LOW_SHARE, _LOW = 0.1, 0.5
 # of neighbors, and these are off by so much of the point spacing beyond.
 _DENSE, _FARTHER = 10.0, 0.09
 
-# Tiles, ribs and gravel are no rougher than this (m), and where the cloud is noisier, than so many times the noise.
-# Crops and crowns are, however smooth spots of them are by chance.
+# Tiles, ribs and gravel are no rougher than this (m), nor than points lie off planes, and where the cloud is noisier,
+# than so many times the noise. Crops and crowns are, however smooth spots of them are by chance.
 _ROUGHEST, _TIMES_NOISE = 0.055, 1.5
 
-# Of roofs that hang together at least so much is as smooth as that: eaves, dormers and machines are rougher.
-_SMOOTH_SHARE = 0.3
+# What is rougher is a roof where at least so much of what hangs together with it is not: eaves, dormers, machines. And
+# so is what is smooth but smaller than this (m²), as crops have such spots.
+_SMOOTH_SHARE, _LARGE = 0.3, 10.0
 
 
 @stage(
@@ -116,7 +117,8 @@ def segment_roofs(
     entropy and the k-means concept, section 4. Sampath, A., Shan, J., 2007, as in "Segment regions".
     """
     density = even_density(xyz) if density is None else density
-    noise, most_rough = _tolerances(xyz, density) if noise is None else (noise, max(_ROUGHEST, _TIMES_NOISE * noise))
+    sample = SurfaceSample(xyz)
+    noise = _off_planes(sample, density) if noise is None else noise
     monitor.resolved(density=density, noise=noise)
     used = np.flatnonzero(~np.isin(classification, NOISE))
 
@@ -125,7 +127,7 @@ def segment_roofs(
     patches = _Patches(xyz, patch, height_above_ground, density).with_decks(min_height, min_area)
     patch, is_terrain = patches.number, patches.is_terrain
     is_roof = patches.roofs(min_height, min_area) & ~is_terrain
-    is_roof = patches.smooth(is_roof, roughness, most_rough)
+    is_roof = patches.smooth(is_roof, roughness, max(_ROUGHEST, noise, _TIMES_NOISE * sample.noise()))
     segment_id = _renumbered(patch, is_roof)
 
     raised = height_above_ground >= min(_RAISED, min_height)
@@ -141,12 +143,10 @@ def segment_roofs(
     return segment_id, cluster_id, np.where(raised & goes_on, np.uint8(Reason.INTO_GROUND), np.uint8(0))
 
 
-def _tolerances(xyz: np.ndarray, density: float) -> tuple[float, float]:
-    """Return how far points may lie off planes of neighbors (one deviation), and how rough roofs may be, m."""
-    sample = SurfaceSample(xyz)
+def _off_planes(sample: SurfaceSample, density: float) -> float:
+    """Return how far points of a surface lie off the planes of their neighbors (one deviation), m."""
     farther = np.sqrt(max(0.0, 1 / density - 1 / _DENSE))
-    noise = float(np.hypot(sample.roughness(density), _FARTHER * farther))
-    return noise, max(_ROUGHEST, noise, _TIMES_NOISE * sample.noise())
+    return float(np.hypot(sample.roughness(density), _FARTHER * farther))
 
 
 @dataclass(frozen=True)
@@ -186,12 +186,13 @@ class _Patches:
         return (self.areas >= min_area) & (self.mean(self.height) >= min_height)
 
     def smooth(self, chosen: np.ndarray, roughness: np.ndarray, most: float) -> np.ndarray:
-        """Return which of the chosen hang together with surfaces no rougher than ``most``; ``roughness`` (n,) in m."""
+        """Return which of the chosen are large and no rougher than ``most`` (m), or hang together with such as are."""
         if not chosen.any():
             return chosen
         group = np.where(self._of(chosen), self.number, -1)
         is_smooth = chosen & (self.mean(roughness) <= most)
-        return chosen & (share_joined(self.xyz, group, is_smooth, self.density) >= _SMOOTH_SHARE)
+        share = share_joined(self.xyz, group, is_smooth, self.density)
+        return chosen & ((is_smooth & (self.areas >= _LARGE)) | (share >= _SMOOTH_SHARE))
 
     @cached_property
     def _member(self) -> np.ndarray:

@@ -166,3 +166,16 @@ def test_points_without_a_plane_do_no_harm(xyz):
 def test_cancel_gets_through(rng):
     with pytest.raises(Cancelled):
         segment_patches(gable(rng, 5, 0.02)[0], 5.0, 0.02, 75.0, Listening(stop_at=0.3))
+
+
+@pytest.mark.parametrize("noise", [0.02, 0.05])
+def test_roughness_is_the_noise_across_the_surface(noise, rng):
+    xyz = np.column_stack([rng.uniform(0, 20, (8000, 2)), rng.normal(0, noise, 8000)])
+    patch, roughness = segment_patches(xyz, 20.0, noise, 75.0, Monitor())
+    assert roughness.dtype == np.float32
+    # Each point takes the smoothest of the planes that hold it.
+    assert 0.6 * noise < roughness[patch >= 0].mean() < noise
+
+
+def test_few_points_have_no_roughness():
+    assert segment_patches(np.zeros((7, 3)), 1.0, 0.02, 75.0, Monitor())[1].shape == (7,)

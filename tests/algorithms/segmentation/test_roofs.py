@@ -174,7 +174,7 @@ def test_a_high_part_without_a_ramp_to_be_seen_stays_with_its_patch(rng):
 
 
 @pytest.mark.parametrize("noise", [0.1, 0.15])
-def test_roofs_are_no_rougher_than_the_noise_of_the_cloud(noise, rng):
+def test_roofs_of_very_noisy_clouds_are_found(noise, rng):
     xyz, height, truth = village(rng, 40, noise)
     segment, _, _ = segment_roofs(xyz, ones(xyz), height)
     assert (segment[truth > 0] > 0).mean() > 0.75
@@ -197,6 +197,20 @@ def test_crops_are_no_roofs(density, rng):
     height = np.where(is_field, np.maximum(top, 0.3), 0.0)
     xyz = np.column_stack([plan, height + rng.normal(0, 0.02, len(plan))])
     assert (segment_roofs(xyz, ones(xyz), height)[0] > 0).sum() < 0.02 * is_field.sum()
+
+
+@pytest.mark.parametrize("noise", [None, 0.07])
+def test_a_house_at_a_field_of_crops_is_found(noise, rng):
+    """A flat roof of 10 m at the edge of a rough field of 40 m as high, 2 points per m²; noise measured or given."""
+    plan = rng.uniform(0, 60, (7200, 2))
+    is_field = (np.abs(plan - 30) < 20).all(axis=1)
+    is_house = (np.abs(plan - [55, 30]) < 5).all(axis=1)
+    height = np.select([is_house, is_field], [3.0, 3.0 - np.abs(rng.normal(0, 0.4, len(plan)))], 0.0)
+    xyz = np.column_stack([plan, height + rng.normal(0, 0.02, len(plan))])
+    segment, _, _ = segment_roofs(xyz, ones(xyz), height, noise=noise)
+    assert (segment[is_house] > 0).mean() > 0.95
+    # Of what touches the house, some hangs together with it.
+    assert (segment[is_field] > 0).mean() < 0.1
 
 
 @pytest.mark.parametrize("beside", [True, False])
