@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..cloud.cells import Grid, connected_cells, distinct, find_cells, grid_over
+from ..groups import members
 from ..packages import ndimage
 
 # Cells so wide that no gap between scan lines, or between points by chance, parts what hangs together: in spacings of
@@ -70,9 +71,9 @@ def part_decks(
     # No circle in a part is larger than the part: most are seen to be too narrow without looking for the largest.
     may_be = (area >= min_area) & (contact > 0) & (contact <= _MOST_OF_WIDTH * 2 * np.sqrt(area / np.pi))
     number = np.full(count, -1, np.int32)
-    for candidate in np.flatnonzero(may_be):
-        if contact[candidate] < _MOST_OF_WIDTH * _width(grid, cells[high[part == candidate]]):
-            number[candidate] = number.max() + 1
+    for following, places in members(np.where(may_be[part], part + 1, 0)).items():
+        if contact[following - 1] < _MOST_OF_WIDTH * _width(grid, cells[high[places]]):
+            number[following - 1] = number.max() + 1
     deck_of_cell = np.full(len(cells), -1, np.int32)
     deck_of_cell[high] = number[part]
     # At its edge a deck shares cells with what lies at its foot.

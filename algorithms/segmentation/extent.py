@@ -7,7 +7,7 @@ from typing import Optional
 
 import numpy as np
 
-from ..cloud.cells import connected_cells, distinct, find_cells, grid_over
+from ..cloud.cells import Grid, connected_cells, distinct, find_cells, grid_over
 
 # Cells in which area and what lies beneath are counted, in point spacings; for the area they have a least size (m).
 _CELL_SPACINGS, _LEAST_CELL = 1.5, 0.3
@@ -46,10 +46,8 @@ def plan_areas(xyz: np.ndarray, group: np.ndarray, density: float) -> np.ndarray
     ndarray of shape (group.max() + 1,)
         Occupied cells times their area.
     """
-    size = _cell_size(density)
-    grid = grid_over(xyz, size)
-    pairs = np.unique(group.astype(np.int64) * (grid.rows * grid.columns) + grid.number(xyz))
-    return np.bincount(pairs // (grid.rows * grid.columns), minlength=int(group.max()) + 1) * size**2
+    grid, owner, _ = _occupied(xyz, group, density)
+    return np.bincount(owner, minlength=int(group.max()) + 1) * grid.size**2
 
 
 def penetration(
@@ -139,10 +137,7 @@ def join_beside(xyz: np.ndarray, group: np.ndarray, strong: np.ndarray, weak: np
     ndarray of shape (group.max() + 1,), bool
         Groups taken. A weak one is, when a fifth of its cells are cells of groups taken or next to one.
     """
-    grid = grid_over(xyz, _cell_size(density))
-    member = group >= 0
-    count = grid.rows * grid.columns
-    owner, cell = np.divmod(np.unique(group[member].astype(np.int64) * count + grid.number(xyz[member])), count)
+    grid, owner, cell = _occupied(xyz, group, density)
     cells, which = distinct(cell)
     size = np.maximum(np.bincount(owner, minlength=len(strong)), 1)
     near, taken, joins = np.zeros(len(cells), bool), strong.copy(), strong
@@ -204,10 +199,7 @@ def share_joined(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray, density
         Of the cells that touch one another, seen from above, the share with points of chosen groups; the mean over the
         cells of a group, 0 for groups without points.
     """
-    grid = grid_over(xyz, _cell_size(density))
-    member = group >= 0
-    count = grid.rows * grid.columns
-    owner, cell = np.divmod(np.unique(group[member].astype(np.int64) * count + grid.number(xyz[member])), count)
+    grid, owner, cell = _occupied(xyz, group, density)
     cells, which = distinct(cell)
     part = connected_cells(grid, cells)[1]
     is_chosen = np.zeros(len(cells), bool)
@@ -215,6 +207,14 @@ def share_joined(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray, density
     share = np.bincount(part, is_chosen) / np.bincount(part)
     size = np.maximum(np.bincount(owner, minlength=len(chosen)), 1)
     return np.bincount(owner, share[part[which]], len(chosen)) / size
+
+
+def _occupied(xyz: np.ndarray, group: np.ndarray, density: float) -> tuple[Grid, np.ndarray, np.ndarray]:
+    """Return the grid that area is counted in, and group and cell of each cell of a group (m,), sorted by groups."""
+    grid = grid_over(xyz, _cell_size(density))
+    member, count = group >= 0, grid.rows * grid.columns
+    owner, cell = np.divmod(np.unique(group[member].astype(np.int64) * count + grid.number(xyz)[member]), count)
+    return grid, owner, cell
 
 
 def _columns(xyz: np.ndarray, group: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

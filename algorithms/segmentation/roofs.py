@@ -123,12 +123,14 @@ def segment_roofs(
     used = np.flatnonzero(~np.isin(classification, NOISE))
 
     patch, roughness = np.full(len(xyz), -1, np.int32), np.zeros(len(xyz), np.float32)
-    patch[used], roughness[used] = segment_patches(xyz[used], density, noise, max_slope, monitor.part(0, 0.8))
+    patch[used], roughness[used] = segment_patches(xyz[used], density, noise, max_slope, monitor.part(0, 0.75))
     patches = _Patches(xyz, patch, height_above_ground, density).with_decks(min_height, min_area)
     patch, is_terrain = patches.number, patches.is_terrain
+    monitor.progress(0.8)
     is_roof = patches.roofs(min_height, min_area) & ~is_terrain
     is_roof = patches.smooth(is_roof, roughness, max(_ROUGHEST, noise, _TIMES_NOISE * sample.noise()))
     segment_id = _renumbered(patch, is_roof)
+    monitor.progress(0.85)
 
     raised = height_above_ground >= min(_RAISED, min_height)
     # Points of no patch, -1, find the last entry.
@@ -136,7 +138,7 @@ def segment_roofs(
     is_other = raised & (segment_id == 0) & ~goes_on
     others = used[is_other[used]]
     reach = 2 / np.sqrt(density)
-    component = connect(xyz[others], reach, reach, monitor.part(0.8, 1))
+    component = connect(xyz[others], reach, reach, monitor.part(0.85, 1))
     ids = number_large(_high(component, height_above_ground[others], min_height), min_area * density)
     cluster_id = segment_id.copy()
     cluster_id[others] = np.where(ids > 0, ids + segment_id.max(initial=0), 0)
@@ -186,7 +188,7 @@ class _Patches:
         return (self.areas >= min_area) & (self.mean(self.height) >= min_height)
 
     def smooth(self, chosen: np.ndarray, roughness: np.ndarray, most: float) -> np.ndarray:
-        """Return which of the chosen are large and no rougher than ``most`` (m), or hang together with such as are."""
+        """Return which of the chosen are smooth enough for roofs: ``roughness`` of the points (n,), ``most`` of it, m."""
         if not chosen.any():
             return chosen
         group = np.where(self._of(chosen), self.number, -1)

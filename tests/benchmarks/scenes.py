@@ -24,12 +24,18 @@ PASSING = 0.5
 # Of strips that were not adjusted to one another, every second lies so much higher (m).
 MISFIT = 0.08
 
-
-# A field of maize: where it is, its height and how far below that most leaves are (m), a fifth of them up to 2 m more.
-FIELD, MAIZE, LEAVES = Rect(60.0, 62.0, 90.0, 44.0, 0.0), 2.8, 0.25
+# The height of maize and how far below that most leaves are (m), a fifth of them up to 2 m more.
+MAIZE, LEAVES = 2.8, 0.25
 
 # Of the pulses that meet maize so many come back from the ground.
 THROUGH_MAIZE = 0.1
+
+
+@dataclass
+class Farmland(Scene):
+    """A scene with fields of maize."""
+
+    fields: tuple[Rect, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -184,7 +190,7 @@ def churches() -> Scene:
 
 def farm() -> Scene:
     """Three houses at a field of maize."""
-    land = Scene(Relief(SIDE, gradient=0.02))
+    land = Farmland(Relief(SIDE, gradient=0.02), fields=(Rect(60.0, 62.0, 90.0, 44.0, 0.0),))
     for x, y in ((25.0, 20.0), (95.0, 22.0), (60.0, 103.0)):
         _house(land, Rect(x, y, 14.0, 9.0, 0.2), 4.0, 35.0)
     return land
@@ -216,19 +222,19 @@ def scanned(make: Callable[[], Scene], misfit: bool, density: float) -> Scan:
     passes = np.isin(made.segment_id, glass) & (np.random.default_rng(0).random(len(made.xyz)) < PASSING)
     made.xyz[passes, 2] = scene.relief.ground(*made.xyz[passes, :2].T)
     made.classification[passes] = PointClass.GROUND
-    if make is farm:
-        _sow(made)
+    if isinstance(scene, Farmland):
+        _sow(scene.fields, made)
     return made
 
 
-def _sow(made: Scan) -> None:
-    """Let maize grow in the field."""
+def _sow(fields: tuple[Rect, ...], made: Scan) -> None:
+    """Let maize grow in the fields."""
     rng = np.random.default_rng(0)
-    in_field = FIELD.contains(*made.xyz[:, :2].T) & (made.classification == PointClass.GROUND)
+    in_field = np.any([field.contains(*made.xyz[:, :2].T) for field in fields], axis=0)
+    in_field &= made.classification == PointClass.GROUND
     leaves = np.flatnonzero(in_field & (rng.random(len(in_field)) >= THROUGH_MAIZE))
-    below = np.abs(rng.normal(0, LEAVES, len(leaves))) + (rng.random(len(leaves)) < 0.2) * rng.uniform(
-        0, 2, len(leaves)
-    )
+    below = np.abs(rng.normal(0, LEAVES, len(leaves)))
+    below += (rng.random(len(leaves)) < 0.2) * rng.uniform(0, 2, len(leaves))
     made.xyz[leaves, 2] += np.maximum(MAIZE - below, 0.3)
     made.classification[leaves] = PointClass.MEDIUM_VEGETATION
 
