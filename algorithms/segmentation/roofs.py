@@ -188,7 +188,7 @@ class _Patches:
         return (self.areas >= min_area) & (self.mean(self.height) >= min_height)
 
     def smooth(self, chosen: np.ndarray, roughness: np.ndarray, most: float) -> np.ndarray:
-        """Return which of the chosen are smooth enough for roofs: ``roughness`` of the points (n,), ``most`` of it, m."""
+        """Return which of the chosen are smooth enough: ``roughness`` (n,) of the points and ``most`` of it, in m."""
         if not chosen.any():
             return chosen
         group = np.where(self._of(chosen), self.number, -1)

@@ -168,13 +168,20 @@ def test_cancel_gets_through(rng):
         segment_patches(gable(rng, 5, 0.02)[0], 5.0, 0.02, 75.0, Listening(stop_at=0.3))
 
 
-@pytest.mark.parametrize("noise", [0.02, 0.05])
-def test_roughness_is_the_noise_across_the_surface(noise, rng):
-    xyz = np.column_stack([rng.uniform(0, 20, (8000, 2)), rng.normal(0, noise, 8000)])
-    patch, roughness = segment_patches(xyz, 20.0, noise, 75.0, Monitor())
+def test_roughness_is_what_lies_across_the_plane_of_least_squares(rng):
+    """Of eight points, each of which has all of them around it."""
+    xyz = np.column_stack([rng.uniform(0, 2, (8, 2)), rng.normal(0, 0.02, 8)])
+    _, roughness = segment_patches(xyz, 2.0, 0.05, 75.0, Monitor())
+    residuals = np.linalg.svd(xyz - xyz.mean(axis=0), compute_uv=False)[2]
+    np.testing.assert_allclose(roughness, residuals / np.sqrt(8 - 3), rtol=1e-4)
     assert roughness.dtype == np.float32
-    # Each point takes the smoothest of the planes that hold it.
-    assert 0.6 * noise < roughness[patch >= 0].mean() < noise
+
+
+def test_roughness_is_that_of_the_plane_that_holds_a_point(rng):
+    """Planes across the ridge would be ten times as rough."""
+    xyz, _ = gable(rng, 20, 0.02)
+    patch, roughness = segment_patches(xyz, 20.0, 0.02, 75.0, Monitor())
+    assert roughness[patch >= 0].max() < 3 * 0.02 * np.sqrt(8 / 5)
 
 
 def test_few_points_have_no_roughness():
