@@ -8,7 +8,8 @@ from lidar_buildings.algorithms.buildings.reasons import Reason
 from lidar_buildings.algorithms.cloud.density import point_density
 from lidar_buildings.algorithms.segmentation.decks import part_decks
 from lidar_buildings.algorithms.segmentation.roofs import segment_roofs
-from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.tests.monitors import Listening
 
 FAR = np.array([600_000.0, 5_000_000.0, 0.0])
 FIELD, EAST, WEST, FLAT = range(4)
@@ -313,3 +314,13 @@ def test_gaps_between_scan_lines_are_no_gaps_of_the_cloud(rng):
     xyz[:, 1] = 2 * np.round(xyz[:, 1] / 2)
     segment_roofs(xyz, ones(xyz), height, monitor=monitor)
     assert monitor.values["density"] < 0.6 * point_density(xyz)
+
+
+@pytest.mark.parametrize("stop_at", [0.3, 0.76, 0.81])
+def test_cancel_gets_through_between_all_steps(stop_at, rng):
+    """In the patches, after the decks, and after the surfaces."""
+    xyz, height, _ = village(rng, 3)
+    monitor = Listening(stop_at=stop_at)
+    with pytest.raises(Cancelled):
+        segment_roofs(xyz, ones(xyz), height, monitor=monitor)
+    assert monitor.heard[-1] < 0.86
