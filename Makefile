@@ -10,6 +10,10 @@ SHELL := /bin/bash
 # Debian's QGIS runs the system's Python, whatever python3 comes first on PATH.
 PYTHON := /usr/bin/python3
 VENV := .venv
+# A file of tests stays in one process, which makes what its tests share but once.
+ON_ALL_CORES := -n auto --dist loadfile --no-loadscope-reorder
+# An interpreter without QGIS will do: numpy, scipy, scikit-learn, laspy, lazrs, pytest, pytest-xdist, hypothesis.
+CORE_PYTHON := $(VENV)/bin/python
 
 ifdef PROFILE
 export QGIS_CUSTOM_CONFIG_PATH := $(abspath $(PROFILE))
@@ -25,10 +29,10 @@ Makefile: ;
 
 else
 
-.PHONY: help install demo test lint bench package clean
+.PHONY: help install resources demo test test-core lint bench package clean
 
 help: ## this list
-	@sed -n 's/^\([a-z]*\):.* ## /  make \1\t/p' Makefile | expand -t 18
+	@sed -n 's/^\([a-z-]*\):.* ## /  make \1\t/p' Makefile | expand -t 18
 
 install: ## QGIS, the Python packages and the plugin, where they are missing
 	@scripts/install.sh
@@ -36,8 +40,11 @@ install: ## QGIS, the Python packages and the plugin, where they are missing
 demo: install ## find the buildings of a simulated town, or of TILE, and draw them (in demo/)
 	@scripts/offscreen.sh $(PYTHON) scripts/demo.py $(if $(TILE),"$(TILE)")
 
-test: install $(VENV)/made lint ## check the code, then run every test
-	@scripts/offscreen.sh $(VENV)/bin/python -m pytest
+test: install $(VENV)/made lint ## check the code, then run every test, on all cores
+	@scripts/offscreen.sh $(VENV)/bin/python -m pytest $(ON_ALL_CORES)
+
+test-core: ## the tests of the core with CORE_PYTHON, which needs no QGIS but requirements-dev.txt and what those name
+	@$(CORE_PYTHON) -m pytest -p no:pytest_qgis $(ON_ALL_CORES) tests/algorithms tests/test_contract.py algorithms
 
 lint: $(VENV)/made ## ruff and mypy
 	@$(VENV)/bin/ruff check .
@@ -45,15 +52,18 @@ lint: $(VENV)/made ## ruff and mypy
 	@$(VENV)/bin/mypy
 	@$(PYTHON) scripts/metadata.py --check
 
-bench: install $(VENV)/made ## time and memory of every stage (a table, and benchmarks.json)
+bench: install $(VENV)/made ## time and memory of every stage (a table, and benchmarks/times.json)
 	@scripts/offscreen.sh $(VENV)/bin/python tests/benchmarks/benchmark.py $(if $(SIZES),--sizes $(SIZES)) $(if $(STAGES),--stages $(STAGES))
+
+resources: install ## write the help pages and models anew, after a change of a stage or pipeline
+	@scripts/offscreen.sh $(PYTHON) scripts/generate_resources.py
 
 package: ## the zip for QGIS's plugin repository (in dist/)
 	@$(PYTHON) scripts/metadata.py
 	@$(PYTHON) scripts/package.py
 
 clean: ## remove what these commands made in this folder
-	rm -rf $(VENV) demo dist benchmarks.json tests/benchmarks/.cache .hypothesis .mypy_cache .pytest_cache .ruff_cache .qgis-settings
+	rm -rf $(VENV) demo dist benchmarks tests/benchmarks/.cache .hypothesis .mypy_cache .pytest_cache .ruff_cache .qgis-settings
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # The system's packages show through, so that the tests run on the numpy and the QGIS that users have.

@@ -9,6 +9,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent
 PACKAGE = "lidar_buildings"
 
+# Not a conftest below tests/: in a checkout that is itself called "tests" the two would have one name.
+pytest_plugins = ["lidar_buildings.tests.fixtures"]
+
 
 def _register() -> None:
     if PACKAGE in sys.modules:

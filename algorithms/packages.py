@@ -1,6 +1,6 @@
 """Third-party packages, imported when first used.
 
-QGIS on some systems comes without scipy, scikit-learn or lazrs. The toolbox must
+QGIS on some systems comes without scipy, scikit-learn, laspy or lazrs. The toolbox must
 then still show every algorithm and each must say what is missing, so nothing here
 is imported before a stage runs.
 """
@@ -12,7 +12,7 @@ import importlib.util
 from types import ModuleType
 
 # Import name -> name to install; the one list of what the plugin needs beside numpy.
-REQUIRED = {"scipy": "scipy", "sklearn": "scikit-learn"}
+REQUIRED = {"scipy": "scipy", "sklearn": "scikit-learn", "laspy": "laspy"}
 
 
 class _Lazy(ModuleType):
@@ -34,8 +34,9 @@ def missing() -> list[str]:
 
 
 spatial = _Lazy("scipy.spatial")
+special = _Lazy("scipy.special")
 ndimage = _Lazy("scipy.ndimage")
+interpolate = _Lazy("scipy.interpolate")
 sparse = _Lazy("scipy.sparse")
 csgraph = _Lazy("scipy.sparse.csgraph")
-interpolate = _Lazy("scipy.interpolate")
 cluster = _Lazy("sklearn.cluster")

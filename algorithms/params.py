@@ -21,12 +21,12 @@ PointDensity = Annotated[
     Optional[float],
     Param(
         "Point density",
-        "Average density over the occupied area.",
+        "Average number of points per square meter of occupied area.",
         unit="points/m²",
-        low=0,
-        open_low=True,
-        automatic="measured, points per occupied area; 'Segment roofs', 'Complete buildings' and surface neighborhoods "
-        "take less where points lie on lines, in pairs or in dense strips, so that distances reach over the gaps.",
+        low=0.001,
+        automatic="measured on the cloud; 'Segment roofs', 'Classify buildings' and 'Complete buildings' take the "
+        "effective density, less where points lie on lines, in pairs or in dense strips, so that distances reach over "
+        "the gaps.",
         advanced=True,
     ),
 ]
@@ -36,12 +36,23 @@ MinBuildingArea = Annotated[
     Param("Minimum building area", "Area of the smallest building to be found.", unit="m²", low=0.1, high=10_000),
 ]
 
+MinFrequency = Annotated[
+    int,
+    Param(
+        "Minimum frequency",
+        "Points that a bin of the histogram needs to belong to the scene (T_f). More of them remove denser noise, "
+        "and thin things such as wires with it.",
+        low=1,
+        high=10_000,
+    ),
+]
+
 IsolatedPoints = Annotated[
     bool,
     Param(
         "Isolated points",
         "Also find what hangs free in the air (birds, flocks, plumes of dust) and what lies under the ground "
-        "(multipath), within the heights of the scene. Without it the method is the published one.",
+        "(multipath), within the heights of the scene.",
     ),
 ]
 
@@ -60,13 +71,13 @@ SurfaceNoise = Annotated[
     Optional[float],
     Param(
         "Surface noise",
-        "Standard deviation of the points across a smooth surface; roofs and walls are smooth to three of them.",
+        "Standard deviation of the points across a smooth surface. Roofs and walls may be rougher: by tiles and "
+        "gravel (0.026 m), and by 0.065 point spacings.",
         unit="m",
         low=0,
         high=10,
         open_low=True,
-        automatic="measured on the smoothest fifth of the cloud, at least 0.02 m; 0.05 point spacings on top, and more "
-        "for roofs with less than 10 points/m².",
+        automatic="measured on the cloud, on its smoothest fifth; at least 0.01 m.",
         advanced=True,
     ),
 ]
@@ -90,3 +101,14 @@ IgnoredClasses = Annotated[
         "separated by commas (7, 64-67); empty counts every point.",
     ),
 ]
+
+
+def nearest_points(automatic: str) -> Param:
+    """Return the declaration of N, the points of a neighborhood, which each method derives in its own way."""
+    return Param(
+        "Nearest points",
+        "Points of the neighborhood in which the entropy of a point is measured, itself included (N).",
+        low=3,
+        high=10_000,
+        automatic=automatic,
+    )

@@ -1,154 +1,12 @@
-"""Composites as data: which stage feeds which, and the same chains run in memory.
+"""The composites, as data: which stage feeds which.
 
 The .model3 files under ``resources/models`` are generated from this module, so
-the graph that a user opens in the modeller and the chain that runs here can't differ.
+the graph that a user opens in the modeller and the chain that runs in memory can't differ.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Any, Optional, Union
-
-from .cloud.cloud import Cloud
-from .run import Outcome, run_stage
-from .stage import Features, Monitor, Report, Source, Stage, Tunable, given_layers
-from .stages import STAGES
-
-_CLOUD, _REPORT = "output", "report"
-
-
-@dataclass(frozen=True)
-class Step:
-    """One stage of a chain; it works on the last cloud that a step before it made.
-
-    ``name`` prefixes the composite's parameters (``GROUND_CELL_SIZE``); ``tunables``
-    are the defaults that differ from the stage's own. ``cloud`` names an earlier step
-    whose cloud it works on instead. ``layers`` says which of its sources is a layer of an
-    earlier step, ``{"new": "walls.footprints"}``; the composite asks for all others,
-    under the source's own name. A stage that merges is given all clouds of the composite.
-    """
-
-    name: str
-    stage_name: str
-    tunables: dict[str, Any] = field(default_factory=dict)
-    cloud: str = ""
-    layers: dict[str, str] = field(default_factory=dict)
-
-    @property
-    def stage(self) -> Stage:
-        """The stage that this step runs."""
-        return STAGES[self.stage_name]
-
-
-@dataclass(frozen=True)
-class Output:
-    """One output of a composite: its name, and which output of which step it is.
-
-    ``of`` is ``"output"`` for a cloud, ``"report"``, or the name of a layer or raster.
-    """
-
-    name: str
-    step: Step
-    of: str
-
-
-@dataclass(frozen=True)
-class Pipeline:
-    """A chain of stages that users meet as one algorithm.
-
-    The last step that makes a cloud gives the composite's OUTPUT; every layer, raster and
-    report of every step is an output of its own, and so are the clouds of the steps that
-    ``kept`` names. ``shared`` names tunables that are one parameter of the composite and go
-    to all the steps beside them; they have the same declaration and default there. ``shown``
-    are the parameters that users meet first, in this order; all others are folded away.
-    """
-
-    name: str
-    title: str
-    group: str
-    tags: str
-    summary: str
-    description: str
-    references: str
-    steps: tuple[Step, ...]
-    shared: dict[str, tuple[str, ...]] = field(default_factory=dict)
-    shown: tuple[str, ...] = ()
-    kept: tuple[str, ...] = ()
-
-    def parameter(self, step: Step, tunable: str) -> str:
-        """Return what the composite calls a step's tunable: ``ground_cell_size``, shared ``min_area``."""
-        return tunable if step.name in self.shared.get(tunable, ()) else f"{step.name}_{tunable}"
-
-    @property
-    def parameters(self) -> dict[str, tuple[Step, Tunable]]:
-        """Every parameter once, by name, with the first step that takes it; shown ones first."""
-        found: dict[str, tuple[Step, Tunable]] = {}
-        for step in self.steps:
-            for tunable in step.stage.tunables.values():
-                found.setdefault(self.parameter(step, tunable.name), (step, tunable))
-        return {name: found[name] for name in (*self.shown, *(name for name in found if name not in self.shown))}
-
-    def cloud_of(self, step: Step) -> Optional[str]:
-        """Return the name of the step whose cloud ``step`` works on, "" for what is given, None where it reads none."""
-        if not step.stage.reads_cloud:
-            return None
-        if step.stage.merges or step.cloud:
-            return step.cloud
-        before = self.steps[: self.steps.index(step)]
-        return next((other.name for other in reversed(before) if other.stage.makes_cloud), "")
-
-    @property
-    def reads_cloud(self) -> bool:
-        """Whether the composite is given a cloud, or several."""
-        return any(self.cloud_of(step) == "" for step in self.steps)
-
-    @property
-    def merges(self) -> bool:
-        """Whether it is given several clouds."""
-        return any(step.stage.merges for step in self.steps)
-
-    @property
-    def sources(self) -> dict[str, Source]:
-        """Vector layers that the composite is given, by name."""
-        found: dict[str, Source] = {}
-        for step in self.steps:
-            for source in step.stage.sources:
-                if source.name not in step.layers:
-                    found.setdefault(source.name, source)
-        return found
-
-    @property
-    def outputs(self) -> tuple[Output, ...]:
-        """All outputs in the order of steps; where two would have one name, the step's name is put before it."""
-        makers = [step for step in self.steps if step.stage.makes_cloud]
-        found = [(step, of) for step in self.steps for of in _made(step)]
-        names = [of for _, of in found]
-        outputs = []
-        for step, of in found:
-            is_single = step is makers[-1] if of == _CLOUD else names.count(of) == 1
-            if is_single or of != _CLOUD or step.name in self.kept:
-                outputs.append(Output(of if is_single else f"{step.name}_{of}", step, of))
-        return tuple(outputs)
-
-    def needs(self, output: Output) -> bool:
-        """Whether an output is made even if nobody asks for it: a cloud, or a layer that another step reads."""
-        return output.of == _CLOUD or any(
-            f"{output.step.name}.{output.of}" in step.layers.values() for step in self.steps
-        )
-
-    @property
-    def id(self) -> str:
-        """Processing id, ``detectbuildings``."""
-        return self.name.replace("_", "")
-
-
-def _made(step: Step) -> list[str]:
-    """Return what a step makes: its cloud, layers, rasters, report."""
-    stage = step.stage
-    files = [*(layer.name for layer in stage.layers), *(raster.name for raster in stage.rasters)]
-    return [_CLOUD] * stage.makes_cloud + files + [_REPORT] * bool(stage.measures)
-
+from .pipeline import Pipeline, Step
 
 _SANTOS = (
     "Santos, R. C. dos, Pessoa, G. G., Carrilho, A. C., Galo, M., 2019. Building detection from LiDAR data using "
@@ -169,9 +27,10 @@ _PIPELINES = (
         tags="building,detection,roof,footprint,classification,entropy,k-means",
         summary="Find the buildings in a point cloud: classified points and footprints, with nothing to set.",
         description=(
-            "Noise, ground and heights first; then roof surfaces and clusters of everything else above the ground, "
-            "told apart by their mean entropy; then whole buildings with their walls, and their outlines. Distances "
-            "and tolerances follow the density and the noise of the cloud."
+            "Noise, ground and heights first; then roof surfaces and clusters of everything else above the ground. A "
+            "cluster is a building by its mean entropy, compared with that of planes and volumes, and by how much of "
+            "the beam passes through it; then whole buildings with their walls, and their outlines. Distances and "
+            "tolerances follow the density and the noise of the cloud."
         ),
         references=_SANTOS,
         steps=(
@@ -179,11 +38,7 @@ _PIPELINES = (
             Step("ground", "classify_ground_tin"),
             Step("height", "compute_height_above_ground"),
             Step("roofs", "segment_roofs"),
-            Step(
-                "buildings",
-                "classify_buildings",
-                {"neighborhood": "surface", "max_penetration": 0.4, "min_share_around": 0.4},
-            ),
+            Step("buildings", "classify_buildings"),
             Step("complete", "complete_buildings"),
             Step("footprints", "extract_footprints"),
         ),
@@ -198,19 +53,20 @@ _PIPELINES = (
         title="Detect buildings (as published 2019)",
         group="Models",
         tags="building,detection,entropy,k-means,region growing,Santos",
-        summary="Find the buildings in a point cloud exactly as the paper of 2019 does.",
+        summary="Find the buildings in a point cloud by the steps of the paper of 2019, to compare with.",
         description=(
-            "The published chain with the paper's rules and nothing else: cell histogram filter, progressive TIN "
-            "densification from the lowest point of each cell of the largest building's size (with a final sweep, as "
-            "the paper's tool for it has), region growing, mean entropy per cluster and two-class K-means. For "
-            "comparisons; 'Detect buildings' finds more and errs less."
+            "The published chain without this project's additions: cell histogram filter, progressive TIN "
+            "densification from the lowest point of each cell of the largest building's size, region growing, mean "
+            "entropy per cluster and two means. Where the papers give no value (cells of the histograms, thresholds "
+            "of the TIN, distances of the regions), it follows the density and the noise of the cloud; the Notes of "
+            "each step say how. The outlines are this project's. 'Detect buildings' finds more and errs less."
         ),
         references=_SANTOS,
         steps=(
-            Step("noise", "classify_noise_histogram", {"isolated": False}),
-            Step("ground", "classify_ground_tin", {"seeds": "lowest"}),
+            Step("noise", "classify_noise_histogram_2019"),
+            Step("ground", "classify_ground_tin_2000"),
             Step("regions", "segment_regions"),
-            Step("buildings", "classify_buildings", {"guard": False}),
+            Step("buildings", "classify_buildings_2019"),
             Step("footprints", "extract_footprints"),
         ),
         shared={"min_area": ("regions", "buildings", "footprints"), "density": ("regions", "buildings")},
@@ -281,94 +137,3 @@ _PIPELINES = (
 )
 
 PIPELINES = {pipeline.name: pipeline for pipeline in _PIPELINES}
-
-
-@dataclass
-class Results(Outcome):
-    """What a chain made: the last cloud, and layers, rasters, reports and kept clouds by the composite's names."""
-
-    clouds: dict[str, Cloud] = field(default_factory=dict)
-    reports: dict[str, Report] = field(default_factory=dict)
-
-
-def run_pipeline(
-    pipeline: Pipeline,
-    cloud: Union[Cloud, Sequence[Cloud], None] = None,
-    monitor: Optional[Monitor] = None,
-    sources: Optional[dict[str, Optional[Features]]] = None,
-    kept: Optional[Collection[str]] = None,
-    **tunables: Any,
-) -> Results:
-    """Run all steps on ``cloud``, in place as far as they do so, and return all that they made.
-
-    ``cloud`` is several clouds where the pipeline merges. ``sources`` are the layers that the pipeline
-    is given, by name, in meters relative to the cloud's origin. ``kept`` are the steps whose clouds
-    are wanted, of those that the pipeline keeps; None is all of them. ``tunables`` are named
-    ``<step>_<tunable>`` (``ground_cell_size``), and so are the monitor's values; what steps share is
-    named ``<tunable>``.
-
-    Raises
-    ------
-    ValueError
-        If a tunable or layer is unknown, a layer is missing, or a step refuses its data.
-    """
-    monitor = monitor or Monitor()
-    chosen = _by_step(pipeline, tunables)
-    given = given_layers(pipeline.name, pipeline.sources.values(), sources or {})
-    # Later steps change the cloud that they work on: what is wanted as it was is copied when it is made.
-    wanted = {*(pipeline.kept if kept is None else kept), *(step.cloud for step in pipeline.steps)}
-    copies: dict[str, Cloud] = {}
-    outcomes: dict[str, Outcome] = {}
-    current = cloud
-    for i, step in enumerate(pipeline.steps):
-        part = monitor.part(i / len(pipeline.steps), (i + 1) / len(pipeline.steps), f"{step.name}_")
-        layers = {source.name: _layer(step, source.name, outcomes, given) for source in step.stage.sources}
-        works_on = copies[step.cloud].copy() if step.cloud else current if step.stage.reads_cloud else None
-        outcome = run_stage(step.stage, works_on, monitor=part, sources=layers, **chosen[step.name])
-        outcomes[step.name] = replace(outcome, cloud=None)
-        if step.stage.makes_cloud:
-            current = outcome.cloud
-            if step.name in wanted and outcome.cloud is not None:
-                copies[step.name] = outcome.cloud.copy()
-    return _results(pipeline, outcomes, copies, current if isinstance(current, Cloud) else None)
-
-
-def _layer(
-    step: Step, source: str, outcomes: dict[str, Outcome], given: dict[str, Optional[Features]]
-) -> Optional[Features]:
-    """Return the layer that a source of a step is: of an earlier step, or given."""
-    if source not in step.layers:
-        return given[source]
-    earlier, layer = step.layers[source].split(".")
-    return outcomes[earlier].layers[layer]
-
-
-def _results(
-    pipeline: Pipeline, outcomes: dict[str, Outcome], copies: dict[str, Cloud], cloud: Optional[Cloud]
-) -> Results:
-    results = Results(cloud)
-    for output in pipeline.outputs:
-        outcome = outcomes[output.step.name]
-        if output.of in outcome.layers:
-            results.layers[output.name] = outcome.layers[output.of]
-        elif output.of in outcome.rasters:
-            results.rasters[output.name] = outcome.rasters[output.of]
-        elif output.of == _REPORT and outcome.report is not None:
-            results.report = results.reports[output.name] = outcome.report
-        elif output.name != _CLOUD and output.step.name in copies:
-            results.clouds[output.name] = copies[output.step.name]
-    return results
-
-
-def _by_step(pipeline: Pipeline, tunables: dict[str, Any]) -> dict[str, dict[str, Any]]:
-    """Sort the composite's parameters by step, over the pipeline's own defaults."""
-    unknown = [name for name in tunables if name not in pipeline.parameters]
-    if unknown:
-        raise ValueError(f"{pipeline.name} has no tunable {unknown[0]!r}; it has {', '.join(pipeline.parameters)}.")
-    chosen = {step.name: dict(step.tunables) for step in pipeline.steps}
-    for step in pipeline.steps:
-        for tunable in step.stage.tunables:
-            name = pipeline.parameter(step, tunable)
-            if name in tunables:
-                chosen[step.name][tunable] = tunables[name]
-    return chosen

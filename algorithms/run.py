@@ -1,9 +1,12 @@
-"""Run a stage on a cloud: fetch what it reads, leave out withheld points, store what it writes."""
+"""Run a stage or a pipeline in memory.
+
+A stage: fetch what it reads, leave out withheld points, store what it writes. A pipeline: one stage after the other.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any, Optional, Union
 
 import numpy as np
@@ -11,7 +14,21 @@ import numpy as np
 from .cloud.cloud import Cloud, create_cloud
 from .cloud.dimensions import DIMENSIONS
 from .cloud.merging import merge_records
-from .stage import DIMENSION, REFERENCE_PREFIX, VALUES, Features, Made, Monitor, Report, Stage, Surface, given_layers
+from .pipeline import CLOUD, REPORT, Pipeline, Step
+from .sampling.cloud_sampling import CloudSampling, without_noise
+from .stage import (
+    DIMENSION,
+    REFERENCE_PREFIX,
+    SAMPLING,
+    VALUES,
+    LayerFeatures,
+    Monitor,
+    RasterSurface,
+    Report,
+    Stage,
+    StageResults,
+    given_layers,
+)
 from .stages import STAGES
 
 
@@ -20,9 +37,9 @@ class Outcome:
     """What a stage made: the cloud with its new dimensions, its layers and rasters by name, its report."""
 
     cloud: Optional[Cloud]
-    layers: dict[str, Features] = field(default_factory=dict)
+    layers: dict[str, LayerFeatures] = field(default_factory=dict)
     report: Optional[Report] = None
-    rasters: dict[str, Surface] = field(default_factory=dict)
+    rasters: dict[str, RasterSurface] = field(default_factory=dict)
 
 
 def run_stage(
@@ -30,7 +47,8 @@ def run_stage(
     cloud: Union[Cloud, Sequence[Cloud], None] = None,
     reference: Optional[Cloud] = None,
     monitor: Optional[Monitor] = None,
-    sources: Optional[dict[str, Optional[Features]]] = None,
+    input_layers: Optional[dict[str, Optional[LayerFeatures]]] = None,
+    sampling: Optional[CloudSampling] = None,
     **tunables: Any,
 ) -> Outcome:
     """Run ``stage`` and return what it made.
@@ -40,8 +58,11 @@ def run_stage(
     A cloud is changed in place: the dimensions that the stage writes are stored in it. Withheld
     points are not shown to the stage; in its result they keep their classification and are
     undefined in everything else. A stage that selects or merges makes a new cloud instead, in
-    which withheld points are not. Coordinates of ``sources`` and of layers and rasters made are
+    which withheld points are not. Coordinates of ``input_layers`` and of layers and rasters made are
     meters relative to the cloud's origin.
+
+    ``sampling`` is how the cloud was sampled, or the survey that it is a part of; where it is not given, it is
+    measured on the points of the cloud that are neither withheld nor noise, and logged.
 
     Raises
     ------
@@ -56,13 +77,72 @@ def run_stage(
     _see_from(np.zeros(3) if stage.merges else origin, together)
     used = [_used(one) for one in clouds]
     arrays = [_argument(stage, name, clouds, reference, used, arguments) for name in (*stage.reads, *stage.optional)]
-    layers = given_layers(stage.name, stage.sources, sources or {})
+    layers = given_layers(stage.name, stage.input_layers, input_layers or {})
     monitor = monitor or Monitor()
-    made = stage.sorted(stage.function(*arrays, **layers, **arguments, monitor=monitor))
+    own = sampling_of(clouds[0]) if stage.samples and sampling is None else None
+    if stage.samples:
+        arguments[SAMPLING] = sampling or own
+    made = stage.unpack(stage.function(*arrays, **layers, **arguments, monitor=monitor))
+    _log(own, monitor)
     result = _result(stage, clouds, used, made, monitor)
     if stage.merges and result is not None:
         _see_from(origin, [*together, result])
     return Outcome(result, made.layers, made.report, made.rasters)
+
+
+def sampling_of(cloud: Cloud) -> CloudSampling:
+    """Return how those points of a cloud were sampled that are now neither withheld nor noise."""
+    counted = _counted(cloud)
+    return CloudSampling(lambda: cloud.get("xyz")[counted])
+
+
+def _counted(cloud: Cloud) -> np.ndarray:
+    """Return which points (n,) the sampling of a cloud is measured on."""
+    counted = ~cloud.withheld
+    counted[counted] = without_noise(cloud.get("classification")[counted])
+    return counted
+
+
+def _log(sampling: Optional[CloudSampling], monitor: Monitor) -> None:
+    """Tell the monitor what was measured, if anything was."""
+    if sampling is not None and sampling.measured:
+        monitor.resolved(sampling=sampling)
+
+
+class _RunSampling:
+    """How the points that a pipeline works on were sampled: given, or measured again where a step changed them.
+
+    Parameters
+    ----------
+    given : CloudSampling, optional
+        That of the points of ``cloud``; it holds until a step makes a cloud of other points.
+    cloud : Cloud or several, optional
+        What the pipeline begins with.
+    monitor : Monitor
+        Is told what was measured.
+    """
+
+    def __init__(self, given: Optional[CloudSampling], cloud: Any, monitor: Monitor) -> None:
+        self.monitor = monitor
+        self.own: Optional[CloudSampling] = None
+        self.given = given if isinstance(cloud, Cloud) else None
+        self.points = cloud.points if isinstance(cloud, Cloud) else None
+        self.counted: Optional[np.ndarray] = None
+
+    def of(self, cloud: Cloud) -> CloudSampling:
+        """Return the sampling of a cloud, the same as for the step before if it has the same points that count."""
+        is_same = cloud.points is self.points
+        if is_same and self.given is not None:
+            return self.given
+        counted = _counted(cloud)
+        if self.own is None or not is_same or not np.array_equal(counted, self.counted):
+            self.log()
+            self.given, self.own, self.points, self.counted = None, sampling_of(cloud), cloud.points, counted
+        return self.own
+
+    def log(self) -> None:
+        """Tell the monitor what was measured for the last steps."""
+        _log(self.own, self.monitor)
 
 
 def _see_from(origin: np.ndarray, clouds: list[Cloud]) -> None:
@@ -117,7 +197,7 @@ def _present(cloud: Cloud, name: str) -> np.ndarray:
 
 
 def _result(
-    stage: Stage, clouds: list[Cloud], used: list[Optional[np.ndarray]], made: Made, monitor: Monitor
+    stage: Stage, clouds: list[Cloud], used: list[Optional[np.ndarray]], made: StageResults, monitor: Monitor
 ) -> Optional[Cloud]:
     """Return the cloud with what the stage made of it: the same one, or a new one."""
     if stage.creates:
@@ -156,3 +236,105 @@ def _whole(cloud: Cloud, name: str, values: np.ndarray, used: Optional[np.ndarra
         whole = np.full((len(cloud), *values.shape[1:]), np.nan if dtype[0] == "f" else 0, dtype)
     whole[used] = values
     return whole
+
+
+@dataclass
+class Results(Outcome):
+    """What a chain made: the last cloud, and layers, rasters, reports and kept clouds by the composite's names."""
+
+    clouds: dict[str, Cloud] = field(default_factory=dict)
+    reports: dict[str, Report] = field(default_factory=dict)
+
+
+def run_pipeline(
+    pipeline: Pipeline,
+    cloud: Union[Cloud, Sequence[Cloud], None] = None,
+    monitor: Optional[Monitor] = None,
+    input_layers: Optional[dict[str, Optional[LayerFeatures]]] = None,
+    kept: Optional[Collection[str]] = None,
+    sampling: Optional[CloudSampling] = None,
+    **tunables: Any,
+) -> Results:
+    """Run all steps on ``cloud``, in place as far as they do so, and return all that they made.
+
+    ``cloud`` is several clouds where the pipeline merges. ``input_layers`` are the layers that the pipeline
+    is given, by name, in meters relative to the cloud's origin. ``kept`` are the steps whose clouds
+    are wanted, of those that the pipeline keeps; None is all of them. ``tunables`` are named
+    ``<step>_<tunable>`` (``ground_cell_size``), and so are the monitor's values; what steps share is
+    named ``<tunable>``.
+
+    How the cloud was sampled is measured once for all steps, and again where a step has changed the points that it is
+    measured on: those that are neither withheld nor noise. A ``sampling`` that is given holds until a step makes a
+    cloud of other points.
+
+    Raises
+    ------
+    ValueError
+        If a tunable or layer is unknown, a layer is missing, or a step refuses its data.
+    """
+    monitor = monitor or Monitor()
+    chosen = _by_step(pipeline, tunables)
+    given = given_layers(pipeline.name, pipeline.input_layers.values(), input_layers or {})
+    # Later steps change the cloud that they work on: what is wanted as it was is copied when it is made.
+    wanted = {*(pipeline.kept if kept is None else kept), *(step.cloud for step in pipeline.steps)}
+    copies: dict[str, Cloud] = {}
+    outcomes: dict[str, Outcome] = {}
+    current = cloud
+    of_run = _RunSampling(sampling, cloud, monitor)
+    for i, step in enumerate(pipeline.steps):
+        part = monitor.part(i / len(pipeline.steps), (i + 1) / len(pipeline.steps), f"{step.name}_")
+        names = [input_layer.name for input_layer in step.stage.input_layers]
+        layers = {name: _layer(step, name, outcomes, given) for name in names}
+        works_on = copies[step.cloud].copy() if step.cloud else current if step.stage.reads_cloud else None
+        sampled = of_run.of(works_on) if step.stage.samples and isinstance(works_on, Cloud) else None
+        outcome = run_stage(
+            step.stage, works_on, monitor=part, input_layers=layers, sampling=sampled, **chosen[step.name]
+        )
+        outcomes[step.name] = replace(outcome, cloud=None)
+        if step.stage.makes_cloud:
+            current = outcome.cloud
+            if step.name in wanted and outcome.cloud is not None:
+                copies[step.name] = outcome.cloud.copy()
+    of_run.log()
+    return _results(pipeline, outcomes, copies, current if isinstance(current, Cloud) else None)
+
+
+def _layer(
+    step: Step, input_layer: str, outcomes: dict[str, Outcome], given: dict[str, Optional[LayerFeatures]]
+) -> Optional[LayerFeatures]:
+    """Return the layer that an input layer of a step is: one of an earlier step, or the given one."""
+    if input_layer not in step.layers:
+        return given[input_layer]
+    earlier, layer = step.layers[input_layer].split(".")
+    return outcomes[earlier].layers[layer]
+
+
+def _results(
+    pipeline: Pipeline, outcomes: dict[str, Outcome], copies: dict[str, Cloud], cloud: Optional[Cloud]
+) -> Results:
+    results = Results(cloud)
+    for output in pipeline.outputs:
+        outcome = outcomes[output.step.name]
+        if output.of in outcome.layers:
+            results.layers[output.name] = outcome.layers[output.of]
+        elif output.of in outcome.rasters:
+            results.rasters[output.name] = outcome.rasters[output.of]
+        elif output.of == REPORT and outcome.report is not None:
+            results.report = results.reports[output.name] = outcome.report
+        elif output.name != CLOUD and output.step.name in copies:
+            results.clouds[output.name] = copies[output.step.name]
+    return results
+
+
+def _by_step(pipeline: Pipeline, tunables: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    """Sort the composite's parameters by step, over the pipeline's own defaults."""
+    unknown = [name for name in tunables if name not in pipeline.parameters]
+    if unknown:
+        raise ValueError(f"{pipeline.name} has no tunable {unknown[0]!r}; it has {', '.join(pipeline.parameters)}.")
+    chosen = {step.name: dict(step.tunables) for step in pipeline.steps}
+    for step in pipeline.steps:
+        for tunable in step.stage.tunables:
+            name = pipeline.parameter(step, tunable)
+            if name in tunables:
+                chosen[step.name][tunable] = tunables[name]
+    return chosen

@@ -4,41 +4,46 @@ from __future__ import annotations
 
 from typing import Any
 
-from .buildings.buildings import classify_buildings
-from .buildings.complete import complete_buildings
-from .buildings.footprints import extract_footprints
-from .buildings.roofs import classify_roofs
-from .buildings.wall_footprints import extract_wall_footprints
-from .buildings.walls import classify_walls
-from .features.dimensionality import classify_dimensionality
-from .features.features import compute_features
-from .preparation.filter import filter_points
-from .preparation.merge import merge_clouds
-from .preparation.noise_histogram import classify_noise_histogram
-from .preparation.noise_statistical import classify_noise_statistical
-from .preparation.voxels import downsample_voxels
-from .quality.buildings import assess_buildings
-from .quality.corners import compare_corners
-from .quality.ground import assess_ground
-from .segmentation.clusters import segment_clusters
-from .segmentation.planes_ransac import segment_planes_ransac
-from .segmentation.regions import segment_regions
-from .segmentation.roofs import segment_roofs
-from .simulation.flight import simulate_flight
-from .simulation.town import simulate_town
-from .simulation.village import simulate_village
-from .terrain.ground_cloth import classify_ground_cloth
-from .terrain.ground_tin import classify_ground_tin
-from .terrain.height import compute_height_above_ground
-from .terrain.rasterize import rasterize_terrain
+from .buildings.classify_buildings import classify_buildings
+from .buildings.classify_buildings_2019 import classify_buildings_2019
+from .buildings.complete_buildings import complete_buildings
+from .features.classify_dimensionality import classify_dimensionality
+from .features.compute_features import compute_features
+from .footprints.extract_footprints import extract_footprints
+from .preparation.classify_noise_histogram import classify_noise_histogram
+from .preparation.classify_noise_histogram_2019 import classify_noise_histogram_2019
+from .preparation.classify_noise_statistical import classify_noise_statistical
+from .preparation.downsample_voxels import downsample_voxels
+from .preparation.filter_points import filter_points
+from .preparation.merge_clouds import merge_clouds
+from .quality.assess_buildings import assess_buildings
+from .quality.assess_ground import assess_ground
+from .quality.compare_corners import compare_corners
+from .segmentation.segment_clusters import segment_clusters
+from .segmentation.segment_planes_ransac import segment_planes_ransac
+from .segmentation.segment_regions import segment_regions
+from .segmentation.segment_roofs import segment_roofs
+from .simulation.simulate_flight import simulate_flight
+from .simulation.simulate_town import simulate_town
+from .simulation.simulate_village import simulate_village
+from .terrain.classify_ground_cloth import classify_ground_cloth
+from .terrain.classify_ground_tin import classify_ground_tin
+from .terrain.classify_ground_tin_2000 import classify_ground_tin_2000
+from .terrain.compute_height_above_ground import compute_height_above_ground
+from .terrain.rasterize_terrain import rasterize_terrain
+from .walls.classify_roofs import classify_roofs
+from .walls.classify_walls import classify_walls
+from .walls.extract_wall_footprints import extract_wall_footprints
 
 _FUNCTIONS: tuple[Any, ...] = (
     merge_clouds,
     classify_noise_histogram,
+    classify_noise_histogram_2019,
     classify_noise_statistical,
     filter_points,
     downsample_voxels,
     classify_ground_tin,
+    classify_ground_tin_2000,
     classify_ground_cloth,
     compute_height_above_ground,
     rasterize_terrain,
@@ -49,6 +54,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     segment_clusters,
     segment_planes_ransac,
     classify_buildings,
+    classify_buildings_2019,
     complete_buildings,
     extract_footprints,
     classify_roofs,
@@ -63,3 +69,6 @@ _FUNCTIONS: tuple[Any, ...] = (
 )
 
 STAGES = {function.stage.name: function.stage for function in _FUNCTIONS}
+
+# The advice for clouds that do not fit into memory.
+LESS_MEMORY = f"cut the cloud into tiles or thin it with '{STAGES['downsample_voxels'].title}'"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, Optional
 
@@ -20,8 +21,11 @@ from qgis.core import (
     QgsProviderRegistry,
 )
 
+from ..algorithms.cloud.outputs import VPC, kind_of
+from ..algorithms.cloud.vpc import tiles_of
+
 SUFFIXES = (".las", ".laz", ".vpc")
-_FILTER = "Point clouds (*.las *.LAS *.laz *.LAZ *.vpc *.VPC)"
+FILTER = "Point clouds (*.las *.LAS *.laz *.LAZ *.vpc *.VPC)"
 
 
 def reads_las() -> bool:
@@ -34,7 +38,7 @@ class _TakesFiles:
 
     def createFileFilter(self) -> str:  # noqa: N802 - QGIS asks for these names
         """Return the filter of the browse dialog, LAS and LAZ first."""
-        return f"{_FILTER};;{super().createFileFilter()}"
+        return f"{FILTER};;{super().createFileFilter()}"
 
     def checkValueIsAcceptable(self, value: Any, context: Optional[QgsProcessingContext] = None) -> bool:  # noqa: N802
         """Whether ``value`` may be a point cloud or several; what it really is, :func:`cloud_path` finds out."""
@@ -72,6 +76,17 @@ class CloudsParameter(_TakesFiles, QgsProcessingParameterMultipleLayers):
         # QGIS writes down the layers that it can open, which leaves nothing of files that it can't.
         names = _names(value)
         return super().valueAsPythonString(value, context) if names is None else repr(names)
+
+
+def files_read(clouds: Iterable[Path]) -> list[Path]:
+    """Return all files that hold the points of clouds: themselves, and the tiles of virtual point clouds.
+
+    Raises
+    ------
+    ValueError
+        If a virtual point cloud can't be read, or a tile is missing.
+    """
+    return [file for cloud in clouds for file in (cloud, *(tiles_of(cloud) if kind_of(cloud) == VPC else ()))]
 
 
 def cloud_path(algorithm: QgsProcessingAlgorithm, name: str, parameters: dict, context: QgsProcessingContext) -> Path:

@@ -2,10 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Optional
 
-from qgis.core import Qgis, QgsCoordinateReferenceSystem, QgsProcessingFeatureSource, QgsUnitTypes
+from qgis.core import (
+    Qgis,
+    QgsApplication,
+    QgsCoordinateReferenceSystem,
+    QgsMapLayer,
+    QgsProcessingFeatureSource,
+    QgsUnitTypes,
+)
+from qgis.PyQt.QtCore import QThread
 
+_FULL = QgsCoordinateReferenceSystem.WktVariant.WKT_PREFERRED
 _DISTANCES_UNKNOWN = (Qgis.DistanceUnit.Unknown, Qgis.DistanceUnit.Degrees)
 
 
@@ -36,12 +46,57 @@ def _meters(crs: QgsCoordinateReferenceSystem) -> float:
 
 def crs_of(wkt: str) -> QgsCoordinateReferenceSystem:
     """Return the horizontal CRS that a cloud names as WKT or as "EPSG:n"; invalid when it names none."""
+    crs = _made(wkt)
+    if is_hollow(crs):
+        QgsCoordinateReferenceSystem.invalidateCache()
+        crs = _made(wkt)
+    return crs
+
+
+def _made(wkt: str) -> QgsCoordinateReferenceSystem:
     crs = QgsCoordinateReferenceSystem()
     if wkt:
         crs = QgsCoordinateReferenceSystem.fromWkt(wkt) if '"' in wkt else QgsCoordinateReferenceSystem(wkt)
     # Layers hold heights as an attribute or in meters of the cloud's own vertical system, which GeoPackage can't name.
     horizontal = crs.horizontalCrs()
     return horizontal if horizontal.isValid() else crs
+
+
+def is_hollow(crs: QgsCoordinateReferenceSystem) -> bool:
+    """Whether a CRS has lost its definition.
+
+    QGIS frees the definition with the thread in which a CRS was made, half a minute after a run, but goes on giving
+    that CRS to whoever asks for it. Files that are written with it have none.
+    """
+    return crs.isValid() and not crs.toWkt()
+
+
+def make_in_main_thread(wkts: Iterable[str]) -> list[QgsCoordinateReferenceSystem]:
+    """Make the CRS of a run in the main thread, before the run asks for them in its own; keep what is returned.
+
+    Outside of the main thread nothing is made: a step of a model has them from the model.
+    """
+    if not is_main_thread():
+        return []
+    QgsCoordinateReferenceSystem.invalidateCache()
+    made = [crs_of(wkt) for wkt in wkts]
+    # Layers in memory find theirs by this name.
+    return made + [QgsCoordinateReferenceSystem(crs.authid()) for crs in made if crs.authid()]
+
+
+def renew_in_main_thread(layers: Iterable[QgsMapLayer]) -> None:
+    """Give layers that a run made in its own thread the same CRS made in the main thread, which outlives that."""
+    if not is_main_thread():
+        return
+    named = [(layer, layer.crs().authid(), layer.crs().toWkt(_FULL)) for layer in layers if layer.crs().isValid()]
+    QgsCoordinateReferenceSystem.invalidateCache()
+    for layer, code, wkt in named:
+        layer.setCrs(QgsCoordinateReferenceSystem(code) if code else QgsCoordinateReferenceSystem.fromWkt(wkt))
+
+
+def is_main_thread() -> bool:
+    """Whether this is the thread of the application, and not that of a run."""
+    return QThread.currentThread() == QgsApplication.instance().thread()
 
 
 def crs_of_layer(layer: QgsProcessingFeatureSource) -> QgsCoordinateReferenceSystem:
@@ -51,4 +106,6 @@ def crs_of_layer(layer: QgsProcessingFeatureSource) -> QgsCoordinateReferenceSys
     gives it, which QGIS holds for valid; reprojecting to or from it would make degrees of meters.
     """
     crs = layer.sourceCrs()
+    if is_hollow(crs):
+        return crs_of(crs.authid())
     return QgsCoordinateReferenceSystem() if crs.description().lower().startswith("undefined ") else crs

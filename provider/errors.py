@@ -4,27 +4,34 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Optional
 
-from qgis.core import QgsProcessingException
+from qgis.core import QgsProcessingException, QgsProcessingFeedback
 
 from ..algorithms.stage import Cancelled
+from ..algorithms.stages import LESS_MEMORY
+from .declared import on_command_line
+from .feedback import is_step
+
+_CANCELLED = "Cancelled; nothing was written."
 
 
 @contextmanager
-def one_sentence() -> Iterator[None]:
+def as_processing_errors(feedback: Optional[QgsProcessingFeedback] = None) -> Iterator[None]:
     """Turn the core's errors into Processing's, one sentence each.
 
-    A cancelled run is an error too: otherwise ``qgis_process`` ends with exit code 0. What is
-    neither of these is a fault of the program and keeps its traceback.
+    Who cancels a run, in ``feedback``, is told so and gets no error; but on the command line, where the run would end
+    with exit code 0 without one. What is neither of these is a fault of the program and keeps its traceback.
     """
     try:
         yield
     except Cancelled:
-        raise QgsProcessingException("Cancelled; nothing was written.") from None
+        if feedback is None or not feedback.isCanceled() or on_command_line():
+            raise QgsProcessingException(_CANCELLED) from None
+        if not is_step(feedback):
+            feedback.pushInfo(_CANCELLED)
     except MemoryError:
-        raise QgsProcessingException(
-            "This needs more memory than there is; cut the cloud into tiles, or thin it with 'Downsample to voxels'."
-        ) from None
+        raise QgsProcessingException(f"This needs more memory than there is; {LESS_MEMORY}.") from None
     except ValueError as error:
         raise QgsProcessingException(str(error)) from error
     except OSError as error:

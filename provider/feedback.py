@@ -1,4 +1,4 @@
-"""What a running stage says, shown in QGIS's log and progress bar."""
+"""Progress, values and warnings of a running stage, shown in QGIS's log and progress bar."""
 
 from __future__ import annotations
 
@@ -6,19 +6,18 @@ from typing import Any, Optional
 
 from qgis.core import QgsProcessingAlgorithm, QgsProcessingFeedback, QgsProcessingMultiStepFeedback
 
-from ..algorithms.cloud.units import NAMES_NO_CRS
 from ..algorithms.stage import Cancelled, Monitor, Param, Stage
 
 
 class FeedbackMonitor(Monitor):
-    """A monitor that speaks through a QgsProcessingFeedback and stops when the user cancels.
+    """A monitor that reports to a QgsProcessingFeedback and stops when the user cancels.
 
     Parameters
     ----------
     feedback : QgsProcessingFeedback
         What shows progress and the log.
     stage : Stage, optional
-        The stage that runs: its labels and units are those of the log.
+        The stage that runs: the log uses its labels and units.
     given : dict, optional
         Its tunables; those with a value were set by the user, and the log doesn't call them automatic.
     """
@@ -36,7 +35,7 @@ class FeedbackMonitor(Monitor):
         self._feedback.setProgress(100.0 * fraction)
 
     def resolved(self, **values: Any) -> None:
-        """Keep the values that stages tell, and log those that the user didn't give."""
+        """Keep the values that stages report, and log those that the user didn't give."""
         super().resolved(**values)
         for name, value in values.items():
             if self._given.get(name) is None:
@@ -47,6 +46,11 @@ class FeedbackMonitor(Monitor):
         super().warn(sentence)
         self._feedback.pushWarning(sentence)
 
+    def inform(self, sentence: str) -> None:
+        """Log and keep a sentence."""
+        super().inform(sentence)
+        self._feedback.pushInfo(sentence)
+
     def _sentence(self, name: str, value: Any) -> str:
         tunable = self._stage.tunables.get(name) if self._stage else None
         param = tunable.param if tunable else Param("", "")
@@ -54,35 +58,40 @@ class FeedbackMonitor(Monitor):
         shown = param.written(float(f"{value:.4g}")) if isinstance(value, float) else f"{value} {param.unit}".rstrip()
         if tunable is None:
             return f"{name.replace('_', ' ').capitalize()}: {shown}"
-        found = "automatic" if param.unset == "automatic" else "none set, the cloud has"
+        found = "none set, the cloud has" if param.empty else "automatic"
         return f"{param.label}, {found}: {shown}"
 
 
 class ChainFeedback(QgsProcessingMultiStepFeedback):
-    """Passes everything on, but says a warning once however many steps of a chain come upon it."""
+    """Passes everything on, but shows a warning once, however many steps of a chain give it."""
 
     def __init__(self, feedback: QgsProcessingFeedback) -> None:
         super().__init__(1, feedback)
-        self._said: set = set()
+        self._shown: set[str] = set()
 
     def pushWarning(self, warning: str) -> None:  # noqa: N802 - QGIS asks for this name
-        """Log a warning that was not said yet."""
-        # What names no system is said of the first alone: later steps have it from there.
-        about = NAMES_NO_CRS if warning.endswith(NAMES_NO_CRS) else warning
-        if about not in self._said:
-            self._said.add(about)
+        """Log a warning that was not shown yet."""
+        if warning not in self._shown:
+            self._shown.add(warning)
             super().pushWarning(warning)
 
 
-def tell_unknown(algorithm: QgsProcessingAlgorithm, parameters: dict, feedback: QgsProcessingFeedback) -> None:
-    """Warn of names on the command line or in a script that are no parameters, which QGIS passes over in silence."""
+def warn_unknown_parameters(
+    algorithm: QgsProcessingAlgorithm, parameters: dict, feedback: QgsProcessingFeedback
+) -> None:
+    """Warn of names on the command line or in a script that are no parameters: QGIS ignores them silently."""
     known = {definition.name() for definition in algorithm.parameterDefinitions()}
     for name in sorted(set(parameters) - known):
         feedback.pushWarning(f"{name} is no parameter of '{algorithm.displayName()}', so it has no effect.")
 
 
 def announce(title: str, feedback: QgsProcessingFeedback) -> None:
-    """Log which step a chain has come to; where the algorithm runs alone, its dialog says it."""
-    # By its Qt class: QGIS hands it to Python as a plain feedback.
-    if feedback.inherits("QgsProcessingMultiStepFeedback"):
+    """Log the step that a chain has reached; an algorithm that runs alone is named by its dialog."""
+    if is_step(feedback):
         feedback.setProgressText(title)
+
+
+def is_step(feedback: QgsProcessingFeedback) -> bool:
+    """Whether a feedback is that of a step of a chain."""
+    # By its Qt class: QGIS hands it to Python as a plain feedback.
+    return feedback.inherits("QgsProcessingMultiStepFeedback")

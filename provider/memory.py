@@ -5,24 +5,25 @@ from __future__ import annotations
 import os
 
 from ..algorithms.stage import Monitor
+from ..algorithms.stages import LESS_MEMORY
 
 # Bytes that stages take per point at most, those of the points themselves among them.
 _PER_POINT = 400
 _GB = 1e9
 
 
-def tell_if_short(n_points: int, monitor: Monitor) -> None:
+def warn_if_memory_is_short(n_points: int, monitor: Monitor) -> None:
     """Warn of clouds that hardly fit into memory: where it ends, most systems end QGIS without a word."""
     there, needed = installed_memory(), _PER_POINT * n_points
     if needed > there:
         monitor.warn(
             f"{n_points:,} points may need {needed / _GB:.1f} GB of memory, this computer has {there / _GB:.1f}; "
-            "if that is not enough, cut the cloud into tiles or thin it with 'Downsample to voxels'."
+            f"if that is not enough, {LESS_MEMORY}."
         )
 
 
 def installed_memory() -> float:
-    """Return the bytes of memory of this computer, infinity where the system doesn't tell."""
+    """Return the bytes of memory of this computer, infinity where the system doesn't report it."""
     try:
         return float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
     except (AttributeError, ValueError, OSError):

@@ -14,20 +14,19 @@ from qgis.core import (
     QgsProcessingModelOutput,
     QgsProcessingModelParameter,
     QgsProcessingParameterDefinition,
+    QgsProcessingParameterFile,
     QgsProcessingParameterMultipleLayers,
-    QgsProcessingParameterPointCloudLayer,
 )
 from qgis.PyQt.QtCore import QPointF, QSizeF
 from qgis.PyQt.QtGui import QColor
 
-from ..algorithms.pipelines import Output, Pipeline, Step
-from . import paths
-from .help import lower_first, pipeline_help, step_title
+from ..algorithms.help import lower_first, pipeline_help, step_title
+from ..algorithms.pipeline import Output, Pipeline, Step
+from . import PROVIDER_ID, paths
+from .clouds import FILTER
+from .input_layers import input_layer_name, input_layer_parameter
+from .inputs import INPUT, INPUTS, OUTPUT, cloud_title
 from .parameters import parameter, parameter_name
-from .sources import source_name, source_parameter
-from .stage_algorithm import INPUT, INPUTS, OUTPUT, cloud_title
-
-PROVIDER = "lidarbuildings"
 
 
 def step_label(step: Step, label: str) -> str:
@@ -106,7 +105,7 @@ def build_model(pipeline: Pipeline) -> QgsProcessingModelAlgorithm:
         where.setPosition(QPointF(layout.right, 60))
         where.setSize(layout.box)
         model.addModelParameter(definition, where)
-    definitions = {source_name(source): source_parameter(source) for source in pipeline.sources.values()}
+    definitions = {input_layer_name(layer): input_layer_parameter(layer) for layer in pipeline.input_layers.values()}
     definitions.update(pipeline_parameters(pipeline))
     for step in pipeline.steps:
         _add_parameters(model, pipeline, step, definitions, layout)
@@ -117,10 +116,13 @@ def build_model(pipeline: Pipeline) -> QgsProcessingModelAlgorithm:
 
 
 def _clouds(pipeline: Pipeline) -> list[QgsProcessingParameterDefinition]:
-    """Return the parameter for the cloud or clouds that a composite reads, in QGIS's own type, as the designer does."""
+    """Return the parameter for the cloud or clouds that a composite reads: files.
+
+    The designer runs a model with QGIS's own parameters; those for layers take no LAS and LAZ where QGIS has no PDAL.
+    """
     if pipeline.merges:
-        return [QgsProcessingParameterMultipleLayers(INPUTS, "Point clouds", Qgis.ProcessingSourceType.PointCloud)]
-    return [QgsProcessingParameterPointCloudLayer(INPUT, "Point cloud")] if pipeline.reads_cloud else []
+        return [QgsProcessingParameterMultipleLayers(INPUTS, "Point clouds", Qgis.ProcessingSourceType.File)]
+    return [QgsProcessingParameterFile(INPUT, "Point cloud", fileFilter=FILTER)] if pipeline.reads_cloud else []
 
 
 def output_title(pipeline: Pipeline, output: Output) -> str:
@@ -142,7 +144,7 @@ def _layers_taken(pipeline: Pipeline, step: Step) -> list[str]:
 
 
 def _given(step: Step) -> list[str]:
-    return [source.name for source in step.stage.sources if source.name not in step.layers]
+    return [input_layer.name for input_layer in step.stage.input_layers if input_layer.name not in step.layers]
 
 
 def _first_taken(pipeline: Pipeline, step: Step) -> list[str]:
@@ -180,7 +182,7 @@ def _add_step(
     layout: _Layout,
 ) -> None:
     """Add the child algorithm of a step, its parameters wired to those of the model and to earlier steps."""
-    child = QgsProcessingModelChildAlgorithm(f"{PROVIDER}:{step.stage.id}")
+    child = QgsProcessingModelChildAlgorithm(f"{PROVIDER_ID}:{step.stage.id}")
     child.setChildId(step.name)
     child.setDescription(step.stage.title)
     for name, source in _sources(pipeline, step).items():
@@ -206,11 +208,11 @@ def _sources(pipeline: Pipeline, step: Step) -> dict[str, QgsProcessingModelChil
     name = INPUTS if step.stage.merges else INPUT
     if feeder is not None:
         found[name] = _from_child(feeder, OUTPUT) if feeder else _from_parameter(name)
-    for source in step.stage.sources:
-        if source.name in step.layers:
-            found[source_name(source)] = _from_child(*step.layers[source.name].split("."))
+    for input_layer in step.stage.input_layers:
+        if input_layer.name in step.layers:
+            found[input_layer_name(input_layer)] = _from_child(*step.layers[input_layer.name].split("."))
         else:
-            found[source_name(source)] = _from_parameter(source_name(source))
+            found[input_layer_name(input_layer)] = _from_parameter(input_layer_name(input_layer))
     return found
 
 
@@ -245,7 +247,7 @@ def _frame(step: Step, layout: _Layout, height: float) -> QgsProcessingModelGrou
     box = QgsProcessingModelGroupBox(step.stage.title)
     # QGIS draws a random id, which would make each generated file another.
     facts = box.toVariant()
-    facts["uuid"] = "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, f"{PROVIDER}:{step.name}")) + "}"
+    facts["uuid"] = "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, f"{PROVIDER_ID}:{step.name}")) + "}"
     box.loadVariant(facts)
     position, size = layout.frame(height)
     box.setPosition(position)

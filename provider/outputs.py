@@ -13,6 +13,7 @@ from typing import Any, Optional
 from qgis.core import (
     QgsProcessing,
     QgsProcessingContext,
+    QgsProcessingException,
     QgsProcessingOutputLayerDefinition,
     QgsProcessingParameterFeatureSink,
     QgsProcessingParameterPointCloudDestination,
@@ -20,20 +21,41 @@ from qgis.core import (
     QgsProperty,
 )
 
-from ..algorithms.cloud.cloud import Cloud, write_cloud
-from ..algorithms.cloud.outputs import COPC, check_output, kind_of, same_file, written_or_told
-from ..algorithms.cloud.views import check_place, copc_path
+from ..algorithms.cloud.cloud import Cloud
+from ..algorithms.cloud.copc_sidecar import check_place, copc_path
+from ..algorithms.cloud.files import write_cloud
+from ..algorithms.cloud.outputs import (
+    COPC,
+    ResultFiles,
+    all_or_nothing,
+    check_output,
+    kind_of,
+    os_errors_as_messages,
+    same_file,
+)
 from ..algorithms.stage import Monitor
 from .clouds import reads_las
 from .rasters import check_raster
+from .styles import load_from, name_after
 from .vectors import check_layer
 
 # "memory:", "postgres://…", "ogr:dbname='x.gpkg' table=…": no files. A single letter is a drive.
 _NO_FILE = re.compile(r"^[A-Za-z]{2,}:")
 _TABLE_IN_FILE = re.compile(r"^ogr:dbname='([^']+)'")
 
-# Formats that are several files, by the extension of the one that is named.
-_BESIDE = {".shp": (".dbf", ".shx", ".prj", ".cpg"), ".tab": (".dat", ".map", ".id", ".ind")}
+# Formats that are several files, by the extension of the one that is named; indexes and statistics of an older file
+# would be wrong beside a newer one, and what SQLite has yet to write of an older one would damage it.
+_BESIDE = {
+    ".shp": (".dbf", ".shx", ".prj", ".cpg", ".qix", ".sbn", ".sbx"),
+    ".tab": (".dat", ".map", ".id", ".ind"),
+    ".gpkg": (".gpkg-wal", ".gpkg-shm", ".gpkg-journal"),
+    ".sqlite": (".sqlite-wal", ".sqlite-shm", ".sqlite-journal"),
+    ".tif": (".tif.aux.xml",),
+    ".tiff": (".tiff.aux.xml",),
+}
+
+# Reports are pages.
+PAGE = ".html"
 
 # The smallest results, an empty GeoPackage among them, need about so much (bytes).
 _LEAST_SPACE = 2**18
@@ -78,13 +100,13 @@ def check_targets(definitions: list, parameters: dict, inputs: list) -> None:
     parameters : dict
         Values as the algorithm was given them.
     inputs : list of Path
-        Files that are read and so must not be written.
+        Files that are read and so must not be written: layers, clouds, and the tiles of virtual ones.
 
     Raises
     ------
     ValueError
-        If an output has an unknown extension, is an input or another output, or a folder itself, or if its folder is
-        absent, read-only or full.
+        If an output has an unknown extension, is an input or another output, or no ordinary file, or if its folder
+        is absent, read-only or full.
     """
     seen: dict[Path, str] = {}
     for definition in definitions:
@@ -93,10 +115,12 @@ def check_targets(definitions: list, parameters: dict, inputs: list) -> None:
         if path is None:
             _check_database(value)
             continue
-        other = seen.setdefault(path.absolute(), definition.name())
-        if other != definition.name():
-            raise ValueError(f"{other} and {definition.name()} are the same file ({path}); give each its own.")
-        _check_target(definition, path, inputs)
+        with os_errors_as_messages(path):
+            for file in files_of(definition, value):
+                other = seen.setdefault(file.resolve(), definition.name())
+                if other != definition.name():
+                    raise ValueError(f"{other} and {definition.name()} are the same file ({file}); give each its own.")
+            _check_target(definition, path, inputs)
 
 
 def _check_database(value: Any) -> None:
@@ -104,7 +128,8 @@ def _check_database(value: Any) -> None:
     plain = _plain(value)
     table = _TABLE_IN_FILE.match(plain) if isinstance(plain, str) else None
     if table is not None:
-        _check_file(Path(table[1]))
+        with os_errors_as_messages(Path(table[1])):
+            _check_file(Path(table[1]))
 
 
 def _check_target(definition, path: Path, inputs: list) -> None:
@@ -117,8 +142,11 @@ def _check_target(definition, path: Path, inputs: list) -> None:
         check_raster(path)
     elif isinstance(definition, QgsProcessingParameterFeatureSink):
         check_layer(path)
-    if any(same_file(path, source) for source in inputs):
-        raise ValueError(f"The output {path} is also an input; choose another name.")
+    elif path.suffix.lower() != PAGE:
+        raise ValueError(f"{path.name} can't be written as a report: give it the extension {PAGE}.")
+    for file in files_of(definition, str(path)):
+        if any(same_file(file, source) for source in inputs):
+            raise ValueError(f"The output {file} is also an input; choose another name.")
     _check_file(path)
 
 
@@ -129,35 +157,102 @@ def _check_file(path: Path) -> None:
         raise ValueError(f"The folder {folder} does not exist; make it or choose another one.")
     if path.is_dir():
         raise ValueError(f"{path} is a folder; give the name of a file.")
+    if path.exists() and not path.is_file():
+        raise ValueError(f"{path} is a device, not a file; choose another name.")
     if not os.access(folder, os.W_OK) or (path.exists() and not os.access(path, os.W_OK)):
         raise ValueError(f"{path} can't be written: it or its folder is read-only; choose another one.")
     # What a disk allows shows only when something is written.
-    with written_or_told(path), tempfile.TemporaryFile(dir=folder) as file:
+    with tempfile.TemporaryFile(dir=folder) as file:
         file.write(bytes(_LEAST_SPACE))
 
 
-def _state(path: Path) -> Optional[tuple[int, int, int]]:
-    """Return what changes when a file is written; None when there is none."""
-    if not path.is_file():
-        return None
-    facts = path.stat()
-    return facts.st_mtime_ns, facts.st_size, facts.st_ino
+class Run:
+    """The outputs of a run while it is writing them: in working folders, each beside its target.
+
+    Attributes
+    ----------
+    parameters : dict
+        Those of the run, with outputs in the working folders. Tables of databases and layers in memory stay.
+    """
+
+    def __init__(self, definitions: list, parameters: dict, context: QgsProcessingContext, files: ResultFiles) -> None:
+        self._files, self._clouds = files, []
+        self.parameters = dict(parameters)
+        for definition in definitions:
+            value = parameters.get(definition.name())
+            path = _file_to_write(definition, value, context)
+            if path is not None:
+                self.parameters[definition.name()] = _redirected(value, self._beside(definition, path))
+
+    def _beside(self, definition, path: Path) -> str:
+        if _is_cloud(definition):
+            self._clouds.append(path)
+        return str(self._files.beside(path, files_of(definition, str(path))[1:]))
+
+    def check(self) -> None:
+        """Refuse to replace what came into the place of a cloud's view since the run began."""
+        for path in self._clouds:
+            if kind_of(path) != COPC:
+                check_place(path, ())
+
+    def final(self, value: Any) -> Any:
+        """Return results with the files that they name where these are when all is in place."""
+        if isinstance(value, dict):
+            return {self.final(key): self.final(one) for key, one in value.items()}
+        if isinstance(value, list):
+            return [self.final(one) for one in value]
+        return self._files.final(value) if isinstance(value, str) else value
 
 
 @contextmanager
-def nothing_left_on_failure(paths: list) -> Iterator[list]:
-    """Remove the files that the block wrote when it fails; files that it did not touch stay.
+def all_in_place(
+    definitions: list, parameters: dict, context: QgsProcessingContext, subject: str = ""
+) -> Iterator[Run]:
+    """Put the outputs of a run in place together when the block ends well, and have QGIS load them from there.
 
-    The block may append to the list what it is about to make under a name that it found itself.
+    Parameters
+    ----------
+    definitions : list of QgsProcessingDestinationParameter
+        The algorithm's outputs.
+    parameters : dict
+        Values as the algorithm was given them.
+    context : QgsProcessingContext
+        Of the run.
+    subject : str
+        What the results are of: layers that have no name but their output's get it too.
+
+    Raises
+    ------
+    ValueError, QgsProcessingException
+        As the block does, or if a target can't be replaced; nothing was written then.
     """
-    before = {path: _state(path) for path in paths}
-    try:
-        yield paths
-    except BaseException:
-        for path in paths:
-            if path.is_file() and _state(path) != before.get(path):
-                path.unlink()
-        raise
+    with all_or_nothing() as files:
+        run = Run(definitions, parameters, context, files)
+        try:
+            yield run
+            run.check()
+        except (ValueError, QgsProcessingException) as error:
+            raise type(error)(run.final(str(error))) from error
+    load_from(context, run.final)
+    if subject:
+        name_after(context, {definition.description() for definition in definitions}, subject)
+
+
+def _file_to_write(definition, value: Any, context: QgsProcessingContext) -> Optional[Path]:
+    """Return the file that an output is to be; None for a layer in memory, a database or an output not wanted."""
+    if _plain(value) != QgsProcessing.TEMPORARY_OUTPUT:
+        return target_path(value)
+    is_memory = isinstance(definition, QgsProcessingParameterFeatureSink)
+    return None if is_memory else Path(definition.generateTemporaryDestination(context))
+
+
+def _redirected(value: Any, path: str) -> Any:
+    """Return an output's value with another file, and all else that it says of loading and creating."""
+    if not isinstance(value, QgsProcessingOutputLayerDefinition):
+        return path
+    redirected = QgsProcessingOutputLayerDefinition(value)
+    redirected.sink = QgsProperty.fromValue(path)
+    return redirected
 
 
 def write_for_qgis(cloud: Cloud, target: str, context: QgsProcessingContext, monitor: Monitor) -> str:

@@ -27,7 +27,7 @@ def parameter_name(tunable: Tunable) -> str:
 
 
 def used_name(tunable: Tunable) -> str:
-    """Return the name of the output that tells which value an automatic tunable took, ``CELL_SIZE_USED``."""
+    """Return the name of the output that holds the value that an automatic tunable took, ``CELL_SIZE_USED``."""
     return f"{parameter_name(tunable)}_USED"
 
 
@@ -42,8 +42,8 @@ def label(tunable: Tunable) -> str:
 def help_text(tunable: Tunable) -> str:
     """Return the tooltip: what the tunable does, its range, what automatic means."""
     parts = [tunable.param.help]
-    if tunable.param.range and not tunable.param.choices:
-        parts.append(f"Range: {tunable.param.range}.")
+    if tunable.param.bounds:
+        parts.append(f"Range: {tunable.param.bounds}.")
     if tunable.is_automatic:
         parts.append(tunable.param.unset_text)
     return " ".join(parts)
@@ -133,7 +133,7 @@ def tunable_values(
     context: QgsProcessingContext,
     named: Optional[dict[str, str]] = None,
 ) -> dict[str, Any]:
-    """Return the values of a stage's tunables in ``parameters``, checked; ``named`` tells other parameters' names.
+    """Return the values of a stage's tunables in ``parameters``, checked; ``named`` gives other parameters' names.
 
     Raises
     ------

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
 from typing import Any, Optional
 
 from qgis.core import (
@@ -12,23 +15,26 @@ from qgis.core import (
     QgsProcessingException,
     QgsProcessingFeedback,
     QgsProcessingModelAlgorithm,
+    QgsProcessingModelResult,
     QgsProcessingOutputNumber,
     QgsProcessingParameterDefinition,
 )
 
-from ..algorithms.cloud.cloud import check_readable
-from ..algorithms.pipelines import Output, Pipeline, Step
-from .crs import crs_units
+from ..algorithms.cloud.files import check_readable, read_extent
+from ..algorithms.help import pipeline_help
+from ..algorithms.pipeline import Output, Pipeline, Step
+from ..algorithms.stage import Cancelled
+from .clouds import files_read
+from .crs import crs_units, make_in_main_thread, renew_in_main_thread
+from .declared import DeclaredAlgorithm, on_command_line, shown_help
 from .dependencies import missing_sentence
-from .described import Described
-from .errors import one_sentence
-from .feedback import ChainFeedback, tell_unknown
-from .help import pipeline_help
+from .errors import as_processing_errors
+from .feedback import ChainFeedback, warn_unknown_parameters
+from .input_layers import input_layer_files, input_layer_name, refuse_elsewhere
+from .inputs import INPUT, INPUTS, OUTPUT, REPORT, input_parameter, input_paths, subject_of
 from .models import model_file, pipeline_parameters, step_label
-from .outputs import check_targets, files_of, nothing_left_on_failure
+from .outputs import all_in_place, check_targets
 from .parameters import number_outputs, tunable_values
-from .sources import refuse_elsewhere, source_files, source_name
-from .stage_algorithm import INPUT, INPUTS, OUTPUT, REPORT, input_parameter, input_paths, on_command_line, shown_help
 
 # Outputs of this rank or a higher one are what the result comes from.
 _FROM_BETWEEN = 3
@@ -47,7 +53,23 @@ def step_output_name(step: Step, name: str) -> str:
     return f"{step.name.upper()}_{name}"
 
 
-class PipelineAlgorithm(Described, QgsProcessingModelAlgorithm):
+@contextmanager
+def _own_steps(context: QgsProcessingContext) -> Iterator[None]:
+    """Have QGIS run all steps of a model.
+
+    It keeps the finished steps of a model with the context, by their names, and skips them in every further model that
+    runs in this context: in the next run of a script, or in a model around this one.
+    """
+    before = QgsProcessingModelResult(context.modelResult())
+    context.clearModelResult()
+    try:
+        yield
+    finally:
+        context.clearModelResult()
+        context.modelResult().mergeWith(before)
+
+
+class PipelineAlgorithm(DeclaredAlgorithm, QgsProcessingModelAlgorithm):
     """A shipped model with its pipeline's id and title.
 
     A model loaded as it is has its title as id, refuses LAS and LAZ where QGIS has no PDAL,
@@ -56,7 +78,7 @@ class PipelineAlgorithm(Described, QgsProcessingModelAlgorithm):
 
     def __init__(self, pipeline: Pipeline) -> None:
         super().__init__()
-        self.pipeline = self.described = pipeline
+        self.pipeline = self.declared = pipeline
         if not self.fromFile(str(model_file(pipeline))):
             raise QgsProcessingException(
                 f"The model {model_file(pipeline).name} of the plugin can't be read; install it again."
@@ -70,7 +92,7 @@ class PipelineAlgorithm(Described, QgsProcessingModelAlgorithm):
         """Let the input take any path, and name outputs by their names instead of their titles."""
         # A model's file holds no tooltips.
         helps = {name: definition.help() for name, definition in pipeline_parameters(self.pipeline).items()}
-        helps.update({source_name(source): source.help for source in self.pipeline.sources.values()})
+        helps.update({input_layer_name(layer): layer.help for layer in self.pipeline.input_layers.values()})
         mended = [self._mended(definition, helps) for definition in self.parameterDefinitions()]
         order = [output.name.upper() for output in sorted(self.pipeline.outputs, key=_rank)]
         mended.sort(key=lambda made: order.index(made.name()) if made.isDestination() else -1)
@@ -139,8 +161,8 @@ class PipelineAlgorithm(Described, QgsProcessingModelAlgorithm):
             return False, str(error)
         return super().checkParameterValues(self._with_defaults(parameters), context)
 
-    def _check(self, parameters: dict, context: QgsProcessingContext) -> None:
-        """Refuse with a ValueError what can be refused before the first step."""
+    def _check(self, parameters: dict, context: QgsProcessingContext) -> list[Path]:
+        """Refuse with a ValueError what can be refused before the first step; return the files of the clouds."""
         missing = missing_sentence()
         if missing:
             raise ValueError(missing)
@@ -149,13 +171,14 @@ class PipelineAlgorithm(Described, QgsProcessingModelAlgorithm):
             named = {name: self.pipeline.parameter(step, name).upper() for name in step.stage.tunables}
             tunable_values(self, step.stage, given, context, named)
         clouds = input_paths(self, self.pipeline.merges, given, context) if self.pipeline.reads_cloud else []
-        read = [*clouds, *source_files(self, self.pipeline.sources.values(), given, context)]
+        read = [*files_read(clouds), *input_layer_files(self, self.pipeline.input_layers.values(), given, context)]
         check_targets(self.destinationParameterDefinitions(), given, read)
         for cloud in clouds:
             # Now, as QGIS opens the input of a model as a layer too, and a damaged COPC can hang it.
             check_readable(cloud, crs_units)
         if clouds:
-            refuse_elsewhere(self, self.pipeline.sources.values(), clouds, given, context)
+            refuse_elsewhere(self, self.pipeline.input_layers.values(), clouds, given, context)
+        return clouds
 
     def _with_defaults(self, parameters: dict) -> dict:
         """Return ``parameters`` with the model's defaults, where QGIS would take the child's.
@@ -172,21 +195,45 @@ class PipelineAlgorithm(Described, QgsProcessingModelAlgorithm):
         needed = [output.name.upper() for output in self.pipeline.outputs if self.pipeline.needs(output)]
         return [name for name in needed if name != OUTPUT and parameters.get(name) in (None, "")]
 
+    def prepareAlgorithm(  # noqa: N802
+        self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ) -> bool:
+        """Check, and make the CRS of the clouds while this is still the main thread."""
+        with as_processing_errors():
+            self._clouds = self._check(parameters, context)
+            self._systems = make_in_main_thread(read_extent(path)[2] for path in self._clouds)
+        return super().prepareAlgorithm(self._with_defaults(parameters), context, feedback)
+
+    def postProcessAlgorithm(self, context: QgsProcessingContext, feedback: QgsProcessingFeedback) -> dict:  # noqa: N802
+        """Make the CRS of results last."""
+        renew_in_main_thread(context.temporaryLayerStore().mapLayers().values())
+        return {}
+
     def processAlgorithm(  # noqa: N802
         self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ) -> dict:
-        """Run the graph; all or nothing."""
-        tell_unknown(self, parameters, feedback)
-        with one_sentence(), nothing_left_on_failure(self._target_files(parameters)):
-            self._check(parameters, context)
-            results = super().processAlgorithm(self._with_defaults(parameters), context, ChainFeedback(feedback))
+        """Run the graph; all or nothing. What was cancelled has no results."""
+        warn_unknown_parameters(self, parameters, feedback)
+        definitions, given = self.destinationParameterDefinitions(), self._with_defaults(parameters)
+        subject = subject_of(self._clouds, feedback)
+        with as_processing_errors(feedback), all_in_place(definitions, given, context, subject) as run:
+            results = self._run_steps(run.parameters, context, feedback)
+            return self._finished(run.final(results), parameters)
+        return {}
+
+    def _run_steps(self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback) -> dict:
+        with _own_steps(context):
+            results = super().processAlgorithm(parameters, context, ChainFeedback(feedback))
+        if feedback.isCanceled():
+            # QGIS leaves out the steps that are left and returns what the others made.
+            raise Cancelled
+        return results
+
+    def _finished(self, results: dict, parameters: dict) -> dict:
+        """Return the results of the steps under the names of the composite's outputs."""
         gone = self._not_kept(parameters)
         made = {name: value for name, value in results.items() if value is not None and name not in gone}
         return {**made, **self._numbers(results.get("CHILD_RESULTS", {}))}
-
-    def _target_files(self, parameters: dict) -> list:
-        definitions = self.destinationParameterDefinitions()
-        return [path for d in definitions for path in files_of(d, parameters.get(d.name()))]
 
     def _numbers(self, child_results: dict[str, dict[str, Any]]) -> dict:
         numbers = {}

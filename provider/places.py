@@ -9,8 +9,8 @@ import numpy as np
 from qgis.core import QgsCoordinateReferenceSystem, QgsProcessingFeatureSource
 
 from ..algorithms.cloud.cloud import Cloud
-from ..algorithms.cloud.units import NAMES_NO_CRS
-from ..algorithms.stage import Monitor, Source
+from ..algorithms.cloud.units import NO_CRS
+from ..algorithms.stage import InputLayer, Monitor
 from .crs import crs_of, crs_of_layer, meters_per_unit
 
 _ORIGIN_STEP = 1000.0
@@ -31,7 +31,7 @@ def place_of_cloud(cloud: Cloud) -> Place:
     return Place(crs_of(cloud.wkt), cloud.to_map, cloud.from_map, cloud.units.horizontal)
 
 
-def place_of_layers(layers: dict[Source, QgsProcessingFeatureSource], monitor: Monitor) -> Optional[Place]:
+def place_of_layers(layers: dict[InputLayer, QgsProcessingFeatureSource], monitor: Monitor) -> Optional[Place]:
     """Return the place of what a stage makes of layers alone: in the CRS of the first, from a round origin at its edge.
 
     It is None where there are no layers.
@@ -43,11 +43,11 @@ def place_of_layers(layers: dict[Source, QgsProcessingFeatureSource], monitor: M
     """
     if not layers:
         return None
-    source, layer = next(iter(layers.items()))
+    input_layer, layer = next(iter(layers.items()))
     crs = crs_of_layer(layer)
-    refuse_degrees(source.title, crs)
+    refuse_degrees(input_layer.title, crs)
     if not crs.isValid():
-        monitor.warn(f"{source.title} {NAMES_NO_CRS}")
+        monitor.warn(NO_CRS)
     plane, height = meters_per_unit(crs)
     units = np.array([plane, plane, height])
     extent = layer.sourceExtent()

@@ -7,6 +7,7 @@ from qgis.PyQt.QtGui import QIcon
 
 from ..algorithms.pipelines import PIPELINES
 from ..algorithms.stages import STAGES
+from . import PROVIDER_ID
 from .dependencies import missing_sentence
 from .paths import ICON
 from .pipeline_algorithm import PipelineAlgorithm
@@ -36,7 +37,7 @@ class Provider(QgsProcessingProvider):
 
     def id(self) -> str:
         """Return the prefix of all algorithm ids; frozen, saved models depend on it."""
-        return "lidarbuildings"
+        return PROVIDER_ID
 
     def name(self) -> str:
         """Return what the toolbox calls the provider."""

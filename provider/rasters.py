@@ -13,7 +13,7 @@ from osgeo import gdal
 from qgis.core import QgsCoordinateReferenceSystem
 
 from ..algorithms.cloud.outputs import replacing
-from ..algorithms.stage import Cancelled, Monitor, Raster, Surface
+from ..algorithms.stage import Cancelled, Monitor, Raster, RasterSurface
 from .places import Place
 
 EXTENSIONS = ("tif", "tiff")
@@ -34,21 +34,21 @@ def check_raster(path: Path) -> None:
         raise ValueError(f"{path.name} can't be written as a raster: give it the extension .tif.")
 
 
-def write_raster(raster: Raster, surface: Surface, place: Place, path: Path, monitor: Monitor) -> None:
+def write_raster(raster: Raster, surface: RasterSurface, place: Place, path: Path, monitor: Monitor) -> None:
     """Write a raster; the file appears when it is complete.
 
     Parameters
     ----------
     raster : Raster
         What it is.
-    surface : Surface
+    surface : RasterSurface
         Its values and where they are, in local meters.
     place : Place
         Where local meters are on the map.
     path : Path
         In an existing folder.
     monitor : Monitor
-        Hears progress.
+        Receives progress.
 
     Raises
     ------
@@ -114,7 +114,7 @@ def _errors(path: Path, progress: _Progress) -> Iterator[None]:
             gdal.DontUseExceptions()
 
 
-def _in_memory(raster: Raster, surface: Surface, place: Place) -> gdal.Dataset:
+def _in_memory(raster: Raster, surface: RasterSurface, place: Place) -> gdal.Dataset:
     rows, columns = surface.values.shape
     values = np.where(np.isfinite(surface.values), surface.values, np.float32(NO_DATA)).astype("<f4")
     image = gdal.GetDriverByName("MEM").Create("", columns, rows, 1, gdal.GDT_Float32)

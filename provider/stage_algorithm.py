@@ -2,48 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Optional
 
 from qgis.core import (
-    QgsApplication,
+    QgsCoordinateReferenceSystem,
     QgsFeatureSink,
     QgsProcessingAlgorithm,
     QgsProcessingContext,
     QgsProcessingException,
     QgsProcessingFeedback,
     QgsProcessingOutputNumber,
-    QgsProcessingParameterDefinition,
     QgsProcessingParameterFeatureSink,
     QgsProcessingParameterFileDestination,
     QgsProcessingParameterPointCloudDestination,
     QgsProcessingParameterRasterDestination,
 )
 
-from ..algorithms.cloud.cloud import Cloud, count_points, read_cloud
-from ..algorithms.cloud.dimensions import DIMENSIONS
+from ..algorithms.cloud.cloud import Cloud
+from ..algorithms.cloud.files import count_points, read_cloud, read_extent
 from ..algorithms.cloud.outputs import replacing
+from ..algorithms.help import stage_help
 from ..algorithms.run import Outcome, run_stage
-from ..algorithms.stage import Features, Layer, Monitor, Raster, Stage, Surface
-from .clouds import CloudParameter, CloudsParameter, cloud_path, cloud_paths
-from .crs import crs_units
+from ..algorithms.stage import Layer, LayerFeatures, Monitor, Raster, RasterSurface, Stage
+from .clouds import CloudParameter, cloud_path, files_read
+from .crs import crs_units, make_in_main_thread, renew_in_main_thread
+from .declared import DeclaredAlgorithm, shown_help
 from .dependencies import missing_sentence
-from .described import Described
-from .errors import one_sentence
-from .feedback import FeedbackMonitor, announce, tell_unknown
-from .help import as_text, stage_help
-from .memory import tell_if_short
-from .outputs import check_targets, files_of, nothing_left_on_failure, write_for_qgis
+from .errors import as_processing_errors
+from .feedback import FeedbackMonitor, announce, warn_unknown_parameters
+from .input_layers import find_input_layer, input_layer_files, input_layer_parameter, read_input_layer, refuse_elsewhere
+from .inputs import OUTPUT, REFERENCE, REPORT, cloud_title, input_parameter, input_paths, subject_of, with_help
+from .memory import warn_if_memory_is_short
+from .outputs import all_in_place, check_targets, write_for_qgis
 from .parameters import automatic_numbers, number_outputs, parameter, tunable_values, used_name
 from .places import Place, place_of_cloud, place_of_layers
 from .rasters import write_raster
-from .sources import find_source, read_source, refuse_elsewhere, source_files, source_parameter
-from .styles import cloud_style, layer_style, style_on_load
+from .styles import cloud_style, layer_style, show_on_load
 from .vectors import SOURCE_TYPES, fields_of, plain, qgis_features, wkb_type
-
-INPUT, INPUTS, REFERENCE, OUTPUT, REPORT = "INPUT", "INPUTS", "REFERENCE", "OUTPUT", "REPORT"
 
 # How far the progress is when clouds are read, when the stage is done, and when the cloud is written.
 _READ, _RUN, _WRITTEN = 0.15, 0.8, 0.97
@@ -62,6 +59,7 @@ class _Job:
     tunables: dict[str, Any]
     inputs: list[Path] = field(default_factory=list)
     reference: Optional[Path] = None
+    systems: list[QgsCoordinateReferenceSystem] = field(default_factory=list)
 
     @property
     def paths(self) -> list[Path]:
@@ -69,12 +67,12 @@ class _Job:
         return [*self.inputs, *([self.reference] if self.reference else [])]
 
 
-class StageAlgorithm(Described, QgsProcessingAlgorithm):
+class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
     """A stage as a Processing algorithm; everything it shows comes from the stage's declaration."""
 
     def __init__(self, stage: Stage) -> None:
         super().__init__()
-        self.stage = self.described = stage
+        self.stage = self.declared = stage
 
     def createInstance(self) -> StageAlgorithm:  # noqa: N802 - QGIS asks for these names
         """Return a new algorithm of the same stage."""
@@ -90,9 +88,9 @@ class StageAlgorithm(Described, QgsProcessingAlgorithm):
             self.addParameter(input_parameter(self.stage.merges))
         if self.stage.reads_reference:
             what = "File or layer to compare with: the same points with the true values."
-            self.addParameter(_helped(CloudParameter(REFERENCE, "Reference point cloud"), what))
-        for source in self.stage.sources:
-            self.addParameter(source_parameter(source))
+            self.addParameter(with_help(CloudParameter(REFERENCE, "Reference point cloud"), what))
+        for input_layer in self.stage.input_layers:
+            self.addParameter(input_layer_parameter(input_layer))
         for tunable in self.stage.tunables.values():
             self.addParameter(parameter(tunable))
         self._add_destinations()
@@ -103,7 +101,7 @@ class StageAlgorithm(Described, QgsProcessingAlgorithm):
         stage = self.stage
         if stage.makes_cloud:
             cloud = QgsProcessingParameterPointCloudDestination(OUTPUT, cloud_title([stage]))
-            self.addParameter(_helped(cloud, "A .las, .laz or .copc.laz file."))
+            self.addParameter(with_help(cloud, "A .las, .laz or .copc.laz file."))
         # Who wants the cloud or the numbers may do without the layers.
         optional = bool(stage.makes_cloud or stage.measures)
         for layer in stage.layers:
@@ -112,14 +110,14 @@ class StageAlgorithm(Described, QgsProcessingAlgorithm):
             )
             # Of layers alone the first is what the stage is for.
             optional = True
-            self.addParameter(_helped(sink, "A GeoPackage or any other vector format that QGIS writes."))
+            self.addParameter(with_help(sink, "A GeoPackage or any other vector format that QGIS writes."))
         optional = optional or len(stage.rasters) > 1
         for raster in stage.rasters:
             image = QgsProcessingParameterRasterDestination(raster.name.upper(), raster.title, optional=optional)
-            self.addParameter(_helped(image, "A GeoTIFF, tiled and compressed."))
+            self.addParameter(with_help(image, "A GeoTIFF, tiled and compressed."))
         if self.stage.measures:
             page = QgsProcessingParameterFileDestination(REPORT, "Report", "HTML files (*.html)", optional=True)
-            self.addParameter(_helped(page, "A page that shows the numbers."))
+            self.addParameter(with_help(page, "A page that shows the numbers."))
 
     def _add_numbers(self) -> None:
         """Declare the numbers that the stage returns: what automatic tunables took, and its measures."""
@@ -146,9 +144,15 @@ class StageAlgorithm(Described, QgsProcessingAlgorithm):
 
         Models and scripts come here without :meth:`checkParameterValues`, so everything is checked again.
         """
-        with one_sentence():
+        with as_processing_errors():
             self.job = self._job(parameters, context)
+            self.job.systems = make_in_main_thread(read_extent(path)[2] for path in self.job.paths)
         return True
+
+    def postProcessAlgorithm(self, context: QgsProcessingContext, feedback: QgsProcessingFeedback) -> dict:  # noqa: N802
+        """Make the CRS of results last."""
+        renew_in_main_thread(context.temporaryLayerStore().mapLayers().values())
+        return {}
 
     def _job(self, parameters: dict, context: QgsProcessingContext) -> _Job:
         """Return what a run needs; refuse with a ValueError what can be refused before it."""
@@ -160,59 +164,56 @@ class StageAlgorithm(Described, QgsProcessingAlgorithm):
             job.inputs = input_paths(self, self.stage.merges, parameters, context)
         if self.stage.reads_reference:
             job.reference = cloud_path(self, REFERENCE, parameters, context)
-        read = [*job.paths, *source_files(self, self.stage.sources, parameters, context)]
+        read = [*files_read(job.paths), *input_layer_files(self, self.stage.input_layers, parameters, context)]
         check_targets(self.destinationParameterDefinitions(), parameters, read)
         if job.inputs:
-            refuse_elsewhere(self, self.stage.sources, job.inputs, parameters, context)
+            refuse_elsewhere(self, self.stage.input_layers, job.inputs, parameters, context)
         return job
 
     def processAlgorithm(  # noqa: N802
         self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ) -> dict:
-        """Read, run the stage, write; all or nothing."""
+        """Read, run the stage, write; all or nothing. What was cancelled has no results."""
         announce(self.stage.title, feedback)
-        tell_unknown(self, parameters, feedback)
+        warn_unknown_parameters(self, parameters, feedback)
         monitor = FeedbackMonitor(feedback, self.stage, self.job.tunables)
-        with one_sentence(), nothing_left_on_failure(self._target_files(parameters)) as written:
+        definitions, subject = self.destinationParameterDefinitions(), subject_of(self.job.paths, feedback)
+        with as_processing_errors(feedback), all_in_place(definitions, parameters, context, subject) as run:
             outcome, place = self._run(parameters, context, monitor)
             results = self._numbers(outcome, monitor)
             if self.stage.makes_cloud:
                 part = monitor.part(_RUN, _WRITTEN)
-                results[OUTPUT] = self._write_cloud(outcome.cloud, parameters, context, part, written)
+                results[OUTPUT] = self._write_cloud(outcome.cloud, run.parameters, context, part)
             for layer in self.stage.layers:
                 features = outcome.layers[layer.name]
-                results.update(self._write_layer(layer, features, place, parameters, context, monitor))
+                results.update(self._write_layer(layer, features, place, run.parameters, context, monitor))
             for raster in self.stage.rasters:
                 surface = outcome.rasters[raster.name]
-                results.update(self._write_raster(raster, surface, place, parameters, context, monitor, written))
+                results.update(self._write_raster(raster, surface, place, run.parameters, context, monitor))
             if outcome.report is not None:
-                results.update(self._write_report(outcome.report.html, parameters, context))
+                results.update(self._write_report(outcome.report.html, run.parameters, context))
             monitor.progress(1.0)
-        return results
-
-    def _target_files(self, parameters: dict) -> list:
-        """Return the files that a run may write."""
-        definitions = self.destinationParameterDefinitions()
-        return [path for d in definitions for path in files_of(d, parameters.get(d.name()))]
+            return run.final(results)
+        return {}
 
     def _run(self, parameters: dict, context: QgsProcessingContext, monitor: Monitor) -> tuple[Outcome, Place]:
         """Read clouds and layers and run the stage; return what it made, and where on Earth that lies."""
         paths = self.job.paths
-        # Where memory ends while they are read, nothing can be told any more.
-        tell_if_short(sum(map(count_points, paths)), monitor)
+        # Where memory ends while they are read, no warning comes through any more.
+        warn_if_memory_is_short(sum(map(count_points, paths)), monitor)
         share = _READ / max(1, len(paths))
         clouds = [read_cloud(path, monitor.part(i * share, (i + 1) * share), crs_units) for i, path in enumerate(paths)]
         reference = clouds.pop() if self.job.reference else None
-        found = {source: find_source(self, source, parameters, context) for source in self.stage.sources}
-        given = {source: layer for source, layer in found.items() if layer is not None}
+        found = {wanted: find_input_layer(self, wanted, parameters, context) for wanted in self.stage.input_layers}
+        given = {wanted: layer for wanted, layer in found.items() if layer is not None}
         place = place_of_cloud(clouds[0]) if clouds else place_of_layers(given, monitor)
-        sources = {
-            source.name: read_source(source, layer, place, context, monitor.part(_READ, _READ))
-            for source, layer in given.items()
+        input_layers = {
+            input_layer.name: read_input_layer(input_layer, layer, place, context, monitor.part(_READ, _READ))
+            for input_layer, layer in given.items()
         }
         cloud = clouds if self.stage.merges else clouds[0] if clouds else None
         tunables = self.job.tunables
-        outcome = run_stage(self.stage, cloud, reference, monitor.part(_READ, _RUN), sources, **tunables)
+        outcome = run_stage(self.stage, cloud, reference, monitor.part(_READ, _RUN), input_layers, **tunables)
         return outcome, place_of_cloud(outcome.cloud) if outcome.cloud is not None else place
 
     def _numbers(self, outcome: Outcome, monitor: Monitor) -> dict:
@@ -226,20 +227,17 @@ class StageAlgorithm(Described, QgsProcessingAlgorithm):
                 numbers[measure.name.upper()] = plain(outcome.report.values[measure.name])
         return numbers
 
-    def _write_cloud(
-        self, cloud: Cloud, parameters: dict, context: QgsProcessingContext, monitor: Monitor, written: list
-    ) -> str:
-        """Write the cloud and return its file; what is written under a name found here joins ``written``."""
+    def _write_cloud(self, cloud: Cloud, parameters: dict, context: QgsProcessingContext, monitor: Monitor) -> str:
+        """Write the cloud and return its file."""
         target = self.parameterAsOutputLayer(parameters, OUTPUT, context)
-        written += files_of(self.parameterDefinition(OUTPUT), target)
         shown = write_for_qgis(cloud, target, context, monitor)
-        style_on_load(context, shown, cloud_style(self.stage, cloud))
+        show_on_load(context, shown, "Cloud", cloud_style(self.stage, cloud))
         return target
 
     def _write_layer(
         self,
         layer: Layer,
-        features: Features,
+        features: LayerFeatures,
         place: Place,
         parameters: dict,
         context: QgsProcessingContext,
@@ -266,27 +264,25 @@ class StageAlgorithm(Described, QgsProcessingAlgorithm):
         finally:
             # The file is closed with the sink: complete for the next step of a model, or free to be removed.
             del sink
-        style_on_load(context, target, layer_style(layer), layer.fields)
+        show_on_load(context, target, layer.geometry, layer_style(layer), layer.fields)
         return {name: target}
 
     def _write_raster(
         self,
         raster: Raster,
-        surface: Surface,
+        surface: RasterSurface,
         place: Place,
         parameters: dict,
         context: QgsProcessingContext,
         monitor: Monitor,
-        written: list,
     ) -> dict:
         """Write a raster, if it is wanted; return its output."""
         name = raster.name.upper()
         if parameters.get(name) in _UNWANTED:
             return {}
         target = self.parameterAsOutputLayer(parameters, name, context)
-        written += files_of(self.parameterDefinition(name), target)
         write_raster(raster, surface, place, Path(target), monitor.part(_WRITTEN, _WRITTEN))
-        style_on_load(context, target, layer_style(raster))
+        show_on_load(context, target, "Raster", layer_style(raster))
         return {name: target}
 
     def _write_report(self, html: str, parameters: dict, context: QgsProcessingContext) -> dict:
@@ -300,56 +296,6 @@ class StageAlgorithm(Described, QgsProcessingAlgorithm):
 
 
 def _unwritten(layer: Layer, target: str, sink: QgsFeatureSink) -> str:
-    """Return why a layer can't be written, as far as its format tells."""
+    """Return why a layer can't be written, with the reason that its format gives, if any."""
     why = f" ({sink.lastError()})" if sink.lastError() else ""
     return f"{layer.title} can't be written to {target}{why}; free some space or choose another folder."
-
-
-def on_command_line() -> bool:
-    """Whether this is ``qgis_process``, which shows HTML as it is written."""
-    return QgsApplication.platform() == "qgis_process"
-
-
-def shown_help(text: str) -> str:
-    """Return a help as dialogs or the command line show it."""
-    return as_text(text) if on_command_line() else text
-
-
-def _helped(definition: QgsProcessingParameterDefinition, text: str) -> QgsProcessingParameterDefinition:
-    """Return the parameter with its tooltip."""
-    definition.setHelp(text)
-    return definition
-
-
-def input_parameter(several: bool) -> QgsProcessingParameterDefinition:
-    """Return the parameter of the cloud, or of the clouds, that a stage or chain works on."""
-    if several:
-        return _helped(CloudsParameter(INPUTS, "Point clouds"), "Two or more files or layers of points.")
-    return _helped(CloudParameter(INPUT, "Point cloud"), "File or layer of the points.")
-
-
-def input_paths(
-    algorithm: QgsProcessingAlgorithm, several: bool, parameters: dict, context: QgsProcessingContext
-) -> list[Path]:
-    """Return the file of the cloud, or the files of the clouds, that an algorithm works on."""
-    if several:
-        return cloud_paths(algorithm, INPUTS, parameters, context)
-    return [cloud_path(algorithm, INPUT, parameters, context)]
-
-
-def cloud_title(stages: Sequence[Stage]) -> str:
-    """Return what the cloud is called that these stages make one after the other, in the dialog and as a layer."""
-    # What a selection or a merger writes is what its points had before.
-    of_their_own = [stage for stage in stages if not (stage.selects or stage.merges)]
-    writes = [name for stage in of_their_own for name in stage.writes]
-    if any(stage.creates for stage in stages):
-        return "Simulated point cloud"
-    if all(stage.merges for stage in stages):
-        return "Merged point cloud"
-    if all(stage.selects for stage in stages):
-        return "Selected points"
-    if "classification" in writes:
-        return "Classified point cloud"
-    if len(writes) == 1:
-        return f"Point cloud with {DIMENSIONS[writes[0]].disk[0]}"
-    return "Point cloud with new dimensions"

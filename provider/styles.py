@@ -2,15 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Optional, Union
+from collections.abc import Collection, Sequence
+from typing import Callable, Optional, Union
 
-from qgis.core import QgsEditorWidgetSetup, QgsProcessingContext, QgsProcessingLayerPostProcessorInterface
+from qgis.core import (
+    QgsEditorWidgetSetup,
+    QgsMapLayer,
+    QgsPointCloudLayer,
+    QgsProcessingContext,
+    QgsProcessingLayerPostProcessorInterface,
+)
 from qgis.PyQt import sip
+
+try:
+    from qgis._3d import QgsPointCloudLayer3DRenderer
+except ImportError:  # QGIS built without 3D views
+    QgsPointCloudLayer3DRenderer = None
 
 from ..algorithms.cloud.cloud import Cloud
 from ..algorithms.stage import Field, Layer, Raster, Stage
 from .paths import STYLES
+
+# Kinds of results from the bottom of the map to the top: QGIS would stack them by the names of their files.
+_DRAWN = ("Raster", "Cloud", "Polygon", "LineString", "Point")
 
 # Decimals of numbers in tables: millimeters.
 _DECIMALS = 3
@@ -23,11 +37,17 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
         super().__init__()
         self.stem, self.fields = stem, fields
 
+    def copy(self) -> Styler:
+        """Return another one that does the same."""
+        return Styler(self.stem, self.fields)
+
     def postProcessLayer(self, layer, context, feedback) -> None:  # noqa: N802 - QGIS asks for this name
         """Load the style, and say so in the log when it can't be."""
         message, loaded = layer.loadNamedStyle(str(STYLES / f"{self.stem}.qml"))
         if not loaded:
             feedback.pushWarning(f"The style {self.stem} can't be loaded: {message}")
+        if isinstance(layer, QgsPointCloudLayer):
+            show_in_3d(layer)
         for declared in self.fields:
             index = layer.fields().indexOf(declared.name)
             if declared.unit:
@@ -36,11 +56,21 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
                 rounded = QgsEditorWidgetSetup("Range", {"Precision": _DECIMALS, "AllowNull": True})
                 layer.setEditorWidgetSetup(index, rounded)
         layer.triggerRepaint()
+        stack_results(context)
 
 
 # QGIS deletes post processors with the run's context, but keeps no reference until then: one that Python forgets
 # is never called.
 _KEPT: list[Styler] = []
+
+
+def show_in_3d(layer: QgsPointCloudLayer) -> None:
+    """Draw a cloud in 3D views as on the map, at its heights; layers have this in their styles."""
+    if QgsPointCloudLayer3DRenderer is None:
+        return
+    renderer = QgsPointCloudLayer3DRenderer()
+    renderer.convertFrom2DRenderer(layer.renderer())
+    layer.setRenderer3D(renderer)
 
 
 def cloud_style(stage: Stage, cloud: Cloud) -> Optional[str]:
@@ -55,12 +85,65 @@ def layer_style(layer: Union[Layer, Raster]) -> Optional[str]:
     return stem if (STYLES / f"{stem}.qml").is_file() else None
 
 
-def style_on_load(
-    context: QgsProcessingContext, target: str, stem: Optional[str], fields: Sequence[Field] = ()
+def show_on_load(
+    context: QgsProcessingContext, target: str, kind: str, stem: Optional[str], fields: Sequence[Field] = ()
 ) -> None:
-    """Have the result ``target`` styled when, and if, it is loaded."""
-    if stem is None or not context.willLoadLayerOnCompletion(target):
+    """Have the result ``target`` styled, and put at its place among the others, when and if it is loaded.
+
+    ``kind`` is one of those in the order of drawing: "Raster", "Cloud", or the geometry of a layer.
+    """
+    if not context.willLoadLayerOnCompletion(target):
         return
+    details = context.layerToLoadOnCompletionDetails(target)
+    details.layerSortKey = _DRAWN.index(kind)
+    if stem is not None:
+        details.setPostProcessor(_kept(Styler(stem, fields)))
+
+
+def _kept(styler: Styler) -> Styler:
     _KEPT[:] = [styler for styler in _KEPT if not sip.isdeleted(styler)]
-    _KEPT.append(Styler(stem, fields))
-    context.layerToLoadOnCompletionDetails(target).setPostProcessor(_KEPT[-1])
+    _KEPT.append(styler)
+    return styler
+
+
+def load_from(context: QgsProcessingContext, final: Callable[[str], str]) -> None:
+    """Have QGIS load results from where they are now: ``final`` turns a path that it knows into the present one."""
+    layers = context.layersToLoadOnCompletion()
+    # QGIS deletes the post processor of a result that it is no longer to load: the one in its place gets a copy.
+    stylers = {path: details.postProcessor().copy() for path, details in layers.items() if details.postProcessor()}
+    context.setLayersToLoadOnCompletion({final(path): _without_styler(details) for path, details in layers.items()})
+    for path, styler in stylers.items():
+        context.layerToLoadOnCompletionDetails(final(path)).setPostProcessor(_kept(styler))
+
+
+def stack_results(context: QgsProcessingContext) -> None:
+    """Put the layers of a run into the order of drawing: QGIS reverses it where a layer of the project is selected."""
+    keys = {path: details.layerSortKey for path, details in context.layersToLoadOnCompletion().items()}
+    root = context.project().layerTreeRoot()
+    found = {node: _key_of(node.layer(), keys) for node in root.findLayers() if node.layer() is not None}
+    nodes = [node for node, key in found.items() if key is not None]
+    wanted = sorted(nodes, key=lambda node: -found[node])
+    if wanted == nodes or len({node.parent() for node in nodes}) > 1:
+        return
+    parent = nodes[0].parent()
+    parent.insertChildNodes(parent.children().index(nodes[0]), [node.clone() for node in wanted])
+    for node in nodes:
+        parent.removeChildNode(node)
+
+
+def _key_of(layer: QgsMapLayer, keys: dict[str, int]) -> Optional[int]:
+    """Return the key of a loaded result, None for any other layer."""
+    return keys.get(layer.id(), keys.get(layer.source()))
+
+
+def name_after(context: QgsProcessingContext, titles: Collection[str], subject: str) -> None:
+    """Have the layers of two runs told apart: "Footprints (delft)", unless the user has named them."""
+    for path, details in context.layersToLoadOnCompletion().items():
+        if details.name in titles:
+            context.layerToLoadOnCompletionDetails(path).name = f"{details.name} ({subject})"
+
+
+def _without_styler(details: QgsProcessingContext.LayerDetails) -> QgsProcessingContext.LayerDetails:
+    copy = QgsProcessingContext.LayerDetails(details.name, details.project, details.outputName, details.layerTypeHint)
+    copy.forceName, copy.groupName, copy.layerSortKey = details.forceName, details.groupName, details.layerSortKey
+    return copy

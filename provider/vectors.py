@@ -21,7 +21,7 @@ from qgis.core import (
 )
 from qgis.PyQt.QtCore import QMetaType
 
-from ..algorithms.stage import Features, Layer
+from ..algorithms.stage import Layer, LayerFeatures
 
 _TYPES = {int: QMetaType.Type.Int, float: QMetaType.Type.Double, str: QMetaType.Type.QString}
 _WKB = {"Polygon": Qgis.WkbType.Polygon, "LineString": Qgis.WkbType.LineString, "Point": Qgis.WkbType.Point}
@@ -47,7 +47,7 @@ def fields_of(layer: Layer) -> QgsFields:
     return fields
 
 
-def wkb_type(layer: Layer, features: Features) -> Qgis.WkbType:
+def wkb_type(layer: Layer, features: LayerFeatures) -> Qgis.WkbType:
     """Return the geometry type: with Z when the stage gave heights."""
     flat = _WKB[layer.geometry]
     return QgsWkbTypes.addZ(flat) if any(_width(geometry) == 3 for geometry in features.geometries[:1]) else flat
@@ -57,14 +57,16 @@ def _width(geometry: Any) -> int:
     return np.shape(geometry[0] if isinstance(geometry, (list, tuple)) else geometry)[-1]
 
 
-def qgis_features(layer: Layer, features: Features, to_map: Callable[[np.ndarray], np.ndarray]) -> Iterator[QgsFeature]:
+def qgis_features(
+    layer: Layer, features: LayerFeatures, to_map: Callable[[np.ndarray], np.ndarray]
+) -> Iterator[QgsFeature]:
     """Yield the features of a layer, in the coordinates of the cloud's CRS.
 
     Parameters
     ----------
     layer : Layer
         What the features are.
-    features : Features
+    features : LayerFeatures
         Their geometries, in local meters, and columns.
     to_map : callable
         Turns local meters (m, 2 or 3) into map coordinates.

@@ -1,6 +1,6 @@
 """Write the generated files of the plugin: a help page per algorithm and a model per pipeline.
 
-Run with the Python of QGIS: ``QT_QPA_PLATFORM=offscreen python3 scripts/generate_resources.py``.
+``make resources`` runs it with the Python of QGIS.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ sys.path.insert(0, str(ROOT))
 from qgis.core import QgsApplication  # noqa: E402
 
 import conftest  # noqa: E402, F401 - registers the checkout as the package lidar_buildings
+from lidar_buildings.algorithms.help import page, pipeline_help, stage_help  # noqa: E402
 from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 from lidar_buildings.provider import models  # noqa: E402
-from lidar_buildings.provider.help import page, pipeline_help, stage_help  # noqa: E402
 from lidar_buildings.provider.paths import HELP, MODELS  # noqa: E402
 from lidar_buildings.provider.provider import Provider  # noqa: E402
 

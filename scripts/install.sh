@@ -3,7 +3,7 @@
 # Every step first looks whether it is done, so that a second run changes nothing.
 #
 #   install.sh system    QGIS 3.40 or newer and scipy, scikit-learn from the system's packages (asks for root)
-#   install.sh profile   lazrs and the plugin, for you alone, in your QGIS profile
+#   install.sh profile   laspy, lazrs and the plugin, for you alone, in your QGIS profile
 #   install.sh           both
 #
 # The profile is QGIS's own default one, or the one in the folder that QGIS_CUSTOM_CONFIG_PATH names.
@@ -121,15 +121,15 @@ PY
 
 install_packages() {
     if has_packages; then
-        say "Profile: lazrs is there."
+        say "Profile: laspy and lazrs are there."
         return
     fi
-    say "Profile: installing lazrs into $PROFILE_FOLDER/python"
+    say "Profile: installing laspy and lazrs into $PROFILE_FOLDER/python"
     mkdir -p "$PROFILE_FOLDER/python"
     # Without --no-deps pip would put a second numpy beside QGIS's own and break scipy and GDAL.
     PIP_ROOT_USER_ACTION=ignore /usr/bin/python3 -m pip install --quiet --no-deps --upgrade --target "$PROFILE_FOLDER/python" \
         -r "$HERE/requirements.txt"
-    has_packages || fail "lazrs was installed into $PROFILE_FOLDER/python but can't be imported by /usr/bin/python3."
+    has_packages || fail "laspy and lazrs were installed into $PROFILE_FOLDER/python but can't be imported by /usr/bin/python3."
 }
 
 link_plugin() {

@@ -1,4 +1,4 @@
-"""A monitor that hears how far the work is, and can stop it."""
+"""A monitor that records progress, and can stop the work."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from lidar_buildings.algorithms.cloud.asprs import PointClass
-from lidar_buildings.algorithms.simulation.town import simulate_town
+from lidar_buildings.algorithms.simulation.simulate_town import simulate_town
 
 
 class NoisyTown(NamedTuple):

@@ -10,11 +10,38 @@ from pathlib import Path
 
 import pytest
 
+from lidar_buildings.algorithms import STAGES
+
 ROOT = Path(__file__).resolve().parent.parent
 QGIS = {"qgis", "osgeo", "processing", "PyQt5", "PyQt6", "console"}
 POINT_CLOUD_FILES = {"laspy", "lazrs", "laszip", "copclib"}
 NUMERICAL = {"scipy", "sklearn"}
+# The rooms of the core in their order: a module imports from its own room and from earlier ones.
+# "" holds the helpers of the core itself, "top" the modules that know stages and pipelines.
+ROOMS = (
+    "stage",
+    "",
+    "geometry",
+    "neighborhoods",
+    "cloud",
+    "sampling",
+    "report",
+    "preparation",
+    "terrain",
+    "features",
+    "segmentation",
+    "buildings",
+    "footprints",
+    "walls",
+    "quality",
+    "simulation",
+    "top",
+)
+HELPERS = {"packages", "threads", "params"}
+# Lines of a room, of the lines of all rooms: a larger one holds more than one idea.
+LARGEST_ROOM = 0.12
 # Functions that import what their first argument says.
+IMPORTS = (ast.Import, ast.ImportFrom)
 IMPORTERS = {"import_module", "__import__", "_Lazy"}
 
 
@@ -44,6 +71,9 @@ def sources(*folders: str) -> list[str]:
 
 CORE = sources("algorithms")
 PLUGIN = ["__init__.py", *CORE, *sources("provider")]
+TESTS = sources("tests")
+OTHER_TESTS = ("tests/provider/", "tests/qgis/", "tests/real/", "tests/benchmarks/")
+TESTS_OF_CORE = [path for path in TESTS if not path.startswith(OTHER_TESTS)]
 
 
 def test_reader_of_imports_sees_every_way_to_import():
@@ -64,6 +94,80 @@ ndimage = _Lazy("scipy.ndimage")
     )
 
 
+def room_of(module: str) -> str:
+    """Return the room of a module of the core, ``"geometry.grid"`` or ``"run"``."""
+    first, *rest = module.split(".")
+    return first if rest or (ROOT / "algorithms" / first).is_dir() else "" if first in HELPERS else "top"
+
+
+def modules_imported(path: str) -> Iterator[str]:
+    """Yield the modules of the core that one of its modules imports, ``"geometry.grid"``."""
+    package = Path(path).with_suffix("").parts[1:-1]
+    for name in imported((ROOT / path).read_text(encoding="utf-8")):
+        level = len(name) - len(name.lstrip("."))
+        if level:
+            yield ".".join([*package[: len(package) - level + 1], name[level:]])
+
+
+@pytest.mark.parametrize("path", [path for path in CORE if path.count("/") > 1 or not path.endswith("__init__.py")])
+def test_rooms_import_only_from_earlier_rooms(path):
+    own = room_of(".".join(Path(path).with_suffix("").parts[1:]))
+    below = ROOMS[: ROOMS.index(own) + 1]
+    assert not [module for module in modules_imported(path) if room_of(module) not in below]
+
+
+# Rooms and stages that measure points by themselves: parts of a cloud that are sampled otherwise than the whole.
+MEASURE_PARTS = {
+    "algorithms/footprints/extract_footprints.py",
+    "algorithms/walls/extract_wall_footprints.py",
+    "algorithms/walls/classify_walls.py",
+}
+
+
+def test_how_a_cloud_was_sampled_is_asked_of_its_sampling():
+    """A stage that measured the density of all its points would measure it again, and on other points than the next."""
+    measuring = [name for name in CORE if not name.startswith("algorithms/sampling/")]
+    own = {
+        path
+        for path in measuring
+        for word in ("point_density(", "point_spacing(", "effective_density(", "surface_density(", "SurfaceSample(")
+        if word in (ROOT / path).read_text(encoding="utf-8")
+    }
+    assert own == MEASURE_PARTS
+
+
+def test_every_folder_is_a_room():
+    folders = {path.name for path in (ROOT / "algorithms").iterdir() if (path / "__init__.py").exists()}
+    assert folders == set(ROOMS) - {"", "top"}
+
+
+def test_no_room_is_too_large():
+    lines = {path: (ROOT / path).read_text(encoding="utf-8").count("\n") for path in CORE}
+    rooms = {room: sum(n for path, n in lines.items() if f"/{room}/" in path) for room in ROOMS if room}
+    whole = sum(lines.values()) + sum(
+        (ROOT / path).read_text(encoding="utf-8").count("\n") for path in sources("provider")
+    )
+    assert max(rooms.values()) <= LARGEST_ROOM * whole, max(rooms, key=lambda room: rooms[room])
+
+
+@pytest.mark.parametrize("stage", STAGES.values(), ids=list(STAGES))
+def test_module_of_a_stage_has_its_name(stage):
+    module = stage.function.__module__.rsplit(".", 1)[1]
+    assert module == stage.name
+
+
+@pytest.mark.parametrize("stage", STAGES.values(), ids=list(STAGES))
+def test_tests_of_a_stage_have_its_name_and_its_place(stage):
+    room = stage.function.__module__.split(".")[-2]
+    assert (ROOT / "tests" / "algorithms" / room / f"test_{stage.name}.py").is_file()
+
+
+@pytest.mark.parametrize("path", [path for path in sources("tests/algorithms") if "/" in path])
+def test_folders_of_tests_are_rooms_of_the_core(path):
+    """A room that moves takes its tests with it."""
+    assert (ROOT / path).parent.relative_to(ROOT / "tests") in {(ROOT / core).parent.relative_to(ROOT) for core in CORE}
+
+
 def test_there_are_sources_to_read():
     assert "algorithms/stages.py" in CORE
     assert "provider/plugin.py" in PLUGIN
@@ -74,8 +178,29 @@ def test_only_the_provider_knows_qgis(path):
     assert not packages_of(ROOT / path) & QGIS
 
 
-@pytest.mark.parametrize("path", [path for path in PLUGIN if not path.startswith("algorithms/cloud/")])
-def test_only_the_cloud_knows_files_of_points(path):
+@pytest.mark.parametrize("path", TESTS_OF_CORE)
+def test_tests_of_the_core_need_no_qgis(path):
+    """The core is tested where there is no QGIS; a second opinion of QGIS's libraries has its place in tests/qgis."""
+    names = set(imported((ROOT / path).read_text(encoding="utf-8")))
+    assert not packages_of(ROOT / path) & QGIS
+    assert not [name for name in names if "provider" in name.split(".")]
+
+
+@pytest.mark.parametrize("path", TESTS)
+def test_no_module_of_tests_is_a_library(path):
+    """What two modules share is in one that has no tests, where it can be found."""
+    nodes = ast.walk(ast.parse((ROOT / path).read_text(encoding="utf-8")))
+    names = [
+        f"{getattr(node, 'module', '')}.{alias.name}"
+        for node in nodes
+        if isinstance(node, IMPORTS)
+        for alias in node.names
+    ]
+    assert not [name for name in names if ".test_" in name]
+
+
+@pytest.mark.parametrize("path", [path for path in PLUGIN if path != "algorithms/cloud/laspy_library.py"])
+def test_only_one_module_imports_the_libraries_of_point_clouds(path):
     assert not packages_of(ROOT / path) & POINT_CLOUD_FILES
 
 
@@ -92,7 +217,7 @@ def test_core_does_not_import_the_provider(path):
 
 @pytest.mark.parametrize("path", CORE)
 def test_core_imports_nothing_but_what_the_readme_names(path):
-    allowed = {"numpy"} | (POINT_CLOUD_FILES if path.startswith("algorithms/cloud/") else set())
+    allowed = {"numpy"} | (POINT_CLOUD_FILES if path == "algorithms/cloud/laspy_library.py" else set())
     allowed |= NUMERICAL if path == "algorithms/packages.py" else set()
     assert not packages_of(ROOT / path) - allowed - set(sys.stdlib_module_names)
 

@@ -1,1 +1,1 @@
-"""Which groups are buildings, and their outlines."""
+"""Which clusters are buildings, and which points belong to them."""

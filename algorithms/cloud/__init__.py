@@ -1,1 +1,1 @@
-"""The point cloud: files, dimensions, classes, units, cells and density."""
+"""The point cloud: its files, dimensions, classes, reason codes and units."""

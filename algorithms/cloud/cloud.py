@@ -1,31 +1,20 @@
-"""The point cloud in memory, and how it is read, made and written."""
+"""The point cloud in memory."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import BinaryIO, Callable, Optional, Union, cast
+from typing import Callable, Optional, cast
 
 import numpy as np
 
-from ..stage import Monitor
-from .copc import copc_header, write_copc
 from .dimensions import DIMENSIONS, Dimension
-from .formats import OF_COPC, WITH_WAVEFORMS, Layout
-from .header import COPC_HIERARCHY, COPC_INFO, LASZIP, Header
-from .las import check_points, open_header, read_points, write_points
-from .laz import check_compressible, need_lazrs
-from .outputs import COPC, LAZ, VPC, check_output, kind_of, replacing
-from .records import Records, find_extra, unit_factor
-from .units import Resolver, Units, crs_records, has_wkt, units_of, wkt_of
-from .views import VIEW_SOFTWARE, check_place, copc_path, seal
-from .vpc import read_tiles, tiles_of
+from .header import Header
+from .point_formats import OF_COPC, Layout
+from .point_records import PointRecords, find_extra, unit_factor
+from .units import Units, crs_records, units_of, wkt_of
 
-# What the header of every file written here says of the program that wrote it.
-SOFTWARE = b"LiDAR Buildings"
 _ORIGIN_STEP = 1000.0
 _NEW_SCALE = 0.001
 _LARGEST_INT = 2**31 - 1
@@ -55,14 +44,14 @@ class Cloud:
     origin : float64 array, (3,)
         Meters; what ``get("xyz")`` is relative to. Set it to another cloud's
         before comparing the two. Its z is 0: elevations stay elevations.
-    sources : list of Path
+    files : list of Path
         The files that were read.
     """
 
-    def __init__(self, header: Header, points: np.ndarray, units: Units, sources: Optional[list[Path]] = None) -> None:
+    def __init__(self, header: Header, points: np.ndarray, units: Units, files: Optional[list[Path]] = None) -> None:
         self.header, self.points, self.units = header, points, units
         self.wkt = wkt_of(header)
-        self.sources = sources or []
+        self.files = files or []
         self._changes: dict[str, np.ndarray] = {}
         low = np.array([points[axis].min() for axis in "XY"]) * (header.scale[:2] * units.horizontal)
         low += header.offset[:2] * units.horizontal
@@ -75,10 +64,6 @@ class Cloud:
     def withheld(self) -> np.ndarray:
         """Points that the file says not to use, bool (n,)."""
         return self.header.layout.get(self.points, "withheld").astype(bool)
-
-    @property
-    def _factors(self) -> np.ndarray:
-        return np.array([self.units.horizontal, self.units.horizontal, self.units.vertical])
 
     def has(self, name: str) -> bool:
         """Whether the cloud has the dimension of that Python name, read or set."""
@@ -115,8 +100,8 @@ class Cloud:
 
     def _xyz(self) -> np.ndarray:
         xyz = np.empty((len(self), 3))
-        scale = self.header.scale * self._factors
-        shift = self.header.offset * self._factors - self.origin
+        scale = self.header.scale * self.units.factors
+        shift = self.header.offset * self.units.factors - self.origin
         for i, axis in enumerate("XYZ"):
             np.multiply(self.points[axis], scale[i], out=xyz[:, i])
             xyz[:, i] += shift[i]
@@ -157,9 +142,9 @@ class Cloud:
     def _moved(self, xyz: np.ndarray) -> np.ndarray:
         """Return the records with other coordinates (m, from ``origin``), in steps of the file's scale."""
         points = self.points.copy()
-        step = self.header.scale * self._factors
+        step = self.header.scale * self.units.factors
         for i, axis in enumerate("XYZ"):
-            steps = xyz[:, i] + (self.origin[i] - self.header.offset[i] * self._factors[i])
+            steps = xyz[:, i] + (self.origin[i] - self.header.offset[i] * self.units.factors[i])
             steps /= step[i]
             np.rint(steps, out=steps)
             if not max(steps.max(), -steps.min()) <= _LARGEST_INT:
@@ -173,11 +158,11 @@ class Cloud:
     def take(self, index: np.ndarray) -> Cloud:
         """Return a cloud of the points at ``index``, int (m,), m >= 1, in that order, with all their dimensions.
 
-        Header, units, CRS, origin and sources are those of this cloud, which is not changed.
+        Header, units, CRS, origin and files are those of this cloud, which is not changed.
         """
         # Many times as fast as points[index], which goes through the fields of every record.
         points = self.points.take(index)
-        taken = Cloud(replace(self.header, count=len(index)), points, self.units, self.sources)
+        taken = Cloud(replace(self.header, count=len(index)), points, self.units, self.files)
         taken.wkt, taken.origin = self.wkt, self.origin
         taken._changes = {name: values[index] for name, values in self._changes.items()}
         return taken
@@ -246,18 +231,18 @@ class Cloud:
         """Return local meters (m, 2 or 3) as float64 coordinates of the file, in its CRS and units."""
         local = np.asarray(coordinates, float)
         axes = local.shape[-1]
-        return (local + self.origin[:axes]) / self._factors[:axes]
+        return (local + self.origin[:axes]) / self.units.factors[:axes]
 
     def from_map(self, coordinates: np.ndarray) -> np.ndarray:
         """Return coordinates (m, 2 or 3) of the file's CRS as float64 local meters; the inverse of :meth:`to_map`."""
         there = np.asarray(coordinates, float)
         axes = there.shape[-1]
-        return there * self._factors[:axes] - self.origin[:axes]
+        return there * self.units.factors[:axes] - self.origin[:axes]
 
-    def records(self, for_copc: bool = False) -> Records:
+    def records(self, for_copc: bool = False) -> PointRecords:
         """Return what makes the output's records."""
         convert = OF_COPC.__getitem__ if for_copc else int
-        return Records(self.points, self.header.layout, self._changes, self.units, convert)
+        return PointRecords(self.points, self.header.layout, self._changes, self.units, convert)
 
 
 def _dimension(name: str) -> Dimension:
@@ -278,113 +263,6 @@ def _fitting(dimension: Dimension, values: np.ndarray, n: int) -> np.ndarray:
         if not (limits.min <= low and high <= limits.max):
             raise ValueError(f"{dimension.name} must be from {limits.min} to {limits.max}, got {low} to {high}.")
     return values.astype(dtype, copy=False)
-
-
-def read_cloud(
-    path: Union[str, Path], monitor: Optional[Monitor] = None, crs_units: Optional[Resolver] = None
-) -> Cloud:
-    """Read a LAS, LAZ or COPC file, or all tiles of a virtual point cloud (VPC).
-
-    Parameters
-    ----------
-    path : str or Path
-        Its extension (.las, .laz, .vpc) says what it is.
-    monitor : Monitor, optional
-        Hears progress, and warnings about units.
-    crs_units : callable, optional
-        EPSG code -> (meters per horizontal unit, meters per vertical unit, whether
-        it is geographic), or None if unknown; asked when a file gives a code and no unit.
-
-    Raises
-    ------
-    ValueError
-        In one sentence, whatever is wrong with the file.
-    """
-    path, monitor = Path(path), monitor or Monitor()
-    with _readable(path):
-        sources = _sources(path)
-        if len(sources) == 1:
-            header = open_header(sources[0])
-            units = units_of(header, crs_units)
-            points = read_points(sources[0], header, monitor)
-            header = header.without(LASZIP, COPC_INFO, COPC_HIERARCHY)
-        else:
-            units = units_of(open_header(sources[0]), crs_units)
-            header, points = read_tiles(sources, monitor)
-    if units.warning:
-        monitor.warn(units.warning)
-    return Cloud(header, points, units, sources if sources == [path] else [*sources, path])
-
-
-def check_readable(path: Union[str, Path], crs_units: Optional[Resolver] = None) -> None:
-    """Refuse what :func:`read_cloud` would refuse, as far as headers and chunk tables tell.
-
-    Raises
-    ------
-    ValueError
-        In one sentence, what is wrong with the file or with a tile of it.
-    """
-    path = Path(path)
-    with _readable(path):
-        for source in _sources(path):
-            header = open_header(source)
-            units_of(header, crs_units)
-            check_points(source, header)
-
-
-def read_extent(path: Union[str, Path]) -> tuple[np.ndarray, np.ndarray, str]:
-    """Return the lowest and the highest coordinates (3,) and the CRS of a file or of all its tiles.
-
-    Coordinates are those of the file, as its headers tell them. The CRS is WKT, "EPSG:code" or "".
-
-    Raises
-    ------
-    ValueError
-        In one sentence, what is wrong with the file or with a tile of it.
-    """
-    headers = _headers(Path(path))
-    low, high = ([getattr(header, name) for header in headers] for name in ("low", "high"))
-    return np.min(low, axis=0), np.max(high, axis=0), wkt_of(headers[0])
-
-
-def count_points(path: Union[str, Path]) -> int:
-    """Return the number of points of a file or of all its tiles, as the headers tell it.
-
-    Raises
-    ------
-    ValueError
-        In one sentence, what is wrong with the file or with a tile of it.
-    """
-    return sum(header.count for header in _headers(Path(path)))
-
-
-def _headers(path: Path) -> list[Header]:
-    """Return the headers of a file or of all its tiles."""
-    with _readable(path):
-        return [open_header(source) for source in _sources(path)]
-
-
-@contextmanager
-def _readable(path: Path) -> Iterator[None]:
-    try:
-        yield
-    except OSError as error:
-        raise ValueError(
-            f"{path} can't be read ({error.strerror or error}); check the file and its permissions."
-        ) from error
-
-
-def _sources(path: Path) -> list[Path]:
-    if path.is_dir():
-        raise ValueError(f"{path} is a folder; choose a point cloud file in it.")
-    kind = kind_of(path)
-    if not kind:
-        raise ValueError(
-            f"{path.name} is no point cloud that can be read; choose a .las, .laz, .copc.laz or .vpc file."
-        )
-    if not path.is_file():
-        raise ValueError(f"{path} does not exist; check the name.")
-    return tiles_of(path) if kind == VPC else [path]
 
 
 def create_cloud(arrays: dict[str, np.ndarray], wkt: str = "") -> Cloud:
@@ -410,10 +288,10 @@ def create_cloud(arrays: dict[str, np.ndarray], wkt: str = "") -> Cloud:
     xyz = np.asarray(arrays["xyz"], float)
     if not len(xyz) or not np.isfinite(xyz).all():
         raise ValueError("A cloud needs points with finite coordinates; there are none or some are not.")
-    header = Header(software=SOFTWARE, count=len(xyz), layout=Layout(7 if "red" in arrays else 6))
+    header = Header(count=len(xyz), layout=Layout(7 if "red" in arrays else 6))
     header.vlrs, header.encoding = crs_records(wkt)
     units = units_of(header)
-    coordinates = xyz / [units.horizontal, units.horizontal, units.vertical]
+    coordinates = xyz / units.factors
     header.offset = np.floor(coordinates.min(axis=0) / _ORIGIN_STEP) * _ORIGIN_STEP
     steps = np.rint((coordinates - header.offset) / _NEW_SCALE)
     if steps.max() > _LARGEST_INT:
@@ -423,112 +301,11 @@ def create_cloud(arrays: dict[str, np.ndarray], wkt: str = "") -> Cloud:
     points = np.zeros(len(xyz), header.layout.dtype)
     for i, axis in enumerate("XYZ"):
         points[axis] = steps[:, i]
-    points["return_byte"] = 1 | 1 << 4
+    for name in ("return_number", "number_of_returns"):
+        header.layout.put(points, name, np.ones(len(xyz), np.uint8))
     cloud = Cloud(header, points, units)
     cloud.origin = np.zeros(3)
     for name, values in arrays.items():
         if name != "xyz":
             cloud.set(name, values)
     return cloud
-
-
-def write_cloud(
-    cloud: Cloud, path: Union[str, Path], monitor: Optional[Monitor] = None, copc_beside: bool = False
-) -> None:
-    """Write a cloud as LAS, LAZ or COPC, as ``path`` ends in .las, .laz or .copc.laz.
-
-    The file keeps point order (but in COPC), scale, offset, CRS, VLRs, EVLRs,
-    extra bytes, waveform references and every dimension that was not set. It
-    appears when it is complete; after a failure or cancel nothing is left.
-
-    QGIS with PDAL shows a file x.copc.laz in place of the x.las or x.laz beside it. One that
-    was written with the very file that is replaced is replaced or removed with it; beside any
-    other, nothing is written.
-
-    Parameters
-    ----------
-    cloud : Cloud
-        Not changed.
-    path : str or Path
-        In an existing folder; none of the cloud's own sources.
-    monitor : Monitor, optional
-        Hears progress, and warnings about what the format changed.
-    copc_beside : bool
-        Also write x.copc.laz beside x.las or x.laz, for QGIS to show.
-
-    Raises
-    ------
-    ValueError
-        In one sentence, why the file can't be written.
-    """
-    path, monitor = Path(path), monitor or Monitor()
-    check_write(cloud, path, copc_beside)
-    if kind_of(path) == COPC:
-        _write_copc(cloud, path, monitor)
-        return
-    with replacing(path) as stream:
-        _write_las(cloud, path, stream, monitor.part(0.0, 0.4) if copc_beside else monitor)
-        if copc_beside:
-            _write_copc(cloud, copc_path(path), monitor.part(0.4, 1.0), shown=stream)
-    if not copc_beside:
-        copc_path(path).unlink(missing_ok=True)
-
-
-def check_write(cloud: Cloud, path: Union[str, Path], copc_beside: bool = False) -> None:
-    """Refuse what :func:`write_cloud` would refuse, before a long computation rather than after it.
-
-    Raises
-    ------
-    ValueError
-        If the path can't be written or is a source of the cloud, or QGIS would show another file in its place.
-    """
-    path = Path(path)
-    check_output(path, cloud.sources)
-    if kind_of(path) == COPC or copc_beside:
-        need_lazrs()
-    if kind_of(path) == LAZ:
-        check_compressible(cloud.records().layout.point_format)
-    if kind_of(path) != COPC:
-        check_place(path, cloud.sources)
-
-
-def _write_las(cloud: Cloud, path: Path, stream: BinaryIO, monitor: Monitor) -> None:
-    records = cloud.records()
-    header = _output_header(cloud, records)
-    if records.is_upgraded:
-        monitor.warn(
-            f"Classes over 31 don't fit point format {cloud.header.layout.point_format}; "
-            f"{path.name} is written in format {records.layout.point_format} (LAS 1.4)."
-        )
-    write_points(stream, header, lambda a, b: records.take(slice(a, b)), kind_of(path) == LAZ, monitor)
-
-
-def _write_copc(cloud: Cloud, path: Path, monitor: Monitor, shown: Optional[BinaryIO] = None) -> None:
-    """Write a COPC file, as the view of the complete file in the stream ``shown`` if there is one."""
-    records = cloud.records(for_copc=True)
-    old, new = cloud.header.layout.point_format, records.layout.point_format
-    if old != new:
-        lost = "; its waveform references are left out" if old in WITH_WAVEFORMS else ""
-        monitor.warn(
-            f"COPC holds point formats 6 to 8 only: {path.name} is written in format {new} instead of {old}{lost}."
-        )
-    header = copc_header(_output_header(cloud, records))
-    if shown is not None:
-        header = replace(header, software=VIEW_SOFTWARE)
-    with replacing(path) as stream:
-        write_copc(stream, header, cloud.points, records.take, monitor)
-        if shown is not None:
-            seal(stream, shown)
-
-
-def _output_header(cloud: Cloud, records: Records) -> Header:
-    header = replace(cloud.header, software=SOFTWARE)
-    if records.layout != header.layout:
-        header = header.with_layout(records.layout)
-    if header.layout.is_old:
-        return header
-    header = replace(header, minor=4)
-    if '"' in cloud.wkt and not has_wkt(header):
-        vlrs, bits = crs_records(cloud.wkt)
-        header = replace(header, vlrs=[*header.vlrs, *vlrs], encoding=header.encoding | bits)
-    return header

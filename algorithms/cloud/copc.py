@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import struct
 from dataclasses import dataclass, replace
-from typing import BinaryIO, Callable
+from typing import Any, BinaryIO, Callable
 
 import numpy as np
 
-from ..groups import run_starts
+from ..geometry.groups import run_starts
 from ..stage import Monitor
-from .header import COPC_HIERARCHY, COPC_INFO, LASZIP, WAVEFORMS, WKT_BIT, Header, Record
-from .las import AT_ONCE, Tally, finish
-from .laz import laszip_record, need_lazrs
+from .header import COPC_HIERARCHY, COPC_INFO, LASZIP, WAVEFORMS, WKT_BIT, Header, Vlr
+from .laspy_library import need_lazrs
+from .points import AT_ONCE
 from .units import has_wkt
 
 # A node with no more points than this holds them all and has no children.
@@ -78,7 +78,7 @@ def build_octree(points: np.ndarray, header: Header, monitor: Monitor) -> Octree
     header : Header
         Gives their scale and offset.
     monitor : Monitor
-        Hears progress.
+        Receives progress.
     """
     low, side = _cube(points, header)
     codes = np.empty(len(points), np.uint64)
@@ -183,7 +183,7 @@ def copc_header(header: Header) -> Header:
     """Return ``header`` as COPC wants it: LAS 1.4, the info record first, nothing about waveforms and old orders."""
     kept = header.without(LASZIP, COPC_INFO, COPC_HIERARCHY, WAVEFORMS, _LAX)
     encoding = kept.encoding & ~_WAVEFORM_BITS | (WKT_BIT if has_wkt(kept) else 0)
-    info = Record(*COPC_INFO, bytes(_INFO.size), description=b"COPC info")
+    info = Vlr(*COPC_INFO, bytes(_INFO.size), description=b"COPC info")
     return replace(kept, minor=4, user_bytes=b"", gap=b"", waveforms_at=0, encoding=encoding, vlrs=[info, *kept.vlrs])
 
 
@@ -203,7 +203,7 @@ def write_copc(
     take : callable
         Gives the output's records of the points at positions (m,).
     monitor : Monitor
-        Hears progress.
+        Receives progress.
 
     Raises
     ------
@@ -213,41 +213,49 @@ def write_copc(
     lazrs = need_lazrs()
     octree = build_octree(points, header, monitor.part(0.0, 0.2))
     layout = header.layout
-    vlr = lazrs.LazVlr.new_for_compression(layout.point_format, layout.extra_size, True)
-    header.vlrs, header.is_compressed = [*header.vlrs, laszip_record(vlr)], True
-    header.write(stream)
-    tally, times = _write_nodes(lazrs.ParLasZipCompressor(stream, vlr), header, octree, take, monitor.part(0.2, 1.0))
+    vlr = lazrs.LazVlr.new_for_compression(layout.point_format, layout.las.num_extra_bytes, True)
+    record = Vlr(*LASZIP, bytes(vlr.record_data()), description=b"LASzip by lazrs")
+    header = replace(header, vlrs=[*header.vlrs, record], is_compressed=True)
+    las = header.las()
+    header.write(stream, las)
+    times = _write_nodes(lazrs.ParLasZipCompressor(stream, vlr), header, las, octree, take, monitor.part(0.2, 1.0))
     stream.seek(header.points_at)
     sizes = np.array([size for _, size in lazrs.read_chunk_table(stream, vlr)], np.int64)
     _describe(stream, header, octree, sizes, times)
-    finish(stream, header, tally)
+    las.extra_vlr_bytes = header.las().extra_vlr_bytes
+    header.finish(stream, las)
     monitor.progress(1.0)
 
 
-def _write_nodes(zipper, header: Header, octree: Octree, take: Callable, monitor: Monitor) -> tuple[Tally, list[float]]:
-    """Compress node after node, as many at once as make a good portion of work."""
-    tally, times = Tally(), [np.inf, -np.inf]
+def _write_nodes(
+    zipper: Any, header: Header, las: Any, octree: Octree, take: Callable, monitor: Monitor
+) -> tuple[float, float]:
+    """Compress node after node, as many at once as make a good portion of work; return the first and last GPS time.
+
+    laspy's header ``las`` counts the points.
+    """
+    low, high = np.inf, -np.inf
     start = first = 0
     while first < len(octree.ends):
         monitor.progress(start / len(octree.order))
         last = max(first + 1, int(np.searchsorted(octree.ends, start + AT_ONCE, side="right")))
         points = take(octree.order[start : octree.ends[last - 1]])
-        tally.add(points, header)
-        times = [min(times[0], points["gps_time"].min()), max(times[1], points["gps_time"].max())]
+        header.count_in(las, points)
+        low, high = min(low, points["gps_time"].min()), max(high, points["gps_time"].max())
         inner = np.split(points, octree.ends[first : last - 1] - start)
         zipper.compress_chunks([np.ascontiguousarray(node).view(np.uint8) for node in inner])
         start, first = int(octree.ends[last - 1]), last
     zipper.done()
-    return tally, times
+    return low, high
 
 
-def _describe(stream: BinaryIO, header: Header, octree: Octree, sizes: np.ndarray, times: list[float]) -> None:
+def _describe(stream: BinaryIO, header: Header, octree: Octree, sizes: np.ndarray, times: tuple[float, float]) -> None:
     """Fill in the info record and put the hierarchy before the other EVLRs."""
     entries = np.zeros(len(sizes), _ENTRY)
     entries["key"], entries["size"], entries["count"] = octree.keys, sizes, np.diff(octree.ends, prepend=0)
     # The chunks begin behind the position of the chunk table.
     entries["offset"] = header.points_at + 8 + np.cumsum(sizes) - sizes
-    hierarchy = Record(*COPC_HIERARCHY, entries.tobytes(), description=b"EPT hierarchy")
+    hierarchy = Vlr(*COPC_HIERARCHY, entries.tobytes(), description=b"EPT hierarchy")
     header.evlrs = [hierarchy, *header.evlrs]
     at = stream.seek(0, 2) + _EVLR_HEAD
     center = octree.low + octree.side / 2

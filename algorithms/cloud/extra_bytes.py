@@ -1,30 +1,26 @@
-"""Extra bytes of LAS points: the descriptors of the Extra Bytes VLR (LAS 1.4 R15, table 24)."""
+"""Extra bytes of LAS points: the descriptors of the Extra Bytes VLR (LAS 1.4 R15, table 24), kept as bytes."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Optional
+from typing import Any, Optional
 
 import numpy as np
 
-DESCRIPTOR = np.dtype(
-    [
-        ("reserved", "u1", 2),
-        ("data_type", "u1"),
-        ("options", "u1"),
-        ("name", "S32"),
-        ("unused", "u1", 4),
-        ("no_data", "V8", 3),
-        ("min", "V8", 3),
-        ("max", "V8", 3),
-        ("scale", "<f8", 3),
-        ("offset", "<f8", 3),
-        ("description", "S32"),
-    ]
-)
-_TYPES = ("u1", "i1", "<u2", "<i2", "<u4", "<i4", "<u8", "<i8", "<f4", "<f8")
-_HAS_NO_DATA, _HAS_RANGE, _HAS_SCALE, _HAS_OFFSET = 1, 2 | 4, 8, 16
+from .laspy_library import need_laspy
+
+_SIZE = 192
+# Places in a descriptor: the number that means "no data", then minimum and maximum, of 8 bytes for up to 3 axes each.
+_NO_DATA, _RANGE = slice(40, 48), slice(64, 112)
+# Options; "no data" of all axes; scales and offsets.
+_MEANING = (slice(3, 4), slice(40, 64), slice(112, 160))
+_LARGEST_TYPE = 30
 _LONGEST_UNDOCUMENTED = 255
+
+
+def _parsed(raw: bytes) -> Any:
+    """Return laspy's view of a descriptor's 192 bytes."""
+    return need_laspy().vlrs.known.ExtraBytesStruct.from_buffer_copy(raw)
 
 
 @dataclass(frozen=True)
@@ -40,9 +36,9 @@ class ExtraField:
     raw: Optional[bytes]
 
     @property
-    def descriptor(self) -> np.void:
-        """The descriptor's fields."""
-        return np.frombuffer(self.raw or bytes(DESCRIPTOR.itemsize), DESCRIPTOR)[0]
+    def descriptor(self) -> Any:
+        """The descriptor's fields, an ExtraBytesStruct of laspy."""
+        return _parsed(self.raw or bytes(_SIZE))
 
     @property
     def is_scalar(self) -> bool:
@@ -52,30 +48,26 @@ class ExtraField:
     @property
     def is_plain(self) -> bool:
         """Whether the numbers mean what they are: no scale and no offset."""
-        return self.is_scalar and not self.descriptor["options"] & (_HAS_SCALE | _HAS_OFFSET)
+        descriptor = self.descriptor
+        return self.is_scalar and descriptor.scale is None and descriptor.offset is None
 
     @property
     def description(self) -> str:
         """What the file says of it."""
-        return self.descriptor["description"].split(b"\0")[0].decode("utf-8", "replace")
+        return self.descriptor.description.decode("utf-8", "replace")
 
     def same_numbers(self, other: ExtraField) -> bool:
         """Whether the stored numbers of two scalar fields mean the same."""
-        mine, theirs = self.descriptor, other.descriptor
-        alike = all(mine[name].tobytes() == theirs[name].tobytes() for name in ("no_data", "scale", "offset"))
-        flags = 255 ^ _HAS_RANGE
-        return self.dtype == other.dtype and alike and mine["options"] & flags == theirs["options"] & flags
+        mine, theirs = (field.without_range().raw or b"" for field in (self, other))
+        return self.dtype == other.dtype and all(mine[part] == theirs[part] for part in _MEANING)
 
     def decode(self, stored: np.ndarray) -> np.ndarray:
         """Return ``stored`` (n,) as numbers that mean something: scaled, NaN where there is no data."""
-        descriptor = self.descriptor
-        options = int(descriptor["options"])
-        values = stored
+        descriptor, values = self.descriptor, stored
         if not self.is_plain:
-            scale = descriptor["scale"][0] if options & _HAS_SCALE else 1.0
-            offset = descriptor["offset"][0] if options & _HAS_OFFSET else 0.0
-            values = stored * scale + offset
-        if options & _HAS_NO_DATA:
+            scale = 1.0 if descriptor.scale is None else descriptor.scale[0]
+            values = stored * scale + (0.0 if descriptor.offset is None else descriptor.offset[0])
+        if descriptor.options & descriptor.NO_DATA_BIT_MASK:
             nothing = stored == self._no_data()
             if nothing.any():
                 values = np.where(nothing, np.nan, values)
@@ -84,28 +76,24 @@ class ExtraField:
     def _no_data(self) -> np.generic:
         """Return the stored number that means "no data": 8 bytes, the widest type of its kind."""
         wide = {"u": "<u8", "i": "<i8", "f": "<f8"}[self.dtype.kind]
-        return np.frombuffer(self.descriptor["no_data"][0].tobytes(), wide)[0]
+        return np.frombuffer((self.raw or bytes(_SIZE))[_NO_DATA], wide)[0]
 
     def without_range(self) -> ExtraField:
         """Return the field without its minimum and maximum, which new values make untrue."""
-        descriptor = np.array([self.descriptor])
-        descriptor["options"] &= 255 ^ _HAS_RANGE
-        descriptor["min"] = descriptor["max"] = np.void(bytes(8))
-        return replace(self, raw=descriptor.tobytes())
+        descriptor = self.descriptor
+        descriptor.options &= ~(descriptor.MIN_BIT_MASK | descriptor.MAX_BIT_MASK)
+        raw = bytearray(bytes(descriptor))
+        raw[_RANGE] = bytes(_RANGE.stop - _RANGE.start)
+        return replace(self, raw=bytes(raw))
 
 
 def new_field(name: str, dtype: str, description: str) -> ExtraField:
     """Return a field of numbers without scale; ``name`` and ``description`` take at most 31 bytes each."""
     little = np.dtype(dtype).newbyteorder("<")
-    descriptor = np.zeros(1, DESCRIPTOR)
-    descriptor["data_type"] = 1 + [np.dtype(kind) for kind in _TYPES].index(little)
-    descriptor["name"], descriptor["description"] = name.encode(), description.encode()
-    return ExtraField(name, little, descriptor.tobytes())
-
-
-def undocumented(size: int, raw: Optional[bytes] = None) -> ExtraField:
-    """Return ``size`` bytes that are kept and not understood."""
-    return ExtraField("", np.dtype(f"V{size}"), raw)
+    descriptor = _parsed(bytes(_SIZE))
+    descriptor.data_type = need_laspy().extradims.get_id_for_extra_dim_type(little)
+    descriptor.name, descriptor.description = name.encode(), description.encode()
+    return ExtraField(name, little, bytes(descriptor))
 
 
 def fields_of(payload: bytes, size: int) -> tuple[ExtraField, ...]:
@@ -116,24 +104,21 @@ def fields_of(payload: bytes, size: int) -> tuple[ExtraField, ...]:
     """
     fields: list[ExtraField] = []
     left = size
-    for start in range(0, len(payload) - DESCRIPTOR.itemsize + 1, DESCRIPTOR.itemsize):
-        field = _field(payload[start : start + DESCRIPTOR.itemsize])
+    for start in range(0, len(payload) - _SIZE + 1, _SIZE):
+        field = _field(payload[start : start + _SIZE])
         if field.dtype.itemsize > left:
             break
         fields.append(field)
         left -= field.dtype.itemsize
-    return (*fields, undocumented(left)) if left else tuple(fields)
+    return (*fields, ExtraField("", np.dtype(f"V{left}"), None)) if left else tuple(fields)
 
 
 def _field(raw: bytes) -> ExtraField:
-    descriptor = np.frombuffer(raw, DESCRIPTOR)[0]
-    kind, options = int(descriptor["data_type"]), int(descriptor["options"])
-    if not 1 <= kind <= 3 * len(_TYPES):
+    descriptor = _parsed(raw)
+    if not 1 <= descriptor.data_type <= _LARGEST_TYPE:
         # Type 0 keeps its number of bytes where the others keep their options.
-        return undocumented(options, raw)
-    scalar, several = np.dtype(_TYPES[(kind - 1) % len(_TYPES)]), 1 + (kind - 1) // len(_TYPES)
-    name = descriptor["name"].split(b"\0")[0].decode("utf-8", "replace")
-    return ExtraField(name, scalar if several == 1 else np.dtype((scalar, several)), raw)
+        return ExtraField("", np.dtype(f"V{descriptor.options}"), raw)
+    return ExtraField(descriptor.name.decode("utf-8", "replace"), descriptor.dtype().newbyteorder("<"), raw)
 
 
 def payload_of(fields: tuple[ExtraField, ...]) -> bytes:
@@ -145,10 +130,6 @@ def payload_of(fields: tuple[ExtraField, ...]) -> bytes:
 
 def _descriptors(size: int) -> bytes:
     """Describe bytes of unknown meaning, so that what follows them is found."""
-    described = b""
-    while size:
-        descriptor = np.zeros(1, DESCRIPTOR)
-        descriptor["options"] = min(size, _LONGEST_UNDOCUMENTED)
-        size -= int(descriptor["options"][0])
-        described += descriptor.tobytes()
-    return described
+    sizes = [_LONGEST_UNDOCUMENTED] * (size // _LONGEST_UNDOCUMENTED) + [size % _LONGEST_UNDOCUMENTED]
+    # The fourth byte, which has the options of numbers, tells how many bytes there are.
+    return b"".join(bytes((0, 0, 0, part)).ljust(_SIZE, b"\0") for part in sizes if part)

@@ -1,27 +1,31 @@
-"""Header, VLRs and EVLRs of a LAS file, byte by byte, so that what is not understood is kept."""
+"""Header, VLRs and EVLRs of a LAS file: laspy's header, and as raw bytes what laspy would write anew or drop."""
 
 from __future__ import annotations
 
+import io
 import struct
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import BinaryIO, Optional
+from typing import Any, BinaryIO, Optional
+from uuid import UUID
 
 import numpy as np
 
 from .extra_bytes import fields_of, payload_of
-from .formats import FIELDS, Layout
+from .laspy_library import need_laspy
+from .point_formats import FORMATS, Layout
 
-# signature, source id, encoding, GUID, version, system, software, day, year, header size, offset to points,
-# number of VLRs, format, record length, legacy count, legacy count by return
-_START = struct.Struct("<4sHH16sBB32s32sHHHIIBHI5I")
-# scale, offset, then maximum and minimum by axis
-_NUMBERS = struct.Struct("<3d3d6d")
-_WAVEFORM = struct.Struct("<Q")
-_LONG = struct.Struct("<QIQ15Q")
+# Header size, offset to the points, number of VLRs, point format, record length and 32-bit number of points.
+_SIZES_AT, _START_SIZES = 94, struct.Struct("<HIIBHI")
+_MINOR_AT, _VLRS_AT, _OLD_COUNTS_AT = 25, 100, 107
+_SYSTEM, _DATE = slice(26, 58), slice(90, 94)
+# Numbers of points by return, which are counted anew; laspy 2.5 has 32 bits for each.
+_OLD_RETURNS, _RETURNS = slice(111, 131), slice(255, 375)
 _VLR = struct.Struct("<2s16sHH32s")
 _EVLR = struct.Struct("<2s16sHQ32s")
 SIZES = {0: 227, 1: 227, 2: 227, 3: 235, 4: 375}
+# The first minor version of LAS that has a point format; laspy knows none before 1.1.
+_FIRST_MINOR = {0: 1, 1: 1, 2: 2, 3: 2, 4: 3, 5: 3}
 
 WKT_BIT = 16
 _WAVEFORMS_INSIDE = 2
@@ -33,6 +37,8 @@ _KEPT_IN_MEMORY = 2**24
 _COPIED_AT_ONCE = 2**24
 # Doubles may be this many steps of the scale apart; some files are written with far too fine a scale.
 _COARSEST = 1000.0
+# What the header of every file written here says of the program that wrote it.
+SOFTWARE = "LiDAR Buildings"
 LASZIP = (b"laszip encoded", 22204)
 EXTRA_BYTES = (b"LASF_Spec", 4)
 WAVEFORMS = (b"LASF_Spec", 65535)
@@ -40,7 +46,7 @@ COPC_INFO, COPC_HIERARCHY = (b"copc", 1), (b"copc", 1000)
 
 
 @dataclass
-class Record:
+class Vlr:
     """A VLR or EVLR; ``data`` is None where the payload is left in the file ``path``, from ``start``."""
 
     user_id: bytes
@@ -75,33 +81,30 @@ class Record:
 
 @dataclass
 class Header:
-    """What a LAS file says of itself; texts are bytes as they stand there, with their padding."""
+    """What a LAS file says of itself; texts and the date are bytes as they stand there, with their padding."""
 
     minor: int = 4
     source_id: int = 0
     encoding: int = WKT_BIT
     guid: bytes = bytes(16)
     system: bytes = b"OTHER"
-    software: bytes = b""
-    day: int = 0
-    year: int = 0
+    software: str = SOFTWARE
+    date: bytes = bytes(4)
     user_bytes: bytes = b""
     gap: bytes = b""
     layout: Layout = Layout(6)
     is_compressed: bool = False
     count: int = 0
-    returns: tuple[int, ...] = (0,) * 15
     scale: np.ndarray = field(default_factory=lambda: np.full(3, 0.001))
     offset: np.ndarray = field(default_factory=lambda: np.zeros(3))
     low: np.ndarray = field(default_factory=lambda: np.zeros(3))
     high: np.ndarray = field(default_factory=lambda: np.zeros(3))
     waveforms_at: int = 0
     points_at: int = 0
-    evlrs_at: int = 0
-    vlrs: list[Record] = field(default_factory=list)
-    evlrs: list[Record] = field(default_factory=list)
+    vlrs: list[Vlr] = field(default_factory=list)
+    evlrs: list[Vlr] = field(default_factory=list)
 
-    def find(self, key: tuple[bytes, int]) -> Optional[Record]:
+    def find(self, key: tuple[bytes, int]) -> Optional[Vlr]:
         """Return the first VLR or EVLR of that user and record id, or None."""
         return next((record for record in (*self.vlrs, *self.evlrs) if record.key == key), None)
 
@@ -120,54 +123,70 @@ class Header:
             raise ValueError(
                 f"A LAS file describes at most 341 extra dimensions, got {len(payload) // 192}; remove some."
             )
-        new = Record(*EXTRA_BYTES, payload, description=b"Extra bytes")
+        new = Vlr(*EXTRA_BYTES, payload, description=b"Extra bytes")
         if old not in self.vlrs:
             return replace(self.without(EXTRA_BYTES), layout=layout, vlrs=[*self.vlrs, new])
         same = [replace(new, description=old.description, reserved=old.reserved) if r is old else r for r in self.vlrs]
         return replace(self, layout=layout, vlrs=same)
 
-    def write(self, stream: BinaryIO) -> None:
-        """Write header, VLRs and the bytes up to the first point, from the stream's start."""
-        stream.seek(0)
-        self.points_at = self._size + sum(_VLR.size + len(record) for record in self.vlrs) + len(self.gap)
-        stream.write(self._packed())
-        for record in self.vlrs:
-            record.write(stream, extended=False)
-        stream.write(self.gap)
+    def las(self) -> Any:
+        """Return a new LasHeader of laspy, which has the VLRs as bytes of no known meaning.
 
-    def write_evlrs(self, stream: BinaryIO) -> None:
-        """Write the EVLRs at the stream's position and note where they went; the header itself is for later."""
-        self.evlrs_at = stream.tell() if self.evlrs else 0
+        It counts coordinates in steps, so that bounds are right where a scale is negative.
+        """
+        lowest = _FIRST_MINOR.get(self.layout.point_format, 4)
+        made = need_laspy().LasHeader(version=f"1.{max(self.minor, lowest)}", point_format=self.layout.las)
+        made.vlrs.clear()
+        made.file_source_id, made.uuid = self.source_id, UUID(bytes_le=self.guid)
+        made.global_encoding.value, made.generating_software = self.encoding, self.software
+        made.partial_reset()
+        made.scales, made.offsets = np.ones(3), np.zeros(3)
+        made.start_of_waveform_data_packet_record = self.waveforms_at
+        made.are_points_compressed, made.extra_header_bytes = self.is_compressed, self.user_bytes
+        with io.BytesIO() as records:
+            for record in self.vlrs:
+                record.write(records, extended=False)
+            made.extra_vlr_bytes = records.getvalue() + self.gap
+        return made
+
+    def count_in(self, las: Any, points: np.ndarray) -> None:
+        """Count ``points`` into laspy's header ``las``, in a third of the time of its own ``grow``."""
+        las.point_count += len(points)
+        numbers = np.bincount(self.layout.get(points, "return_number"), minlength=16)[1:16]
+        las.number_of_points_by_return += numbers.astype(las.number_of_points_by_return.dtype)
+        for i, axis in enumerate("XYZ"):
+            steps = points[axis].copy()
+            las.mins[i], las.maxs[i] = min(las.mins[i], steps.min()), max(las.maxs[i], steps.max())
+
+    def write(self, stream: BinaryIO, las: Any) -> None:
+        """Write laspy's header ``las`` to the stream's start, with those bytes put back that laspy does not keep."""
+        with io.BytesIO() as packed:
+            las.write_to(packed)
+            raw = bytearray(packed.getvalue())
+        self.points_at = las.offset_to_point_data
+        if SIZES[self.minor] == SIZES[las.version.minor]:
+            raw[_MINOR_AT] = self.minor
+        raw[_SYSTEM], raw[_DATE] = self.system.ljust(32, b"\0"), self.date
+        struct.pack_into("<I", raw, _VLRS_AT, len(self.vlrs) + len(las.vlrs))
+        # LAS 1.4 has the number of points in the old place too, where it fits and the format is an old one.
+        if self.minor == 4 and self.layout.is_old and las.point_count <= _LARGEST_OLD_COUNT:
+            returns = map(int, las.number_of_points_by_return[:5])
+            struct.pack_into("<6I", raw, _OLD_COUNTS_AT, las.point_count, *returns)
+        stream.seek(0)
+        stream.write(raw)
+
+    def finish(self, stream: BinaryIO, las: Any) -> None:
+        """Write the EVLRs behind the points and then the header; ``las`` has counted the points, in steps."""
+        las.start_of_first_evlr = stream.seek(0, 2) if self.evlrs else 0
+        las.number_of_evlrs = len(self.evlrs)
         for record in self.evlrs:
             if record.key == WAVEFORMS and self.encoding & _WAVEFORMS_INSIDE:
-                self.waveforms_at = stream.tell()
+                las.start_of_waveform_data_packet_record = stream.tell()
             record.write(stream, extended=True)
-
-    @property
-    def _size(self) -> int:
-        return SIZES[self.minor] + len(self.user_bytes)
-
-    def _packed(self) -> bytes:
-        layout = self.layout
-        # LAS 1.4 leaves the 32-bit counts at 0 where they can't be right or the format is a new one.
-        legacy = layout.is_old and self.count <= _LARGEST_OLD_COUNT
-        if self.minor < 4 and not legacy:
-            raise ValueError(
-                f"LAS 1.{self.minor} holds at most 4294967295 points, got {self.count}; write COPC or LAS 1.4."
-            )
-        packed = _START.pack(
-            b"LASF", self.source_id, self.encoding, self.guid, 1, self.minor, self.system, self.software,
-            self.day, self.year, self._size, self.points_at, len(self.vlrs),
-            layout.point_format | (_COMPRESSED if self.is_compressed else 0), layout.dtype.itemsize,
-            self.count if legacy else 0, *(self.returns[:5] if legacy else (0,) * 5),
-        )  # fmt: skip
-        extent = [value for pair in zip(self.high, self.low) for value in pair]
-        packed += _NUMBERS.pack(*self.scale, *self.offset, *extent)
-        if self.minor >= 3:
-            packed += _WAVEFORM.pack(self.waveforms_at)
-        if self.minor >= 4:
-            packed += _LONG.pack(self.evlrs_at, len(self.evlrs), self.count, *self.returns)
-        return packed + self.user_bytes
+        bounds = np.sort([bound * self.scale + self.offset for bound in (las.mins, las.maxs)], axis=0)
+        las.mins, las.maxs = bounds
+        las.scales, las.offsets = self.scale, self.offset
+        self.write(stream, las)
 
 
 def read_header(path: Path) -> Header:
@@ -188,42 +207,69 @@ def read_header(path: Path) -> Header:
                 f"{path.name} is not a LAS or LAZ file: it starts with {raw[:4]!r} instead of b'LASF'; choose another."
             )
         if len(raw) < SIZES[0]:
-            raise _truncated(path, f"its header has {len(raw)} bytes of {SIZES[0]}")
+            raise truncated(path, f"its header has {len(raw)} bytes of {SIZES[0]}")
         return _Reader(path, stream, raw, total).header()
 
 
-def _truncated(path: Path, how: str) -> ValueError:
+def truncated(path: Path, how: str) -> ValueError:
+    """Return the error for a file that promises what it does not hold."""
     return ValueError(f"{path.name} is truncated or damaged: {how}; get the file again.")
 
 
 class _Reader:
-    """One reading of a header: the stream, the raw bytes and the length that all promises are held against."""
+    """One reading of a header: the stream, the raw bytes and the length that all promises are held against.
+
+    What would make laspy read without end, or more than there is, is refused before laspy sees it.
+    """
 
     def __init__(self, path: Path, stream: BinaryIO, raw: bytes, total: int) -> None:
         self.path, self.stream, self.raw, self.total = path, stream, raw, total
-        self.start = _START.unpack_from(raw)
+        self.major, self.minor = raw[24], raw[_MINOR_AT]
+        self.size, self.points_at, self.n_vlrs, kind, self.length, self.old_count = _START_SIZES.unpack_from(
+            raw, _SIZES_AT
+        )
+        self.point_format, self.is_compressed = kind & 63, bool(kind & _COMPRESSED)
 
     def header(self) -> Header:
-        (_, source_id, encoding, guid, major, minor, system, software, day, year, size, points_at, n_vlrs, kind,
-         length, count, *returns) = self.start  # fmt: skip
-        if major != 1 or minor not in SIZES:
-            raise ValueError(f"{self.path.name} is LAS {major}.{minor}; LAS 1.0 to 1.4 can be read: convert it first.")
-        if size < SIZES[minor] or not size <= points_at <= self.total:
-            raise _truncated(self.path, f"points should start at byte {points_at} of {self.total}")
-        numbers = _NUMBERS.unpack_from(self.raw, _START.size)
-        header = Header(minor, source_id, encoding, guid, system, software, day, year, count=count)
-        header.returns = (*returns, *(0,) * 10)
-        header.scale, header.offset = np.array(numbers[:3]), np.array(numbers[3:6])
-        header.high, header.low = np.array(numbers[6::2]), np.array(numbers[7::2])
-        header.points_at, header.is_compressed = points_at, bool(kind & _COMPRESSED)
+        self._check()
+        las = self._parsed()
+        header = Header(
+            minor=self.minor, source_id=las.file_source_id, encoding=las.global_encoding.value,
+            guid=las.uuid.bytes_le, system=self.raw[_SYSTEM], date=self.raw[_DATE], user_bytes=las.extra_header_bytes,
+            is_compressed=self.is_compressed, scale=las.scales, offset=las.offsets, low=las.mins, high=las.maxs,
+            count=las.point_count or self.old_count, points_at=self.points_at,
+            waveforms_at=las.start_of_waveform_data_packet_record,
+        )  # fmt: skip
         self._check_scale(header)
-        self.stream.seek(SIZES[minor])
-        header.user_bytes = self.stream.read(size - SIZES[minor])
-        header.vlrs = [self._record(_VLR, points_at) for _ in range(self._plausible(n_vlrs, size, points_at))]
-        header.gap = self.stream.read(points_at - self.stream.tell())
-        self._read_long(header)
-        header.layout = self._layout(header, kind & 63, length)
+        self._read_records(header, las)
+        header.layout = self._layout(header)
         return header
+
+    def _check(self) -> None:
+        if self.major != 1 or self.minor not in SIZES:
+            raise ValueError(
+                f"{self.path.name} is LAS {self.major}.{self.minor}; LAS 1.0 to 1.4 can be read: convert it first."
+            )
+        if self.size < SIZES[self.minor] or not self.size <= self.points_at <= self.total:
+            raise truncated(self.path, f"points should start at byte {self.points_at} of {self.total}")
+        if self.n_vlrs * _VLR.size > self.points_at - self.size:
+            raise truncated(self.path, f"{self.n_vlrs} VLRs can't stand in {self.points_at - self.size} bytes")
+        if self.point_format not in FORMATS:
+            raise ValueError(f"{self.path.name} has point format {self.point_format}; formats 0 to 10 can be read.")
+        if self.length < Layout(self.point_format).dtype.itemsize:
+            raise truncated(
+                self.path, f"its points take {self.length} bytes, too few for point format {self.point_format}"
+            )
+
+    def _parsed(self) -> Any:
+        """Return laspy's header, with the VLRs as bytes before the points."""
+        self.stream.seek(0)
+        plain = bytearray(self.stream.read(self.points_at))
+        plain[_VLRS_AT : _VLRS_AT + 4] = bytes(4)
+        plain[_OLD_RETURNS] = bytes(20)
+        if self.minor >= 4:
+            plain[_RETURNS] = bytes(120)
+        return need_laspy().LasHeader.read_from(io.BytesIO(plain))
 
     def _check_scale(self, header: Header) -> None:
         step = np.abs(header.scale)
@@ -236,51 +282,40 @@ class _Reader:
                 f"{header.offset.tolist()} in its header; get the file again."
             )
 
-    def _plausible(self, n_vlrs: int, size: int, points_at: int) -> int:
-        if n_vlrs * _VLR.size > points_at - size:
-            raise _truncated(self.path, f"{n_vlrs} VLRs can't stand in {points_at - size} bytes")
-        return n_vlrs
-
-    def _read_long(self, header: Header) -> None:
-        """Read what LAS 1.3 and 1.4 added: waveforms, EVLRs, 64-bit counts."""
-        if header.minor >= 3:
-            header.waveforms_at = _WAVEFORM.unpack_from(self.raw, SIZES[2])[0]
-        if header.minor >= 4:
-            header.evlrs_at, n_evlrs, count, *returns = _LONG.unpack_from(self.raw, SIZES[3])
-            header.count, header.returns = (count, tuple(returns)) if count else (header.count, header.returns)
-            if n_evlrs * _EVLR.size > max(self.total - header.evlrs_at, 0):
-                raise _truncated(self.path, f"{n_evlrs} EVLRs should start at byte {header.evlrs_at} of {self.total}")
-            # Without any, some writers leave a place that is none.
-            if n_evlrs:
-                self.stream.seek(header.evlrs_at)
-                header.evlrs = [self._record(_EVLR, self.total) for _ in range(n_evlrs)]
+    def _read_records(self, header: Header, las: Any) -> None:
+        self.stream.seek(self.size)
+        header.vlrs = [self._record(_VLR, self.points_at) for _ in range(self.n_vlrs)]
+        header.gap = self.stream.read(self.points_at - self.stream.tell())
+        n_evlrs, start = las.number_of_evlrs, las.start_of_first_evlr
+        if n_evlrs * _EVLR.size > max(self.total - start, 0):
+            raise truncated(self.path, f"{n_evlrs} EVLRs should start at byte {start} of {self.total}")
+        # Without any, some writers leave a place that is none.
+        if n_evlrs:
+            self.stream.seek(start)
+            header.evlrs = [self._record(_EVLR, self.total) for _ in range(n_evlrs)]
         if header.waveforms_at and header.encoding & _WAVEFORMS_INSIDE and header.find(WAVEFORMS) is None:
             self.stream.seek(header.waveforms_at)
             header.evlrs.append(self._record(_EVLR, self.total))
 
-    def _record(self, head: struct.Struct, end: int) -> Record:
+    def _record(self, head: struct.Struct, end: int) -> Vlr:
         raw = self.stream.read(head.size)
         if len(raw) < head.size:
-            raise _truncated(self.path, "it ends within its variable length records")
+            raise truncated(self.path, "it ends within its variable length records")
         reserved, user_id, record_id, size, description = head.unpack(raw)
         start = self.stream.tell()
         if start + size > end:
             name = user_id.split(b"\0")[0].decode("ascii", "replace")
             # In damaged files it is anything, and would spoil the sentence.
             known = f"{name} {record_id} " if name.isascii() and name.isprintable() else ""
-            raise _truncated(self.path, f"a record {known}of {size} bytes runs past byte {end}")
-        record = Record(user_id, record_id, None, description, reserved, self.path, start, size)
+            raise truncated(self.path, f"a record {known}of {size} bytes runs past byte {end}")
+        record = Vlr(user_id, record_id, None, description, reserved, self.path, start, size)
         if size > _KEPT_IN_MEMORY:
             self.stream.seek(start + size)
         else:
             record.data = self.stream.read(size)
         return record
 
-    def _layout(self, header: Header, point_format: int, length: int) -> Layout:
-        if point_format >= len(FIELDS):
-            raise ValueError(f"{self.path.name} has point format {point_format}; formats 0 to 10 can be read.")
-        extra = length - Layout(point_format).dtype.itemsize
-        if extra < 0:
-            raise _truncated(self.path, f"its points take {length} bytes, too few for point format {point_format}")
+    def _layout(self, header: Header) -> Layout:
         described = header.find(EXTRA_BYTES)
-        return Layout(point_format, fields_of((described.data or b"") if described else b"", extra))
+        extra = self.length - Layout(self.point_format).dtype.itemsize
+        return Layout(self.point_format, fields_of((described.data or b"") if described else b"", extra))

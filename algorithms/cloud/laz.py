@@ -1,149 +1,168 @@
-"""LAZ compression by lazrs, or by laszip where lazrs is not installed.
-
-Both are called without laspy: laspy imports pyproj, whose wheels bring a PROJ of
-their own into QGIS, and it writes the VLRs that it understands anew.
-"""
+"""LAZ through laspy's backends, lazrs or laszip; what a file promises is held against its size first."""
 
 from __future__ import annotations
 
-import importlib
-import io
 import struct
-from collections.abc import Iterator
-from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, BinaryIO, Optional
+from typing import Any, BinaryIO, Callable
 
 import numpy as np
 
-from .formats import WITH_WAVEFORMS
-from .header import LASZIP, Header, Record, read_header
+from .header import LASZIP, Header, truncated
+from .laspy_library import explained, has_backend, need_laspy, need_lazrs
+from .point_formats import WITH_WAVEFORMS
 
 # The size of LAZ chunks that laszip and lazrs use when nothing else is asked for.
 POINTS_PER_CHUNK = 50_000
+# laspy's names of its backends.
+_LAZRS, _LASZIP = "LazrsParallel", "Laszip"
 _POINTWISE = 1
 _VARIABLE_CHUNKS = 2**32 - 1
-_TABLE_POSITION, _TABLE_START = struct.Struct("<q"), struct.Struct("<II")
+_CHUNK_SIZE_AT, _ITEMS_AT = 12, 34
+# Type, size in bytes and version of an item of the record; the position and the head of the chunk table.
+_ITEM, _TABLE_POSITION, _TABLE_START = struct.Struct("<HHH"), struct.Struct("<q"), struct.Struct("<II")
+# Items of version 3 and 4 are stored in layers: so many for each type, and one for each byte of extra bytes (type 14).
+_LAYERED = 3
+_LAYERS = {10: 9, 11: 1, 12: 2, 13: 1}
 
 
-def _package(name: str) -> Optional[Any]:
-    try:
-        return importlib.import_module(name)
-    except ModuleNotFoundError:
-        return None
+@dataclass
+class _Laz:
+    """A LAZ file whose promises are held against its size before anything is decompressed."""
 
+    path: Path
+    header: Header
+    stream: BinaryIO
 
-def _lazrs_or_laszip() -> tuple[Any, Any]:
-    lazrs = _package("lazrs")
-    laszip = _package("laszip")
-    if lazrs is None and laszip is None:
-        raise ValueError(
-            "LAZ files need the Python package lazrs, which is not installed; install lazrs, or use LAS files."
-        )
-    return lazrs, laszip
+    def record(self) -> bytes:
+        """Return the LASzip record, its items held against the header's records."""
+        found = self.header.find(LASZIP)
+        if found is None or found.data is None or len(found.data) < _ITEMS_AT:
+            raise truncated(self.path, "its LASzip record is missing")
+        n_items = struct.unpack_from("<H", found.data, _ITEMS_AT - 2)[0]
+        if len(found.data) < _ITEMS_AT + n_items * _ITEM.size:
+            raise truncated(self.path, "its LASzip record is too short")
+        size, expected = sum(item[1] for item in _items(found.data)), self.header.layout.dtype.itemsize
+        if size != expected:
+            raise truncated(self.path, f"its LASzip record tells of points of {size} bytes, its header of {expected}")
+        return found.data
 
+    def table_at(self) -> int:
+        """Return the position of the chunk table."""
+        total = self.path.stat().st_size
+        self.stream.seek(self.header.points_at)
+        (position,) = self._unpacked(_TABLE_POSITION)
+        if position == -1:
+            # A writer that could not go back leaves the position in the last 8 bytes.
+            self.stream.seek(total - _TABLE_POSITION.size)
+            (position,) = self._unpacked(_TABLE_POSITION)
+        if not self._chunks_at <= position < total:
+            raise truncated(self.path, f"its chunk table should be at byte {position} of {total}")
+        return position
 
-def need_lazrs() -> Any:
-    """Return lazrs, which alone writes chunks of chosen sizes.
+    def check_number(self, table_at: int, per_chunk: int) -> None:
+        """Hold the number of chunks against the bytes before the table: each starts with one whole record."""
+        self.stream.seek(table_at)
+        _, n_chunks = self._unpacked(_TABLE_START)
+        room = table_at - self._chunks_at
+        if n_chunks * self.header.layout.dtype.itemsize > room:
+            raise truncated(self.path, f"{n_chunks} chunks can't stand in {room} bytes")
+        held = n_chunks * (per_chunk if per_chunk != _VARIABLE_CHUNKS else self.header.count)
+        if self.header.count > held:
+            raise truncated(self.path, f"it promises {self.header.count} points, but its chunks hold at most {held}")
 
-    Raises
-    ------
-    ValueError
-        If it is not installed.
-    """
-    lazrs = _package("lazrs")
-    if lazrs is None:
-        raise ValueError("COPC files are written by the Python package lazrs, which is not installed; install lazrs.")
-    return lazrs
-
-
-@contextmanager
-def explained(path: Path) -> Iterator[None]:
-    """Turn whatever a LAZ library raises, panics of Rust included, into one sentence.
-
-    Raises
-    ------
-    ValueError
-        If the library failed.
-    """
-    try:
-        yield
-    except BaseException as error:
-        # A panic in Rust is no Exception, and its class can't be imported.
-        if type(error).__module__.split(".")[0] not in ("lazrs", "laszip", "pyo3_runtime"):
-            raise
-        raise ValueError(
-            f"{path.name} is truncated or damaged: its points can't be decompressed; get the file again."
-        ) from None
-
-
-class Decompressor:
-    """Points of a LAZ or COPC file, in the file's order."""
-
-    def __init__(self, path: Path, header: Header, stream: BinaryIO) -> None:
-        record = header.find(LASZIP)
-        if record is None or record.data is None or len(record.data) < 34:
-            raise ValueError(f"{path.name} is truncated or damaged: its LASzip record is missing; get the file again.")
-        lazrs, laszip = _lazrs_or_laszip()
-        self.path = path
-        with explained(path):
-            if lazrs is not None and record.data[0] != _POINTWISE:
-                _check_chunks(path, header, record.data, stream)
-                stream.seek(header.points_at)
-                self._read = lazrs.ParLasZipDecompressor(stream, record.data).decompress_many
-            elif laszip is not None:
-                stream.seek(0)
-                self._read = laszip.LasUnZipper(stream).decompress_into
-            else:
-                raise ValueError(
-                    f"{path.name} is LAZ of an old kind (before 2011); install the package laszip to read it."
-                )
-
-    def read(self, points: np.ndarray) -> None:
-        """Fill ``points``, a contiguous structured array, with the points that come next."""
+    def check_chunks(self, table_at: int, record: bytes) -> None:
+        """Hold what the chunk table says of points and bytes, and each chunk of its layers, against the file."""
+        lazrs = need_lazrs()
+        self.stream.seek(self.header.points_at)
         with explained(self.path):
-            self._read(points.view(np.uint8))
+            chunks = lazrs.read_chunk_table(self.stream, lazrs.LazVlr(record))
+        points, sizes = zip(*chunks)
+        room = table_at - self._chunks_at
+        if sum(sizes) > room:
+            raise truncated(self.path, f"its chunks of {sum(sizes)} bytes can't stand in {room} bytes")
+        if _chunk_size(record) == _VARIABLE_CHUNKS and sum(points) != self.header.count:
+            raise truncated(self.path, f"it promises {self.header.count} points, but its chunks hold {sum(points)}")
+        if _items(record)[0][2] >= _LAYERED:
+            n_layers = sum(_LAYERS.get(kind, size) for kind, size, _ in _items(record))
+            self._check_layers(np.array(sizes), n_layers)
+
+    def _check_layers(self, sizes: np.ndarray, n_layers: int) -> None:
+        """Hold the sizes of the layers, which are allocated before they are read, against those of their chunks."""
+        # A chunk begins with one whole record, its number of points and the size of each layer, 4 bytes each.
+        head = self.header.layout.dtype.itemsize + 4
+        for start, size in zip(self._chunks_at + np.cumsum(sizes) - sizes, sizes):
+            self.stream.seek(int(start) + head)
+            layers = np.frombuffer(self.stream.read(n_layers * 4), "<u4")
+            if size and head + layers.nbytes + layers.sum(dtype=np.int64) > size:
+                raise truncated(self.path, f"a chunk of {size} bytes has layers of {layers.sum(dtype=np.int64)} bytes")
+
+    @property
+    def _chunks_at(self) -> int:
+        """Where the first chunk starts: behind the position of the chunk table."""
+        return self.header.points_at + _TABLE_POSITION.size
+
+    def _unpacked(self, kind: struct.Struct) -> tuple:
+        raw = self.stream.read(kind.size)
+        if len(raw) < kind.size:
+            raise truncated(self.path, "it ends before its chunk table")
+        return kind.unpack(raw)
 
 
-def _check_chunks(path: Path, header: Header, vlr: bytes, stream: BinaryIO) -> None:
-    """Hold the number of points against the chunk table before anything is allocated.
+def _chunk_size(record: bytes) -> int:
+    return struct.unpack_from("<I", record, _CHUNK_SIZE_AT)[0]
 
-    A chunk starts with one whole record, so that their number is bounded by the
-    file's size, and they hold a fixed number of points each (COPC: any number).
+
+def _items(record: bytes) -> list[tuple]:
+    """Return type, size and version of what the points are compressed as."""
+    n_items = struct.unpack_from("<H", record, _ITEMS_AT - 2)[0]
+    return [_ITEM.unpack_from(record, _ITEMS_AT + i * _ITEM.size) for i in range(n_items)]
+
+
+def open_laz(path: Path, header: Header, stream: BinaryIO) -> Callable[[np.ndarray], Any]:
+    """Return a function that fills bytes with the points of a LAZ or COPC file that come next, in the file's order.
+
+    Raises
+    ------
+    ValueError
+        If the file promises what it can't hold, or no package can read it.
     """
-    total = path.stat().st_size
+    laz = _Laz(path, header, stream)
+    record = laz.record()
+    if record[0] == _POINTWISE and not has_backend(_LASZIP):
+        raise ValueError(f"{path.name} is LAZ of an old kind (before 2011); install the package laszip to read it.")
+    backend = _backend(*((_LASZIP, _LAZRS) if record[0] == _POINTWISE else (_LAZRS, _LASZIP)))
+    if record[0] != _POINTWISE:
+        table_at = laz.table_at()
+        laz.check_number(table_at, _chunk_size(record))
+        if has_backend(_LAZRS):
+            laz.check_chunks(table_at, record)
+    if _chunk_size(record) != _VARIABLE_CHUNKS:
+        # lazrs reserves the memory of a whole chunk: no chunk has more points than there are.
+        size = struct.pack("<I", min(header.count, _chunk_size(record)))
+        record = record[:_CHUNK_SIZE_AT] + size + record[_CHUNK_SIZE_AT + len(size) :]
+    las = header.las()
+    las.vlrs.append(need_laspy().vlrs.known.LasZipVlr(record))
     stream.seek(header.points_at)
-    (position,) = _unpacked(path, _TABLE_POSITION, stream)
-    if position == -1:
-        # A writer that could not go back leaves the position in the last 8 bytes.
-        stream.seek(total - _TABLE_POSITION.size)
-        (position,) = _unpacked(path, _TABLE_POSITION, stream)
-    if not header.points_at < position < total:
-        raise ValueError(
-            f"{path.name} is truncated: its chunk table should be at byte {position} of {total}; get the file again."
-        )
-    stream.seek(position)
-    _, n_chunks = _unpacked(path, _TABLE_START, stream)
-    per_chunk = struct.unpack_from("<I", vlr, 12)[0]
-    if n_chunks * header.layout.dtype.itemsize > total:
-        raise ValueError(f"{path.name} is damaged: {n_chunks} chunks can't stand in {total} bytes; get the file again.")
-    if per_chunk != _VARIABLE_CHUNKS and header.count > n_chunks * per_chunk:
-        raise ValueError(
-            f"{path.name} promises {header.count} points, but its {n_chunks} chunks hold at most "
-            f"{n_chunks * per_chunk}; it is truncated or damaged, get the file again."
-        )
+    with explained(path):
+        reader = backend.create_reader(stream, las)
+    # What laspy's read_n_points calls, without the copy of all points that it makes.
+    return reader.decompressor.decompress_many if hasattr(reader, "decompressor") else reader.unzipper.decompress_into
 
 
-def _unpacked(path: Path, kind: struct.Struct, stream: BinaryIO) -> tuple:
-    raw = stream.read(kind.size)
-    if len(raw) < kind.size:
-        raise ValueError(f"{path.name} is truncated: it ends before its chunk table; get the file again.")
-    return kind.unpack(raw)
+def _backend(preferred: str, other: str) -> Any:
+    """Return laspy's backend of the first of two names that is installed."""
+    for name in (preferred, other):
+        if has_backend(name):
+            return need_laspy().LazBackend[name]
+    raise ValueError(
+        "LAZ files need the Python package lazrs, which is not installed; install lazrs, or use LAS files."
+    )
 
 
-def check_compressible(point_format: int) -> None:
-    """Refuse to compress what no installed package compresses well.
+def writing_backend(point_format: int) -> Any:
+    """Return laspy's backend that compresses a point format.
 
     lazrs 0.8 writes waveform references that laszip can't read (formats 4, 5) or
     that come back changed where there are several scanner channels (9, 10).
@@ -153,55 +172,12 @@ def check_compressible(point_format: int) -> None:
     ValueError
         If the format has waveforms and laszip is not installed, or neither package is.
     """
-    _, laszip = _lazrs_or_laszip()
-    if point_format in WITH_WAVEFORMS and laszip is None:
+    if point_format not in WITH_WAVEFORMS:
+        return _backend(_LAZRS, _LASZIP)
+    found = _backend(_LASZIP, _LAZRS)
+    if found is not need_laspy().LazBackend.Laszip:
         raise ValueError(
             f"LAZ with waveforms (point format {point_format}) is written by the Python package laszip, "
             "which is not installed; write .las instead or install laszip."
         )
-
-
-class Compressor:
-    """Points into a LAZ stream; the header, with the LASzip record in it, is written first."""
-
-    def __init__(self, stream: BinaryIO, header: Header) -> None:
-        check_compressible(header.layout.point_format)
-        lazrs, laszip = _lazrs_or_laszip()
-        self._by_laszip = lazrs is None or header.layout.point_format in WITH_WAVEFORMS
-        self._stream, self._header = stream, header
-        header.is_compressed = not self._by_laszip
-        if not self._by_laszip:
-            vlr = lazrs.LazVlr.new_for_compression(header.layout.point_format, header.layout.extra_size)
-            header.vlrs = [*header.vlrs, laszip_record(vlr)]
-            header.write(stream)
-            self._zipper = lazrs.ParLasZipCompressor(stream, vlr)
-            self._write = self._zipper.compress_many
-        else:
-            plain = io.BytesIO()
-            # laszip writes the header itself; the EVLRs, which follow later, are not promised yet.
-            replace(header, evlrs=[], evlrs_at=0, waveforms_at=0).write(plain)
-            self._zipper = laszip.LasZipper(stream, plain.getvalue())
-            self._write = self._zipper.compress
-
-    def write(self, points: np.ndarray) -> None:
-        """Compress ``points``, a contiguous structured array."""
-        self._write(points.view(np.uint8))
-
-    def done(self) -> None:
-        """Write the last chunk and the chunk table; the stream then stands behind them."""
-        self._zipper.done()
-        if self._by_laszip:
-            self._take_over()
-
-    def _take_over(self) -> None:
-        """Learn which record laszip added to the VLRs, so that the final header has it."""
-        self._stream.flush()
-        self._stream.seek(0, io.SEEK_END)
-        made = read_header(Path(self._stream.name))
-        self._header.vlrs = [*self._header.vlrs, *(record for record in made.vlrs if record.key == LASZIP)]
-        self._header.gap, self._header.is_compressed = made.gap, True
-
-
-def laszip_record(vlr: Any) -> Record:
-    """Return the VLR that tells readers how lazrs compressed the points."""
-    return Record(*LASZIP, bytes(vlr.record_data()), description=b"LASzip by lazrs")
+    return found

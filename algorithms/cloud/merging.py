@@ -11,7 +11,7 @@ from ..stage import Monitor
 from .cloud import Cloud
 from .dimensions import DIMENSIONS
 from .header import Header
-from .records import Records, convert, find_extra, is_stored_as
+from .point_records import PointRecords, convert, find_extra, is_stored_as
 from .units import Units, crs_identity
 from .vpc import merged_header
 
@@ -34,7 +34,7 @@ def merge_records(clouds: list[Cloud], xyz: Optional[np.ndarray], monitor: Optio
     xyz : ndarray of shape (n, 3), float64, or None
         New coordinates of all points (m, relative to the common origin); None where none were moved.
     monitor : Monitor, optional
-        Hears of what can't be merged.
+        Receives warnings about what can't be merged.
 
     Raises
     ------
@@ -52,7 +52,7 @@ def merge_records(clouds: list[Cloud], xyz: Optional[np.ndarray], monitor: Optio
     for one, place in zip(records, places):
         _fill(points[start : start + len(place)], one, place, header)
         start += len(place)
-    merged = Cloud(header, points, leader.units, [path for cloud in clouds for path in cloud.sources])
+    merged = Cloud(header, points, leader.units, [path for cloud in clouds for path in cloud.files])
     merged.wkt, merged.origin = leader.wkt, clouds[0].origin
     return merged
 
@@ -80,19 +80,19 @@ def _leader(clouds: list[Cloud], monitor: Monitor) -> Cloud:
 
 
 def _name(cloud: Cloud, number: int) -> str:
-    return f"Cloud {number}" + (f" ({cloud.sources[-1].name})" if cloud.sources else "")
+    return f"Cloud {number}" + (f" ({cloud.files[-1].name})" if cloud.files else "")
 
 
-def _records(cloud: Cloud, units: Units) -> Records:
+def _records(cloud: Cloud, units: Units) -> PointRecords:
     """Return what makes the cloud's records, its known dimensions with name, type and unit as in all the others."""
-    cloud, layout, factors = cloud.copy(), cloud.header.layout, _factors(cloud.units)
+    cloud, layout, factors = cloud.copy(), cloud.header.layout, cloud.units.factors
     for name, dimension in DIMENSIONS.items():
         if dimension.standard or not cloud.has(name):
             continue
         found = [find_extra(layout, dimension, i) for i in range(len(dimension.disk))]
         fields = [(layout.extras[at], disk) for at, disk in zip(found, dimension.disk) if at is not None]
         is_usual = all(is_stored_as(field, disk, dimension) for field, disk in fields)
-        if not is_usual or (dimension.unit in ("m", "m²") and (factors != _factors(units)).any()):
+        if not is_usual or (dimension.unit in ("m", "m²") and (factors != units.factors).any()):
             cloud.set(name, cloud.get(name))
     cloud.units = units
     return cloud.records()
@@ -102,23 +102,19 @@ def _places(clouds: list[Cloud], xyz: Optional[np.ndarray], units: Units) -> lis
     """Return the coordinates of each cloud (m, 3), on the map of the union."""
     ends = np.cumsum([len(cloud) for cloud in clouds])[:-1]
     parts = [cloud.get("xyz") for cloud in clouds] if xyz is None else np.split(xyz, ends)
-    factors, origin = _factors(units), clouds[0].origin
+    factors, origin = units.factors, clouds[0].origin
     is_there = not origin.any() and (factors == 1).all()
     return [part if is_there else (part + origin) / factors for part in parts]
 
 
-def _factors(units: Units) -> np.ndarray:
-    return np.array([units.horizontal, units.horizontal, units.vertical])
-
-
-def _header(cloud: Cloud, records: Records, place: np.ndarray, units: Units) -> Header:
+def _header(cloud: Cloud, records: PointRecords, place: np.ndarray, units: Units) -> Header:
     """Return the cloud's header as if its file were one of the union's units, with the points where they are now."""
-    scale = cloud.header.scale * (_factors(cloud.units) / _factors(units))
+    scale = cloud.header.scale * (cloud.units.factors / units.factors)
     low, high = place.min(axis=0), place.max(axis=0)
     return replace(cloud.header, layout=records.layout, count=len(place), scale=scale, low=low, high=high)
 
 
-def _fill(out: np.ndarray, records: Records, place: np.ndarray, header: Header) -> None:
+def _fill(out: np.ndarray, records: PointRecords, place: np.ndarray, header: Header) -> None:
     """Write the records of one cloud, with its new coordinates, to their part of the union."""
     for start in range(0, len(out), _CHUNK):
         chunk = slice(start, start + _CHUNK)

@@ -1,16 +1,32 @@
-"""Files that appear complete or not at all."""
+"""Files that appear complete or not at all, and those of one run together."""
 
 from __future__ import annotations
 
 import errno
 import io
-import uuid
+import os
+import shutil
+import tempfile
+import time
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO, Optional
 
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None  # type: ignore[assignment]
+
 LAS, LAZ, COPC, VPC = ".las", ".laz", ".copc.laz", ".vpc"
+
+# Working folders, hidden beside the targets: their names, the file that a running program keeps open and locked in
+# each, and the folder in it for old files while new ones take their places.
+_PREFIX, _SUFFIX = ".lb-", ".part"
+_LOCK = "lock"
+_OLD = "old"
+# A working folder younger than this (s) may belong to a run that has not locked it yet: far longer than that takes.
+_UNLOCKED = 2.0
 
 
 def kind_of(path: Path) -> str:
@@ -60,6 +76,178 @@ class _File(io.FileIO):
             raise
 
 
+class ResultFiles:
+    """The files of one run: each is written in a working folder beside its target, and all are put in place together.
+
+    Until then older files stay as they are. Nothing is removed but what this run wrote and what it replaces. Working
+    folders that a killed run left beside a target are removed.
+    """
+
+    def __init__(self) -> None:
+        self._entries: list[_Entry] = []
+
+    def beside(self, target: Path, companions: Iterable[Path] = ()) -> Path:
+        """Return where to write the file that becomes ``target``: under the same name, in a new folder.
+
+        Links are followed. Whatever else is written into that folder goes to the folder of the target too.
+
+        Parameters
+        ----------
+        target : Path
+            In an existing folder.
+        companions : iterable of Path
+            Files that belong to an older target and are replaced, or removed, with it.
+
+        Raises
+        ------
+        ValueError
+            If the folder can't be written, or the target is no ordinary file.
+        """
+        final = _followed(target)
+        if final.exists() and not final.is_file():
+            raise ValueError(f"{target} is no ordinary file; give the name of a file.")
+        with os_errors_as_messages(target):
+            _sweep(final.parent)
+            entry = _Entry(target, final, [_followed(path) for path in companions])
+            self._entries.append(entry)
+        return entry.folder / final.name
+
+    def final(self, text: str) -> str:
+        """Return a text with the paths of working folders replaced by those that the files have in the end."""
+        for entry in self._entries:
+            text = text.replace(str(entry.folder / entry.final.name), str(entry.target))
+            text = text.replace(str(entry.folder), str(entry.final.parent))
+        return text
+
+    def put_in_place(self) -> None:
+        """Move all files that were written to their targets; if one can't be moved, all targets are as before.
+
+        Raises
+        ------
+        ValueError
+            If a target can't be replaced, for example because another program uses it.
+        """
+        with ExitStack() as undo:
+            for entry in self._entries:
+                with os_errors_as_messages(entry.target):
+                    entry.put_in_place(undo)
+            undo.pop_all()
+
+    def discard(self) -> None:
+        """Remove the working folders, with everything that was not put in place."""
+        for entry in self._entries:
+            entry.discard()
+
+
+def _followed(path: Path) -> Path:
+    """Return the absolute path with all links followed; a link to itself stays one."""
+    return Path(os.path.realpath(path))
+
+
+class _Entry:
+    """A target and its working folder."""
+
+    def __init__(self, target: Path, final: Path, companions: list[Path]) -> None:
+        self.target, self.final, self.companions = target, final, companions
+        self.folder = Path(tempfile.mkdtemp(_SUFFIX, _PREFIX, final.parent))
+        self._lock = (self.folder / _LOCK).open("wb")
+        if fcntl is not None:
+            # A file system without locks has none of its working folders swept either.
+            with suppress(OSError):
+                fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+    def put_in_place(self, undo: ExitStack) -> None:
+        """Move the files to their places, and note how to undo that."""
+        made = {self.final.with_name(new.name): new for new in self.folder.iterdir() if new.name != _LOCK}
+        if not made:
+            return
+        aside = self.folder / _OLD
+        aside.mkdir()
+        for path in self.companions:
+            if path not in made and path.exists():
+                path.replace(aside / path.name)
+                undo.callback((aside / path.name).replace, path)
+        for path, new in made.items():
+            if path.is_dir():
+                raise IsADirectoryError(errno.EISDIR, "a folder is in its place", str(path))
+            if path.exists():
+                shutil.copymode(path, new)
+                _keep(path, aside / path.name)
+                undo.callback((aside / path.name).replace, path)
+            else:
+                undo.callback(_remove, path, new.stat().st_ino)
+            new.replace(path)
+
+    def discard(self) -> None:
+        """Remove the working folder, its lock last: a run that is killed here leaves what the next one recognizes."""
+        for path in self.folder.iterdir():
+            if path.is_dir():
+                shutil.rmtree(path, ignore_errors=True)
+            elif path.name != _LOCK:
+                # What another program holds is swept by a later run.
+                with suppress(OSError):
+                    path.unlink()
+        self._lock.close()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
+def _keep(path: Path, aside: Path) -> None:
+    """Keep a file under a second name until it is replaced: without a moment in which there is none, if possible."""
+    try:
+        os.link(path, aside)
+    except OSError:
+        path.replace(aside)
+
+
+def _remove(path: Path, inode: int) -> None:
+    """Remove a file if it is still the one with this inode."""
+    if path.exists() and path.stat().st_ino == inode:
+        path.unlink()
+
+
+def _sweep(folder: Path) -> None:
+    """Remove the working folders that runs left in a folder when they were killed."""
+    for left in folder.glob(f"{_PREFIX}*{_SUFFIX}"):
+        if _is_abandoned(left):
+            shutil.rmtree(left, ignore_errors=True)
+
+
+def _is_abandoned(folder: Path) -> bool:
+    """Whether a working folder is empty, or no running program holds its lock."""
+    lock = folder / _LOCK
+    try:
+        if folder.is_symlink() or time.time() - folder.stat().st_mtime < _UNLOCKED:
+            return False
+        if not any(folder.iterdir()):
+            return True
+        if fcntl is None:
+            # Windows removes no file that a program has open.
+            lock.unlink()
+        else:
+            with lock.open("rb") as file:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        return False
+    return True
+
+
+@contextmanager
+def all_or_nothing() -> Iterator[ResultFiles]:
+    """Give the files of a run, which are put in place when the block ends well and vanish otherwise.
+
+    Raises
+    ------
+    ValueError
+        If a target can't be replaced.
+    """
+    files = ResultFiles()
+    try:
+        yield files
+        files.put_in_place()
+    finally:
+        files.discard()
+
+
 @contextmanager
 def replacing(path: Path) -> Iterator[BinaryIO]:
     """Give a stream whose content becomes ``path`` when the block ends well, and vanishes otherwise.
@@ -69,24 +257,21 @@ def replacing(path: Path) -> Iterator[BinaryIO]:
     ValueError
         If the folder can't be written, the disk is full, or the target is in use.
     """
-    temporary = path.with_name(f".{path.name}.{uuid.uuid4().hex[:8]}.part")
     file = None
     try:
-        file = _File(temporary, "xb+")
-        with io.BufferedRandom(file) as stream:
-            yield stream
-        temporary.replace(path)
+        with all_or_nothing() as files:
+            file = _File(files.beside(path), "xb+")
+            with io.BufferedRandom(file) as stream:
+                yield stream
     except Exception as error:
         cause = (file and file.failure) or error
         if isinstance(cause, OSError):
             raise ValueError(_sentence(path, cause)) from error
         raise
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 @contextmanager
-def written_or_told(path: Path) -> Iterator[None]:
+def os_errors_as_messages(path: Path) -> Iterator[None]:
     """Say in one sentence why ``path`` can't be written where the block finds that out.
 
     Raises

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import math
 import re
 import struct
 from dataclasses import dataclass
 from typing import Any, Callable, Optional, Union
 
-from .header import WKT_BIT, Header, Record
+import numpy as np
+
+from .header import WKT_BIT, Header, Vlr
 
 # EPSG code -> (meters per horizontal unit, meters per vertical unit, whether it is geographic), or None if unknown.
 Resolver = Callable[[int], Optional[tuple[float, float, bool]]]
@@ -28,6 +29,11 @@ _LENGTHS = {
     9096: 0.9144,
 }
 _USER_DEFINED = 32767
+# Lengths that a unit may have (m), from a micrometer to a thousand kilometers: all others are damage.
+_SHORTEST_UNIT = 1e-6
+_LONGEST_UNIT = 1e6
+# WKT of real systems has some thousand bytes; a longer one takes seconds to parse and is taken for damage.
+_LONGEST_WKT = 1_000_000
 _MODEL, _GEOGRAPHIC, _PROJECTED, _VERTICAL = 1024, 2048, 3072, 4096
 _LINEAR_UNITS, _LINEAR_UNIT_SIZE, _VERTICAL_UNITS = 3076, 3077, 4099
 _MODEL_GEOGRAPHIC, _MODEL_GEOCENTRIC = 2, 3
@@ -39,9 +45,8 @@ _PLANE = ("PROJCS", "PROJCRS", "PROJECTEDCRS", "LOCAL_CS", "ENGCRS", "ENGINEERIN
 _ON_ELLIPSOID = ("GEOGCS", "GEOGCRS", "GEOGRAPHICCRS", "GEODCRS", "GEODETICCRS", "GEOCCS")
 _HEIGHT = ("VERT_CS", "VERTCS", "VERTCRS", "VERTICALCRS")
 
-# What is said of any input: a file, or a layer by its title.
-NAMES_NO_CRS = "names no coordinate reference system; its coordinates are taken as meters."
-UNKNOWN = f"The file {NAMES_NO_CRS}"
+# One sentence for every input, so that a chain shows it once: later steps inherit the lack from the first.
+NO_CRS = "The input has no coordinate reference system; its coordinates are taken as meters."
 
 
 @dataclass(frozen=True)
@@ -51,6 +56,11 @@ class Units:
     horizontal: float = 1.0
     vertical: float = 1.0
     warning: str = ""
+
+    @property
+    def factors(self) -> np.ndarray:
+        """Meters per unit of x, y and z, (3,)."""
+        return np.array([self.horizontal, self.horizontal, self.vertical])
 
 
 @dataclass
@@ -98,17 +108,17 @@ def crs_identity(wkt: str) -> str:
     return re.sub(r"\s", "", wkt)
 
 
-def crs_records(wkt: str) -> tuple[list[Record], int]:
+def crs_records(wkt: str) -> tuple[list[Vlr], int]:
     """Return the VLRs that store ``wkt`` (WKT, "EPSG:code" or ""), and its bits of the global encoding."""
     if wkt and '"' not in wkt:
         code = wkt[5:]
         if not (wkt.upper().startswith("EPSG:") and code.isdecimal() and 0 < int(code) < _USER_DEFINED):
             raise ValueError(f"The CRS {wkt!r} can't be stored; give WKT or EPSG:code.")
         keys = (1, 1, 0, 2, _MODEL, 0, 1, 1, _PROJECTED, 0, 1, int(code))
-        return [Record(*_GEOKEYS, struct.pack(f"<{len(keys)}H", *keys), description=b"GeoKeys")], 0
+        return [Vlr(*_GEOKEYS, struct.pack(f"<{len(keys)}H", *keys), description=b"GeoKeys")], 0
     if not wkt:
         return [], WKT_BIT
-    return [Record(*_WKT[0], wkt.encode() + b"\0", description=b"WKT")], WKT_BIT
+    return [Vlr(*_WKT[0], wkt.encode() + b"\0", description=b"WKT")], WKT_BIT
 
 
 def units_of(header: Header, crs_units: Optional[Resolver] = None) -> Units:
@@ -140,12 +150,15 @@ def units_of_wkt(wkt: str) -> Units:
     """Return the units that WKT 1 or WKT 2 gives, see :func:`units_of`."""
     root = _parse(wkt)
     if root is None:
-        return Units(warning=UNKNOWN)
+        return Units(warning=NO_CRS)
     plane = next(iter(root.anywhere(*_PLANE)), None)
     if plane is None:
         _refuse_ellipsoid(root)
-        return Units(warning=UNKNOWN)
+        return Units(warning=NO_CRS)
     sizes = _axis_units(plane) or [1.0]
+    if sizes[0] != sizes[min(1, len(sizes) - 1)]:
+        apart = f"{sizes[0]:g} and {sizes[1]:g} m"
+        raise ValueError(f"The axes of the coordinates have different units ({apart}); reproject the cloud first.")
     height = next(iter(root.anywhere(*_HEIGHT)), None)
     of_height = _axis_units(height) if height is not None else []
     vertical = of_height[0] if of_height else sizes[2] if len(sizes) > 2 else sizes[0]
@@ -175,7 +188,14 @@ def _axis_units(node: _Node) -> list[float]:
     by_axis = [unit for axis in node.all("AXIS") for unit in axis.all(*_LENGTH_UNITS)]
     units = by_axis or node.all(*_LENGTH_UNITS)
     sizes = [unit.values[1] for unit in units if len(unit.values) > 1]
-    return [size for size in sizes if isinstance(size, float) and 0 < size < math.inf]
+    return [_length(size) for size in sizes if isinstance(size, float)]
+
+
+def _length(size: float) -> float:
+    """Return meters per unit, or refuse what is no length."""
+    if not _SHORTEST_UNIT <= size <= _LONGEST_UNIT:
+        raise ValueError(f"The file gives its unit of length as {size:g} m, which is damaged; assign its CRS again.")
+    return size
 
 
 def _parse(wkt: str) -> Optional[_Node]:
@@ -211,7 +231,7 @@ def _value(token: str) -> Union[str, float]:
 def _stored_wkt(header: Header) -> str:
     for key in _WKT:
         record = header.find(key)
-        if record is not None and record.data:
+        if record is not None and record.data and len(record.data) <= _LONGEST_WKT:
             return record.data.split(b"\0")[0].decode("utf-8", "replace").strip()
     return ""
 
@@ -235,7 +255,7 @@ def _geokeys(header: Header) -> dict[int, Any]:
 def _units_of_geokeys(header: Header, crs_units: Optional[Resolver]) -> Units:
     keys = _geokeys(header)
     if not keys:
-        return Units(warning=UNKNOWN)
+        return Units(warning=NO_CRS)
     model = keys.get(_MODEL)
     on_ellipsoid = keys.get(_GEOGRAPHIC, 0) not in (0, _USER_DEFINED) and not keys.get(_PROJECTED)
     if model in (_MODEL_GEOGRAPHIC, _MODEL_GEOCENTRIC) or (on_ellipsoid and _LINEAR_UNITS not in keys):
@@ -249,7 +269,9 @@ def _linear_units(keys: dict[int, Any], crs_units: Optional[Resolver]) -> Units:
     of_height = _looked_up(keys.get(_VERTICAL, 0), crs_units)
     if of_code and of_code[2]:
         raise _not_plane(f"EPSG:{keys[_PROJECTED]}", geocentric=False)
-    own = keys.get(_LINEAR_UNIT_SIZE) or _LENGTHS.get(keys.get(_LINEAR_UNITS, 0))
+    own = _LENGTHS.get(keys.get(_LINEAR_UNITS, 0))
+    if _LINEAR_UNIT_SIZE in keys:
+        own = _length(keys[_LINEAR_UNIT_SIZE])
     horizontal = own or (of_code[0] if of_code else 1.0)
     vertical = _LENGTHS.get(keys.get(_VERTICAL_UNITS, 0))
     if vertical is None:
@@ -260,7 +282,7 @@ def _linear_units(keys: dict[int, Any], crs_units: Optional[Resolver]) -> Units:
     code = keys.get(_PROJECTED, 0)
     named = 0 < code < _USER_DEFINED
     unlooked = f"The file gives EPSG:{code} and no unit; its coordinates are taken as meters."
-    return Units(horizontal, vertical, unlooked if named else UNKNOWN)
+    return Units(horizontal, vertical, unlooked if named else NO_CRS)
 
 
 def _looked_up(code: int, crs_units: Optional[Resolver]) -> Optional[tuple[float, float, bool]]:

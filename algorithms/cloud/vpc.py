@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 
 from ..stage import Monitor
-from .header import COPC_HIERARCHY, COPC_INFO, LASZIP, WAVEFORMS, WKT_BIT, Header, Record
-from .las import open_header, read_chunks
+from .header import COPC_HIERARCHY, COPC_INFO, LASZIP, WAVEFORMS, WKT_BIT, Header, Vlr
 from .outputs import COPC, LAS, LAZ, kind_of
-from .records import convert, merged_layout
+from .point_records import convert, merged_layout
+from .points import open_header, read_chunks
 from .units import crs_identity, wkt_of
 
 _LARGEST_INT = 2**31 - 1
@@ -31,13 +31,14 @@ def tiles_of(path: Path) -> list[Path]:
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
         hrefs = [href for feature in content["features"] for href in _hrefs(feature["assets"])]
-    except (ValueError, KeyError, TypeError, AttributeError):
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         raise ValueError(
             f"{path.name} is not a virtual point cloud: it is no STAC feature collection with assets."
         ) from None
     if not hrefs:
         raise ValueError(f"{path.name} names no tiles; build it again.")
-    return [_tile(path, href) for href in hrefs]
+    # A tile that is named twice is read once, whichever way it is named.
+    return list({tile.resolve(): tile for tile in (_tile(path, href) for href in dict.fromkeys(hrefs))}.values())
 
 
 def _hrefs(assets: dict) -> list[str]:
@@ -47,20 +48,17 @@ def _hrefs(assets: dict) -> list[str]:
 
 
 def _tile(path: Path, href: str) -> Path:
-    if "://" in href:
-        raise ValueError(
-            f"{path.name} names the tile {href}, which is not a local file; download it and build {path.name} again."
-        )
     tile = path.parent / href
-    if kind_of(tile) not in (LAS, LAZ, COPC):
-        raise ValueError(
-            f"{path.name} names the tile {href}, which is no LAS, LAZ or COPC file; build {path.name} of others."
-        )
-    if not tile.is_file():
-        raise ValueError(
-            f"{path.name} names the tile {href}, which is missing; put it back or build {path.name} again."
-        )
-    return tile
+    if "://" in href:
+        why = "is not a local file; download it and"
+    elif kind_of(tile) not in (LAS, LAZ, COPC):
+        why = "is no LAS, LAZ or COPC file; leave it out and"
+    elif not tile.is_file():
+        why = "is missing; put it back or"
+    else:
+        return tile
+    # Whatever stands there, a message is one line.
+    raise ValueError(f"{path.name} names the tile {' '.join(href.split())}, which {why} build {path.name} again.")
 
 
 def read_tiles(paths: list[Path], monitor: Monitor) -> tuple[Header, np.ndarray]:
@@ -72,10 +70,11 @@ def read_tiles(paths: list[Path], monitor: Monitor) -> tuple[Header, np.ndarray]
     Raises
     ------
     ValueError
-        If tiles have different coordinate reference systems, or span more than their scale can store.
+        If tiles have different coordinate reference systems, bounds that are not finite, or span more than their
+        scale can store.
     """
     headers = [open_header(path) for path in paths]
-    _check_crs(paths, headers)
+    _check_tiles(paths, headers)
     header = merged_header(headers, "tiles", monitor)
     points = np.zeros(header.count, header.layout.dtype)
     start = 0
@@ -89,13 +88,17 @@ def read_tiles(paths: list[Path], monitor: Monitor) -> tuple[Header, np.ndarray]
     return header, points
 
 
-def _check_crs(paths: list[Path], headers: list[Header]) -> None:
+def _check_tiles(paths: list[Path], headers: list[Header]) -> None:
     seen = [crs_identity(wkt_of(header)) for header in headers]
-    for path, one in zip(paths, seen):
+    for path, header, one in zip(paths, headers, seen):
         if one != seen[0]:
             raise ValueError(
                 f"The tiles {paths[0].name} and {path.name} have different coordinate reference systems "
                 f"({seen[0][:40] or 'none'}, {one[:40] or 'none'}); reproject them to one first."
+            )
+        if not np.isfinite([header.low, header.high]).all():
+            raise ValueError(
+                f"The tile {path.name} has bounds in its header that are not finite; repair its header first."
             )
 
 
@@ -109,7 +112,7 @@ def merged_header(headers: list[Header], what: str, monitor: Monitor) -> Header:
     what : str
         What a sentence to the user calls them: "tiles".
     monitor : Monitor
-        Hears of what can't be merged.
+        Receives warnings about what can't be merged.
 
     Raises
     ------
@@ -140,7 +143,7 @@ def merged_header(headers: list[Header], what: str, monitor: Monitor) -> Header:
     return merged.with_layout(layout)
 
 
-def _union(lists: list[list[Record]]) -> list[Record]:
+def _union(lists: list[list[Vlr]]) -> list[Vlr]:
     """Return the first list and, of the others, the records with a user and record id not seen before."""
     records = list(lists[0])
     for added in (record for others in lists[1:] for record in others):
@@ -169,6 +172,6 @@ def _rescale(chunk: np.ndarray, tile: Header, merged: Header, out: np.ndarray) -
         if tile.scale[i] == merged.scale[i] and tile.offset[i] == merged.offset[i]:
             continue
         steps = np.rint((chunk[axis] * tile.scale[i] + (tile.offset[i] - merged.offset[i])) / merged.scale[i])
-        if np.abs(steps).max() > _LARGEST_INT:
+        if not np.abs(steps).max() <= _LARGEST_INT:
             raise ValueError("A tile has points outside the bounds in its header; repair its header first.")
         out[axis] = steps

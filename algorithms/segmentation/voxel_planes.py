@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..features.blocks import PAIRS
-from ..features.eigen import smallest_eigenvectors, symmetric_eigenvalues
+from ..geometry.boxes import Boxes
+from ..neighborhoods.covariance import smallest_eigenvectors, symmetric_eigenvalues
+from ..neighborhoods.nearest_blocks import PAIRS
 from ..stage import Monitor
 from ..threads import in_chunks
-from .boxes import Boxes
 
 # Distances from trial planes that one thread holds at once: 5 bytes each, which fits caches.
 _DISTANCES_AT_ONCE = 1_000_000

@@ -37,7 +37,7 @@ def photograph(
     seed : int
         Start of the random numbers.
     monitor : Monitor, optional
-        Hears progress.
+        Receives progress.
 
     Returns
     -------

@@ -12,7 +12,7 @@ from .beams import Beams, Echoes, World, join
 from .pairs import in_boxes, rank
 from .scanner import brightness
 from .scene import Scene
-from .site import SIZE
+from .street_site import SIZE
 
 # Number of each scanner, which is the source id of its points.
 SCANNERS = {"horizontal": 1, "vertical": 2}

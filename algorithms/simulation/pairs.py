@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..groups import items, run_starts
+from ..geometry.groups import items, run_starts
 
 
 def in_boxes(points: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..stage import Monitor
-from .eaves import build_home, build_shed
-from .layout import park_car
 from .plants import plant_hedge, plant_trees
 from .relief import make_relief
 from .scene import Building, Scene
 from .solids import Rect
+from .town_layout import park_car
+from .village_houses import build_home, build_shed
 
 # Streets are this far apart, with two rows of plots between them (m).
 _STREETS, _STREET_WIDTH = 60.0, 8.0

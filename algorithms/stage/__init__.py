@@ -7,11 +7,14 @@ A stage is an ordinary function with a declaration beside it:
   ``reference_`` means the second cloud of a comparison. ``values`` is the
   dimension that the tunable ``dimension`` names, whichever the file has;
 * positional arguments after them are the vector layers that it reads, each
-  declared as a :class:`Source`; a stage that reads layers only has no cloud;
+  declared as a :class:`InputLayer`; a stage that reads layers only has no cloud;
 * keyword-only arguments are tunables, each ``Annotated[type, Param(...)]``
   with its default; ``Optional`` types with the default None are *automatic*:
-  the stage derives the value from the data and tells it to the monitor;
-* ``monitor`` (a :class:`Monitor`) hears how far the stage is.
+  the stage derives the value from the data and reports it to the monitor;
+* ``sampling`` with the default None is how the cloud was sampled (density, noise and the like, a
+  ``CloudSampling``): no tunable. The runner measures it once for all stages of a run, or is given it; a stage that
+  is called alone measures its own;
+* ``monitor`` (a :class:`Monitor`) receives progress, automatic values and warnings.
 
 It returns values for the points it was given (``writes``), a new cloud
 (``creates``), vector layers (``layers``), rasters (``rasters``), numbers with a
@@ -27,27 +30,39 @@ package needs the standard library and numpy only and knows nothing of QGIS.
 """
 
 from .arguments import REFERENCE_PREFIX
-from .contents import Features, Field, Layer, Made, Measure, Raster, Report, Source, Surface, given_layers
-from .declaration import DIMENSION, VALUES, Stage, stage
+from .declaration import DIMENSION, SAMPLING, VALUES, Stage, stage
+from .inputs_outputs import (
+    Field,
+    InputLayer,
+    Layer,
+    LayerFeatures,
+    Measure,
+    Raster,
+    RasterSurface,
+    Report,
+    StageResults,
+    given_layers,
+)
 from .monitor import Cancelled, Monitor
 from .tunables import Param, Tunable
 
 __all__ = [
     "Cancelled",
     "DIMENSION",
-    "Features",
+    "LayerFeatures",
     "Field",
     "Layer",
-    "Made",
+    "StageResults",
     "Measure",
     "Monitor",
     "Param",
     "REFERENCE_PREFIX",
     "Raster",
     "Report",
-    "Source",
+    "InputLayer",
+    "SAMPLING",
     "Stage",
-    "Surface",
+    "RasterSurface",
     "Tunable",
     "VALUES",
     "given_layers",

@@ -9,13 +9,16 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Callable
 
 from .arguments import REFERENCE_PREFIX, check_arrays
-from .contents import Layer, Made, Measure, Raster, Source, given_layers
 from .docstrings import before_first_section, sections, with_tunables
+from .inputs_outputs import InputLayer, Layer, Measure, Raster, StageResults, given_layers
 from .monitor import Monitor
 from .tunables import Tunable
 
 # The positional argument that is whichever dimension a tunable names, and that tunable.
 VALUES, DIMENSION = "values", "dimension"
+
+# Keyword arguments that the runner fills in: no tunables.
+MONITOR, SAMPLING = "monitor", "sampling"
 
 
 @dataclass(frozen=True)
@@ -34,7 +37,7 @@ class Stage:
     creates: tuple[str, ...] = ()
     layers: tuple[Layer, ...] = ()
     measures: tuple[Measure, ...] = ()
-    sources: tuple[Source, ...] = ()
+    input_layers: tuple[InputLayer, ...] = ()
     rasters: tuple[Raster, ...] = ()
     selects: bool = False
     merges: bool = False
@@ -70,6 +73,11 @@ class Stage:
         return any(not name.startswith(REFERENCE_PREFIX) for name in (*self.reads, *self.optional))
 
     @property
+    def samples(self) -> bool:
+        """Whether it asks how the cloud was sampled."""
+        return SAMPLING in inspect.signature(self.function).parameters
+
+    @property
     def makes_cloud(self) -> bool:
         """Whether a cloud is among its results."""
         return bool(self.writes or self.creates or self.selects or self.merges)
@@ -86,14 +94,14 @@ class Stage:
             raise ValueError(f"{self.name} has no tunable {unknown[0]!r}; it has {', '.join(self.tunables) or 'none'}.")
         return {name: t.check(tunables[name]) if name in tunables else t.default for name, t in self.tunables.items()}
 
-    def sorted(self, returned: Any) -> Made:
+    def unpack(self, returned: Any) -> StageResults:
         """Give what the function returned its names."""
         results = list(returned) if isinstance(returned, tuple) else [returned]
         names = (*(self.creates or self.writes), *self.layers, *self.rasters)
         declared = self.selects + len(names) + bool(self.measures)
         if len(results) != max(1, declared):
             raise TypeError(f"{self.name} declares {declared} results and returned {len(results)}.")
-        return Made(
+        return StageResults(
             selected=results.pop(0) if self.selects else None,
             dimensions={name: results.pop(0) for name in self.creates or self.writes},
             layers={layer.name: results.pop(0) for layer in self.layers},
@@ -111,7 +119,7 @@ def stage(
     creates: tuple[str, ...] = (),
     layers: tuple[Layer, ...] = (),
     measures: tuple[Measure, ...] = (),
-    sources: tuple[Source, ...] = (),
+    input_layers: tuple[InputLayer, ...] = (),
     rasters: tuple[Raster, ...] = (),
     selects: bool = False,
     merges: bool = False,
@@ -122,7 +130,7 @@ def stage(
     with ``selects`` the positions of the points that its result has, int64 (m,);
     one array per name in ``writes`` (length n, with ``selects`` m, with ``merges`` that of all
     clouds together; None for one that the user did not ask for) or ``creates`` (a new
-    cloud of any length), one :class:`Features` per layer, one :class:`Surface` per raster,
+    cloud of any length), one :class:`LayerFeatures` per layer, one :class:`RasterSurface` per raster,
     and a :class:`Report` when there are measures. A stage that merges and writes nothing
     returns None for the cloud that it makes. The decorated function checks its arrays
     and tunables on every call and carries its :class:`Stage` as ``function.stage``.
@@ -132,7 +140,7 @@ def stage(
         "creates": creates,
         "layers": layers,
         "measures": measures,
-        "sources": sources,
+        "input_layers": input_layers,
         "rasters": rasters,
         "selects": selects,
         "merges": merges,
@@ -143,7 +151,7 @@ def stage(
         _check_declaration(declared)
         checked = _checked(function, declared)
         checked.stage = replace(declared, function=checked)  # type: ignore[attr-defined]
-        checked.__doc__ = with_tunables(declared.doc, declared.tunables.values())
+        checked.__doc__ = with_tunables(declared.doc, declared.tunables.values(), declared.samples)
         return checked
 
     return declare
@@ -157,13 +165,13 @@ def _checked(function: Callable, declared: Stage) -> Callable:
     def checked(*args: Any, **kwargs: Any) -> Any:
         bound = signature.bind(*args, **kwargs)
         check_arrays(bound.arguments, (*declared.reads, *declared.optional), declared.merges, declared.title)
-        layers = {source.name: bound.arguments.get(source.name) for source in declared.sources}
-        given_layers(declared.name, declared.sources, layers)
+        layers = {input_layer.name: bound.arguments.get(input_layer.name) for input_layer in declared.input_layers}
+        given_layers(declared.name, declared.input_layers, layers)
         for name, tunable in declared.tunables.items():
             if name in bound.arguments:
                 bound.arguments[name] = tunable.check(bound.arguments[name])
-        if bound.arguments.get("monitor") is None:
-            bound.arguments["monitor"] = Monitor()
+        if bound.arguments.get(MONITOR) is None:
+            bound.arguments[MONITOR] = Monitor()
         return function(*bound.args, **bound.kwargs)
 
     return checked
@@ -174,10 +182,10 @@ def _declared(function: Callable, title: str, group: str, tags: str, makes: dict
     reads: list[str] = []
     optional: list[str] = []
     tunables = {}
-    layers = {source.name for source in makes["sources"]}
+    layers = {input_layer.name for input_layer in makes["input_layers"]}
     for name, parameter in inspect.signature(function).parameters.items():
         if parameter.kind is parameter.KEYWORD_ONLY:
-            if name != "monitor":
+            if name not in (MONITOR, SAMPLING):
                 tunables[name] = _tunable(name, hints[name], parameter.default)
         elif name not in layers:
             (reads if parameter.default is parameter.empty else optional).append(name)
@@ -188,10 +196,10 @@ def _declared(function: Callable, title: str, group: str, tags: str, makes: dict
 def _check_declaration(declared: Stage) -> None:
     """Refuse what no run could keep to."""
     arguments = inspect.signature(declared.function).parameters
-    absent = [source.name for source in declared.sources if source.name not in arguments]
+    absent = [input_layer.name for input_layer in declared.input_layers if input_layer.name not in arguments]
     if absent:
-        raise TypeError(f"{declared.name} declares the source {absent[0]!r} and has no argument of that name.")
-    if declared.creates and (declared.reads or declared.optional or declared.sources):
+        raise TypeError(f"{declared.name} declares the input layer {absent[0]!r} and has no argument of that name.")
+    if declared.creates and (declared.reads or declared.optional or declared.input_layers):
         raise TypeError(f"{declared.name} creates a cloud, so it can't read anything.")
     if (declared.selects or declared.merges) and not declared.reads:
         raise TypeError(f"{declared.name} makes a cloud of the points it reads, so it must read some.")
@@ -199,6 +207,10 @@ def _check_declaration(declared: Stage) -> None:
         raise TypeError(f"{declared.name} selects and merges; make it two stages.")
     if "xyz" in declared.writes and not (declared.selects or declared.merges):
         raise TypeError(f"{declared.name} moves points, so it must select them: withheld points would stay behind.")
+    if declared.samples and (declared.merges or "xyz" not in declared.reads):
+        raise TypeError(f"{declared.name} asks how its cloud was sampled, so it must read the xyz of one cloud.")
+    if declared.samples and arguments[SAMPLING].default is not None:
+        raise TypeError(f"{declared.name} must take the sampling None, which is measured on its own points.")
     if VALUES in (*declared.reads, *declared.optional) and DIMENSION not in declared.tunables:
         raise TypeError(f"{declared.name} reads {VALUES!r} and has no tunable {DIMENSION!r} that names them.")
 

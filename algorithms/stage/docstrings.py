@@ -31,14 +31,19 @@ def before_first_section(doc: str) -> str:
     return doc
 
 
-def with_tunables(doc: str, tunables: Collection[Tunable]) -> str:
-    """Return a docstring with a section for its tunables, if any, so that ``help()`` shows what the dialog shows."""
+def with_tunables(doc: str, tunables: Collection[Tunable], samples: bool = False) -> str:
+    """Return a docstring with a section for its tunables, if any, so that ``help()`` shows what the dialog shows.
+
+    ``samples`` is whether the stage asks how its cloud was sampled.
+    """
     rows = ["Other Parameters", "----------------"]
     for t in tunables:
         kind = t.type.__name__ + (" or None" if t.is_automatic else "")
-        facts = [kind, *([t.param.unit] if t.param.unit else []), *([t.param.range] if t.param.range else [])]
+        facts = [kind, *([t.param.unit] if t.param.unit else []), *([t.range] if t.range else [])]
         rows.append(f"{t.name} : {', '.join(facts)}, default {t.default!r}")
         text = f"{t.param.help} {t.param.unset_text}".rstrip()
         rows.extend(textwrap.wrap(text, 88, initial_indent="    ", subsequent_indent="    "))
-    rows.append("monitor : Monitor, optional\n    Hears progress, automatic values and warnings.")
+    if samples:
+        rows.append("sampling : CloudSampling, optional\n    Measured on the points that are not noise if not given.")
+    rows.append("monitor : Monitor, optional\n    Receives progress, automatic values and warnings.")
     return f"{doc}\n\n" + "\n".join(rows) + "\n" if tunables else doc

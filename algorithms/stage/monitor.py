@@ -1,4 +1,4 @@
-"""What a running stage tells the outside."""
+"""How a running stage reports to its caller."""
 
 from __future__ import annotations
 
@@ -10,30 +10,37 @@ class Cancelled(Exception):
 
 
 class Monitor:
-    """What a running stage tells the outside; this one keeps it, others show it.
+    """Receives progress, automatic values and warnings of a running stage; this one keeps them, others show them.
 
     Attributes
     ----------
     values : dict
-        What automatic tunables resolved to, and other estimates, by name.
+        Values that automatic tunables took, and other estimates, by name.
     warnings : list of str
-        Sentences for the log.
+        Sentences for the log about what is not normal.
+    infos : list of str
+        Sentences for the log about what is normal.
     """
 
     def __init__(self) -> None:
         self.values: dict[str, Any] = {}
         self.warnings: list[str] = []
+        self.infos: list[str] = []
 
     def progress(self, fraction: float) -> None:
-        """Hear how much is done, 0 to 1; may raise :class:`Cancelled`."""
+        """Receive the share of the work that is done, 0 to 1; may raise :class:`Cancelled`."""
 
     def resolved(self, **values: Any) -> None:
         """Keep the values that automatic tunables took."""
         self.values.update(values)
 
     def warn(self, sentence: str) -> None:
-        """Keep a sentence that the user should read."""
+        """Keep a warning, a sentence."""
         self.warnings.append(sentence)
+
+    def inform(self, sentence: str) -> None:
+        """Keep a sentence about something normal that the user may want to know."""
+        self.infos.append(sentence)
 
     def part(self, start: float, end: float, prefix: str = "") -> Monitor:
         """Return a monitor whose 0 to 1 is ``start`` to ``end`` of this one, and whose values get a prefix here."""
@@ -45,7 +52,7 @@ class _Part(Monitor):
 
     def __init__(self, whole: Monitor, start: float, end: float, prefix: str) -> None:
         self.whole, self.start, self.end, self.prefix = whole, start, end, prefix
-        self.values, self.warnings = whole.values, whole.warnings
+        self.values, self.warnings, self.infos = whole.values, whole.warnings, whole.infos
 
     def progress(self, fraction: float) -> None:
         self.whole.progress(self.start + (self.end - self.start) * fraction)
@@ -55,3 +62,6 @@ class _Part(Monitor):
 
     def warn(self, sentence: str) -> None:
         self.whole.warn(sentence)
+
+    def inform(self, sentence: str) -> None:
+        self.whole.inform(sentence)

@@ -1,4 +1,4 @@
-"""Tunables: what the signature of a stage says of a value, and what only its declaration can say."""
+"""Tunables: name, type and default from the signature of a stage, the rest from its declaration."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Param:
-    """One tunable: what its name and default in the signature don't say.
+    """One tunable: everything but its name, type and default, which the signature gives.
 
     Parameters
     ----------
@@ -26,8 +26,11 @@ class Param:
     choices : tuple of str
         Allowed words of a ``str``, or the elements of a ``tuple``.
     automatic : str
-        For tunables that may be None: what the stage takes then, as the end of
-        the sentence "Automatic: …".
+        For tunables whose value the stage finds itself when it is None: which, as the
+        end of the sentence "Automatic: …".
+    empty : str
+        For tunables that have no effect when they are None: what happens then, as the
+        end of the sentence "Empty: …".
     advanced : bool
         Folded away in the dialog.
     """
@@ -41,6 +44,7 @@ class Param:
     open_high: bool = False
     choices: tuple[str, ...] = ()
     automatic: str = ""
+    empty: str = ""
     advanced: bool = False
 
     @property
@@ -50,19 +54,19 @@ class Param:
 
     @property
     def unset(self) -> str:
-        """What an automatic tunable is when nobody sets it, in a word: a value found by the stage, or none at all."""
-        return "none" if self.automatic.startswith("none") else "automatic"
+        """The word for a tunable that is None: its value is automatic, or there is none."""
+        return "none" if self.empty else "automatic"
 
     @property
     def unset_text(self) -> str:
         """The same in a sentence, empty where a value is needed."""
-        return f"{'Empty' if self.unset == 'none' else 'Automatic'}: {self.automatic}" if self.automatic else ""
+        if self.empty:
+            return f"Empty: {self.empty}"
+        return f"Automatic: {self.automatic}" if self.automatic else ""
 
     @property
-    def range(self) -> str:
-        """Allowed values in words, empty when there is no bound."""
-        if self.choices:
-            return "one of " + ", ".join(self.choices)
+    def bounds(self) -> str:
+        """Bounds of a number in words, empty when there are none."""
         low = high = ""
         if self.low is not None:
             low = f"{'greater than' if self.open_low else 'at least'} {self.written(self.low)}"
@@ -87,8 +91,15 @@ class Tunable:
 
     @property
     def is_automatic(self) -> bool:
-        """Whether None is allowed and means "derive it from the data"."""
+        """Whether None is allowed: the stage derives the value from the data, or does without."""
         return self.default is None
+
+    @property
+    def range(self) -> str:
+        """Allowed values in words, empty when there is no bound."""
+        if self.param.choices:
+            return f"{'any' if self.type is tuple else 'one'} of {', '.join(self.param.choices)}"
+        return self.param.bounds
 
     def check(self, value: Any) -> Any:
         """Return ``value`` in the declared type, or raise ValueError in one sentence."""
@@ -99,7 +110,7 @@ class Tunable:
         except (TypeError, ValueError, OverflowError):
             raise ValueError(self._refusal(_KINDS[self.type], value)) from None
         if not self._inside(value):
-            raise ValueError(self._refusal(self.param.range, value))
+            raise ValueError(self._refusal(self.range, value))
         return value
 
     def _converted(self, value: Any) -> Any:

@@ -1,31 +1,195 @@
-"""A cloth that falls onto the terrain turned upside down."""
+"""A cloth that falls onto the terrain turned upside down.
+
+Particles draw their neighbors one after the other, row by row, as in the program that the authors of the method
+published: in another order, part of a steep scene takes another class. Particles without a neighbor in common can be
+moved together all the same. They are a wavefront: all with one value of ``column + 5 row + 30 step``. Of two particles
+that have a neighbor in common, the one that comes first in the loop over steps, rows and columns has the smaller value.
+So the next steps start in the first rows long before a step has come to the last ones.
+"""
 
 from __future__ import annotations
 
-from functools import lru_cache
+from dataclasses import dataclass, fields
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from ..stage import Monitor
 
-# Particles that start over the highest point by this much (m) touch nothing yet.
+# Height (m) over the highest point from which particles fall: they touch nothing yet.
 _ABOVE = 0.05
 
-# Of the authors' program: gravity, the part of its speed that a particle keeps, and the motion (m) that ends the fall.
-_GRAVITY, _KEPT_SPEED, _AT_REST = 0.2, 0.99, 0.005
+# Gravity, per square of the time step, of the authors' program.
+_GRAVITY = 0.2
 
-# A particle moves this share of its height difference to a neighbor in each of the passes that rigidness counts.
+# Share of its speed that a particle keeps from step to step, of the authors' program.
+_KEPT_SPEED = 0.99
+
+# Greatest motion (m) in the step that ends the fall, of the authors' program.
+_AT_REST = 0.005
+
+# Share of its height difference to a neighbor that a particle moves in each of the passes that rigidness counts.
 _SHARE = 0.3
 
-# Order in which a particle meets its neighbors (row, column), first those beside it, then those two steps away. Each
-# moves both, so that the order matters: with another, one point in twenty of a steep scene takes another class.
-_ORDER = ((-1, -1), (0, -1), (1, -1), (-1, 0), (-1, 1), (0, 1), (1, 0), (1, 1))
+# Neighbors (row, column) in the order in which a particle draws them: first those beside it, then those two away.
+_BESIDE = ((-1, -1), (0, -1), (1, -1), (-1, 0), (-1, 1), (0, 1), (1, 0), (1, 1))
+_NEIGHBORS = tuple((reach * row, reach * column) for reach in (1, 2) for row, column in _BESIDE)
 
-# Particles this many columns apart in consecutive rows have no neighbor in common and can be moved together.
+# Columns by which a row is behind the row before it: the neighborhoods of two particles are five columns wide.
 _APART = 5
 
-# Rows of a band; bands move together, so that a motion crosses from one to the next only in the step after.
-_BAND = 32
+# Wavefronts (of _APART phases each) by which a step is behind the one before. A particle is drawn by others up to two
+# rows and columns away, whose values are up to 12 less or more than its own. So a step has to be more than 24 behind.
+_STEP_LAG = 6
+
+# Wavefronts after its own at which a particle lands and falls on: after the last time that others draw it.
+_LANDING_LAG = 3
+
+# Steps that are made together: more fill a wavefront better, and more are made again where the cloth comes to rest.
+_STEPS_AT_ONCE = 32
+
+# Positions and diagonals around the stored particles: neighbors of those at the rim.
+_MARGIN = 3
+
+_EVERYTHING = slice(None)
+
+
+class _Shift(NamedTuple):
+    """Where a neighbor is stored, seen from a particle: its phase, and diagonals and positions away."""
+
+    phase: int
+    diagonal: int
+    position: int
+
+
+class _Front(NamedTuple):
+    """Particles that are moved together: one phase on every ``_STEP_LAG``-th diagonal, each of them in another step."""
+
+    phase: int
+    first_diagonal: int
+    last_step: int
+    diagonals: int
+
+    def without_last_step(self) -> _Front:
+        """Return the particles but for those in their last step, which are on the first diagonal."""
+        return _Front(self.phase, self.first_diagonal + _STEP_LAG, self.last_step - 1, self.diagonals - 1)
+
+
+@dataclass(frozen=True)
+class _Order:
+    """How particles are stored: by phase (column modulo 5), diagonal (column // 5 + row) and position on that.
+
+    The position is the row or the column // 5, whichever has the smaller range.
+    """
+
+    rows: int
+    columns: int
+
+    @cached_property
+    def blocks(self) -> int:
+        """Blocks of five columns."""
+        return -(-self.columns // _APART)
+
+    @cached_property
+    def is_by_row(self) -> bool:
+        """Whether rows are the positions on a diagonal."""
+        return self.rows < self.blocks
+
+    @cached_property
+    def diagonals(self) -> int:
+        """Number of diagonals."""
+        return self.rows + self.blocks
+
+    @cached_property
+    def breadth(self) -> int:
+        """Positions on a diagonal, with a margin on either side."""
+        return min(self.rows, self.blocks) + 2 * _MARGIN
+
+    @cached_property
+    def turns(self) -> int:
+        """Diagonals that are ``_STEP_LAG`` apart, with a margin."""
+        return -(-(self.diagonals + 2 * _MARGIN) // _STEP_LAG)
+
+    @cached_property
+    def size(self) -> int:
+        """Length of the arrays that hold the particles and a margin around: what a front moves lies side by side."""
+        return _APART * _STEP_LAG * self.turns * self.breadth + 2 * _MARGIN
+
+    def start(self, phase: int, diagonal: int, position: int) -> int:
+        """Return where a diagonal is stored; the one ``_STEP_LAG`` diagonals on follows it."""
+        turn, rest = divmod(diagonal + _MARGIN, _STEP_LAG)
+        return ((phase * _STEP_LAG + rest) * self.turns + turn) * self.breadth + _MARGIN + position
+
+    def places(self) -> np.ndarray:
+        """Return where the particles (rows, columns) are stored."""
+        row, column = np.mgrid[: self.rows, : self.columns]
+        block, phase = np.divmod(column, _APART)
+        turn, rest = np.divmod(block + row + _MARGIN, _STEP_LAG)
+        position = (row if self.is_by_row else block) + _MARGIN
+        return ((phase * _STEP_LAG + rest) * self.turns + turn) * self.breadth + _MARGIN + position
+
+    def own(self, front: _Front) -> slice:
+        """Return where the particles of a front are stored, and the margins between their diagonals."""
+        start = self.start(front.phase, front.first_diagonal, 0)
+        return slice(start, start + front.diagonals * self.breadth)
+
+    def beside(self, front: _Front, shift: _Shift) -> slice:
+        """Return where a neighbor of each of them is stored."""
+        start = self.start(shift.phase, front.first_diagonal + shift.diagonal, shift.position)
+        return slice(start, start + front.diagonals * self.breadth)
+
+    def neighbors(self, phase: int) -> list[_Shift]:
+        """Return the neighbors of particles of a phase, in the order in which they are drawn."""
+        shifts = []
+        for row, column in _NEIGHBORS:
+            block, other = divmod(phase + column, _APART)
+            shifts.append(_Shift(other, block + row, row if self.is_by_row else block))
+        return shifts
+
+    def front(self, time: int, phase: int, steps: int) -> _Front:
+        """Return what is moved at a time, counted in wavefronts, of the first so many steps."""
+        first_step = max(0, -(-(time - self.diagonals + 1) // _STEP_LAG))
+        last_step = min(steps - 1, time // _STEP_LAG)
+        return _Front(phase, time - _STEP_LAG * last_step, last_step, max(0, last_step - first_step + 1))
+
+
+@dataclass
+class _State:
+    """What is known of the particles, as they are stored; in the margin nothing moves or draws.
+
+    Attributes
+    ----------
+    height, before : ndarray
+        Height (m), and that of the step before.
+    floor : ndarray
+        Height (m) at which the particle lands; -inf in the margin.
+    movable : ndarray
+        1 until it has landed, then 0.
+    draw : ndarray
+        Share of a height difference by which it draws a movable neighbor: that one moves all of the way or, if both are
+        movable, half of it.
+    """
+
+    height: np.ndarray
+    before: np.ndarray
+    floor: np.ndarray
+    movable: np.ndarray
+    draw: np.ndarray
+
+    def copy(self) -> _State:
+        """Return a copy, but for the floor, which doesn't change."""
+        arrays = {field.name: getattr(self, field.name) for field in fields(self)}
+        return _State(**{name: array if name == "floor" else array.copy() for name, array in arrays.items()})
+
+
+@dataclass(frozen=True)
+class _Motion:
+    """How particles move: fall (m) per step and step, and shares of a difference that both or only one of two move."""
+
+    fall: float
+    both: float
+    one: float
 
 
 class Cloth:
@@ -39,133 +203,118 @@ class Cloth:
         How often a particle is drawn to each of its neighbors in a step.
     time_step : float
         Time step of the simulation.
-
-    Attributes
-    ----------
-    height : ndarray of shape (rows, columns), float64
-        Height of each particle, m.
     """
 
     def __init__(self, floor: np.ndarray, rigidness: int, time_step: float) -> None:
         self.floor = floor
-        self.fall = _GRAVITY * time_step**4
-        # Of two movable particles both move, of a movable and a fixed one only that.
-        self.both, self.one = (1 - (1 - 2 * _SHARE) ** rigidness) / 2, 1 - (1 - _SHARE) ** rigidness
-        rows, columns = floor.shape
-        self.bands = -(-rows // _BAND)
-        # Two particles more on all sides, which aren't there: they neither move nor draw.
-        shape = (self.bands * _BAND + 4, columns + 4)
-        inside = (slice(2, 2 + rows), slice(2, 2 + columns))
-        self._height, self._movable, self._draw = np.zeros(shape), np.zeros(shape), np.zeros(shape)
-        self.height, self.movable, self.draw = self._height[inside], self._movable[inside], self._draw[inside]
-        self.height[:] = floor.max() + _ABOVE
-        self.movable[:] = 1.0
-        self.before = self.height.copy()
+        both, one = (1 - (1 - 2 * _SHARE) ** rigidness) / 2, 1 - (1 - _SHARE) ** rigidness
+        self._motion = _Motion(_GRAVITY * time_step**4, both, one)
+        self._order = _Order(*floor.shape)
+        self._places = self._order.places()
+        zero = np.zeros(self._order.size)
+        self._state = _State(zero, zero.copy(), np.full(self._order.size, -np.inf), zero.copy(), zero.copy())
+        start = floor.max() + _ABOVE
+        values = {"height": start, "before": start, "floor": floor, "movable": 1.0, "draw": both}
+        for name, value in values.items():
+            getattr(self._state, name)[self._places] = value
+        room = _STEPS_AT_ONCE * self._order.breadth
+        self._own, self._off, self._part = np.zeros(room), np.zeros(room), np.zeros(room)
+        self._shifts = [self._order.neighbors(phase) for phase in range(_APART)]
+
+    @property
+    def height(self) -> np.ndarray:
+        """Height (rows, columns) of each particle, m."""
+        return self._state.height[self._places]
 
     @property
     def is_movable(self) -> np.ndarray:
-        """Return which particles hang freely (rows, columns)."""
-        return self.movable > 0
+        """Which particles (rows, columns) hang freely."""
+        return self._state.movable[self._places] > 0
 
     def settle(self, steps: int, monitor: Monitor) -> int:
         """Let the cloth fall until it hardly moves, at most ``steps`` times; return how often."""
-        fronts = self._fronts()
-        for step in range(1, steps + 1):
-            monitor.progress((step - 1) / steps)
-            moved = (self.height - self.before) * _KEPT_SPEED - self.fall
-            self.before[:] = self.height
-            self.height += moved * self.movable
-            np.multiply(self.movable, self.both - self.one, out=self.draw)
-            self.draw += self.one
-            if np.ptp(self.height) > 0:
-                for front in fronts:
-                    _draw_together(*front)
-            motion = float((np.abs(self.height - self.before) * self.movable).max())
-            is_below = self.height < self.floor
-            self.height[is_below] = np.where(self.movable > 0, self.floor, self.height)[is_below]
-            self.movable[is_below] = 0.0
-            if motion < _AT_REST:
-                break
-        return step
+        done, is_level = 0, True
+        while done < steps:
+            count = 1 if is_level else min(_STEPS_AT_ONCE, steps - done)
+            before = self._state.copy() if count > 1 else None
+            part = monitor.part(done / steps, (done + count) / steps)
+            motion = self._fall_level() if is_level else self._make(count, part)
+            resting = np.flatnonzero(motion < _AT_REST)
+            if len(resting):
+                count = int(resting[0]) + 1
+                if before is not None and count < len(motion):
+                    self._state = before
+                    # The same steps again, which the progress has counted.
+                    self._make(count, part.part(1.0, 1.0))
+                return done + count
+            done += count
+            # As long as none has landed all are at one height, and none draws another.
+            is_level = is_level and bool(self.is_movable.all())
+        return done
 
-    def _fronts(self) -> list[tuple]:
-        """Return what can be moved together, in order: windows on particles and neighbors, and room to work in.
+    def _fall_level(self) -> np.ndarray:
+        """Make one step in which no particle draws another; return the greatest motion (1,) in it (m)."""
+        self._fall(_EVERYTHING)
+        return np.atleast_1d(self._land(_EVERYTHING).max())
 
-        Particles are met row by row, each row from its first column on. A front holds all that can be met at the
-        same time as if they were: in each band, one particle of each row, ``_APART`` columns behind that of the row
-        before.
-        """
-        columns, stride = self.floor.shape[1], self._height.shape[1]
-        room = lru_cache(maxsize=None)(self._room)
-        fronts = []
-        for time in range(columns + _APART * (_BAND - 1)):
-            first, last = max(0, -(-(time - columns + 1) // _APART)), min(_BAND - 1, time // _APART)
-            start = (2 + first) * stride + 2 + time - _APART * first
-            windows = []
-            for array in (self._height, self._movable, self._draw):
-                windows += [self._window(array, start, last - first + 1, reach) for reach in (0, 1, 2)]
-            fronts.append((*windows, *room(last - first + 1)))
-        return fronts
+    def _make(self, steps: int, monitor: Monitor) -> np.ndarray:
+        """Make some steps; return the greatest motion (steps,) in each (m)."""
+        motion = np.zeros(steps)
+        self._fall(_EVERYTHING)
+        times = self._order.diagonals + _STEP_LAG * (steps - 1) + _LANDING_LAG
+        for time in range(times):
+            for phase in range(_APART):
+                drawing = self._order.front(time, phase, steps)
+                if drawing.diagonals:
+                    self._draw(drawing)
+                landing = self._order.front(time - _LANDING_LAG, phase, steps)
+                if landing.diagonals:
+                    self._land_and_fall(landing, motion)
+            monitor.progress((time + 1) / times)
+        return motion
 
-    def _window(self, array: np.ndarray, start: int, rows: int, reach: int) -> np.ndarray:
-        """Return a view of a front's particles (bands, rows), or, with a reach, of them and those around (3, 3, …)."""
-        stride, size = array.shape[1], array.itemsize
-        shape: tuple[int, ...] = (self.bands, rows)
-        strides: tuple[int, ...] = (_BAND * stride * size, (stride - _APART) * size)
-        if reach:
-            shape, strides = (3, 3, *shape), (reach * stride * size, reach * size, *strides)
-        return np.ndarray(shape, array.dtype, array, (start - reach * stride - reach) * size, strides)
+    def _draw(self, front: _Front) -> None:
+        """Draw the particles of a front and their neighbors together, neighbor after neighbor."""
+        state, here = self._state, self._order.own(front)
+        own, off, part = (room[: here.stop - here.start] for room in (self._own, self._off, self._part))
+        movable, draw = state.movable[here], state.draw[here]
+        own[:] = state.height[here]
+        for shift in self._shifts[front.phase]:
+            beside = self._order.beside(front, shift)
+            other = state.height[beside]
+            np.subtract(other, own, off)
+            np.multiply(state.draw[beside], movable, part)
+            np.multiply(off, part, part)
+            np.add(own, part, own)
+            np.multiply(off, state.movable[beside], off)
+            np.multiply(off, draw, off)
+            np.subtract(other, off, other)
+        state.height[here] = own
 
-    def _room(self, rows: int) -> tuple:
-        """Return the arrays that a front of so many rows works in: heights, shares, differences, one and all pairs."""
-        near, far, share_near, share_far, off_near, off_far = (np.zeros((3, 3, self.bands, rows)) for _ in range(6))
-        own, part = np.zeros((self.bands, rows)), np.zeros((self.bands, rows))
-        pairs = []
-        for heights, shares, offs in ((near, share_near, off_near), (far, share_far, off_far)):
-            pairs += [(heights[r + 1, c + 1], shares[r + 1, c + 1], offs[r + 1, c + 1]) for r, c in _ORDER]
-        return near, far, share_near, share_far, off_near, off_far, own, part, pairs
+    def _land_and_fall(self, front: _Front, motion: np.ndarray) -> None:
+        """Let particles land, note how far they moved in their steps, and fall on, unless they made the last one."""
+        # The first diagonal is that of the last step.
+        moved = self._land(self._order.own(front)).reshape(front.diagonals, -1).max(axis=1)[::-1]
+        steps = slice(front.last_step - front.diagonals + 1, front.last_step + 1)
+        motion[steps] = np.maximum(motion[steps], moved)
+        falling = front.without_last_step() if front.last_step == len(motion) - 1 else front
+        if falling.diagonals:
+            self._fall(self._order.own(falling))
 
+    def _fall(self, where: slice) -> None:
+        """Begin the step of the particles stored there: those that are movable fall."""
+        height, before = self._state.height[where], self._state.before[where]
+        moved = (height - before) * _KEPT_SPEED - self._motion.fall
+        before[:] = height
+        height += moved * self._state.movable[where]
 
-def _draw_together(
-    height,
-    height_near,
-    height_far,
-    movable,
-    movable_near,
-    movable_far,
-    draw,
-    draw_near,
-    draw_far,
-    near,
-    far,
-    share_near,
-    share_far,
-    off_near,
-    off_far,
-    own,
-    part,
-    pairs,
-) -> None:
-    """Draw the particles of a front and their neighbors together, neighbor after neighbor."""
-    own[:] = height
-    near[:] = height_near
-    far[:] = height_far
-    np.multiply(draw_near, movable, share_near)
-    np.multiply(draw_far, movable, share_far)
-    for other, share, off in pairs:
-        np.subtract(other, own, off)
-        np.multiply(off, share, part)
-        np.add(own, part, own)
-    _give_back(height_near, near, off_near, movable_near, draw, own)
-    _give_back(height_far, far, off_far, movable_far, draw, own)
-
-
-def _give_back(
-    target: np.ndarray, heights: np.ndarray, off: np.ndarray, movable: np.ndarray, draw: np.ndarray, own: np.ndarray
-) -> None:
-    """Move the neighbors of a front's particles by their share of the differences, and store all heights."""
-    off *= movable
-    off *= draw
-    heights -= off
-    heights[1, 1] = own
-    target[:] = heights
+    def _land(self, where: slice) -> np.ndarray:
+        """End the step of the particles stored there: those below the floor land on it; return how far each moved."""
+        state = self._state
+        height, floor, movable = state.height[where], state.floor[where], state.movable[where]
+        moved = np.abs(height - state.before[where]) * movable
+        is_below = height < floor
+        np.copyto(height, floor, where=is_below)
+        np.copyto(movable, 0.0, where=is_below)
+        np.copyto(state.draw[where], self._motion.one, where=is_below)
+        return moved

@@ -1,5 +1,39 @@
 <!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>
-<qgis version="3.40.6-Bratislava" styleCategories="Symbology|Labeling" labelsEnabled="1">
+<qgis version="3.40.6-Bratislava" styleCategories="Symbology|Symbology3D|Labeling" labelsEnabled="1">
+  <renderer-3d layer="" type="vector">
+    <vector-layer-3d-tiling zoom-levels-count="3" show-bounding-boxes="0"/>
+    <symbol material_type="phong" type="polygon">
+      <data culling-mode="no-culling" alt-binding="centroid" extrusion-height="0" rendered-facade="3" add-back-faces="0" alt-clamping="absolute" offset="0" invert-normals="0"/>
+      <material diffuse="217,164,65,255" ka="1" kd="1" shininess="0" opacity="1" specular="255,255,255,255" ks="1" ambient="90,74,42,255">
+        <data-defined-properties>
+          <Option type="Map">
+            <Option value="" type="QString" name="name"/>
+            <Option name="properties"/>
+            <Option value="collection" type="QString" name="type"/>
+          </Option>
+        </data-defined-properties>
+      </material>
+      <data-defined-properties>
+        <Option type="Map">
+          <Option value="" type="QString" name="name"/>
+          <Option type="Map" name="properties">
+            <Option type="Map" name="extrusionHeight">
+              <Option value="true" type="bool" name="active"/>
+              <Option value="height" type="QString" name="field"/>
+              <Option value="2" type="int" name="type"/>
+            </Option>
+            <Option type="Map" name="height">
+              <Option value="true" type="bool" name="active"/>
+              <Option value="ground_elevation" type="QString" name="field"/>
+              <Option value="2" type="int" name="type"/>
+            </Option>
+          </Option>
+          <Option value="collection" type="QString" name="type"/>
+        </Option>
+      </data-defined-properties>
+      <edges enabled="1" color="51,51,51,255" width="1"/>
+    </symbol>
+  </renderer-3d>
   <renderer-v2 referencescale="-1" enableorderby="0" type="singleSymbol" forceraster="0" symbollevels="0">
     <symbols>
       <symbol alpha="1" force_rhr="0" is_animated="0" clip_to_extent="1" type="fill" name="0" frame_rate="10">

@@ -4,18 +4,12 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
-from lidar_buildings.algorithms.pipelines import PIPELINES, run_pipeline
-from lidar_buildings.algorithms.simulation.village import simulate_village
-from lidar_buildings.algorithms.stage import Features, Monitor
+from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.run import run_pipeline
+from lidar_buildings.algorithms.stage import LayerFeatures, Monitor
+from lidar_buildings.tests.villages import corner_distances, mapped, village
 
 CHAIN = PIPELINES["map_footprints"]
-
-
-def village(**tunables):
-    """Return the cloud of a village as a drone's software gives it, the true footprints and the old map."""
-    *arrays, footprints, old_map = simulate_village(**tunables)
-    made = dict(zip(simulate_village.stage.creates, arrays))
-    return {**made, "classification": np.zeros_like(made["classification"])}, footprints, old_map
 
 
 def turned(arrays, layers, angle, shift):
@@ -25,29 +19,10 @@ def turned(arrays, layers, angle, shift):
     xyz = arrays["xyz"].copy()
     xyz[:, :2] = xyz[:, :2] @ rotation + shift
     moved = [
-        Features([[ring @ rotation + shift for ring in rings] for rings in f.geometries], f.columns) for f in layers
+        LayerFeatures([[ring @ rotation + shift for ring in rings] for rings in f.geometries], f.columns)
+        for f in layers
     ]
     return {**arrays, "xyz": xyz}, moved
-
-
-def mapped(arrays, old_map, monitor=None, **tunables):
-    cloud = create_cloud(arrays)
-    return run_pipeline(CHAIN, cloud, monitor, sources={"old_map": old_map}, kept=(), **tunables)
-
-
-def corner_distances(found, true):
-    """Return, for each true building that has a footprint, the distances of its corners, and the footprints used."""
-    distances, used = [], set()
-    middles = np.array([rings[0][:-1].mean(axis=0) for rings in found.geometries])
-    for rings in true.geometries:
-        own = rings[0][:-1]
-        apart = np.hypot(*(middles - own.mean(axis=0)).T)
-        nearest = int(np.argmin(apart))
-        if apart[nearest] < 2.5:
-            used.add(nearest)
-            ring = found.geometries[nearest][0][:-1]
-            distances.append(np.hypot(*(own[:, None] - ring).transpose(2, 0, 1)).min(axis=1))
-    return distances, used
 
 
 @pytest.mark.parametrize(

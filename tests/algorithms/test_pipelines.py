@@ -1,17 +1,21 @@
 """Chains of stages in memory: what they find, how their tunables are named, what they tell, how they stop."""
 
+from collections import Counter
+
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms import pipelines as module
+from lidar_buildings.algorithms import run as module
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
-from lidar_buildings.algorithms.features.dimensionality import Dimensionality
-from lidar_buildings.algorithms.pipelines import PIPELINES, Pipeline, Step, run_pipeline
-from lidar_buildings.algorithms.run import run_stage
-from lidar_buildings.algorithms.stage import Cancelled, Features, Monitor
+from lidar_buildings.algorithms.features.classify_dimensionality import Dimensionality
+from lidar_buildings.algorithms.pipeline import Pipeline, Step
+from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.run import run_pipeline, run_stage
+from lidar_buildings.algorithms.sampling import cloud_sampling
+from lidar_buildings.algorithms.stage import Cancelled, LayerFeatures, Monitor
 from lidar_buildings.algorithms.stages import STAGES
 from lidar_buildings.tests.monitors import Listening
-from lidar_buildings.tests.provider.toys import TOY_MAPPING, TOYS
+from lidar_buildings.tests.toys import TOY_MAPPING, TOYS
 
 FIELD, HOUSE, SHED, CROWN, BIRD = range(5)
 
@@ -101,6 +105,18 @@ def test_a_chain_is_its_stages_one_after_the_other(detected):
         np.testing.assert_array_equal(values, detected[0].layers["footprints"].columns[name])
 
 
+@pytest.mark.parametrize(("with_bird", "densities"), [(False, 1), (True, 2)])
+def test_how_the_cloud_was_sampled_is_measured_once(with_bird, densities, monkeypatch):
+    """For seven steps; the density again without the bird, by which the noise filter still went."""
+    calls = Counter()
+    for name in ("point_density", "effective_density", "height_resolution", "SurfaceSample"):
+        measure = getattr(cloud_sampling, name)
+        monkeypatch.setattr(cloud_sampling, name, lambda *given, n=name, of=measure: calls.update([n]) or of(*given))
+    xyz, _ = hamlet()
+    run_pipeline(PIPELINES["detect_buildings"], create_cloud({"xyz": xyz if with_bird else xyz[:-1]}))
+    assert calls == {"point_density": densities, "effective_density": 1, "height_resolution": 1, "SurfaceSample": 1}
+
+
 def test_the_same_cloud_gives_the_same_result(detected):
     cloud, _ = made()
     run_pipeline(PIPELINES["detect_buildings"], cloud)
@@ -128,7 +144,7 @@ def calls(monkeypatch):
     """What each stage of a chain is called with, without running it."""
     called = []
 
-    def record(stage, cloud, monitor=None, sources=None, **tunables):
+    def record(stage, cloud, monitor=None, input_layers=None, sampling=None, **tunables):
         called.append((stage.name, tunables))
         return module.Outcome(cloud)
 
@@ -165,14 +181,17 @@ def test_what_steps_share_means_the_same_in_each(pipeline):
 
 
 def test_the_chains_own_defaults_hold_until_something_else_is_given(calls):
-    own = {step.name: dict(step.tunables) for step in PIPELINES["detect_buildings"].steps}
-    run_pipeline(PIPELINES["detect_buildings"], None)
-    assert dict(calls)["classify_buildings"] == own["buildings"]
-    calls.clear()
-    run_pipeline(PIPELINES["detect_buildings"], None, buildings_n_neighbors=33)
-    assert dict(calls)["classify_buildings"] == {**own["buildings"], "n_neighbors": 33}
+    own = {"min_area": 1.0}
+    chain = Pipeline("one", "One", "Toys", "", "", "", "", (Step("regions", "segment_regions", own),))
+    run_pipeline(chain, None)
+    run_pipeline(chain, None, regions_plan_distance=3.0)
+    run_pipeline(chain, None)
     # Nothing of a run stays behind for the next.
-    assert {step.name: dict(step.tunables) for step in PIPELINES["detect_buildings"].steps} == own
+    assert [tunables for _, tunables in calls] == [own, {**own, "plan_distance": 3.0}, own]
+
+
+def test_detect_buildings_is_its_stages_with_nothing_set():
+    assert not any(step.tunables for step in PIPELINES["detect_buildings"].steps)
 
 
 def test_one_stage_may_be_in_a_chain_twice(calls):
@@ -297,12 +316,12 @@ def square(side=10.0, height=0.0):
     return create_cloud({"xyz": np.column_stack([x, y, z]), "classification": np.full(len(x), 2)})
 
 
-OLD = Features([[np.array([[1, 1], [3, 1], [3, 3], [1, 3], [1, 1]], float)]], {"id": [1]})
+OLD = LayerFeatures([[np.array([[1, 1], [3, 1], [3, 3], [1, 3], [1, 1]], float)]], {"id": [1]})
 
 
 def test_a_chain_merges_branches_and_keeps(toys):
     clouds = [square(), square(height=1.0)]
-    results = run_pipeline(TOY_MAPPING, clouds, sources={"old": OLD})
+    results = run_pipeline(TOY_MAPPING, clouds, input_layers={"old": OLD})
     assert [len(cloud) for cloud in clouds] == [100, 100]
     assert len(results.cloud) == 200
     assert list(results.clouds) == ["lift_output", "high_output"]
@@ -326,7 +345,7 @@ def test_layers_are_asked_for_before_anything_runs(toys, calls):
     with pytest.raises(ValueError, match=r"^Old map \(old\) is missing; choose a layer\.$"):
         run_pipeline(TOY_MAPPING, [square(), square()])
     with pytest.raises(ValueError, match=r"^toy_mapping reads no layer 'areas'; it reads old, extra\.$"):
-        run_pipeline(TOY_MAPPING, [square(), square()], sources={"old": OLD, "areas": OLD})
+        run_pipeline(TOY_MAPPING, [square(), square()], input_layers={"old": OLD, "areas": OLD})
     assert calls == []
 
 
@@ -352,7 +371,7 @@ def test_what_is_kept_is_not_changed_by_later_steps(toys):
 def test_a_chain_of_layers_needs_no_cloud(toys):
     arrows = Pipeline("arrows", "Arrows", "Toys", "", "", "", "", (Step("arrows", "toy_arrows"),))
     assert not arrows.reads_cloud
-    results = run_pipeline(arrows, sources={"old": OLD, "new": OLD})
+    results = run_pipeline(arrows, input_layers={"old": OLD, "new": OLD})
     assert results.cloud is None
     assert results.report.values == {"longest": 0.0}
 
@@ -366,19 +385,25 @@ def faults(pipeline):
             found.append(f"{step.name} works on the cloud of {step.cloud}, which makes none before it")
         if pipeline.merges and not stage.merges and pipeline.cloud_of(step) == "":
             found.append(f"{step.name} can't work on several clouds")
-        geometries = {source.name: source.geometry for source in stage.sources}
-        for source, fed in step.layers.items():
+        geometries = {input_layer.name: input_layer.geometry for input_layer in stage.input_layers}
+        for input_layer, fed in step.layers.items():
             layers = {f"{name}.{layer.name}": layer for name, one in earlier.items() for layer in one.layers}
-            if fed not in layers or geometries.get(source) != layers[fed].geometry:
-                found.append(f"{step.name} reads {fed} as {source}, which does not fit")
-        for source in stage.sources:
-            if source.name not in step.layers and pipeline.sources[source.name] != source:
-                found.append(f"two steps ask for different layers by the name {source.name}")
+            if fed not in layers or geometries.get(input_layer) != layers[fed].geometry:
+                found.append(f"{step.name} reads {fed} as {input_layer}, which does not fit")
+        for input_layer in stage.input_layers:
+            if input_layer.name not in step.layers and pipeline.input_layers[input_layer.name] != input_layer:
+                found.append(f"two steps ask for different layers by the name {input_layer.name}")
         earlier[step.name] = stage
     found += [
         f"{name} keeps no cloud" for name in pipeline.kept if name not in earlier or not earlier[name].makes_cloud
     ]
-    names = [*pipeline.parameters, *pipeline.sources, *(output.name for output in pipeline.outputs), "input", "inputs"]
+    names = [
+        *pipeline.parameters,
+        *pipeline.input_layers,
+        *(output.name for output in pipeline.outputs),
+        "input",
+        "inputs",
+    ]
     return found + [f"{name} is two things" for name in set(names) if names.count(name) > 1]
 
 

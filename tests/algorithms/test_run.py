@@ -8,18 +8,21 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
-from lidar_buildings.algorithms.run import run_stage
+from lidar_buildings.algorithms.pipeline import Pipeline, Step
+from lidar_buildings.algorithms.run import run_pipeline, run_stage
+from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling
+from lidar_buildings.algorithms.sampling.density import point_density
 from lidar_buildings.algorithms.stage import (
-    Features,
     Field,
+    InputLayer,
     Layer,
+    LayerFeatures,
     Measure,
     Monitor,
     Param,
     Raster,
+    RasterSurface,
     Report,
-    Source,
-    Surface,
     stage,
 )
 from lidar_buildings.algorithms.stages import STAGES
@@ -63,7 +66,7 @@ def simulate_toy(*, count: Annotated[int, Param("Count", "Points.", low=1, high=
 )
 def extract_toy(xyz, *, monitor=None):
     """Write, draw and report."""
-    marks = Features([xyz[0, :2]], {"id": [1]})
+    marks = LayerFeatures([xyz[0, :2]], {"id": [1]})
     return np.ones(len(xyz)), marks, Report({"points": len(xyz)}, "<html></html>")
 
 
@@ -107,7 +110,10 @@ def merge_toy(
 @stage(
     "Toy raster",
     group="Toys",
-    sources=(Source("area", "Area", "Polygon", "Where."), Source("spots", "Spots", "Point", "What.", optional=True)),
+    input_layers=(
+        InputLayer("area", "Area", "Polygon", "Where."),
+        InputLayer("spots", "Spots", "Point", "What.", optional=True),
+    ),
     rasters=(Raster("low", "Lowest"), Raster("high", "Highest")),
     measures=(Measure("spots", "Spots"),),
 )
@@ -115,11 +121,14 @@ def rasterize_toy(xyz, intensity=None, area=None, spots=None, *, monitor=None):
     """Say how low and how high the points are."""
     lowest, highest = (np.full((1, 2), height, np.float32) for height in (xyz[:, 2].min(), xyz[:, 2].max()))
     report = Report({"spots": -1 if spots is None else len(spots), "areas": len(area)}, "")
-    return Surface(lowest, 0.0, 1.0, 1.0), Surface(highest, 0.0, 1.0, 1.0), report
+    return RasterSurface(lowest, 0.0, 1.0, 1.0), RasterSurface(highest, 0.0, 1.0, 1.0), report
 
 
 @stage(
-    "Toy map", group="Toys", sources=(Source("old", "Old map", "Polygon", "Before."),), measures=(Measure("n", "N"),)
+    "Toy map",
+    group="Toys",
+    input_layers=(InputLayer("old", "Old map", "Polygon", "Before."),),
+    measures=(Measure("n", "N"),),
 )
 def compare_toy(old, *, monitor=None):
     """Count polygons."""
@@ -393,30 +402,30 @@ def test_an_empty_cloud_is_told_by_its_number():
 
 # --- layers that are read, rasters ------------------------------------------------------------------------------------
 
-SQUARE = Features([[np.array([[0, 0], [1, 0], [1, 1], [0, 0]], float)]], {"id": [1]})
+SQUARE = LayerFeatures([[np.array([[0, 0], [1, 0], [1, 1], [0, 0]], float)]], {"id": [1]})
 
 
 def test_layers_reach_the_stage_and_rasters_come_back_by_name(cloud):
-    outcome = run_stage(rasterize_toy.stage, cloud, sources={"area": SQUARE})
+    outcome = run_stage(rasterize_toy.stage, cloud, input_layers={"area": SQUARE})
     assert outcome.report.values == {"spots": -1, "areas": 1}
     assert list(outcome.rasters) == ["low", "high"]
     assert outcome.rasters["low"].values.tolist() == [[0, 0]]
     assert outcome.rasters["high"].values.tolist() == [[4, 4]]
-    spots = Features([np.zeros(2)] * 3, {})
-    report = run_stage(rasterize_toy.stage, cloud, sources={"area": SQUARE, "spots": spots}).report
+    spots = LayerFeatures([np.zeros(2)] * 3, {})
+    report = run_stage(rasterize_toy.stage, cloud, input_layers={"area": SQUARE, "spots": spots}).report
     assert report.values["spots"] == 3
 
 
 def test_a_missing_or_unknown_layer_is_told(cloud):
     with pytest.raises(ValueError, match=r"^Area \(area\) is missing; choose a layer\.$"):
-        run_stage(rasterize_toy.stage, cloud, sources={"spots": SQUARE})
+        run_stage(rasterize_toy.stage, cloud, input_layers={"spots": SQUARE})
     with pytest.raises(ValueError, match=r"^rasterize_toy reads no layer 'hole'; it reads area, spots\.$"):
-        run_stage(rasterize_toy.stage, cloud, sources={"area": SQUARE, "hole": SQUARE})
+        run_stage(rasterize_toy.stage, cloud, input_layers={"area": SQUARE, "hole": SQUARE})
 
 
 def test_a_stage_of_layers_needs_no_cloud():
     assert not compare_toy.stage.reads_cloud
-    outcome = run_stage(compare_toy.stage, sources={"old": SQUARE})
+    outcome = run_stage(compare_toy.stage, input_layers={"old": SQUARE})
     assert outcome.cloud is None
     assert outcome.report.values == {"n": 1}
 
@@ -424,10 +433,92 @@ def test_a_stage_of_layers_needs_no_cloud():
 # --- declarations that no run could keep to ---------------------------------------------------------------------------
 
 
+# --- how the cloud was sampled ---------------------------------------------------------------------------------------
+
+
+@stage("Toy sampling", group="Toys", writes=("classification",))
+def classify_sampled(xyz, classification, *, sampling=None, monitor=None):
+    """Call a point in a hundred noise, and say which sampling was given."""
+    monitor.resolved(given=sampling, density=sampling.density)
+    return np.where(np.arange(len(xyz)) % 100 == 0, 18, classification)
+
+
+@stage("Toy halves", group="Toys", selects=True)
+def filter_halves(xyz, *, monitor=None):
+    """Keep every other point."""
+    return np.arange(0, len(xyz), 2)
+
+
+@pytest.fixture
+def lattice(monkeypatch):
+    """A square of one point per m², and toys in the chains."""
+    for toy in (classify_sampled, filter_halves):
+        monkeypatch.setitem(STAGES, toy.stage.name, toy.stage)
+    x, y = np.meshgrid(np.arange(60.0), np.arange(60.0))
+    return create_cloud({"xyz": np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)])})
+
+
+def sampled(cloud, *names, **given):
+    """Return what each step of a chain was given as the sampling, and the monitor."""
+    steps = tuple(Step(f"step{i}", name) for i, name in enumerate(names))
+    monitor = Monitor()
+    run_pipeline(Pipeline("toys", "Toys", "Toys", "", "", "", "", steps), cloud, monitor, **given)
+    return [value for name, value in monitor.values.items() if name.endswith("_given")], monitor
+
+
+def test_a_stage_alone_is_given_the_sampling_of_its_points(lattice):
+    """Neither of those that are withheld nor of noise: those left fill half of the area."""
+    points = lattice.get("xyz")
+    withhold(lattice, *np.flatnonzero((points[:, 0] < 30) & (points[:, 1] < 30)))
+    lattice.set("classification", np.where((points[:, 0] < 30) & (points[:, 1] >= 30), 7, 1).astype(np.uint8))
+    monitor = Monitor()
+    run_stage(classify_sampled.stage, lattice, monitor=monitor)
+    assert monitor.values["sampling"] is monitor.values["given"]
+    assert monitor.values["density"] == point_density(points[points[:, 0] >= 30])
+
+
+def test_a_sampling_from_outside_is_used_and_not_logged(lattice):
+    outside, monitor = CloudSampling.of(lattice.get("xyz") * 3), Monitor()
+    run_stage(classify_sampled.stage, lattice, monitor=monitor, sampling=outside)
+    assert monitor.values["given"] is outside
+    assert "sampling" not in monitor.values
+    (first, second), monitor = sampled(lattice, "classify_sampled", "classify_sampled", sampling=outside)
+    assert first is second is outside
+    assert "sampling" not in monitor.values
+
+
+def test_steps_share_a_sampling_until_the_points_that_count_are_others(lattice):
+    """The first step calls points noise, the second finds the same ones, and the third has half of the points."""
+    names = ("classify_sampled", "classify_sampled", "classify_sampled", "filter_halves", "classify_sampled")
+    (raw, cleaned, again, halved), monitor = sampled(lattice, *names)
+    assert raw is not cleaned
+    assert cleaned is again
+    assert halved.density == pytest.approx(cleaned.density / 2, rel=0.1)
+    assert monitor.values["sampling"] is halved
+
+
+def test_a_sampling_from_outside_holds_until_a_step_makes_another_cloud(lattice):
+    outside = CloudSampling.of(lattice.get("xyz") * 3)
+    first, second, third = sampled(
+        lattice, "classify_sampled", "classify_sampled", "filter_halves", "classify_sampled", sampling=outside
+    )[0]
+    assert first is second is outside
+    assert third.density > 3 * outside.density
+
+
+def test_sampling_needs_the_points_of_one_cloud():
+    with pytest.raises(TypeError, match="must read the xyz of one cloud"):
+        stage("Toy", group="Toys")(lambda intensity, *, sampling=None, monitor=None: None)
+    with pytest.raises(TypeError, match="must read the xyz of one cloud"):
+        stage("Toy", group="Toys", merges=True)(lambda xyz, *, sampling=None, monitor=None: None)
+    with pytest.raises(TypeError, match="must take the sampling None"):
+        stage("Toy", group="Toys")(lambda xyz, *, sampling, monitor=None: None)
+
+
 @pytest.mark.parametrize(
     ("declared", "sentence"),
     [
-        ({"sources": (Source("map", "Map", "Point", ""),)}, "has no argument of that name"),
+        ({"input_layers": (InputLayer("map", "Map", "Point", ""),)}, "has no argument of that name"),
         ({"creates": ("xyz",)}, "can't read anything"),
         ({"selects": True, "merges": True}, "make it two stages"),
         ({"writes": ("xyz",)}, "it must select them"),

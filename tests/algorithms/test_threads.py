@@ -1,6 +1,7 @@
 """Chunks on all cores: every row once, whatever the chunks, and no thread where there is nothing to share."""
 
 import threading
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -51,13 +52,26 @@ def test_without_a_word_of_the_system_all_cores_are_used(monkeypatch):
     assert n_threads() == 3
 
 
-def test_a_cancellation_ends_the_rest():
-    done = []
+def test_a_cancellation_ends_the_rest(monkeypatch):
+    """Every chunk but the first waits until the pool is shut down: however busy the machine, none runs ahead of it."""
+    before, begun, is_stopped = threading.enumerate(), [], threading.Event()
 
+    class Pool(ThreadPoolExecutor):
+        def shutdown(self, wait=True, *, cancel_futures=False):
+            super().shutdown(wait=False, cancel_futures=cancel_futures)
+            is_stopped.set()
+            super().shutdown(wait=wait)
+
+    def work(rows):
+        begun.append(rows)
+        # Without a limit, a pool that is never shut down would hang the test instead of failing it.
+        assert 0 in rows or is_stopped.wait(60)
+
+    monkeypatch.setattr(threads, "ThreadPoolExecutor", Pool)
     with pytest.raises(Cancelled):
-        in_chunks(done.append, np.arange(10_000), 1, Listening(stop_at=0.0))
-    assert len(done) < 10_000
-    assert threading.active_count() == 1
+        in_chunks(work, np.arange(10_000), 1, Listening(stop_at=0.0))
+    assert len(begun) <= 1 + n_threads()
+    assert threading.enumerate() == before
 
 
 def test_an_exception_in_a_chunk_is_that_of_the_whole():

@@ -4,10 +4,11 @@
 ``buildings``, ``ground`` and ``noise`` are of real clouds, ``turned`` of the same when cells fall elsewhere, ``harder``
 of the same with fewer points or more noise, ``uneven`` of the same with points on lines, in bands or in pairs,
 ``pieces`` of squares cut out of clouds, ``objects`` of real houses, trees, cars, fences and poles on simulated ground,
-``footprints`` of outlines, ``towns``, ``scenes``, ``villages`` and ``confidence`` of simulated scenes, whose truth is
-exact.
+``footprints`` of outlines, ``towns``, ``pits``, ``scenes``, ``villages`` and ``confidence`` of simulated scenes, whose
+truth is exact.
 
-Each table comes as Markdown for people, and as the Python lines that the tests hold the program to.
+Each table comes as Markdown for people, as a JSON file for programs (in ``--output``), and those of real clouds as the
+Python lines that the tests hold the program to.
 """
 
 from __future__ import annotations
@@ -23,18 +24,27 @@ import numpy as np  # noqa: E402
 
 import conftest  # noqa: E402, F401 - registers the checkout as the package lidar_buildings
 from lidar_buildings.algorithms.cloud.asprs import PointClass  # noqa: E402
-from lidar_buildings.algorithms.cloud.cells import turned_in_plan  # noqa: E402
-from lidar_buildings.algorithms.cloud.cloud import Cloud, create_cloud, read_cloud  # noqa: E402
-from lidar_buildings.algorithms.pipelines import PIPELINES, run_pipeline  # noqa: E402
-from lidar_buildings.algorithms.run import run_stage  # noqa: E402
+from lidar_buildings.algorithms.cloud.cloud import Cloud, create_cloud  # noqa: E402
+from lidar_buildings.algorithms.cloud.files import read_cloud  # noqa: E402
+from lidar_buildings.algorithms.geometry.grid import turned_in_plan  # noqa: E402
+from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.run import (
+    run_pipeline,  # noqa: E402
+    run_stage,  # noqa: E402
+)
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
-from lidar_buildings.tests.algorithms import test_map_footprints  # noqa: E402
 from lidar_buildings.tests.benchmarks.real_objects import CAR, FENCE, POLE, TREE, scene  # noqa: E402
+from lidar_buildings.tests.benchmarks.results import FOLDER, Table  # noqa: E402
 from lidar_buildings.tests.benchmarks.scenes import SCENES, estate, scanned  # noqa: E402
 from lidar_buildings.tests.benchmarks.uneven import evenly, in_bands, in_pairs, on_lines, on_zigzags  # noqa: E402
-from lidar_buildings.tests.real import test_buildings, test_ground, test_noise  # noqa: E402
+from lidar_buildings.tests.pits import scene as with_pits  # noqa: E402
 from lidar_buildings.tests.real.clouds import (  # noqa: E402
     DATA,
+    GROUND_IN_TOWN,
+    GROUND_SAMPLES,
+    OUTLIERS,
+    WITH_BUILDINGS,
+    WITHOUT_BUILDINGS,
     classified,
     detected,
     made_harder,
@@ -44,34 +54,38 @@ from lidar_buildings.tests.real.clouds import (  # noqa: E402
     score_against,
     truth,
 )
+from lidar_buildings.tests.villages import corner_distances, mapped, village  # noqa: E402
 
 # Points per square meter, noise (m) and seed of simulated villages of 150 m.
 VILLAGES = [(density, noise, 11) for density in (50, 100) for noise in (0.02, 0.05)]
 CHAINS = {"detect_buildings": "default", "detect_buildings_2019": "2019"}
+# Headings of the rates (%) of points of buildings.
+RATES = ("completeness", "correctness", "F")
 
 
-def buildings() -> None:
+def buildings() -> list[Table]:
     """Print completeness, correctness and F of both chains, per point, cell and object."""
-    print("| cloud | chain | points: compl. | corr. | F | cells: compl. | corr. | F | objects: compl. | corr. | s |")
-    print("| --- | --- |" + " ---: |" * 9)
+    rates = [f"{of}: {rate}" for of in ("points", "cells") for rate in ("compl.", "corr.", "F")]
+    table = Table("buildings", "cloud", "chain", *rates, "objects: compl.", "objects: corr.", "s", texts=2)
     f_scores: dict[str, list[float]] = {}
-    for name in test_buildings.REACHED:
+    for name in WITH_BUILDINGS:
         for pipeline, chain in CHAINS.items():
             result = detected(name, pipeline)
             found = score("buildings", name, result)
             figures = [found[of][rate] for of in ("points", "cells") for rate in ("completeness", "correctness", "F")]
             figures += [found["objects"]["completeness"], found["objects"]["correctness"], result.seconds]
-            print(row(name.split("/")[1], chain, *figures), flush=True)
+            table.add(name.split("/")[1], chain, *figures)
             f_scores.setdefault(name, []).append(found["points"]["F"])
-    print("\n| cloud without buildings | chain | called building, m² |\n| --- | --- | ---: |")
+    without = Table("without_buildings", "cloud without buildings", "chain", "called building, m²", texts=2)
     areas = {}
-    for name in test_buildings.REACHED_WITHOUT_BUILDINGS:
+    for name in WITHOUT_BUILDINGS:
         for pipeline, chain in CHAINS.items():
             area = detected(name, pipeline).area
-            print(row(name.split("/")[1], chain, area), flush=True)
+            without.add(name.split("/")[1], chain, area)
             areas.setdefault(name, area)
     paste("REACHED", {name: "(" + ", ".join(f"{f:.1f}" for f in both) + ")" for name, both in f_scores.items()})
     paste("REACHED_WITHOUT_BUILDINGS", {name: f"{area:.1f}" for name, area in areas.items()})
+    return [table, without]
 
 
 # What is taken from clouds, or added to them.
@@ -86,17 +100,18 @@ HARDER: tuple[tuple[str, dict[str, Any]], ...] = (
 )
 
 
-def harder() -> None:
+def harder() -> list[Table]:
     """Print how well the default chain does on harder versions of real clouds."""
-    print("| cloud | made harder | points | completeness | correctness | F | wrong points | wrong, m² |")
-    print("| --- | --- |" + " ---: |" * 6)
+    columns = ("points", *RATES, "wrong points", "wrong, m²")
+    table = Table("harder", "cloud", "made harder", *columns, texts=2)
     for name, change in HARDER:
         cloud, true = made_harder(name, **change)
         result = run_on(cloud)
         found = score_against(true, "buildings", result)["points"]
         figures = [found[rate] for rate in ("completeness", "correctness", "F")]
         wrong = (result.classification == PointClass.BUILDING) & (true != PointClass.BUILDING)
-        print(row(name.split("/")[1], told(change), len(true), *figures, int(wrong.sum()), area_of(cloud, wrong)))
+        table.add(name.split("/")[1], told(change), len(true), *figures, int(wrong.sum()), area_of(cloud, wrong))
+    return [table]
 
 
 # How points are spread (m, points per square meter).
@@ -110,17 +125,18 @@ SPREADS = {
 }
 
 
-def uneven() -> None:
+def uneven() -> list[Table]:
     """Print how well the default chain does where points are spread unevenly, and where as many as on lines evenly."""
-    print("| cloud | spread | points | completeness | correctness | F |\n| --- | --- |" + " ---: |" * 4)
+    table = Table("uneven", "cloud", "spread", "points", *RATES, texts=2)
     for name in ("buildings/ahn3-delft", "buildings/ahn-amsterdam-1", "buildings/ign-stbarth"):
         xyz = made_harder(name)[0].get("xyz")
         for spread, (choose, *how) in SPREADS.items():
             chosen = choose(xyz, *how)
-            print(row(name.split("/")[1], spread, *_rates_of(name, *chosen)), flush=True)
+            table.add(name.split("/")[1], spread, *_rates_of(name, *chosen))
             if "lines" in spread:
                 even = evenly(xyz, len(chosen[0]))
-                print(row(name.split("/")[1], "as many, evenly", *_rates_of(name, *even)), flush=True)
+                table.add(name.split("/")[1], "as many, evenly", *_rates_of(name, *even))
+    return [table]
 
 
 def _rates_of(name: str, rows: np.ndarray, xyz: np.ndarray) -> tuple[float, ...]:
@@ -143,12 +159,12 @@ PIECES = (
 LEAST_PIECE = 200
 
 
-def pieces() -> None:
+def pieces() -> list[Table]:
     """Print how well the default chain does on squares of clouds, each by itself: buildings are cut off at their ends.
 
     The truth of the survey without truth is what the chain makes of the whole.
     """
-    print("| cloud | side, m | pieces | completeness | correctness | F |\n| --- |" + " ---: |" * 5)
+    table = Table("pieces", "cloud", "side, m", "pieces", *RATES)
     for name, side, every in PIECES:
         whole, true = _whole(name)
         place = np.floor((whole.get("xyz")[:, :2] - whole.get("xyz")[:, :2].min(axis=0)) / side)
@@ -159,7 +175,8 @@ def pieces() -> None:
         for chosen in rows:
             found[chosen] = run_on(whole.take(chosen)).classification
         taken = np.concatenate(rows)
-        print(row(name.split("/")[-1], int(side), len(rows), *_rates(true[taken], found[taken])), flush=True)
+        table.add(name.split("/")[-1], int(side), len(rows), *_rates(true[taken], found[taken]))
+    return [table]
 
 
 def _whole(name: str) -> tuple[Cloud, np.ndarray]:
@@ -186,11 +203,11 @@ def told(changes: dict[str, Any]) -> str:
 OBJECT_SCENES = ((0.04, 0.1), (0.2, 0.1), (0.08, 0.3))
 
 
-def objects() -> None:
+def objects() -> list[Table]:
     """Print how well the default chain tells real houses from real trees, cars, fences and poles."""
     others = {"trees": TREE, "cars": CAR, "fences": FENCE, "poles": POLE}
-    print("| slope, % | points | completeness | correctness | F | houses | missed | " + ", % | ".join(others) + ", % |")
-    print("| ---: |" + " ---: |" * (6 + len(others)))
+    wrongly = [f"{kind}, %" for kind in others]
+    table = Table("objects", "slope, %", "points", *RATES, "houses", "missed", *wrongly, texts=0)
     for slope, share in OBJECT_SCENES:
         xyz, truth, number = scene(slope, share)
         cloud = create_cloud({"xyz": xyz})
@@ -200,37 +217,44 @@ def objects() -> None:
         houses = np.unique(number[is_building], return_inverse=True)[1]
         seen = np.bincount(houses, is_found[is_building]) / np.bincount(houses)
         wrong = [100.0 * float(is_found[truth == kind].mean()) for kind in others.values()]
-        print(row(100 * slope, len(xyz), *rates, len(seen), int((seen < 0.5).sum()), *wrong), flush=True)
+        table.add(100 * slope, len(xyz), *rates, len(seen), int((seen < 0.5).sum()), *wrong)
+    return [table]
 
 
-def ground() -> None:
-    """Print the errors of the ground filter."""
-    print("| cloud | type I | type II | total | kappa | s |\n| --- |" + " ---: |" * 5)
-    totals = {}
-    for name in (*test_ground.REACHED, *test_ground.REACHED_IN_TOWN):
-        result = classified(name, "classify_ground_tin")
-        found = score("ground", name, result)
-        figures = [found[measure] for measure in ("type_1", "type_2", "total", "kappa")]
-        print(row(name.split("/")[1], *figures, result.seconds), flush=True)
-        totals[name] = found["total"]
-    paste("REACHED", {name: f"{totals[name]:.1f}" for name in test_ground.REACHED})
-    print(f"REACHED_MEAN = {np.mean([totals[name] for name in test_ground.REACHED]):.2f}")
-    paste("REACHED_IN_TOWN", {name: f"{totals[name]:.1f}" for name in test_ground.REACHED_IN_TOWN})
+def ground() -> list[Table]:
+    """Print the errors of the ground filter, and of the one as published on the samples."""
+    table = Table("ground", "cloud", "filter", "type I", "type II", "total", "kappa", "s", texts=2)
+    totals, stages = {}, ("classify_ground_tin", "classify_ground_tin_2000")
+    for name in (*GROUND_SAMPLES, *GROUND_IN_TOWN):
+        for stage in stages if name in GROUND_SAMPLES else stages[:1]:
+            result = classified(name, stage)
+            found = score("ground", name, result)
+            figures = [found[measure] for measure in ("type_1", "type_2", "total", "kappa")]
+            table.add(name.split("/")[1], stage, *figures, result.seconds)
+            totals[name, stage] = found["total"]
+    own, published = ({name: total for (name, stage), total in totals.items() if stage == of} for of in stages)
+    paste("REACHED", {name: f"{own[name]:.1f}" for name in GROUND_SAMPLES})
+    print(f"REACHED_MEAN = {np.mean([own[name] for name in GROUND_SAMPLES]):.2f}")
+    paste("REACHED_IN_TOWN", {name: f"{own[name]:.1f}" for name in GROUND_IN_TOWN})
+    paste("REACHED_AS_PUBLISHED", {name: f"{total:.1f}" for name, total in published.items()})
+    print(f"Mean of all samples as published: {np.mean(list(published.values())):.2f}")
+    return [table]
 
 
 # Angles (°) by which clouds are turned, so that cells fall elsewhere.
 GROUND_TURNS, BUILDING_TURNS = np.arange(0.0, 90.0, 8.0), np.arange(0.0, 90.0, 15.0)
 
 
-def turned() -> None:
+def turned() -> list[Table]:
     """Print what the errors of the ground filter and F of buildings are in the mean of positions, and how they vary."""
-    print("| cloud | measure, % | mean | least | greatest |\n| --- | --- |" + " ---: |" * 3)
-    totals = np.array([[_total_error(name, angle) for name in test_ground.REACHED] for angle in GROUND_TURNS])
-    for name, errors in (*zip(test_ground.REACHED, totals.T), ("ground/mean of them", totals.mean(axis=1))):
-        print(row(name.split("/")[1], "total error", *_spread(errors)), flush=True)
-    for name in test_buildings.REACHED:
+    table = Table("turned", "cloud", "measure, %", "mean", "least", "greatest", texts=2)
+    totals = np.array([[_total_error(name, angle) for name in GROUND_SAMPLES] for angle in GROUND_TURNS])
+    for name, errors in (*zip(GROUND_SAMPLES, totals.T), ("ground/mean of them", totals.mean(axis=1))):
+        table.add(name.split("/")[1], "total error", *_spread(errors), digits=2)
+    for name in WITH_BUILDINGS:
         rates = [_found(_turned(name, angle), truth(name))[2] for angle in BUILDING_TURNS]
-        print(row(name.split("/")[1], "F", *_spread(np.array(rates))), flush=True)
+        table.add(name.split("/")[1], "F", *_spread(np.array(rates)), digits=2)
+    return [table]
 
 
 def _turned(name: str, angle: float) -> Cloud:
@@ -248,38 +272,36 @@ def _total_error(name: str, angle: float) -> float:
     return 100.0 * float((is_found != is_true).mean())
 
 
-def _spread(figures: np.ndarray) -> tuple[str, ...]:
-    """Return the mean, the least and the greatest of some figures, as cells of a table."""
-    return tuple(f"{figure:.2f}" for figure in (figures.mean(), figures.min(), figures.max()))
+def _spread(figures: np.ndarray) -> tuple[float, float, float]:
+    """Return the mean, the least and the greatest of some figures."""
+    return float(figures.mean()), float(figures.min()), float(figures.max())
 
 
-def footprints() -> None:
+def footprints() -> list[Table]:
     """Print how many corners outlines have, and how far those of Delft are from its class 6 and from its map."""
     # QGIS reads the map, and wants no screen for that.
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
     from qgis.core import QgsApplication
 
-    from lidar_buildings.tests.real import test_footprints
+    from lidar_buildings.tests.real.base_map import cell_iou, map_distances
 
     application = QgsApplication([], False)
     application.initQgis()
-    print(
-        "| cloud | footprints | straightened | corners per m | sharper than 45° |\n| --- | ---: | ---: | ---: | ---: |"
-    )
-    for name in test_buildings.REACHED:
+    table = Table("footprints", "cloud", "footprints", "straightened", "corners per m", "sharper than 45°")
+    for name in WITH_BUILDINGS:
         made = detected(name).layers["footprints"]
         corners, n_sharp = _corners(made.geometries)
         straight = sum(made.columns["regularized"])
-        print(row(name.split("/")[1], len(made), straight, f"{corners:.2f}", n_sharp), flush=True)
-    print("\n| Delft, classes | IoU with class 6 | corners of houses, m | of blocks, m |\n| --- | ---: | ---: | ---: |")
+        table.add(name.split("/")[1], len(made), straight, corners, n_sharp, digits=2)
+    delft = Table("footprints_of_delft", "Delft, classes", "IoU with class 6", "corners of houses, m", "of blocks, m")
     reached = {}
-    for kind in test_footprints.REACHED:
-        medians = [float(np.median(test_footprints.map_distances(kind, level)[1])) for level in (0, 1)]
-        figures = [f"{test_footprints.cell_iou(kind):.3f}", *(f"{median:.2f}" for median in medians)]
-        print(row(kind, *figures), flush=True)
-        reached[kind] = f"({', '.join(figures)})"
+    for kind in ("truth", "chain"):
+        iou, medians = cell_iou(kind), [float(np.median(map_distances(kind, level)[1])) for level in (0, 1)]
+        delft.add(kind, float(iou), *medians, digits=3)
+        reached[kind] = f"({iou:.3f}, {medians[0]:.2f}, {medians[1]:.2f})"
     paste("REACHED", reached)
     application.exitQgis()
+    return [table, delft]
 
 
 def _corners(geometries: list) -> tuple[float, int]:
@@ -293,15 +315,16 @@ def _corners(geometries: list) -> tuple[float, int]:
     return count / length, n_sharp
 
 
-def noise() -> None:
+def noise() -> list[Table]:
     """Print what of the rejected points each noise filter finds."""
-    print("| filter | completeness | correctness | F |\n| --- |" + " ---: |" * 3)
+    table = Table("noise", "filter", *RATES)
     for stage in ("classify_noise_histogram", "classify_noise_statistical"):
-        found = score("noise", test_noise.NAME, classified(test_noise.NAME, stage))
-        print(row(stage, *(found[rate] for rate in ("completeness", "correctness", "F"))))
+        found = score("noise", OUTLIERS, classified(OUTLIERS, stage))
+        table.add(stage, *(found[rate] for rate in RATES))
         if stage == "classify_noise_histogram":
             reached = found["completeness"]
     print(f"\nREACHED = {reached:.1f}")
+    return [table]
 
 
 # Far from what the thresholds were tried on: what a town differs in from the default one.
@@ -319,20 +342,36 @@ TOWNS: tuple[dict[str, Any], ...] = (
 )
 
 
-def towns() -> None:
+def towns() -> list[Table]:
     """Print how well the default chain finds the buildings of simulated towns."""
-    print("| town of 150 m, seed 3 | points | completeness | correctness | F | wrong, m² |\n| --- |" + " ---: |" * 5)
+    table = Table("towns", "town of 150 m, seed 3", "points", *RATES, "wrong, m²")
     for differs in TOWNS:
         cloud = run_stage(STAGES["simulate_town"], size=150.0, seed=3, **differs).cloud
         true = cloud.get("classification")
         cloud.set("classification", np.zeros(len(cloud), np.uint8))
-        print(row(told(differs), len(cloud), *_found(cloud, true)), flush=True)
+        table.add(told(differs), len(cloud), *_found(cloud, true))
+    return [table]
 
 
-def scenes() -> None:
+# Points per square meter and slope (°) of towns with false and true pits.
+PITS = ((2.0, 3.0), (4.0, 20.0), (8.0, 3.0), (8.0, 30.0), (20.0, 3.0), (30.0, 15.0))
+
+
+def pits() -> list[Table]:
+    """Print which multipath points under the ground its filter takes for ground, and which it finds."""
+    table = Table("pits", "density, slope", "multipath points", "called ground", "completeness", "correctness")
+    for seed, (density, slope) in enumerate(PITS, start=1):
+        town = with_pits(density=density, slope=slope, seed=seed)
+        found = run_stage(STAGES["classify_ground_tin"], town.cloud, find_multipath=True).cloud.get("classification")
+        is_group, is_low = town.group > 0, found == PointClass.LOW_NOISE
+        shares = (found[is_group] == PointClass.GROUND).mean(), is_low[is_group].mean(), is_group[is_low].mean()
+        table.add(f"{density:g}, {slope:g}°", int(is_group.sum()), *(100 * share for share in shares))
+    return [table]
+
+
+def scenes() -> list[Table]:
     """Print how well the default chain does on scenes far from a usual town."""
-    print("| scene | points per m² | completeness | correctness | F | wrong, m² | ground missed, % |")
-    print("| --- |" + " ---: |" * 6)
+    table = Table("scenes", "scene", "points per m²", *RATES, "wrong, m²", "ground missed, %")
     for name, make, misfit in SCENES:
         for density in (4.0, 12.0):
             made = scanned(make, misfit, density)
@@ -340,7 +379,8 @@ def scenes() -> None:
             cloud = create_cloud({"xyz": made.xyz, **returns})
             rates = _found(cloud, made.classification)
             missed = cloud.get("classification")[made.classification == PointClass.GROUND] != PointClass.GROUND
-            print(row(name, int(density), *rates, 100 * float(missed.mean())), flush=True)
+            table.add(name, int(density), *rates, 100 * float(missed.mean()))
+    return [table]
 
 
 def _found(cloud: Cloud, true: np.ndarray) -> tuple[float, float, float, float]:
@@ -359,31 +399,33 @@ def _rates(true: np.ndarray, found: np.ndarray) -> tuple[float, float, float]:
     return completeness, correctness, 200.0 * hit / max(int(is_building.sum() + is_found.sum()), 1)
 
 
-def villages() -> None:
+def villages() -> list[Table]:
     """Print how many buildings Map footprints finds, and how far its corners are from the true ones."""
-    print("| points/m² | noise | seed | buildings | found | invented | corners: median, cm | mean, cm | farthest, cm |")
-    print("|" + " ---: |" * 9)
+    counts = ("points/m²", "noise, cm", "seed", "buildings", "found", "invented")
+    table = Table("villages", *counts, "corners: median, cm", "mean, cm", "farthest, cm", texts=0)
     every = []
     for density, noise, seed in VILLAGES:
-        arrays, true, old_map = test_map_footprints.village(density=density, noise=noise, seed=seed)
-        made = test_map_footprints.mapped(arrays, old_map).layers["wall_footprints"]
-        distances, used = test_map_footprints.corner_distances(made, true)
+        arrays, true, old_map = village(density=density, noise=noise, seed=seed)
+        made = mapped(arrays, old_map).layers["wall_footprints"]
+        distances, used = corner_distances(made, true)
         corners = 100 * np.concatenate(distances)
-        facts = (density, f"{100 * noise:g} cm", seed, len(true), len(distances), len(made) - len(used))
-        print(row(*facts, *(float(measure(corners)) for measure in (np.median, np.mean, np.max))), flush=True)
+        facts = (density, round(100 * noise), seed, len(true), len(distances), len(made) - len(used))
+        table.add(*facts, *(float(measure(corners)) for measure in (np.median, np.mean, np.max)))
         every.append(corners)
     corners = np.concatenate(every)
     print(f"\n{len(corners)} corners: median {np.median(corners):.1f} cm, mean {corners.mean():.1f} cm,", end=" ")
     print(f"{100 * np.mean(corners < 8):.0f} % within 8 cm")
+    return [table]
 
 
-def confidence() -> None:
+def confidence() -> list[Table]:
     """Print how many clusters of simulated towns are buildings, by how sure the default chain is of them."""
-    print("| confidence | clusters | are buildings, % |\n| --- | ---: | ---: |")
+    table = Table("confidence", "confidence", "clusters", "are buildings, %")
     sure, true = (np.concatenate(parts) for parts in zip(*map(_judged, TOWNS)))
     for low in np.arange(10):
         chosen = np.minimum((sure * 10).astype(int), 9) == low
-        print(row(f"{low / 10:.1f} to {low / 10 + 0.1:.1f}", int(chosen.sum()), 100 * float(true[chosen].mean())))
+        table.add(f"{low / 10:.1f} to {low / 10 + 0.1:.1f}", int(chosen.sum()), 100 * float(true[chosen].mean()))
+    return [table]
 
 
 def _judged(differs: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
@@ -401,11 +443,6 @@ def _judged(differs: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
     return cloud.get("confidence")[clustered][first], true
 
 
-def row(*cells: object) -> str:
-    """Return a row of a Markdown table, numbers with one decimal."""
-    return "| " + " | ".join(f"{cell:.1f}" if isinstance(cell, float) else str(cell) for cell in cells) + " |"
-
-
 def paste(name: str, values: dict[str, str]) -> None:
     """Print a table of a test module."""
     print(f"\n{name} = {{")
@@ -414,7 +451,7 @@ def paste(name: str, values: dict[str, str]) -> None:
     print("}")
 
 
-SIMULATED = {table.__name__: table for table in (towns, scenes, villages, confidence)}
+SIMULATED = {table.__name__: table for table in (towns, pits, scenes, villages, confidence)}
 TABLES = {
     **{
         table.__name__: table
@@ -428,14 +465,17 @@ def main() -> None:
     """Print the tables that are asked for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("tables", nargs="*", metavar="table", help=", ".join(TABLES))
-    wanted = parser.parse_args().tables or list(TABLES)
+    parser.add_argument("--output", type=Path, default=FOLDER, help="folder of the JSON files (benchmarks)")
+    chosen = parser.parse_args()
+    wanted = chosen.tables or list(TABLES)
     if set(wanted) - set(TABLES):
         parser.error(f"there is no table {(set(wanted) - set(TABLES)).pop()!r}; there are {', '.join(TABLES)}")
     if not DATA.is_dir() and not set(wanted) <= set(SIMULATED):
         parser.error(f"no real clouds in {DATA}; LIDAR_BUILDINGS_DATA names another folder")
     for name in wanted:
-        print(f"\n## {name}\n")
-        TABLES[name]()
+        print(f"\n## {name}")
+        for table in TABLES[name]():
+            print(f"\n{table.write(chosen.output)}")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measure time and memory of every stage and chain, print a table and write ``benchmarks.json``.
+"""Measure time and memory of every stage and chain, print a table and write ``benchmarks/times.json``.
 
     make bench                                  0.1 and 1 million points
     make bench SIZES="0.1 1 10"                 10 million too, for which some stages take minutes
@@ -32,12 +32,9 @@ from __future__ import annotations
 import argparse
 import hashlib
 import json
-import os
-import platform
 import subprocess
 import sys
 import tempfile
-from importlib import metadata
 from pathlib import Path
 from typing import Any
 
@@ -46,6 +43,7 @@ sys.path.insert(0, str(ROOT))
 import conftest  # noqa: E402, F401 - registers the checkout as the package lidar_buildings
 from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
+from lidar_buildings.tests.benchmarks.results import FOLDER, machine, write  # noqa: E402
 
 CHAIN = PIPELINES["detect_buildings"]
 DENSITY = 8.0  # pulses per m², of which come 8.7 points
@@ -157,18 +155,6 @@ def _fingerprint() -> str:
     return hashlib.sha256(content).hexdigest()[:8]
 
 
-def machine() -> dict[str, Any]:
-    """Return what times depend on: processor, cores, memory, versions."""
-    versions = {name: metadata.version(name) for name in ("numpy", "scipy", "scikit-learn", "lazrs")}
-    return {
-        "processor": platform.machine(),
-        "cores": os.cpu_count(),
-        "memory_gb": round(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 1e9),
-        "python": platform.python_version(),
-        **versions,
-    }
-
-
 def options() -> argparse.Namespace:
     """Return what the command line says."""
     names = list(dict.fromkeys(["simulate_town", *STAGES, *PIPELINES, "write"]))
@@ -177,7 +163,7 @@ def options() -> argparse.Namespace:
     )
     parser.add_argument("--sizes", nargs="+", type=float, default=[0.1, 1.0], help="million points (0.1 1)")
     parser.add_argument("--stages", nargs="+", choices=names, default=names, help="stages and chains (all)")
-    parser.add_argument("--output", type=Path, default=ROOT / "benchmarks.json", help="file to write")
+    parser.add_argument("--output", type=Path, default=FOLDER, help="folder of the JSON file (benchmarks)")
     parser.add_argument("--cache", type=Path, default=Path(__file__).with_name(".cache"), help="where towns are kept")
     return parser.parse_args()
 
@@ -186,16 +172,15 @@ def main() -> None:
     """Measure everything asked for."""
     chosen = options()
     chosen.cache.mkdir(parents=True, exist_ok=True)
-    found = {"machine": machine(), "measurements": []}
-    print(", ".join(f"{key} {value}" for key, value in found["machine"].items()))
+    print(", ".join(f"{key} {value}" for key, value in machine().items()))
+    rows: list[dict[str, Any]] = []
     for millions in chosen.sizes:
         print(f"\n{HEADER}", flush=True)
         with tempfile.TemporaryDirectory() as states:
             bench = Bench(millions, chosen.cache, Path(states))
             bench.run(chosen.stages)
-        found["measurements"] += bench.rows
-    chosen.output.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
-    print(f"\n{chosen.output}")
+        rows += bench.rows
+    print(f"\n{write(chosen.output, 'times', rows)}")
 
 
 if __name__ == "__main__":

@@ -4,7 +4,8 @@
     .venv/bin/python tests/benchmarks/cloth.py [size of the simulated town in m, 150]
 
 Needs the package (pip install cloth-simulation-filter), and says so where it is absent. Both run on the same points
-with the same parameters, one after the other; ``cpu`` is summed over all cores, ``s`` is the time on the wall.
+with the same parameters, one after the other; ``cpu`` is summed over all cores, ``s`` is the time on the wall. The
+table goes to ``benchmarks/cloth.json`` too.
 """
 
 from __future__ import annotations
@@ -18,8 +19,9 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 import conftest  # noqa: E402, F401 - registers the checkout as the package lidar_buildings
 from lidar_buildings.algorithms.cloud.asprs import PointClass  # noqa: E402
-from lidar_buildings.algorithms.simulation.town import simulate_town  # noqa: E402
-from lidar_buildings.algorithms.terrain.ground_cloth import classify_ground_cloth  # noqa: E402
+from lidar_buildings.algorithms.simulation.simulate_town import simulate_town  # noqa: E402
+from lidar_buildings.algorithms.terrain.classify_ground_cloth import classify_ground_cloth  # noqa: E402
+from lidar_buildings.tests.benchmarks.results import FOLDER, Table  # noqa: E402
 
 SLOPES = (0.0, 10.0, 20.0, 30.0)
 
@@ -56,20 +58,16 @@ def main(arguments: list[str]) -> int:
         print("The package cloth-simulation-filter is not installed: nothing to compare with.")
         return 0
     size = float(arguments[0]) if arguments else 150.0
-    print(
-        f"{'slope':>6s} {'rigidness':>9s} {'points':>10s} {'agree %':>8s} {'s':>7s} {'cpu':>7s} {'s':>7s} {'cpu':>7s}"
-    )
+    times = ("ours, s", "ours, cpu", "package, s", "package, cpu")
+    table = Table("cloth", "slope, °", "rigidness", "points", "agree, %", *times, texts=0)
     for slope in SLOPES:
         xyz = simulate_town(size=size, slope=slope)[0]
         for rigidness in (1, 2, 3):
             theirs, their_wall, their_cpu = timed(by_package, csf, xyz, rigidness)
             ours, wall, cpu = timed(classify_ground_cloth, xyz, np.ones(len(xyz)), rigidness=rigidness)
-            agree = 100 * ((ours == PointClass.GROUND) == theirs).mean()
-            print(
-                f"{slope:6.0f} {rigidness:9d} {len(xyz):10d} {agree:8.2f} {wall:7.1f} {cpu:7.1f} "
-                f"{their_wall:7.1f} {their_cpu:7.1f}",
-                flush=True,
-            )
+            agree = 100 * float(((ours == PointClass.GROUND) == theirs).mean())
+            table.add(slope, rigidness, len(xyz), agree, wall, cpu, their_wall, their_cpu, digits=2)
+    print(f"\n{table.write(FOLDER)}")
     return 0
 
 

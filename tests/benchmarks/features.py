@@ -7,7 +7,8 @@
 The points are those of a simulated drone flight, one per voxel of 0.1 m (Weinmann et al. 2017 have 310 thousand), side
 by side as often as needed, in the order in which voxels come. Both libraries are given the same points and search for
 the neighbors themselves. Times are processor seconds over all cores, best of three, the two in turns; ``ratio`` is
-ours by theirs. ``B/point`` is the most memory that a process of its own took for it beyond the points themselves.
+ours by theirs. ``B/point`` is the most memory that a process of its own took for it beyond the points themselves. The
+table goes to ``benchmarks/features.json`` too.
 """
 
 from __future__ import annotations
@@ -23,9 +24,10 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 import numpy as np  # noqa: E402
 
 import conftest  # noqa: E402, F401 - registers the checkout as the package lidar_buildings
-from lidar_buildings.algorithms.features.features import compute_features  # noqa: E402
+from lidar_buildings.algorithms.features.compute_features import compute_features  # noqa: E402
 from lidar_buildings.algorithms.run import run_stage  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
+from lidar_buildings.tests.benchmarks.results import FOLDER, Table  # noqa: E402
 
 CACHE = Path(__file__).with_name(".cache") / "flight.npy"
 LOWEST, MOST, FIXED = 10, 100, 50
@@ -122,19 +124,15 @@ def _status(name: str) -> int:
 
 def main(millions: list[float]) -> None:
     """Print the table."""
-    heads = ("ours s", "pgeof s", "ratio", "us/point", "B/point")
-    print(f"{'neighborhood':14s} {'points':>11s} " + " ".join(f"{head:>8s}" for head in heads))
+    table = Table("features", "neighborhood", "points", "ours s", "pgeof s", "ratio", "us/point", "B/point")
     for name, ours, theirs in (("50 nearest", fixed, fixed_of_peer), ("best of 91", optimal, optimal_of_peer)):
         for n in (round(million * 1e6) for million in millions):
             xyz = scene(n)
             compared = n <= _MOST_FOR_PEER
             took = seconds([ours, theirs] if compared else [ours], xyz, RUNS if compared else 1)
-            peer, ratio = (f"{took[1]:.2f}", f"{took[0] / took[1]:.2f}") if compared else ("", "")
-            print(
-                f"{name:14s} {n:11,d} {took[0]:8.2f} {peer:>8s} {ratio:>8s} {took[0] / n * 1e6:8.2f} "
-                f"{memory(ours, n):8.0f}",
-                flush=True,
-            )
+            peer, ratio = (took[1], took[0] / took[1]) if compared else (None, None)
+            table.add(name, n, took[0], peer, ratio, took[0] / n * 1e6, memory(ours, n), digits=2)
+    print(f"\n{table.write(FOLDER)}")
 
 
 if __name__ == "__main__":

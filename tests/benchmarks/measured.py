@@ -18,10 +18,14 @@ import numpy as np  # noqa: E402
 
 import conftest  # noqa: E402, F401 - registers the checkout as the package lidar_buildings
 from lidar_buildings.algorithms import packages  # noqa: E402
-from lidar_buildings.algorithms.cloud.cloud import Cloud, create_cloud, read_cloud, write_cloud  # noqa: E402
-from lidar_buildings.algorithms.pipelines import PIPELINES, run_pipeline  # noqa: E402
-from lidar_buildings.algorithms.run import run_stage  # noqa: E402
-from lidar_buildings.algorithms.simulation.town import simulate_town  # noqa: E402
+from lidar_buildings.algorithms.cloud.cloud import Cloud, create_cloud  # noqa: E402
+from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud  # noqa: E402
+from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.run import (
+    run_pipeline,  # noqa: E402
+    run_stage,  # noqa: E402
+)
+from lidar_buildings.algorithms.simulation.simulate_town import simulate_town  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 
 NEIGHBORS = 16

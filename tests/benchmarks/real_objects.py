@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from lidar_buildings.algorithms.cloud.asprs import PointClass
-from lidar_buildings.algorithms.cloud.cloud import read_cloud
+from lidar_buildings.algorithms.cloud.files import read_cloud
 from lidar_buildings.algorithms.packages import spatial
 from lidar_buildings.tests.real.clouds import DATA
 

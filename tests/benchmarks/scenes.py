@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from lidar_buildings.algorithms.cloud.asprs import PointClass
-from lidar_buildings.algorithms.simulation.houses import Site
 from lidar_buildings.algorithms.simulation.plants import plant_hedge, plant_tree, plant_trees
 from lidar_buildings.algorithms.simulation.relief import Relief
 from lidar_buildings.algorithms.simulation.scanner import Scan, scan
 from lidar_buildings.algorithms.simulation.scene import Scene
 from lidar_buildings.algorithms.simulation.solids import Rect, Solid, flat, gable, hip, lean_to
+from lidar_buildings.algorithms.simulation.town_houses import Site
 from lidar_buildings.algorithms.stage import Monitor
 
 SIDE = 120.0

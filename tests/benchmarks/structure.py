@@ -5,6 +5,7 @@
     structure.py flight --part 0.1  the same with a tenth of the scan lines
     structure.py voxels             10 million points: the voxel grid in units of reading them from LAZ
     structure.py                    both
+    structure.py --output folder    where the JSON files go (benchmarks)
 
 Shares and counts are the same on every machine. Times are not: only ratios tell, which are of one run, the two
 measured in turns, the best of some of each.
@@ -24,10 +25,12 @@ import numpy as np  # noqa: E402
 
 import conftest  # noqa: E402, F401 - registers the checkout as the package lidar_buildings
 from lidar_buildings.algorithms.cloud.asprs import PointClass  # noqa: E402
-from lidar_buildings.algorithms.cloud.cloud import Cloud, read_cloud, write_cloud  # noqa: E402
+from lidar_buildings.algorithms.cloud.cloud import Cloud  # noqa: E402
+from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud  # noqa: E402
 from lidar_buildings.algorithms.packages import spatial  # noqa: E402
 from lidar_buildings.algorithms.run import run_stage  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
+from lidar_buildings.tests.benchmarks.results import FOLDER, Table  # noqa: E402
 
 LINES = STAGES["simulate_flight"].tunables["line_rate"].default
 NEIGHBORHOODS = {"k = 50": {"neighborhood": "nearest", "n_neighbors": 50}, "k_opt": {"neighborhood": "optimal"}}
@@ -50,7 +53,7 @@ def made(name: str, cloud: Any = None, **tunables: Any) -> Cloud:
     return result
 
 
-def flight(part: float) -> None:
+def flight(part: float) -> list[Table]:
     """Print how many points there are at each step, and what they are called with both neighborhoods."""
     scans = [
         made("simulate_flight", scanners=scanner, line_rate=LINES * part) for scanner in ("horizontal", "vertical")
@@ -58,11 +61,12 @@ def flight(part: float) -> None:
     union = made("merge_clouds", scans)
     voxels = made("downsample_voxels", union)
     counts = [len(cloud) for cloud in (*scans, union, voxels)]
-    print("| | horizontal scanner | vertical scanner | merged | voxels of 0.1 m | left |\n| --- |" + " ---: |" * 5)
-    print("| published | 1.44 million | 5.29 million | 6.73 million | 310 thousand | 4.6 % |")
-    print("| here | " + " | ".join(f"{count:,d}" for count in counts) + f" | {100 * counts[3] / counts[2]:.1f} % |\n")
-    print("| neighborhood | points | linear | planar | volumetric | unlike their nearest | median k | s |")
-    print("| --- | --- |" + " ---: |" * 6)
+    scanners = ("horizontal scanner", "vertical scanner")
+    steps = Table("flight_points", "points", *scanners, "merged", "voxels of 0.1 m", "left, %")
+    steps.add("published", 1_440_000, 5_290_000, 6_730_000, 310_000, 4.6)
+    steps.add("simulated", *counts, 100 * counts[3] / counts[2])
+    shares = ("linear, %", "planar, %", "volumetric, %", "unlike their nearest, %")
+    table = Table("flight_dimensionality", "neighborhood", "points", *shares, "median k", "s", texts=2)
     xyz, classes = voxels.get("xyz"), voxels.get("classification")
     nearest = spatial.cKDTree(xyz).query(xyz, 2, workers=-1)[1][:, 1]
     for name, tunables in NEIGHBORHOODS.items():
@@ -75,12 +79,12 @@ def flight(part: float) -> None:
         for of, mask in which.items():
             share = 100 * np.bincount(kinds[mask], minlength=4) / mask.sum()
             rough = 100 * np.mean(kinds[mask] != kinds[nearest[mask]])
-            figures = " | ".join(f"{value:.1f}" for value in (*share[1:], rough))
-            took = f"{seconds:.1f}" if of == "all" else ""
-            print(f"| {name} | {of} | {figures} | {np.median(k[mask]):.0f} | {took} |", flush=True)
+            took = seconds if of == "all" else None
+            table.add(name, of, *share[1:].tolist(), float(rough), int(np.median(k[mask])), took)
+    return [steps, table]
 
 
-def voxels() -> None:
+def voxels() -> list[Table]:
     """Print what the voxel grid takes, in units of reading the file."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "town.laz"
@@ -91,10 +95,12 @@ def voxels() -> None:
             reads.append(took)
             took, left = timed(lambda cloud=cloud: made("downsample_voxels", cloud))
             grids.append(took)
-    print(f"\n{len(cloud):,d} points, {len(left):,d} voxels of 0.1 m\n\n| | s | cpu s |\n| --- | ---: | ---: |")
+    print(f"\n{len(cloud):,d} points, {len(left):,d} voxels of 0.1 m")
+    table = Table("voxels", "step", "s", "cpu s")
     best = [np.min(rows, axis=0) for rows in (reads, grids)]
     for name, row in (("read LAZ", best[0]), ("voxel grid", best[1]), ("ratio", best[1] / best[0])):
-        print(f"| {name} | {row[0]:.2f} | {row[1]:.2f} |")
+        table.add(name, *row.tolist(), digits=2)
+    return [table]
 
 
 def timed(work: Callable[[], Cloud]) -> tuple[tuple[float, float], Cloud]:
@@ -109,11 +115,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("parts", nargs="*", choices=["flight", "voxels", []], help="which tables (both)")
     parser.add_argument("--part", type=float, default=1.0, help="share of the scan lines of the flight (1)")
+    parser.add_argument("--output", type=Path, default=FOLDER, help="folder of the JSON files (benchmarks)")
     chosen = parser.parse_args()
-    if "flight" in (chosen.parts or ["flight"]):
-        flight(chosen.part)
-    if "voxels" in (chosen.parts or ["voxels"]):
-        voxels()
+    tables = flight(chosen.part) if "flight" in (chosen.parts or ["flight"]) else []
+    tables += voxels() if "voxels" in (chosen.parts or ["voxels"]) else []
+    for table in tables:
+        print(table.write(chosen.output))
 
 
 if __name__ == "__main__":

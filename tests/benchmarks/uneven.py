@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from lidar_buildings.algorithms.cloud.density import point_density
+from lidar_buildings.algorithms.sampling.density import point_density
 
 # Points of a line lie no farther off its middle (m), and those of one pulse no farther from each other in plan (m).
 _HALF_WIDTH, _PULSE = 0.075, 0.1

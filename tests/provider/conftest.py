@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import importlib.util
 import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.cloud.cloud import create_cloud, write_cloud
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.files import write_cloud
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.stages import STAGES
-from lidar_buildings.tests.provider.toys import TOY_CHAIN, TOY_MAPPING, TOYS
-
-# The core is tested without QGIS too; so nothing of QGIS is imported before a fixture asks for it.
-collect_ignore_glob = [] if importlib.util.find_spec("qgis") else ["test_*.py"]
+from lidar_buildings.tests.toys import TOY_CHAIN, TOY_MAPPING, TOYS
 
 RD = "EPSG:28992"
 

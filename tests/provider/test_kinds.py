@@ -13,7 +13,6 @@ from qgis.core import (
     Qgis,
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransformContext,
-    QgsFeature,
     QgsGeometry,
     QgsPointCloudLayer,
     QgsProcessingException,
@@ -23,15 +22,17 @@ from qgis.core import (
     QgsVectorLayer,
 )
 
-from lidar_buildings.algorithms.cloud.cloud import create_cloud, read_cloud, write_cloud
-from lidar_buildings.algorithms.stage import Monitor, Raster, Source, Surface
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
+from lidar_buildings.algorithms.cloud.units import NO_CRS
+from lidar_buildings.algorithms.stage import InputLayer, Monitor, Raster, RasterSurface
 from lidar_buildings.provider import rasters, stage_algorithm
+from lidar_buildings.provider.input_layers import find_input_layer, read_input_layer
 from lidar_buildings.provider.places import place_of_cloud
-from lidar_buildings.provider.sources import find_source, read_source
 from lidar_buildings.provider.styles import layer_style
 from lidar_buildings.provider.vectors import qgis_features
-from lidar_buildings.tests.provider.test_stage_algorithm import run
-from lidar_buildings.tests.provider.toys import TOYS
+from lidar_buildings.tests.provider.helpers import opened, run, squares, values_of, vector
+from lidar_buildings.tests.toys import TOYS
 
 FOOT = "EPSG:2277"  # Texas, US survey feet
 
@@ -126,19 +127,6 @@ def test_merging_needs_two_clouds_that_are_no_output(provider, context, halves, 
 BOX = "Polygon ((85004.5 446004.5, 85004.5 446009.5, 85009.5 446009.5, 85009.5 446004.5, 85004.5 446004.5))"
 
 
-def vector(kind, rows, crs="EPSG:28992", fields="field=id:int&field=height:double&field=word:string"):
-    """A layer in memory of (WKT, attributes) rows."""
-    layer = QgsVectorLayer(f"{kind}?crs={crs}&{fields}" if crs else f"{kind}?{fields}", "drawn", "memory")
-    if not crs:
-        layer.setCrs(QgsCoordinateReferenceSystem())
-    for wkt, attributes in rows:
-        feature = QgsFeature(layer.fields())
-        feature.setGeometry(QgsGeometry.fromWkt(wkt) if wkt else QgsGeometry())
-        feature.setAttributes(attributes)
-        assert layer.dataProvider().addFeature(feature)
-    return layer
-
-
 def test_a_layer_reaches_the_stage(provider, context, log, town_file, out):
     areas = vector("Polygon", [(BOX, [7, 1.5, "a"])])
     context.project().addMapLayer(areas)
@@ -175,12 +163,12 @@ def read(provider, context, town_file):
     def read(kind, rows, cloud=None, **options):
         layer = vector(options.pop("layer_kind", kind), rows, **options)
         context.project().addMapLayer(layer)
-        source = Source("areas", "Areas", kind, "Boxes.")
+        input_layer = InputLayer("areas", "Areas", kind, "Boxes.")
         algorithm = provider.algorithm("toymask").create()
         found = algorithm.parameterAsSource({"AREAS": layer}, "AREAS", context)
         monitor = Monitor()
         place = place_of_cloud(cloud or read_cloud(town_file))
-        return read_source(source, found, place, context, monitor), monitor.warnings
+        return read_input_layer(input_layer, found, place, context, monitor), monitor.warnings
 
     return read
 
@@ -266,14 +254,6 @@ def test_an_unknown_system_is_taken_as_the_same(read, town):
         read("Point", [(point, [1, 1.0, ""])], nowhere, crs="EPSG:4326")
 
 
-def squares(*corners, crs="EPSG:28992", size=2.0):
-    rows = []
-    for x, y in corners:
-        ring = [(x, y), (x + size, y), (x + size, y + size), (x, y + size), (x, y)]
-        rows.append((f"Polygon (({', '.join(f'{u!r} {v!r}' for u, v in ring)}))", [1, 1.0, ""]))
-    return vector("Polygon", rows, crs)
-
-
 def test_a_stage_of_layers_alone_works_in_the_first_ones_system(provider, context, log, out):
     old, new = squares((85_000.0, 446_000.0)), squares((85_003.0, 446_004.0))
     context.project().addMapLayers([old, new])
@@ -305,11 +285,11 @@ def test_a_geopackage_without_a_system_is_in_that_of_the_other_layer(provider, c
     # QGIS before 3.44 holds that system for valid.
     stored, new = QgsVectorLayer(path, "stored", "ogr"), squares((85_003.0, 446_004.0))
     context.project().addMapLayers([stored, new])
-    for first, second, told in ((stored, new, "Old map names no"), (new, stored, "New map names no")):
+    for first, second, warning in ((stored, new, NO_CRS), (new, stored, "New map names no CRS")):
         log.warnings.clear()
         result = run("toyarrows", {"OLD": first, "NEW": second, "ARROWS": str(out / "a.gpkg")}, context, log)
         assert result["LONGEST"] == pytest.approx(5.0)
-        assert log.warnings[0].startswith(told)
+        assert log.warnings[0].startswith(warning)
 
 
 def test_layers_in_degrees_are_refused(provider, context, log, out):
@@ -388,17 +368,6 @@ def write_town(folder):
 # --- rasters ----------------------------------------------------------------------------------------------------------
 
 
-def opened(path):
-    gdal.UseExceptions()
-    return gdal.Open(str(path))
-
-
-def values_of(image):
-    band = image.GetRasterBand(1)
-    raw = band.ReadRaster(buf_type=gdal.GDT_Float32)
-    return np.frombuffer(raw, np.float32).reshape(image.RasterYSize, image.RasterXSize)
-
-
 def test_a_raster_is_a_cog_at_its_place(provider, context, log, town_file, out):
     result = run("toyheights", {"INPUT": str(town_file), "TOP": str(out / "top.tif")}, context, log)
     assert result == {"TOP": str(out / "top.tif")}
@@ -444,7 +413,7 @@ def test_big_rasters_are_tiled_with_overviews(context, tmp_path, town_file):
     values = np.add.outer(np.arange(1100.0), np.arange(1300.0)).astype(np.float32)
     values[:600, :700] = np.nan
     place = place_of_cloud(read_cloud(town_file))
-    rasters.write_raster(Raster("a", "A"), Surface(values, 0, 0, 1), place, tmp_path / "a.tif", Monitor())
+    rasters.write_raster(Raster("a", "A"), RasterSurface(values, 0, 0, 1), place, tmp_path / "a.tif", Monitor())
     image = opened(tmp_path / "a.tif")
     band = image.GetRasterBand(1)
     assert band.GetBlockSize() == [512, 512]
@@ -568,7 +537,7 @@ def test_a_layer_while_or_after_which_something_fails_is_removed(
 def test_a_raster_after_which_something_fails_is_removed(provider, context, log, town_file, out, monkeypatch):
     def later(raster, surface, place, path, monitor):
         if raster.name == "floor":
-            assert (out / "top.tif").is_file()
+            assert list(out.glob("*/top.tif"))
             raise ValueError("No floor; look below.")
         rasters.write_raster(raster, surface, place, path, monitor)
 
@@ -594,7 +563,7 @@ def stop(progress, *_):
 
 def test_gdals_own_words_are_told(town_file, tmp_path, monkeypatch):
     before = gdal.GetUseExceptions()
-    surface = Surface(np.zeros((2, 2), np.float32), 0, 0, 1)
+    surface = RasterSurface(np.zeros((2, 2), np.float32), 0, 0, 1)
     place = place_of_cloud(read_cloud(town_file))
     with pytest.raises(ValueError, match=r"a\.tif can't be written \(.*No such file.*\); choose another folder"):
         rasters.write_raster(Raster("a", "A"), surface, place, tmp_path / "none" / "a.tif", Monitor())
@@ -607,6 +576,6 @@ def test_gdals_own_words_are_told(town_file, tmp_path, monkeypatch):
 
 
 def test_what_is_given_as_nothing_is_missing(provider, context):
-    source = TOYS["toy_arrows"].sources[0]
+    input_layer = TOYS["toy_arrows"].input_layers[0]
     with pytest.raises(ValueError, match="Old map"):
-        find_source(provider.algorithm("toyarrows").create(), source, {}, context)
+        find_input_layer(provider.algorithm("toyarrows").create(), input_layer, {}, context)

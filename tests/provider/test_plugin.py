@@ -126,4 +126,4 @@ def test_python_is_never_qgis_itself(monkeypatch, tmp_path):
 
 def test_packages_are_looked_up_by_import(monkeypatch):
     monkeypatch.setattr(packages.importlib.util, "find_spec", lambda name: None)
-    assert packages.missing() == ["scipy", "scikit-learn", "lazrs"]
+    assert packages.missing() == ["scipy", "scikit-learn", "laspy", "lazrs"]

@@ -11,7 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.cloud.cloud import create_cloud, read_cloud, write_cloud
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.provider.paths import PLUGIN
 
 QGIS_PROCESS = shutil.which("qgis_process", path="/usr/bin:/bin") or shutil.which("qgis_process")
@@ -62,7 +63,7 @@ class Profile:
 
 @pytest.fixture(scope="module")
 def qgis_process(tmp_path_factory):
-    return Profile(tmp_path_factory.mktemp("profile"), ("lazrs",))
+    return Profile(tmp_path_factory.mktemp("profile"), ("laspy", "lazrs"))
 
 
 @pytest.fixture(scope="module")
@@ -126,7 +127,7 @@ def test_without_its_packages_it_says_how_to_get_them(tmp_path_factory, field, t
     done = bare("run", STAGE, "--", f"INPUT={field}", f"OUTPUT={tmp_path / 'out.laz'}")
     assert done.returncode == 1
     said = done.stdout + done.stderr
-    assert "missing: lazrs" in said
+    assert "missing: laspy, lazrs" in said
     assert "-m pip install --no-deps --target" in said
-    assert f"{bare.folder}/config/profiles/default/python lazrs" in said
+    assert f"{bare.folder}/config/profiles/default/python laspy lazrs" in said
     assert "Traceback" not in said

@@ -21,15 +21,11 @@ from qgis.gui import QgsAttributeTableModel
 from qgis.PyQt.QtCore import Qt
 
 from lidar_buildings.algorithms import packages
-from lidar_buildings.algorithms.cloud.cloud import create_cloud, read_cloud, write_cloud
-from lidar_buildings.provider import clouds, memory, outputs, stage_algorithm
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
+from lidar_buildings.provider import clouds, errors, memory, stage_algorithm
 from lidar_buildings.provider.crs import crs_of, crs_units
-
-
-def run(name, parameters, context, log):
-    import processing
-
-    return processing.run(f"lidarbuildings:{name}", parameters, context=context, feedback=log, is_child_algorithm=True)
+from lidar_buildings.tests.provider.helpers import run
 
 
 def heights(path):
@@ -298,24 +294,17 @@ def test_a_cancelled_stage_is_an_error_and_leaves_nothing(provider, context, log
     assert list(out.iterdir()) == []
 
 
-def test_cancel_while_writing_leaves_nothing_and_not_the_older_result_half(
-    provider, context, log, town_file, out, monkeypatch
-):
-    target = out / "a.laz"
-
-    def cancelled(*args, **kwargs):
-        write_cloud(*args, **kwargs)
-        log.cancel()
-
-    monkeypatch.setattr(outputs, "write_cloud", cancelled)
-    with pytest.raises(QgsProcessingException, match="Cancelled"):
-        run("toylift", {"INPUT": str(town_file), "OUTPUT": str(target)}, context, log)
+def test_the_user_can_cancel(provider, context, log, town_file, out):
+    log.cancel()
+    assert run("toylift", {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz")}, context, log) == {}
     assert list(out.iterdir()) == []
 
 
-def test_the_user_can_cancel(provider, context, log, town_file, out):
+def test_on_the_command_line_a_cancel_is_an_error(provider, context, log, town_file, out, monkeypatch):
+    """Otherwise its exit code would be 0."""
+    monkeypatch.setattr(errors, "on_command_line", lambda: True)
     log.cancel()
-    with pytest.raises(QgsProcessingException, match="Cancelled"):
+    with pytest.raises(QgsProcessingException, match="Cancelled; nothing was written"):
         run("toylift", {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz")}, context, log)
 
 
@@ -368,6 +357,24 @@ def test_a_layer_is_styled_when_it_is_loaded(provider, context, log, town_file, 
     table.loadLayer()
     # 49 points at 9 m and 351 at 3 m, in single precision.
     assert table.data(table.index(0, height), Qt.ItemDataRole.DisplayRole) == "3.735"
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "expected"),
+    [
+        ("toyoutline", "Footprints", "Footprints (town)"),
+        ("toyoutline", "My houses", "My houses"),
+        ("toychain", "Footprints", "Footprints (town)"),
+    ],
+)
+def test_layers_are_named_after_what_they_are_of(provider, context, log, town_file, out, name, given, expected):
+    """Two runs gave two layers "Footprints"."""
+    definition = shown(out / "f.gpkg", context)
+    definition.destinationName = given
+    cloud = {"OUTPUT": str(out / "a.las")} if name == "toychain" else {}
+    run(name, {"INPUT": str(town_file), "FOOTPRINTS": definition, **cloud}, context, log)
+    (details,) = context.layersToLoadOnCompletion().values()
+    assert details.name == expected
 
 
 def test_missing_packages_are_told_everywhere(provider, context, log, town_file, out, monkeypatch):

@@ -6,26 +6,32 @@ import numpy as np
 import pytest
 from osgeo import gdal
 from qgis.core import (
+    Qgis,
+    QgsAbstract3DSymbol,
     QgsExpression,
     QgsExpressionContext,
     QgsFeature,
     QgsGeometry,
     QgsPointCloudLayer,
+    QgsProcessingContext,
     QgsRasterLayer,
     QgsVectorLayer,
 )
+from qgis.PyQt import sip
+from qgis.PyQt.QtCore import QCoreApplication
 
-from lidar_buildings.algorithms.buildings.reasons import Reason
-from lidar_buildings.algorithms.buildings.wall_footprints import ROOF, WALL
 from lidar_buildings.algorithms.cloud.asprs import PointClass
-from lidar_buildings.algorithms.cloud.cloud import create_cloud, write_cloud
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.dimensions import DIMENSIONS
-from lidar_buildings.algorithms.features.dimensionality import Dimensionality
-from lidar_buildings.algorithms.quality import corners
-from lidar_buildings.algorithms.quality.buildings import FOUND, INVENTED, INVENTED_PART, MISSED, MISSED_PART
+from lidar_buildings.algorithms.cloud.files import write_cloud
+from lidar_buildings.algorithms.cloud.reasons import Reason
+from lidar_buildings.algorithms.features.classify_dimensionality import Dimensionality
+from lidar_buildings.algorithms.quality import compare_corners as corners
+from lidar_buildings.algorithms.quality.assess_buildings import FOUND, INVENTED, INVENTED_PART, MISSED, MISSED_PART
+from lidar_buildings.algorithms.walls.extract_wall_footprints import ROOF, WALL
 from lidar_buildings.provider.paths import STYLES
-from lidar_buildings.provider.styles import cloud_style, layer_style
-from lidar_buildings.tests.provider.toys import TOYS
+from lidar_buildings.provider.styles import Styler, cloud_style, layer_style, load_from, show_on_load, stack_results
+from lidar_buildings.tests.toys import TOYS
 
 OF_CLOUDS = sorted(path.stem for path in STYLES.glob("*.qml") if path.stem in DIMENSIONS)
 
@@ -46,6 +52,56 @@ def test_styles_of_clouds_load(stem, cloud_file, qgis_application):
     message, loaded = layer.loadNamedStyle(str(STYLES / f"{stem}.qml"))
     assert loaded, message
     assert layer.renderer().attribute() == DIMENSIONS[stem].disk[0]
+
+
+def test_results_are_stacked_by_kind(context):
+    """They were stacked by the names of their files: a cloud hid its footprints."""
+    for path in ("a.gpkg", "b.laz", "c.tif", "d.gpkg"):
+        context.addLayerToLoadOnCompletion(path, QgsProcessingContext.LayerDetails(path, context.project()))
+    for path, kind in (("a.gpkg", "Polygon"), ("b.laz", "Cloud"), ("c.tif", "Raster"), ("d.gpkg", "LineString")):
+        show_on_load(context, path, kind, None)
+    load_from(context, lambda path: f"moved_{path}")
+    keys = {path: details.layerSortKey for path, details in context.layersToLoadOnCompletion().items()}
+    assert sorted(keys, key=keys.get) == ["moved_c.tif", "moved_b.laz", "moved_a.gpkg", "moved_d.gpkg"]
+
+
+@pytest.mark.parametrize("order", [(0, 1, 2), (2, 1, 0), (1, 0, 2)])
+def test_results_are_stacked_by_kind_among_other_layers_too(context, order):
+    """Where a layer was selected, as after every run, QGIS put the cloud over its footprints again."""
+    names = ("cloud", "polygons", "lines")
+    layers = [QgsVectorLayer("Polygon", name, "memory") for name in names]
+    others = [QgsVectorLayer("Polygon", name, "memory") for name in ("above", "below")]
+    added = [others[0], *(layers[i] for i in order), others[1]]
+    context.project().addMapLayers(added, False)
+    for layer in added:
+        context.project().layerTreeRoot().addLayer(layer)
+    for layer, kind in zip(layers, ("Cloud", "Polygon", "LineString")):
+        context.addLayerToLoadOnCompletion(layer.id(), QgsProcessingContext.LayerDetails("", context.project()))
+        show_on_load(context, layer.id(), kind, None)
+    stack_results(context)
+    QCoreApplication.processEvents()
+    drawn = [layer.name() for layer in context.project().layerTreeRoot().layerOrder()]
+    assert drawn == ["above", "lines", "polygons", "cloud", "below"]
+    assert len(context.project().mapLayers()) == len(added)
+
+
+def test_clouds_are_drawn_in_3d_as_on_the_map(cloud_file, context, log):
+    layer = QgsPointCloudLayer(str(cloud_file), "cloud", "copc")
+    Styler("classification").postProcessLayer(layer, context, log)
+    assert layer.renderer3D().symbol().symbolType() == "classification"
+
+
+def test_footprints_stand_on_the_ground_in_3d(qgis_application):
+    from qgis._3d import Qgs3D, QgsPolygon3DSymbol, QgsVectorLayer3DRenderer
+
+    Qgs3D.initialize()
+    layer = QgsVectorLayer("Polygon?field=height:double&field=ground_elevation:double", "f", "memory")
+    layer.loadNamedStyle(str(STYLES / "footprints.qml"))
+    symbol = sip.cast(sip.cast(layer.renderer3D(), QgsVectorLayer3DRenderer).symbol(), QgsPolygon3DSymbol)
+    assert symbol.altitudeClamping() == Qgis.AltitudeClamping.Absolute
+    properties = symbol.dataDefinedProperties()
+    assert properties.property(QgsAbstract3DSymbol.Property.ExtrusionHeight).field() == "height"
+    assert properties.property(QgsAbstract3DSymbol.Property.Height).field() == "ground_elevation"
 
 
 def test_every_class_has_a_color(cloud_file, qgis_application):

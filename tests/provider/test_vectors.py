@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from qgis.core import Qgis
 
-from lidar_buildings.algorithms.stage import Features, Field, Layer
+from lidar_buildings.algorithms.stage import Field, Layer, LayerFeatures
 from lidar_buildings.provider.vectors import fields_of, plain, qgis_features, wkb_type
 
 FIELDS = (Field("id", int, "Number."), Field("height", float, "Height.", "m"), Field("word", str, "Word."))
@@ -40,7 +40,9 @@ def shifted(coordinates):
 )
 def test_geometries_come_out_in_map_coordinates(kind, geometry, wkb, wkt):
     layer = Layer("things", "Things", kind, FIELDS)
-    features = Features([geometry], {"id": np.array([3], np.int32), "height": np.array([2.5], "f4"), "word": ["a"]})
+    features = LayerFeatures(
+        [geometry], {"id": np.array([3], np.int32), "height": np.array([2.5], "f4"), "word": ["a"]}
+    )
     (feature,) = qgis_features(layer, features, shifted)
     assert feature.geometry().wkbType() == wkb == wkb_type(layer, features)
     assert feature.geometry().asWkt(0).endswith(wkt)
@@ -50,7 +52,7 @@ def test_geometries_come_out_in_map_coordinates(kind, geometry, wkb, wkt):
 
 def test_nothing_found_is_an_empty_layer():
     layer = Layer("things", "Things", "Polygon", FIELDS)
-    empty = Features([], {"id": [], "height": [], "word": []})
+    empty = LayerFeatures([], {"id": [], "height": [], "word": []})
     assert list(qgis_features(layer, empty, shifted)) == []
     assert wkb_type(layer, empty) == Qgis.WkbType.Polygon
     assert fields_of(layer).names() == ["id", "height", "word"]

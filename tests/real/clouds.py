@@ -14,16 +14,36 @@ from types import ModuleType
 import numpy as np
 
 from lidar_buildings.algorithms.cloud.asprs import PointClass
-from lidar_buildings.algorithms.cloud.cloud import Cloud, create_cloud, read_cloud
-from lidar_buildings.algorithms.cloud.density import point_density
-from lidar_buildings.algorithms.pipelines import PIPELINES, run_pipeline
-from lidar_buildings.algorithms.run import run_stage
-from lidar_buildings.algorithms.stage import Features
+from lidar_buildings.algorithms.cloud.cloud import Cloud, create_cloud
+from lidar_buildings.algorithms.cloud.files import read_cloud
+from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.run import run_pipeline, run_stage
+from lidar_buildings.algorithms.sampling.density import point_density
+from lidar_buildings.algorithms.stage import LayerFeatures
 from lidar_buildings.algorithms.stages import STAGES
 
 # A folder beside the checkout, or wherever the variable says: clouds with their truth, in folders by subject.
 DATA = Path(os.environ.get("LIDAR_BUILDINGS_DATA", Path(__file__).resolve().parents[3] / "shared" / "data"))
 SCORER = DATA.parent / "tools" / "score.py"
+
+# The clouds of the tables, as "<folder>/<cloud>".
+DELFT = "buildings/ahn3-delft"
+WITH_BUILDINGS = (
+    DELFT,
+    "buildings/ahn3-delft-4",
+    "buildings/ign-stbarth",
+    "buildings/ign-stbarth-4",
+    "buildings/ahn-amsterdam-1",
+    "buildings/ign-chalet",
+)
+WITHOUT_BUILDINGS = ("buildings/ign-forest-none", "buildings/ign-bridge-none")
+
+# Samples of the filter test of ISPRS WG III/3, and a town.
+GROUND_SAMPLES = tuple(f"ground/samp{number}" for number in (11, 12, 22, 31, 41, 52, 53, 61))
+GROUND_IN_TOWN = (DELFT,)
+
+# A cloud with the points that its makers rejected.
+OUTLIERS = "outliers/ign-crop3"
 
 # Cells in which the area that is called building is counted (m): every roof cell should hold a point.
 _CELL, _SPARSE_CELL, _SPARSE_DENSITY = 0.5, 1.0, 6.0
@@ -34,7 +54,7 @@ class Result:
     """What a stage or chain made of a cloud, with nothing set, and how long it took (s)."""
 
     cloud: Cloud
-    layers: dict[str, Features]
+    layers: dict[str, LayerFeatures]
     seconds: float
 
     @property

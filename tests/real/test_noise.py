@@ -8,9 +8,7 @@ are those far off, and no good point may be lost.
 import numpy as np
 
 from lidar_buildings.algorithms.cloud.asprs import NOISE
-from lidar_buildings.tests.real.clouds import classified, score, truth
-
-NAME = "outliers/ign-crop3"
+from lidar_buildings.tests.real.clouds import OUTLIERS, classified, score, truth
 
 # Percent of all rejected points that are found.
 REACHED = 10.2
@@ -21,7 +19,7 @@ HIGHEST = 250.0
 
 
 def result():
-    return classified(NAME, "classify_noise_histogram")
+    return classified(OUTLIERS, "classify_noise_histogram")
 
 
 def test_every_point_far_off_is_found():
@@ -31,8 +29,8 @@ def test_every_point_far_off_is_found():
 
 
 def test_no_good_point_is_called_noise():
-    assert not np.isin(result().classification[truth(NAME) != 65], NOISE).any()
+    assert not np.isin(result().classification[truth(OUTLIERS) != 65], NOISE).any()
 
 
 def test_rejected_points_are_found_as_well_as_before():
-    assert score("noise", NAME, result())["completeness"] >= REACHED - MARGIN
+    assert score("noise", OUTLIERS, result())["completeness"] >= REACHED - MARGIN

@@ -1,54 +1,21 @@
-"""Polygon validity by the rules of OGC Simple Features, literally and slowly, for all tests of outlines."""
+"""The scene that most tests of classified buildings begin with."""
 
-import itertools
-
+import numpy as np
 import pytest
 
-
-def cross(o, a, b):
-    return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0])
-
-
-def strictly_cross(a, b, c, d):
-    return cross(a, b, c) * cross(a, b, d) < 0 and cross(c, d, a) * cross(c, d, b) < 0
+from lidar_buildings.tests.algorithms.buildings.parts import clusters
+from lidar_buildings.tests.builders import crown, roof
 
 
-def on_segment(point, a, b):
-    inside_box = all(min(p, q) <= v <= max(p, q) for v, p, q in zip(point, a, b))
-    return inside_box and cross(a, b, point) == 0
+@pytest.fixture
+def garden(rng):
+    """Three roofs and three crowns: clusters 1 to 6."""
+    roofs = [roof(rng, 0, 0), roof(rng, 20, 0, 6, 6, 4), roof(rng, 40, 0, 20, 10, 9)]
+    crowns = [crown(rng, 5, 30), crown(rng, 25, 30, 4, 9, 900), crown(rng, 45, 30, 2.5, 5, 250)]
+    return clusters(*roofs, *crowns)
 
 
-def inside(point, ring):
-    """Whether a point is inside a ring or on its border."""
-    odd = False
-    for a, b in zip(ring, ring[1:]):
-        if on_segment(point, a, b):
-            return True
-        if (a[1] > point[1]) != (b[1] > point[1]):
-            odd ^= point[0] < a[0] + (point[1] - a[1]) * (b[0] - a[0]) / (b[1] - a[1])
-    return odd
-
-
-def area(ring):
-    return sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(ring, ring[1:])) / 2
-
-
-def check(rings):
-    start = rings[0][0]
-    rings = [[tuple(point) for point in (ring - start).tolist()] for ring in rings]
-    for number, ring in enumerate(rings):
-        assert ring[0] == ring[-1], "a ring is open"
-        assert len(ring) >= 4
-        assert len(set(ring[:-1])) == len(ring) - 1, "a ring touches itself"
-        assert area(ring) < 0 if number else area(ring) > 0, "a ring runs the wrong way"
-    segments = [pair for ring in rings for pair in zip(ring, ring[1:])]
-    for (a, b), (c, d) in itertools.combinations(segments, 2):
-        assert not strictly_cross(a, b, c, d), "walls cross"
-    for hole in rings[1:]:
-        assert all(inside(point, rings[0]) for point in hole), "a hole is outside"
-
-
-@pytest.fixture(scope="session")
-def assert_valid():
-    """Fail unless rings are a valid polygon: exterior counterclockwise, holes clockwise and inside, no crossing."""
-    return check
+@pytest.fixture
+def lawn(rng):
+    """Points of the ground under the crowns of the garden: the beam passed these."""
+    return np.column_stack([rng.uniform([-1, 24], [50, 36], (4000, 2)), rng.normal(0, 0.02, 4000)])

@@ -5,8 +5,9 @@ import struct
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.cloud.cloud import create_cloud, read_cloud, write_cloud
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.dimensions import DIMENSIONS
+from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.stage import Monitor
 from lidar_buildings.tests.monitors import Listening
 
@@ -222,7 +223,7 @@ def test_wkt_that_is_supplied_later_is_written_to_formats_that_need_it(make_las,
 
 @pytest.mark.parametrize("name", ["b.las", "b.laz", "b.copc.laz"])
 def test_progress_is_told_in_order(make_las, tmp_path, monkeypatch, name):
-    monkeypatch.setattr("lidar_buildings.algorithms.cloud.las.AT_ONCE", 10)
+    monkeypatch.setattr("lidar_buildings.algorithms.cloud.points.AT_ONCE", 10)
     monkeypatch.setattr("lidar_buildings.algorithms.cloud.copc.AT_ONCE", 10)
 
     reading, writing = Listening(), Listening()
@@ -307,7 +308,7 @@ def test_any_dimension_goes_by_the_name_it_has_in_the_file(make_las):
     np.testing.assert_array_equal(cloud.named("HeightAboveGround"), np.arange(20))
     np.testing.assert_array_equal(cloud.named("height above ground"), np.arange(20))
     np.testing.assert_array_equal(cloud.named(" Red "), cloud.get("red"))
-    np.testing.assert_array_equal(cloud.named("ScannerChannel"), cloud.points["flag_byte"] >> 4 & 3)
+    np.testing.assert_array_equal(cloud.named("ScannerChannel"), cloud.points["classification_flags"] >> 4 & 3)
     np.testing.assert_allclose(cloud.named("x"), cloud.points["X"] * 0.01 + 600_000)
     with pytest.raises(ValueError, match=r"no dimension 'Nir'; it has X, Y, Z, .*Amplitude \[dB\]"):
         cloud.named("Nir")

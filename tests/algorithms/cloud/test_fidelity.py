@@ -6,7 +6,7 @@ import struct
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.cloud.cloud import read_cloud, write_cloud
+from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.stage import Monitor
 
 from .conftest import FORMATS, RECORD_SIZES, descriptor, evlr, random_records, vlr
@@ -192,7 +192,7 @@ def test_classes_up_to_31_keep_the_format(made, take_apart, tmp_path):
 
 
 def test_many_chunks_keep_the_order(make_las, take_apart, tmp_path, monkeypatch):
-    monkeypatch.setattr("lidar_buildings.algorithms.cloud.las.AT_ONCE", 700)
+    monkeypatch.setattr("lidar_buildings.algorithms.cloud.points.AT_ONCE", 700)
     path = make_las(records=random_records(3, RECORD_SIZES[3], 5000), point_format=3, minor=2)
     write_cloud(read_cloud(path), tmp_path / "a.laz")
     write_cloud(read_cloud(tmp_path / "a.laz"), tmp_path / "b.las")

@@ -2,13 +2,19 @@
 
 import errno
 import os
+import subprocess
+import sys
+import time
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.cloud import outputs
-from lidar_buildings.algorithms.cloud.cloud import check_write, create_cloud, read_cloud, write_cloud
-from lidar_buildings.algorithms.cloud.views import copc_path
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.copc_sidecar import copc_path
+from lidar_buildings.algorithms.cloud.files import check_write, read_cloud, write_cloud
+from lidar_buildings.algorithms.cloud.outputs import all_or_nothing, replacing
 from lidar_buildings.algorithms.stage import Cancelled
 from lidar_buildings.tests.monitors import Listening
 
@@ -193,3 +199,133 @@ def test_writing_twice_gives_the_same_bytes(cloud, folder):
         write_cloud(cloud, folder / name)
     assert (folder / "a.laz").read_bytes() == (folder / "b.laz").read_bytes()
     np.testing.assert_array_equal(read_cloud(folder / "a.laz").points, cloud.points)
+
+
+def names(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_files_of_a_run_take_their_places_together(folder):
+    old, new = folder / "old.txt", folder / "new.txt"
+    old.write_text("older")
+    with all_or_nothing() as files:
+        for target in (old, new):
+            files.beside(target).write_text("newer")
+        assert old.read_text() == "older"
+        assert not new.exists()
+    assert [old.read_text(), new.read_text()] == ["newer", "newer"]
+    assert names(folder) == ["new.txt", "old.txt"]
+
+
+def test_a_run_that_fails_removes_nothing_that_another_one_wrote(folder):
+    """A second run of the same outputs ended well while the first was busy; the first was cancelled then."""
+    target = folder / "a.txt"
+
+    def cancelled():
+        with all_or_nothing() as files:
+            files.beside(target).write_text("mine")
+            target.write_text("of the other run")
+            raise Cancelled
+
+    pytest.raises(Cancelled, cancelled)
+    assert target.read_text() == "of the other run"
+    assert names(folder) == ["a.txt"]
+
+
+def test_if_one_file_can_not_be_put_in_place_the_others_are_as_before(folder):
+    first, second, third = (folder / name for name in ("a.txt", "b.txt", "c.txt"))
+    first.write_text("older")
+
+    def blocked():
+        with all_or_nothing() as files:
+            for target in (first, second, third):
+                files.beside(target).write_text("newer")
+            (third / "of the user").mkdir(parents=True)
+
+    with pytest.raises(ValueError, match="c.txt can't be written \\(a folder is in its place\\)"):
+        blocked()
+    assert first.read_text() == "older"
+    assert names(folder) == ["a.txt", "c.txt"]
+    assert names(third) == ["of the user"]
+
+
+def test_what_belongs_to_an_older_file_goes_with_it(folder):
+    target, journal = folder / "a.db", folder / "a.db-wal"
+    journal.write_text("of the older file")
+
+    def cancelled():
+        with all_or_nothing() as files:
+            files.beside(target, [journal]).write_text("newer")
+            raise Cancelled
+
+    pytest.raises(Cancelled, cancelled)
+    assert names(folder) == ["a.db-wal"]
+    with all_or_nothing() as files:
+        files.beside(target, [journal]).write_text("newer")
+    assert names(folder) == ["a.db"]
+
+
+def test_links_are_followed_and_permissions_kept(folder, tmp_path):
+    (tmp_path / "elsewhere").mkdir()
+    real = tmp_path / "elsewhere" / "real.laz"
+    real.write_text("older")
+    real.chmod(0o664)
+    (folder / "link.laz").symlink_to(real)
+    with replacing(folder / "link.laz") as stream:
+        stream.write(b"newer")
+    assert (folder / "link.laz").is_symlink()
+    assert real.read_text() == "newer"
+    assert real.stat().st_mode & 0o777 == 0o664
+
+
+def test_a_device_is_refused(folder):
+    (folder / "a.txt").symlink_to("/dev/null")
+    with pytest.raises(ValueError, match="no ordinary file"), replacing(folder / "a.txt"):
+        pass
+    assert Path("/dev/null").is_char_device()
+
+
+def test_a_name_may_be_as_long_as_the_file_system_allows(cloud, folder):
+    target = folder / ("a" * 246 + ".copc.laz")
+    assert len(target.name) == 255
+    write_cloud(cloud, target)
+    assert names(folder) == [target.name]
+
+
+KILLED = """
+import sys, os, conftest
+from pathlib import Path
+from lidar_buildings.algorithms.cloud.outputs import all_or_nothing
+with all_or_nothing() as files:
+    files.beside(Path(sys.argv[1])).write_text("half of a large file")
+    os._exit(9)
+"""
+
+
+def test_what_a_killed_run_left_is_swept_and_what_a_running_one_writes_is_not(folder):
+    root = Path(__file__).parents[3]
+    done = subprocess.run([sys.executable, "-c", KILLED, str(folder / "a.txt")], cwd=root, check=False)
+    assert done.returncode == 9
+    (left,) = folder.iterdir()
+    with all_or_nothing() as running:
+        beside = running.beside(folder / "a.txt")
+        beside.write_text("of a run that goes on")
+        for path in (left, beside.parent):
+            os.utime(path, (time.time() - 60,) * 2)
+        with replacing(folder / "a.txt") as stream:
+            stream.write(b"newer")
+        assert names(folder) == sorted(["a.txt", beside.parent.name])
+    assert (folder / "a.txt").read_text() == "of a run that goes on"
+    assert names(folder) == ["a.txt"]
+
+
+def test_a_folder_of_someone_else_is_not_swept(folder):
+    theirs, empty = folder / ".lb-theirs.part", folder / ".lb-empty.part"
+    for path in (theirs, empty):
+        path.mkdir()
+    (theirs / "notes.txt").write_text("not ours")
+    os.utime(empty, (time.time() - 60,) * 2)
+    os.utime(theirs, (time.time() - 60,) * 2)
+    with replacing(folder / "a.txt") as stream:
+        stream.write(b"newer")
+    assert names(folder) == [theirs.name, "a.txt"]

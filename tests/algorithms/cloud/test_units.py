@@ -4,8 +4,8 @@ import struct
 
 import pytest
 
-from lidar_buildings.algorithms.cloud.header import Header, Record
-from lidar_buildings.algorithms.cloud.units import UNKNOWN, crs_identity, crs_records, units_of, units_of_wkt, wkt_of
+from lidar_buildings.algorithms.cloud.header import Header, Vlr
+from lidar_buildings.algorithms.cloud.units import NO_CRS, crs_identity, crs_records, units_of, units_of_wkt, wkt_of
 
 FOOT, SURVEY_FOOT = 0.3048, 1200 / 3937
 GEOGCS = (
@@ -76,16 +76,16 @@ def test_what_is_no_plane_is_refused(wkt, what):
     "text", ["", '"', "PROJCS", "PROJCS[", "]", "[[", "1,2,3", '"a"]', "A[" * 100, 'VERT_CS["h",UNIT["foot",0.3048]]']
 )
 def test_what_is_no_wkt_is_unknown(text):
-    assert units_of_wkt(text).warning == UNKNOWN
+    assert units_of_wkt(text).warning == NO_CRS
 
 
 def geokeys(*pairs, doubles=()):
     numbers = [1, 1, 0, len(pairs)]
     for key, value in pairs:
         numbers += [key, 34736, 1, 0] if value == "double" else [key, 0, 1, value]
-    records = [Record(b"LASF_Projection", 34735, struct.pack(f"<{len(numbers)}H", *numbers))]
+    records = [Vlr(b"LASF_Projection", 34735, struct.pack(f"<{len(numbers)}H", *numbers))]
     if doubles:
-        records.append(Record(b"LASF_Projection", 34736, struct.pack(f"<{len(doubles)}d", *doubles)))
+        records.append(Vlr(b"LASF_Projection", 34736, struct.pack(f"<{len(doubles)}d", *doubles)))
     return Header(vlrs=records, encoding=0)
 
 
@@ -141,13 +141,13 @@ def test_projected_code_that_turns_out_geographic_is_refused():
 
 
 def test_nothing_is_meters_with_a_warning():
-    assert units_of(Header()).warning == UNKNOWN
-    assert units_of(geokeys()).warning == UNKNOWN
+    assert units_of(Header()).warning == NO_CRS
+    assert units_of(geokeys()).warning == NO_CRS
 
 
 def test_bit_of_the_header_decides_between_wkt_and_geokeys():
     header = geokeys((1024, 1), (3072, 2264), (3076, 9003))
-    header.vlrs.append(Record(b"LASF_Projection", 2112, b'PROJCS["m",UNIT["metre",1]]\0'))
+    header.vlrs.append(Vlr(b"LASF_Projection", 2112, b'PROJCS["m",UNIT["metre",1]]\0'))
     assert wkt_of(header) == "EPSG:2264"
     assert units_of(header).horizontal == SURVEY_FOOT
     header.encoding = 16

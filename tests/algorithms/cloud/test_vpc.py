@@ -5,7 +5,8 @@ import json
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.cloud.cloud import create_cloud, read_cloud, write_cloud
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.stage import Monitor
 
 from .conftest import descriptor, random_records, vlr

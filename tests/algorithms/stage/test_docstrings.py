@@ -11,7 +11,7 @@ def toy_words(
     *,
     width: Annotated[float, Param("Width", "How wide.", unit="m", low=0)] = 2.0,
     count: Annotated[Optional[int], Param("Count", "How many.", low=1, automatic="all.")] = None,
-    color: Annotated[Optional[str], Param("Color", "Which.", automatic="none; it stays as it is.")] = None,
+    color: Annotated[Optional[str], Param("Color", "Which.", empty="it stays as it is.")] = None,
     monitor=None,
 ):
     """Say something in one paragraph.
@@ -54,9 +54,9 @@ def test_help_shows_tunables_as_the_dialog_does():
         "count : int or None, at least 1, default None",
         "    How many. Automatic: all.",
         "color : str or None, default None",
-        "    Which. Empty: none; it stays as it is.",
+        "    Which. Empty: it stays as it is.",
         "monitor : Monitor, optional",
-        "    Hears progress, automatic values and warnings.",
+        "    Receives progress, automatic values and warnings.",
     ]
 
 

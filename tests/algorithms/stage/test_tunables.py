@@ -64,8 +64,8 @@ def test_an_open_bound_is_none_of_the_values():
 
 def test_words_must_be_among_the_choices():
     way = Param("Way", "Which.", choices=("up", "down"))
-    for kind, value in ((str, "left"), (tuple, ("up", "left"))):
-        with pytest.raises(ValueError, match=r"Way \(width\) must be one of up, down, got"):
+    for kind, value, allowed in ((str, "left", "one of up, down"), (tuple, ("up", "left"), "any of up, down")):
+        with pytest.raises(ValueError, match=rf"Way \(width\) must be {allowed}, got"):
             tunable(kind, "up", way).check(value)
     assert tunable(tuple, (), way).check(()) == ()
 
@@ -84,16 +84,21 @@ def test_nothing_is_a_value_of_automatic_tunables_alone():
         (Param("a", "b", high=7, open_high=True), "less than 7"),
         (Param("a", "b", high=10_000_000), "at most 10,000,000"),
         (Param("a", "b", high=2.5), "at most 2.5"),
-        (Param("a", "b", choices=("x", "y")), "one of x, y"),
         (Param("a", "b"), ""),
     ],
 )
-def test_range_in_words(param, words):
-    assert param.range == words
+def test_bounds_in_words(param, words):
+    assert param.bounds == Tunable("a", float, 1.0, param).range == words
+
+
+def test_choices_in_words():
+    param = Param("a", "b", choices=("x", "one of"))
+    assert Tunable("a", str, "x", param).range == "one of x, one of"
+    assert Tunable("a", tuple, ("x",), param).range == "any of x, one of"
 
 
 def test_what_an_automatic_tunable_is_when_nobody_sets_it():
-    found, without = Param("a", "b", automatic="the spacing."), Param("a", "b", automatic="none; all stay.")
+    found, without = Param("a", "b", automatic="the spacing."), Param("a", "b", empty="all stay.")
     assert (found.unset, found.unset_text) == ("automatic", "Automatic: the spacing.")
-    assert (without.unset, without.unset_text) == ("none", "Empty: none; all stay.")
+    assert (without.unset, without.unset_text) == ("none", "Empty: all stay.")
     assert Param("a", "b").unset_text == ""

@@ -1,0 +1,105 @@
+"""What was decided of each cluster: confidence and reason, by entropy at first, and written to its points at last."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Optional
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from ..cloud.reasons import Reason
+from ..stage import Monitor, Report
+from .cluster_entropies import ClusterEntropies
+from .cluster_report import Clusters, build_report
+from .entropy_split import Split
+
+# Points of a cluster, in points of the smallest building, at which its confidence loses half of what it has over 0.5.
+# A car is as large as the smallest building and can look like a roof; confidence only, no decision depends on it.
+_HALF_SUPPORT = 2.0
+
+
+@dataclass(frozen=True)
+class Decisions:
+    """The confidence (m,) that each cluster is a building, more than 0.5 if it is called one, and the reason (m,)."""
+
+    confidence: np.ndarray
+    reasons: np.ndarray
+
+    @property
+    def is_building(self) -> np.ndarray:
+        """Which clusters (m,) are called buildings."""
+        return self.confidence > 0.5
+
+
+def decide_by_entropy(means: np.ndarray, split: Split) -> Decisions:
+    """Decide on clusters by their mean entropies (m,) alone."""
+    confidence = split.confidence(means)
+    reasons = np.where(confidence > 0.5, Reason.PLANE, Reason.ROUGH)
+    if not split.separates:
+        reasons[:] = Reason.ALIKE
+    undefined = ~np.isfinite(means)
+    reasons[undefined] = Reason.WITHOUT_ENTROPY
+    return Decisions(np.where(undefined, 0.5, confidence), reasons.astype(np.uint8))
+
+
+def written_to_points(
+    classification: np.ndarray,
+    reason: Optional[np.ndarray],
+    entropies: ClusterEntropies,
+    decisions: Decisions,
+    smallest: float,
+    report: Report,
+) -> tuple[Any, ...]:
+    """Return what a stage that classifies buildings returns.
+
+    Parameters
+    ----------
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes.
+    reason : ndarray of shape (n,), uint8, optional
+        Reasons that the segmentation gave to points outside the clusters, which they keep.
+    entropies : ClusterEntropies
+        Entropies of the clustered points, and the clusters.
+    decisions : Decisions
+        What was decided of the clusters.
+    smallest : float
+        Points of the smallest building.
+    report : Report
+        Returned last.
+    """
+    confidence = _supported(decisions.confidence, entropies.sizes / smallest)
+    rows, position = entropies.rows, entropies.position
+    classes, why = _without_buildings(classification, reason)
+    classes[rows[decisions.is_building[position]]] = PointClass.BUILDING
+    why[rows] = decisions.reasons[position]
+    per_point = (entropies.values, entropies.means[position], confidence[position])
+    return classes, *(_at_points(values, rows, len(classes)) for values in per_point), why, report
+
+
+def no_clusters(classification: np.ndarray, reason: Optional[np.ndarray], monitor: Monitor) -> tuple[Any, ...]:
+    """Return what a stage that classifies buildings returns where there are no clusters."""
+    monitor.warn("There are no clusters, so no buildings were found.")
+    classes, why = _without_buildings(classification, reason)
+    undefined = (np.full(len(classes), np.nan, np.float32) for _ in range(3))
+    return classes, *undefined, why, build_report(Clusters.none())
+
+
+def _supported(confidence: np.ndarray, size: np.ndarray) -> np.ndarray:
+    """Return the confidence (m,) of clusters with ``size`` times the points of the smallest building."""
+    support = size**2 / (size**2 + _HALF_SUPPORT**2)
+    return np.where(confidence > 0.5, 0.5 + (confidence - 0.5) * support, confidence)
+
+
+def _without_buildings(classification: np.ndarray, reason: Optional[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the classes with earlier buildings unclassified, and the reasons given so far."""
+    classes = np.where(classification == PointClass.BUILDING, np.uint8(PointClass.UNCLASSIFIED), classification)
+    why = np.zeros(len(classes), np.uint8) if reason is None else reason.astype(np.uint8)
+    return classes.astype(np.uint8), why
+
+
+def _at_points(values: np.ndarray, rows: np.ndarray, n_points: int) -> np.ndarray:
+    """Return values (n_points,), float32, of which those of some ``rows`` are known, NaN elsewhere."""
+    whole = np.full(n_points, np.nan, np.float32)
+    whole[rows] = values
+    return whole

@@ -1,0 +1,155 @@
+"""What a scanner tells of clusters beside entropy: penetration by the beam, adjacent clusters, surroundings."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Optional
+
+import numpy as np
+
+from ..cloud.reasons import Reason
+from ..segmentation.cluster_measures import (
+    grow_to_adjacent_clusters,
+    non_last_return_share,
+    penetration,
+    plan_areas,
+    points_below_share,
+    share_around,
+)
+from .cluster_decisions import Decisions
+
+# Planar clusters larger than this, in minimum building areas, are never vegetation: smooth spots of crowns are smaller.
+# If the beam penetrates them they are glass.
+_LARGE_PLANE = 10.0
+
+# Share of a cluster's points that are not last returns, below which it may be the edge of a roof: some pulses split
+# there, in leaves most do.
+_MAX_SPLIT_AT_EDGES = 0.3
+
+# Least share of building points around a balcony or terrace, past which walls and lower floors are seen.
+_MIN_SHARE_AT_BALCONIES = 0.5
+
+
+@dataclass(frozen=True)
+class ClusterEvidence:
+    """Clusters (m,) among all points (n,) of a cloud.
+
+    Attributes
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates (m).
+    group : ndarray of shape (n,), int
+        Cluster of each point from 0, negative for none.
+    numbers : ndarray of shape (m,), int
+        The clusters that have points, ascending.
+    density : float
+        Points per square meter.
+    min_area : float
+        Area of the smallest building, m².
+    return_number, number_of_returns : ndarray of shape (n,), optional
+        Where the scanner numbered its returns.
+    """
+
+    xyz: np.ndarray
+    group: np.ndarray
+    numbers: np.ndarray
+    density: float
+    min_area: float
+    return_number: Optional[np.ndarray]
+    number_of_returns: Optional[np.ndarray]
+
+    @cached_property
+    def areas(self) -> np.ndarray:
+        """The area (m,) of each cluster in plan, m²."""
+        member = self.group >= 0
+        return plan_areas(self.xyz[member], self.group[member], self.density)[self.numbers]
+
+    def penetration(self) -> np.ndarray:
+        """Return the share (m,) of the beam that passes through each cluster."""
+        through = penetration(self.xyz, self.group, self.density, self.return_number, self.number_of_returns)
+        return through[self.numbers]
+
+    def points_below_share(self, is_chosen: np.ndarray) -> np.ndarray:
+        """Return the share (m,) of points that lie below each of the chosen clusters (m,), 0 for others."""
+        shares = np.zeros(len(self.numbers))
+        if is_chosen.any():
+            group = np.where(np.append(self._by_number(is_chosen), False)[self.group], self.group, -1)
+            shares[is_chosen] = points_below_share(self.xyz, group, self.density)[self.numbers[is_chosen]]
+        return shares
+
+    def non_last_return_share(self) -> np.ndarray:
+        """Return the share (m,) of each cluster's points that are not the last return of their pulse."""
+        return non_last_return_share(self.group, self.return_number, self.number_of_returns)[self.numbers]
+
+    def share_around(self, is_chosen: np.ndarray) -> np.ndarray:
+        """Return the share (m,) of the points around each cluster that belong to the chosen clusters (m,)."""
+        return share_around(self.xyz, self.group, self._by_number(is_chosen))[self.numbers]
+
+    def with_adjacent(self, is_solid: np.ndarray, is_plane: np.ndarray) -> np.ndarray:
+        """Return the solid clusters (m,) of a building's size, and adjacent ones that are solid or plane."""
+        strong = self._by_number(is_solid & (self.areas >= self.min_area))
+        weak = self._by_number(is_solid | is_plane)
+        return grow_to_adjacent_clusters(self.xyz, self.group, strong, weak, self.density)[self.numbers]
+
+    def _by_number(self, mask: np.ndarray) -> np.ndarray:
+        """Return a mask of the clusters as one of all numbers, False for numbers without points."""
+        every = np.zeros(int(self.numbers[-1]) + 1, bool)
+        every[self.numbers] = mask
+        return every
+
+
+def with_penetration(
+    by_entropy: Decisions, through: np.ndarray, max_penetration: float, evidence: ClusterEvidence
+) -> Decisions:
+    """Decide by entropy and by the penetration ``through`` (m,) of each cluster."""
+    confidence = by_entropy.confidence
+    undefined = by_entropy.reasons == Reason.WITHOUT_ENTROPY
+    is_planar = (confidence > 0.5) & ~undefined
+    # A cluster without entropy stays undecided, however solid it is.
+    both = np.where(undefined, 0.5, _with_solidity(confidence, through, max_penetration))
+    as_glass = _confidence_of_glass(confidence, is_planar, evidence)
+    is_glass, both = both <= 0.5, np.maximum(both, as_glass)
+    is_solid = both > 0.5
+    is_edge = is_planar & (evidence.non_last_return_share() < _MAX_SPLIT_AT_EDGES)
+    is_building = evidence.with_adjacent(is_solid, is_edge)
+    # The first that applies is the reason.
+    found = {
+        Reason.WITHOUT_ENTROPY: undefined,
+        Reason.LARGE_PLANE: is_building & is_solid & is_glass,
+        Reason.SOLID_PLANE: is_building & is_solid & is_planar,
+        Reason.SOLID: is_building & is_solid,
+        Reason.BESIDE: is_building,
+        Reason.TOO_SMALL: is_solid,
+        Reason.PENETRATED: is_planar,
+    }
+    reasons = np.select(list(found.values()), list(found), Reason.ROUGH).astype(np.uint8)
+    return Decisions(np.where(is_building, np.where(is_solid, both, confidence), np.minimum(both, 0.5)), reasons)
+
+
+def with_surroundings(
+    decided: Decisions, by_entropy: Decisions, min_share: float, evidence: ClusterEvidence
+) -> Decisions:
+    """Decide again, given the share of building points around each cluster."""
+    share = evidence.share_around(decided.is_building)
+    amid_others = decided.is_building & (share < min_share)
+    is_large = evidence.areas >= evidence.min_area
+    amid_buildings = (decided.reasons == Reason.PENETRATED) & is_large & (share >= _MIN_SHARE_AT_BALCONIES)
+    reasons = np.select([amid_others, amid_buildings], [Reason.AMID_OTHERS, Reason.BESIDE], decided.reasons)
+    confidence = np.select([amid_others, amid_buildings], [0.5, by_entropy.confidence], decided.confidence)
+    return Decisions(confidence, reasons.astype(np.uint8))
+
+
+def _with_solidity(confidence: np.ndarray, through: np.ndarray, max_penetration: float) -> np.ndarray:
+    """Return the geometric mean of the entropy's confidence and of solidity, 0 at twice the penetration allowed."""
+    solid = np.clip(1 - through / (2 * max_penetration), 0, 1)
+    # Geometric, so that neither makes up for the other: a dense crown stops the beam and is no roof.
+    both = np.sqrt(confidence * solid)
+    return np.where(through <= max_penetration, both, np.minimum(both, 0.5))
+
+
+def _confidence_of_glass(confidence: np.ndarray, is_planar: np.ndarray, evidence: ClusterEvidence) -> np.ndarray:
+    """Return the confidence (m,) that large planes are roofs of glass, 0 for other clusters."""
+    is_large = is_planar & (evidence.areas >= _LARGE_PLANE * evidence.min_area)
+    stopped = 1 - evidence.points_below_share(is_large)
+    return np.where(is_large, np.sqrt(confidence * stopped), 0)

@@ -1,0 +1,390 @@
+"""Whole buildings from their roofs: gaps, edges, what stands on the roof, and the walls below."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..cloud.asprs import NOISE, PointClass
+from ..cloud.reasons import Reason
+from ..geometry.grid import refuse_sparse
+from ..packages import ndimage
+from ..params import MinBuildingArea, PointDensity
+from ..sampling.cloud_sampling import CloudSampling
+from ..stage import Param, stage
+
+# Cells hold at least a point where the roof was seen: this many point spacings, and no less than half a meter.
+_CELL_SPACINGS, _LEAST_CELL = 1.2, 0.5
+
+# Points lower than this stand on the ground (kerbs, plants, steps) and are no wall, m.
+_WALL_FOOT = 0.5
+
+# Points so far above and below the roof of a building are looked for on its surfaces, m.
+_AT_ROOF = 1.0
+
+# Gaps are closed over so many point spacings, and no less and no more than so far (m).
+_GAP_SPACINGS, _LEAST_GAP, _MOST_GAP = 4.0, 3.0, 20.0
+
+# What stands on a roof is a chimney or dormer where it covers less than this share of the cells around.
+_SPARSE, _AROUND = 0.3, 7
+
+# Beside a roof, what is lower than this share of its height may be bushes, but these grow no higher than so far (m).
+_BUSHES, _HIGHEST_BUSHES = 0.33, 2.5
+
+# The wall of a higher roof stands no farther from it than this, m: eaves reach out, and roof surfaces end before them.
+_WALL_REACH = 1.0
+
+# What stands beside a building on patches of two cells square, over half of it passed by the beam within five cells, is
+# a crown, and what it touches isn't wall.
+_CROWN, _PASSED, _WITHIN = np.ones((2, 2), bool), 0.5, 5
+
+_EIGHT = np.ones((3, 3), bool)
+
+
+@stage(
+    "Complete buildings",
+    group="Buildings",
+    tags="building,roof,facade,chimney,dormer,attach",
+    writes=("classification", "cluster_id", "confidence", "reason"),
+)
+def complete_buildings(
+    xyz,
+    classification,
+    height_above_ground,
+    confidence=None,
+    reason=None,
+    segment_id=None,
+    return_number=None,
+    number_of_returns=None,
+    *,
+    gap: Annotated[
+        Optional[float],
+        Param(
+            "Gap to close",
+            "Gaps in a roof up to this wide are filled where no ground is seen in them (gutters, skylights, ridges).",
+            unit="m",
+            low=0,
+            high=20,
+            automatic="four point spacings, from 3 to 20 m.",
+        ),
+    ] = None,
+    roof_clearance: Annotated[
+        float,
+        Param(
+            "Clearance above the roof",
+            "Points up to this far above the roof belong to it.",
+            unit="m",
+            low=0,
+            high=20,
+        ),
+    ] = 1.0,
+    structure_height: Annotated[
+        float,
+        Param(
+            "Structures on the roof",
+            "Points up to this far above the roof belong to it where they cover a small part of it only (chimneys, "
+            "dormers, masts); what covers more is a tree.",
+            unit="m",
+            low=0,
+            high=100,
+        ),
+    ] = 4.0,
+    min_area: MinBuildingArea = 4.0,
+    min_width: Annotated[
+        float,
+        Param(
+            "Minimum building width",
+            "What is narrower everywhere is a wall, a railing or a wire and no building.",
+            unit="m",
+            low=0,
+            high=100,
+        ),
+    ] = 1.5,
+    min_roof_share: Annotated[
+        float,
+        Param(
+            "Minimum share of roof surfaces",
+            "Share of the points up to a meter above and below a building's roof that must lie on roof surfaces. In "
+            "crowns with a smooth side it is less. 0 takes any.",
+            low=0,
+            high=1,
+        ),
+    ] = 0.6,
+    density: PointDensity = None,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Add to each building what belongs to it beside its roof surfaces, and number the buildings.
+
+    Buildings are decided in columns: where a roof was found, everything from the foot of the walls to just above
+    the roof is building, and so are chimneys and the walls along its edge. Small gaps between roof surfaces are
+    closed where the ground does not show in them. Where the scanner numbered its returns, crowns beside a wall are told
+    from it by the pulses that pass through them.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes; points of class 6 are the roofs to start from.
+    height_above_ground : ndarray of shape (n,), float32
+        Heights, m.
+    confidence : ndarray of shape (n,), float32, optional
+        How sure the roofs are buildings, 0 to 1.
+    reason : ndarray of shape (n,), uint8, optional
+        Why the roofs are buildings, see :class:`~.reasons.Reason`.
+    segment_id : ndarray of shape (n,), int32, optional
+        Roof surfaces, 0 is none; without it their share is not looked at.
+    return_number, number_of_returns : ndarray of shape (n,), uint8, optional
+        Without them crowns are not looked for.
+
+    Returns
+    -------
+    classification : ndarray of shape (n,), uint8
+        Buildings 6; roofs of less than the minimum area, width or share of roof surfaces become 1.
+    cluster_id : ndarray of shape (n,), int32
+        Buildings from 1, from the south-west northward; 0 is none.
+    confidence : ndarray of shape (n,), float32, or None
+        Of what is added to a building the mean of its roofs, of roofs that are none at most 0.5; None where not given.
+    reason : ndarray of shape (n,), uint8, or None
+        The same for what is added and what is no building; None where not given.
+
+    Raises
+    ------
+    ValueError
+        If the points are spread so thinly that the cloud is nearly empty.
+
+    Notes
+    -----
+    This stage is no part of the published method, whose clusters are roofs and lose what is not planar or not
+    connected with them.
+
+    References
+    ----------
+    Santos, R. C. dos, Pessoa, G. G., Carrilho, A. C., Galo, M., 2019. Building detection from LiDAR data using
+    entropy and the k-means concept, section 4 (critical regions).
+    """
+    sampling = sampling or CloudSampling.of(xyz, classification)
+    density = sampling.effective_density if density is None else density
+    spacing = 1 / np.sqrt(density)
+    gap = float(np.clip(_GAP_SPACINGS * spacing, _LEAST_GAP, _MOST_GAP)) if gap is None else gap
+    monitor.resolved(density=density, gap=gap)
+    result = np.where(classification == PointClass.BUILDING, np.uint8(PointClass.UNCLASSIFIED), classification)
+    is_roof = classification == PointClass.BUILDING
+    if not is_roof.any():
+        return result.astype(np.uint8), np.zeros(len(xyz), np.int32), confidence, reason
+
+    cell_size = max(_LEAST_CELL, _CELL_SPACINGS * spacing)
+    refuse_sparse(xyz, cell_size)
+    cell = _cells(xyz, cell_size, margin=gap)
+    is_noise = np.isin(classification, NOISE)
+    raised = (height_above_ground >= _WALL_FOOT) & ~is_noise
+    # Multipath through a skylight is no ground that shows in it.
+    covered = _covered(cell, is_roof, ~raised & ~is_noise, gap, cell_size)
+    monitor.progress(0.3)
+    building, refused = _numbered(covered, min_area, min_width, cell_size)
+    top = _roof_top(cell, xyz[:, 2], is_roof, covered)
+    if segment_id is not None:
+        at_roof = raised & (np.abs(xyz[:, 2] - top[cell]) <= _AT_ROOF)
+        building, refused = _mostly_roof(building, refused, cell, at_roof, is_roof & (segment_id > 0), min_roof_share)
+    columns = _Columns(building, top, cell_size)
+    monitor.progress(0.6)
+
+    has_returns = return_number is not None and number_of_returns is not None
+    goes_on = return_number < number_of_returns if has_returns else None
+    points = _Points(cell, xyz[:, 2], height_above_ground, raised, goes_on)
+    cluster_id = columns.owners(points, roof_clearance, structure_height)
+    result[cluster_id > 0] = PointClass.BUILDING
+    monitor.progress(1.0)
+    refusal = np.where(building[cell] > 0, Reason.TOO_LOW, refused[cell])
+    return result.astype(np.uint8), cluster_id, *_explained(confidence, reason, is_roof, cluster_id, refusal)
+
+
+def _explained(
+    confidence: Optional[np.ndarray],
+    reason: Optional[np.ndarray],
+    is_roof: np.ndarray,
+    cluster_id: np.ndarray,
+    refusal: np.ndarray,
+) -> tuple[Optional[np.ndarray], Optional[np.ndarray]]:
+    """Return confidence and reason of what was added to buildings and of roofs that are no building after all."""
+    is_added, is_dropped = (cluster_id > 0) & ~is_roof, (cluster_id == 0) & is_roof
+    if reason is not None:
+        reason = np.where(is_added, Reason.ATTACHED, np.where(is_dropped, refusal, reason)).astype(np.uint8)
+    if confidence is not None:
+        known = is_roof & (cluster_id > 0) & np.isfinite(confidence)
+        count = np.bincount(cluster_id[known], minlength=int(cluster_id.max()) + 1)
+        total = np.bincount(cluster_id[known], confidence[known], len(count))
+        mean = np.divide(total, count, out=np.full(len(count), np.nan), where=count > 0)
+        most = np.where(is_dropped, np.minimum(confidence, 0.5), confidence)
+        confidence = np.where(is_added, mean[cluster_id], most).astype(np.float32)
+    return confidence, reason
+
+
+def _may_be_bush(height: np.ndarray, roof: np.ndarray) -> np.ndarray:
+    """Return which points beside a building are so low that bushes at the foot of its wall reach them."""
+    return height < np.minimum(_BUSHES * roof, _HIGHEST_BUSHES)
+
+
+@dataclass(frozen=True)
+class _Points:
+    """All points (n,), as they are held against buildings.
+
+    Attributes
+    ----------
+    cell : tuple of two ndarrays of shape (n,)
+        Row and column of the cell that each is in.
+    elevation, height : ndarray of shape (n,)
+        Elevation and height above ground, m.
+    raised : ndarray of shape (n,), bool
+        Higher than the foot of a wall, and no noise.
+    goes_on : ndarray of shape (n,), bool, optional
+        Whether the pulse went on to another return; None where returns are not known.
+    """
+
+    cell: tuple[np.ndarray, np.ndarray]
+    elevation: np.ndarray
+    height: np.ndarray
+    raised: np.ndarray
+    goes_on: Optional[np.ndarray]
+
+
+class _Columns:
+    """The cells of buildings: whose they are, whose roof they stand beside, and how high it and the highest near is."""
+
+    def __init__(self, building: np.ndarray, top: np.ndarray, cell_size: float) -> None:
+        self.building = building
+        self.top = top
+        reach = 2 * max(1, round(_WALL_REACH / cell_size)) + 1
+        self.highest = ndimage.maximum_filter(np.where(building > 0, top, -np.inf), reach)
+        beside = ndimage.grey_dilation(building, footprint=_EIGHT)
+        self.beside = np.where(building > 0, 0, beside)
+
+    def owners(self, points: _Points, clearance: float, structure_height: float) -> np.ndarray:
+        """Return the building (n,), int32, that each point belongs to; 0 is none.
+
+        Points up to the clearance (m) above the roof do, those up to the height of structures (m) where they are few.
+        """
+        above = points.elevation - self.top[points.cell]
+        inside = points.raised & (self.building[points.cell] > 0)
+        stands_above = inside & (above > clearance)
+        is_chimney = stands_above & (above <= structure_height) & self.is_sparse(points.cell, stands_above)[points.cell]
+        may_be_plant = _may_be_bush(points.height, points.height - above)
+        if points.goes_on is not None:
+            may_be_plant |= self.is_beside_crown(points.cell, points.raised, points.goes_on)[points.cell]
+        # What stands between a roof and the next higher one is the wall of the higher.
+        is_wall = points.raised & (points.elevation <= self.highest[points.cell]) & (inside | ~may_be_plant)
+        owner = np.where(inside, self.building[points.cell], self.beside[points.cell])
+        return np.where((inside & (above <= clearance)) | is_chimney | is_wall, owner, 0).astype(np.int32)
+
+    def is_sparse(self, cell: tuple[np.ndarray, np.ndarray], stands_above: np.ndarray) -> np.ndarray:
+        """Return the cells around which the points that stand above the roof cover a small part of it."""
+        row, column = cell
+        standing = np.zeros(self.building.shape)
+        standing[row[stands_above], column[stands_above]] = 1
+        around = ndimage.uniform_filter(standing, _AROUND, mode="constant")
+        roof = ndimage.uniform_filter((self.building > 0).astype(float), _AROUND, mode="constant")
+        return around < _SPARSE * roof
+
+    def is_beside_crown(
+        self, cell: tuple[np.ndarray, np.ndarray], raised: np.ndarray, goes_on: np.ndarray
+    ) -> np.ndarray:
+        """Return the cells of crowns that stand apart from buildings, and the cells next to them."""
+        row, column = cell
+        apart = raised & (self.building[cell] == 0) & (self.beside[cell] == 0)
+        standing, passed = np.zeros((2, *self.building.shape))
+        np.add.at(standing, (row[apart], column[apart]), 1)
+        np.add.at(passed, (row[apart], column[apart]), goes_on[apart])
+        around, passed_around = (
+            ndimage.uniform_filter(count, _WITHIN, mode="constant") for count in (standing, passed)
+        )
+        crown = ndimage.binary_opening(standing > 0, _CROWN) & (passed_around > _PASSED * around)
+        return ndimage.binary_dilation(crown, _EIGHT)
+
+
+def _cells(xyz: np.ndarray, cell_size: float, margin: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return row and column (n,) of each point's cell, with room for ``margin`` (m) around."""
+    low = xyz[:, :2].min(axis=0) - margin - 2 * cell_size
+    column, row = np.floor((xyz[:, :2] - low) / cell_size).astype(np.int64).T
+    return row, column
+
+
+def _covered(
+    cell: tuple[np.ndarray, np.ndarray], is_roof: np.ndarray, is_low: np.ndarray, gap: float, cell_size: float
+) -> np.ndarray:
+    """Return the cells (rows, columns) that roofs cover, gaps closed where the ground doesn't show."""
+    row, column = cell
+    margin = int(np.ceil(gap / cell_size)) + 2
+    shape = (row.max() + margin, column.max() + margin)
+    roof = np.zeros(shape, bool)
+    roof[row[is_roof], column[is_roof]] = True
+    open_ground = np.zeros(shape, bool)
+    open_ground[row[is_low], column[is_low]] = True
+    closed = roof
+    reach = round(gap / 2 / cell_size)
+    if reach:
+        closed = roof | ndimage.binary_closing(roof, _disk(reach))
+    holes = ndimage.binary_fill_holes(closed) & ~closed
+    # A hole as narrow as the gap may be closed too; a courtyard may not.
+    small = _small(holes, max(1.0, (gap / cell_size) ** 2))
+    return roof | ((closed | small) & ~open_ground)
+
+
+def _small(mask: np.ndarray, most: float) -> np.ndarray:
+    """Return the part of ``mask`` that lies in regions of at most ``most`` cells."""
+    region, count = ndimage.label(mask)
+    size = np.bincount(region.ravel(), minlength=count + 1)
+    size[0] = 0
+    return mask & (size <= most)[region]
+
+
+def _numbered(
+    covered: np.ndarray, min_area: float, min_width: float, cell_size: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return numbers from 1 for regions that are large and wide enough, from the south-west; why the others are not."""
+    region, count = ndimage.label(covered, _EIGHT)
+    is_large = np.bincount(region.ravel(), minlength=count + 1) * cell_size**2 >= min_area
+    # The distance to the nearest cell outside is 1 in a strip of one or two cells, 2 in one of three or four.
+    inward = ndimage.maximum(ndimage.distance_transform_edt(covered), region, np.arange(count + 1))
+    number = _numbers(is_large & ((2 * inward - 1) * cell_size >= min_width))
+    return number[region], np.where(is_large, Reason.TOO_NARROW, Reason.TOO_SMALL).astype(np.uint8)[region]
+
+
+def _mostly_roof(
+    building: np.ndarray,
+    refused: np.ndarray,
+    cell: tuple[np.ndarray, np.ndarray],
+    at_roof: np.ndarray,
+    on_surface: np.ndarray,
+    least: float,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return what :func:`_numbered` does, without buildings with less than ``least`` of their roof on surfaces."""
+    number = building[cell]
+    whole, part = (np.bincount(number[of], minlength=building.max() + 1) for of in (at_roof, at_roof & on_surface))
+    share = part / np.maximum(whole, 1)
+    kept = _numbers(share >= least)[building]
+    return kept, np.where((building > 0) & (kept == 0), np.uint8(Reason.MOSTLY_OTHER), refused)
+
+
+def _numbers(kept: np.ndarray) -> np.ndarray:
+    """Return the new numbers (m,), int32, of regions: from 1 for those that are kept, 0 for others and for region 0."""
+    kept = kept & (np.arange(len(kept)) > 0)
+    return np.where(kept, np.cumsum(kept), 0).astype(np.int32)
+
+
+def _roof_top(
+    cell: tuple[np.ndarray, np.ndarray], elevation: np.ndarray, is_roof: np.ndarray, covered: np.ndarray
+) -> np.ndarray:
+    """Return the elevation (rows, columns) of the highest roof point of each cell, or of the nearest such cell."""
+    row, column = cell
+    top = np.full(covered.shape, -np.inf)
+    np.maximum.at(top, (row[is_roof], column[is_roof]), elevation[is_roof])
+    nearest = ndimage.distance_transform_edt(~np.isfinite(top), return_distances=False, return_indices=True)
+    return top[tuple(nearest)]
+
+
+def _disk(radius: int) -> np.ndarray:
+    row, column = np.mgrid[-radius : radius + 1, -radius : radius + 1]
+    return row**2 + column**2 <= radius**2 + 0.5 * radius

@@ -1,0 +1,132 @@
+"""Two mean entropies, of buildings and of everything else: by two means, or held by reference values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..neighborhoods.covariance import shannon_entropy_lps, symmetric_eigenvalues
+from ..stage import Monitor
+
+# Mean entropies closer together than this count as equal: entropy is 0 to 1.1, and clusters differ by 0.01 and more.
+_SAME_ENTROPY = 1e-3
+
+# Weight of a reference entropy, in clusters: a handful of clusters can't move it, thousands can (chosen, not fitted).
+_REFERENCE_WEIGHT = 100
+
+# Limit of the rounds of two means; in one dimension they settle in a few.
+_MAX_ROUNDS = 100
+
+# Points of a simulated neighborhood at most: with more the reference entropies change by less than 0.01.
+_MAX_SIMULATED_POINTS = 500
+
+
+@dataclass(frozen=True)
+class Split:
+    """Two mean entropies, of buildings and of everything else; unless the first is less, clusters are undecided.
+
+    ``is_given`` tells that they are those of simulated planes and volumes, because the clusters form one group only.
+    """
+
+    building: float
+    other: float
+    is_given: bool = False
+
+    @property
+    def separates(self) -> bool:
+        """Whether there are two means and not one."""
+        return self.building < self.other
+
+    def confidence(self, means: np.ndarray) -> np.ndarray:
+        """Return the distance to the others' mean over the sum of both distances, 0 to 1, for clusters (m,).
+
+        Beyond its own mean a cluster has full confidence. Where the two means are one, all have 0.5.
+        """
+        if not self.separates:
+            return np.full(len(means), 0.5)
+        to_other, to_building = np.abs(means - self.other), np.abs(means - self.building)
+        return np.select([means <= self.building, means >= self.other], [1.0, 0.0], to_other / (to_other + to_building))
+
+
+def two_means(means: np.ndarray, monitor: Monitor) -> Split:
+    """Separate the clusters' mean entropies (m,) in two so that the sum of squares within both classes is least.
+
+    This is what two-class K-means approaches by rounds. In one dimension each class is an interval, so that trying
+    every gap between the sorted values finds the optimum.
+    """
+    known = np.sort(means[np.isfinite(means)])
+    if len(known) < 2 or np.ptp(known) < _SAME_ENTROPY:
+        one = "is only one cluster" if len(known) < 2 else "are only clusters of the same entropy"
+        monitor.warn(f"There {one}: nothing to separate, so nothing was called a building.")
+        same = float(known.mean()) if len(known) else np.nan
+        return Split(same, same)
+    n_low = np.flatnonzero(np.diff(known) > 0) + 1
+    low = np.cumsum(known)[n_low - 1] / n_low
+    high = (known.sum() - n_low * low) / (len(known) - n_low)
+    # The sum of squares between the classes is greatest where that within them is least.
+    best = np.argmax(n_low * (len(known) - n_low) * (high - low) ** 2)
+    return Split(float(low[best]), float(high[best]))
+
+
+def held_means(means: np.ndarray, plane: float, volume: float, monitor: Monitor) -> Split:
+    """Separate the clusters' mean entropies (m,) as K-means does, from reference entropies and held by them.
+
+    The references of planes and volumes count as ``_REFERENCE_WEIGHT`` clusters each.
+    """
+    known = np.sort(means[np.isfinite(means)])
+    low, high = plane, volume
+    for _ in range(_MAX_ROUNDS):
+        is_low = known <= (low + high) / 2
+        before = low, high
+        low = float((known[is_low].sum() + _REFERENCE_WEIGHT * plane) / (is_low.sum() + _REFERENCE_WEIGHT))
+        high = float((known[~is_low].sum() + _REFERENCE_WEIGHT * volume) / ((~is_low).sum() + _REFERENCE_WEIGHT))
+        if (low, high) == before:
+            break
+    is_one_kind = bool(is_low.all() or not is_low.any())
+    if is_one_kind:
+        monitor.warn(
+            "The entropies of the clusters don't form two groups; each cluster was compared "
+            f"with the entropy of planes ({plane:.2f}) and volumes ({volume:.2f}) instead."
+        )
+    split = Split(low, high, is_given=is_one_kind)
+    if not split.separates:
+        monitor.warn("At this noise planes have the entropy of volumes, so nothing was called a building.")
+    return split
+
+
+def reference_entropies(n_points: int, roughness: float = 0.0, trials: int = 400) -> tuple[float, float]:
+    """Return the mean entropy of ``n_points`` random points on a disk and in a ball.
+
+    Parameters
+    ----------
+    n_points : int
+        Points of a neighborhood.
+    roughness : float
+        Standard deviation of the points across the disk, as a share of its radius.
+    trials : int
+        Disks and balls drawn.
+
+    Returns
+    -------
+    plane, volume : float
+        The random numbers are fixed: the same arguments always give the same two figures.
+    """
+    random = np.random.default_rng(0)
+    n_points = min(n_points, _MAX_SIMULATED_POINTS)
+    directions = random.normal(size=(trials, n_points, 3))
+    ball = directions / np.linalg.norm(directions, axis=2, keepdims=True)
+    ball *= random.random((trials, n_points, 1)) ** (1 / 3)
+    angle = random.random((trials, n_points)) * 2 * np.pi
+    radius = np.sqrt(random.random((trials, n_points)))
+    across = roughness * random.normal(size=angle.shape)
+    disk = np.stack([radius * np.cos(angle), radius * np.sin(angle), across], axis=2)
+    return _mean_entropy(disk), _mean_entropy(ball)
+
+
+def _mean_entropy(points: np.ndarray) -> float:
+    """Return the mean entropy of neighborhoods of points (trials, n_points, 3)."""
+    offsets = points - points.mean(axis=1, keepdims=True)
+    products = np.einsum("tni,tnj->tij", offsets, offsets) / points.shape[1]
+    covariances = products[:, [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
+    return float(shannon_entropy_lps(symmetric_eigenvalues(covariances)).mean())

@@ -1,0 +1,230 @@
+"""Reading point clouds from files, and writing them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import BinaryIO, Optional, Union
+
+import numpy as np
+
+from ..stage import Monitor
+from .cloud import Cloud
+from .copc import copc_header, write_copc
+from .copc_sidecar import VIEW_SOFTWARE, check_place, copc_path, seal
+from .header import COPC_HIERARCHY, COPC_INFO, LASZIP, Header
+from .laspy_library import need_lazrs
+from .laz import writing_backend
+from .outputs import COPC, LAZ, VPC, check_output, kind_of, replacing
+from .point_formats import WITH_WAVEFORMS
+from .point_records import PointRecords
+from .points import check_points, open_header, read_points, write_points
+from .units import Resolver, crs_records, has_wkt, units_of, wkt_of
+from .vpc import read_tiles, tiles_of
+
+
+def read_cloud(
+    path: Union[str, Path], monitor: Optional[Monitor] = None, crs_units: Optional[Resolver] = None
+) -> Cloud:
+    """Read a LAS, LAZ or COPC file, or all tiles of a virtual point cloud (VPC).
+
+    Parameters
+    ----------
+    path : str or Path
+        Its extension (.las, .laz, .vpc) says what it is.
+    monitor : Monitor, optional
+        Receives progress, and warnings about units.
+    crs_units : callable, optional
+        EPSG code -> (meters per horizontal unit, meters per vertical unit, whether
+        it is geographic), or None if unknown; asked when a file gives a code and no unit.
+
+    Raises
+    ------
+    ValueError
+        In one sentence, whatever is wrong with the file.
+    """
+    path, monitor = Path(path), monitor or Monitor()
+    with _readable(path):
+        files = _files_of(path)
+        header = open_header(files[0])
+        units = units_of(header, crs_units)
+        if len(files) == 1:
+            points = read_points(files[0], header, monitor)
+            header = header.without(LASZIP, COPC_INFO, COPC_HIERARCHY)
+        else:
+            header, points = read_tiles(files, monitor)
+    if units.warning:
+        monitor.warn(units.warning)
+    return Cloud(header, points, units, files if files == [path] else [*files, path])
+
+
+def check_readable(path: Union[str, Path], crs_units: Optional[Resolver] = None) -> None:
+    """Refuse what :func:`read_cloud` would refuse, as far as headers and chunk tables tell.
+
+    Raises
+    ------
+    ValueError
+        In one sentence, what is wrong with the file or with a tile of it.
+    """
+    path = Path(path)
+    with _readable(path):
+        for file in _files_of(path):
+            header = open_header(file)
+            units_of(header, crs_units)
+            check_points(file, header)
+
+
+def read_extent(path: Union[str, Path]) -> tuple[np.ndarray, np.ndarray, str]:
+    """Return the lowest and the highest coordinates (3,) and the CRS of a file or of all its tiles.
+
+    Coordinates are those of the file, as its headers tell them. The CRS is WKT, "EPSG:code" or "".
+
+    Raises
+    ------
+    ValueError
+        In one sentence, what is wrong with the file or with a tile of it.
+    """
+    headers = _headers(Path(path))
+    low, high = ([getattr(header, name) for header in headers] for name in ("low", "high"))
+    return np.min(low, axis=0), np.max(high, axis=0), wkt_of(headers[0])
+
+
+def count_points(path: Union[str, Path]) -> int:
+    """Return the number of points of a file or of all its tiles, as the headers tell it.
+
+    Raises
+    ------
+    ValueError
+        In one sentence, what is wrong with the file or with a tile of it.
+    """
+    return sum(header.count for header in _headers(Path(path)))
+
+
+def _headers(path: Path) -> list[Header]:
+    """Return the headers of a file or of all its tiles."""
+    with _readable(path):
+        return [open_header(file) for file in _files_of(path)]
+
+
+@contextmanager
+def _readable(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise ValueError(
+            f"{path} can't be read ({error.strerror or error}); check the file and its permissions."
+        ) from error
+
+
+def _files_of(path: Path) -> list[Path]:
+    if path.is_dir():
+        raise ValueError(f"{path} is a folder; choose a point cloud file in it.")
+    kind = kind_of(path)
+    if not kind:
+        raise ValueError(
+            f"{path.name} is no point cloud that can be read; choose a .las, .laz, .copc.laz or .vpc file."
+        )
+    if not path.is_file():
+        raise ValueError(f"{path} does not exist; check the name.")
+    return tiles_of(path) if kind == VPC else [path]
+
+
+def write_cloud(
+    cloud: Cloud, path: Union[str, Path], monitor: Optional[Monitor] = None, copc_beside: bool = False
+) -> None:
+    """Write a cloud as LAS, LAZ or COPC, as ``path`` ends in .las, .laz or .copc.laz.
+
+    The file keeps point order (but in COPC), scale, offset, CRS, VLRs, EVLRs,
+    extra bytes, waveform references and every dimension that was not set. It
+    appears when it is complete; after a failure or cancel nothing is left.
+
+    QGIS with PDAL shows a file x.copc.laz in place of the x.las or x.laz beside it. One that
+    was written with the very file that is replaced is replaced or removed with it; beside any
+    other, nothing is written.
+
+    Parameters
+    ----------
+    cloud : Cloud
+        Not changed.
+    path : str or Path
+        In an existing folder; none of the cloud's own files.
+    monitor : Monitor, optional
+        Receives progress, and warnings about what the format changed.
+    copc_beside : bool
+        Also write x.copc.laz beside x.las or x.laz, for QGIS to show.
+
+    Raises
+    ------
+    ValueError
+        In one sentence, why the file can't be written.
+    """
+    path, monitor = Path(path), monitor or Monitor()
+    check_write(cloud, path, copc_beside)
+    if kind_of(path) == COPC:
+        _write_copc(cloud, path, monitor)
+        return
+    with replacing(path) as stream:
+        _write_las(cloud, path, stream, monitor.part(0.0, 0.4) if copc_beside else monitor)
+        if copc_beside:
+            _write_copc(cloud, copc_path(path), monitor.part(0.4, 1.0), shown=stream)
+    if not copc_beside:
+        copc_path(path).unlink(missing_ok=True)
+
+
+def check_write(cloud: Cloud, path: Union[str, Path], copc_beside: bool = False) -> None:
+    """Refuse what :func:`write_cloud` would refuse, before a long computation rather than after it.
+
+    Raises
+    ------
+    ValueError
+        If the path can't be written or is a source of the cloud, or QGIS would show another file in its place.
+    """
+    path = Path(path)
+    check_output(path, cloud.files)
+    if kind_of(path) == COPC or copc_beside:
+        need_lazrs()
+    if kind_of(path) == LAZ:
+        writing_backend(cloud.records().layout.point_format)
+    if kind_of(path) != COPC:
+        check_place(path, cloud.files)
+
+
+def _write_las(cloud: Cloud, path: Path, stream: BinaryIO, monitor: Monitor) -> None:
+    records = cloud.records()
+    header = _output_header(cloud, records)
+    if records.is_upgraded:
+        monitor.warn(
+            f"Classes over 31 don't fit point format {cloud.header.layout.point_format}; "
+            f"{path.name} is written in format {records.layout.point_format} (LAS 1.4)."
+        )
+    write_points(stream, header, lambda a, b: records.take(slice(a, b)), kind_of(path) == LAZ, monitor)
+
+
+def _write_copc(cloud: Cloud, path: Path, monitor: Monitor, shown: Optional[BinaryIO] = None) -> None:
+    """Write a COPC file, as the view of the complete file in the stream ``shown`` if there is one."""
+    records = cloud.records(for_copc=True)
+    old, new = cloud.header.layout.point_format, records.layout.point_format
+    if old != new:
+        lost = "; its waveform references are left out" if old in WITH_WAVEFORMS else ""
+        report = monitor.warn if lost else monitor.inform
+        report(f"COPC holds point formats 6 to 8 only: {path.name} is written in format {new} instead of {old}{lost}.")
+    header = copc_header(_output_header(cloud, records))
+    if shown is not None:
+        header = replace(header, software=VIEW_SOFTWARE)
+    with replacing(path) as stream:
+        write_copc(stream, header, cloud.points, records.take, monitor)
+        if shown is not None:
+            seal(stream, shown)
+
+
+def _output_header(cloud: Cloud, records: PointRecords) -> Header:
+    header = cloud.header.with_layout(records.layout) if records.layout != cloud.header.layout else cloud.header
+    if header.layout.is_old:
+        return header
+    header = replace(header, minor=4)
+    if '"' in cloud.wkt and not has_wkt(header):
+        vlrs, bits = crs_records(cloud.wkt)
+        header = replace(header, vlrs=[*header.vlrs, *vlrs], encoding=header.encoding | bits)
+    return header

@@ -1,0 +1,80 @@
+"""The libraries of point cloud files: laspy, with lazrs or laszip beneath it. The only place that imports them."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import cache
+from pathlib import Path
+from typing import Any, cast
+
+
+@cache
+def need_laspy() -> Any:
+    """Return laspy with its modules.
+
+    Raises
+    ------
+    ValueError
+        If it is not installed.
+    """
+    try:
+        with _without_pyproj():
+            importlib.import_module("laspy.vlrs.known")
+            return importlib.import_module("laspy")
+    except ModuleNotFoundError:
+        raise ValueError("Point clouds need the Python package laspy, which is not installed; install laspy.") from None
+
+
+@contextmanager
+def _without_pyproj() -> Iterator[None]:
+    """Hide pyproj, which laspy imports where it finds it and does not need: its wheels bring another PROJ into QGIS."""
+    modules = cast("dict[str, Any]", sys.modules)
+    if "pyproj" in modules:
+        yield
+        return
+    modules["pyproj"] = None
+    try:
+        yield
+    finally:
+        del modules["pyproj"]
+
+
+def need_lazrs() -> Any:
+    """Return lazrs, which alone writes chunks of chosen sizes.
+
+    Raises
+    ------
+    ValueError
+        If it is not installed.
+    """
+    if not has_backend("LazrsParallel"):
+        raise ValueError("COPC files are written by the Python package lazrs, which is not installed; install lazrs.")
+    return importlib.import_module("lazrs")
+
+
+def has_backend(name: str) -> bool:
+    """Whether laspy can use a package for LAZ, by the name of its backend: "LazrsParallel" or "Laszip"."""
+    return need_laspy().LazBackend[name].is_available()
+
+
+@contextmanager
+def explained(path: Path) -> Iterator[None]:
+    """Turn whatever a LAZ library raises, panics of Rust included, into one sentence.
+
+    Raises
+    ------
+    ValueError
+        If the library failed.
+    """
+    try:
+        yield
+    except BaseException as error:
+        # A panic in Rust is no Exception, and its class can't be imported.
+        if type(error).__module__.split(".")[0] not in ("laspy", "lazrs", "laszip", "pyo3_runtime"):
+            raise
+        raise ValueError(
+            f"{path.name} is truncated or damaged: its points can't be decompressed; get the file again."
+        ) from None

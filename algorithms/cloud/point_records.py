@@ -1,0 +1,169 @@
+"""The records that a cloud is written as: what was read, with what stages have set."""
+
+from __future__ import annotations
+
+from typing import Callable, Optional, Union
+
+import numpy as np
+
+from .dimensions import DIMENSIONS, Dimension
+from .extra_bytes import ExtraField, new_field
+from .point_formats import FORMATS, UPGRADED, Layout
+from .units import Units
+
+Index = Union[slice, np.ndarray]
+_LARGEST_OLD_CLASS = 31
+
+
+def find_extra(layout: Layout, dimension: Dimension, component: int = 0) -> Optional[int]:
+    """Return the position among the extras that holds a component of ``dimension``, by name, then by alias, or None."""
+    names = [field.name if field.is_scalar else "" for field in layout.extras]
+    wanted = (dimension.disk[component], *(dimension.aliases if len(dimension.disk) == 1 else ()))
+    return next((names.index(name) for name in wanted if name in names), None)
+
+
+def unit_factor(dimension: Dimension, units: Units) -> float:
+    """Return meters (or square meters) per unit of a stored dimension.
+
+    Heights are stored in the vertical unit of the file and areas in its squared
+    horizontal unit, so that QGIS and PDAL, which know one unit only, agree.
+    """
+    return {"m": units.vertical, "m²": units.horizontal**2}.get("" if dimension.standard else dimension.unit, 1.0)
+
+
+class PointRecords:
+    """Makes the output's records from those read and from the arrays set, for any part of the cloud.
+
+    Parameters
+    ----------
+    points : structured array, (n,)
+        As read, laid out as ``layout``.
+    layout : Layout
+        The input's.
+    changes : dict of str to array
+        What stages have set, by Python name, in meters.
+    units : Units
+        Of the file.
+    convert : callable, optional
+        Gives the output's point format for the format that the changes need (COPC takes 6 to 8 only).
+    """
+
+    def __init__(
+        self,
+        points: np.ndarray,
+        layout: Layout,
+        changes: dict[str, np.ndarray],
+        units: Units,
+        convert: Callable[[int], int] = lambda point_format: point_format,
+    ) -> None:
+        self.points, self.source = points, layout
+        standard = {name: values for name, values in changes.items() if DIMENSIONS[name].standard}
+        added = {name: values for name, values in changes.items() if name not in standard}
+        needed = _needed_format(layout, standard)
+        self.is_upgraded = needed != layout.point_format
+        self._standard = standard
+        extras, self._added = _extras(layout, added, units)
+        self.layout = Layout(convert(needed), extras)
+        self._as_read = not changes and self.layout == layout
+
+    def take(self, index: Index) -> np.ndarray:
+        """Return the output's records of the points at ``index``, a slice or an array of positions."""
+        points = self.points[index]
+        if self._as_read:
+            return points
+        out = np.zeros(len(points), self.layout.dtype)
+        self.source.copy_standard(points, self.layout, out)
+        for name, values in self._standard.items():
+            self.layout.put(out, name, values[index])
+        for i in range(len(self.layout.extras)):
+            values, factor = self._added.get(i, (None, 1.0))
+            if values is None:
+                out[f"extra{i}"] = points[f"extra{i}"]
+            else:
+                out[f"extra{i}"] = values[index] if factor == 1 else values[index] / factor
+        return out
+
+
+def _needed_format(layout: Layout, standard: dict[str, np.ndarray]) -> int:
+    """Return the point format that holds the classes: 5 bits in formats 0-5, 8 in those of LAS 1.4."""
+    classes = standard.get("classification")
+    if layout.is_old and classes is not None and len(classes) and classes.max() > _LARGEST_OLD_CLASS:
+        return UPGRADED[layout.point_format]
+    return layout.point_format
+
+
+def _extras(
+    layout: Layout, added: dict[str, np.ndarray], units: Units
+) -> tuple[tuple[ExtraField, ...], dict[int, tuple[np.ndarray, float]]]:
+    """Return the output's extra fields, old ones in their old places, and by place what was set and its unit (m)."""
+    fields, values_at = list(layout.extras), {}
+    for name, values in added.items():
+        dimension = DIMENSIONS[name]
+        for component, disk in enumerate(dimension.disk):
+            at = find_extra(layout, dimension, component)
+            if at is None:
+                at = len(fields)
+                fields.append(new_field(disk, dimension.dtype, dimension.description))
+            else:
+                fields[at] = _overwritten(fields[at], disk, dimension)
+            values_at[at] = values if values.ndim == 1 else values[:, component], unit_factor(dimension, units)
+    return tuple(fields), values_at
+
+
+def _overwritten(old: ExtraField, disk: str, dimension: Dimension) -> ExtraField:
+    """Return the field that takes the place of ``old``: itself if it holds the same numbers under the same name."""
+    if is_stored_as(old, disk, dimension):
+        return old.without_range()
+    return new_field(disk, dimension.dtype, dimension.description)
+
+
+def is_stored_as(field: ExtraField, disk: str, dimension: Dimension) -> bool:
+    """Whether a field has the name, type and plain numbers that this program gives a component of ``dimension``."""
+    return field.name == disk and field.dtype == np.dtype(dimension.dtype) and field.is_plain
+
+
+def merged_layout(layouts: list[Layout]) -> Layout:
+    """Return a layout that holds the fields of all ``layouts``: their union, the first one's extras first.
+
+    A name that stands for different numbers (another type or scale) becomes float64.
+    """
+    names = {name for layout in layouts for name in layout.names}
+    point_format = min(i for i in FORMATS if names <= set(Layout(i).names))
+    extras: dict[str, ExtraField] = {}
+    for field in (field for layout in layouts for field in layout.extras):
+        if not _has_numbers(field):
+            # Bytes of unknown meaning and vectors are kept where tiles have the same of them.
+            extras.setdefault(_name_among_all(field), field)
+            continue
+        same = extras.setdefault(field.name, field.without_range())
+        if not field.same_numbers(same):
+            extras[field.name] = new_field(field.name, "f8", field.description)
+    return Layout(point_format, tuple(extras.values()))
+
+
+def _has_numbers(field: ExtraField) -> bool:
+    """Whether a field is one number with a name, by which the same one is known in other files."""
+    return field.is_scalar and bool(field.name)
+
+
+def _name_among_all(field: ExtraField) -> str:
+    """Return what tells a field from the others of files that are merged: its name, or name and type."""
+    return field.name if _has_numbers(field) else f"{field.name} {field.dtype}"
+
+
+def convert(points: np.ndarray, source: Layout, target: Layout, out: np.ndarray) -> None:
+    """Copy ``points`` (n,) of ``source`` to ``out`` (n,) of a layout merged from it and others.
+
+    Extra numbers that the source lacks become NaN where they can, else 0.
+    """
+    source.copy_standard(points, target, out)
+    given = {_name_among_all(field): i for i, field in enumerate(source.extras)}
+    for i, field in enumerate(target.extras):
+        at = given.get(_name_among_all(field))
+        if at is None:
+            if field.is_scalar and field.dtype.kind == "f":
+                out[f"extra{i}"] = np.nan
+            continue
+        stored = points[f"extra{at}"]
+        same = not _has_numbers(field) or source.extras[at].same_numbers(field)
+        out[f"extra{i}"] = stored if same else source.extras[at].decode(stored)

@@ -1,0 +1,142 @@
+"""Points of LAS and LAZ files: read in chunks, written in chunks by laspy."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from io import BufferedReader
+from pathlib import Path
+from typing import BinaryIO, Callable
+
+import numpy as np
+
+from ..stage import Monitor
+from .header import Header, read_header, truncated
+from .laspy_library import explained, need_laspy
+from .laz import POINTS_PER_CHUNK, open_laz, writing_backend
+
+# A multiple of the LAZ chunk, so that every call decompresses whole chunks, in well under a second.
+AT_ONCE = 10 * POINTS_PER_CHUNK
+# Points that are all alike come to 5,500 bytes per compressed byte in chunks of the usual size; nothing sound has more.
+_MOST_BYTES_PER_BYTE = 10_000
+
+
+def open_header(path: Path) -> Header:
+    """Return the header of a file that has points, its number of points held against the size of the file.
+
+    Raises
+    ------
+    ValueError
+        If there are no points, or more are promised than the file can hold.
+    """
+    header = read_header(path)
+    if header.count == 0:
+        raise ValueError(f"{path.name} has no points; choose another file.")
+    left = path.stat().st_size - header.points_at
+    most = left * (_MOST_BYTES_PER_BYTE if header.is_compressed else 1) // header.layout.dtype.itemsize
+    if header.count > most:
+        raise truncated(path, f"it promises {header.count} points, but {left} bytes hold at most {most}")
+    return header
+
+
+def check_points(path: Path, header: Header) -> None:
+    """Refuse a file whose points can't be read from the start on, without reading them.
+
+    Raises
+    ------
+    ValueError
+        If it is LAZ and its record or chunk table is damaged, or the package for it is missing.
+    """
+    if header.is_compressed:
+        with path.open("rb") as stream:
+            open_laz(path, header, stream)
+
+
+def read_chunks(path: Path, header: Header, monitor: Monitor) -> Iterator[tuple[int, np.ndarray]]:
+    """Yield (position of the first point, records) until all points are read; the array is used again."""
+    buffer = np.empty(min(AT_ONCE, header.count), header.layout.dtype)
+    for start, stop, read in _reads(path, header, monitor):
+        points = buffer[: stop - start]
+        read(points)
+        yield start, points
+
+
+def read_points(path: Path, header: Header, monitor: Monitor) -> np.ndarray:
+    """Return all records of a file, structured (n,) as ``header.layout`` says, in the file's order."""
+    try:
+        points = np.empty(header.count, header.layout.dtype)
+    except MemoryError:
+        size = header.count * header.layout.dtype.itemsize / 2**30
+        raise ValueError(
+            f"{path.name} needs {size:.0f} GB of memory for its points, more than there is; cut it into tiles."
+        ) from None
+    for start, stop, read in _reads(path, header, monitor):
+        read(points[start:stop])
+    return points
+
+
+def _reads(path: Path, header: Header, monitor: Monitor) -> Iterator[tuple[int, int, Callable]]:
+    """Yield (start, stop, function that fills an array with these points), with progress between."""
+    with path.open("rb") as stream:
+        read = _compressed(path, header, stream) if header.is_compressed else _plain(path, header, stream)
+        for start in range(0, header.count, AT_ONCE):
+            monitor.progress(start / header.count)
+            yield start, min(start + AT_ONCE, header.count), read
+    monitor.progress(1.0)
+
+
+def _compressed(path: Path, header: Header, stream: BinaryIO) -> Callable:
+    """Return a function that fills an array with the points of LAZ that come next."""
+    fill = open_laz(path, header, stream)
+
+    def read(points: np.ndarray) -> None:
+        with explained(path):
+            fill(points.view(np.uint8))
+
+    return read
+
+
+def _plain(path: Path, header: Header, stream: BufferedReader) -> Callable:
+    """Return a function that fills an array with the points that come next; laspy would copy them once more."""
+    stream.seek(header.points_at)
+
+    def read(points: np.ndarray) -> None:
+        if stream.readinto(points.view(np.uint8).data) < points.nbytes:
+            raise truncated(path, "it ends within its points")
+
+    return read
+
+
+def write_points(
+    stream: BinaryIO, header: Header, chunks: Callable[[int, int], np.ndarray], compressed: bool, monitor: Monitor
+) -> None:
+    """Write a whole LAS or LAZ file to ``stream``: header, points, EVLRs.
+
+    Parameters
+    ----------
+    stream : file
+        New and empty.
+    header : Header
+        Its count, layout, VLRs and EVLRs are what is written; bounds and positions are found here.
+    chunks : callable
+        Gives the records from one position to another, laid out as the header says.
+    compressed : bool
+        LAZ instead of LAS.
+    monitor : Monitor
+        Receives progress.
+    """
+    backend = writing_backend(header.layout.point_format) if compressed else None
+    las = need_laspy()
+    writer = las.LasWriter(stream, header.las(), do_compress=compressed, laz_backend=backend, closefd=False)
+    for start in range(0, header.count, AT_ONCE):
+        monitor.progress(start / header.count)
+        points = chunks(start, min(start + AT_ONCE, header.count))
+        header.count_in(writer.header, points)
+        writer.point_writer.write_points(header.layout.records(points))
+    writer.close()
+    if backend is las.LazBackend.Laszip:
+        # laszip put its record before the other VLRs itself.
+        stream.flush()
+        made = read_header(Path(stream.name)).vlrs[0]
+        writer.header.vlrs.append(las.vlrs.known.LasZipVlr(made.data))
+    header.finish(stream, writer.header)
+    monitor.progress(1.0)

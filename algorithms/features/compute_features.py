@@ -1,0 +1,332 @@
+"""Covariance features of each point's neighborhood."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Annotated, Callable, Optional
+
+import numpy as np
+
+from ..cloud.dimensions import DIMENSIONS
+from ..neighborhoods.covariance import (
+    Nearest,
+    Neighborhood,
+    Shapes,
+    Within,
+    defined_eigenvalues,
+    dimensionality,
+    reduce_neighborhoods,
+    shannon_entropy,
+    smallest_eigenvectors,
+)
+from ..neighborhoods.optimal_size import Optimal
+from ..sampling.cloud_sampling import CloudSampling
+from ..stage import Monitor, Param, stage
+
+_FEATURES = (
+    "linearity",
+    "planarity",
+    "scattering",
+    "entropy",
+    "omnivariance",
+    "anisotropy",
+    "eigenentropy",
+    "eigenvalue_sum",
+    "surface_variation",
+    "verticality",
+    "normal",
+    "height_range",
+    "height_deviation",
+    "plan_radius",
+    "plan_density",
+    "plan_eigenvalue_ratio",
+    "optimal_neighbors",
+)
+
+# Features that need more than the covariance.
+_OF_EXTENT = {"height_range", "plan_radius", "plan_density"}
+
+
+@stage(
+    "Compute features",
+    group="Features",
+    tags="covariance,eigenvalues,linearity,planarity,scattering,entropy,normals,verticality,geometric,optimal,scale",
+    writes=_FEATURES,
+)
+def compute_features(
+    xyz,
+    *,
+    neighborhood: Annotated[
+        str,
+        Param(
+            "Neighborhood",
+            "Which points describe a point: a number of nearest ones, all within a radius, or as many nearest ones as "
+            "show the clearest shape (least eigenentropy), chosen for each point.",
+            choices=("nearest", "radius", "optimal"),
+        ),
+    ] = "nearest",
+    n_neighbors: Annotated[
+        int,
+        Param(
+            "Nearest points",
+            "Points per neighborhood, the point itself among them; used by the neighborhood 'nearest'. "
+            "More of them smooth noise away and blur small things.",
+            low=3,
+            high=1000,
+        ),
+    ] = 50,
+    radius: Annotated[
+        Optional[float],
+        Param(
+            "Radius",
+            "Radius of the sphere around a point; used by the neighborhood 'radius'.",
+            unit="m",
+            low=0,
+            open_low=True,
+            automatic="the radius of a circle that holds 'Nearest points' at the measured density.",
+        ),
+    ] = None,
+    min_neighbors: Annotated[
+        int,
+        Param(
+            "Minimum nearest points",
+            "Smallest neighborhood that is tried by the neighborhood 'optimal'; fewer than ten describe noise.",
+            low=3,
+            high=1000,
+        ),
+    ] = 10,
+    max_neighbors: Annotated[
+        int,
+        Param(
+            "Maximum nearest points",
+            "Largest neighborhood that is tried by the neighborhood 'optimal'; time grows with it.",
+            low=3,
+            high=1000,
+        ),
+    ] = 100,
+    neighbors_step: Annotated[
+        int,
+        Param(
+            "Step of nearest points",
+            "From one neighborhood that 'optimal' tries to the next; larger steps are faster and coarser.",
+            low=1,
+            high=100,
+            advanced=True,
+        ),
+    ] = 1,
+    features: Annotated[
+        tuple[str, ...],
+        Param("Features", "What to compute; each becomes a dimension of the cloud.", choices=_FEATURES),
+    ] = ("linearity", "planarity", "scattering", "entropy", "surface_variation", "verticality"),
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Describe the shape of each point's neighborhood by the eigenvalues of its covariance.
+
+    Wires are linear, roofs and ground are planar, crowns are scattered; the entropy says how mixed the
+    three are. Choose which features to keep: each becomes a dimension that can be drawn and filtered.
+
+    How large a neighborhood should be depends on the noise, the density and the size of things. One number of
+    points for the whole cloud gives smooth results; the number that is best for each point ('optimal') keeps small
+    things apart and follows the noise more.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Coordinates (m).
+
+    Returns
+    -------
+    ndarrays of shape (n,), float32, or (n, 3) for normal; None for each feature not asked for
+        ``linearity`` (l1 - l2) / l1, ``planarity`` (l2 - l3) / l1 and ``scattering`` l3 / l1, which add up to 1;
+        ``entropy`` -L ln L - P ln P - S ln S of these, 0 to ln 3;
+        ``omnivariance`` (l1 l2 l3)^(1/3) in m²;
+        ``anisotropy`` (l1 - l3) / l1;
+        ``eigenentropy`` -sum e ln e with e = l / sum l, 0 to ln 3;
+        ``eigenvalue_sum`` l1 + l2 + l3 in m²;
+        ``surface_variation`` l3 / (l1 + l2 + l3), 0 to 1/3;
+        ``verticality`` 1 - |n_z|, 0 on flat roofs and 1 on walls;
+        ``normal`` the unit eigenvector of l3, upward;
+        ``height_range`` highest less lowest elevation and ``height_deviation`` their standard deviation, m;
+        ``plan_radius`` largest horizontal distance r from the point to its neighbors, m, ``plan_density`` points
+        of the neighborhood per area of that circle, points/m², and ``plan_eigenvalue_ratio`` m2 / m1 of the
+        eigenvalues of the covariance in plan, 0 to 1;
+        ``optimal_neighbors`` (int32) points of the neighborhood: chosen for 'optimal', found within a radius.
+        NaN where a neighborhood has fewer than three points or all of them coincide, and for the features of the
+        plan where all lie above one another; the number of points is defined everywhere.
+
+    Raises
+    ------
+    ValueError
+        If no feature is chosen, a radius holds more than 20,000 points on average, or the minimum of nearest
+        points is above their maximum.
+
+    Notes
+    -----
+    The covariance is that of the point together with its neighbors, with their number as divisor; its eigenvalues are
+    l1, the largest, to l3, and those of its part in plan m1 and m2. L, P and S are linearity, planarity and scattering.
+    Coordinates are taken relative to each point, so that large ones lose nothing. Surface variation is what other
+    programs call curvature; verticality is that of Demantké et al.
+
+    Where the cloud has fewer points than a neighborhood asks for, it is made of all of them. Of several points equally
+    far at the end of a neighborhood of 'nearest' or 'optimal', each counts in part, so that their order in the cloud
+    decides nothing, as long as they are among the 1.3 (sqrt(k) + 1)² nearest; the features of extent are those of all
+    of them. 'optimal' tries the minimum of nearest points, then a step more, up to the maximum, and takes the one with
+    the least eigenentropy; of several that differ by rounding only, the smallest.
+
+    References
+    ----------
+    Santos et al. (2019), Building detection from LiDAR data using entropy and the k-means concept, equations 6-11.
+    Weinmann et al. (2017), Point cloud analysis for UAV-borne laser scanning, section 4.2.
+    Weinmann et al. (2015), Semantic point cloud interpretation based on optimal neighborhoods, relevant features
+    and efficient classifiers: the choice of the neighborhood, the features of height and plan.
+    Demantké et al. (2011), Dimensionality based scale selection in 3D lidar point clouds.
+
+    Examples
+    --------
+    >>> square = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]
+    >>> made = compute_features(square, n_neighbors=4, features=("planarity", "normal"))
+    >>> made[1], made[10][0]
+    (array([1., 1., 1., 1.], dtype=float32), array([0., 0., 1.], dtype=float32))
+    """
+    if not features:
+        raise ValueError(f"No feature is chosen; choose at least one of {', '.join(_FEATURES)}.")
+    sampling = sampling or CloudSampling.of(xyz)
+    around: dict[str, Callable[[], Neighborhood]] = {
+        "nearest": lambda: Nearest(n_neighbors),
+        "radius": lambda: Within(radius or _automatic_radius(sampling, n_neighbors, monitor)),
+        "optimal": lambda: Optimal(min_neighbors, max_neighbors, neighbors_step),
+    }
+    made = {name: np.empty((len(xyz), 3) if name == "normal" else len(xyz), _dtype(name)) for name in features}
+    undefined = np.empty(len(xyz), bool)
+
+    def keep(rows: np.ndarray, shapes: Shapes) -> None:
+        described = NeighborhoodFeatures(shapes)
+        undefined[rows] = ~described.defined
+        for name, values in made.items():
+            values[rows] = getattr(described, name)
+
+    reduce_neighborhoods(xyz, around[neighborhood](), keep, monitor=monitor, extents=bool(_OF_EXTENT & set(features)))
+    wanted = {"nearest": n_neighbors, "optimal": min_neighbors}.get(neighborhood, 0)
+    if len(xyz) < wanted:
+        monitor.warn(
+            f"The cloud has fewer points ({len(xyz)}) than a neighborhood asks for ({wanted}): all points have the "
+            "features of the whole cloud."
+        )
+    if undefined.any():
+        monitor.warn(
+            f"{undefined.sum()} of {len(xyz)} points have too few distinct neighbors: their features are undefined."
+        )
+    return tuple(made.get(name) for name in _FEATURES)
+
+
+def _dtype(name: str) -> str:
+    return DIMENSIONS[name].dtype
+
+
+def _automatic_radius(sampling: CloudSampling, n_neighbors: int, monitor: Monitor) -> float:
+    radius = float(np.sqrt(n_neighbors / (np.pi * sampling.density)))
+    monitor.resolved(radius=radius)
+    return radius
+
+
+class NeighborhoodFeatures:
+    """The features of the neighborhoods of m points: an attribute each, computed when asked for."""
+
+    def __init__(self, shapes: Shapes) -> None:
+        self.shapes = shapes
+        self.eigenvalues = defined_eigenvalues(shapes.covariances, shapes.counts)
+        self.defined = ~np.isnan(self.eigenvalues[:, 0])
+
+    @cached_property
+    def _dimensionality(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        return dimensionality(self.eigenvalues)
+
+    @property
+    def linearity(self) -> np.ndarray:
+        """(l1 - l2) / l1."""
+        return self._dimensionality[0]
+
+    @property
+    def planarity(self) -> np.ndarray:
+        """(l2 - l3) / l1."""
+        return self._dimensionality[1]
+
+    @property
+    def scattering(self) -> np.ndarray:
+        """L3 / l1."""
+        return self._dimensionality[2]
+
+    @property
+    def entropy(self) -> np.ndarray:
+        """Shannon entropy of the three."""
+        return shannon_entropy(*self._dimensionality)
+
+    @property
+    def omnivariance(self) -> np.ndarray:
+        """(l1 l2 l3)^(1/3)."""
+        return np.cbrt(self.eigenvalues.prod(axis=1))
+
+    @property
+    def anisotropy(self) -> np.ndarray:
+        """(l1 - l3) / l1."""
+        return self.linearity + self.planarity
+
+    @property
+    def eigenentropy(self) -> np.ndarray:
+        """-sum e ln e of the eigenvalues' shares e."""
+        return shannon_entropy(*(self.eigenvalues.T / self.eigenvalue_sum))
+
+    @property
+    def eigenvalue_sum(self) -> np.ndarray:
+        """L1 + l2 + l3."""
+        return self.eigenvalues.sum(axis=1)
+
+    @property
+    def surface_variation(self) -> np.ndarray:
+        """L3 / (l1 + l2 + l3)."""
+        return self.eigenvalues[:, 2] / self.eigenvalue_sum
+
+    @cached_property
+    def normal(self) -> np.ndarray:
+        """Upward unit eigenvector (m, 3) of l3."""
+        return smallest_eigenvectors(self.shapes.covariances, self.eigenvalues)
+
+    @property
+    def verticality(self) -> np.ndarray:
+        """1 - n_z."""
+        return 1 - self.normal[:, 2]
+
+    @property
+    def height_range(self) -> np.ndarray:
+        """Highest less lowest elevation."""
+        return np.where(self.defined, self.shapes.height_range, np.nan)
+
+    @property
+    def height_deviation(self) -> np.ndarray:
+        """Standard deviation of elevations."""
+        return np.sqrt(np.where(self.defined, self.shapes.covariances[:, 2], np.nan).clip(0))
+
+    @cached_property
+    def plan_radius(self) -> np.ndarray:
+        """Largest horizontal distance from the point; undefined where there is none."""
+        radius = self.shapes.plan_radius
+        return np.where(self.defined & (radius > 0), radius, np.nan)
+
+    @property
+    def plan_density(self) -> np.ndarray:
+        """Points of the neighborhood per area of the circle around them."""
+        return self.shapes.counts / (np.pi * self.plan_radius**2)
+
+    @property
+    def plan_eigenvalue_ratio(self) -> np.ndarray:
+        """Smaller by larger eigenvalue of the covariance in plan."""
+        xx, yy, _, xy, _, _ = self.shapes.covariances.T
+        mean, spread = (xx + yy) / 2, np.hypot((xx - yy) / 2, xy)
+        mean = np.where(self.defined & (mean > 0), mean, np.nan)
+        return np.maximum(mean - spread, 0) / (mean + spread)
+
+    @property
+    def optimal_neighbors(self) -> np.ndarray:
+        """Points of the neighborhood."""
+        return self.shapes.counts

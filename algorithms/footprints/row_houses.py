@@ -1,0 +1,457 @@
+"""Houses of a row: where the roofs above an outline say that one house ends and the next begins.
+
+A party wall is seen where, along a straight line from one side of a building to the other, two roofs rise away from it
+(the valley between gables side by side), parallel roofs step, or a wall stands above both of them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Optional
+
+import numpy as np
+
+from ..geometry.groups import components
+from ..geometry.line_segments import edge_distances, segments_meet
+from ..geometry.polylines import line_along
+from ..packages import ndimage, spatial
+from ..stage import Monitor
+from .alpha_shape import Tracing
+from .regularization import main_directions
+
+# Step of the grid that heights are sampled on (m), at least the second figure (point spacings): finer than a fire wall
+# is thick, but no finer than points tell.
+_STEP = 0.25
+_STEP_SPACINGS = 0.6
+
+# Length (m) over which heights are averaged along a line: several points, and less than a dormer is wide.
+_ALONG = 1.0
+
+# The roof beside a line is measured from here (m), beyond the wall itself ...
+_NEAR = 0.3
+
+# ... to here (m), before the ridge of a house of the least width.
+_FAR = 1.6
+
+# Spacing of points (m) up to which two samples of the grid fit in the roof beside a wall, as a slope needs.
+MAX_SPACING = _FAR / (2 * _STEP_SPACINGS)
+
+# Least slope (tangent) of a roof that rises from a valley.
+_RISE = 0.25
+
+# Greatest difference of the slopes (tangents) of parallel roofs.
+_PARALLEL = 0.35
+
+# Least step (m) between two parallel roofs. This and the next two are above the noise of airborne clouds; fitted on
+# simulated rows.
+_LEAST_STEP = 0.4
+
+# Least step (m) between any two roofs.
+_LARGE_STEP = 1.0
+
+# Least height (m) of a wall over both roofs.
+_PARAPET = 0.3
+
+# Greatest deviation (m) of a roof's heights from a line: more is a tree or a roof with machines.
+_ROUGH = 0.25
+
+# Steepest roof (tangent) beside a large step: 56°.
+_STEEPEST = 1.5
+
+# Distance (m) from a step at which half of it has to be left: a dormer ends before.
+_WIDE = 2.5
+
+# Least share of the higher house's height that the lower one has beside their wall: lower parts are wings.
+_LEAST_SHARE = 0.75
+
+# Least share of a party wall that is seen, where there are roofs beside it. Fitted on simulated rows.
+_SEEN = 0.6
+
+# Least height of such roofs, as a share of the median height.
+_HIGH = 0.5
+
+# Shortest and longest party wall (m): depths of houses.
+_SHORTEST = 4.0
+_DEEPEST = 22.0
+
+# Least and greatest distance to the next party wall (m): widths of houses.
+_NARROWEST = 3.5
+_WIDEST = 13.0
+
+# Least area of a house (m²); what is smaller is a part of one.
+_HOUSE = 25.0
+
+# Cosine of the greatest angle between party walls of one row: 10°.
+_NEARLY = 0.985
+
+# Lines closer than this (m) are the same wall.
+_SAME = 0.8
+
+# Of these, the one that parts the roofs best is taken from those of at least this share of the greatest strength.
+_STRONG = 0.5
+
+# Largest scrap that a party wall may cut off at the outline (spacings squared, each of them two triangles): it stays
+# with the house beside it.
+_SCRAP = 2.0
+
+# Samples of a grid that are looked up between two calls for progress.
+_AT_ONCE = 200_000
+
+
+def split_rows(
+    tracing: Tracing, height: np.ndarray, spacing: float, tolerance: float, monitor: Optional[Monitor] = None
+) -> Tracing:
+    """Return the tracing with the houses of rows as faces of their own, which have the label of the whole.
+
+    A party wall goes from one side of the face to the other and has another one beside it, a house away.
+
+    Parameters
+    ----------
+    tracing : Tracing
+        Faces of buildings.
+    height : ndarray of shape (n,)
+        Height above ground of its points (m).
+    spacing, tolerance : float
+        Mean distance between neighboring points, and how far wiggles of an outline may go (m). Nothing is split where
+        the spacing is greater than ``MAX_SPACING``.
+    monitor : Monitor, optional
+        Receives progress.
+    """
+    if spacing > MAX_SPACING:
+        return tracing
+    monitor = monitor or Monitor()
+    face, labels = tracing.face.copy(), list(tracing.labels)
+    starts, area = tracing.starts, tracing.areas
+    rings: list = [[] for _ in labels]
+    for number, edges in tracing.rings(tracing.face):
+        places = tracing.xy[starts[edges]]
+        rings[number].append(np.concatenate([places, places[:1]]))
+    order = np.argsort(tracing.face, kind="stable")
+    rows_of = np.split(order, np.searchsorted(tracing.face[order], np.arange(len(labels) + 1)))[1:-1]
+    for number, (own, rows) in enumerate(zip(rings, rows_of)):
+        if area[rows].sum() >= 3 * _HOUSE:
+            part = monitor.part(number / len(rings), (number + 1) / len(rings))
+            found = _party_walls(tracing, rows, own, height, spacing, tolerance, part.part(0.0, 0.7))
+            pieces = _parted(tracing, rows, area[rows], found, _SCRAP * spacing**2, part.part(0.7, 1.0))
+            face[rows] = np.where(pieces > 0, len(labels) + pieces - 1, number)
+            labels += [tracing.labels[number]] * int(pieces.max())
+        monitor.progress((number + 1) / len(rings))
+    return replace(tracing, face=face, labels=np.array(labels, tracing.labels.dtype))
+
+
+def _party_walls(
+    tracing: Tracing,
+    rows: np.ndarray,
+    rings: list,
+    height: np.ndarray,
+    spacing: float,
+    tolerance: float,
+    monitor: Monitor,
+) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Return for each main direction of a face, given by its rows and rings, what :func:`_lines` finds along it."""
+    angles = main_directions([edge for ring in rings for edge in line_along(ring).edges(tolerance)])
+    parts = [monitor.part(k / len(angles), (k + 1) / len(angles)) for k in range(len(angles))]
+    return [_lines(tracing, rows, height, angle, spacing, part) for angle, part in zip(angles, parts)]
+
+
+def _lines(
+    tracing: Tracing, rows: np.ndarray, height: np.ndarray, angle: float, spacing: float, monitor: Monitor
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the ends (w, 2, 2) (m) and strengths (w,) (m²) of what may be party walls in a face, given by its rows.
+
+    They run along a direction (rad) or square to it.
+    """
+    step = max(_STEP, _STEP_SPACINGS * spacing)
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    places = tracing.xy[np.unique(tracing.triangles[rows])] @ turn
+    low, high = places.min(axis=0) - 2 * step, places.max(axis=0) + 2 * step
+    u, v = (np.arange(a, b, step) for a, b in zip(low, high))
+    roof, is_inside = _sampled(tracing, tracing.face[rows[0]], height, (u, v), turn, monitor.part(0.0, 0.5))
+    # Farther than the face on both sides, so that the line parts it where the outline has a notch, too.
+    beyond = _ALONG + spacing
+    column, first, last, strength = _along_first_axis(roof, is_inside, step, monitor.part(0.5, 0.75))
+    along_u = np.stack([[u[first] - beyond, v[column]], [u[last] + beyond, v[column]]])
+    column, first, last, more = _along_first_axis(roof.T, is_inside.T, step, monitor.part(0.75, 1.0))
+    along_v = np.stack([[u[column], v[first] - beyond], [u[column], v[last] + beyond]])
+    ends = np.concatenate([along_u, along_v], axis=2)
+    return np.moveaxis(ends, 2, 0) @ turn.T, np.concatenate([strength, more])
+
+
+def _along_first_axis(
+    roof: np.ndarray, is_inside: np.ndarray, step: float, monitor: Monitor
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Return column, first and last row, and strength (m²) of what may be party walls along the first axis."""
+    least = _HIGH * np.median(roof[is_inside]) if is_inside.any() else 0.0
+    # What is seen from a column, to both sides.
+    reach = int(np.ceil(_WIDE / step)) + 2
+    width = max(4 * reach, _AT_ONCE // len(roof))
+    found = []
+    for start in range(0, roof.shape[1], width):
+        low = max(0, start - reach)
+        block = slice(low, start + width + reach)
+        column, *more = _runs_of_party_walls(roof[:, block], is_inside[:, block], least, step)
+        own = (column >= start - low) & (column < start - low + width)
+        found.append([column[own] + low, *(values[own] for values in more)])
+        monitor.progress(min(1.0, (start + width) / roof.shape[1]))
+    column, first, last, strength, misfit = (np.concatenate(values) for values in zip(*found))
+    chosen = _distinct(column, first, last, strength, misfit, _SAME / step)
+    return column[chosen], first[chosen], last[chosen] - 1, strength[chosen]
+
+
+def _runs_of_party_walls(roof: np.ndarray, is_inside: np.ndarray, least: float, step: float) -> tuple[np.ndarray, ...]:
+    """Return column, first row and the one after the last, strength (m²) and mean misfit (m) of runs like a party wall.
+
+    Only beside roofs of the ``least`` height (m) a wall has to be seen.
+    """
+    weight, beside, misfit = _evidence(roof, is_inside, step)
+    is_high = beside >= least
+    column, first, last = _runs(is_inside)
+    length = (last - first) * step
+    seen = ndimage.maximum_filter1d(weight, 3, axis=1) > 0
+    counted, supported, strength, misfit = (
+        _sums(values, column, first, last) * step for values in (is_high, seen & is_high, weight, misfit)
+    )
+    good = (length >= _SHORTEST) & (length <= _DEEPEST) & (supported >= np.maximum(_SHORTEST, _SEEN * counted))
+    return tuple(values[good] for values in (column, first, last, strength, misfit / length))
+
+
+def _sampled(
+    tracing: Tracing,
+    face: int,
+    height: np.ndarray,
+    axes: tuple[np.ndarray, np.ndarray],
+    turn: np.ndarray,
+    monitor: Monitor,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the height at the places of a grid, 0 outside of a face, and which of them lie in it.
+
+    ``axes`` are those of the grid before it is turned back by the transpose of ``turn`` (2, 2).
+    """
+    u, v = axes
+    roof = np.zeros((len(u), len(v)))
+    is_inside = np.zeros(roof.shape, bool)
+    size = max(1, _AT_ONCE // len(v))
+    for start in range(0, len(u), size):
+        block = slice(start, start + size)
+        places = np.stack(np.meshgrid(u[block], v, indexing="ij"), axis=-1).reshape(-1, 2) @ turn.T
+        triangle, share = tracing.locate(places)
+        here = (height[tracing.triangles[triangle]] * share).sum(axis=1)
+        inside = (triangle >= 0) & (tracing.face[triangle] == face) & np.isfinite(here)
+        roof[block] = np.where(inside, here, 0.0).reshape(-1, len(v))
+        is_inside[block] = inside.reshape(-1, len(v))
+        monitor.progress(min(1.0, (start + size) / len(u)))
+    return roof, is_inside
+
+
+def _evidence(roof: np.ndarray, is_inside: np.ndarray, step: float) -> tuple[np.ndarray, ...]:
+    """Return the strength (m) of party walls along the first axis at samples, the height beside them, and misfits."""
+    size = 2 * round(_ALONG / 2 / step) + 1
+    weight = ndimage.uniform_filter1d(is_inside.astype(float), size, axis=0, mode="constant")
+    roof = ndimage.uniform_filter1d(roof * is_inside, size, axis=0, mode="constant") / np.maximum(weight, 1e-9)
+    is_known = weight >= 0.5
+    left, left_rise, left_rough, left_mean = _side(roof, is_known, step, -1)
+    right, right_rise, right_rough, right_mean = _side(roof, is_known, step, 1)
+    jump = np.abs(right - left)
+    is_valley = (left_rise > _RISE) & (right_rise > _RISE)
+    is_ridge = (left_rise < -_RISE) & (right_rise < -_RISE)
+    is_parallel = (jump > _LEAST_STEP) & (np.abs(left_rise + right_rise) < _PARALLEL)
+    is_large = (jump > _LARGE_STEP) & (np.maximum(np.abs(left_rise), np.abs(right_rise)) < _STEEPEST) & ~is_ridge
+    is_smooth = np.maximum(left_rough, right_rough) < _ROUGH
+    is_house = np.minimum(left_mean, right_mean) >= _LEAST_SHARE * np.maximum(left_mean, right_mean)
+    above = ndimage.maximum_filter1d(roof, 3, axis=1) - np.maximum(left, right)
+    is_step = (is_parallel | is_large) & is_smooth & is_house & _goes_on(roof, is_known, right - left, step)
+    is_parapet = (above > _PARAPET) & is_smooth
+    strength = np.where(is_step, np.minimum(jump, 2 * _LARGE_STEP), np.where(is_parapet, above, 0.0))
+    strength = np.where(is_valley, np.minimum(left_rise, right_rise), strength)
+    rough = [np.nan_to_num(_side(roof, is_known, step, sign, 0.0)[2]) for sign in (-1, 1)]
+    return strength, np.nan_to_num(np.maximum(left_mean, right_mean)), rough[0] + rough[1]
+
+
+def _goes_on(roof: np.ndarray, is_known: np.ndarray, jump: np.ndarray, step: float) -> np.ndarray:
+    """Return where a step (m) to the right is still there farther from it, or nothing is seen of that."""
+    away = round(_WIDE / step)
+    known = np.pad(np.where(is_known, roof, np.nan), ((0, 0), (away, away)), constant_values=np.nan)
+    farther = known[:, 2 * away :] - known[:, : -2 * away]
+    return ~(farther * np.sign(jump) < np.abs(jump) / 2)
+
+
+def _side(
+    roof: np.ndarray, is_known: np.ndarray, step: float, sign: int, near: float = _NEAR
+) -> tuple[np.ndarray, ...]:
+    """Return the line fitted to the roof on one side of each place: height here, rise outward, deviation, mean."""
+    offsets = np.arange(max(1, int(np.ceil(near / step))), int(_FAR / step) + 1)
+    far = offsets * step
+
+    def total(values: np.ndarray, factor: np.ndarray) -> np.ndarray:
+        kernel = np.zeros(2 * offsets[-1] + 1)
+        kernel[offsets[-1] + sign * offsets] = factor
+        return ndimage.correlate1d(values * is_known, kernel, axis=1, mode="constant")
+
+    one = np.ones(len(far))
+    n, x, xx = (total(np.ones(roof.shape), factor) for factor in (one, far, far**2))
+    z, xz, zz = total(roof, one), total(roof, far), total(roof**2, one)
+    det = n * xx - x**2
+    good = (n >= 0.7 * len(far)) & (det > 1e-6)
+    rise = np.where(good, n * xz - x * z, np.nan) / np.where(good, det, 1.0)
+    here = (z - rise * x) / np.maximum(n, 1.0)
+    rough = np.sqrt(np.maximum(zz - here * z - rise * xz, 0.0) / np.maximum(n, 1.0))
+    return here, rise, rough, np.where(good, z / np.maximum(n, 1.0), np.nan)
+
+
+def _runs(is_inside: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the column of each run of places inside along the first axis, its first row and the one after its last."""
+    change = np.diff(np.pad(is_inside.T, ((0, 0), (1, 1))).astype(np.int8), axis=1)
+    column, first = np.nonzero(change == 1)
+    return column, first, np.nonzero(change == -1)[1]
+
+
+def _sums(values: np.ndarray, column: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
+    """Return the sum of the values in each run."""
+    total = np.cumsum(np.pad(values.astype(float), ((1, 0), (0, 0))), axis=0)
+    return total[last, column] - total[first, column]
+
+
+def _distinct(
+    column: np.ndarray, first: np.ndarray, last: np.ndarray, strength: np.ndarray, misfit: np.ndarray, same: float
+) -> list[int]:
+    """Return one of the runs that lie side by side: where two lines fit the roof best, of those with much for them."""
+    found = []
+    is_left = np.ones(len(column), bool)
+    for best in np.argsort(-strength, kind="stable").tolist():
+        if not is_left[best]:
+            continue
+        shared = np.minimum(last, last[best]) - np.maximum(first, first[best])
+        beside = is_left & (2 * shared > last[best] - first[best])
+        near = beside & (np.abs(column - column[best]) <= same)
+        strong = np.flatnonzero(near & (strength >= _STRONG * strength[best]))
+        found.append(int(strong[np.argmin(misfit[strong])]))
+        is_left &= ~beside | (np.abs(column - column[found[-1]]) > same)
+        is_left[best] = False
+    return found
+
+
+def _parted(
+    tracing: Tracing, rows: np.ndarray, area: np.ndarray, found: list, scrap: float, monitor: Monitor
+) -> np.ndarray:
+    """Return the house (t,), from 0, of each triangle of a face, given by its rows: pieces between party walls.
+
+    ``found`` are ends and strengths of what may be party walls, ``scrap`` (m²) is too little for a piece of its own.
+    """
+    ends, strength = (np.concatenate(values) for values in zip(*found)) if found else (np.zeros((0, 2, 2)), np.zeros(0))
+    ends = ends[np.argsort(-strength, kind="stable")]
+    ends = ends[_in_rows(ends)]
+    if not len(ends):
+        return np.zeros(len(rows), np.int64)
+    pairs, middle = _pairs(tracing, rows)
+    crossed = _crossed(ends, middle[pairs])
+    # Triangles that no wall parts are one cell: there are many fewer of these.
+    is_crossed = np.zeros(len(pairs), bool)
+    is_crossed[np.concatenate(crossed)] = True
+    cell = _pieces(pairs[~is_crossed], len(rows))
+    pairs, number = cell[pairs[is_crossed]], np.cumsum(is_crossed) - 1
+    crossed, area = [number[own] for own in crossed], np.bincount(cell, area)
+    kept = _kept(ends, crossed, pairs, area, scrap, monitor)
+    is_cut = np.zeros(len(pairs), bool)
+    for wall in kept[_in_rows(ends[kept])]:
+        is_cut[crossed[wall]] = True
+    return _without_scraps(_pieces(pairs[~is_cut], len(area)), pairs, area, scrap)[cell]
+
+
+def _kept(
+    ends: np.ndarray, crossed: list, pairs: np.ndarray, area: np.ndarray, scrap: float, monitor: Monitor
+) -> np.ndarray:
+    """Return the party walls, of those that come first, that leave room between them and no piece smaller than a house.
+
+    ``crossed`` are the ``pairs`` of cells that each parts, ``area`` (m²) is that of the cells.
+    """
+    kept: list = []
+    is_cut = np.zeros(len(pairs), bool)
+    for wall, own in enumerate(crossed):
+        monitor.progress(wall / len(ends))
+        if kept and _is_close(ends[wall], ends[kept]):
+            continue
+        more = is_cut.copy()
+        more[own] = True
+        size = np.bincount(_pieces(pairs[~more], len(area)), area)
+        if ((size >= _HOUSE) | (size < scrap)).all():
+            kept.append(wall)
+            is_cut = more
+    return np.array(kept, np.int64)
+
+
+def _without_scraps(piece: np.ndarray, pairs: np.ndarray, area: np.ndarray, scrap: float) -> np.ndarray:
+    """Return the pieces of cells, from 0, with those of less than ``scrap`` (m²) in the largest one beside them."""
+    size = np.bincount(piece, area)
+    beside = piece[np.concatenate([pairs, pairs[:, ::-1]])]
+    beside = beside[(size[beside[:, 0]] < scrap) & (size[beside[:, 1]] >= scrap)]
+    # The largest comes last for each scrap, and stays.
+    beside = beside[np.argsort(size[beside[:, 1]], kind="stable")]
+    target = np.arange(len(size))
+    target[beside[:, 0]] = beside[:, 1]
+    return np.unique(target[piece], return_inverse=True)[1]
+
+
+def _pairs(tracing: Tracing, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the triangles (p, 2) of a face that share an edge, counted in its rows, and the middle of each."""
+    beside = tracing.neighbors[rows]
+    position = np.minimum(np.searchsorted(rows, beside), len(rows) - 1)
+    one, side = np.nonzero((rows[position] == beside) & (position > np.arange(len(rows))[:, None]))
+    return np.column_stack([one, position[one, side]]), tracing.xy[tracing.triangles[rows]].mean(axis=1)
+
+
+def _pieces(pairs: np.ndarray, count: int) -> np.ndarray:
+    """Return the piece, from 0, of each of ``count`` cells that pairs of them connect."""
+    return components(pairs[:, 0], pairs[:, 1], count)[1]
+
+
+def _crossed(ends: np.ndarray, segments: np.ndarray) -> list:
+    """Return for each party wall the segments (n, 2, 2) that lead across it."""
+    middle, step = segments.mean(axis=1), ends[:, 1] - ends[:, 0]
+    length = np.hypot(*step.T)
+    reach = (length + np.hypot(*(segments[:, 1] - segments[:, 0]).T).max(initial=0.0)) / 2
+    near = spatial.cKDTree(middle).query_ball_point(ends.mean(axis=1), reach)
+    found = []
+    for start, (x, y), size, beside in zip(ends[:, 0], step / length[:, None], length, near):
+        own = np.sort(np.array(beside, np.int64))
+        offset = segments[own] - start
+        side = x * offset[..., 1] - y * offset[..., 0] > 0
+        along = (middle[own] - start) @ [x, y]
+        found.append(own[(side[:, 0] != side[:, 1]) & (along >= 0) & (along <= size)])
+    return found
+
+
+def _is_close(wall: np.ndarray, others: np.ndarray) -> bool:
+    """Return whether a party wall (2, 2) crosses one of others (w, 2, 2), or leaves no room for a house beside it."""
+    starts, stops = others[:, 0], others[:, 1]
+    if segments_meet(wall[:1], wall[1:], starts, stops):
+        return True
+    from_wall, to_wall = edge_distances(wall, starts, stops), edge_distances(others.reshape(-1, 2), wall[:1], wall[1:])
+    return bool(min(from_wall.min(), to_wall.min()) < _NARROWEST)
+
+
+def _in_rows(ends: np.ndarray) -> np.ndarray:
+    """Return which party walls (w,) have another one a house away: two roofs may be one house, three are a row."""
+    length = np.hypot(*(ends[:, 1] - ends[:, 0]).T)
+    reach = _WIDEST + length.max(initial=0.0)
+    near = spatial.cKDTree(ends.mean(axis=1)).query_pairs(reach, output_type="ndarray")
+    near = np.concatenate([near, near[:, ::-1]])
+    one, other = near[_are_next(ends[near[:, 0]], ends[near[:, 1]])].T
+    kept, count = np.ones(len(ends), bool), len(ends) + 1
+    while kept.sum() < count:
+        count = kept.sum()
+        kept = np.bincount(one[kept[one] & kept[other]], minlength=len(ends)) > 0
+    return kept
+
+
+def _are_next(walls: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Return which others (p, 2, 2) are nearly parallel to party walls (p, 2, 2) and as far away as a house is wide."""
+    step, other_step = walls[:, 1] - walls[:, 0], others[:, 1] - others[:, 0]
+    length, other_length = np.hypot(*step.T), np.hypot(*other_step.T)
+    x, y = (step / length[:, None]).T
+    offset_x, offset_y = np.moveaxis(others - walls[:, :1], 2, 0)
+    along = np.sort(offset_x * x[:, None] + offset_y * y[:, None], axis=1)
+    shared = np.minimum(along[:, 1], length) - np.maximum(along[:, 0], 0.0)
+    apart = np.abs((x[:, None] * offset_y - y[:, None] * offset_x).mean(axis=1))
+    is_parallel = np.abs(x * other_step[:, 0] + y * other_step[:, 1]) >= _NEARLY * other_length
+    is_beside = 2 * shared >= np.minimum(length, other_length)
+    return is_parallel & is_beside & (apart >= _NARROWEST) & (apart <= _WIDEST)

@@ -1,0 +1,15 @@
+"""Cells of a raster and those beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+
+def adjacent_cells(dimensions: int) -> Iterator[tuple[tuple[slice, ...], tuple[slice, ...]]]:
+    """Yield the slices of an array without its last or first cells, and of the cells beside those.
+
+    Along each axis in order, first with the cells after, then with those before.
+    """
+    for axis in range(dimensions):
+        for inside, outside in ((slice(None, -1), slice(1, None)), (slice(1, None), slice(None, -1))):
+            yield (slice(None),) * axis + (inside,), (slice(None),) * axis + (outside,)

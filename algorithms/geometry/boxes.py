@@ -1,0 +1,179 @@
+"""Points sorted into small boxes, so that pairs of near points are found without a list of neighbors per point."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Callable, Optional
+
+import numpy as np
+
+from ..stage import Monitor
+from .groups import components, run_starts
+
+# Point pairs compared at once: 130 bytes each, so 130 MB.
+_PAIRS_AT_ONCE = 1_000_000
+
+# Boxes this many steps away can still hold a point that is near.
+_REACH = 2
+
+# Numbers of boxes are of 64 bits.
+_MOST_BOXES = 2**63 - 1
+
+Offset = tuple[int, int, int]
+
+
+class Boxes:
+    """Points sorted by the box of a regular grid that they lie in.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points (m), n >= 1.
+    side : float or ndarray of shape (3,)
+        Sides of a box, m.
+
+    Attributes
+    ----------
+    order : ndarray of shape (n,)
+        Points in the order of their boxes; ``xyz`` holds them in this order.
+    keys : ndarray of shape (b,), int64
+        Number of each occupied box, ascending.
+    start, size : ndarray of shape (b,)
+        Where a box's points start in ``order``, and how many they are.
+
+    Raises
+    ------
+    ValueError
+        If the points are spread so far that there are more boxes than numbers.
+    """
+
+    def __init__(self, xyz: np.ndarray, side) -> None:
+        box = np.floor((xyz - xyz.min(axis=0)) / side).astype(np.int64)
+        # Room on all sides keeps neighbors from wrapping around.
+        self.shape = box.max(axis=0) + 2 * _REACH + 1
+        if math.prod(self.shape.tolist()) > _MOST_BOXES:
+            spread = " by ".join(f"{extent:,.0f}" for extent in np.ptp(xyz, axis=0))
+            raise ValueError(
+                f"The points are spread over {spread} m, too far to be looked at in boxes of {np.min(side):.2g} m; "
+                "remove points that lie far off, or choose larger distances."
+            )
+        key = self._key(box)
+        order = np.argsort(key, kind="stable")
+        self._fill(order, xyz[order], key[order])
+
+    def _fill(self, order: np.ndarray, xyz: np.ndarray, key: np.ndarray) -> None:
+        self.order, self.xyz = order, xyz
+        self.start = run_starts(key)
+        self.keys, self.size = key[self.start], np.diff(self.start, append=len(key))
+
+    def __len__(self) -> int:
+        return len(self.keys)
+
+    def of(self, chosen: np.ndarray) -> Boxes:
+        """Return the boxes of the ``chosen`` points only: a mask (n,) in the order of the boxes."""
+        part = object.__new__(Boxes)
+        part.shape = self.shape
+        part._fill(self.order[chosen], self.xyz[chosen], np.repeat(self.keys, self.size)[chosen])
+        return part
+
+    def box(self) -> np.ndarray:
+        """Return which box (n,) each point is in, in the order of the boxes."""
+        return np.repeat(np.arange(len(self)), self.size)
+
+    def _key(self, box: np.ndarray) -> np.ndarray:
+        return (box[..., 0] * self.shape[1] + box[..., 1]) * self.shape[2] + box[..., 2]
+
+    def beside(self, other: Boxes, offset: Offset) -> tuple[np.ndarray, np.ndarray]:
+        """Return which boxes of this one have a box of ``other`` (same grid) ``offset`` away, and which that is."""
+        wanted = self.keys + self._key(np.array(offset))
+        there = np.minimum(np.searchsorted(other.keys, wanted), len(other) - 1)
+        here = np.flatnonzero(other.keys[there] == wanted) if len(other) else np.zeros(0, np.int64)
+        return here, there[here]
+
+    def pairs(
+        self, here: np.ndarray, other: Boxes, there: np.ndarray, most: Optional[int] = None
+    ) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+        """Yield chunks of (pair of boxes, point, point of ``other``) over all points of the pairs of boxes.
+
+        Points are counted in the order of the boxes; with ``most``, only so many of each box are taken.
+        """
+        own, others = self.size[here], other.size[there]
+        if most is not None:
+            own, others = np.minimum(own, most), np.minimum(others, most)
+        ends = np.cumsum(own * others)
+        total = int(ends[-1]) if len(ends) else 0
+        for first in range(0, total, _PAIRS_AT_ONCE):
+            number = np.arange(first, min(first + _PAIRS_AT_ONCE, total))
+            pair = np.searchsorted(ends, number, side="right")
+            a, b = np.divmod(number - (ends[pair] - own[pair] * others[pair]), others[pair])
+            yield pair, self.start[here[pair]] + a, other.start[there[pair]] + b
+
+
+def around(reach: int = _REACH) -> list[Offset]:
+    """Return the steps to the boxes around a box, nearest first."""
+    steps = range(-reach, reach + 1)
+    offsets = [(i, j, k) for i in steps for j in steps for k in steps if (i, j, k) != (0, 0, 0)]
+    return sorted(offsets, key=lambda offset: (sum(step * step for step in offset), offset))
+
+
+def connected(boxes: Boxes, is_near: Callable[[np.ndarray], np.ndarray], monitor: Monitor) -> np.ndarray:
+    """Return components (b,) of boxes in which each holds a point near one of the next.
+
+    Parameters
+    ----------
+    boxes : Boxes
+        Boxes so small that all points of one are near each other.
+    is_near : callable
+        Tells of offsets (m, 3) between points whether the points are near (m,).
+    monitor : Monitor
+        Receives progress.
+
+    Notes
+    -----
+    Two boxes are compared point by point only while nothing else has joined them yet, and before that by one point
+    each, which joins most: pairs of points are never all held at once, and memory follows the points.
+    """
+    component = np.arange(len(boxes))
+    half = [offset for offset in around() if offset > (0, 0, 0)]
+    left: list[tuple[np.ndarray, np.ndarray]] = []
+    for done, offset in enumerate(half, start=1):
+        apart, component = _compared(boxes, boxes.beside(boxes, offset), component, is_near, 1)
+        left.append(apart)
+        monitor.progress(done / (2 * len(half)))
+    for done, apart in enumerate(left, start=1):
+        component = _compared(boxes, apart, component, is_near, None)[1]
+        monitor.progress(0.5 + done / (2 * len(half)))
+    return component
+
+
+def _compared(
+    boxes: Boxes,
+    pairs: tuple[np.ndarray, np.ndarray],
+    component: np.ndarray,
+    is_near: Callable[[np.ndarray], np.ndarray],
+    most: Optional[int],
+) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
+    """Join boxes in which ``most`` points each show that they touch; return the pairs still apart, and components."""
+    here, there = pairs
+    apart = component[here] != component[there]
+    here, there = here[apart], there[apart]
+    touching = np.zeros(len(here), bool)
+    for pair, a, b in boxes.pairs(here, boxes, there, most):
+        touching[pair[is_near(boxes.xyz[a] - boxes.xyz[b])]] = True
+    return (here[~touching], there[~touching]), _joined(component, here[touching], there[touching])
+
+
+def _joined(component: np.ndarray, here: np.ndarray, there: np.ndarray) -> np.ndarray:
+    """Return the components after joining those of the boxes ``here`` and ``there``."""
+    if not len(here):
+        return component
+    return components(component[here], component[there], int(component.max()) + 1)[1][component]
+
+
+def by_first_point(component: np.ndarray) -> np.ndarray:
+    """Renumber components (n,) from 0 in the order of their first points, int32."""
+    _, first, inverse = np.unique(component, return_index=True, return_inverse=True)
+    rank = np.empty(len(first), np.int32)
+    rank[np.argsort(first)] = np.arange(len(first), dtype=np.int32)
+    return rank[inverse]

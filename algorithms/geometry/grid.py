@@ -1,0 +1,153 @@
+"""Square cells in plan: numbering points by them without ever holding the whole grid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .groups import components
+
+# A raster larger than this, in cells and in cells for each point, is a mistake in the coordinates.
+_MOST_CELLS, _MOST_CELLS_PER_POINT = 10_000_000, 20
+
+# A table so many times as long as the numbers in it takes less memory and time than sorting them.
+_TABLE = 4
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Cells of ``size`` (m) from ``origin``, ``rows`` of them northward and ``columns`` eastward.
+
+    A cell's number is ``row * columns + column``. An empty border of one cell keeps the
+    neighbors of the outermost cells apart, so that numbers can be compared by their differences.
+    """
+
+    origin: tuple[float, float]
+    size: float
+    rows: int
+    columns: int
+
+    def number(self, xyz: np.ndarray) -> np.ndarray:
+        """Return the cell number (n,), int64, of points inside the grid."""
+        column = np.floor((xyz[:, 0] - self.origin[0]) / self.size).astype(np.int64) + 1
+        row = np.floor((xyz[:, 1] - self.origin[1]) / self.size).astype(np.int64) + 1
+        return row * self.columns + column
+
+    def center(self, number: np.ndarray) -> np.ndarray:
+        """Return easting and northing (m, 2) of the middle of cells."""
+        row, column = np.divmod(number, self.columns)
+        return np.column_stack([column - 0.5, row - 0.5]) * self.size + self.origin
+
+    @property
+    def around(self) -> tuple[int, ...]:
+        """Differences in number to the eight cells around a cell."""
+        return tuple(row * self.columns + column for row in (-1, 0, 1) for column in (-1, 0, 1) if row or column)
+
+
+def grid_over(xyz: np.ndarray, size: float) -> Grid:
+    """Return the grid of cells of ``size`` (m) whose first cell starts at the least easting and northing."""
+    low, high = plan_box(xyz)
+    columns, rows = (np.floor((high - low) / size).astype(np.int64) + 3).tolist()
+    return Grid((float(low[0]), float(low[1])), size, rows, columns)
+
+
+def plan_box(xyz: np.ndarray) -> np.ndarray:
+    """Return the least and the greatest easting and northing (2, 2) of points, m."""
+    # Column by column is many times faster than along the axis.
+    columns = xyz[:, 0], xyz[:, 1]
+    return np.array([[column.min() for column in columns], [column.max() for column in columns]])
+
+
+def turned_in_plan(places: np.ndarray, angle: float) -> np.ndarray:
+    """Return places (n, 2 or 3) turned counterclockwise by an angle (°) about the vertical through zero."""
+    if not angle:
+        return places
+    x, y, *z = places.T
+    cos, sin = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+    return np.column_stack([cos * x - sin * y, sin * x + cos * y, *z])
+
+
+def distinct(numbers: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return each number once, ascending, and which of these every number is.
+
+    Parameters
+    ----------
+    numbers : ndarray of shape (n,), int64
+        Numbers of cells or the like.
+
+    Returns
+    -------
+    values : ndarray of shape (m,), int64
+    which : ndarray of shape (n,), int32 or int64
+        As ``numpy.unique`` gives them; where numbers are not far apart, as those of occupied cells, without sorting.
+    """
+    least = int(numbers.min()) if len(numbers) else 0
+    length = int(numbers.max()) - least + 1 if len(numbers) else 0
+    if length > _TABLE * len(numbers):
+        return np.unique(numbers, return_inverse=True)
+    is_there = np.zeros(length, bool)
+    is_there[numbers - least] = True
+    place = np.cumsum(is_there, dtype=np.int32) - np.int32(1)
+    return np.flatnonzero(is_there) + least, place[numbers - least]
+
+
+def refuse_sparse(xyz: np.ndarray, size: float, most_cells: int = _MOST_CELLS) -> None:
+    """Refuse points that lie so far apart that a raster of cells over them would hold next to nothing.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 2 or 3)
+        Points (m), n >= 1.
+    size : float
+        Side of a cell, m.
+    most_cells : int
+        Cells that are no burden however empty they are, ten million unless given.
+
+    Raises
+    ------
+    ValueError
+        If the raster had more cells than that and more than twenty for each point.
+    """
+    width, height = np.ptp(xyz[:, :2], axis=0)
+    if (width / size + 1) * (height / size + 1) > max(most_cells, _MOST_CELLS_PER_POINT * len(xyz)):
+        raise ValueError(
+            f"The {len(xyz)} points are spread over {width:,.0f} m by {height:,.0f} m, which is nearly empty in cells "
+            f"of {size:.2g} m; remove points that lie far off in plan, cut the cloud into pieces, or set larger cells."
+        )
+
+
+def connected_cells(grid: Grid, cells: np.ndarray) -> tuple[int, np.ndarray]:
+    """Group cells that touch by a side or a corner.
+
+    Parameters
+    ----------
+    grid : Grid
+        The grid that the numbers belong to.
+    cells : ndarray of shape (m,), int64
+        Cell numbers, ascending and each once.
+
+    Returns
+    -------
+    count : int
+        Number of groups.
+    group : ndarray of shape (m,), int32
+        Group of each cell, from 0.
+    """
+    if not len(cells):
+        return 0, np.zeros(0, np.int32)
+    here, there = [], []
+    # Four of the eight directions: the others are the same pairs seen from the other side.
+    for step in grid.around[4:]:
+        beside, found = find_cells(cells, cells + step)
+        here.append(np.flatnonzero(found))
+        there.append(beside[found])
+    return components(np.concatenate(here), np.concatenate(there), len(cells))
+
+
+def find_cells(cells: np.ndarray, wanted: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return where ``wanted`` numbers are in ``cells`` (ascending), and which of them are there."""
+    position = np.searchsorted(cells, wanted)
+    position[position == len(cells)] = 0
+    found = cells[position] == wanted if len(cells) else np.zeros(len(wanted), bool)
+    return position, found

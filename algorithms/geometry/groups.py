@@ -1,0 +1,68 @@
+"""Items and their groups: where runs begin, which items a group has, and what pairs hold together."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..packages import csgraph, sparse
+
+
+def run_starts(numbers: np.ndarray) -> np.ndarray:
+    """Return where in ``numbers`` (n,) each run of equal ones begins, int64, ascending."""
+    is_start = np.ones(len(numbers), bool)
+    is_start[1:] = numbers[1:] != numbers[:-1]
+    return np.flatnonzero(is_start)
+
+
+def items(counts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the items of groups, one group after the other.
+
+    Parameters
+    ----------
+    counts : ndarray of shape (m,), int
+        How many items each group has.
+
+    Returns
+    -------
+    group : ndarray of shape (n,), int64
+        The group of each item, from 0.
+    item : ndarray of shape (n,), int64
+        Its number in the group, from 0.
+    """
+    group = np.repeat(np.arange(len(counts)), counts)
+    return group, np.arange(len(group)) - np.repeat(np.cumsum(counts) - counts, counts)
+
+
+def members(group: np.ndarray) -> dict[int, np.ndarray]:
+    """Return where each number from 1 on stands in ``group`` (n,): positions, int64, ascending, by number."""
+    positive = np.flatnonzero(group > 0)
+    order = positive[np.argsort(group[positive], kind="stable")]
+    parts = np.split(order, run_starts(group[order])[1:])
+    return {int(group[part[0]]): part for part in parts if len(part)}
+
+
+def components(one: np.ndarray, other: np.ndarray, count: int) -> tuple[int, np.ndarray]:
+    """Group things that pairs of them hold together, directly or through others.
+
+    Parameters
+    ----------
+    one, other : ndarray of shape (k,), int
+        The two things of each pair, numbered from 0.
+    count : int
+        How many things there are.
+
+    Returns
+    -------
+    n_groups : int
+        Number of groups.
+    group : ndarray of shape (count,), int32
+        The group of each thing, from 0 in the order of their first things.
+    """
+    pairs = sparse.coo_matrix((np.ones(len(one), bool), (one, other)), (count, count))
+    return csgraph.connected_components(pairs, directed=False)
+
+
+def split_groups(group: np.ndarray, count: int) -> list[np.ndarray]:
+    """Return the rows of each group from 0 to ``count`` - 1; rows of -1 are left out."""
+    order = np.argsort(group, kind="stable")
+    return np.split(order, np.searchsorted(group[order], np.arange(count + 1)))[1:-1]

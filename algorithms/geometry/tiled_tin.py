@@ -1,0 +1,191 @@
+"""The elevation of a triangulated surface at many places, made tile by tile: any number of nodes in little memory.
+
+A triangle belongs to the Delaunay triangulation of all nodes when none of them lies inside its circle, whichever nodes
+it was found among. So only the nodes close to the places of a tile are triangulated, and every triangle under a place
+is held to that rule: the surface is that of one triangulation, without seams.
+
+The far corners that surround the nodes of a tile take no part: where one of them spoils the flat triangles along the
+hull of the nodes, these are triangulated again without it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Optional
+
+import numpy as np
+
+from ..packages import interpolate, spatial
+from ..stage import Monitor
+from ..threads import in_chunks
+from .delaunay import circles
+from .grid import grid_over, plan_box
+from .tin import CORNERS, Tin
+
+# Nodes and places of a tile at most: large ones hold more memory, small ones cost more overhead.
+_NODES, _PLACES = 20_000, 40_000
+
+# Cells around places, in distances between nodes: most triangles have their corners in such a cell or the next.
+_CELL = 1.5
+
+# Nodes inside a circle that are taken in at once.
+_INTRUDERS = 8
+
+# Nodes whose width in plan is a smaller share of their length than this lie on a line, and no place lies between them.
+_LEAST_WIDTH = 1e-9
+
+# Nodes on a circle, as those of regular grids are, lie inside it by rounding.
+_ROUNDING = 1e-9
+
+
+class TiledTin:
+    """The surface of :class:`Tin`, for places that are all known beforehand.
+
+    Parameters
+    ----------
+    nodes : ndarray of shape (m, 3), float64
+        Nodes (m), m >= 1; of nodes at one place in plan, the lowest counts.
+    """
+
+    def __init__(self, nodes: np.ndarray) -> None:
+        # In this order rows, ascending, are in the same one however the nodes came.
+        self.nodes = nodes = _lowest_of_each_place(nodes)
+        self._box = plan_box(nodes)
+        # Small numbers keep their digits when they are squared. Triangulations of tiles, of the same box, have it too.
+        self._shift = self._box.mean(axis=0)
+        self._tree = spatial.cKDTree(nodes[:, :2] - self._shift, balanced_tree=False)
+
+    def elevation(self, places: np.ndarray, monitor: Optional[Monitor] = None) -> np.ndarray:
+        """Return the elevation (n,) of the surface at places (n, 2 or 3), NaN outside the hull of the nodes (m)."""
+        found = np.full(len(places), np.nan)
+        tiles = list(_tiles(self.nodes, places))
+
+        def fill(some: np.ndarray) -> None:
+            for tile in some:
+                rows, left = tiles[tile]
+                self._fill(_close(self.nodes, rows, places[left]), left, places, found)
+
+        in_chunks(fill, np.arange(len(tiles)), 2, monitor or Monitor())
+        self._fill_edge(np.flatnonzero(np.isnan(found)), places, found)
+        return found
+
+    def nearest_elevation(self, places: np.ndarray) -> np.ndarray:
+        """Return the elevation (n,) of the node nearest in plan to each place (n, 2 or 3), m."""
+        return self.nodes[self._tree.query(places[:, :2] - self._shift, workers=-1)[1], 2]
+
+    def _fill(self, rows: np.ndarray, left: np.ndarray, places: np.ndarray, found: np.ndarray) -> None:
+        """Write the elevations at the places ``left`` to ``found``, starting from the nodes ``rows``."""
+        if not len(rows):
+            rows = self._nearest(places[left])
+        is_start = True
+        while len(left):
+            tin = Tin(self.nodes[rows], self._box)
+            facet = tin.locate(places[left])
+            facets, of = np.unique(facet, return_inverse=True)
+            intruders, is_wrong = self._intruders(*tin.circles(facets), rows)
+            wrong = is_wrong[of]
+            right = left[~wrong]
+            elevation = tin.elevation(places[right], facet[~wrong])
+            found[right] = np.where(tin.is_extrapolated()[facet[~wrong]], np.nan, elevation)
+            left = left[wrong]
+            if is_start:
+                # The few places that are left, in gaps of the ground, need the nodes around the gaps only.
+                ends = np.unique(tin.facets[facets[is_wrong]])
+                rows, is_start = rows[ends[ends >= CORNERS] - CORNERS], False
+                intruders = np.append(intruders, self._nearest(places[left]))
+            rows = np.union1d(rows, intruders)
+
+    def _fill_edge(self, left: np.ndarray, places: np.ndarray, found: np.ndarray) -> None:
+        """Write the elevations at those of the places ``left`` that lie in the hull of all nodes to ``found``.
+
+        The far corners of a :class:`Tin` take away the flat triangles along its hull: these have such large circles
+        that a corner lies inside.
+        """
+        plan = self.nodes[:, :2] - self._shift
+        if not len(left) or not _has_area(plan):
+            return
+        rows = spatial.ConvexHull(plan).vertices
+        while len(left):
+            mesh = spatial.Delaunay(plan[rows])
+            facet = mesh.find_simplex(places[left, :2] - self._shift)
+            left, facet = left[facet >= 0], facet[facet >= 0]
+            facets, of = np.unique(facet, return_inverse=True)
+            intruders, is_wrong = self._intruders(*circles(mesh.points, mesh.simplices[facets]), rows)
+            right, left = left[~is_wrong[of]], left[is_wrong[of]]
+            surface = interpolate.LinearNDInterpolator(mesh, self.nodes[rows, 2])
+            found[right] = surface(places[right, :2] - self._shift)
+            rows = np.unique(np.concatenate([rows, intruders, self._nearest(places[left])]))
+
+    def _intruders(self, center: np.ndarray, radius: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the rows of nodes inside circles that ``rows`` lack, and which circles have such.
+
+        Circles have a ``center`` (c, 2), from the shift, and a ``radius`` (c,), m, both NaN for nodes on a line.
+        """
+        limit = radius * (1 - _ROUNDING)
+        # Nodes on a line have no circle, and no place lies between them.
+        center[~np.isfinite(radius)], limit[~np.isfinite(radius)] = 0.0, 0.0
+        is_wrong = self._tree.query(center)[0] < limit
+        distance, node = self._tree.query(center[is_wrong], np.arange(1, min(_INTRUDERS, len(self.nodes)) + 1))
+        is_new = (distance < limit[is_wrong, None]) & ~np.isin(node, rows)
+        # Where all of them are known, it is rounding.
+        is_wrong[is_wrong] = is_new.any(axis=1)
+        return node[is_new], is_wrong
+
+    def _nearest(self, places: np.ndarray) -> np.ndarray:
+        """Return the rows of the nodes that are nearest to places, each once."""
+        return np.unique(self._tree.query(places[:, :2] - self._shift)[1])
+
+
+def _has_area(plan: np.ndarray) -> bool:
+    """Return whether nodes in plan (m, 2) do not all lie on one line."""
+    extents = np.linalg.svd(plan - plan.mean(axis=0), compute_uv=False)
+    return len(plan) > 2 and bool(extents[1] > _LEAST_WIDTH * extents[0])
+
+
+def _tiles(nodes: np.ndarray, places: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Halve the plane until each part has few nodes and places; yield the rows of both where there are places.
+
+    Nodes close to a part are in it too.
+    """
+    left = [(np.arange(len(nodes), dtype=np.int32), np.arange(len(places), dtype=np.int32))]
+    while left:
+        rows, own = left.pop()
+        if not len(own):
+            continue
+        low, high = plan_box(nodes[rows] if len(rows) > _NODES else places[own])
+        axis = int(np.argmax(high - low))
+        middle = (low[axis] + high[axis]) / 2
+        if (len(rows) <= _NODES and len(own) <= _PLACES) or not low[axis] < middle:
+            yield rows, own
+            continue
+        margin = 2 * _cell_size(nodes, rows)
+        along, is_lower = nodes[rows, axis], places[own, axis] < middle
+        left += [(rows[along < middle + margin], own[is_lower]), (rows[along >= middle - margin], own[~is_lower])]
+
+
+def _cell_size(nodes: np.ndarray, rows: np.ndarray) -> float:
+    """Return the side (m) of cells that hold a few of some nodes, 0 where they have no area."""
+    if not len(rows):
+        return 0.0
+    low, high = plan_box(nodes[rows])
+    return _CELL * float(np.sqrt((high - low).prod() / len(rows)))
+
+
+def _close(nodes: np.ndarray, rows: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Return those of the ``rows`` of nodes that lie in a cell with places, or next to such a cell."""
+    size = _cell_size(nodes, rows)
+    if not size:
+        return rows
+    grid = grid_over(places, size)
+    cells = np.unique(grid.number(places))
+    # Nodes outside the grid may take the number of a cell far off, which does no harm.
+    return rows[np.isin(grid.number(nodes[rows]), cells[:, None] + [0, *grid.around])]
+
+
+def _lowest_of_each_place(nodes: np.ndarray) -> np.ndarray:
+    """Return nodes in the order of their coordinates, only the lowest of each place in plan."""
+    x, y, z = nodes.T
+    order = np.lexsort((z, y, x))
+    is_new = np.ones(len(nodes), bool)
+    is_new[1:] = (np.diff(x[order]) != 0) | (np.diff(y[order]) != 0)
+    return nodes[order[is_new]]

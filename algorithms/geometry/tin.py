@@ -1,0 +1,248 @@
+"""A triangulated surface over plan coordinates, and where points lie on it."""
+
+from __future__ import annotations
+
+from typing import Callable, Optional
+
+import numpy as np
+
+from ..packages import spatial
+from ..stage import Monitor
+from ..threads import in_chunks
+from .delaunay import Triangulation, circles, triangulate
+from .grid import plan_box
+
+# Points looked for and planes fitted at once, on each core: their arrays stay small beside the cloud.
+_CHUNK, _FIT_CHUNK = 100_000, 20_000
+
+# Far more steps than a walk from the nearest node takes.
+_MAX_STEPS = 1000
+
+# On a side of a facet weights are 0 but for rounding: what is less negative than this lies inside.
+_ROUNDING = 1e-9
+
+# The far corners come before the nodes.
+CORNERS = 4
+
+
+class Tin:
+    """Delaunay triangulation of ``nodes`` in plan, defined everywhere.
+
+    Four far corners, each as high as the node nearest to it, surround the nodes, so that every
+    point lies in a facet; ``is_extrapolated`` tells the facets that have such a corner.
+
+    Parameters
+    ----------
+    nodes : ndarray of shape (m, 3), float64
+        Nodes (m), m >= 1; of nodes at one place in plan, one counts.
+    box : ndarray of shape (2, 2), float64, optional
+        Least and greatest easting and northing (m) that the far corners surround; those of the nodes when absent.
+    monitor : Monitor, optional
+        Receives progress.
+
+    Attributes
+    ----------
+    nodes : ndarray of shape (4 + m, 3), float64
+        Corners and nodes (m), from the shift.
+    shift : ndarray of shape (3,), float64
+        The middle of the box, at elevation 0 (m).
+    reach : float
+        How far (m) the corners lie from there to the east, west, north and south.
+    """
+
+    def __init__(self, nodes: np.ndarray, box: Optional[np.ndarray] = None, monitor: Optional[Monitor] = None) -> None:
+        box = plan_box(nodes) if box is None else box
+        # Squares of coordinates keep their digits where these are small.
+        self.shift = np.append(box.mean(axis=0), 0.0)
+        self.reach = reach = 3 * float((box[1] - box[0]).max()) + 10.0
+        corners = np.array([[-reach, -reach], [reach, -reach], [reach, reach], [-reach, reach]])
+        nodes = nodes - self.shift
+        nearest = [np.argmin(np.linalg.norm(nodes[:, :2] - corner, axis=1)) for corner in corners]
+        self.nodes = np.vstack([np.column_stack([corners, nodes[nearest, 2]]), nodes])
+        self._take(triangulate(self.nodes[:, :2], monitor))
+
+    def add(self, points: np.ndarray, facet: np.ndarray, joining: np.ndarray) -> np.ndarray:
+        """Let some of the points join the nodes.
+
+        Parameters
+        ----------
+        points : ndarray of shape (n, 3), float64
+            Points (m), those that join within the box.
+        facet : ndarray of shape (n,), int32
+            The facet under each point.
+        joining : ndarray of shape (m,), int64
+            Indices of the points that join.
+
+        Returns
+        -------
+        ndarray of shape (n,), int32
+            The facet that is under each point then.
+        """
+        new = points[joining] - self.shift
+        mesh, became = self._mesh.with_places(new[:, :2], facet[joining])
+        corner = self.facets[:, 0]
+        self.nodes = np.vstack([self.nodes, new])
+        self._take(mesh)
+        now = became[facet]
+        gone = np.flatnonzero(now < 0)
+        now[gone] = self.locate_near(points[gone], corner[facet[gone]])
+        return now
+
+    def _take(self, mesh: Triangulation) -> None:
+        """Take the facets of a triangulation of the nodes, and what is found from them."""
+        self._mesh = mesh
+        self._weights, self._planes = self._barycentric(), self._gradients()
+        # A facet of each node, -1 of those at the place of another.
+        self._at_node = np.full(len(self.nodes), -1, np.int32)
+        self._at_node[self.facets] = np.arange(len(self.facets))[:, None]
+
+    @property
+    def facets(self) -> np.ndarray:
+        """Node numbers (f, 3) of the facets."""
+        return self._mesh.facets
+
+    def is_extrapolated(self) -> np.ndarray:
+        """Return for each facet (f,) whether it lies outside the hull of the nodes."""
+        return (self.facets < CORNERS).any(axis=1)
+
+    def locate(self, xyz: np.ndarray, monitor: Optional[Monitor] = None) -> np.ndarray:
+        """Return the facet (n,), int32, under each point.
+
+        Each point starts at a facet of its nearest node and walks from there, all points of a
+        chunk together: a step or two for nearly all of them. Beyond the far corners the facet
+        is the one at the nearest place between them.
+        """
+        used = CORNERS + np.flatnonzero(self._at_node[CORNERS:] >= 0)
+        tree = spatial.cKDTree(self.nodes[used, :2])
+        return self._located(xyz, lambda rows, plan: used[tree.query(plan)[1]], monitor or Monitor())
+
+    def locate_near(self, xyz: np.ndarray, node: np.ndarray) -> np.ndarray:
+        """Return the facet (n,), int32, under each point, for points that are near a node (n,) known by number."""
+        return self._located(xyz, lambda rows, plan: node[rows], Monitor())
+
+    def _located(
+        self, xyz: np.ndarray, node: Callable[[np.ndarray, np.ndarray], np.ndarray], monitor: Monitor
+    ) -> np.ndarray:
+        """Return the facets under points; ``node`` tells from which nodes the points of some rows and places start."""
+        found = np.empty(len(xyz), np.int32)
+
+        def walk(rows: np.ndarray) -> None:
+            plan = np.clip(xyz[rows, :2] - self.shift[:2], -0.99 * self.reach, 0.99 * self.reach)
+            found[rows] = self._walk(plan, self._at_node[node(rows, plan)])
+
+        in_chunks(walk, np.arange(len(xyz)), _CHUNK, monitor)
+        return found
+
+    def _walk(self, plan: np.ndarray, facet: np.ndarray) -> np.ndarray:
+        """Return the facets (n,) under places (n, 2), m from the shift; the walks begin at ``facet`` (n,)."""
+        walking = np.arange(len(plan))
+        for _ in range(_MAX_STEPS):
+            across = self._leaving(plan[walking], facet[walking])
+            outside = across >= 0
+            walking, across = walking[outside], across[outside]
+            if not len(walking):
+                return facet
+            facet[walking] = self._mesh.neighbors[facet[walking], across]
+        # Facets of nearly collinear nodes can send a point round in circles; it lies where it is outside least.
+        for row in walking:
+            weights = self._weights_of(plan[row], np.arange(len(self.facets)))
+            facet[row] = np.nanargmax(weights.min(axis=0))
+        return facet
+
+    def _leaving(self, plan: np.ndarray, facet: np.ndarray) -> np.ndarray:
+        """Return the side (0-2) by which each point lies outside its facet most, -1 where it lies inside."""
+        weights = self._weights_of(plan, facet)
+        side = np.argmin(weights, axis=0)
+        least = np.take_along_axis(weights, side[None], axis=0)[0]
+        return np.where(least < -_ROUNDING, side, -1)
+
+    def _weights_of(self, plan: np.ndarray, facet: np.ndarray) -> np.ndarray:
+        """Return the weights (3, n) of the corners of facets at places, negative beyond the side across from one."""
+        to_weights = self._weights[facet]
+        offset = plan - to_weights[:, 4:]
+        first = to_weights[:, 0] * offset[:, 0] + to_weights[:, 1] * offset[:, 1]
+        second = to_weights[:, 2] * offset[:, 0] + to_weights[:, 3] * offset[:, 1]
+        return np.stack([first, second, 1 - first - second])
+
+    def _barycentric(self) -> np.ndarray:
+        """Return what turns plan coordinates into weights of a facet's first two nodes (f, 6): 2 x 2 and origin."""
+        a, b, c = np.swapaxes(self.nodes[self.facets, :2], 0, 1)
+        u, v = a - c, b - c
+        area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+        # Facets of collinear nodes have no inside: NaN never lies outside either, and Qhull's neighbors end the walk.
+        scale = np.divide(1.0, area, out=np.full(len(area), np.nan), where=area != 0)
+        return np.column_stack([v[:, 1] * scale, -v[:, 0] * scale, -u[:, 1] * scale, u[:, 0] * scale, c])
+
+    def elevation(self, xyz: np.ndarray, facet: np.ndarray) -> np.ndarray:
+        """Return the surface's elevation (n,) at points that lie in ``facet`` (n,)."""
+        slope, level = self._planes
+        plan = xyz[:, :2] - self.shift[:2]
+        return np.einsum("ij,ij->i", slope[facet], plan) + level[facet]
+
+    def slope_cosine(self) -> np.ndarray:
+        """Return the cosine (f,) of each facet's slope, 1 where it is level."""
+        slope, _ = self._planes
+        return 1.0 / np.sqrt(1.0 + np.einsum("ij,ij->i", slope, slope))
+
+    def longest_edge(self) -> np.ndarray:
+        """Return the longest edge (f,) of each facet in plan, m."""
+        corners = self.nodes[self.facets, :2]
+        return np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+
+    def circles(self, facets: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return center (f, 2), from the shift, and radius (f,) of the circles through the nodes of some facets, m.
+
+        No node lies inside of them. Where the nodes lie on a line, neither is finite.
+        """
+        return circles(self.nodes[:, :2], self.facets[facets])
+
+    def _gradients(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return gradient (f, 2) and level at the shifted origin (f,) of each facet."""
+        a, b, c = np.swapaxes(self.nodes[self.facets], 0, 1)
+        u, v = b - a, c - a
+        area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+        # Facets of collinear nodes have no gradient; Qhull keeps them only at rounding's edge.
+        safe = np.where(np.abs(area) > 0, area, np.inf)
+        slope = np.column_stack(
+            [(u[:, 2] * v[:, 1] - v[:, 2] * u[:, 1]) / safe, (u[:, 0] * v[:, 2] - v[:, 0] * u[:, 2]) / safe]
+        )
+        return slope, a[:, 2] - np.einsum("ij,ij->i", slope, a[:, :2])
+
+
+def node_residuals(nodes: np.ndarray, n_neighbors: int = 8) -> np.ndarray:
+    """Return how far each node lies above the plane of its neighbors.
+
+    Parameters
+    ----------
+    nodes : ndarray of shape (m, 3), float64
+        Points of a surface (m), m > 3.
+    n_neighbors : int
+        Neighbors in plan that the plane is fitted to, the node itself left out.
+
+    Returns
+    -------
+    ndarray of shape (m,)
+        Residuals (m): measurement noise and what the surface bends within its own spacing.
+    """
+    count = min(n_neighbors, len(nodes) - 1)
+    tree = spatial.cKDTree(nodes[:, :2])
+    residuals = np.empty(len(nodes))
+
+    def fit(rows: np.ndarray) -> None:
+        neighbors = tree.query(nodes[rows, :2], k=count + 1)[1][:, 1:]
+        design = nodes[neighbors] - nodes[rows, None]
+        heights = design[..., 2].copy()
+        # The plane through offsets is slope . (x, y) + level.
+        design[..., 2] = 1.0
+        # A whisker on the diagonal keeps collinear neighbors solvable.
+        normal = np.swapaxes(design, 1, 2) @ design + 1e-6 * np.eye(3)
+        right = np.swapaxes(design, 1, 2) @ heights[..., None]
+        residuals[rows] = -np.linalg.solve(normal, right)[:, 2, 0]
+
+    in_chunks(fit, np.arange(len(nodes)), _FIT_CHUNK, Monitor())
+    return residuals
+
+
+def robust_deviation(residuals: np.ndarray, floor: float = 0.01) -> float:
+    """Return the standard deviation that the median of absolute residuals stands for, at least ``floor`` (m)."""
+    return max(1.4826 * float(np.median(np.abs(residuals))), floor)

@@ -1,0 +1,259 @@
+"""Help of an algorithm as HTML, from what its stage or pipeline declares."""
+
+from __future__ import annotations
+
+import html
+import re
+from typing import Optional
+
+from .cloud.dimensions import DIMENSIONS
+from .pipeline import Output, Pipeline, Step
+from .stage import REFERENCE_PREFIX, VALUES, Field, InputLayer, Layer, Raster, Stage, Tunable
+
+
+def stage_help(stage: Stage) -> str:
+    """Return everything that is known of a stage, as HTML that QGIS's help pane shows."""
+    return "\n".join(
+        part
+        for part in (
+            paragraphs(stage.summary),
+            paragraphs(stage.description),
+            _dimensions(stage),
+            _list("Parameters", [tunable_help(tunable) for tunable in stage.tunables.values()]),
+            _list("Outputs", outputs(stage)),
+            _section("Notes", stage.section("Notes")),
+            _section("References", stage.section("References")),
+        )
+        if part
+    )
+
+
+def pipeline_help(pipeline: Pipeline) -> str:
+    """Return what a pipeline does, step by step, with the parameters of its steps."""
+    steps = [
+        f"<b>{step_title(step)}</b> ({html.escape(step.stage.title)}): {inline(step.stage.summary)}"
+        for step in pipeline.steps
+    ]
+    parts = [paragraphs(pipeline.summary), paragraphs(pipeline.description), _list("Steps", steps, ordered=True)]
+    rows: dict[str, list] = {"Parameters": [], **{f"Parameters: {step_title(step)}": [] for step in pipeline.steps}}
+    for name, (step, tunable) in pipeline.parameters.items():
+        section = "Parameters" if name in pipeline.shared else f"Parameters: {step_title(step)}"
+        rows[section].append(tunable_help(tunable, step.tunables.get(tunable.name, tunable.default)))
+    parts += [_list(title, items) for title, items in rows.items() if items]
+    input_layers = [input_layer_text(input_layer) for input_layer in pipeline.input_layers.values()]
+    parts.append(_list("Layers", input_layers))
+    made = sorted(pipeline.outputs, key=lambda output: output.name != "output")
+    return "\n".join(
+        part
+        for part in (
+            *parts,
+            _list("Outputs", [_output_text(pipeline, output) for output in made]),
+            _section("References", pipeline.references),
+        )
+        if part
+    )
+
+
+def _output_text(pipeline: Pipeline, output: Output) -> str:
+    """Return what one output of a composite is."""
+    name, stage = output.name.upper(), output.step.stage
+    if output.name == "output":
+        written = dict.fromkeys(name for step in pipeline.steps for name in step.stage.writes)
+        return f"<b>{name}</b>: the cloud with {_disk_names(written)}."
+    if output.of == "output":
+        return f"<b>{name}</b>: the cloud as the step {step_title(output.step)} leaves it."
+    if output.of == "report":
+        return _report_text(stage, name)
+    texts = {layer.name: _layer_text(layer, name) for layer in stage.layers}
+    return {**texts, **{raster.name: _raster_text(raster, name) for raster in stage.rasters}}[output.of]
+
+
+def step_title(step: Step) -> str:
+    """Return what a composite calls a step, "Ground"."""
+    return step.name.replace("_", " ").capitalize()
+
+
+def lower_first(text: str) -> str:
+    """Return ``text`` as it goes on after a colon; an acronym keeps its capitals."""
+    return text[:1].lower() + text[1:] if text[1:2].islower() else text
+
+
+def as_text(text: str) -> str:
+    """Return a help for the command line: no HTML, nor what QGIS tells there itself, the summary and the parameters."""
+    sections = re.split(r"\n(?=<h3>)", text)
+    kept = "\n".join(section for section in sections if not section.startswith("<h3>Parameters"))
+    lines, depth = [], 0
+    for line in kept.split("\n")[1:]:
+        tag = _LIST.fullmatch(line)
+        if tag is None:
+            lines.append(line.replace("<h3>", "\n").replace("<li>", "  " * (depth - 1) + "- "))
+        else:
+            depth += -1 if tag.group(1) else 1
+    return html.unescape(re.sub("<[^>]+>", "", "\n".join(lines)))
+
+
+_LIST = re.compile("<(/?)[ou]l>(?:</li>)?")
+
+
+def page(title: str, body: str) -> str:
+    """Return a complete page around a help text."""
+    return (
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        f"<title>{html.escape(title)}</title>\n"
+        "<style>body{font-family:sans-serif;max-width:48em;margin:2em auto;line-height:1.5;padding:0 1em}</style>\n"
+        f"</head>\n<body>\n<h1>{html.escape(title)}</h1>\n{body}\n</body>\n</html>\n"
+    )
+
+
+_NOT_GIVEN = object()
+
+
+def tunable_help(tunable: Tunable, default: object = _NOT_GIVEN) -> str:
+    """Return one tunable's name, meaning, range and default as HTML."""
+    param = tunable.param
+    facts = [tunable.range] if tunable.range else []
+    facts.append(f"default {_default_text(tunable, tunable.default if default is _NOT_GIVEN else default)}")
+    automatic = f" {inline(param.unset_text)}" if tunable.is_automatic else ""
+    return (
+        f"<b>{html.escape(param.title)}</b>: {inline(param.help)}{automatic} <i>({html.escape('; '.join(facts))})</i>"
+    )
+
+
+def _default_text(tunable: Tunable, default: object) -> str:
+    if default is None:
+        return tunable.param.unset
+    if isinstance(default, bool):
+        return "yes" if default else "no"
+    if isinstance(default, tuple):
+        return ", ".join(default) or "none"
+    return tunable.param.written(default) if isinstance(default, (int, float)) else str(default) or "empty"
+
+
+def outputs(stage: Stage) -> list:
+    """Return what a stage makes, one HTML text per output."""
+    made = [f"<b>OUTPUT</b>: {_cloud_text(stage)}"] if stage.makes_cloud else []
+    made += [_layer_text(layer, layer.name.upper()) for layer in stage.layers]
+    made += [_raster_text(raster, raster.name.upper()) for raster in stage.rasters]
+    if stage.measures:
+        made.append(_report_text(stage, "REPORT"))
+    used = [f"{t.name.upper()}_USED" for t in stage.tunables.values() if t.is_automatic and t.type in (int, float)]
+    if used:
+        made.append(f"<b>{', '.join(used)}</b>: the value that was used, given or automatic.")
+    return made
+
+
+def _cloud_text(stage: Stage) -> str:
+    written = f" with {_disk_names(stage.writes)}" if stage.writes else ""
+    chosen = _chosen(stage)
+    if chosen is not None:
+        meanings = [_meaning(name) for name in stage.writes]
+        return f"the cloud as it was, and what '{chosen.param.label}' names of these dimensions:{_sublist(meanings)}"
+    if stage.creates:
+        return f"a new cloud with {_disk_names(stage.creates)}."
+    if stage.merges:
+        return f"the points of all clouds in one{written}; withheld points are left out."
+    if stage.selects:
+        return f"a cloud of the points selected{written}; everything else of them stays, withheld points are left out."
+    return f"the cloud{written}; everything else in it stays as it was."
+
+
+def _chosen(stage: Stage) -> Optional[Tunable]:
+    """Return the tunable that says which of its dimensions a stage writes; None where it always writes all."""
+    tunables = (tunable for tunable in stage.tunables.values() if tunable.type is tuple)
+    return next((tunable for tunable in tunables if tunable.param.choices == stage.writes), None)
+
+
+def _meaning(name: str) -> str:
+    dimension = DIMENSIONS[name]
+    unit = f" ({dimension.unit})" if dimension.unit else ""
+    return f"<i>{name}</i>: {', '.join(dimension.disk)}, {html.escape(dimension.description + unit)}"
+
+
+def _report_text(stage: Stage, name: str) -> str:
+    measures = ", ".join(f"{m.title} ({m.unit})" if m.unit else m.title for m in stage.measures)
+    return f"<b>{name}</b>: a page with {html.escape(measures)}; each is an output of its own too."
+
+
+def _raster_text(raster: Raster, name: str) -> str:
+    unit = f" ({raster.unit})" if raster.unit else ""
+    return f"<b>{name}</b>: {html.escape(raster.title + unit)}, a raster."
+
+
+def _layer_text(layer: Layer, name: str) -> str:
+    attributes = _sublist([_field_text(declared) for declared in layer.fields])
+    return f"<b>{name}</b>: {html.escape(layer.title)}, with the attributes:{attributes}"
+
+
+def _field_text(declared: Field) -> str:
+    unit = f" ({declared.unit})" if declared.unit else ""
+    return f"<i>{html.escape(declared.name + unit)}</i>: {html.escape(declared.help.rstrip('.'))}"
+
+
+def _dimensions(stage: Stage) -> str:
+    own = [name for name in stage.reads if not name.startswith(REFERENCE_PREFIX)]
+    if_there = [name for name in stage.optional if not name.startswith(REFERENCE_PREFIX)]
+    compared = [name[len(REFERENCE_PREFIX) :] for name in stage.reads if name.startswith(REFERENCE_PREFIX)]
+    rows = []
+    if own:
+        optional = f"; if there, {_disk_names(if_there)}" if if_there else ""
+        rows.append(f"<b>{'INPUTS' if stage.merges else 'INPUT'}</b>: reads {_disk_names(own)}{optional}.")
+    if compared:
+        rows.append(f"<b>REFERENCE</b>: reads {_disk_names(compared)}.")
+    return _list("Inputs", rows + [input_layer_text(input_layer) for input_layer in stage.input_layers])
+
+
+def input_layer_text(input_layer: InputLayer) -> str:
+    """Return what a vector layer that is read is for, as HTML."""
+    needed = "; may be left empty" if input_layer.optional else ""
+    title = (
+        f"<b>{input_layer.name.upper()}</b>: {html.escape(input_layer.title)}, a layer of {input_layer.things}{needed}."
+    )
+    return f"{title} {inline(input_layer.help)}"
+
+
+def _disk_names(names) -> str:
+    disk = {VALUES: ("the dimension named",), **{name: DIMENSIONS[name].disk for name in names if name != VALUES}}
+    return ", ".join(dict.fromkeys(shown for name in names for shown in disk[name]))
+
+
+def _list(title: str, rows: list, ordered: bool = False) -> str:
+    if not rows:
+        return ""
+    tag = "ol" if ordered else "ul"
+    return f"<h3>{html.escape(title)}</h3>\n<{tag}>\n" + "\n".join(f"<li>{row}</li>" for row in rows) + f"\n</{tag}>"
+
+
+def _sublist(rows: list) -> str:
+    """Return rows as a list within a row of another one."""
+    return "\n<ul>\n" + "\n".join(f"<li>{row}</li>" for row in rows) + "\n</ul>"
+
+
+def _section(title: str, text: str) -> str:
+    return f"<h3>{title}</h3>\n{paragraphs(text)}" if text else ""
+
+
+def paragraphs(text: str) -> str:
+    """Return reStructuredText as docstrings use it (paragraphs, lists, ``code``, *emphasis*) as HTML."""
+    blocks = [block for block in re.split(r"\n\s*\n", text.strip()) if block.strip()]
+    return "\n".join(_items(block) or f"<p>{inline(block)}</p>" for block in blocks)
+
+
+_ITEM = re.compile(r"^\s*(?:[*-]|\.\. \[\w+\]|(\d+)\.)\s+", re.MULTILINE)
+
+
+def _items(block: str) -> Optional[str]:
+    """Return a block as a list, None when it is none."""
+    first = _ITEM.match(block)
+    if first is None:
+        return None
+    tag = "ol" if first.group(1) else "ul"
+    items = [item for item in _ITEM.sub("\0", block).split("\0") if item.strip()]
+    return f"<{tag}>\n" + "\n".join(f"<li>{inline(item)}</li>" for item in items) + f"\n</{tag}>"
+
+
+def inline(text: str) -> str:
+    """Return one paragraph's text as HTML."""
+    text = html.escape(" ".join(text.split()), quote=False)
+    text = re.sub(r":\w+:`~?\.*([\w.]+)`", r"<code>\1</code>", text)
+    text = re.sub(r"``(.+?)``", r"<code>\1</code>", text)
+    return re.sub(r"(?<![\w*])\*(\S(?:.*?\S)?)\*(?![\w*])", r"<i>\1</i>", text)

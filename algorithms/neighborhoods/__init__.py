@@ -1,0 +1,1 @@
+"""Neighborhoods of points: which points they hold, and the covariances of these."""

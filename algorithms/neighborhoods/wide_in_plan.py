@@ -1,0 +1,82 @@
+"""Neighborhoods as wide as they are long in plan, however unevenly the points are spread."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .covariance import Nearest, nearest_offsets
+from .nearest_blocks import Shapes
+from .optimal_size import nested_covariances
+
+# A neighborhood is two-dimensional when it is at least so wide for its length; 60 points nearly always are.
+LEAST_WIDTH, MOST_ACROSS_LINES = 0.45, 60
+
+# It grows by this factor until it is.
+_GROWTH = 1.5
+
+# So many of its points stand for all, spread over their ranks.
+_NAMED = 16
+
+
+@dataclass(frozen=True)
+class Wide:
+    """The ``count`` nearest points, or as many more, up to 60, as are 0.45 times as wide as long in plan.
+
+    Scanners put points close together along a line and leave gaps between the lines. The nearest points of one are
+    those of its own line then: they have no plane, and a line through a crown is no crown. It is the plan that
+    counts, for a line that is bent upward, over a wall or through a crown, is still one.
+    """
+
+    count: int
+
+    @property
+    def n_named(self) -> int:
+        """How many neighbors :meth:`moments` names."""
+        return _NAMED
+
+    def check(self, xyz: np.ndarray, tree: Any) -> None:
+        """Take every cloud."""
+
+    def rows_per_chunk(self, n_points: int) -> int:
+        """Return how many points are worked on at once: running sums of nine moments take as much as the neighbors."""
+        return max(1, Nearest(self._most).rows_per_chunk(n_points) // 4)
+
+    def shapes(self, columns: np.ndarray, tree: Any, rows: np.ndarray, extents: bool) -> Shapes:
+        """Return the shapes of the neighborhoods of the points ``rows``; extents are not known."""
+        covariances, counts = self._smallest(nearest_offsets(columns, tree, rows, self._most)[1])
+        return Shapes(covariances, counts)
+
+    def moments(self, columns: np.ndarray, tree: Any, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return 16 neighbors (m, 16), centers (m, 3) and covariances (m, 6) of the points ``rows``."""
+        neighbors, offsets = nearest_offsets(columns, tree, rows, self._most)
+        covariances, counts = self._smallest(offsets)
+        ranks = np.rint(np.linspace(0, 1, _NAMED) * (counts[:, None] - 1)).astype(np.intp)
+        last = counts[:, None] - 1
+        means = [np.take_along_axis(np.cumsum(offset, axis=1), last, axis=1)[:, 0] / counts for offset in offsets]
+        return np.take_along_axis(neighbors, ranks, axis=1), columns[:, rows].T + np.column_stack(means), covariances
+
+    @property
+    def _most(self) -> int:
+        return max(self.count, MOST_ACROSS_LINES)
+
+    def _smallest(self, offsets: list) -> tuple[np.ndarray, np.ndarray]:
+        """Return covariances (m, 6) and counts (m,) of the smallest of the offsets (m, k), nearest first, that do."""
+        scales = [min(self.count, offsets[0].shape[1])]
+        while scales[-1] < offsets[0].shape[1]:
+            scales.append(min(int(np.ceil(_GROWTH * scales[-1])), offsets[0].shape[1]))
+        covariances = nested_covariances([np.ascontiguousarray(offset.T) for offset in offsets], np.array(scales))
+        is_wide = _plan_width(covariances) >= LEAST_WIDTH
+        is_wide[-1] = True
+        first = np.argmax(is_wide, axis=0)
+        return covariances[:, first, np.arange(covariances.shape[2])].T, np.array(scales)[first]
+
+
+def _plan_width(covariances: np.ndarray) -> np.ndarray:
+    """Return how wide for their length points with ``covariances`` (6, ...) are in plan; without length 0."""
+    xx, yy, _, xy = covariances[:4]
+    middle, half = (xx + yy) / 2, np.hypot((xx - yy) / 2, xy)
+    length, width = middle + half, np.maximum(middle - half, 0)
+    return np.sqrt(np.divide(width, length, out=np.zeros_like(length), where=length > 0))

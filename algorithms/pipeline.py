@@ -1,0 +1,144 @@
+"""The vocabulary of composites: steps, their outputs, and the pipeline that they make."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Optional
+
+from .stage import InputLayer, Stage, Tunable
+from .stages import STAGES
+
+# What outputs are called that are no layer and no raster.
+CLOUD, REPORT = "output", "report"
+
+
+@dataclass(frozen=True)
+class Step:
+    """One stage of a chain; it works on the last cloud that a step before it made.
+
+    ``name`` prefixes the composite's parameters (``GROUND_CELL_SIZE``); ``tunables``
+    are the defaults that differ from the stage's own. ``cloud`` names an earlier step
+    whose cloud it works on instead. ``layers`` says which of its input layers is a layer of an
+    earlier step, ``{"new": "walls.footprints"}``; the composite asks for all others,
+    under the input layer's own name. A stage that merges is given all clouds of the composite.
+    """
+
+    name: str
+    stage_name: str
+    tunables: dict[str, Any] = field(default_factory=dict)
+    cloud: str = ""
+    layers: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def stage(self) -> Stage:
+        """The stage that this step runs."""
+        return STAGES[self.stage_name]
+
+
+@dataclass(frozen=True)
+class Output:
+    """One output of a composite: its name, and which output of which step it is.
+
+    ``of`` is ``"output"`` for a cloud, ``"report"``, or the name of a layer or raster.
+    """
+
+    name: str
+    step: Step
+    of: str
+
+
+@dataclass(frozen=True)
+class Pipeline:
+    """A chain of stages that users meet as one algorithm.
+
+    The last step that makes a cloud gives the composite's OUTPUT; every layer, raster and
+    report of every step is an output of its own, and so are the clouds of the steps that
+    ``kept`` names. ``shared`` names tunables that are one parameter of the composite and go
+    to all the steps beside them; they have the same declaration and default there. ``shown``
+    are the parameters that users meet first, in this order; all others are folded away.
+    """
+
+    name: str
+    title: str
+    group: str
+    tags: str
+    summary: str
+    description: str
+    references: str
+    steps: tuple[Step, ...]
+    shared: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    shown: tuple[str, ...] = ()
+    kept: tuple[str, ...] = ()
+
+    def parameter(self, step: Step, tunable: str) -> str:
+        """Return what the composite calls a step's tunable: ``ground_cell_size``, shared ``min_area``."""
+        return tunable if step.name in self.shared.get(tunable, ()) else f"{step.name}_{tunable}"
+
+    @property
+    def parameters(self) -> dict[str, tuple[Step, Tunable]]:
+        """Every parameter once, by name, with the first step that takes it; shown ones first."""
+        found: dict[str, tuple[Step, Tunable]] = {}
+        for step in self.steps:
+            for tunable in step.stage.tunables.values():
+                found.setdefault(self.parameter(step, tunable.name), (step, tunable))
+        return {name: found[name] for name in (*self.shown, *(name for name in found if name not in self.shown))}
+
+    def cloud_of(self, step: Step) -> Optional[str]:
+        """Return the name of the step whose cloud ``step`` works on, "" for what is given, None where it reads none."""
+        if not step.stage.reads_cloud:
+            return None
+        if step.stage.merges or step.cloud:
+            return step.cloud
+        before = self.steps[: self.steps.index(step)]
+        return next((other.name for other in reversed(before) if other.stage.makes_cloud), "")
+
+    @property
+    def reads_cloud(self) -> bool:
+        """Whether the composite is given a cloud, or several."""
+        return any(self.cloud_of(step) == "" for step in self.steps)
+
+    @property
+    def merges(self) -> bool:
+        """Whether it is given several clouds."""
+        return any(step.stage.merges for step in self.steps)
+
+    @property
+    def input_layers(self) -> dict[str, InputLayer]:
+        """Vector layers that the composite is given, by name."""
+        found: dict[str, InputLayer] = {}
+        for step in self.steps:
+            for input_layer in step.stage.input_layers:
+                if input_layer.name not in step.layers:
+                    found.setdefault(input_layer.name, input_layer)
+        return found
+
+    @property
+    def outputs(self) -> tuple[Output, ...]:
+        """All outputs in the order of steps; where two would have one name, the step's name is put before it."""
+        makers = [step for step in self.steps if step.stage.makes_cloud]
+        found = [(step, of) for step in self.steps for of in _made(step)]
+        names = [of for _, of in found]
+        outputs = []
+        for step, of in found:
+            is_single = step is makers[-1] if of == CLOUD else names.count(of) == 1
+            if is_single or of != CLOUD or step.name in self.kept:
+                outputs.append(Output(of if is_single else f"{step.name}_{of}", step, of))
+        return tuple(outputs)
+
+    def needs(self, output: Output) -> bool:
+        """Whether an output is made even if nobody asks for it: a cloud, or a layer that another step reads."""
+        return output.of == CLOUD or any(
+            f"{output.step.name}.{output.of}" in step.layers.values() for step in self.steps
+        )
+
+    @property
+    def id(self) -> str:
+        """Processing id, ``detectbuildings``."""
+        return self.name.replace("_", "")
+
+
+def _made(step: Step) -> list[str]:
+    """Return what a step makes: its cloud, layers, rasters, report."""
+    stage = step.stage
+    files = [*(layer.name for layer in stage.layers), *(raster.name for raster in stage.rasters)]
+    return [CLOUD] * stage.makes_cloud + files + [REPORT] * bool(stage.measures)

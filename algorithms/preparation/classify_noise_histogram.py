@@ -1,0 +1,219 @@
+"""Noise far above or below everything else, from height histograms of cells."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..cloud.asprs import NOISE, PointClass
+from ..geometry.grid import Grid, grid_over, plan_box
+from ..packages import spatial
+from ..params import IsolatedPoints, MinFrequency
+from ..sampling.cloud_sampling import CloudSampling
+from ..stage import Monitor, Param, stage
+from .height_histograms import Histogram, pooled_histogram, with_borrowed_ranges
+from .isolated_points import add_isolated
+
+# Points per cell on average: with the eight cells around it some 4000 points make a histogram, whatever the density.
+_POINTS_PER_CELL = 450
+
+# Empty bins that part noise from the body: a chimney, a treetop or a rock face leaves no such gap.
+_GAP_BINS = 2
+
+# So many points close together are a thing, be it as thin as the head of a lamp; birds and stray returns come alone.
+# Close is so many point spacings, and a meter at least.
+_GROUP_SIZE, _GROUP_SPACINGS = 3, 3.0
+
+
+@stage(
+    "Classify noise by height histogram",
+    group="Preparation",
+    tags="noise,outliers,birds,low points,high points,multipath,histogram,clean",
+    writes=("classification",),
+)
+def classify_noise_histogram(
+    xyz,
+    classification,
+    *,
+    min_frequency: MinFrequency = 5,
+    cell_size: Annotated[
+        Optional[float],
+        Param(
+            "Cell size",
+            "Side of the cells whose heights are counted, each together with the eight cells around it.",
+            unit="m",
+            low=0.1,
+            high=10_000,
+            automatic="cells of 450 points on average.",
+            advanced=True,
+        ),
+    ] = None,
+    bin_height: Annotated[
+        Optional[float],
+        Param(
+            "Bin height",
+            "Height of the bins; noise is parted from the scene by at least two empty ones.",
+            unit="m",
+            low=0.01,
+            high=1000,
+            automatic="twice the point spacing, at least 1 m.",
+            advanced=True,
+        ),
+    ] = None,
+    max_clearance: Annotated[
+        float,
+        Param(
+            "Maximum clearance",
+            "Height over the scene, or depth under it, beyond which everything is noise, however many points it has: "
+            "clouds, aircraft, flocks. Cables over a deep valley may need more.",
+            unit="m",
+            low=1,
+            high=100_000,
+            advanced=True,
+        ),
+    ] = 200.0,
+    isolated: IsolatedPoints = True,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Find points far above or below the scene, such as birds, clouds and multipath returns.
+
+    The heights of each cell and its neighbors make a histogram. From both ends inward, bins that hold few points and
+    are parted from the scene by a gap are noise: low noise (class 7) below it and high noise (class 18) above it. Then
+    come isolated points between these heights: loose things in the open air, and single points under the ground.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Coordinates (m).
+    classification : ndarray of shape (n,)
+        Classes; points that are noise already stay so and are not counted.
+
+    Returns
+    -------
+    ndarray of shape (n,), uint8
+        The classes, 7 and 18 for the noise that was found, all others as they were.
+
+    Notes
+    -----
+    The histograms are walked in from both ends only: few points on a facade, between ground and roof, stay. What
+    adjoins the scene stays too (chimneys, masts, treetops, slopes), and so do three high points close together (a
+    lamp, a wire). A cell whose surroundings have no full bin borrows the range of the nearest one that has.
+
+    Isolated points are found without histograms. In the air: what no chain of points 2.4 m apart (3.5 point spacings
+    on sparse clouds) ties to the scene, has nothing above it, and stops less than three tenths of the pulses. Wires,
+    panes, the heads of lamps, and things that the border of the cloud cuts stay. Under the ground: single points or a
+    few, 0.45 m or more (0.4 point spacings) below the surface on all sides, and not beside others of the same height,
+    as ground seen between leaves is. Among crowns and in narrow yards points just below the ground are left alone.
+    What touches the scene is not found: dust on the ground, birds in a tree, points among grass.
+
+    The filter of the paper (T_f) has no gap, no groups, no pooled cells and no isolated points; see 'Classify noise by
+    height histogram (as published 2019)'.
+
+    References
+    ----------
+    Carrilho et al. (2018), Statistical outlier detection method for airborne LiDAR data.
+    Santos et al. (2019), Building detection from LiDAR data using entropy and the k-means concept, section 2.1.
+    """
+    sampling = sampling or CloudSampling.of(xyz, classification)
+    made = classification.astype(np.uint8)
+    used = np.flatnonzero(~np.isin(made, NOISE))
+    if not len(used) or not np.ptp(plan_box(xyz[used]), axis=0).any():
+        monitor.warn("No noise was looked for: the points that are not noise already have no extent in plan.")
+        return made
+    points = xyz[used]
+    spacing = sampling.spacing
+    cell_size, bin_height = _automatic(cell_size, bin_height, spacing, monitor)
+    monitor.progress(0.2)
+    beyond = _beyond_scene(points, cell_size, bin_height, min_frequency, max_clearance, monitor.part(0.2, 0.7))
+    if beyond is None:
+        monitor.warn(f"No noise was found: no bin of the histograms has {min_frequency} points.")
+        return made
+    is_low, is_high, is_near = beyond
+    hanging = np.flatnonzero(is_high & is_near)
+    is_high[hanging[_in_group(points[hanging], max(1.0, _GROUP_SPACINGS * spacing))]] = False
+    if isolated:
+        add_isolated(points, is_low, is_high, spacing, monitor.part(0.7, 1.0))
+    made[used[is_low]] = PointClass.LOW_NOISE
+    made[used[is_high]] = PointClass.HIGH_NOISE
+    monitor.resolved(low_noise=int(is_low.sum()), high_noise=int(is_high.sum()))
+    monitor.progress(1.0)
+    return made
+
+
+def _automatic(
+    cell_size: Optional[float], bin_height: Optional[float], spacing: float, monitor: Monitor
+) -> tuple[float, float]:
+    """Return the cell size and bin height to use, and tell those that were not given."""
+    if cell_size is None:
+        cell_size = float(np.sqrt(_POINTS_PER_CELL)) * spacing
+        monitor.resolved(cell_size=cell_size)
+    if bin_height is None:
+        # On a thin cloud a roof has few points; higher bins keep them together.
+        bin_height = max(1.0, 2 * spacing)
+        monitor.resolved(bin_height=bin_height)
+    return cell_size, bin_height
+
+
+def _beyond_scene(
+    points: np.ndarray,
+    cell_size: float,
+    bin_height: float,
+    min_frequency: int,
+    max_clearance: float,
+    monitor: Monitor,
+) -> Optional[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """Return which points (n,) lie below the scene, which above it, and which not too far above to belong to it.
+
+    None where no bin has enough points to tell the scene.
+    """
+    grid = grid_over(points, cell_size)
+    cell = grid.number(points)
+    level = np.floor((points[:, 2] - points[:, 2].min()) / bin_height).astype(np.int64)
+    histogram = pooled_histogram(grid, cell, level)
+    monitor.progress(0.6)
+    clearance = max_clearance / bin_height
+    cells, low, high = _scene_range(grid, histogram, min_frequency, clearance)
+    if not len(cells):
+        return None
+    at = np.searchsorted(cells, cell)
+    return level < low[at], level > high[at], level <= high[at] + clearance
+
+
+def _scene_range(
+    grid: Grid, histogram: Histogram, min_frequency: int, max_clearance: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return all occupied cells, ascending, and the lowest and highest level of the scene in each.
+
+    ``max_clearance`` is in levels.
+    """
+    cells, start = np.unique(histogram.cell, return_index=True)
+    # Runs of bins without a gap: one full bin makes all bins of its run part of the scene.
+    is_break = np.diff(histogram.level, prepend=0) > _GAP_BINS
+    is_break[start] = True
+    run = np.cumsum(is_break) - 1
+    first = np.flatnonzero(is_break)
+    is_full = np.zeros(len(first), bool)
+    is_full[run[histogram.count >= min_frequency]] = True
+    run_cell = np.searchsorted(cells, histogram.cell[first])[is_full]
+    run_low = histogram.level[first][is_full]
+    run_high = histogram.level[np.append(first[1:], len(run)) - 1][is_full]
+
+    # The run with most points is what all others must be near to.
+    order = np.lexsort((np.bincount(run, histogram.count)[is_full], run_cell))
+    main = np.zeros(len(cells), np.int64)
+    main[run_cell[order]] = order
+    clearance = np.maximum(run_low - run_high[main[run_cell]], run_low[main[run_cell]] - run_high)
+    near = clearance <= max_clearance
+    low, high = np.full(len(cells), np.iinfo(np.int64).max), np.full(len(cells), -1)
+    np.minimum.at(low, run_cell[near], run_low[near])
+    np.maximum.at(high, run_cell[near], run_high[near])
+    return with_borrowed_ranges(grid, cells, low, high, _GAP_BINS)
+
+
+def _in_group(points: np.ndarray, radius: float) -> np.ndarray:
+    """Return which points have at least ``_GROUP_SIZE`` points, themselves among them, within ``radius`` (m)."""
+    if len(points) < _GROUP_SIZE:
+        return np.zeros(len(points), bool)
+    return spatial.cKDTree(points).query(points, _GROUP_SIZE)[0][:, -1] <= radius

@@ -1,0 +1,140 @@
+"""Noise above or below everything else by height histograms of cells, as published."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..cloud.asprs import NOISE, PointClass
+from ..geometry.grid import Grid, grid_over, plan_box
+from ..params import MinFrequency
+from ..sampling.cloud_sampling import CloudSampling
+from ..stage import Param, stage
+from .height_histograms import Histogram, own_histogram, pooled_histogram, with_borrowed_ranges
+
+# Points of a cell on average: enough that the highest and lowest meter of a scene hold some, whatever the density.
+_POINTS_PER_CELL = 4000
+
+# Least height of a bin, m, and in point spacings: the height of a storey's third, in which a roof has many points.
+_MIN_BIN_HEIGHT = 1.0
+_BIN_SPACINGS = 2.0
+
+
+@stage(
+    "Classify noise by height histogram (as published 2019)",
+    group="Preparation",
+    tags="noise,outliers,birds,low points,high points,multipath,histogram,clean,CH filter,Carrilho",
+    writes=("classification",),
+)
+def classify_noise_histogram_2019(
+    xyz,
+    classification,
+    *,
+    min_frequency: MinFrequency = 5,
+    cell_size: Annotated[
+        Optional[float],
+        Param(
+            "Cell size",
+            "Side of the cells whose heights are counted.",
+            unit="m",
+            low=0.1,
+            high=10_000,
+            automatic="cells of 4,000 points on average.",
+            advanced=True,
+        ),
+    ] = None,
+    bin_height: Annotated[
+        Optional[float],
+        Param(
+            "Bin height",
+            "Height of the bins.",
+            unit="m",
+            low=0.01,
+            high=1000,
+            automatic="twice the point spacing, at least 1 m.",
+            advanced=True,
+        ),
+    ] = None,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Find points far above or below the scene by the cell histogram filter.
+
+    The heights of each cell make a histogram. From both ends inward, bins with fewer points than the minimum frequency
+    are noise, up to the first bin that has as many: low noise (class 7) below it and high noise (class 18) above it.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Coordinates (m).
+    classification : ndarray of shape (n,)
+        Classes; points that are noise already stay so and are not counted.
+
+    Returns
+    -------
+    ndarray of shape (n,), uint8
+        The classes, 7 and 18 for the noise that was found, all others as they were.
+
+    Notes
+    -----
+    The paper names the filter and its threshold T_f, which is 5 in both of its scenes; cells and bins are not told, and
+    follow the density of the cloud. A cell in which no bin has enough points borrows the histogram of itself and its
+    eight neighbors, and where these have none either, the range of the nearest cell that has one.
+
+    Tips of trees, chimneys, masts and wires that have few points in a bin are noise by this rule.
+    'Classify noise by height histogram' asks for a gap and keeps them, and finds single points between the heights of
+    the scene.
+
+    References
+    ----------
+    Carrilho et al. (2018), Statistical outlier detection method for airborne LiDAR data.
+    Santos et al. (2019), Building detection from LiDAR data using entropy and the k-means concept, section 2.1.
+    """
+    classes = classification.astype(np.uint8)
+    used = np.flatnonzero(~np.isin(classes, NOISE))
+    if not len(used) or not np.ptp(plan_box(xyz[used]), axis=0).any():
+        monitor.warn("No noise was looked for: the points that are not noise already have no extent in plan.")
+        return classes
+    points = xyz[used]
+    spacing = (sampling or CloudSampling.of(xyz, classification)).spacing
+    cell_size = float(np.sqrt(_POINTS_PER_CELL)) * spacing if cell_size is None else cell_size
+    bin_height = max(_MIN_BIN_HEIGHT, _BIN_SPACINGS * spacing) if bin_height is None else bin_height
+    monitor.resolved(cell_size=cell_size, bin_height=bin_height)
+
+    grid = grid_over(points, cell_size)
+    cell = grid.number(points)
+    level = np.floor((points[:, 2] - points[:, 2].min()) / bin_height).astype(np.int64)
+    monitor.progress(0.3)
+    cells, low, high = _bodies(grid, cell, level, min_frequency)
+    if not len(cells):
+        monitor.warn(f"No noise was found: no bin of the histograms has {min_frequency} points.")
+        return classes
+    at = np.searchsorted(cells, cell)
+    classes[used[level < low[at]]] = PointClass.LOW_NOISE
+    classes[used[level > high[at]]] = PointClass.HIGH_NOISE
+    monitor.resolved(low_noise=int((level < low[at]).sum()), high_noise=int((level > high[at]).sum()))
+    monitor.progress(1.0)
+    return classes
+
+
+def _bodies(
+    grid: Grid, cell: np.ndarray, level: np.ndarray, min_frequency: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return all occupied cells, ascending, and the lowest and highest level of the main body in each."""
+    cells, low, high = _full_range(own_histogram(cell, level), min_frequency)
+    is_poor = high < 0
+    if is_poor.any():
+        _, pooled_low, pooled_high = _full_range(pooled_histogram(grid, cell, level), min_frequency)
+        low, high = np.where(is_poor, pooled_low, low), np.where(is_poor, pooled_high, high)
+    return with_borrowed_ranges(grid, cells, low, high)
+
+
+def _full_range(histogram: Histogram, min_frequency: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the cells, ascending, and their lowest and highest level with ``min_frequency`` points; -1 without."""
+    cells, which = np.unique(histogram.cell, return_inverse=True)
+    is_full = histogram.count >= min_frequency
+    low, high = np.full(len(cells), np.iinfo(np.int64).max), np.full(len(cells), -1)
+    np.minimum.at(low, which[is_full], histogram.level[is_full])
+    np.maximum.at(high, which[is_full], histogram.level[is_full])
+    return cells, low, high

@@ -1,0 +1,285 @@
+"""Points evened out: one for every voxel that has any."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..geometry.groups import items, run_starts
+from ..stage import Monitor, Param, stage
+from ..threads import in_chunks
+
+# Points worked on at once: what is gathered for them stays in the processor's cache.
+_CHUNK = 50_000
+
+# A coordinate this little (m) under the side of a voxel is on it: more than float64 rounds off, less than files tell.
+_TOUCH = 1e-7
+
+# Places inside a voxel are whole numbers of this fraction of its side, so that sums don't depend on the order.
+_STEPS = 2.0**32
+
+# With more voxels along an axis, float64 could not tell places inside a voxel.
+_MOST_ALONG_AXIS = 2.0**46
+_LARGEST_KEY = 2**63 - 1
+
+
+@dataclass(frozen=True)
+class _Sorted:
+    """The points in the order of their voxels.
+
+    Attributes
+    ----------
+    order : int64 array, (n,)
+        Positions of the points, by voxel, then as in the file.
+    starts : int64 array, (m,)
+        Where each voxel's points begin in ``order``.
+    count : int64 array, (m,)
+        Points of each voxel.
+    """
+
+    order: np.ndarray
+    starts: np.ndarray
+    count: np.ndarray
+
+    def rows(self, voxels: np.ndarray) -> np.ndarray:
+        """Return the positions of the points of some voxels, voxel after voxel."""
+        voxel, item = items(self.count[voxels])
+        return self.order[self.starts[voxels][voxel] + item]
+
+    def chunks(self, voxels: np.ndarray) -> list[np.ndarray]:
+        """Cut a list of voxels into some that have about as many points as are worked on at once."""
+        ends = np.cumsum(self.count[voxels])
+        cuts = np.searchsorted(ends, np.arange(0, len(self.order), _CHUNK))
+        return [chunk for chunk in np.split(voxels, np.unique(cuts)) if len(chunk)]
+
+
+@stage(
+    "Downsample to voxels",
+    group="Preparation",
+    tags="thin,decimate,subsample,reduce,voxel grid,center of gravity,centroid,even density",
+    writes=("xyz", "classification", "voxel_count"),
+    selects=True,
+)
+def downsample_voxels(
+    xyz,
+    classification=None,
+    gps_time=None,
+    return_number=None,
+    *,
+    voxel_size: Annotated[
+        float,
+        Param(
+            "Voxel size",
+            "Side of the cubes that are left with one point each. Take more than the noise of the scanner and less "
+            "than the smallest thing that is to be seen.",
+            unit="m",
+            low=0.001,
+            high=1000,
+        ),
+    ] = 0.1,
+    monitor=None,
+):
+    """Leave one point in every voxel that has any: the center of gravity of the points in it.
+
+    Evens out the density of scans, where near and twice seen surfaces have many times the points of others, and makes
+    clouds smaller. Everything but place, class and count comes from the point nearest to the center.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Coordinates (m).
+    classification : ndarray of shape (n,), optional
+        Classes. Noise counts like any other class; alone as it mostly is, it keeps voxels of its own.
+    gps_time, return_number : ndarray of shape (n,), optional
+        They choose between points at the same place, and for nothing else.
+
+    Returns
+    -------
+    selected : ndarray of shape (m,), int64
+        For each voxel, from west to east, then south to north, then upward, the point nearest to its center of
+        gravity. Of points equally near (to 0.1 µm), the one farthest west, then south, then down is taken; of points
+        at one place the earliest by time, then by number of return, then in the cloud.
+    xyz : ndarray of shape (m, 3), float64
+        Centers of gravity (m). A point that is alone in its voxel stays where it is.
+    classification : ndarray of shape (m,), uint8
+        The most frequent class of each voxel, the lowest of those that are equally frequent. None without classes.
+    voxel_count : ndarray of shape (m,), uint32
+        Points in each voxel.
+
+    Raises
+    ------
+    ValueError
+        If the voxels are finer than float64 can tell coordinates apart.
+
+    Notes
+    -----
+    Voxels start at the origin of the coordinates, not at the first point, so that clouds of the same site get the same
+    voxels. A point on the side between two voxels belongs to the eastern, northern or upper one; one that is less
+    than 0.1 µm off counts as on the side, since decimals like 0.3 have no exact binary number. The result depends on
+    neither the order of the points nor, but for this rounding, on where the cloud lies.
+
+    References
+    ----------
+    Weinmann et al. (2017), Point cloud analysis for UAV-borne laser scanning with horizontally and vertically oriented
+    line scanners, section 4.1. Hrutka et al. (2022), Voxel-based point cloud segmentation and building detection,
+    section 2.2.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from lidar_buildings.algorithms.preparation.downsample_voxels import downsample_voxels
+    >>> xyz = np.array([[0.01, 0.0, 0.0], [0.03, 0.0, 0.0], [0.08, 0.0, 0.0], [0.1, 0.0, 0.0]])
+    >>> selected, center, _, count = downsample_voxels(xyz, voxel_size=0.1)
+    >>> selected.tolist(), center[:, 0].round(6).tolist(), count.tolist()
+    ([1, 3], [0.04, 0.1], [3, 1])
+    """
+    voxels = _by_voxel(xyz, voxel_size, monitor.part(0.0, 0.3))
+    # A point that is alone in its voxel is all there is to it.
+    selected = voxels.order[voxels.starts]
+    center = xyz.take(selected, axis=0)
+    majority = None if classification is None else classification.take(selected).astype(np.uint8)
+    chunks = voxels.chunks(np.flatnonzero(voxels.count > 1))
+
+    def work(chunk: np.ndarray) -> None:
+        these = chunks[chunk[0]]
+        rows, count = voxels.rows(these), voxels.count[these]
+        which = np.repeat(np.arange(len(these)), count)
+        # The places inside each voxel, their sum, and the point nearest to their mean.
+        place = _places(xyz.take(rows, axis=0), voxel_size)
+        total = np.add.reduceat(place, run_starts(which), axis=0)
+        nearest = _nearest(place, total, which, _TOUCH / voxel_size * _STEPS, (gps_time, return_number), rows)
+        selected[these] = rows[nearest]
+        shift = total / count[:, None] - place[nearest]
+        center[these] = xyz.take(rows[nearest], axis=0) + shift * (voxel_size / _STEPS)
+        if majority is not None:
+            majority[these] = _majority(classification.take(rows), which)
+
+    in_chunks(work, np.arange(len(chunks)), 1, monitor.part(0.3, 1.0))
+    monitor.resolved(share_left=len(selected) / len(xyz))
+    return selected, center, majority, voxels.count.astype(np.uint32)
+
+
+def _by_voxel(xyz: np.ndarray, size: float, monitor: Monitor) -> _Sorted:
+    key = _keys(xyz, size, monitor)
+    order = np.argsort(key, kind="stable")
+    starts = run_starts(key[order])
+    return _Sorted(order, starts, np.diff(starts, append=len(order)))
+
+
+def _keys(xyz: np.ndarray, size: float, monitor: Monitor) -> np.ndarray:
+    """Return a number for each point's voxel (n,), int64, from 0, that grows with x, then y, then z."""
+    ends = np.array([(column.min(), column.max()) for column in xyz.T], float)
+    if np.abs(ends).max() / size > _MOST_ALONG_AXIS:
+        raise ValueError(
+            f"Voxels of {size:g} m are too fine for coordinates up to {np.abs(ends).max():g} m; "
+            "take larger voxels or check the coordinates."
+        )
+    low, high = _index(ends / size, size).T.astype(np.int64)
+    _, n_y, n_z = shape = [int(count) for count in high - low + 1]
+    if math.prod(shape) > _LARGEST_KEY:
+        return _keys_of_wide(xyz, size)
+    key = np.empty(len(xyz), np.int64)
+
+    def work(start: np.ndarray) -> None:
+        rows = slice(start[0], start[0] + _CHUNK)
+        x, y, z = (_index(xyz[rows] / size, size).astype(np.int64) - low).T
+        key[rows] = (x * n_y + y) * n_z + z
+
+    in_chunks(work, np.arange(0, len(xyz), _CHUNK), 1, monitor)
+    return key
+
+
+def _keys_of_wide(xyz: np.ndarray, size: float) -> np.ndarray:
+    """Return the same where there are more voxels than numbers: only those that have points are numbered."""
+    key, n_keys = np.zeros(len(xyz), np.int64), 1
+    for column in xyz.T:
+        index, n_index = _renumbered(_index(column / size, size))
+        if n_keys * n_index > _LARGEST_KEY:
+            key, n_keys = _renumbered(key)
+        key = key * n_index + index
+        n_keys *= n_index
+    return key
+
+
+def _index(scaled: np.ndarray, size: float) -> np.ndarray:
+    """Return the number of the voxel along an axis, a whole float64, of coordinates in voxels."""
+    return np.floor(scaled + _TOUCH / size)
+
+
+def _renumbered(key: np.ndarray) -> tuple[np.ndarray, int]:
+    """Return numbers in the same order without gaps, and how many there are."""
+    used, key = np.unique(key, return_inverse=True)
+    return key, len(used)
+
+
+def _places(points: np.ndarray, size: float) -> np.ndarray:
+    """Return where points lie in their voxels, int64 (m, 3), in steps."""
+    scaled = points / size
+    scaled -= _index(scaled, size)
+    scaled *= _STEPS
+    return np.rint(scaled).astype(np.int64)
+
+
+def _nearest(
+    place: np.ndarray,
+    total: np.ndarray,
+    which: np.ndarray,
+    touch: float,
+    times: tuple[Optional[np.ndarray], ...],
+    rows: np.ndarray,
+) -> np.ndarray:
+    """Return, for each voxel, the position of the point nearest to the center.
+
+    Parameters
+    ----------
+    place : ndarray of shape (m, 3), int64
+        Of the points, by voxel.
+    total : ndarray of shape (k, 3), int64
+        Sum of the places of each voxel.
+    which : ndarray of shape (m,)
+        Voxel of each point.
+    touch : float
+        Points that are so much (steps) farther away than the nearest are as near: only rounding tells them apart.
+    times : tuple
+        Further dimensions (n,) of the cloud, or None, by which points at one place are told apart.
+    rows : ndarray of shape (m,)
+        Where in the cloud the points are.
+    """
+    count = np.bincount(which)[which]
+    # Whole numbers: the two points of a pair are equally near to the last bit.
+    away = (place * count[:, None] - total[which]).astype(float)
+    distance = np.sqrt(np.einsum("ij,ij->i", away, away)) / count
+    least = np.minimum.reduceat(distance, run_starts(which))
+    left = np.flatnonzero(distance <= (least + touch)[which])
+    for values in _criteria(place, times, rows):
+        if len(left) == len(total):
+            break
+        least = np.minimum.reduceat(values[left], run_starts(which[left]))
+        left = left[values[left] == least[which[left]]]
+    return left[run_starts(which[left])]
+
+
+def _criteria(place: np.ndarray, times: tuple, rows: np.ndarray) -> Iterator[np.ndarray]:
+    """Yield the numbers (m,) that decide between points equally near, the next ones only if some are still alike."""
+    yield from place.T
+    for dimension in times:
+        if dimension is not None:
+            yield np.nan_to_num(dimension[rows])
+
+
+def _majority(classes: np.ndarray, which: np.ndarray) -> np.ndarray:
+    """Return the most frequent class of each voxel, the lowest of those equally frequent."""
+    firsts = run_starts(which)
+    made = np.minimum.reduceat(classes, firsts).astype(np.uint8)
+    is_mixed = made != np.maximum.reduceat(classes, firsts)
+    among = is_mixed[which]
+    pair, count = np.unique(which[among] * 256 + classes[among], return_counts=True)
+    voxel, kind = np.divmod(pair, 256)
+    order = np.lexsort((kind, -count, voxel))
+    first = order[run_starts(voxel[order])]
+    made[voxel[first]] = kind[first]
+    return made

@@ -1,0 +1,162 @@
+"""Points chosen by class, by height above ground, and by any other dimension."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..cloud.asprs import parse_classes
+from ..stage import Monitor, Param, stage
+
+# Numbers of 32 bits, and times in seconds from 1970, are smaller.
+_LARGEST = 10_000_000_000
+
+_NO_LIMIT = "no limit; the log gives the range of the cloud."
+
+
+@stage(
+    "Filter points",
+    group="Preparation",
+    tags="select,extract,subset,class,height,range,limits,remove,split,expression",
+    selects=True,
+)
+def filter_points(
+    xyz,
+    classification,
+    height_above_ground=None,
+    values=None,
+    *,
+    classes: Annotated[
+        str,
+        Param(
+            "Classes",
+            "Keep points of these classes: numbers and ranges, separated by commas (2, 6-9); empty keeps every class.",
+        ),
+    ] = "",
+    min_height: Annotated[
+        Optional[float],
+        Param(
+            "Minimum height",
+            "Keep points at least so high above the ground: 0.3 m takes ground and grass away.",
+            unit="m",
+            low=-10_000,
+            high=10_000,
+            empty=_NO_LIMIT,
+        ),
+    ] = None,
+    max_height: Annotated[
+        Optional[float],
+        Param(
+            "Maximum height",
+            "Keep points at most so high above the ground: 2.5 m leaves what is lower than roofs.",
+            unit="m",
+            low=-10_000,
+            high=10_000,
+            empty=_NO_LIMIT,
+        ),
+    ] = None,
+    dimension: Annotated[
+        str,
+        Param(
+            "Dimension", "Any dimension of the cloud, by name (Intensity, NormalZ, Z), whose range is to be limited."
+        ),
+    ] = "",
+    low: Annotated[
+        Optional[float],
+        Param(
+            "Minimum value",
+            "Keep points that have at least this in the dimension.",
+            low=-_LARGEST,
+            high=_LARGEST,
+            empty=_NO_LIMIT,
+        ),
+    ] = None,
+    high: Annotated[
+        Optional[float],
+        Param(
+            "Maximum value",
+            "Keep points that have at most this in the dimension.",
+            low=-_LARGEST,
+            high=_LARGEST,
+            empty=_NO_LIMIT,
+        ),
+    ] = None,
+    invert: Annotated[
+        bool,
+        Param("Invert", "Keep the points that any of the limits leaves out, and leave out the others."),
+    ] = False,
+    monitor=None,
+):
+    """Keep the points that are of some classes, between two heights above the ground, and in a range of any dimension.
+
+    What is not set limits nothing; points must be within all limits that are set. Limits belong to what they include.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Coordinates, m.
+    classification : ndarray of shape (n,)
+        ASPRS classes.
+    height_above_ground : ndarray of shape (n,), optional
+        Heights, m; needed to limit them.
+    values : ndarray of shape (n,), optional
+        The dimension that is named; needed to limit it.
+
+    Returns
+    -------
+    selected : ndarray of shape (m,), int64
+        Positions of the points that are kept, ascending.
+
+    Raises
+    ------
+    ValueError
+        If a limit is set on heights or on a dimension that is not there, or a minimum is above its maximum.
+
+    Notes
+    -----
+    A point whose height or value is undefined is within no limit. A result without points is refused when it would
+    have to be written: a cloud must have points.
+
+    References
+    ----------
+    Hrutka, B. P., Siki, Z., Takács, B., 2022, section 2.2 (heights of 0.3 and 2.5 m).
+    """
+    kept = np.ones(len(xyz), bool)
+    numbers = parse_classes(classes, "Classes")
+    if len(numbers):
+        kept &= np.isin(classification, numbers)
+    monitor.progress(0.3)
+    if height_above_ground is None and (min_height is not None or max_height is not None):
+        raise ValueError("Limits of the height need HeightAboveGround; run 'Height above ground' first or set none.")
+    kept &= _within(height_above_ground, min_height, max_height, ("min_height", "max_height"), monitor)
+    monitor.progress(0.6)
+    if values is None and (low is not None or high is not None):
+        raise ValueError(
+            "Minimum and maximum value are limits of a dimension; name it (Intensity, NormalZ) or set none."
+        )
+    kept &= _within(values, low, high, ("low", "high"), monitor)
+    if not len(numbers) and not invert and {min_height, max_height, low, high} == {None}:
+        monitor.warn("No limit is set (no classes, heights or values of a dimension), so all points stay.")
+    monitor.progress(1.0)
+    return np.flatnonzero(~kept if invert else kept)
+
+
+def _within(
+    values: Optional[np.ndarray], low: Optional[float], high: Optional[float], names: tuple[str, str], monitor: Monitor
+) -> np.ndarray:
+    """Return which values (n,) lie between two limits, all where none is set; tell the range that they have."""
+    if values is None:
+        return np.array(True)
+    defined = values[np.isfinite(values)]
+    for name, limit, found in zip(names, (low, high), (defined.min, defined.max)):
+        if limit is None and len(defined):
+            monitor.resolved(**{name: float(found())})
+    if low is not None and high is not None and low > high:
+        raise ValueError(f"The minimum ({low:g}) is above the maximum ({high:g}); exchange them.")
+    within = np.ones(len(values), bool)
+    if low is not None:
+        within &= values >= low
+    if high is not None:
+        within &= values <= high
+    return within

@@ -1,0 +1,53 @@
+"""Height histograms of square cells in plan."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..geometry.grid import Grid
+from ..packages import spatial
+
+
+@dataclass(frozen=True)
+class Histogram:
+    """Occupied bins of all cells, by cell, then by level: number of the cell, level, points."""
+
+    cell: np.ndarray
+    level: np.ndarray
+    count: np.ndarray
+
+
+def pooled_histogram(grid: Grid, cell: np.ndarray, level: np.ndarray) -> Histogram:
+    """Return the histogram of each occupied cell, the points of the eight cells around it among them."""
+    levels = int(level.max()) + 1
+    own, count = np.unique(cell * levels + level, return_counts=True)
+    keys = np.concatenate([own + step * levels for step in (0, *grid.around)])
+    keys, which = np.unique(keys, return_inverse=True)
+    pooled = np.bincount(which, np.tile(count, 9)).astype(np.int64)
+    # Empty cells beside occupied ones have no points to judge.
+    occupied = np.isin(keys // levels, own // levels)
+    return Histogram(keys[occupied] // levels, keys[occupied] % levels, pooled[occupied])
+
+
+def own_histogram(cell: np.ndarray, level: np.ndarray) -> Histogram:
+    """Return the histogram of each occupied cell by itself."""
+    levels = int(level.max()) + 1
+    own, count = np.unique(cell * levels + level, return_counts=True)
+    return Histogram(own // levels, own % levels, count.astype(np.int64))
+
+
+def with_borrowed_ranges(
+    grid: Grid, cells: np.ndarray, low: np.ndarray, high: np.ndarray, slack: int = 0
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Give cells without a range that of the nearest with one, ``slack`` levels wider; without any, return no cells."""
+    has_range = high >= 0
+    if not has_range.any():
+        return cells[:0], low[:0], high[:0]
+    if not has_range.all():
+        lender = np.flatnonzero(has_range)
+        tree = spatial.cKDTree(grid.center(cells[lender]))
+        nearest = lender[tree.query(grid.center(cells[~has_range]))[1]]
+        low[~has_range], high[~has_range] = low[nearest] - slack, high[nearest] + slack
+    return cells, low, high

@@ -1,0 +1,267 @@
+"""Several clouds brought into one frame and made one."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..stage import Monitor, Param, stage
+
+# A matrix with numbers of four decimals or more is within this of a rotation; it is then taken as the nearest one.
+_RIGID = 2e-4
+
+# Points that the nearest rotation puts farther (m) from where the matrix itself would are worth a word.
+_WORTH_TELLING = 0.001
+
+# Clouds whose boxes are farther apart (m) are likely not of one site, or one of them is not where it should be.
+_APART = 1.0
+
+# A file of numbers is never longer (bytes).
+_LONGEST_FILE = 10_000
+
+
+@dataclass(frozen=True)
+class Transform:
+    """A rotation and an offset: x becomes ``rotation @ x + offset``.
+
+    Parameters
+    ----------
+    rotation : ndarray of shape (3, 3)
+        A rotation, exact to rounding.
+    offset : ndarray of shape (3,)
+        In meters.
+    given : ndarray of shape (3, 3)
+        The rotation as the user wrote it.
+    """
+
+    rotation: np.ndarray
+    offset: np.ndarray
+    given: np.ndarray
+
+    def __call__(self, xyz: np.ndarray) -> np.ndarray:
+        """Return points (n, 3) (m) where the transform puts them."""
+        return xyz @ self.rotation.T + self.offset
+
+    @property
+    def angle(self) -> float:
+        """How far it turns (°), about whichever axis."""
+        return float(np.rad2deg(np.arccos(np.clip((np.trace(self.rotation) - 1) / 2, -1.0, 1.0))))
+
+
+@stage(
+    "Merge point clouds",
+    group="Preparation",
+    tags="combine,append,join,union,tiles,scans,register,relative orientation,transform,rotate,shift,matrix,4x4",
+    writes=("xyz", "point_source_id", "previous_source_id"),
+    merges=True,
+)
+def merge_clouds(
+    xyz,
+    point_source_id,
+    *,
+    transforms: Annotated[
+        str,
+        Param(
+            "Transforms",
+            "Where the clouds after the first go, in their order and separated by semicolons; empty for a cloud that "
+            "stays. Six numbers: rotations about the axes to the east, to the north and up (°, in this order, "
+            "counterclockwise), then offsets to the east, to the north and up (m). Or the 16 numbers of a 4x4 matrix, "
+            "row by row. Or the path of a text file with either. '0 0 90 5 0 0; ; matrix.txt' turns and moves the "
+            "second cloud, leaves the third and moves the fourth as the file says.",
+        ),
+    ] = "",
+    monitor=None,
+):
+    """Make one cloud of several, each but the first turned and moved if need be; PointSourceId tells them apart.
+
+    The clouds may differ in scale, offset, point format and extra dimensions. The result has the finest scale, the
+    smallest point format that holds the colors, times and waveform references of all, and all extra dimensions. What a
+    cloud lacks is NaN, or 0 in whole numbers, colors and times. It has the coordinate reference system that the clouds
+    have; different ones are refused, and a cloud without any is taken to be in that of the others.
+
+    Parameters
+    ----------
+    xyz : list of ndarray of shape (n, 3)
+        Coordinates (m) of each cloud.
+    point_source_id : list of ndarray of shape (n,)
+        Flight lines or scanners, as they are in each cloud.
+
+    Returns
+    -------
+    xyz : ndarray of shape (n, 3), float64, or None
+        Coordinates (m) of all clouds, one after the other; None where nothing was moved.
+    point_source_id : ndarray of shape (n,), uint16
+        The number of the cloud: 1 for the first, 2 for the second.
+    previous_source_id : ndarray of shape (n,), uint16, or None
+        What ``point_source_id`` was before; None if it was 0 everywhere.
+
+    Raises
+    ------
+    ValueError
+        If a transform is not understood or not rigid, or there are more of them than clouds after the first.
+
+    Notes
+    -----
+    A point x goes to R x + t, with the rotation R about the zero of the coordinates: the three angles are three
+    rotations about fixed axes, one after the other, R = Rz Ry Rx. A matrix must be rigid, that is turn and move only:
+    its upper left part times its own transpose may differ from the identity by 0.0002, as with four decimals, and the
+    nearest rotation is taken; a warning tells if that makes more than a millimeter. With coordinates of millions of
+    meters, give nine decimals or more.
+
+    Clouds that lie apart are merged all the same; a warning tells of a cloud whose bounding box is more than 1 m away
+    from those of all the others. Ids of segments and clusters stay as they are, so that two clouds may have the same
+    ones. The order of points is kept; withheld points are left out.
+
+    References
+    ----------
+    Weinmann et al. (2017), Point cloud analysis for UAV-borne laser scanning with horizontally and vertically oriented
+    line scanners, section 5.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from lidar_buildings.algorithms.preparation.merge_clouds import merge_clouds
+    >>> clouds, sources = [np.zeros((1, 3)), np.array([[1.0, 0.0, 0.0]])], [np.zeros(1), np.zeros(1)]
+    >>> xyz, number, _ = merge_clouds(clouds, sources, transforms="0 0 90 10 0 0")
+    >>> xyz.round(6).tolist(), number.tolist()
+    ([[0.0, 0.0, 0.0], [10.0, 1.0, 0.0]], [1, 2])
+    """
+    wanted = read_transforms(transforms, len(xyz))
+    moved = []
+    for i, (part, transform) in enumerate(zip(xyz, wanted)):
+        moved.append(part if transform is None else _moved(i + 1, part, transform, monitor))
+        monitor.progress((i + 1) / len(xyz))
+    _tell_apart(moved, monitor)
+    number = np.repeat(np.arange(1, len(xyz) + 1), [len(part) for part in xyz])
+    previous = np.concatenate(point_source_id)
+    return (
+        np.concatenate(moved) if any(wanted) else None,
+        number.astype(np.uint16),
+        previous.astype(np.uint16) if previous.any() else None,
+    )
+
+
+def read_transforms(text: str, n_clouds: int) -> list[Optional[Transform]]:
+    """Return what the text says of each cloud, None for one that stays, as the first does.
+
+    Raises
+    ------
+    ValueError
+        If it says something of a cloud that there is not, or what it says is no rigid transform.
+    """
+    parts = [part.strip() for part in text.split(";")] if text.strip() else []
+    while parts and not parts[-1]:
+        parts.pop()
+    if len(parts) > n_clouds - 1:
+        raise ValueError(
+            f"There are {len(parts)} transforms for {n_clouds} clouds, of which the first stays; "
+            f"give at most {n_clouds - 1}, separated by semicolons."
+        )
+    found = [_transform(f"The transform of cloud {i}", part) for i, part in enumerate(parts, start=2)]
+    return [None, *found, *[None] * (n_clouds - 1 - len(parts))]
+
+
+def _transform(name: str, text: str) -> Optional[Transform]:
+    """Return the movement that six numbers, the 16 of a matrix or a file of these tell; None for no text."""
+    if not text:
+        return None
+    numbers = _numbers(text)
+    if numbers is None:
+        name = f"{name} ({Path(text).name})"
+        numbers = _numbers(_content(name, text))
+    if numbers is None or len(numbers) not in (6, 16):
+        what = "something else" if numbers is None else f"{len(numbers)} numbers"
+        raise ValueError(
+            f"{name} must be six numbers (three angles, three offsets) or the 16 of a 4x4 matrix, got {what}."
+        )
+    if not np.isfinite(numbers).all():
+        raise ValueError(f"{name} has a number that is not finite; correct it.")
+    if len(numbers) == 6:
+        rotation = _from_angles(np.deg2rad(numbers[:3]))
+        return Transform(rotation, numbers[3:], rotation)
+    matrix = numbers.reshape(4, 4)
+    return Transform(_nearest_rotation(name, matrix), matrix[:3, 3], matrix[:3, :3])
+
+
+def _numbers(text: str) -> Optional[np.ndarray]:
+    """Return the numbers of a text, float64, None if there is anything else in it."""
+    words = re.sub(r"[\s,;\[\]()]+", " ", re.sub("#.*", "", text)).split()
+    try:
+        return np.array([float(word) for word in words])
+    except ValueError:
+        return None
+
+
+def _content(name: str, path: str) -> str:
+    try:
+        with Path(path.strip("\"'")).open(encoding="utf-8-sig") as stream:
+            return stream.read(_LONGEST_FILE)
+    except (OSError, UnicodeDecodeError) as error:
+        why = getattr(error, "strerror", None) or "it is not text"
+        raise ValueError(f"{name} is neither numbers nor a text file that can be read ({why}); correct it.") from None
+
+
+def _from_angles(angles: np.ndarray) -> np.ndarray:
+    """Return the rotation about x, then y, then z by angles (rad)."""
+    (cx, cy, cz), (sx, sy, sz) = np.cos(angles), np.sin(angles)
+    about_x = np.array([[1, 0, 0], [0, cx, -sx], [0, sx, cx]])
+    about_y = np.array([[cy, 0, sy], [0, 1, 0], [-sy, 0, cy]])
+    about_z = np.array([[cz, -sz, 0], [sz, cz, 0], [0, 0, 1]])
+    return about_z @ about_y @ about_x
+
+
+def _nearest_rotation(name: str, matrix: np.ndarray) -> np.ndarray:
+    """Return the rotation (3, 3) that a matrix (4, 4) is but for rounding."""
+    if np.abs(matrix[3] - [0, 0, 0, 1]).max() > _RIGID:
+        last = " ".join(f"{value:g}" for value in matrix[3])
+        raise ValueError(f"{name} must have 0 0 0 1 in its last row, got {last}; is it transposed?")
+    linear = matrix[:3, :3]
+    off = np.abs(linear @ linear.T - np.eye(3)).max()
+    if off > _RIGID:
+        raise ValueError(
+            f"{name} is not rigid: it scales or shears, its rotation times the transpose is off the identity by "
+            f"{off:.2g}; give a rotation and an offset only."
+        )
+    if np.linalg.det(linear) < 0:
+        raise ValueError(f"{name} is not rigid: it mirrors the cloud; give a rotation and an offset only.")
+    left, _, right = np.linalg.svd(linear)
+    return left @ right
+
+
+def _moved(number: int, xyz: np.ndarray, transform: Transform, monitor: Monitor) -> np.ndarray:
+    """Return a cloud (n, 3) where it belongs, and tell how far that is from where it was."""
+    made = transform(xyz)
+    middle = (xyz.min(axis=0) + xyz.max(axis=0)) / 2
+    shift = float(np.linalg.norm(transform(middle) - middle))
+    told = {
+        f"rotation_of_cloud_{number}_in_degrees": transform.angle,
+        f"shift_of_the_middle_of_cloud_{number}_in_meters": shift,
+    }
+    monitor.resolved(**told)
+    farthest = np.abs(xyz).max(axis=0)
+    off = float(np.linalg.norm(np.abs(transform.rotation - transform.given) @ farthest))
+    if off > _WORTH_TELLING:
+        monitor.warn(
+            f"The matrix of cloud {number} has too few decimals for its coordinates: the nearest rotation puts points "
+            f"up to {off:.3g} m elsewhere."
+        )
+    return made
+
+
+def _tell_apart(clouds: list[np.ndarray], monitor: Monitor) -> None:
+    """Tell which clouds lie apart from all others."""
+    low = np.array([part.min(axis=0) for part in clouds])
+    high = np.array([part.max(axis=0) for part in clouds])
+    gap = np.linalg.norm(np.maximum(np.maximum(low[:, None] - high, low - high[:, None]), 0.0), axis=2)
+    np.fill_diagonal(gap, np.inf)
+    nearest = gap.min(axis=1)
+    apart = np.flatnonzero(nearest > _APART)
+    if len(apart):
+        monitor.warn(
+            f"Some clouds lie apart, {nearest[apart].min():,.0f} m or more from the nearest other (cloud "
+            f"{', '.join(str(i + 1) for i in apart)}); if they are of one site, check the transforms."
+        )

@@ -1,0 +1,333 @@
+"""How good detected buildings are: against a reference, per point, per cell and per object."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..cloud.asprs import PointClass, parse_classes
+from ..geometry.cell_outlines import outline_cells
+from ..geometry.grid import Grid, connected_cells, find_cells, grid_over
+from ..params import IgnoredClasses, MinBuildingArea
+from ..report.page import Row, build_page, draw_map, outcome_of, percent
+from ..stage import Field, Layer, LayerFeatures, Measure, Param, Report, stage
+from .point_matching import compared_points
+
+_RATES = (
+    ("completeness", "completeness", "%"),
+    ("correctness", "correctness", "%"),
+    ("f", "F-score", "%"),
+    ("quality", "quality", "%"),
+    ("hits", "found", ""),
+    ("misses", "missed", ""),
+    ("false", "falsely called building", ""),
+)
+_MEASURES = (
+    *(Measure(f"points_{name}", f"Points: {title}", unit) for name, title, unit in _RATES),
+    *(Measure(f"cells_{name}", f"Cells: {title}", unit) for name, title, unit in _RATES),
+    Measure("objects_completeness", "Objects: completeness", "%"),
+    Measure("objects_correctness", "Objects: correctness", "%"),
+    Measure("objects_f", "Objects: F-score", "%"),
+    Measure("objects_misses", "Objects: missed"),
+    Measure("objects_false", "Objects: falsely called building"),
+    Measure("objects_true", "Objects in the reference"),
+    Measure("objects_predicted", "Objects in the input"),
+    Measure("cell_size", "Cell size", "m"),
+)
+
+# Side of cells (m) where there are more points per m² than the third figure, and elsewhere.
+_FINE, _COARSE, _DENSE = 0.5, 1.0, 6.0
+
+# What an object of the layer is, by what came of it.
+FOUND, MISSED, INVENTED, MISSED_PART, INVENTED_PART = "found", "missed", "invented", "missed part", "invented part"
+_OBJECTS = Layer(
+    "objects",
+    "Found, missed and invented buildings",
+    "Polygon",
+    (
+        Field("id", int, "number of the object, from 1"),
+        Field(
+            "kind",
+            str,
+            f"{FOUND} or {MISSED}: a building of the reference; {INVENTED}: one of the input that is not true; "
+            f"{MISSED_PART}, {INVENTED_PART}: what a building that was found lacks or has too much",
+        ),
+        Field("area", float, "area seen from above", "m²"),
+        Field("points", int, "building points in it, of the side that it belongs to"),
+        Field("covered", float, "share that is building on the other side too, 0 to 1"),
+    ),
+    style="objects",
+)
+
+
+@stage(
+    "Assess buildings",
+    group="Quality",
+    tags="accuracy,completeness,correctness,F-score,F1,quality,evaluation,reference,validation",
+    layers=(_OBJECTS,),
+    measures=_MEASURES,
+)
+def assess_buildings(
+    xyz,
+    classification,
+    reference_xyz,
+    reference_classification,
+    *,
+    ignored_classes: IgnoredClasses = "7, 17, 18, 26, 64-67",
+    cell_size: Annotated[
+        Optional[float],
+        Param(
+            "Cell size",
+            "Side of the cells that are compared from above.",
+            unit="m",
+            low=0.05,
+            high=100,
+            automatic="0.5 m where the cloud has more than 6 points per m² of its bounding rectangle, 1 m elsewhere.",
+        ),
+    ] = None,
+    min_area: MinBuildingArea = 10.0,
+    monitor=None,
+):
+    """Compare the buildings of a classification with those of a reference: completeness, correctness, F-score, quality.
+
+    Counted three ways: per point; per cell, by the topmost point, which is blind to walls (some references call them
+    building, some don't); and per object, a building being found when at least half of it is. A layer shows which
+    buildings were found, missed and invented.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Coordinates (m) of the input.
+    classification : ndarray of shape (n,)
+        Classes of the input; 6 is building.
+    reference_xyz : ndarray of shape (m, 3)
+        Coordinates (m) of the reference: the same points in any order, perhaps with others.
+    reference_classification : ndarray of shape (m,)
+        True classes.
+
+    Returns
+    -------
+    objects : LayerFeatures
+        Polygons of the buildings of the reference, found or missed; of those of the input that are not true; and of
+        what buildings that were found lack or have too much.
+    report : Report
+        Percentages and counts, and a page with a map. A percentage of nothing is NaN.
+
+    Raises
+    ------
+    ValueError
+        If a point of the input is not in the reference, or every point is ignored.
+
+    Notes
+    -----
+    With TP points that are building in both, FN in the reference only and FP in the input only: completeness
+    TP / (TP + FN), correctness TP / (TP + FP), quality TP / (TP + FN + FP), and F the harmonic mean of the first two.
+    Ignored by default are the reference's noise (7, 18), bridges (17; 26 in the Netherlands) and what other agencies
+    keep for artefacts, civil works and virtual points (64-67). Objects are groups of building cells that touch by a
+    side or a corner. Parts are told from ragged edges by their size: they have the minimum area and are three cells
+    wide somewhere.
+
+    References
+    ----------
+    Wiedemann et al. (1998), Empirical evaluation of automatically extracted road axes.
+    Santos et al. (2019), Building detection from LiDAR data using entropy and the k-means concept, section 3.2.
+    """
+    xyz, called, true = compared_points(
+        xyz, classification, reference_xyz, reference_classification, parse_classes(ignored_classes)
+    )
+    predicted, true = called == PointClass.BUILDING, true == PointClass.BUILDING
+    if cell_size is None:
+        per_square_meter = len(xyz) / max(float(np.ptp(xyz[:, :2], axis=0).prod()), 1.0)
+        cell_size = _FINE if per_square_meter > _DENSE else _COARSE
+        monitor.resolved(cell_size=cell_size)
+    monitor.progress(0.3)
+    grid = grid_over(xyz, cell_size)
+    cell = grid.number(xyz)
+    top = topmost_points(cell, xyz[:, 2])
+    values = {f"points_{name}": value for name, value in rates(predicted, true).items()}
+    values.update({f"cells_{name}": value for name, value in rates(predicted[top], true[top]).items()})
+    monitor.progress(0.6)
+    reference = _side(grid, cell[top], true[top], predicted[top], min_area)
+    result = _side(grid, cell[top], predicted[top], true[top], min_area)
+    values.update(_object_rates(reference, result), cell_size=cell_size)
+    objects = _objects(grid, (reference, cell[true]), (result, cell[predicted]), min_area)
+    monitor.progress(0.9)
+    return objects, Report(values, _page(xyz, predicted, true, values, min_area))
+
+
+def rates(predicted: np.ndarray, true: np.ndarray) -> dict[str, float]:
+    """Return completeness, correctness, F and quality (percent, NaN of nothing), and what they are counted from."""
+    hits, misses, false = (int(mask.sum()) for mask in (predicted & true, ~predicted & true, predicted & ~true))
+    return {
+        "completeness": _share(hits, hits + misses),
+        "correctness": _share(hits, hits + false),
+        "f": _share(2 * hits, 2 * hits + misses + false),
+        "quality": _share(hits, hits + misses + false),
+        "hits": hits,
+        "misses": misses,
+        "false": false,
+    }
+
+
+def topmost_points(cell: np.ndarray, elevation: np.ndarray) -> np.ndarray:
+    """Return the row of the highest point of each occupied cell, by cell; of equals the last."""
+    order = np.lexsort((elevation, cell))
+    return order[np.diff(cell[order], append=-1) != 0]
+
+
+def _share(part: float, whole: float) -> float:
+    return 100.0 * part / whole if whole else float("nan")
+
+
+@dataclass(frozen=True)
+class _Side:
+    """The building cells (ascending) of one of two classifications, the object of each, and what objects count.
+
+    ``shared`` says which cells are building in the other classification too, ``covered`` (0 to 1) how much of each
+    object is.
+    """
+
+    cells: np.ndarray
+    group: np.ndarray
+    shared: np.ndarray
+    covered: np.ndarray
+    counts: np.ndarray
+
+    @property
+    def agreed(self) -> np.ndarray:
+        """Which objects count and lie by half in the other classification's buildings."""
+        return self.counts & (self.covered >= 0.5)
+
+
+def _side(grid: Grid, cells: np.ndarray, own: np.ndarray, other: np.ndarray, min_area: float) -> _Side:
+    """Return the objects of the cells that are ``own``, and how they look from the ``other`` classification."""
+    count, group = connected_cells(grid, cells[own])
+    size = np.bincount(group, minlength=count)
+    covered = np.bincount(group, other[own], count) / np.maximum(size, 1)
+    return _Side(cells[own], group, other[own], covered, size * grid.size**2 >= min_area)
+
+
+def _object_rates(reference: _Side, result: _Side) -> dict[str, float]:
+    """Return the share of the objects of each side that the other one covers by half, and their numbers."""
+    found, true = int(reference.agreed.sum()), int(reference.counts.sum())
+    correct, predicted = int(result.agreed.sum()), int(result.counts.sum())
+    completeness, correctness = _share(found, true), _share(correct, predicted)
+    return {
+        "objects_completeness": completeness,
+        "objects_correctness": correctness,
+        "objects_f": _share(2 * completeness * correctness / 100, completeness + correctness),
+        "objects_true": true,
+        "objects_predicted": predicted,
+        "objects_misses": true - found,
+        "objects_false": predicted - correct,
+    }
+
+
+def _objects(
+    grid: Grid, reference: tuple[_Side, np.ndarray], result: tuple[_Side, np.ndarray], min_area: float
+) -> LayerFeatures:
+    """Return the layer of what was found, missed and invented, from both sides and the cells of their points."""
+    (true, _), (predicted, _) = reference, result
+    kinds = (
+        (FOUND, reference, true.agreed[true.group]),
+        (MISSED, reference, (true.counts & ~true.agreed)[true.group]),
+        (INVENTED, result, (predicted.counts & ~predicted.agreed)[predicted.group]),
+        (MISSED_PART, reference, _parts(grid, true, min_area)),
+        (INVENTED_PART, result, _parts(grid, predicted, min_area)),
+    )
+    layer = LayerFeatures([], {field.name: [] for field in _OBJECTS.fields})
+    for kind, (side, point_cells), chosen in kinds:
+        _add(layer, kind, grid, side, chosen, point_cells)
+    return layer
+
+
+def _parts(grid: Grid, side: _Side, min_area: float) -> np.ndarray:
+    """Return which cells of agreed objects lie in large, wide groups that the other classification lacks."""
+    rows = np.flatnonzero(side.agreed[side.group] & ~side.shared)
+    cells = side.cells[rows]
+    count, group = connected_cells(grid, cells)
+    # Ragged edges are one or two cells wide; a wide part has a cell with all eight around it.
+    inner = np.logical_and.reduce([find_cells(cells, cells + step)[1] for step in grid.around])
+    wide = np.bincount(group, inner, count) > 0
+    large = np.bincount(group, minlength=count) * grid.size**2 >= min_area
+    chosen = np.zeros(len(side.cells), bool)
+    chosen[rows] = (wide & large)[group]
+    return chosen
+
+
+def _add(layer: LayerFeatures, kind: str, grid: Grid, side: _Side, chosen: np.ndarray, point_cells: np.ndarray) -> None:
+    """Append the groups of the chosen cells of a side to the layer."""
+    cells = side.cells[chosen]
+    count, group = connected_cells(grid, cells)
+    position, inside = find_cells(cells, point_cells)
+    size = np.bincount(group, minlength=count)
+    layer.columns["id"] += range(len(layer) + 1, len(layer) + 1 + count)
+    layer.columns["kind"] += [kind] * count
+    layer.columns["area"] += (size * grid.size**2).tolist()
+    layer.columns["points"] += np.bincount(group[position[inside]], minlength=count).tolist()
+    layer.columns["covered"] += (np.bincount(group, side.shared[chosen], count) / size).tolist()
+    layer.geometries += outline_cells(grid, cells, group)
+
+
+def _page(xyz: np.ndarray, predicted: np.ndarray, true: np.ndarray, values: dict, min_area: float) -> str:
+    lead = (
+        f"Of {len(xyz):,} points, {values['points_hits'] + values['points_misses']:,} are building in the reference "
+        f"and {values['points_hits'] + values['points_false']:,} in the classification that was assessed."
+    )
+    tables = {
+        "Points": _rows(values, "points", "points"),
+        f"Seen from above, in cells of {values['cell_size']:g} m": _rows(values, "cells", "cells"),
+        f"Buildings of at least {min_area:g} m²": _object_rows(values),
+    }
+    legend = ("neither", "building in both", "missed", "falsely called building")
+    return build_page("Quality of the buildings", lead, tables, draw_map(xyz, outcome_of(predicted, true), legend))
+
+
+def _rows(values: dict, prefix: str, things: str) -> list[Row]:
+    hits, misses, false = (values[f"{prefix}_{name}"] for name in ("hits", "misses", "false"))
+    return [
+        Row(
+            "Completeness",
+            percent(values[f"{prefix}_completeness"]),
+            f"So much of the reference's buildings was found: {hits:,} of {hits + misses:,} {things}.",
+        ),
+        Row(
+            "Correctness",
+            percent(values[f"{prefix}_correctness"]),
+            f"So much of what was called building is building: {hits:,} of {hits + false:,} {things}.",
+        ),
+        Row(
+            "F-score",
+            percent(values[f"{prefix}_f"]),
+            "Completeness and correctness in one figure, their harmonic mean.",
+        ),
+        Row(
+            "Quality",
+            percent(values[f"{prefix}_quality"]),
+            f"Of all {things} that are building on either side, so many are building on both.",
+        ),
+    ]
+
+
+def _object_rows(values: dict) -> list[Row]:
+    return [
+        Row(
+            "Completeness",
+            percent(values["objects_completeness"]),
+            f"So many of the reference's {values['objects_true']:,} buildings were found, by at least half; "
+            f"{values['objects_misses']:,} were missed.",
+        ),
+        Row(
+            "Correctness",
+            percent(values["objects_correctness"]),
+            f"So many of the {values['objects_predicted']:,} buildings found are true, by half of their area or more; "
+            f"{values['objects_false']:,} were invented.",
+        ),
+        Row(
+            "F-score",
+            percent(values["objects_f"]),
+            "Completeness and correctness in one figure; the layer of objects shows each of them.",
+        ),
+    ]

@@ -1,0 +1,121 @@
+"""How good classified ground is, against a reference."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..cloud.asprs import PointClass, parse_classes
+from ..params import IgnoredClasses
+from ..report.page import Row, build_page, draw_map, outcome_of, percent
+from ..stage import Measure, Report, stage
+from .point_matching import compared_points
+
+
+@stage(
+    "Assess ground",
+    group="Quality",
+    tags="accuracy,type I error,type II error,total error,kappa,evaluation,reference,filter,validation",
+    measures=(
+        Measure("type_1", "Type I error", "%"),
+        Measure("type_2", "Type II error", "%"),
+        Measure("total", "Total error", "%"),
+        Measure("kappa", "Cohen's kappa", "%"),
+        Measure("points", "Points compared"),
+        Measure("ground_points", "Ground points in the reference"),
+    ),
+)
+def assess_ground(
+    xyz,
+    classification,
+    reference_xyz,
+    reference_classification,
+    *,
+    ignored_classes: IgnoredClasses = "7, 9, 17, 18, 26, 64-67",
+    monitor=None,
+):
+    """Compare the ground of a classification with that of a reference: type I, type II and total error, kappa.
+
+    Type I errors are ground that was lost, type II errors are objects that were taken for ground.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Coordinates (m) of the input.
+    classification : ndarray of shape (n,)
+        Classes of the input; 2 is ground, all others are object.
+    reference_xyz : ndarray of shape (m, 3)
+        Coordinates (m) of the reference: the same points in any order, perhaps with others.
+    reference_classification : ndarray of shape (m,)
+        True classes.
+
+    Returns
+    -------
+    Report
+        Percentages and counts, and a page with a map. A percentage of nothing is NaN.
+
+    Raises
+    ------
+    ValueError
+        If a point of the input is not in the reference, or every point is ignored.
+
+    Notes
+    -----
+    Type I is the share of the true ground that was called object, type II the share of the true objects that were
+    called ground, total the share of all points that are wrong, and kappa the agreement beyond what chance gives.
+    Ignored by default are the reference's noise, water and bridges, and what agencies keep for artefacts and virtual
+    points.
+
+    References
+    ----------
+    Sithole and Vosselman (2004), Experimental comparison of filter algorithms for bare-Earth extraction.
+    """
+    xyz, called, true = compared_points(
+        xyz, classification, reference_xyz, reference_classification, parse_classes(ignored_classes)
+    )
+    monitor.progress(0.5)
+    called, ground = called == PointClass.GROUND, true == PointClass.GROUND
+    values = ground_errors(called, ground)
+    return Report(values, _page(xyz, called, ground, values))
+
+
+def ground_errors(called: np.ndarray, ground: np.ndarray) -> dict[str, float]:
+    """Return type I, type II, total error and kappa (percent, NaN of nothing), and the points counted."""
+    n, n_ground = len(ground), int(ground.sum())
+    agree, share_called, share_ground = (float(mask.mean()) for mask in (called == ground, called, ground))
+    chance = share_called * share_ground + (1 - share_called) * (1 - share_ground)
+    lost, taken = int((ground & ~called).sum()), int((~ground & called).sum())
+    return {
+        "type_1": 100.0 * lost / n_ground if n_ground else float("nan"),
+        "type_2": 100.0 * taken / (n - n_ground) if n > n_ground else float("nan"),
+        "total": 100.0 * (1 - agree),
+        "kappa": 100.0 * (agree - chance) / (1 - chance) if chance < 1 else float("nan"),
+        "points": n,
+        "ground_points": n_ground,
+    }
+
+
+def _page(xyz: np.ndarray, called: np.ndarray, ground: np.ndarray, values: dict) -> str:
+    lost, taken = int((ground & ~called).sum()), int((~ground & called).sum())
+    objects = values["points"] - values["ground_points"]
+    rows = [
+        Row("Total error", percent(values["total"]), f"{lost + taken:,} of {values['points']:,} points are wrong."),
+        Row(
+            "Type I error",
+            percent(values["type_1"]),
+            f"Ground that was lost: {lost:,} of {values['ground_points']:,} ground points were not called ground.",
+        ),
+        Row(
+            "Type II error",
+            percent(values["type_2"]),
+            f"Objects in the terrain: {taken:,} of {objects:,} other points were called ground.",
+        ),
+        Row(
+            "Kappa",
+            percent(values["kappa"]),
+            "Agreement beyond what chance would give; 100 % is perfect, 0 % is chance.",
+        ),
+    ]
+    lead = f"{values['points']:,} points were compared with the reference, {values['ground_points']:,} of them ground."
+    legend = ("object in both", "ground in both", "ground that was lost", "falsely called ground")
+    picture = draw_map(xyz, outcome_of(called, ground), legend)
+    return build_page("Quality of the ground", lead, {"Errors": rows}, picture)

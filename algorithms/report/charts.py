@@ -1,0 +1,199 @@
+"""Charts for the quality pages: SVG that stands in the page itself, readable in gray and in every color vision."""
+
+from __future__ import annotations
+
+import html
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+# Tol's high-contrast scheme, as in the maps of the pages, and a gray.
+BLUE, YELLOW, RED, GRAY = "#004488", "#ddaa33", "#bb5566", "#bbbbbb"
+
+_WIDTH, _HEIGHT = 720, 320
+_LEFT, _RIGHT, _TOP, _BOTTOM = 70, 20, 50, 50
+
+# Bars that are narrower tell nothing apart, and wider ones hide that there are two groups.
+_MOST_BARS, _FEWEST_BARS = 40, 20
+
+# Smaller values are 0 in a chart: powers of ten of their widths are beyond what float64 holds.
+_LEAST_VALUE = 1e-200
+
+_SIDE, _MARGIN = 420, 50
+
+# More dots make a page that no browser likes.
+_MOST_DOTS = 3000
+
+
+@dataclass(frozen=True)
+class Series:
+    """Values that share a color and a name in the legend."""
+
+    name: str
+    color: str
+    values: np.ndarray
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A place on the axis that is pointed out."""
+
+    name: str
+    value: float
+
+
+def draw_histogram(series: list[Series], axis: str, count: str, marks: list[Mark]) -> str:
+    """Return the HTML of a histogram, the bars of the series stacked on each other.
+
+    Parameters
+    ----------
+    series : list of Series
+        What is counted; values that are not finite are left out.
+    axis, count : str
+        What the values are and what is counted, as the axes call them.
+    marks : list of Mark
+        Values that are pointed out; those that are not finite are left out.
+    """
+    marks = [mark for mark in marks if math.isfinite(mark.value)]
+    values = [one.values[np.isfinite(one.values)] for one in series]
+    every = np.concatenate([*values, [mark.value for mark in marks]])
+    if not sum(map(len, values)):
+        return "<p>There is nothing to show in a histogram.</p>"
+    edges = bar_edges(every)
+    # Round edges may miss the outermost values by their last digit.
+    counts = np.array([np.histogram(np.clip(one, edges[0], edges[-1]), edges)[0] for one in values])
+    across = _Axis(edges[0], edges[-1], _LEFT, _WIDTH - _RIGHT)
+    up = _Axis(0.0, float(counts.sum(axis=0).max()) * 1.05, _HEIGHT - _BOTTOM, _TOP)
+    parts = [_bars(edges, counts, [one.color for one in series], across, up), _ticks_across(across, axis)]
+    parts += [_ticks_up(up, count), *(_mark(mark, i, across) for i, mark in enumerate(marks))]
+    return _legend(series) + _picture(_WIDTH, _HEIGHT, f"Histogram: {axis}", "".join(parts))
+
+
+def bar_edges(values: np.ndarray) -> np.ndarray:
+    """Return where bars begin and end: round numbers, as fine as the values bear (Freedman and Diaconis)."""
+    low, high = float(values.min()), float(values.max())
+    extent, size = high - low, max(abs(low), abs(high))
+    if size < _LEAST_VALUE:
+        return np.array([0.0, 1.0] if low >= 0 else [-1.0, 0.0, 1.0])
+    if extent <= 1e-9 * size:  # equal but for rounding
+        step = round_step(size / 10)
+    else:
+        width = 2 * float(np.subtract(*np.percentile(values, [75, 25]))) / len(values) ** (1 / 3)
+        step = round_step(float(np.clip(width, extent / _MOST_BARS, extent / _FEWEST_BARS)))
+    first, last = math.floor(low / step + 1e-9), math.ceil(high / step - 1e-9)
+    return np.arange(first, max(last, first + 1) + 1) * step
+
+
+def round_step(width: float) -> float:
+    """Return the smallest of 1, 2 and 5 times a power of ten that is at least ``width``."""
+    power = 10.0 ** math.floor(math.log10(width))
+    return next(factor * power for factor in (1, 2, 5, 10) if factor * power >= width * (1 - 1e-9))
+
+
+def draw_scatter(xy: np.ndarray, axis: str, unit: str, mean_name: str) -> str:
+    """Return the HTML of points around a center: where displacements (n, 2) go, their mean marked."""
+    if not len(xy):
+        return "<p>There is nothing to show in a chart.</p>"
+    reach = round_step(float(np.hypot(*xy.T).max()) or 1.0)
+    scale = (_SIDE / 2 - _MARGIN) / reach
+    middle = _SIDE / 2
+    rings = "".join(
+        f'<circle cx="{middle}" cy="{middle}" r="{share * reach * scale:.1f}" fill="none" stroke="#ccc"/>'
+        f'<text x="{middle + 4}" y="{middle - share * reach * scale - 3:.1f}" fill="#555">'
+        f"{share * reach:g} {unit}</text>"
+        for share in (0.5, 1.0)
+    )
+    cross = f"M{_MARGIN} {middle}H{_SIDE - _MARGIN}M{middle} {_MARGIN}V{_SIDE - _MARGIN}"
+    places = np.column_stack([middle + xy[:, 0] * scale, middle - xy[:, 1] * scale])
+    every = -(-len(xy) // _MOST_DOTS)
+    dots = "".join(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3"/>' for x, y in places[::every].tolist())
+    shown = axis if every == 1 else f"{axis} (one in {every} is drawn)"
+    x, y = places.mean(axis=0).tolist()
+    mean = (
+        f'<path d="M{x - 9:.1f} {y:.1f}h18M{x:.1f} {y - 9:.1f}v18" stroke="#fff" stroke-width="6"/>'
+        f'<path d="M{x - 8:.1f} {y:.1f}h16M{x:.1f} {y - 8:.1f}v16" stroke="{RED}" stroke-width="3"/>'
+    )
+    body = f'{rings}<path d="{cross}" stroke="#ccc"/><g fill="{BLUE}" fill-opacity="0.45">{dots}</g>{mean}'
+    legend = _legend([Series(shown, BLUE, xy), Series(mean_name, RED, xy)])
+    return legend + _picture(_SIDE, _SIDE, axis, body)
+
+
+@dataclass(frozen=True)
+class _Axis:
+    """Values from ``low`` to ``high`` on pixels from ``start`` to ``end``."""
+
+    low: float
+    high: float
+    start: float
+    end: float
+
+    def at(self, value: float) -> float:
+        return self.start + (value - self.low) / (self.high - self.low) * (self.end - self.start)
+
+    def ticks(self, most: int) -> list[float]:
+        step = round_step((self.high - self.low) / most)
+        first, last = math.ceil(self.low / step - 1e-9), math.floor(self.high / step + 1e-9)
+        return [float(f"{i * step:.12g}") for i in range(first, last + 1)]
+
+
+def _bars(edges: np.ndarray, counts: np.ndarray, colors: list[str], across: _Axis, up: _Axis) -> str:
+    top = np.cumsum(counts, axis=0)
+    bars = []
+    for color, height, upper in zip(colors, counts, top):
+        for i in np.flatnonzero(height):
+            left, right = across.at(edges[i]), across.at(edges[i + 1])
+            y, foot = up.at(upper[i]), up.at(upper[i] - height[i])
+            box = f'x="{left:.1f}" y="{y:.1f}" width="{right - left:.1f}" height="{foot - y:.1f}"'
+            bars.append(f'<rect {box} fill="{color}" stroke="#fff"/>')
+    return "".join(bars)
+
+
+def _ticks_across(across: _Axis, title: str) -> str:
+    foot = _HEIGHT - _BOTTOM
+    ticks = "".join(
+        f'<text x="{across.at(tick):.1f}" y="{foot + 18}" text-anchor="middle">{tick:g}</text>'
+        for tick in across.ticks(8)
+    )
+    middle = (across.start + across.end) / 2
+    return (
+        f'<path d="M{_LEFT} {foot}H{_WIDTH - _RIGHT}" stroke="#222"/>{ticks}'
+        f'<text x="{middle}" y="{_HEIGHT - 10}" text-anchor="middle">{html.escape(title)}</text>'
+    )
+
+
+def _ticks_up(up: _Axis, title: str) -> str:
+    whole = [tick for tick in up.ticks(5) if tick == int(tick)]
+    ticks = "".join(
+        f'<text x="{_LEFT - 8}" y="{up.at(tick) + 5:.1f}" text-anchor="end">{tick:,.0f}</text>' for tick in whole
+    )
+    middle = (_TOP + _HEIGHT - _BOTTOM) / 2
+    turned = f'transform="rotate(-90 18 {middle})"'
+    return f'{ticks}<text x="18" y="{middle}" text-anchor="middle" {turned}>{html.escape(title)}</text>'
+
+
+def _mark(mark: Mark, i: int, across: _Axis) -> str:
+    x, y = across.at(mark.value), 16 + 17 * (i % 2)
+    anchor = "end" if x > _WIDTH / 2 else "start"
+    line = f"M{x:.1f} {y - 10}V{_HEIGHT - _BOTTOM}"
+    return (
+        f'<path d="{line}" stroke="#fff" stroke-width="5" stroke-opacity="0.7"/>'
+        f'<path d="{line}" stroke="#222" stroke-width="2" stroke-dasharray="6 3"/>'
+        f'<text x="{x + (-6 if anchor == "end" else 6):.1f}" y="{y}" text-anchor="{anchor}">'
+        f"{html.escape(mark.name)}: {mark.value:.3g}</text>"
+    )
+
+
+def _legend(series: list[Series]) -> str:
+    names = "".join(
+        f'<span class="swatch" style="background:{one.color}"></span>{html.escape(one.name)}' for one in series
+    )
+    return f"<p>{names}</p>\n"
+
+
+def _picture(width: int, height: int, title: str, body: str) -> str:
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" role="img" aria-label="{html.escape(title)}" '
+        f'viewBox="0 0 {width} {height}" width="{width}" font-family="sans-serif" font-size="14" fill="#222">'
+        f"{body}</svg>\n"
+    )

@@ -1,0 +1,1 @@
+"""How a cloud samples its surfaces: density, spacing, noise, height resolution."""

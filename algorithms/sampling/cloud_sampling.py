@@ -1,0 +1,126 @@
+"""How a cloud was sampled, measured once per run and shared by all stages of it."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any, Callable, Optional, Union
+
+import numpy as np
+
+from ..cloud.asprs import NOISE
+from ..geometry.grid import plan_box
+from ..neighborhoods.covariance import Nearest
+from ..neighborhoods.wide_in_plan import Wide
+from .density import effective_density, point_density
+from .height_resolution import height_resolution
+from .surface_noise import SurfaceSample, plane_roughness
+
+# What is measured, with its name and unit in the log.
+_MEASURES = {
+    "density": ("density", "points/m²"),
+    "effective_density": ("effective density", "points/m²"),
+    "surface_density": ("density on surfaces", "points/m²"),
+    "noise": ("surface noise", "m"),
+    "height_resolution": ("height resolution", "m"),
+}
+
+
+class CloudSampling:
+    """How a cloud samples its surfaces: how densely, how evenly, with how much noise.
+
+    It is measured on the points that are neither withheld nor noise (classes 7 and 18), so that it is the same before
+    and after every stage that leaves these as they are. Each measure is taken when it is first asked for, and kept.
+    One survey has one sampling: stages take the one that they are given, also that of other tiles of the survey.
+
+    Parameters
+    ----------
+    points : callable
+        Returns the coordinates (n, 3), m, n >= 1, of the points that it is measured on.
+
+    Examples
+    --------
+    >>> lattice = np.stack(np.meshgrid(np.arange(50.0), np.arange(50.0), [7.0]), axis=-1).reshape(-1, 3)
+    >>> sampling = CloudSampling.of(lattice)
+    >>> round(sampling.density, 1), round(sampling.noise, 3)
+    (1.0, 0.01)
+    """
+
+    def __init__(self, points: Callable[[], np.ndarray]) -> None:
+        self._points = points
+
+    @classmethod
+    def of(cls, xyz: np.ndarray, classification: Optional[np.ndarray] = None) -> CloudSampling:
+        """Return the sampling of points (n, 3), m, without those that are noise by their ``classification`` (n,)."""
+        if classification is None:
+            return cls(lambda: xyz)
+        counted = without_noise(classification)
+        return cls(lambda: xyz[counted])
+
+    @cached_property
+    def density(self) -> float:
+        """Points per square meter of occupied area."""
+        return point_density(self._points())
+
+    @cached_property
+    def effective_density(self) -> float:
+        """Density (points/m²) of an evenly spread cloud with gaps as wide, less where points lie on lines."""
+        return effective_density(self._points(), self.density)
+
+    @property
+    def spacing(self) -> float:
+        """Mean distance between neighboring points in plan, m."""
+        return 1 / float(np.sqrt(self.density))
+
+    @cached_property
+    def surface_density(self) -> float:
+        """Points per square meter of the surfaces that they lie on, however steep these are."""
+        return self._surfaces.density()
+
+    @cached_property
+    def noise(self) -> float:
+        """Standard deviation of points across smooth surfaces, m; at least the resolution of heights."""
+        return self._surfaces.noise(self.height_resolution)
+
+    @property
+    def roughness(self) -> float:
+        """How far points of one roof or wall may lie off its plane (one standard deviation, m).
+
+        The density of surfaces counts: seen from above, crowns and walls hold many times their points.
+        """
+        return plane_roughness(self.noise, self.surface_density)
+
+    @cached_property
+    def height_resolution(self) -> float:
+        """Standard deviation below which no roughness can be measured, m."""
+        return height_resolution(self._points()[:, 2])
+
+    def neighborhood(self, density: float, deviation: float) -> Union[Nearest, Wide]:
+        """Return which points show the plane of a surface, see :meth:`.surface_noise.SurfaceSample.neighborhood`."""
+        return self._surfaces.neighborhood(density, deviation)
+
+    @cached_property
+    def _surfaces(self) -> SurfaceSample:
+        points = self._points()
+        low, high = plan_box(points)
+        return SurfaceSample(points, self.spacing if (high > low).any() else None)
+
+    @property
+    def measured(self) -> dict[str, float]:
+        """What was measured so far, by name."""
+        return {name: self.__dict__[name] for name in _MEASURES if name in self.__dict__}
+
+    def __str__(self) -> str:
+        """Return what was measured so far, as the log shows it."""
+        labeled = ((*_MEASURES[name], value) for name, value in self.measured.items())
+        return ", ".join(f"{label} {value:.4g} {unit}" for label, unit, value in labeled)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return all measures, for another process: the points stay where they are."""
+        measures = {name: getattr(self, name) for name in (*_MEASURES, "_surfaces")}
+        return {**measures, "_points": None}
+
+
+def without_noise(classification: np.ndarray) -> np.ndarray:
+    """Return which points (n,) a cloud is measured on: those that are not noise; all where there are no others."""
+    counted = ~np.isin(classification, NOISE)
+    return counted if counted.any() else np.ones(len(counted), bool)

@@ -1,0 +1,222 @@
+"""How dense and how noisy the surfaces of a cloud are, measured on a sample of it."""
+
+from __future__ import annotations
+
+from typing import Optional, Union
+
+import numpy as np
+
+from ..geometry.grid import plan_box
+from ..neighborhoods.covariance import Nearest, symmetric_eigenvalues
+from ..neighborhoods.wide_in_plan import LEAST_WIDTH, MOST_ACROSS_LINES, Wide
+from ..packages import spatial, special
+from ..stage import Monitor
+from ..threads import in_chunks
+from .density import point_spacing
+
+# Points in the sample, about: their quantiles are good to a percent.
+_SAMPLE = 20_000
+
+# Side of the squares in plan from which the sample is taken (point spacings).
+_SQUARE = 18.0
+
+# Share of that side, in the middle of the square, whose points are in the sample. The 60 points nearest to each are
+# in its square, too.
+_MIDDLE = 0.4
+
+# With less than this share of the points wanted, the sample depends on chance; the cloud is then looked at whole.
+_LEAST_OF_SAMPLE = 0.25
+
+# Points whose plane shows the noise: few reach no farther than one surface, and more measure it no better.
+_NEIGHBORS = 12
+
+# Parameters of a plane: residuals of k points have k - 3 degrees of freedom.
+_PLANE_PARAMETERS = 3
+
+# Share of the neighborhoods of nearly any cloud that lie on open ground or roofs: the noise is measured on these.
+_SMOOTH_SHARE = 0.2
+
+# The same in a closed forest.
+_SMOOTHEST_SHARE = 0.05
+
+# Largest ratio of the noise by the first share and that by the second: surfaces differ in roughness by less, crowns
+# from surfaces by more.
+_MOST_ROUGHER = 2.4
+
+# Radius of the neighborhood of a plane (deviations of its points), which holds its normal's error to a few degrees.
+_REACH_DEVIATIONS = 6.185
+
+# Least points in the neighborhood of a plane.
+LEAST_NEIGHBORS = 8
+
+# Most points in it: half a meter around holds as many at 125 points/m², and more would cost time and show no more.
+_MOST_NEIGHBORS = 100
+
+# Least radius of it (m): leaves and twigs look smooth over less, roofs are planes over more.
+_LEAST_REACH = 0.5
+
+# Points lie on lines where more than this share of the smooth neighborhoods is narrow.
+_NARROW_SHARE = 0.2
+
+# If the density around the median point exceeds that of the cloud by this factor, it is the one that counts.
+_UNEVEN = 2.0
+
+# Roof tiles, gravel and gutters are rougher than the smoothest surfaces, by which the noise is measured: by this at
+# least (m).
+_LEAST_ROUGHNESS = 0.02587
+
+# And they are the rougher the farther apart the points are, by this share of the point spacing.
+_ROUGHNESS_OF_SPACING = 0.06467
+
+
+def plane_roughness(noise: float, density: float) -> float:
+    """Return how far points of one roof or wall may lie off its plane (one standard deviation, m).
+
+    Parameters
+    ----------
+    noise : float
+        Standard deviation of points across the smooth surfaces of the cloud, m.
+    density : float
+        Points per square meter.
+    """
+    return float(np.hypot(max(noise, _LEAST_ROUGHNESS), _ROUGHNESS_OF_SPACING / np.sqrt(density)))
+
+
+def surface_density(xyz: np.ndarray) -> float:
+    """Return the points per square meter of the surfaces that points (n, 3) lie on, however steep these are.
+
+    It is that around the median point, counted in the circle of its 12 nearest; infinite where all points lie at
+    one position.
+    """
+    return SurfaceSample(xyz).density()
+
+
+class SurfaceSample:
+    """Squares spread over a cloud with all points in them: neighborhoods there stand for those of the whole cloud.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points (m), n >= 1.
+    spacing : float, optional
+        Their spacing in plan (m); measured where it is not known.
+
+    Attributes
+    ----------
+    columns : ndarray of shape (3, m)
+        x, y and z of the points of the squares, or of all points (m), and ``tree`` of them.
+    rows : ndarray of shape (s,)
+        The sample: points in the middle of their squares, whose neighbors are all there.
+
+    Notes
+    -----
+    Squares are chosen by their coordinates, so that the order of the points doesn't matter.
+    """
+
+    def __init__(self, xyz: np.ndarray, spacing: Optional[float] = None) -> None:
+        in_square, is_middle = _squares(xyz, spacing)
+        xyz, is_middle = xyz[in_square], is_middle[in_square]
+        self.tree = spatial.cKDTree(xyz, balanced_tree=False)
+        self.columns, self.rows = np.ascontiguousarray(xyz.T), np.flatnonzero(is_middle)
+
+    def __len__(self) -> int:
+        return self.columns.shape[1]
+
+    def noise(self, resolution: float) -> float:
+        """Return the standard deviation of points across the smooth surfaces, m, at least the ``resolution`` (m).
+
+        Notes
+        -----
+        It is that across the plane of the 12 nearest points, at the smoothest fifth of the cloud, which vegetation,
+        edges and walls don't reach; but no more than 2.4 times that at the smoothest twentieth, which they don't reach
+        in a closed forest. Of equally rough planes the smoothest seem smoother than they are, by chance: each quantile
+        is divided by what it is expected to be of the true deviation, so that a cloud of planes has its true noise.
+        """
+        count = min(_NEIGHBORS, len(self))
+        degrees = count - _PLANE_PARAMETERS
+        if degrees < 1:
+            return resolution
+        across = np.sqrt(self._variances(count)[:, 2] * count / degrees)
+        smooth, smoothest = (
+            max(float(np.quantile(across, share)) / _expected_quantile(share, degrees), resolution)
+            for share in (_SMOOTH_SHARE, _SMOOTHEST_SHARE)
+        )
+        return min(smooth, _MOST_ROUGHER * smoothest)
+
+    def density(self) -> float:
+        """Return the points per square meter of the surfaces, see :func:`surface_density`."""
+        count = min(_NEIGHBORS, len(self))
+        own = self.columns[:, self.rows].T
+        reach = float(np.median(self.tree.query(own, k=[count], workers=-1)[0]))
+        return count / (np.pi * reach**2) if reach > 0 else float("inf")
+
+    def neighborhood(self, density: float, deviation: float) -> Union[Nearest, Wide]:
+        """Return which points show the plane of a surface.
+
+        Few where points are precise, more where they are noisy or dense: the smooth side of a crown is a plane too
+        when it is looked at closely enough. And enough to cross scan lines, where the points lie on such.
+
+        Parameters
+        ----------
+        density : float
+            Points per square meter.
+        deviation : float
+            Standard deviation of points across the surface, m.
+
+        Returns
+        -------
+        Nearest or Wide
+            As many nearest points as reach half a meter and 6.2 deviations, from 8 to 100 and at most all; and not
+            fewer than are wide in plan, where less than four fifths of the smooth neighborhoods of that number are.
+        """
+        own = self.density()
+        reach = max(_LEAST_REACH, _REACH_DEVIATIONS * deviation)
+        expected = np.pi * reach**2 * (own if own > _UNEVEN * density else density)
+        count = min(max(int(np.ceil(min(expected, _MOST_NEIGHBORS))), LEAST_NEIGHBORS), len(self))
+        return Wide(count) if count < min(MOST_ACROSS_LINES, len(self)) and self._on_lines(count) else Nearest(count)
+
+    def _on_lines(self, count: int) -> bool:
+        """Return whether smooth neighborhoods of ``count`` points are narrow, because points lie on lines."""
+        eigenvalues = self._variances(count)
+        smooth = eigenvalues[:, 2] <= np.quantile(eigenvalues[:, 2], _SMOOTH_SHARE)
+        width = np.sqrt(eigenvalues[smooth, 1] / np.maximum(eigenvalues[smooth, 0], 1e-12))
+        return bool(np.quantile(width, _NARROW_SHARE) < LEAST_WIDTH)
+
+    def _variances(self, count: int) -> np.ndarray:
+        """Return the variances (s, 3), descending, of the ``count`` points nearest to each point of the sample, m²."""
+        variances, nearest = np.empty((len(self.rows), 3)), Nearest(count)
+
+        def work(some: np.ndarray) -> None:
+            variances[some] = symmetric_eigenvalues(nearest.moments(self.columns, self.tree, self.rows[some])[2])
+
+        in_chunks(work, np.arange(len(self.rows)), nearest.rows_per_chunk(len(self)), Monitor())
+        return variances
+
+
+def _expected_quantile(share: float, degrees: int) -> float:
+    """Return the quantile of estimates of a standard deviation that have ``degrees`` of freedom, over the true one.
+
+    Their squares are distributed as chi squared over its degrees: 0.77 for a fifth and 0.61 for a twentieth with 9.
+    """
+    return float(np.sqrt(2 * special.gammaincinv(degrees / 2, share) / degrees))
+
+
+def _squares(xyz: np.ndarray, spacing: Optional[float]) -> tuple[np.ndarray, np.ndarray]:
+    """Return which points lie in the squares of a sample, and which in the middle of any (n,); all of a small cloud."""
+    everything = np.ones(len(xyz), bool)
+    low, high = plan_box(xyz)
+    if len(xyz) < 2 * _SAMPLE or not (high > low).any():
+        return everything, everything
+    side = _SQUARE * (point_spacing(xyz) if spacing is None else spacing)
+    square, middle = np.zeros(len(xyz), np.uint64), everything.copy()
+    # Large odd numbers mix the coordinates; the high bits of the products are the well mixed ones.
+    for axis, mixer in enumerate((0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F)):
+        position = (xyz[:, axis] - low[axis]) / side
+        number = np.floor(position)
+        middle &= np.abs(position - number - 0.5) <= _MIDDLE / 2
+        square += number.astype(np.uint64) * np.uint64(mixer)
+    share = min(1.0, _SAMPLE / (_MIDDLE**2 * len(xyz)))
+    chosen = (square >> np.uint64(40)).astype(np.float64) < share * 2**24
+    middle &= chosen
+    # A cloud on few squares, a mast or a wall, is looked at whole.
+    return (chosen, middle) if middle.sum() >= _LEAST_OF_SAMPLE * _SAMPLE else (everything, everything)

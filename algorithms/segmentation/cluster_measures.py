@@ -1,0 +1,237 @@
+"""Where groups of points lie in plan: their area, what lies beside them, and whether the beam passes through them."""
+
+from __future__ import annotations
+
+from itertools import product
+from typing import Optional
+
+import numpy as np
+
+from ..geometry.grid import Grid, connected_cells, distinct, find_cells, grid_over
+
+# Cells in which area and what lies beneath are counted, in point spacings; for the area they have a least size (m).
+_CELL_SPACINGS, _LEAST_CELL = 1.5, 0.3
+
+# What lies at least so far beneath a group lies under it and not on it, m. What passes a surface and what it stops are
+# counted in cells at least so wide (m): between two wires most of it passes.
+_BENEATH, _LEAST_COLUMN = 1.0, 1.0
+
+# A group lies beside others when so much of it does: the edge of a dormer does, the tip of a crown's branch doesn't.
+_BESIDE = 0.2
+
+# What stands around a group is counted in boxes of this width, depth and height (m), and the 26 next to each: a house
+# or a tree is as wide, and trees are twice as high.
+_BOX = np.array([2.0, 2.0, 4.0])
+
+
+def _cell_size(density: float) -> float:
+    """Return the side (m) of the cells that area is counted in."""
+    return max(_LEAST_CELL, _CELL_SPACINGS / np.sqrt(density))
+
+
+def plan_areas(xyz: np.ndarray, group: np.ndarray, density: float) -> np.ndarray:
+    """Return the area (m²), seen from above, that each group of points occupies.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points (m), n >= 1.
+    group : ndarray of shape (n,), int
+        Group of each point from 0.
+    density : float
+        Points per square meter.
+
+    Returns
+    -------
+    ndarray of shape (group.max() + 1,)
+        Occupied cells times their area.
+    """
+    grid, owner, _ = _occupied(xyz, group, density)
+    return np.bincount(owner, minlength=int(group.max()) + 1) * grid.size**2
+
+
+def penetration(
+    xyz: np.ndarray,
+    group: np.ndarray,
+    density: float,
+    return_number: Optional[np.ndarray] = None,
+    number_of_returns: Optional[np.ndarray] = None,
+) -> np.ndarray:
+    """Return how much of the beam passes through each group of points, 0 to 1.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        All points of the cloud (m).
+    group : ndarray of shape (n,), int
+        Group of each point from 0, negative for none; at least one point has a group.
+    density : float
+        Points per square meter.
+    return_number, number_of_returns : ndarray of shape (n,), optional
+        Where the scanner numbered its returns.
+
+    Returns
+    -------
+    ndarray of shape (group.max() + 1,)
+        The share of a group's cells in which points lie well beneath it; where returns are numbered,
+        the mean of that and the share of its points that are not the last return of their pulse.
+
+    Notes
+    -----
+    The beam passes through leaves and not through roofs. Along edges there are points beneath a roof
+    too, so a roof has a small share and not none. Cells hold as many points at any density: were there more,
+    each would sooner have some beneath.
+    """
+    owner, _, beneath = _columns(xyz, group, _CELL_SPACINGS / np.sqrt(density))
+    beneath = np.bincount(owner, beneath > 0) / np.maximum(np.bincount(owner), 1)
+    if not _numbered(number_of_returns):
+        return beneath
+    return (beneath + non_last_return_share(group, return_number, number_of_returns)) / 2
+
+
+def points_below_share(xyz: np.ndarray, group: np.ndarray, density: float) -> np.ndarray:
+    """Return the share of points that passed each group of points, 0 to 1, whatever the density.
+
+    Arguments as of :func:`penetration`.
+
+    Returns
+    -------
+    ndarray of shape (group.max() + 1,)
+        Of the points of a group and those well beneath them in its cells, the latter's share.
+    """
+    owner, own, beneath = _columns(xyz, group, max(_LEAST_COLUMN, _CELL_SPACINGS / np.sqrt(density)))
+    passed = np.bincount(owner, beneath)
+    return passed / np.maximum(passed + np.bincount(owner, own), 1)
+
+
+def non_last_return_share(
+    group: np.ndarray, return_number: Optional[np.ndarray], number_of_returns: Optional[np.ndarray]
+) -> np.ndarray:
+    """Return the share of each group's points that are not the last return of their pulse; 0 where none is numbered.
+
+    Arguments as of :func:`penetration`.
+    """
+    member = group >= 0
+    size = np.bincount(group[member])
+    if return_number is None or number_of_returns is None or not _numbered(number_of_returns):
+        return np.zeros(len(size))
+    return np.bincount(group[member], (return_number < number_of_returns)[member]) / np.maximum(size, 1)
+
+
+def _numbered(number_of_returns: Optional[np.ndarray]) -> bool:
+    return number_of_returns is not None and number_of_returns.max(initial=0) > 1
+
+
+def grow_to_adjacent_clusters(
+    xyz: np.ndarray, group: np.ndarray, strong: np.ndarray, weak: np.ndarray, density: float
+) -> np.ndarray:
+    """Return the strong groups, and the weak ones that lie beside or over them or over weak ones that do.
+
+    Parameters
+    ----------
+    xyz, group, density
+        As of :func:`penetration`.
+    strong, weak : ndarray of shape (group.max() + 1,), bool
+        Which groups are taken in any case, and which ones beside others.
+
+    Returns
+    -------
+    ndarray of shape (group.max() + 1,), bool
+        Groups taken. A weak one is, when a fifth of its cells are cells of groups taken or next to one.
+    """
+    grid, owner, cell = _occupied(xyz, group, density)
+    cells, which = distinct(cell)
+    size = np.maximum(np.bincount(owner, minlength=len(strong)), 1)
+    near, taken, joins = np.zeros(len(cells), bool), strong.copy(), strong
+    while joins.any():
+        fresh = np.unique(cell[joins[owner]])
+        for step in (0, *grid.around):
+            there, found = find_cells(cells, fresh + step)
+            near[there[found]] = True
+        joins = weak & ~taken & (np.bincount(owner, near[which], len(strong)) >= _BESIDE * size)
+        taken |= joins
+    return taken
+
+
+def share_around(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray) -> np.ndarray:
+    """Return how much of what stands around each group of points belongs to the chosen groups.
+
+    Parameters
+    ----------
+    xyz, group
+        As of :func:`penetration`.
+    chosen : ndarray of shape (group.max() + 1,), bool
+        Which groups are meant.
+
+    Returns
+    -------
+    ndarray of shape (group.max() + 1,)
+        The mean over the points of a group: the share of chosen groups among all grouped points within two to four
+        meters in plan and twice that in height, its own among them. 0 for groups without points.
+    """
+    member = np.flatnonzero(group >= 0)
+    owner = group[member]
+    # With an empty border the numbers of boxes next to one another differ by the same steps everywhere.
+    box = np.floor((xyz[member] - xyz[member].min(axis=0)) / _BOX).astype(np.int64) + 1
+    shape = tuple((box.max(axis=0) + 2).tolist())
+    boxes, which = distinct(np.ravel_multi_index(tuple(box.T), shape))
+    own, whole = (np.bincount(which, weight, len(boxes)) for weight in (chosen[owner], None))
+    own_around, around = np.zeros((2, len(boxes)))
+    for step in product((-1, 0, 1), repeat=3):
+        there, found = find_cells(boxes, boxes + (step[0] * shape[1] + step[1]) * shape[2] + step[2])
+        own_around += np.where(found, own[there], 0)
+        around += np.where(found, whole[there], 0)
+    size = np.bincount(owner, minlength=len(chosen))
+    return np.bincount(owner, (own_around / around)[which], len(chosen)) / np.maximum(size, 1)
+
+
+def share_joined(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray, density: float) -> np.ndarray:
+    """Return how much of all that each group of points hangs together with belongs to the chosen groups.
+
+    Parameters
+    ----------
+    xyz, group, density
+        As of :func:`penetration`.
+    chosen : ndarray of shape (group.max() + 1,), bool
+        Which groups are meant.
+
+    Returns
+    -------
+    ndarray of shape (group.max() + 1,)
+        Of the cells that touch one another, seen from above, the share with points of chosen groups; the mean over the
+        cells of a group, 0 for groups without points.
+    """
+    grid, owner, cell = _occupied(xyz, group, density)
+    cells, which = distinct(cell)
+    part = connected_cells(grid, cells)[1]
+    is_chosen = np.zeros(len(cells), bool)
+    is_chosen[which[chosen[owner]]] = True
+    share = np.bincount(part, is_chosen) / np.bincount(part)
+    size = np.maximum(np.bincount(owner, minlength=len(chosen)), 1)
+    return np.bincount(owner, share[part[which]], len(chosen)) / size
+
+
+def _occupied(xyz: np.ndarray, group: np.ndarray, density: float) -> tuple[Grid, np.ndarray, np.ndarray]:
+    """Return the grid that area is counted in, and group and cell of each cell of a group (m,), sorted by groups."""
+    grid = grid_over(xyz, _cell_size(density))
+    member, count = group >= 0, grid.rows * grid.columns
+    owner, cell = np.divmod(np.unique(group[member].astype(np.int64) * count + grid.number(xyz)[member]), count)
+    return grid, owner, cell
+
+
+def _columns(xyz: np.ndarray, group: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the group of each cell of ``size`` (m) of a group, its points there, and the points well beneath them."""
+    cell, member, count = grid_over(xyz, size).number(xyz), group >= 0, int(group.max()) + 1
+    # Sorted by cells, so that the groups in a point's cell are found by searching.
+    pairs, which = distinct(cell[member] * count + group[member])
+    where, owner = np.divmod(pairs, count)
+    bottom = np.full(len(pairs), np.inf)
+    np.minimum.at(bottom, which, xyz[member, 2])
+    first = np.searchsorted(where, cell)
+    groups_there = np.searchsorted(where, cell, "right") - first
+    beneath = np.zeros(len(pairs), np.int64)
+    for nth in range(groups_there.max()):
+        some = np.flatnonzero(groups_there > nth)
+        pair = first[some] + nth
+        beneath += np.bincount(pair[xyz[some, 2] < bottom[pair] - _BENEATH], minlength=len(pairs))
+    return owner, np.bincount(which), beneath

@@ -1,0 +1,77 @@
+"""Least-squares planes of groups of points, kept as moments so that groups can be merged without their points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..neighborhoods.covariance import smallest_eigenvectors, symmetric_eigenvalues
+from ..neighborhoods.nearest_blocks import PAIRS
+
+
+@dataclass(frozen=True)
+class Planes:
+    """Points ``count`` (m,), their ``center`` (m, 3) and ``covariance`` (m, 6; xx, yy, zz, xy, xz, yz; divisor n)."""
+
+    count: np.ndarray
+    center: np.ndarray
+    covariance: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.count)
+
+    @cached_property
+    def eigenvalues(self) -> np.ndarray:
+        """Variances (m, 3), descending: along, across in the plane, and off the plane, m²."""
+        return symmetric_eigenvalues(self.covariance)
+
+    @cached_property
+    def normal(self) -> np.ndarray:
+        """Unit normals (m, 3), upward; NaN where all points lie at one place."""
+        return smallest_eigenvectors(self.covariance, self.eigenvalues)
+
+    @property
+    def area(self) -> np.ndarray:
+        """Area (m,) of the rectangle on which evenly spread points vary as these do, m²."""
+        return 12 * np.sqrt(self.eigenvalues[:, 0] * self.eigenvalues[:, 1])
+
+    def distance(self, xyz: np.ndarray, plane: np.ndarray) -> np.ndarray:
+        """Return the distance (n,) of points (n, 3) to the planes numbered ``plane`` (n,), m."""
+        return np.abs(np.einsum("ij,ij->i", xyz - self.center[plane], self.normal[plane]))
+
+    def deviation(self, points: np.ndarray, plane: np.ndarray) -> np.ndarray:
+        """Return how far (root mean square, m) the points of the groups ``points`` lie off the planes ``plane``."""
+        normal = self.normal[plane]
+        offset = np.einsum("ij,ij->i", self.center[points] - self.center[plane], normal)
+        spread = np.zeros(len(offset))
+        for column, (a, b) in enumerate(PAIRS):
+            spread += (1 if a == b else 2) * self.covariance[points, column] * normal[:, a] * normal[:, b]
+        return np.sqrt(offset**2 + np.maximum(spread, 0))
+
+    def chosen(self, which: np.ndarray) -> Planes:
+        """Return the planes ``which``, a mask or numbers."""
+        return Planes(self.count[which], self.center[which], self.covariance[which])
+
+    def merged(self, group: np.ndarray, n_groups: int) -> Planes:
+        """Return the planes of the points of all groups with the same number in ``group`` (m,)."""
+        count = np.bincount(group, self.count, n_groups)
+        center = _means(self.center, group, count, self.count)
+        offset = self.center - center[group]
+        between = np.column_stack([offset[:, a] * offset[:, b] for a, b in PAIRS])
+        return Planes(count, center, _means(self.covariance + between, group, count, self.count))
+
+
+def planes_of(xyz: np.ndarray, group: np.ndarray, n_groups: int) -> Planes:
+    """Return the planes of points (n, 3) by their ``group`` (n,) from 0; each group has a point."""
+    count = np.bincount(group, minlength=n_groups)
+    center = _means(xyz, group, count)
+    offset = xyz - center[group]
+    products = (offset[:, a] * offset[:, b] for a, b in PAIRS)
+    covariance = np.column_stack([np.bincount(group, product, n_groups) / count for product in products])
+    return Planes(count, center, covariance)
+
+
+def _means(values: np.ndarray, group: np.ndarray, count: np.ndarray, weight=1.0) -> np.ndarray:
+    return np.column_stack([np.bincount(group, column * weight, len(count)) / count for column in values.T])

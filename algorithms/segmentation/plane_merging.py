@@ -1,0 +1,202 @@
+"""Pieces of planes in neighboring voxels, joined where they are one plane."""
+
+from __future__ import annotations
+
+from typing import Optional
+
+import numpy as np
+
+from ..geometry.boxes import Boxes, around
+from ..geometry.groups import items
+from ..stage import Monitor
+from ..threads import in_chunks
+from .least_squares_planes import Planes
+
+# Points spread evenly within a tolerance lie this share of it off the middle (root mean square).
+_EVEN = 1 / np.sqrt(3)
+
+# A plane grows by a voxel all around in each round: more than the widest roof needs.
+_MAX_ROUNDS = 1000
+
+# Planes around a voxel go on into it where they hold this share of its points, each of them so many:
+# leaves in which a plane would end lie on it by chance, a fifth of them on one of automatic tolerance.
+_HELD, _LEAST_POINTS = 2 / 3, 4
+
+_CHUNK = 200_000
+
+# Boxes of the first array of a pair with those of the second.
+_Pairs = list[tuple[np.ndarray, np.ndarray]]
+
+
+def join_pieces(pieces: Planes, voxel: np.ndarray, boxes: Boxes, tolerance: float, monitor: Monitor) -> np.ndarray:
+    """Group pieces of planes that continue each other.
+
+    Parameters
+    ----------
+    pieces : Planes
+        Planes (m,) of the points of a voxel.
+    voxel : ndarray of shape (m,), int64
+        Box of each piece, ascending.
+    boxes : Boxes
+        The voxels.
+    tolerance : float
+        Distance within which a point lies on a plane, m.
+    monitor : Monitor
+        Receives progress.
+
+    Returns
+    -------
+    ndarray of shape (m,), int64
+        Number of each piece's plane, from 0.
+
+    Notes
+    -----
+    Of two neighbors the one with fewer points belongs to the other's plane if its points lie no farther off it, as
+    root mean square, than points would that are spread evenly within the tolerance. In each round every plane picks
+    the larger neighbor that it fits best, and those whose pick has none itself are joined to it; then planes are
+    fitted again. Planes grow so from their largest pieces on.
+    """
+    a, b = _neighbors(voxel, boxes)
+    group, planes = np.arange(len(pieces)), pieces
+    for step in range(_MAX_ROUNDS):
+        monitor.progress(step / _MAX_ROUNDS)
+        one, other = group[a], group[b]
+        apart = one != other
+        a, b, one, other = a[apart], b[apart], one[apart], other[apart]
+        swap = (planes.count[one] > planes.count[other]) | ((planes.count[one] == planes.count[other]) & (one < other))
+        small, large = np.where(swap, other, one), np.where(swap, one, other)
+        off = planes.deviation(small, large)
+        # What doesn't fit now may fit a better plane later.
+        fits = off <= tolerance * _EVEN
+        joined = _joined(small[fits], large[fits], off[fits], len(planes))
+        if (joined == np.arange(len(planes))).all():
+            break
+        number, group_of = np.unique(joined, return_inverse=True)
+        planes, group = planes.merged(group_of, len(number)), group_of[group]
+    return group
+
+
+def _joined(small: np.ndarray, large: np.ndarray, off: np.ndarray, n: int) -> np.ndarray:
+    """Return the plane (n,) that each of n planes is joined to, itself where it stays."""
+    order = np.lexsort((large, off, small))
+    picking, first = np.unique(small[order], return_index=True)
+    joined = np.arange(n)
+    joined[picking] = large[order][first]
+    stays = joined == np.arange(n)
+    return np.where(stays[joined], joined, np.arange(n))
+
+
+def _neighbors(voxel: np.ndarray, boxes: Boxes) -> tuple[np.ndarray, np.ndarray]:
+    """Return all pairs of pieces in one voxel or in two that touch."""
+    count = np.bincount(voxel, minlength=len(boxes))
+    start = np.cumsum(count) - count
+    every = np.arange(len(boxes))
+    pairs = [_product(every, every, start, count)]
+    pairs += [_product(*boxes.beside(boxes, offset), start, count) for offset in around(1) if offset > (0, 0, 0)]
+    a, b = (np.concatenate(side) for side in zip(*pairs))
+    return a[a != b], b[a != b]
+
+
+def _product(
+    here: np.ndarray, there: np.ndarray, start: np.ndarray, count: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return every piece of the voxels ``here`` with every piece of those ``there``."""
+    which, place = items(count[here] * count[there])
+    first, second = np.divmod(place, count[there][which])
+    return start[here[which]] + first, start[there[which]] + second
+
+
+def grown_planes(
+    boxes: Boxes, voxel: np.ndarray, group: np.ndarray, planes: Planes, tolerance: float, monitor: Monitor
+) -> np.ndarray:
+    """Return the plane (n,) nearest to each point, of planes that also grow into voxels where none was found.
+
+    The tip of a hip and the strip along an eave have too few points in a voxel to show a plane of their own. Takes and
+    returns what :func:`nearest_plane` does.
+    """
+    box, around_each = boxes.box(), _around_each(boxes)
+    pieces = np.unique(voxel * len(planes) + group)
+    for step in range(_MAX_ROUNDS):
+        now = monitor.part(step / _MAX_ROUNDS, (step + 1) / _MAX_ROUNDS)
+        at, plane = np.divmod(pieces, max(len(planes), 1))
+        nearest = nearest_plane(boxes, at, plane, planes, tolerance, now, around_each)
+        on_plane = nearest >= 0
+        held = np.bincount(box[on_plane], minlength=len(boxes)) >= _HELD * boxes.size
+        inside = on_plane & held[box]
+        found, count = np.unique(box[inside] * len(planes) + nearest[inside], return_counts=True)
+        grown = np.union1d(pieces, found[count >= _LEAST_POINTS])
+        if len(grown) == len(pieces):
+            break
+        pieces = grown
+    return nearest
+
+
+def nearest_plane(
+    boxes: Boxes,
+    voxel: np.ndarray,
+    group: np.ndarray,
+    planes: Planes,
+    tolerance: float,
+    monitor: Monitor,
+    around_each: Optional[_Pairs] = None,
+) -> np.ndarray:
+    """Return the plane (n,), of those in its voxel and the voxels around, that each point lies nearest to.
+
+    Parameters
+    ----------
+    boxes : Boxes
+        The voxels and their points.
+    voxel, group : ndarray of shape (m,), int64
+        Box and plane of each piece of a plane.
+    planes : Planes
+        The planes.
+    tolerance : float
+        Distance within which a point lies on a plane, m.
+    monitor : Monitor
+        Receives progress.
+    around_each : list of pairs of ndarray, optional
+        What :func:`_around_each` returns for the boxes, where it is known.
+
+    Returns
+    -------
+    ndarray of shape (n,), int64
+        Numbers of planes in the order of the boxes; -1 where none is within the tolerance.
+    """
+    around_each = _around_each(boxes) if around_each is None else around_each
+    seen_from, plane = _planes_around(boxes, voxel, group, len(planes), around_each)
+    count = np.bincount(seen_from, minlength=len(boxes))
+    start = np.cumsum(count) - count
+    box = boxes.box()
+    nearest = np.full(len(box), -1)
+
+    def work(rows: np.ndarray) -> None:
+        least = np.full(len(rows), tolerance)
+        for rank in range(int(count[box[rows]].max())):
+            has = np.flatnonzero(count[box[rows]] > rank)
+            candidate = plane[start[box[rows[has]]] + rank]
+            distance = planes.distance(boxes.xyz[rows[has]], candidate)
+            better = distance <= least[has]
+            least[has[better]] = distance[better]
+            nearest[rows[has[better]]] = candidate[better]
+
+    in_chunks(work, np.arange(len(box)), _CHUNK, monitor)
+    return nearest
+
+
+def _around_each(boxes: Boxes) -> _Pairs:
+    """Return pairs of each box with itself and with every box that touches it, by the step between them."""
+    every = np.arange(len(boxes))
+    return [(every, every), *(boxes.beside(boxes, offset) for offset in around(1))]
+
+
+def _planes_around(
+    boxes: Boxes, voxel: np.ndarray, group: np.ndarray, n_planes: int, around_each: _Pairs
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return pairs of a box and a plane that has a piece in it or beside it, by box."""
+    count = np.bincount(voxel, minlength=len(boxes))
+    start = np.cumsum(count) - count
+    keys = []
+    for here, there in around_each:
+        which, place = items(count[there])
+        keys.append(here[which] * n_planes + group[start[there[which]] + place])
+    return np.divmod(np.unique(np.concatenate(keys)), max(n_planes, 1))

@@ -1,0 +1,181 @@
+"""Clusters by density: DBSCAN."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..geometry.boxes import Boxes, Offset, around, by_first_point, connected
+from ..params import MinClusterHeight, PointDensity
+from ..sampling.cloud_sampling import CloudSampling
+from ..stage import Monitor, Param, stage
+from .candidate_points import candidates
+
+# A gap of three spacings is no accident of random sampling on a surface: one point in 10^12 has such a hole around it.
+_RADIUS_SPACINGS = 3.0
+
+# The corner of a surface sees a quarter of what its middle sees.
+_CORNER = 0.25
+
+
+@stage(
+    "Segment clusters (DBSCAN)",
+    group="Segmentation",
+    tags="cluster,DBSCAN,density,segmentation,objects",
+    writes=("cluster_id",),
+)
+def segment_clusters(
+    xyz,
+    classification,
+    height_above_ground=None,
+    *,
+    radius: Annotated[
+        Optional[float],
+        Param(
+            "Radius",
+            "Points at most this far apart are neighbors (eps); larger joins clusters over wider gaps.",
+            unit="m",
+            low=0,
+            high=100,
+            open_low=True,
+            automatic="3 times the point spacing.",
+        ),
+    ] = None,
+    min_points: Annotated[
+        Optional[int],
+        Param(
+            "Minimum points",
+            "Points within the radius, the point itself among them, that make a point the core of a cluster; "
+            "larger leaves out thinner things.",
+            low=1,
+            high=1_000_000,
+            automatic="a quarter of what a level surface holds within the radius, as at the corner of a roof.",
+        ),
+    ] = None,
+    min_height: MinClusterHeight = 0.0,
+    density: PointDensity = None,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Gather the points that are not ground into clusters where they lie densely (DBSCAN).
+
+    A point with enough others within the radius is the core of a cluster; cores within the radius of each other
+    belong together, and so does every point within the radius of one. All other points are noise and get no id.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes; ground (2), noise (7, 18), water (9) and ignored ground (20) are left out.
+    height_above_ground : ndarray of shape (n,), float32, optional
+        Heights, m; needed for a minimum height.
+
+    Returns
+    -------
+    cluster_id : ndarray of shape (n,), int32
+        Clusters from 1, in the order of their first cores; 0 is none.
+
+    Raises
+    ------
+    ValueError
+        If a minimum height is asked for and heights are missing, or the points are spread too far for the distance.
+
+    Notes
+    -----
+    The clusters are those of scikit-learn's DBSCAN on the same points in the same order: a point within the radius
+    of cores of several clusters goes to the first of them. Memory follows the points, not their neighbors.
+
+    References
+    ----------
+    Ester, M., Kriegel, H.-P., Sander, J., Xu, X., 1996. A density-based algorithm for discovering clusters in large
+    spatial databases with noise. KDD-96, 226-231. Hrutka, B. P., Siki, Z., Takács, B., 2022, section 2.3.
+    """
+    used = candidates(classification, height_above_ground, min_height)
+    sampling = sampling or CloudSampling.of(xyz, classification)
+    density = sampling.density if density is None else density
+    radius = _RADIUS_SPACINGS / float(np.sqrt(density)) if radius is None else radius
+    min_points = points_at_corner(radius, density) if min_points is None else min_points
+    monitor.resolved(density=density, radius=radius, min_points=min_points)
+    cluster_id = np.zeros(len(xyz), np.int32)
+    cluster_id[used] = dbscan(xyz[used], radius, min_points, monitor) + 1
+    return cluster_id
+
+
+def points_at_corner(radius: float, density: float) -> int:
+    """Return how many points, at least 1, lie within ``radius`` (m) of the corner of a level surface."""
+    return max(1, round(_CORNER * np.pi * radius**2 * density))
+
+
+def dbscan(xyz: np.ndarray, radius: float, min_points: int, monitor: Monitor) -> np.ndarray:
+    """Return the cluster (n,), int32, of each point from 0 in the order of their first cores; -1 is noise.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points (m).
+    radius : float
+        Points at most so far apart (m) are neighbors.
+    min_points : int
+        Neighbors of a core, itself among them.
+    monitor : Monitor
+        Receives progress.
+
+    Notes
+    -----
+    Points of one box with a diagonal of ``radius`` are neighbors: full boxes hold cores only and need no counting,
+    and boxes of cores are joined instead of cores.
+    """
+    cluster = np.full(len(xyz), -1, np.int32)
+    if not len(xyz):
+        return cluster
+    # A whisker smaller, so that rounding never puts the corners of a box farther apart than the radius.
+    boxes = Boxes(xyz, radius / np.sqrt(3) * (1 - 1e-9))
+
+    def is_near(offset: np.ndarray) -> np.ndarray:
+        return (offset[:, 0] ** 2 + offset[:, 1] ** 2) + offset[:, 2] ** 2 <= radius * radius
+
+    is_core = _cores(boxes, is_near, min_points, monitor.part(0, 0.4))
+    if is_core.any():
+        cores, others = boxes.of(is_core), boxes.of(~is_core)
+        component = np.full(len(xyz), -1, np.int64)
+        component[cores.order] = connected(cores, is_near, monitor.part(0.4, 0.8))[cores.box()]
+        core = np.sort(cores.order)
+        cluster[core] = by_first_point(component[core])
+        cluster[others.order] = _first_cluster(others, cores, cluster[cores.order], is_near, monitor.part(0.8, 1))
+    return cluster
+
+
+def _cores(boxes: Boxes, is_near, min_points: int, monitor: Monitor) -> np.ndarray:
+    """Return which points (n,), in the order of the boxes, have enough neighbors."""
+    count = np.repeat(boxes.size, boxes.size)
+    steps = around()
+    for done, offset in enumerate(steps, start=1):
+        here, there = boxes.beside(boxes, offset)
+        # Boxes in which every point has enough already need no more.
+        is_open = np.minimum.reduceat(count, boxes.start)[here] < min_points
+        here, there = here[is_open], there[is_open]
+        for _, a, b in boxes.pairs(here, boxes, there):
+            near = a[is_near(boxes.xyz[a] - boxes.xyz[b])]
+            if len(near):
+                # Boxes come in order, so a chunk counts for a short stretch of points only.
+                low = int(a[0])
+                found = np.bincount(near - low)
+                count[low : low + len(found)] += found
+        monitor.progress(done / len(steps))
+    return count >= min_points
+
+
+def _first_cluster(others: Boxes, cores: Boxes, cluster: np.ndarray, is_near, monitor: Monitor) -> np.ndarray:
+    """Return for the points of ``others`` the least cluster among the cores near them, -1 where there is none."""
+    none = np.iinfo(np.int32).max
+    least = np.full(len(others.order), none, np.int32)
+    steps: list[Offset] = [(0, 0, 0), *around()]
+    for done, offset in enumerate(steps, start=1):
+        here, there = others.beside(cores, offset)
+        for _, a, b in others.pairs(here, cores, there):
+            near = is_near(others.xyz[a] - cores.xyz[b])
+            np.minimum.at(least, a[near], cluster[b[near]])
+        monitor.progress(done / len(steps))
+    return np.where(least == none, np.int32(-1), least)

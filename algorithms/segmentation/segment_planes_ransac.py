@@ -1,0 +1,208 @@
+"""Planes by sequential RANSAC in voxels."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..geometry.boxes import Boxes, by_first_point
+from ..params import MinClusterHeight, Seed
+from ..sampling.cloud_sampling import CloudSampling
+from ..stage import Monitor, Param, stage
+from .candidate_points import candidates
+from .least_squares_planes import Planes, planes_of
+from .plane_merging import grown_planes, join_pieces, nearest_plane
+from .voxel_planes import VoxelPlanes
+
+# Distance within which a point lies on a plane (times the roughness).
+_ON_PLANE = 2.3195
+
+# A surface puts so many points into a voxel, and a voxel is so many tolerances wide that it isn't filled by one.
+_POINTS_IN_VOXEL, _TOLERANCES_IN_VOXEL = 20.0, 10.0
+
+# A plane keeps this share of its points when each goes to the plane nearest to it, or it lies across others.
+_LEAST_LEFT = 0.5
+
+# The range of the paper, m.
+_SMALLEST_VOXEL, _LARGEST_VOXEL = 0.5, 3.0
+
+
+@stage(
+    "Segment planes (RANSAC)",
+    group="Segmentation",
+    tags="plane,RANSAC,voxel,roof,wall,facade,planar,segmentation",
+    writes=("segment_id", "normal"),
+)
+def segment_planes_ransac(
+    xyz,
+    classification,
+    height_above_ground=None,
+    *,
+    voxel_size: Annotated[
+        Optional[float],
+        Param(
+            "Voxel size",
+            "Side of the cubes in which planes are looked for; smaller finds smaller planes and needs denser points.",
+            unit="m",
+            low=0.1,
+            high=20,
+            automatic="wide enough for 20 points of a surface and for 10 tolerances, 0.5 to 3 m.",
+        ),
+    ] = None,
+    tolerance: Annotated[
+        Optional[float],
+        Param(
+            "Tolerance",
+            "Distance within which a point lies on a plane.",
+            unit="m",
+            low=0,
+            high=10,
+            open_low=True,
+            automatic="2.3 times the roughness: the measured surface noise, at least 0.026 m, and 0.065 point "
+            "spacings on top.",
+        ),
+    ] = None,
+    min_slope: Annotated[
+        float,
+        Param("Minimum slope", "Slope of the flattest plane that is kept; 70° keeps walls.", unit="°", low=0, high=90),
+    ] = 0.0,
+    max_slope: Annotated[
+        float,
+        Param("Maximum slope", "Slope of the steepest plane that is kept; 90° keeps walls.", unit="°", low=0, high=90),
+    ] = 60.0,
+    min_area: Annotated[
+        float,
+        Param("Minimum plane area", "Area of the smallest plane, measured on it.", unit="m²", low=0, high=10_000),
+    ] = 2.0,
+    min_height: MinClusterHeight = 0.0,
+    max_planes: Annotated[
+        int,
+        Param("Planes per voxel", "Planes that are looked for in one voxel.", low=1, high=20, advanced=True),
+    ] = 4,
+    trials: Annotated[
+        int,
+        Param(
+            "Trials", "Planes through three points that are tried for each plane.", low=1, high=10_000, advanced=True
+        ),
+    ] = 100,
+    normals: Annotated[
+        bool,
+        Param("Write normals", "Give each point the normal of its plane (NormalX, NormalY, NormalZ)."),
+    ] = False,
+    seed: Seed = 1,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Find planes among the points that are not ground: by RANSAC in voxels, joined where they continue each other.
+
+    The cloud is cut into cubes. In each, planes through three random points are tried, the one with most points on it
+    is fitted and taken out, and the next is looked for in what is left. Planes of neighboring cubes that are one
+    plane are joined, and every point goes to the nearest of them. Planes are kept by their slope and area.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes; ground (2), noise (7, 18), water (9) and ignored ground (20) are left out.
+    height_above_ground : ndarray of shape (n,), float32, optional
+        Heights, m; needed for a minimum height.
+
+    Returns
+    -------
+    segment_id : ndarray of shape (n,), int32
+        Planes from 1, in the order of their first points; 0 is none.
+    normal : ndarray of shape (n, 3), float32, or None
+        Upward normals of the planes, NaN on none; None unless asked for.
+
+    Raises
+    ------
+    ValueError
+        If a minimum height is asked for and heights are missing, the least slope is above the largest, or the points
+        are spread too far for the voxels.
+
+    Notes
+    -----
+    The slope of a plane is the angle of its normal from the vertical: roofs are kept up to 60°, walls have 90°.
+    Leaves and other scattered points are no plane: it must hold so many that of a thousand voxels of scattered
+    points one at most would have such a plane by chance. A strip narrower than 3.5 tolerances has no plane of its own.
+    The result depends on the seed, not on the order of points or the number of threads.
+
+    References
+    ----------
+    Hrutka, B. P., Siki, Z., Takács, B., 2022, section 2.3. Fischler, M. A., Bolles, R. C., 1981. Random sample
+    consensus: a paradigm for model fitting. Communications of the ACM 24 (6), 381-395. Moisan, L., Stival, B., 2004.
+    A probabilistic criterion to detect rigid point matches. International Journal of Computer Vision 57 (3), 201-218.
+    """
+    if min_slope > max_slope:
+        raise ValueError(f"The minimum slope ({min_slope:g}°) is above the maximum slope ({max_slope:g}°); lower it.")
+    used = candidates(classification, height_above_ground, min_height)
+    sampling = sampling or CloudSampling.of(xyz, classification)
+    tolerance = _ON_PLANE * sampling.roughness if tolerance is None else tolerance
+    voxel_size = _voxel_size(sampling.surface_density, tolerance) if voxel_size is None else voxel_size
+    monitor.resolved(voxel_size=voxel_size, tolerance=tolerance)
+
+    plane, planes = np.full(len(xyz), -1), None
+    if len(used):
+        boxes = Boxes(xyz[used], voxel_size)
+        in_voxel = VoxelPlanes(boxes, voxel_size, tolerance, max_planes, trials, seed)
+        label = in_voxel.find(monitor.part(0, 0.6))
+        planes, plane[used[boxes.order]] = _joined(boxes, label, tolerance, min_area, monitor.part(0.6, 1))
+    return _kept(plane, planes, min_slope, max_slope, normals, monitor)
+
+
+def _voxel_size(density: float, tolerance: float) -> float:
+    """Return the side of a voxel that suits the density of surfaces and the tolerance, m."""
+    wide = max(float(np.sqrt(_POINTS_IN_VOXEL / density)), _TOLERANCES_IN_VOXEL * tolerance)
+    return min(max(wide, _SMALLEST_VOXEL), _LARGEST_VOXEL)
+
+
+def _joined(
+    boxes: Boxes, label: np.ndarray, tolerance: float, min_area: float, monitor: Monitor
+) -> tuple[Planes, np.ndarray]:
+    """Join the pieces ``label`` (n,) of planes in voxels; return the large planes, and the nearest to each point."""
+    on_plane = np.flatnonzero(label)
+    box = boxes.box()
+    key, piece = np.unique(box[on_plane] * (int(label.max()) + 1) + label[on_plane], return_inverse=True)
+    voxel = key // (int(label.max()) + 1)
+    pieces = planes_of(boxes.xyz[on_plane], piece, len(key))
+    # Points of a scan line or an edge lie on many planes.
+    wide = np.flatnonzero(pieces.eigenvalues[:, 1] > tolerance**2)
+    pieces, voxel = pieces.chosen(wide), voxel[wide]
+    group = join_pieces(pieces, voxel, boxes, tolerance, monitor.part(0, 0.6))
+    planes = pieces.merged(group, int(group.max(initial=-1)) + 1)
+    nearest = nearest_plane(boxes, voxel, group, planes, tolerance, monitor.part(0.6, 0.8))
+    # A plane across a ridge loses most of its points to the roofs on both sides.
+    left = np.bincount(nearest[nearest >= 0], minlength=len(planes)) / planes.count
+    area = np.bincount(group, pieces.area, len(planes)) * np.minimum(left, 1)
+    large = (area >= min_area) & (left >= _LEAST_LEFT)
+    is_large = large[group]
+    group = (np.cumsum(large) - 1)[group[is_large]]
+    planes = planes.chosen(large)
+    return planes, grown_planes(boxes, voxel[is_large], group, planes, tolerance, monitor.part(0.8, 1))
+
+
+def _kept(
+    plane: np.ndarray, planes: Optional[Planes], min_slope: float, max_slope: float, normals: bool, monitor: Monitor
+) -> tuple[np.ndarray, Optional[np.ndarray]]:
+    """Return ids of the planes (n,) with a slope in the range, and their normals (n, 3) if wanted."""
+    normal = np.full((len(plane), 3), np.nan, np.float32) if normals else None
+    segment_id = np.zeros(len(plane), np.int32)
+    on_plane = plane >= 0
+    if planes is None or not on_plane.any():
+        monitor.warn("No plane was found; no point has a SegmentID.")
+        return segment_id, normal
+    slope = np.degrees(np.arccos(np.clip(planes.normal[:, 2], 0, 1)))
+    is_kept = (slope >= min_slope) & (slope <= max_slope)
+    on_plane[on_plane] = is_kept[plane[on_plane]]
+    if not on_plane.any():
+        monitor.warn(
+            f"No plane has a slope from {min_slope:g}° to {max_slope:g}°, of {len(planes)} found; "
+            "no point has a SegmentID."
+        )
+        return segment_id, normal
+    segment_id[on_plane] = by_first_point(plane[on_plane]) + 1
+    if normal is not None:
+        normal[on_plane] = planes.normal[plane[on_plane]]
+    return segment_id, normal

@@ -1,0 +1,231 @@
+"""Clusters that are roof surfaces, and clusters of what else stands above the ground."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..cloud.asprs import NOISE
+from ..cloud.reasons import Reason
+from ..geometry.components import connect, number_large
+from ..params import PointDensity, SurfaceNoise
+from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.surface_noise import plane_roughness
+from ..stage import Param, stage
+from .cluster_measures import plan_areas, share_joined
+from .decks_and_ramps import part_decks
+from .planar_patches import segment_patches
+
+# Points lower than this stand on the ground (kerbs, cars' bonnets, low plants), m.
+_RAISED = 1.5
+
+# A surface of which more than this share lies lower than this (m) goes on into the ground: a bridge, a ramp, a slope.
+_LOW_SHARE, _LOW = 0.1, 0.5
+
+# With fewer points per square meter than this, planes reach farther than half a meter.
+_DENSE = 10.0
+
+# Points are held against planes of neighbors, and these are off by this share of the point spacing beyond.
+_FARTHER = 0.1164
+
+# Roofs with tiles, ribs and gravel are no rougher than this (m); crops and crowns are, smooth spots of them apart.
+_ROUGHEST = 0.055
+
+# Where the cloud is noisier, roofs are no rougher than this many times the noise.
+_ROUGHEST_NOISE = 1.1597
+
+# Where it is sparse, they are no rougher than this share of the deviation of points from planes.
+_ROUGHEST_OFF_PLANE = 0.7732
+
+# What is rougher is a roof where at least so much of what hangs together with it is not: eaves, dormers, machines. And
+# so is what is smooth but smaller than this (m²), as crops have such spots.
+_SMOOTH_SHARE, _LARGE = 0.3, 10.0
+
+
+@stage(
+    "Segment roofs",
+    group="Segmentation",
+    tags="roof,plane,planar,surface growing,segmentation",
+    writes=("segment_id", "cluster_id", "reason"),
+)
+def segment_roofs(
+    xyz,
+    classification,
+    height_above_ground,
+    *,
+    min_height: Annotated[
+        float,
+        Param(
+            "Minimum height",
+            "Mean height above ground of the lowest roof and of other clusters.",
+            unit="m",
+            low=0,
+            high=100,
+        ),
+    ] = 2.0,
+    min_area: Annotated[
+        float,
+        Param(
+            "Minimum roof area", "Area of the smallest roof surface, seen from above.", unit="m²", low=0.1, high=10_000
+        ),
+    ] = 2.0,
+    max_slope: Annotated[
+        float,
+        Param(
+            "Maximum slope",
+            "Slope of the steepest roof surface. Up to 90° walls are surfaces, too, so that towers are not lost in the "
+            "trees that they touch; outlines then get less even.",
+            unit="°",
+            low=0,
+            high=90,
+        ),
+    ] = 75.0,
+    noise: SurfaceNoise = None,
+    density: PointDensity = None,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Gather the points above the ground into roof surfaces and clusters of everything else.
+
+    A roof surface is a patch on which neighbors share a plane, that is large and high enough and does not go on
+    into the ground as bridges and slopes do; a deck with a narrow ramp is parted from it. Surfaces rougher than roofs
+    are, smooth spots of crops and crowns, are none unless they hang together with smoother ones. What is left above
+    the ground (crowns, hedges, wires, roof edges) is clustered by distance, so that both kinds can be told apart by
+    their entropy afterwards.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes; noise (7, 18) is left out.
+    height_above_ground : ndarray of shape (n,), float32
+        Heights, m.
+
+    Returns
+    -------
+    segment_id : ndarray of shape (n,), int32
+        Roof surfaces from 1; 0 is none.
+    cluster_id : ndarray of shape (n,), int32
+        Roof surfaces (same numbers as segment_id), then clusters of everything else; 0 is none.
+    reason : ndarray of shape (n,), uint8
+        Raised points of surfaces that go on into the ground have one, see :class:`~..cloud.reasons.Reason`.
+
+    Notes
+    -----
+    The noise and the density of the cloud set every tolerance: a plane's neighborhood, and the distance at which
+    a point lies on it, 2.3 times the roughness of roofs (more with less than 10 points/m²). This is the "more robust
+    segmentation" that the paper names as future work.
+
+    References
+    ----------
+    Santos, R. C. dos, Pessoa, G. G., Carrilho, A. C., Galo, M., 2019. Building detection from LiDAR data using
+    entropy and the k-means concept, section 4. Sampath, A., Shan, J., 2007, as in "Segment regions".
+    """
+    sampling = sampling or CloudSampling.of(xyz, classification)
+    density = sampling.effective_density if density is None else density
+    noise = sampling.noise if noise is None else noise
+    monitor.resolved(density=density, noise=noise)
+    off_plane = _off_plane_deviation(noise, density)
+    around = sampling.neighborhood(density, off_plane)
+    used = np.flatnonzero(~np.isin(classification, NOISE))
+
+    patch, roughness = np.full(len(xyz), -1, np.int32), np.zeros(len(xyz), np.float32)
+    patch[used], roughness[used] = segment_patches(xyz[used], around, off_plane, max_slope, monitor.part(0, 0.75))
+    patches = _Patches(xyz, patch, height_above_ground, density).with_decks(min_height, min_area)
+    patch, is_terrain = patches.number, patches.is_terrain
+    monitor.progress(0.8)
+    is_roof = patches.roofs(min_height, min_area) & ~is_terrain
+    roughest = max(_ROUGHEST, _ROUGHEST_NOISE * noise, _ROUGHEST_OFF_PLANE * off_plane)
+    is_roof = patches.smooth(is_roof, roughness, roughest)
+    segment_id = _renumbered(patch, is_roof)
+    monitor.progress(0.85)
+
+    raised = height_above_ground >= min(_RAISED, min_height)
+    # Points of no patch, -1, find the last entry.
+    goes_on = np.append(is_terrain, False)[patch]
+    is_other = raised & (segment_id == 0) & ~goes_on
+    others = used[is_other[used]]
+    reach = 2 / np.sqrt(density)
+    component = connect(xyz[others], reach, reach, monitor.part(0.85, 1))
+    ids = number_large(_high(component, height_above_ground[others], min_height), min_area * density)
+    cluster_id = segment_id.copy()
+    cluster_id[others] = np.where(ids > 0, ids + segment_id.max(initial=0), 0)
+    return segment_id, cluster_id, np.where(raised & goes_on, np.uint8(Reason.INTO_GROUND), np.uint8(0))
+
+
+def _off_plane_deviation(noise: float, density: float) -> float:
+    """Return how far points of a roof lie off the planes of their neighbors (one standard deviation), m."""
+    farther = np.sqrt(max(0.0, 1 / density - 1 / _DENSE))
+    return float(np.hypot(plane_roughness(noise, density), _FARTHER * farther))
+
+
+@dataclass(frozen=True)
+class _Patches:
+    """Smooth surfaces: of which each point is (n,), from 0 and -1 for none, with heights above ground (m)."""
+
+    xyz: np.ndarray
+    number: np.ndarray
+    height: np.ndarray
+    density: float
+
+    def mean(self, values: np.ndarray) -> np.ndarray:
+        """Return the mean of what the points of each patch have."""
+        on_patch = self.number[self._member]
+        return np.bincount(on_patch, values[self._member]) / np.maximum(np.bincount(on_patch), 1)
+
+    @cached_property
+    def areas(self) -> np.ndarray:
+        """The area (m²) of each, seen from above."""
+        if not self._member.any():
+            return np.zeros(0)
+        return plan_areas(self.xyz[self._member], self.number[self._member], self.density)
+
+    @cached_property
+    def is_terrain(self) -> np.ndarray:
+        """Which of them go on into the ground."""
+        return self.mean(self.height < _LOW) > _LOW_SHARE
+
+    def with_decks(self, min_height: float, min_area: float) -> _Patches:
+        """Return them with decks apart from the ramps that lead up to them."""
+        joined = np.where(self._of(self.is_terrain), self.number, -1)
+        deck = part_decks(self.xyz, joined, self.height, self.density, min_height, min_area)
+        return replace(self, number=np.where(deck >= 0, deck + len(self.is_terrain), self.number).astype(np.int32))
+
+    def roofs(self, min_height: float, min_area: float) -> np.ndarray:
+        """Return which of them are high and large enough."""
+        return (self.areas >= min_area) & (self.mean(self.height) >= min_height)
+
+    def smooth(self, chosen: np.ndarray, roughness: np.ndarray, most: float) -> np.ndarray:
+        """Return which of the chosen are smooth enough: ``roughness`` (n,) of the points and ``most`` of it, in m."""
+        if not chosen.any():
+            return chosen
+        group = np.where(self._of(chosen), self.number, -1)
+        is_smooth = chosen & (self.mean(roughness) <= most)
+        share = share_joined(self.xyz, group, is_smooth, self.density)
+        return chosen & ((is_smooth & (self.areas >= _LARGE)) | (share >= _SMOOTH_SHARE))
+
+    @cached_property
+    def _member(self) -> np.ndarray:
+        return self.number >= 0
+
+    def _of(self, mask: np.ndarray) -> np.ndarray:
+        """Return which points are of patches that a mask has."""
+        return np.append(mask, False)[self.number]
+
+
+def _high(component: np.ndarray, height: np.ndarray, min_height: float) -> np.ndarray:
+    """Return the components, -1 for those that are lower than ``min_height`` on the mean."""
+    if not len(component):
+        return component
+    mean = np.bincount(component, height) / np.bincount(component)
+    return np.where(mean[component] >= min_height, component, -1)
+
+
+def _renumbered(patch: np.ndarray, chosen: np.ndarray) -> np.ndarray:
+    """Return ids (n,), int32, from 1 for the chosen patches, 0 elsewhere."""
+    number = np.append(np.where(chosen, np.cumsum(chosen), 0), 0).astype(np.int32)
+    return number[patch]

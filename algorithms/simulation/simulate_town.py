@@ -1,0 +1,211 @@
+"""A scanned town of which everything is known, to learn, test and measure with."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+from ..params import Seed
+from ..stage import Monitor, Param, stage
+from .scanner import MAX_PULSES, PATTERNS, RECORDED, scan
+from .town_layout import MAX_BUILDINGS, build_town
+
+
+@stage(
+    "Simulate town",
+    group="Simulation",
+    tags="synthetic,scanner,airborne,demo,example,test,truth,teaching,scene,generate",
+    creates=RECORDED,
+)
+def simulate_town(
+    *,
+    size: Annotated[
+        float, Param("Size", "Side of the town, a square from (0, 0).", unit="m", low=50, high=2000)
+    ] = 200.0,
+    density: Annotated[
+        float,
+        Param(
+            "Pulse density",
+            "Laser pulses on average; on open ground each of them gives a point, in trees several, on water few.",
+            unit="pulses/m²",
+            low=0.5,
+            high=100,
+        ),
+    ] = 8.0,
+    buildings: Annotated[
+        float,
+        Param(
+            "Buildings",
+            "Plots with a house or a short row on a hectare of streets and plots; 0 makes fields. "
+            "The river's valley and the forest have none.",
+            unit="per ha",
+            low=0,
+            high=MAX_BUILDINGS,
+        ),
+    ] = 20.0,
+    trees: Annotated[
+        float,
+        Param(
+            "Trees",
+            "Trees outside the forest, single and in clumps, where there is room for them.",
+            unit="per ha",
+            low=0,
+            high=200,
+        ),
+    ] = 20.0,
+    forest: Annotated[float, Param("Share of forest", "Share of the town that is forest.", low=0, high=1)] = 0.1,
+    slope: Annotated[float, Param("Slope", "Slope of the ground on the whole.", unit="°", low=0, high=40)] = 3.0,
+    relief: Annotated[float, Param("Relief", "Height from hollows to hills, about.", unit="m", low=0, high=10)] = 2.0,
+    terrace_height: Annotated[
+        float, Param("Terrace height", "Height of the banks across the slope, one every 45 m.", unit="m", low=0, high=5)
+    ] = 1.5,
+    river: Annotated[bool, Param("River", "A river in a channel, with a bridge for every street.")] = True,
+    clutter: Annotated[
+        bool, Param("Cars, hedges, walls and wires", "What else stands in a town and is no building.")
+    ] = True,
+    pattern: Annotated[
+        str,
+        Param(
+            "Scan pattern",
+            "Parallel lines of a rotating mirror, the zigzag of an oscillating one, or pulses at random.",
+            choices=PATTERNS,
+            advanced=True,
+        ),
+    ] = "lines",
+    max_scan_angle: Annotated[
+        float,
+        Param(
+            "Maximum scan angle",
+            "Angle to the vertical at the edge of a strip. Wide strips show more of the walls and less of the yards "
+            "behind them.",
+            unit="°",
+            low=5,
+            high=30,
+            advanced=True,
+        ),
+    ] = 20.0,
+    overlap: Annotated[
+        float,
+        Param(
+            "Strip overlap",
+            "Share of a strip that the next one scans too. Without any, roofs and crowns at the seam are cut.",
+            low=0,
+            high=0.8,
+            advanced=True,
+        ),
+    ] = 0.3,
+    range_noise: Annotated[
+        float,
+        Param(
+            "Range noise",
+            "Standard deviation of the measured distances.",
+            unit="m",
+            low=0,
+            high=0.2,
+            advanced=True,
+        ),
+    ] = 0.02,
+    noise_points: Annotated[
+        float,
+        Param(
+            "Noise points",
+            "Points far above (birds) and below the ground (multipath), half of each.",
+            unit="per ha",
+            low=0,
+            high=1000,
+            advanced=True,
+        ),
+    ] = 10.0,
+    returns: Annotated[
+        bool,
+        Param(
+            "Several returns",
+            "Record what a pulse meets on its way; otherwise the first surface only, with unknown return numbers, "
+            "as image matching does.",
+            advanced=True,
+        ),
+    ] = True,
+    seed: Seed = 1,
+    monitor: Optional[Monitor] = None,
+):
+    """Scan a made-up town from the air: houses, trees, a river, and the true class of every point.
+
+    Streets with plots run up a slope. There are houses with gable, hip, flat and L-shaped roofs, with dormers and
+    chimneys, rows of different heights that share walls, sheds and a hall; trees, hedges and a forest that let part of
+    the light through; cars, walls, wires on poles, a river with bridges, birds and multipath points.
+
+    Returns
+    -------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates (m), by time, then by return.
+    classification : ndarray of shape (n,), uint8
+        The truth: 2 ground; 3, 4, 5 vegetation under 0.5 m, under 2 m and higher (stems are 5); 6 buildings with walls,
+        chimneys and dormers; 7 and 18 low and high noise; 9 water; 14 wires; 15 their poles; 17 bridge decks; 1 cars,
+        walls and the rails of bridges.
+    return_number, number_of_returns : ndarray of shape (n,), uint8
+        Returns of a pulse, up to five; all 0 without ``returns``.
+    intensity : ndarray of shape (n,), uint16
+        Brightness by material, shared by the returns of a pulse.
+    scan_angle : ndarray of shape (n,), float32
+        Angle of the beam to the vertical (°), negative to the left of the flight.
+    point_source_id : ndarray of shape (n,), uint16
+        Flight line, from 1.
+    gps_time : ndarray of shape (n,), float64
+        Time of the pulse (s), from the start of the flight.
+    segment_id : ndarray of shape (n,), int32
+        Number of the object, the same for all points of a building; 0 for ground, water and noise.
+
+    Raises
+    ------
+    ValueError
+        If there would be more than 50 million pulses.
+
+    Notes
+    -----
+    A scanner flies strips to and fro, 600 m over the ground. Every beam is followed to what it meets first: walls that
+    face the scanner have points, yards behind houses have none. Points lie exactly on roofs, walls and ground but for
+    the range noise, which is along the beam. Leaves are met at random, the more the longer the way through the crown;
+    each lets 70 % of the pulses on. The beam is 0.2 m wide on the ground, so that the edge of a roof gives two returns.
+    Echoes less than 0.7 m apart are one.
+
+    Not simulated: eaves that jut out, windows, curved roofs, things that move, errors between strips, drift of the
+    position, grass, and walls that mirror.
+
+    Examples
+    --------
+    >>> from lidar_buildings.algorithms.simulation.simulate_town import simulate_town
+    >>> xyz, classification, *_ = simulate_town(size=50.0, density=1.0)
+    >>> bool((classification == 2).any())
+    True
+    """
+    monitor = monitor or Monitor()
+    if density * size**2 > MAX_PULSES:
+        raise ValueError(
+            f"A town of {size:g} m with {density:g} pulses per m² has {density * size**2 / 1e6:.0f} million pulses, "
+            f"more than {MAX_PULSES / 1e6:.0f} million; lower size or density."
+        )
+    scene = build_town(
+        size=size,
+        slope=slope,
+        relief=relief,
+        terrace_height=terrace_height,
+        buildings=buildings,
+        trees=trees,
+        forest=forest,
+        river=river,
+        clutter=clutter,
+        seed=seed,
+        monitor=monitor.part(0.0, 0.15),
+    )
+    made = scan(
+        scene,
+        density=density,
+        pattern=pattern,
+        max_scan_angle=max_scan_angle,
+        overlap=overlap,
+        range_noise=range_noise,
+        returns=returns,
+        noise_points=noise_points,
+        seed=seed,
+        monitor=monitor.part(0.15, 1.0),
+    )
+    return tuple(getattr(made, name) for name in RECORDED)

@@ -1,0 +1,312 @@
+"""A village photographed by a drone, of which everything is known: walls, roofs, and an old map that errs."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from ..packages import spatial
+from ..params import Seed
+from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
+from .beams import Echoes
+from .camera import photograph
+from .relief import Relief
+from .scene import Building
+from .solids import Rect
+from .village_layout import MAX_HOMES, Village, build_village
+
+# So many points (about 200 bytes each while they are made) still fit into the memory of an office computer.
+_MAX_POINTS = 3e7
+
+# Where matching fails, nothing is found so far around (m); places to fail are looked for in cells of that size.
+_HOLE = 0.5
+
+_CREATED = (
+    "xyz",
+    "classification",
+    "return_number",
+    "number_of_returns",
+    "red",
+    "green",
+    "blue",
+    "segment_id",
+)
+
+_FOOTPRINT_FIELDS = (
+    Field("id", int, "object id of the building, as SegmentID of its points"),
+    Field("kind", str, "rectangle, hip, L, bend or shed"),
+    Field("area", float, "area inside the walls", "m²"),
+    Field("corners", int, "number of corners"),
+)
+
+_MAP_FIELDS = (
+    Field("id", int, "number of the building in the map, from 1"),
+    Field("building", int, "object id of the building that stands there, 0 where it was demolished"),
+    Field("state", str, "kept or demolished"),
+)
+
+
+@stage(
+    "Simulate village",
+    group="Simulation",
+    tags="synthetic,drone,UAV,photogrammetry,oblique,walls,eaves,cadastre,demo,example,test,truth,teaching",
+    creates=_CREATED,
+    layers=(
+        Layer("footprints", "True wall footprints", "Polygon", _FOOTPRINT_FIELDS),
+        Layer("old_map", "Old map", "Polygon", _MAP_FIELDS),
+    ),
+)
+def simulate_village(
+    *,
+    size: Annotated[
+        float, Param("Size", "Side of the village, a square from (0, 0).", unit="m", low=50, high=1000)
+    ] = 150.0,
+    density: Annotated[
+        float,
+        Param(
+            "Point density",
+            "Points on open ground; roofs have about as many, walls a tenth of it where a view reaches them.",
+            unit="points/m²",
+            low=5,
+            high=1000,
+        ),
+    ] = 100.0,
+    buildings: Annotated[
+        float,
+        Param(
+            "Buildings",
+            "Plots with a house on a hectare of streets and plots, two of three with a shed as well.",
+            unit="per ha",
+            low=0,
+            high=MAX_HOMES,
+        ),
+    ] = 12.0,
+    trees: Annotated[float, Param("Trees", "Trees in gardens.", unit="per ha", low=0, high=200)] = 15.0,
+    slope: Annotated[float, Param("Slope", "Slope of the ground on the whole.", unit="°", low=0, high=20)] = 2.0,
+    overhang: Annotated[
+        float,
+        Param(
+            "Overhang of roofs", "How far the eaves jut out over the walls; sheds have half.", unit="m", low=0, high=1
+        ),
+    ] = 0.5,
+    clutter: Annotated[bool, Param("Cars, hedges and bushes", "What stands beside walls and is no building.")] = True,
+    noise: Annotated[
+        float, Param("Noise", "Standard deviation of a point in every direction.", unit="m", low=0, high=0.2)
+    ] = 0.03,
+    holes: Annotated[
+        float,
+        Param("Share of holes", "Share of all surfaces where matching found nothing, about.", low=0, high=0.5),
+    ] = 0.1,
+    oblique: Annotated[
+        float,
+        Param(
+            "Oblique angle",
+            "Angle of the four oblique views to the vertical: more shows more of the walls.",
+            unit="°",
+            low=0,
+            high=30,
+            advanced=True,
+        ),
+    ] = 28.0,
+    noise_points: Annotated[
+        float,
+        Param(
+            "Noise points", "Wrong matches above and below the ground.", unit="per ha", low=0, high=1000, advanced=True
+        ),
+    ] = 20.0,
+    map_shift: Annotated[
+        float,
+        Param(
+            "Shift of the old map", "How far the old map lies to the east and to the north.", unit="m", low=0, high=2
+        ),
+    ] = 0.3,
+    map_noise: Annotated[
+        float,
+        Param(
+            "Noise of the old map",
+            "Standard deviation of its corners to the east and to the north.",
+            unit="m",
+            low=0,
+            high=1,
+        ),
+    ] = 0.15,
+    map_changes: Annotated[
+        float,
+        Param(
+            "Changes since the old map",
+            "Share of the buildings that the map lacks; as many again are on it and gone, where plots are free.",
+            low=0,
+            high=0.5,
+        ),
+    ] = 0.1,
+    seed: Seed = 1,
+    monitor: Optional[Monitor] = None,
+):
+    """Photograph a made-up village with a drone: the matched points, the true footprints of the walls, and an old map.
+
+    Detached houses (rectangles, L shapes, some with a bend) whose eaves overhang the walls, sheds, cars, bushes
+    against walls, hedges and trees, seen straight down and in four oblique views: many points on roofs, few on walls.
+
+    Returns
+    -------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates (m).
+    classification : ndarray of shape (n,), uint8
+        The truth: 2 ground; 3, 4, 5 vegetation under 0.5 m, under 2 m and higher; 6 buildings; 7 and 18 low and high
+        noise; 1 cars.
+    return_number, number_of_returns : ndarray of shape (n,), uint8
+        All 0, which means unknown.
+    red, green, blue : ndarray of shape (n,), uint16
+        Colors.
+    segment_id : ndarray of shape (n,), int32
+        Number of the object, the same for all points of a building; 0 for ground and noise.
+    footprints : LayerFeatures
+        The walls of every building, without the eaves.
+    old_map : LayerFeatures
+        The same as an old map has it: all corners displaced by the same shift and each by some noise, some buildings
+        missing, some that are gone.
+
+    Raises
+    ------
+    ValueError
+        If there would be more than 30 million points.
+
+    Notes
+    -----
+    Views are parallel; what a ray meets first is a point. A wall that faces an oblique view of 28° gets a tenth of the
+    density of open ground (a fifth of the views, times the tangent of the angle), and nothing right under the eaves,
+    which is about the share of wall points (5 % of those on roofs) that Hrutka, Siki and Takács (2022) report of real
+    clouds. Noise is the same in all directions.
+
+    Not simulated: windows, surfaces that mirror, blur of edges, errors that neighboring points share, dormers.
+
+    Examples
+    --------
+    >>> from lidar_buildings.algorithms.simulation.simulate_village import simulate_village
+    >>> xyz, classification, *_, footprints, old_map = simulate_village(size=90.0, density=5.0)
+    >>> bool((classification == 6).any()), len(footprints) > 0
+    (True, True)
+    """
+    monitor = monitor or Monitor()
+    if density * size**2 > _MAX_POINTS:
+        raise ValueError(
+            f"A village of {size:g} m with {density:g} points per m² has {density * size**2 / 1e6:.0f} million points, "
+            f"more than {_MAX_POINTS / 1e6:.0f} million; lower size or density."
+        )
+    village = build_village(
+        size=size, slope=slope, buildings=buildings, trees=trees, overhang=overhang, clutter=clutter, seed=seed
+    )
+    if buildings and not village.scene.buildings:
+        monitor.warn(
+            f"No house was built: too few plots lie wholly within {size:g} m; raise the size, or try another seed."
+        )
+    xyz, seen = photograph(village.scene, density=density, oblique=oblique, seed=seed, monitor=monitor.part(0.0, 0.8))
+    rng = np.random.default_rng([seed, 4])
+    kept = _outside_holes(xyz, holes, rng)
+    xyz, seen = xyz[kept], seen.take(kept)
+    colors = _colors(seen, village, rng)
+    xyz = xyz + noise * rng.standard_normal(xyz.shape)
+    monitor.progress(0.9)
+    wrong = _wrong_matches(village.scene.relief, round(noise_points * size**2 / 1e4), rng)
+    cloud = _joined(xyz, seen, village, colors, *wrong)
+    old_map = _old_map(village, map_shift, map_noise, map_changes, rng)
+    monitor.progress(1.0)
+    return (*cloud, _footprints(village.scene.buildings), old_map)
+
+
+def _outside_holes(xyz: np.ndarray, share: float, rng: np.random.Generator) -> np.ndarray:
+    """Return which points (n,) lie in none of the random places where matching failed."""
+    if not share:
+        return np.full(len(xyz), True)
+    cells = np.floor(xyz / _HOLE).astype(np.int64)
+    candidates = np.unique(cells, axis=0, return_index=True)[1]
+    # Independent disks leave exp(-their area) of a surface, which crosses somewhat more cells than it is large.
+    chance = -np.log(1 - share) / (1.1 / _HOLE**2 * np.pi * _HOLE**2)
+    centers = xyz[candidates[rng.random(len(candidates)) < chance]]
+    return ~np.isfinite(spatial.cKDTree(centers).query(xyz, distance_upper_bound=_HOLE)[0])
+
+
+# Brightness (red, green, blue, of 255) of what stands in a village; walls and roofs come in several.
+_GROUND, _LEAVES, _CARS = (134, 124, 92), (70, 96, 48), (150, 152, 158)
+_WALLS = np.array([(226, 218, 200), (212, 190, 140), (190, 186, 180), (205, 160, 130)])
+_ROOFS = np.array([(150, 70, 50), (110, 60, 50), (95, 95, 100), (130, 105, 90)])
+
+
+def _colors(seen: Echoes, village: Village, rng: np.random.Generator) -> np.ndarray:
+    """Return red, green and blue (n, 3), uint16: by material, each object its own shade, each point its own light."""
+    color = np.tile(np.array(_GROUND, float), (len(seen), 1))
+    classes, number = seen.classification, seen.object_id
+    leaves = (classes >= PointClass.LOW_VEGETATION) & (classes <= PointClass.HIGH_VEGETATION)
+    color[leaves] = _LEAVES
+    color[classes == PointClass.UNCLASSIFIED] = _CARS
+    building = classes == PointClass.BUILDING
+    is_roof = village.owner[number] != number
+    color[building & ~is_roof] = _WALLS[number[building & ~is_roof] % len(_WALLS)]
+    color[building & is_roof] = _ROOFS[number[building & is_roof] % len(_ROOFS)]
+    light = (0.85 + 0.3 * np.modf(number * 0.618034)[0])[:, None] * (1 + 0.06 * rng.standard_normal((len(seen), 1)))
+    return np.clip(color * light * 257, 0, 65_535).astype(np.uint16)
+
+
+def _wrong_matches(relief: Relief, count: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """Return places (count, 3) of noise, half above and half below the ground, and their classes."""
+    xy = rng.uniform(0.0, relief.size, (count, 2))
+    is_high = np.arange(count) % 2 == 0
+    height = np.where(is_high, rng.uniform(20.0, 60.0, count), -rng.uniform(2.0, 10.0, count))
+    classes = np.where(is_high, PointClass.HIGH_NOISE, PointClass.LOW_NOISE)
+    return np.column_stack([xy, relief.ground(*xy.T) + height]), classes.astype(np.uint8)
+
+
+def _joined(
+    xyz: np.ndarray, seen: Echoes, village: Village, colors: np.ndarray, wrong: np.ndarray, classes: np.ndarray
+) -> tuple:
+    """Return the dimensions of all points, noise last."""
+    gray = np.full((len(wrong), 3), 32_768, np.uint16)
+    unknown = np.zeros(len(xyz) + len(wrong), np.uint8)
+    return (
+        np.concatenate([xyz, wrong]),
+        np.concatenate([seen.classification, classes]).astype(np.uint8),
+        unknown,
+        unknown.copy(),
+        *np.concatenate([colors, gray]).T.copy(),
+        np.concatenate([village.owner[seen.object_id], np.zeros(len(wrong))]).astype(np.int32),
+    )
+
+
+def _footprints(buildings: list[Building]) -> LayerFeatures:
+    """Return the outlines of the walls."""
+    return LayerFeatures(
+        [[building.outline] for building in buildings],
+        {
+            "id": [building.object_id for building in buildings],
+            "kind": [building.kind for building in buildings],
+            "area": [building.area for building in buildings],
+            "corners": [len(building.outline) - 1 for building in buildings],
+        },
+    )
+
+
+def _old_map(village: Village, shift: float, noise: float, changes: float, rng: np.random.Generator) -> LayerFeatures:
+    """Return the footprints as an old map has them: displaced, without some, and with some that are gone."""
+    buildings = village.scene.buildings
+    count = round(changes * len(buildings))
+    missing = set(rng.permutation(len(buildings))[:count].tolist())
+    known = [(b.outline[:-1], b.object_id) for i, b in enumerate(buildings) if i not in missing]
+    known += [(place.corners(), 0) for place in _demolished(village.free, count, rng)]
+    rings = [ring + shift + noise * rng.standard_normal(ring.shape) for ring, _ in known]
+    numbers = [number for _, number in known]
+    return LayerFeatures(
+        [[np.concatenate([ring, ring[:1]])] for ring in rings],
+        {
+            "id": list(range(1, len(rings) + 1)),
+            "building": numbers,
+            "state": ["kept" if number else "demolished" for number in numbers],
+        },
+    )
+
+
+def _demolished(free: list[Rect], count: int, rng: np.random.Generator) -> list[Rect]:
+    """Return where houses stood on plots that have none any more."""
+    plots = [free[i] for i in rng.permutation(len(free))[:count]]
+    return [plot.part(0.0, 0.0, *rng.uniform(6.0, 10.0, 2), rng.uniform(0.0, np.pi)) for plot in plots]

@@ -1,0 +1,101 @@
+"""A made-up site for a drone: a street between facades, with parked cars, lamps and trees."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from .plants import plant_tree
+from .relief import Relief
+from .scene import Scene
+from .solids import Rect, Solid, flat, gable
+from .town_layout import park_car
+
+# Side of the site (m); a drone in its middle sees 30 m.
+SIZE = 80.0
+
+# Houses: center from the middle of the site, length and width, direction of the length (°), eave (m), whether it has a
+# gable; the front is to the right of the length.
+_HOUSES = (
+    (-7.5, 17.0, 14.0, 10.0, 0.0, 6.4, False),
+    (6.5, 17.0, 14.0, 10.0, 0.0, 3.4, True),
+    (23.0, -6.0, 11.0, 8.0, -90.0, 3.4, True),
+)
+_PITCH = np.tan(np.deg2rad(38.0))
+_STOREY = 3.0
+_BALCONY = (2.6, 1.2)
+
+# Cars stand in two rows along the street; lamps between the street and the houses (m from the middle).
+_CARS = [(x, y) for y in (8.2, -1.8) for x in (-16.0, -10.5, -5.0, 6.5, 12.0)]
+_LAMPS = [(x, 9.8) for x in (-18.0, -1.0, 16.0)]
+_LAMP = (0.15, 6.0)
+
+# Trees stand south of the street, and two in front of the houses (m from the middle).
+_ROW_OF_TREES = -9.0
+_TREES_IN_FRONT = ((-12.0, 5.0), (12.0, 4.0))
+_TREE_HEIGHTS = (6.0, 11.0)
+
+
+def build_site(trees: int, slope: float, seed: int) -> Scene:
+    """Make up a site.
+
+    Parameters
+    ----------
+    trees : int
+        How many there are.
+    slope : float
+        Of the ground (°), which is a plane.
+    seed : int
+        For trees, balconies and the direction of the slope.
+
+    Returns
+    -------
+    Scene
+        The same for the same arguments.
+    """
+    rng = np.random.default_rng([seed, 2])
+    angle = float(rng.uniform(0.0, 2 * np.pi))
+    scene = Scene(Relief(SIZE, angle, float(np.tan(np.deg2rad(slope)))))
+    for x, y, length, width, turn, eave, has_gable in _HOUSES:
+        _build_house(scene, Rect(*_place(x, y), length, width, np.deg2rad(turn)), eave, has_gable, rng)
+    for x, y in _CARS:
+        park_car(scene, Rect(*_place(x + rng.uniform(-0.4, 0.4), y), 4.3, 1.8, np.deg2rad(rng.uniform(-3.0, 3.0))))
+    for x, y in _LAMPS:
+        _put_lamp(scene, Rect(*_place(x, y), _LAMP[0], _LAMP[0], 0.0))
+    for x, y in _tree_places(trees, rng):
+        foot = (*_place(x, y), float(scene.relief.ground(*_place(x, y))))
+        plant_tree(scene, foot, rng.uniform(*_TREE_HEIGHTS), rng)
+    return scene
+
+
+def _place(x: float, y: float) -> tuple[float, float]:
+    """Return the coordinates (m) of a place told from the middle of the site."""
+    return SIZE / 2 + x, SIZE / 2 + y
+
+
+def _build_house(scene: Scene, rect: Rect, eave: float, has_gable: bool, rng: np.random.Generator) -> None:
+    """Put a house with balconies on its front, as high over the middle of its ground as is said."""
+    number, ground = scene.new_id(), float(scene.relief.ground(rect.x, rect.y))
+    tops = gable(rect, ground + eave, _PITCH) if has_gable else flat(rect, ground + eave)
+    solids = [Solid(rect, tops, ground - 3.0, PointClass.BUILDING, number)]
+    long, deep = _BALCONY
+    for floor in np.arange(_STOREY, eave - 2.0, _STOREY):
+        for along in np.arange(-rect.length / 2 + 3.0, rect.length / 2 - 2.0, 5.0):
+            if rng.random() < 0.7:
+                slab = rect.part(float(along), -(rect.width + deep) / 2, long, deep)
+                parapet = flat(slab, ground + floor + 1.0)
+                solids.append(Solid(slab, parapet, ground + floor, PointClass.BUILDING, number))
+    scene.add_building("block", rect.corners(), solids)
+
+
+def _put_lamp(scene: Scene, rect: Rect) -> None:
+    ground = float(scene.relief.ground(rect.x, rect.y))
+    top = flat(rect, ground + _LAMP[1])
+    scene.solids.append(Solid(rect, top, ground - 1.0, PointClass.UNCLASSIFIED, scene.new_id()))
+
+
+def _tree_places(count: int, rng: np.random.Generator) -> list[tuple[float, float]]:
+    """Return places (m from the middle): first in front of the houses, then in a row, then behind it."""
+    behind = [(x, _ROW_OF_TREES - 6.0 * line) for line in range(4) for x in (-6.0, 6.0, 0.0, -12.0, 12.0)]
+    places = [*_TREES_IN_FRONT, *behind][:count]
+    return [(float(x + rng.uniform(-0.8, 0.8)), float(y + rng.uniform(-0.8, 0.8))) for x, y in places]

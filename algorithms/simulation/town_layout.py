@@ -1,0 +1,176 @@
+"""A made-up town: streets with plots, a river with bridges, a forest, and what stands between."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Optional
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from ..stage import Monitor
+from .plants import in_forest, plant_hedge, plant_trees
+from .relief import VALLEY, make_relief
+from .scene import Scene
+from .solids import Rect, Solid, flat, inclined
+from .town_houses import build_hall, build_house
+
+# Streets are this far apart, with two rows of plots between them (m).
+_STREETS = 40.0
+_STREET_WIDTH = 8.0
+_PLOT = (14.0, 16.0)
+_PLOTS_PER_BLOCK = 6
+_HALL = (40.0, 27.0)
+_HALL_STEP = 5.0
+
+# Plots on a hectare of streets and blocks: as many as can be built on.
+MAX_BUILDINGS = 34
+
+
+def build_town(
+    *,
+    size: float = 200.0,
+    slope: float = 3.0,
+    relief: float = 2.0,
+    terrace_height: float = 1.5,
+    buildings: float = 20.0,
+    trees: float = 20.0,
+    forest: float = 0.1,
+    river: bool = True,
+    clutter: bool = True,
+    seed: int = 1,
+    monitor: Optional[Monitor] = None,
+) -> Scene:
+    """Make up a town. The tunables are those of :func:`.town.simulate_town`.
+
+    Returns
+    -------
+    Scene
+        The same for the same arguments.
+    """
+    monitor = monitor or Monitor()
+    rng = np.random.default_rng([seed, 0])
+    scene = Scene(make_relief(size, slope, relief, terrace_height, river, rng))
+    plots = _plots(scene, forest)
+    if buildings:
+        hall = _hall_place(scene, plots)
+        if hall is not None:
+            build_hall(scene, hall)
+            plots = [plot for plot in plots if not hall.contains(*plot.corners(-1.0).T).any()]
+        # Every hectare of plots has the asked number of them built on, whatever river and forest leave.
+        built = min(len(plots), round(len(plots) * buildings / MAX_BUILDINGS))
+        for k, i in enumerate(np.sort(rng.permutation(len(plots))[:built])):
+            build_house(scene, plots[i], rng)
+            monitor.progress(0.4 * k / built)
+    if scene.relief.river is not None:
+        _build_bridges(scene, scene.relief.river)
+    if clutter:
+        _clutter(scene, plots, rng, monitor.part(0.4, 0.6))
+    plant_trees(scene, trees, forest, rng, monitor.part(0.6, 1.0))
+    return scene
+
+
+def _street_lines(scene: Scene) -> np.ndarray:
+    """Return where the streets lie along the town (m)."""
+    reach = np.ceil(scene.size / _STREETS)
+    return (np.arange(-reach, reach) + 0.5) * _STREETS
+
+
+def _plots(scene: Scene, forest: float) -> list[Rect]:
+    """Return the plots that lie in the town, out of the forest and off the river."""
+    relief, found = scene.relief, []
+    n_half = int(scene.size // _PLOT[0])
+    for street, side, i in itertools.product(_street_lines(scene), (1, -1), range(-n_half, n_half)):
+        # A side street of half a plot's width follows every block.
+        across = (i + 0.5 * (i // _PLOTS_PER_BLOCK)) * _PLOT[0]
+        x, y = relief.world(across, street + side * (_STREET_WIDTH + _PLOT[1]) / 2)
+        plot = Rect(float(x), float(y), *_PLOT, relief.angle + (0.0 if side > 0 else np.pi))
+        on_river = relief.river is not None and abs(across - relief.river) < VALLEY + _PLOT[0] / 2
+        corners = plot.corners()
+        inside = corners.min() > 1.0 and corners.max() < scene.size - 1.0
+        if inside and not on_river and not in_forest(scene, plot.corners(3.0), forest).any():
+            found.append(plot)
+    return found
+
+
+def _hall_place(scene: Scene, plots: list[Rect]) -> Optional[Rect]:
+    """Return room for a hall in the middle of a block of plots back to back, None without any that is level enough."""
+    x, y = np.array([(plot.x, plot.y) for plot in plots]).reshape(-1, 2).T
+    for plot in plots:
+        place = plot.part(0.0, plot.width / 2, *_HALL)
+        # Three plots on both sides, all of them free: the hall stands on plots only.
+        if place.contains(x, y).sum() == 6 and np.ptp(scene.relief.ground(*place.corners().T)) < _HALL_STEP:
+            return place
+    return None
+
+
+def _build_bridges(scene: Scene, river: float) -> None:
+    """Carry every street over the river."""
+    relief = scene.relief
+    for street in _street_lines(scene):
+        x, y = relief.world(river, street)
+        deck = Rect(float(x), float(y), 2 * VALLEY - 8.0, 6.0, relief.angle)
+        if np.abs(deck.corners() - scene.size / 2).max() > scene.size / 2:
+            continue
+        number, top = scene.new_id(), 0.15
+        scene.solids.append(Solid(deck, flat(deck, top), top - 0.9, PointClass.BRIDGE_DECK, number))
+        for side in (-1, 1):
+            rail = deck.part(0.0, side * 2.9, deck.length, 0.2)
+            scene.solids.append(Solid(rail, flat(rail, top + 1.0), top - 0.9, PointClass.UNCLASSIFIED, number))
+
+
+def _clutter(scene: Scene, plots: list[Rect], rng: np.random.Generator, monitor: Monitor) -> None:
+    """Put cars on the streets, hedges and walls between the plots, and wires along one street."""
+    lines = [plot.part(-plot.length / 2, 3.0, plot.width - 6.0, 0.9, np.pi / 2) for plot in plots]
+    corners = np.array([line.corners() for line in lines]).reshape(-1, 2)
+    is_free = ~scene.near_building(corners, 0.2).reshape(-1, 4).any(axis=1)
+    for i, (plot, line, free) in enumerate(zip(plots, lines, is_free)):
+        car, border, place = rng.random(3)
+        if car < 0.5:
+            park_car(scene, plot.part(8.0 * place - 4.0, -plot.width / 2 - 1.4, 4.3, 1.8))
+        if free and border < 0.3:
+            plant_hedge(scene, line, 1.7)
+        elif free and border < 0.5:
+            wall = Rect(line.x, line.y, line.length, 0.3, line.angle)
+            scene.solids.append(_follow_ground(scene, wall, 2.0, scene.new_id()))
+        monitor.progress(i / len(plots))
+    _string_wires(scene)
+
+
+def _follow_ground(scene: Scene, rect: Rect, height: float, number: int) -> Solid:
+    """Return a solid whose top is parallel to the ground around its middle."""
+    a, b, c = scene.relief.tangent(rect.x, rect.y)
+    bottom = float(scene.relief.ground(*rect.corners().T).min()) - 1.0
+    return Solid(rect, np.array([[a, b, c + height]]), bottom, PointClass.UNCLASSIFIED, number)
+
+
+def park_car(scene: Scene, body: Rect) -> None:
+    """Put a car: body and cabin with slanting windows."""
+    number = scene.new_id()
+    cabin = body.part(-0.3, 0.0, 2.6, 1.6)
+    ground = scene.relief.tangent(body.x, body.y)
+    slants = [inclined(cabin, side * 1.3, 0.0, 0.85, side * -1.0, 0.0) + ground for side in (-1, 1)]
+    roof = _follow_ground(scene, cabin, 1.45, number)
+    scene.solids.append(_follow_ground(scene, body, 0.85, number))
+    scene.solids.append(Solid(cabin, np.vstack([roof.tops, slants]), roof.bottom, PointClass.UNCLASSIFIED, number))
+
+
+def _string_wires(scene: Scene) -> None:
+    """Put poles along the street through the town's middle, and three wires on them."""
+    relief, height, span, sag = scene.relief, 8.5, 34.0, 0.8
+    along = float(_street_lines(scene)[len(_street_lines(scene)) // 2]) + _STREET_WIDTH / 2 - 0.4
+    across = np.arange(-scene.size, scene.size, span)
+    x, y = relief.world(across, along)
+    # The bed of the river is no place for a pole.
+    inside = (np.minimum(x, y) > 1.0) & (np.maximum(x, y) < scene.size - 1.0) & ~scene.near_water(x, y)
+    feet = np.column_stack([x, y, relief.ground(x, y)])[inside]
+    for foot in feet:
+        pole = Rect(float(foot[0]), float(foot[1]), 0.3, 0.3, relief.angle)
+        top = flat(pole, foot[2] + height)
+        scene.solids.append(Solid(pole, top, foot[2] - 1.0, PointClass.TRANSMISSION_TOWER, scene.new_id()))
+    number, share = scene.new_id(), np.linspace(0.0, 1.0, 9)[:, None]
+    for start, end in zip(feet, feet[1:]):
+        for offset in (-0.9, 0.0, 0.9):
+            shift = [-offset * np.sin(relief.angle), offset * np.cos(relief.angle), height - 0.2]
+            line = start + share * (end - start) + shift - 4 * sag * share * (1 - share) * [0.0, 0.0, 1.0]
+            scene.wires.extend((*p, *q, number) for p, q in zip(line, line[1:]))

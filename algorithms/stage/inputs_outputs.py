@@ -1,0 +1,166 @@
+"""What stages read and make beside points: layers, rasters and reports, as they are declared and as they are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any, Optional
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Field:
+    """One attribute of a layer that a stage makes (``type`` is int, float or str)."""
+
+    name: str
+    type: type
+    help: str
+    unit: str = ""
+
+
+@dataclass(frozen=True)
+class Layer:
+    """A vector layer that a stage makes.
+
+    ``name`` becomes the output's name (``FOOTPRINTS``), ``geometry`` is
+    ``"Polygon"``, ``"LineString"`` or ``"Point"``, ``style`` the stem of a file in
+    ``resources/styles``.
+    """
+
+    name: str
+    title: str
+    geometry: str
+    fields: tuple[Field, ...]
+    style: str = ""
+
+
+@dataclass(frozen=True)
+class InputLayer:
+    """A vector layer that a stage reads.
+
+    ``name`` is the positional argument and the input (``OLD_MAP``), ``geometry`` is one of
+    ``"Polygon"``, ``"LineString"`` and ``"Point"``. The stage is given :class:`LayerFeatures` with
+    all attributes of the layer, or None where an ``optional`` one is not given. Parts of a
+    multipart geometry come one by one, each with the attributes of the whole.
+    """
+
+    name: str
+    title: str
+    geometry: str
+    help: str
+    optional: bool = False
+
+    @property
+    def things(self) -> str:
+        """What people call its geometries: polygons, lines or points."""
+        return {"Polygon": "polygons", "LineString": "lines", "Point": "points"}[self.geometry]
+
+
+@dataclass
+class LayerFeatures:
+    """The content of a :class:`Layer` or :class:`InputLayer`: geometries and one column per field.
+
+    ``geometries`` holds, per feature of a polygon layer, a list of rings (float64
+    (m, 2) or (m, 3), meters, first the exterior counterclockwise, then the holes
+    clockwise, closed: last vertex equals first); for lines one (m, 2 or 3) array; for points one (2 or 3,) array.
+    Coordinates are relative to the cloud's origin, or, where a stage reads no cloud, to one that all its input
+    layers share.
+    ``columns`` maps each field's name to a sequence of the same length; those of an input layer are
+    arrays of int64 or float64 (NaN is NULL), or lists, with None for NULL.
+    """
+
+    geometries: list
+    columns: dict[str, Any]
+
+    def __len__(self) -> int:
+        return len(self.geometries)
+
+
+def given_layers(
+    reader: str, input_layers: Iterable[InputLayer], given: dict[str, Optional[LayerFeatures]]
+) -> dict[str, Optional[LayerFeatures]]:
+    """Return the layer that is given for each input layer, None where an optional one is not; refuse what does not fit.
+
+    Parameters
+    ----------
+    reader : str
+        Name of the stage or pipeline that reads them.
+    input_layers : iterable of InputLayer
+        What it reads.
+    given : dict of str to LayerFeatures
+        Layers by the names of input layers.
+
+    Raises
+    ------
+    ValueError
+        If a layer is missing, or one is given that nobody reads.
+    """
+    wanted = {input_layer.name: input_layer for input_layer in input_layers}
+    unknown = [name for name in given if name not in wanted]
+    if unknown:
+        raise ValueError(f"{reader} reads no layer {unknown[0]!r}; it reads {', '.join(wanted) or 'none'}.")
+    for input_layer in wanted.values():
+        if given.get(input_layer.name) is None and not input_layer.optional:
+            raise ValueError(f"{input_layer.title} ({input_layer.name}) is missing; choose a layer.")
+    return {name: given.get(name) for name in wanted}
+
+
+@dataclass(frozen=True)
+class Raster:
+    """A raster that a stage makes.
+
+    ``name`` becomes the output's name (``DTM``), ``style`` is the stem of a file in
+    ``resources/styles``, ``unit`` that of the values.
+    """
+
+    name: str
+    title: str
+    style: str = ""
+    unit: str = ""
+
+
+@dataclass
+class RasterSurface:
+    """The content of a :class:`Raster`.
+
+    ``values`` is float32 (rows, columns), the northernmost row first, NaN where there is nothing;
+    ``west`` and ``north`` are the outer edges (m, from the cloud's origin), ``cell_size`` the side of a cell (m).
+    """
+
+    values: np.ndarray
+    west: float
+    north: float
+    cell_size: float
+
+
+@dataclass(frozen=True)
+class Measure:
+    """One number that a stage's :class:`Report` holds."""
+
+    name: str
+    title: str
+    unit: str = ""
+
+
+@dataclass
+class Report:
+    """Numbers and the page that shows them to a person.
+
+    ``values`` has one float or int per declared :class:`Measure` (NaN where the measure is
+    undefined), ``html`` is a complete, self-contained page.
+    """
+
+    values: dict[str, float]
+    html: str
+
+
+@dataclass
+class StageResults:
+    """What a stage's function returned, each thing under its name; see :meth:`Stage.unpack`."""
+
+    selected: Optional[np.ndarray] = None
+    dimensions: dict[str, Optional[np.ndarray]] = field(default_factory=dict)
+    layers: dict[str, LayerFeatures] = field(default_factory=dict)
+    rasters: dict[str, RasterSurface] = field(default_factory=dict)
+    report: Optional[Report] = None

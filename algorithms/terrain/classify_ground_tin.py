@@ -1,0 +1,306 @@
+"""Ground points by progressive TIN densification, from seeds by progressive opening."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..geometry.grid import distinct, grid_over
+from ..sampling.cloud_sampling import CloudSampling
+from ..stage import Param, stage
+from .false_pits import false_pits
+from .ground_points import in_plan_order, last_returns, usable_points, with_ground
+from .ground_seeds import USUAL_BUILDING, seeds_by_opening
+from .tin_densification import JoinRules, Surface, grow, surface_roughness
+
+# Share of the point spacing by which the surface may bend between points, when they join.
+_GROW_BEND = 0.5
+
+# The final sweep takes points within this many times the roughness of the finished surface, ...
+_SWEEP_DEVIATIONS = 6.0
+
+# ... but beyond this many times the roughness, which low plants make larger than noise, ...
+_SWEEP_NOISE = 4.0
+
+# ... at most this share of a cell or of the point spacing.
+_SWEEP_BEND = 0.1
+
+# Height by which strips that don't fit together lie above one another at most, m: more is no strip but an object.
+_MAX_MISFIT = 0.15
+
+# Side of the squares in which higher strips are told from plants, in point spacings: some 1600 points each.
+_REGION = 40.0
+
+# The air over a higher strip is empty, where plants and cars go on upward: share of the strip's points in it at most.
+_MAX_OVER_STRIP = 0.1
+
+# The kinds of terrain: shorter side of the largest building, m, and iteration angle, °.
+_TERRAINS = {
+    "nature": (20.0, 30.0),
+    "village": (40.0, 20.0),
+    "town": (USUAL_BUILDING, 20.0),
+    "city": (120.0, 20.0),
+    "industry": (250.0, 20.0),
+}
+
+# Iteration angle where no kind of terrain is given, °.
+_ANGLE = 20.0
+
+# The granularities: least cell, m, and cells per point spacing.
+_GRANULARITIES = {"coarse": (2.0, 1.0), "medium": (1.0, 1.0), "fine": (1.0, 0.5), "extra fine": (0.5, 0.5)}
+
+
+@stage(
+    "Classify ground points (TIN)",
+    group="Terrain",
+    tags="ground,filter,terrain,bare earth,DTM,Axelsson,PTD",
+    writes=("classification",),
+)
+def classify_ground_tin(
+    xyz,
+    classification,
+    return_number=None,
+    number_of_returns=None,
+    *,
+    terrain: Annotated[
+        Optional[str],
+        Param(
+            "Terrain",
+            "What the largest buildings are like: it sets the maximum building size (20, 40, 60, 120, 250 m) and the "
+            "iteration angle (30° in nature, else 20°) where these are automatic.",
+            choices=tuple(_TERRAINS),
+            automatic="the smallest kind from town on that has room for the largest building found.",
+        ),
+    ] = None,
+    granularity: Annotated[
+        Optional[str],
+        Param(
+            "Granularity",
+            "How finely the surface is started and refined: it sets the grid cell size where that is automatic, at "
+            "least 2 m (coarse), 1 m (medium, fine) or 0.5 m (extra fine).",
+            choices=tuple(_GRANULARITIES),
+            automatic="fine where points are farther apart than 1 m, else medium.",
+        ),
+    ] = None,
+    max_building_size: Annotated[
+        Optional[float],
+        Param(
+            "Maximum building size",
+            "The shorter side of the largest building; smaller keeps more of narrow hilltops.",
+            unit="m",
+            low=1,
+            high=1000,
+            automatic="60 m, and any size for what stands free of the terrain on nearly all sides; or as the terrain "
+            "says.",
+        ),
+    ] = None,
+    cell_size: Annotated[
+        Optional[float],
+        Param(
+            "Grid cell size",
+            "Cell in which the lowest point is looked for.",
+            unit="m",
+            low=0.1,
+            high=100,
+            automatic="half the point spacing (coarse and medium: the whole), at least what the granularity says.",
+            advanced=True,
+        ),
+    ] = None,
+    iteration_angle: Annotated[
+        Optional[float],
+        Param(
+            "Iteration angle",
+            "Largest angle between a facet and the lines to its nodes under which a point joins the surface; "
+            "larger follows steeper breaks and lets more low objects in.",
+            unit="°",
+            low=0,
+            high=90,
+            open_low=True,
+            automatic="20°, in nature 30°.",
+        ),
+    ] = None,
+    iteration_distance: Annotated[
+        Optional[float],
+        Param(
+            "Iteration distance",
+            "Largest distance from its facet at which a point joins the surface.",
+            unit="m",
+            low=0,
+            high=100,
+            open_low=True,
+            automatic="8 times the roughness of the surface, measured again in each round; or half of that and "
+            "half the point spacing, if that is more.",
+            advanced=True,
+        ),
+    ] = None,
+    edge_length: Annotated[
+        Optional[float],
+        Param(
+            "Edge length",
+            "Facets whose edges are all shorter are not refined.",
+            unit="m",
+            low=0,
+            high=1000,
+            automatic="twice the grid cell size.",
+            advanced=True,
+        ),
+    ] = None,
+    sweep_distance: Annotated[
+        Optional[float],
+        Param(
+            "Sweep distance",
+            "Points at most this far above or below the finished surface are ground too; 0 leaves its nodes only.",
+            unit="m",
+            low=0,
+            high=100,
+            automatic="6 times the roughness of the finished surface, the last third at most a tenth of a cell; where "
+            "a higher flight strip shows, twice that, at most 0.15 m more.",
+            advanced=True,
+        ),
+    ] = None,
+    find_multipath: Annotated[
+        bool,
+        Param(
+            "Find multipath under the ground",
+            "Groups of multipath points 0.5 m and more below the ground become low noise (class 7) instead of pits. "
+            "Small pools and sunken yards that few pulses reached become noise too, so look at the result.",
+            advanced=True,
+        ),
+    ] = False,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Find the ground by letting a triangulated surface grow through the lowest points.
+
+    Ground points get class 2 and, where it is asked for, groups of multipath points under the ground class 7 (low
+    noise). Points of class 7 and 18 (noise) are never used and keep their class, points that were ground before and
+    are not found again become 1 (unclassified), all others keep their class. Classify noise first: points far below
+    the ground pull any ground filter down.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes.
+    return_number, number_of_returns : ndarray of shape (n,), uint8, optional
+        Where given, only last returns start and grow the surface; the final sweep takes all returns in.
+
+    Returns
+    -------
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes, ground 2, low noise 7.
+
+    Raises
+    ------
+    ValueError
+        If fewer than three points are left to look for ground in, all lie on one line, or they are spread so thinly
+        that the cloud is nearly empty.
+
+    Notes
+    -----
+    Seeds make a first TIN: the lowest points of cells that stay when the lowest surface is opened with growing windows.
+    In each round at most one point per facet joins it: the one with the smallest angle to the facet's nodes, if angle
+    and distance to the facet are under the thresholds. The distance threshold is estimated in each round from the
+    residuals of the nodes over the plane of their neighbors, and allows for the point spacing; the largest angle is
+    fixed. It ends when hardly any point joins. Distances are measured across the facet, so that slopes don't loosen or
+    tighten them. Free-standing segments, with steps down all round, are excluded from the seeds and from densification.
+
+    A point that lies too high above its facet is tried again at its mirror image about the facet's highest node, if
+    that is a seed: where the surface beyond is nearly level and has the image, the point is the edge of a terrace.
+
+    The final sweep adds the points within the noise of the finished surface, which the paper leaves unclassified.
+    Where strips overlap that were not adjusted to one another, the surface follows the lower one. The points of the
+    other are told from plants by the empty air over them, and are ground too.
+
+    Multipath points lie under the ground along their beams, and several from one mirror make a pit. A group of points
+    up to 3 m wide, lower by 0.45 m or more than smooth ground all round, is such a pit if no terrain leads down to it
+    and the points do not fill it: other pulses see the ground amid them, they are closer together than pulses are, or
+    fewer than six. Light shafts, cellar stairs and excavations, whose floors stop every pulse, stay ground.
+
+    The kinds of terrain are this stage's own; the steps of lasground by the same names are smaller. 'Classify ground
+    points (TIN, as published 2000)' starts from the seeds of the paper, and has none of the additions.
+
+    References
+    ----------
+    Axelsson, P., 2000. DEM generation from laser scanner data using adaptive TIN models. International Archives of
+    Photogrammetry and Remote Sensing 33 (B4), 110-117.
+    """
+    sampling = sampling or CloudSampling.of(xyz, classification)
+    usable, spacing = usable_points(xyz, classification), sampling.spacing
+    usable = in_plan_order(xyz, usable, spacing)
+    points, last = xyz[usable], last_returns(return_number, number_of_returns, usable)
+    granularity, cell_size = _cell(granularity, cell_size, spacing)
+    edge_length = 2 * cell_size if edge_length is None else edge_length
+    by_terrain = _TERRAINS.get(terrain or "", (None, _ANGLE))
+    size = by_terrain[0] if max_building_size is None else max_building_size
+    angle = by_terrain[1] if iteration_angle is None else iteration_angle
+
+    # 1. Seeds. Free-standing segments may not join either: the surface would climb noisy roofs a step at a time.
+    seeds, stands_free, size = seeds_by_opening(points[last], cell_size, size, monitor.part(0, 0.3), spacing)
+    may_join = last.copy()
+    may_join[last] = ~stands_free
+    terrain = _terrain(size) if terrain is None else terrain
+    monitor.resolved(terrain=terrain, granularity=granularity, max_building_size=size, cell_size=cell_size)
+
+    # 2. The surface grows from them.
+    scale, least = max(cell_size, spacing), sampling.height_resolution
+    rules = JoinRules(angle, iteration_distance, _GROW_BEND * spacing, edge_length, scale, least)
+    surface, distance, _ = grow(points, np.flatnonzero(last)[seeds], may_join, rules, monitor.part(0.3, 0.85))
+
+    # 3. Groups of multipath points under it are no ground.
+    low_noise = np.empty(0, np.int64)
+    if find_multipath:
+        low_noise = false_pits(points, surface.is_node, surface.above(), last, spacing, monitor.part(0.85, 0.9))
+        surface = surface.without(low_noise, monitor.part(0.9, 1))
+
+    # 4. What lies near the finished surface is ground.
+    is_ground, sweep_distance = _sweep(surface, sweep_distance, scale, spacing, least)
+    monitor.resolved(
+        iteration_angle=angle, iteration_distance=distance, edge_length=edge_length, sweep_distance=sweep_distance
+    )
+    if len(low_noise):
+        monitor.resolved(low_noise=len(low_noise))
+    return with_ground(classification, usable[is_ground], usable[low_noise])
+
+
+def _cell(granularity: Optional[str], cell_size: Optional[float], spacing: float) -> tuple[str, float]:
+    """Return the granularity and the cell (m) that go with a point spacing (m)."""
+    if granularity is None:
+        granularity = "fine" if spacing > 1 else "medium"
+    least, cells = _GRANULARITIES[granularity]
+    return granularity, max(least, cells * spacing) if cell_size is None else cell_size
+
+
+def _terrain(size: float) -> str:
+    """Return the kind of terrain whose largest building has room for ``size`` (m), from town on."""
+    kinds = list(_TERRAINS)[list(_TERRAINS).index("town") :]
+    return next((kind for kind in kinds if size <= _TERRAINS[kind][0]), kinds[-1])
+
+
+def _sweep(
+    surface: Surface, distance: Optional[float], scale: float, spacing: float, least: float
+) -> tuple[np.ndarray, float]:
+    """Return which points lie within ``distance`` of the surface or are its nodes, and that distance.
+
+    Where the distance is measured, its bend is tied to ``scale`` (m), and points of higher strips are ground too.
+    """
+    if distance is not None:
+        return surface.within(distance), distance
+    roughness = surface_roughness(surface.nodes, least)
+    distance = min(_SWEEP_DEVIATIONS * roughness, _SWEEP_NOISE * roughness + _SWEEP_BEND * scale)
+    square = distinct(grid_over(surface.points, _REGION * spacing).number(surface.points))[1]
+    return surface.within(distance) | _of_higher_strips(surface.above(), square, distance), distance
+
+
+def _of_higher_strips(above: np.ndarray, square: np.ndarray, distance: float) -> np.ndarray:
+    """Return which points (n,) lie farther ``above`` the surface (m) than ``distance`` because their strip does.
+
+    Squares are numbered from 0, none left out.
+    """
+    top = distance + min(distance, _MAX_MISFIT)
+    higher = (above > distance) & (above <= top)
+    over = (above > top) & (above <= 2 * top)
+    count = [np.bincount(square[band], minlength=square.max() + 1) for band in (higher, over)]
+    return higher & (count[1] <= _MAX_OVER_STRIP * count[0])[square]

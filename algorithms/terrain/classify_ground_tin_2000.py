@@ -1,0 +1,188 @@
+"""Ground points by progressive TIN densification, as published in 2000."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..sampling.cloud_sampling import CloudSampling
+from ..stage import Param, stage
+from .ground_points import in_plan_order, last_returns, usable_points, with_ground
+from .ground_seeds import USUAL_BUILDING, seeds_by_lowest
+from .tin_densification import JoinRules, grow, surface_roughness
+
+# Share of the point spacing by which the surface may bend between points, when they join.
+_GROW_BEND = 0.5
+
+# The final sweep takes points within this many times the roughness of the finished surface.
+_SWEEP_DEVIATIONS = 6.0
+
+# Edge length below which facets are closed: at least this, m, and the point spacing.
+_MIN_EDGE = 2.0
+
+# Distance in plan over which points are mirrored: at least this, m, and the point spacing.
+_MIN_MIRROR_REACH = 1.0
+
+
+@stage(
+    "Classify ground points (TIN, as published 2000)",
+    group="Terrain",
+    tags="ground,filter,terrain,bare earth,DTM,Axelsson,PTD",
+    writes=("classification",),
+)
+def classify_ground_tin_2000(
+    xyz,
+    classification,
+    return_number=None,
+    number_of_returns=None,
+    *,
+    max_building_size: Annotated[
+        float,
+        Param(
+            "Maximum building size",
+            "Cell whose lowest point starts the surface: the shorter side of the largest building. Smaller keeps more "
+            "of narrow hilltops. In lasground, the tool that the authors of 2019 used, it is 5 m in nature, 10 m in "
+            "towns, 25 m in cities and 50 m in the largest cities.",
+            unit="m",
+            low=1,
+            high=1000,
+        ),
+    ] = USUAL_BUILDING,
+    terrain_angle: Annotated[
+        float,
+        Param(
+            "Terrain angle",
+            "Steepest line from a point to the nodes of its facet under which it joins the surface.",
+            unit="°",
+            low=0,
+            high=90,
+            open_low=True,
+            advanced=True,
+        ),
+    ] = 88.0,
+    iteration_angle: Annotated[
+        float,
+        Param(
+            "Iteration angle",
+            "Upper bound of the angle between a facet and the lines to its nodes under which a point joins the "
+            "surface, which is estimated in each round; larger follows steeper breaks and lets more low objects in.",
+            unit="°",
+            low=0,
+            high=90,
+            open_low=True,
+        ),
+    ] = 20.0,
+    iteration_distance: Annotated[
+        Optional[float],
+        Param(
+            "Iteration distance",
+            "Largest distance from its facet at which a point joins the surface.",
+            unit="m",
+            low=0,
+            high=100,
+            open_low=True,
+            automatic="8 times the roughness of the surface, estimated in each round; or half of that and half the "
+            "point spacing, if that is more.",
+            advanced=True,
+        ),
+    ] = None,
+    edge_length: Annotated[
+        Optional[float],
+        Param(
+            "Edge length",
+            "Facets whose edges are all shorter are not refined.",
+            unit="m",
+            low=0,
+            high=1000,
+            automatic="the point spacing, at least 2 m.",
+            advanced=True,
+        ),
+    ] = None,
+    sweep_distance: Annotated[
+        Optional[float],
+        Param(
+            "Sweep distance",
+            "Points at most this far above or below the finished surface are ground too; 0 leaves its nodes only.",
+            unit="m",
+            low=0,
+            high=100,
+            automatic="6 times the roughness of the finished surface.",
+            advanced=True,
+        ),
+    ] = None,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Find the ground by letting a triangulated surface grow from the lowest point of each large cell.
+
+    Ground points get class 2. Points of class 7 and 18 (noise) are never used and keep their class, points that
+    were ground before and are not found again become 1 (unclassified), all others keep their class. Classify
+    noise first: points far below the ground pull the surface down.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes.
+    return_number, number_of_returns : ndarray of shape (n,), uint8, optional
+        Where given, only last returns start and grow the surface; the final sweep takes all returns in.
+
+    Returns
+    -------
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes, ground 2.
+
+    Raises
+    ------
+    ValueError
+        If fewer than three points are left to look for ground in, all lie on one line, or they are spread so thinly
+        that the cloud is nearly empty.
+
+    Notes
+    -----
+    The lowest point of each cell as large as the largest building makes a first TIN. In each round at most one point
+    per facet joins it: the one with the smallest angle to the facet's nodes, if angle and distance to the facet are
+    under the thresholds. Both thresholds are estimated in each round from the nodes: 8 robust standard deviations of
+    their distances from the plane of their neighbors, and of the angles under which these appear from the nearest
+    node. A point that lies too high above its facet is tried again at its mirror image about the facet's highest node,
+    if that is one of the first nodes. Rounds go on until no point qualifies, and every point is tried in each.
+
+    What the papers leave open, or have otherwise: how many deviations the thresholds are; the bound of the angle,
+    without which rough first nodes let the surface climb onto anything; the part of the point spacing that the distance
+    allows for. Facets with short edges are closed, and points near a node don't join, as they add nodes but no shape.
+    The final sweep takes in the points within the noise of the finished surface, as the tools in use do; sweep
+    distance 0 leaves it out.
+
+    References
+    ----------
+    Axelsson, P., 2000. DEM generation from laser scanner data using adaptive TIN models. International Archives of
+    Photogrammetry and Remote Sensing 33 (B4), 110-117.
+    """
+    sampling = sampling or CloudSampling.of(xyz, classification)
+    usable, spacing = usable_points(xyz, classification), sampling.spacing
+    usable = in_plan_order(xyz, usable, spacing)
+    points, last = xyz[usable], last_returns(return_number, number_of_returns, usable)
+    edge_length = max(_MIN_EDGE, spacing) if edge_length is None else edge_length
+    mirror_reach, least = max(_MIN_MIRROR_REACH, spacing), sampling.height_resolution
+
+    seeds = np.flatnonzero(last)[seeds_by_lowest(points[last], max_building_size)]
+    rules = JoinRules(
+        max_angle=iteration_angle,
+        max_distance=iteration_distance,
+        bend=_GROW_BEND * spacing,
+        edge_length=edge_length,
+        mirror_reach=mirror_reach,
+        least=least,
+        estimates_angle=True,
+        terrain_angle=terrain_angle,
+        is_exhaustive=True,
+    )
+    surface, distance, angle = grow(points, seeds, last, rules, monitor.part(0, 0.9))
+    if sweep_distance is None:
+        sweep_distance = _SWEEP_DEVIATIONS * surface_roughness(surface.nodes, least)
+    monitor.resolved(iteration_distance=distance, last_angle=angle)
+    monitor.resolved(edge_length=edge_length, sweep_distance=sweep_distance)
+    monitor.progress(1.0)
+    return with_ground(classification, usable[surface.within(sweep_distance)])

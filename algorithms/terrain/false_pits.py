@@ -1,0 +1,274 @@
+"""Groups of multipath points under the ground: pits that no pulse but a few stray ones saw.
+
+The range of a pulse that took a detour is too long, so that its point lies under the surface along the beam. Several of
+them, from one mirror, make a pit: lower than the ground on all sides, with no terrain that leads down to it. A true pit
+(a shaft, a cellar stair, an excavation) shows its floor to every pulse that enters it. That tells the two apart.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..geometry.grid import connected_cells, distinct, find_cells, grid_over
+from ..geometry.tin import node_residuals
+from ..packages import spatial
+from ..stage import Monitor
+from ..threads import in_chunks
+
+# Least depth under the ground (m): less is grass, ruts, curbs and the scanner's own noise.
+_DEPTH = 0.45
+
+# The same in point spacings, if that is more: the ground bends unseen between points.
+_DEPTH_SPACINGS = 0.4
+
+# The same in standard deviations of the ground around, if that is more: rough ground has true hollows.
+_DEPTH_DEVIATIONS = 6.0
+
+# Deviation (m) of the ground around from which on it is too rough for a pit to stand out from it.
+_ROUGH = 0.25
+
+# Points of the smallest group.
+_GROUP_POINTS = 3
+
+# Depth (m) under the ground of one or two points that are noise: shallower, they are as likely a gutter or a hollow.
+_SINGLE_DEPTH = 1.0
+
+# Nodes whose plane is the level of the ground around a suspect: enough that a group is a minority of them.
+_AROUND = 32
+
+# Rounds in which nodes far off their plane lose weight: planes change by millimeters then.
+_ROUNDS = 8
+
+# Residual (m) up to which a node has its full weight: about the noise of a scanner.
+_FULL_WEIGHT = 0.05
+
+# Suspects whose planes are fitted at once: their arrays stay small beside the cloud.
+_CHUNK = 20_000
+
+# Extent in plan (m) of the widest group: mirrors are panes, cars and wet spots.
+_WIDEST = 3.0
+
+# The same in point spacings, if that is more.
+_WIDEST_SPACINGS = 3.0
+
+# Points of a group lie in cells of this side (m) that touch.
+_LINK = 0.5
+
+# The same in point spacings, if that is more.
+_LINK_SPACINGS = 1.5
+
+# Width (m) of the rim around a group that must be ground.
+_RIM = 2.0
+
+# The same in point spacings, if that is more.
+_RIM_SPACINGS = 3.0
+
+# Sectors around a group in which ground is looked for.
+_SECTORS = 8
+
+# Sectors that must have some: half of them, for beyond a wall no ground is seen.
+_LEAST_SECTORS = 4
+
+# Share of the points on the rim that may lie between ground and group: more of them are terrain that leads down.
+_LEADS_DOWN = 0.05
+
+# Fewer points than this are no floor: whether they fill a pit can't be told.
+_FLOOR_POINTS = 6
+
+# Points on the ground amid a floor, as a share of its pulses: these see a true floor or the ground, and not both.
+_MIXED = 0.15
+
+# Standard deviations by which a floor may have more points than its area takes: more of them are a mirror's.
+_CROWDED_DEVIATIONS = 2.0
+
+
+def false_pits(
+    points: np.ndarray, is_node: np.ndarray, above: np.ndarray, is_last: np.ndarray, spacing: float, monitor: Monitor
+) -> np.ndarray:
+    """Return the points that are groups of multipath points under the ground.
+
+    Parameters
+    ----------
+    points : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    is_node : ndarray of shape (n,), bool
+        Nodes of the surface of the ground, which pits draw down.
+    above : ndarray of shape (n,), float64
+        Height over that surface, m.
+    is_last : ndarray of shape (n,), bool
+        Last returns: others are never under the ground.
+    spacing : float
+        Point spacing, m.
+    monitor : Monitor
+        Receives progress.
+
+    Returns
+    -------
+    ndarray of shape (m,), int64
+        Indices of the points, ascending.
+    """
+    depth = max(_DEPTH, _DEPTH_SPACINGS * spacing)
+    sunk, ground = _sunk(points, is_node, above, is_last, depth)
+    if not len(sunk) or len(ground) < _AROUND:
+        return np.empty(0, np.int64)
+    level = _levels(points[ground], points[sunk], monitor)
+    limit = np.maximum(depth, _DEPTH_DEVIATIONS * level.deviation)
+    is_deep = (points[sunk, 2] < level.height - limit) & (level.deviation < _ROUGH)
+    if not is_deep.any():
+        return np.empty(0, np.int64)
+    near = _Near.around(points, is_last, sunk[is_deep], level.take(is_deep), limit[is_deep], spacing)
+    found = [group for group in near.groups() if near.is_false(group)]
+    return np.sort(near.rows[np.concatenate(found)]) if found else np.empty(0, np.int64)
+
+
+def _sunk(
+    points: np.ndarray, is_node: np.ndarray, above: np.ndarray, is_last: np.ndarray, depth: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the indices of the points that may lie under the ground, and of the nodes that are ground beside them."""
+    nodes = np.flatnonzero(is_node)
+    # In a group, some neighbors of a node are low as well and pull their plane down.
+    is_low = node_residuals(points[nodes]) < -depth / 2
+    below = np.flatnonzero((above < -depth) & is_last & ~is_node)
+    return np.append(nodes[is_low], below), nodes[~is_low]
+
+
+@dataclass(frozen=True)
+class _Levels:
+    """The ground around some places: its height (m,) there, slope (m, 2) and deviation (m,), in meters."""
+
+    height: np.ndarray
+    slope: np.ndarray
+    deviation: np.ndarray
+
+    def take(self, chosen: np.ndarray) -> _Levels:
+        """Return some of them."""
+        return _Levels(self.height[chosen], self.slope[chosen], self.deviation[chosen])
+
+
+def _levels(ground: np.ndarray, places: np.ndarray, monitor: Monitor) -> _Levels:
+    """Return the planes of the nodes ``ground`` (k, 3) around places (m, 3), on which most of them agree."""
+    tree = spatial.cKDTree(ground[:, :2])
+    made = _Levels(np.empty(len(places)), np.empty((len(places), 2)), np.empty(len(places)))
+
+    def fit(rows: np.ndarray) -> None:
+        off = ground[tree.query(places[rows, :2], _AROUND)[1]] - places[rows, None]
+        design = np.concatenate([off[..., :2], np.ones((*off.shape[:2], 1))], axis=2)
+        weight = np.ones(off.shape[:2])
+        for _ in range(_ROUNDS):
+            # A whisker on the diagonal keeps collinear nodes solvable.
+            normal = np.einsum("mki,mk,mkj->mij", design, weight, design) + 1e-6 * np.eye(3)
+            right = np.einsum("mki,mk,mk->mi", design, weight, off[..., 2])
+            plane = np.linalg.solve(normal, right[..., None])[..., 0]
+            residual = np.abs(off[..., 2] - np.einsum("mki,mi->mk", design, plane))
+            # Least sum of absolute residuals: a few nodes far off do not count for more than others.
+            weight = 1 / np.maximum(residual, _FULL_WEIGHT)
+        made.height[rows], made.slope[rows] = places[rows, 2] + plane[:, 2], plane[:, :2]
+        made.deviation[rows] = 1.4826 * np.median(residual, axis=1)
+
+    in_chunks(fit, np.arange(len(places)), _CHUNK, monitor)
+    return made
+
+
+@dataclass(frozen=True)
+class _Near:
+    """The last returns near the points that lie under the ground.
+
+    Attributes
+    ----------
+    rows : ndarray of shape (m,), int64
+        Their indices in the cloud.
+    xyz : ndarray of shape (m, 3), float64
+        Their coordinates, m.
+    height : ndarray of shape (m,), float64
+        Their height over the ground around, m.
+    limit : ndarray of shape (m,), float64
+        Depth from which on they are under it, m.
+    spacing : float
+        Point spacing of the cloud, m.
+    """
+
+    rows: np.ndarray
+    xyz: np.ndarray
+    height: np.ndarray
+    limit: np.ndarray
+    spacing: float
+
+    @classmethod
+    def around(
+        cls,
+        points: np.ndarray,
+        is_last: np.ndarray,
+        deep: np.ndarray,
+        level: _Levels,
+        limit: np.ndarray,
+        spacing: float,
+    ) -> _Near:
+        """Return the last returns as near to the ``deep`` points as those of a group and its rim are."""
+        reach = max(_WIDEST, _WIDEST_SPACINGS * spacing) + max(_RIM, _RIM_SPACINGS * spacing)
+        grid = grid_over(points, reach)
+        cells = np.unique(grid.number(points[deep])[:, None] + [0, *grid.around])
+        rows = np.flatnonzero(find_cells(cells, grid.number(points))[1] & is_last)
+        distance, nearest = spatial.cKDTree(points[deep, :2]).query(points[rows, :2], distance_upper_bound=reach)
+        rows, nearest = rows[np.isfinite(distance)], nearest[np.isfinite(distance)]
+        off = points[rows] - points[deep[nearest]]
+        height = points[rows, 2] - level.height[nearest] - np.einsum("mi,mi->m", off[:, :2], level.slope[nearest])
+        return cls(rows, points[rows], height, limit[nearest], spacing)
+
+    @cached_property
+    def _tree(self):  # noqa: ANN202 - scipy is imported when first used
+        return spatial.cKDTree(self.xyz[:, :2])
+
+    def groups(self) -> list[np.ndarray]:
+        """Return the groups of points under the ground, by their places here."""
+        low = np.flatnonzero(self.height < -self.limit)
+        grid = grid_over(self.xyz[low], max(_LINK, _LINK_SPACINGS * self.spacing))
+        cells, which = distinct(grid.number(self.xyz[low]))
+        n_groups, group = connected_cells(grid, cells)
+        order = np.argsort(group[which], kind="stable")
+        ends = np.searchsorted(group[which][order], np.arange(1, n_groups))
+        return np.split(low[order], ends)
+
+    def is_false(self, group: np.ndarray) -> bool:
+        """Return whether a group is small, has ground all round, and does not fill its pit."""
+        plan = self.xyz[group, :2]
+        if np.ptp(plan, axis=0).max() > max(_WIDEST, _WIDEST_SPACINGS * self.spacing):
+            return False
+        if len(group) < _GROUP_POINTS and self.height[group].max() > -_SINGLE_DEPTH:
+            return False
+        rim = self._rim(group)
+        is_ground = np.abs(self.height[rim]) <= self.limit[rim] / 2
+        is_between = self.height[rim] < -self.limit[rim] / 2
+        if is_between.sum() > _LEADS_DOWN * is_ground.sum():
+            return False
+        x, y = (self.xyz[rim[is_ground], :2] - plan.mean(axis=0)).T
+        sectors = np.unique(np.floor(np.arctan2(y, x) / (2 * np.pi) * _SECTORS))
+        return len(sectors) >= _LEAST_SECTORS and not self._is_floor(plan, self.xyz[rim[is_ground], :2])
+
+    def _rim(self, group: np.ndarray) -> np.ndarray:
+        """Return the places of the points around those of a group."""
+        width = max(_RIM, _RIM_SPACINGS * self.spacing)
+        found = self._tree.query_ball_point(self.xyz[group, :2], width)
+        return np.setdiff1d(np.concatenate(found).astype(np.int64), group)
+
+    def _is_floor(self, plan: np.ndarray, ground: np.ndarray) -> bool:
+        """Return whether points (m, 2) fill the pit that they make, and those of the ground (k, 2) lie around it."""
+        if len(plan) < _FLOOR_POINTS or np.linalg.matrix_rank(plan - plan[0], tol=1e-6) < 2:
+            return False
+        hull = spatial.ConvexHull(plan)
+        inside = (ground @ hull.equations[:, :2].T + hull.equations[:, 2] <= 0).all(axis=1)
+        density = self._density(plan.mean(axis=0))
+        # Points of a floor have as much room beyond the outermost ones as between others. Of hulls in plan Qhull calls
+        # the perimeter their area.
+        step = density**-0.5
+        expected = density * (hull.volume + hull.area * step / 2 + np.pi * step**2 / 4)
+        is_crowded = len(plan) > expected + _CROWDED_DEVIATIONS * np.sqrt(expected)
+        return inside.sum() <= _MIXED * min(len(plan), density * hull.volume) and not is_crowded
+
+    def _density(self, place: np.ndarray) -> float:
+        """Return the density of last returns around a place (2,), points/m², at least that of the cloud."""
+        radius = max(_RIM, _RIM_SPACINGS * self.spacing)
+        count = self._tree.query_ball_point(place, radius, return_length=True)
+        return max(count / (np.pi * radius**2), self.spacing**-2)

@@ -1,0 +1,390 @@
+"""Segments of the lowest surface that stand free: roofs of any size, told from hills by the steps at their edges."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Optional
+
+import numpy as np
+
+from ..geometry.adjacent_cells import adjacent_cells
+from ..geometry.groups import components
+from ..packages import ndimage
+from ..stage import Monitor
+
+# Least height (m) of a step: lower than any eave.
+_STEP = 1.0
+
+# Least slope (tangent) of a step from cell to cell or point to point: 45°, steeper than soil.
+_STEEP = 1.0
+
+# Least height (m) of the steps around a segment that is wider than usual buildings: quays are lower.
+_HALL_STEP = 2.0
+
+# Share of its open edge on which a free-standing segment has steps down: the rest is trees against its walls.
+_FREE_EDGE = 0.9
+
+# Share of its edge that must be open, that is neither hidden behind what is higher nor too rough to tell.
+_OPEN_EDGE = 0.4
+
+# Share of its outline, less what the end of the cloud cuts off, that must be open if much of it is cut off.
+_OPEN_IF_CUT = 0.7
+
+# Share of its steps down that must be as high as its rule asks for: beside the others a wing may be.
+_HIGH = 0.5
+
+# Share of its steps down that must face others, those to the west some to the east: a terrace steps down on one side.
+_FACING = 0.2
+
+# Share of its open edge on which each part of a hall has steps down: more than half, less than a free-standing one.
+_PART_EDGE = 0.5
+
+# Share of its edge beside a roof no lower than itself from which on a rough cell or group of cells is on that roof.
+_ON_ROOF = 0.5
+
+# Sides of a cell: along both axes, both ways.
+_SIDES = 4
+
+# Fewest cells of a segment; smaller ones are too rough to tell.
+_LEAST_CELLS = 4
+
+# Share of its area on which a wide segment may carry free-standing ones, or else it is terrain: chimneys and machines
+# take up less of a roof.
+_CARRIES = 0.1
+
+# Height (m) of the steps around a wide segment from which on it is a podium, whatever it carries: quays and terraces
+# are lower.
+_HIGHEST_QUAY = 4.0
+
+
+@dataclass(frozen=True)
+class _CutRule:
+    """What a segment needs to be a roof that the end of the cloud cuts off. Fitted on tiles cut out of real clouds.
+
+    Attributes
+    ----------
+    most_cut : float
+        Largest share of its outline that the end of the cloud may be.
+    least_step : float
+        Least height of most of its steps, as a multiple of that of any step: the more of it is cut off, the higher,
+        since quays, terraces and slopes are no walls.
+    open_share : float
+        Share of its edge, the end of the cloud included or not, that must be open.
+    is_open_of_rest : bool
+        Whether that is a share of the edge that is left, rather than of all.
+    must_face : bool
+        Whether steps have to face one another however much is cut off: at a corner of the cloud none do.
+    """
+
+    most_cut: float
+    least_step: float
+    open_share: float
+    is_open_of_rest: bool
+    must_face: bool
+
+
+# Share of its outline up to which a segment that the end of the cloud cuts off is judged as a whole one: one side of
+# four, and a little.
+_HARDLY_CUT = 0.35
+
+_CUT_RULES = (
+    # One side is cut off: as for a whole one.
+    _CutRule(_HARDLY_CUT, least_step=1.0, open_share=_OPEN_EDGE, is_open_of_rest=False, must_face=True),
+    # Two sides are cut off at most, so that those left still face one another.
+    _CutRule(0.5, least_step=2.0, open_share=_OPEN_IF_CUT, is_open_of_rest=True, must_face=True),
+    # A corner of a roof in a corner of the cloud, with the walls of a house of two floors.
+    _CutRule(0.55, least_step=4.0, open_share=_OPEN_IF_CUT, is_open_of_rest=True, must_face=False),
+    # Less than half of its outline is left, with the walls of a high house.
+    _CutRule(0.7, least_step=6.0, open_share=_OPEN_IF_CUT, is_open_of_rest=True, must_face=False),
+)
+
+
+@dataclass(frozen=True)
+class _Lengths:
+    """Lengths of the edges of segments (s,), in cells.
+
+    Attributes
+    ----------
+    whole : ndarray of shape (s,), int64
+        All of it but the end of the cloud.
+    open : ndarray of shape (s,), int64
+        What nothing hides of it.
+    down : ndarray of shape (4, s), int64
+        Steps down to each side.
+    """
+
+    whole: np.ndarray
+    open: np.ndarray
+    down: np.ndarray
+
+    @property
+    def all_down(self) -> np.ndarray:
+        """Steps down (s,) to any side."""
+        return self.down.sum(axis=0)
+
+    @property
+    def facing(self) -> np.ndarray:
+        """Steps down (s,) that face others."""
+        # Sides come along each axis both ways.
+        return 2 * np.minimum(self.down[::2], self.down[1::2]).sum(axis=0)
+
+
+@dataclass(frozen=True)
+class _Edges:
+    """The edges of segments, cell by cell and side by side.
+
+    Attributes
+    ----------
+    own, other : ndarray of shape (e,), int
+        Segment on this and on the other side.
+    step : ndarray of shape (e,), float64
+        How much higher this side is (m).
+    side : ndarray of shape (e,), int64
+        Direction to the other side, in the order of ``adjacent_cells``.
+    """
+
+    own: np.ndarray
+    other: np.ndarray
+    step: np.ndarray
+    side: np.ndarray
+
+    def lengths(self, is_free: np.ndarray, least_step: np.ndarray) -> _Lengths:
+        """Return the lengths of edges, with steps of at least some height (s,) (m).
+
+        Free-standing segments (s,) and rough cells hide the edges beside them, unless these are steps down.
+        """
+        count = len(is_free)
+        is_down = self.step >= least_step[self.own]
+        is_hidden = ~is_down & (is_free[self.other] | (self.other == 0))
+        whole = np.bincount(self.own, minlength=count)
+        is_open = np.bincount(self.own[~is_hidden], minlength=count)
+        by_side = np.bincount(self.own[is_down] + count * self.side[is_down], minlength=_SIDES * count)
+        return _Lengths(whole, is_open, by_side.reshape(_SIDES, count))
+
+
+@dataclass(frozen=True)
+class _Segments:
+    """Numbered segments of a surface, from 1; 0 is what is too rough.
+
+    Attributes
+    ----------
+    number : ndarray of shape (rows, columns), int
+        Segment of each cell.
+    sides : ndarray of shape (2, s), int64
+        Sides of each segment's box, in cells.
+    edges : _Edges
+        Where segments are beside others.
+    ends : ndarray of shape (s,), float64
+        Length of each one's edge that is the end of the cloud, in cells.
+    """
+
+    number: np.ndarray
+    sides: np.ndarray
+    edges: _Edges
+    ends: np.ndarray
+
+    @property
+    def width(self) -> np.ndarray:
+        """Shorter side (s,) of each segment's box, in cells."""
+        return self.sides.min(axis=0)
+
+
+def find_free_standing(
+    surface: np.ndarray,
+    cell_size: float,
+    usual: float,
+    largest: float = np.inf,
+    apart: float = 0.0,
+    monitor: Optional[Monitor] = None,
+) -> tuple[np.ndarray, float]:
+    """Find the smooth segments of a surface that are bounded by steps down all round.
+
+    Parameters
+    ----------
+    surface : ndarray of shape (rows, columns), float64
+        Lowest elevation of each cell, m; NaN beyond the end of the cloud.
+    cell_size : float
+        m.
+    usual : float
+        Shorter side (m) up to which low steps will do.
+    largest : float
+        Shorter side (m) over which nothing is taken for an object.
+    apart : float
+        Distance of the points (m), where that is more than a cell: between two of them slopes look like steps.
+    monitor : Monitor, optional
+        Receives progress.
+
+    Returns
+    -------
+    is_free : ndarray of shape (rows, columns), bool
+        Cells of such segments, on terrain of any slope.
+    size : float
+        Shorter side (m) of the largest.
+
+    Notes
+    -----
+    Segments wider than usual buildings are examined more closely: parts of a hall are judged together, and cells on its
+    roof that are too rough to tell belong to it. Of smaller segments windows see the whole, unless the end of the cloud
+    cuts them off: the more of one is cut off, the higher its walls must be.
+    """
+    monitor = monitor or Monitor()
+    least = max(_STEP, _STEEP * max(cell_size, apart))
+    usual_cells, largest_cells = usual / cell_size, largest / cell_size
+    number = _smooth_segments(surface, least)
+    monitor.progress(0.3)
+    segments = _measured(surface, number)
+    is_free = _are_free_standing(segments, least, usual_cells, largest_cells)
+    monitor.progress(0.5)
+    # Neither half of a hall that a row of skylights cuts in two is free-standing while the other is not, nor is a hall
+    # beside a wing that is hardly lower. Windows don't see the whole of a smaller one that the cloud's end cuts off.
+    hall = _reunited(segments, is_free, least)
+    is_hall = (_box_sides(hall).min(axis=0) > usual_cells) | (_ends(surface, hall, hall.max() + 1) > 0)
+    in_hall = is_hall[hall] & (hall > 0)
+    segments = _measured(surface, np.where(in_hall, len(is_free) + hall, number))
+    monitor.progress(0.7)
+    is_free = _are_free_standing(segments, least, usual_cells, largest_cells)
+    monitor.progress(0.9)
+    cells = is_free[segments.number]
+    cells |= _on_roof(surface, segments.number == 0, cells & in_hall, least)
+    monitor.progress(1.0)
+    return cells, float(segments.width[is_free].max(initial=0.0)) * cell_size
+
+
+def _measured(surface: np.ndarray, number: np.ndarray) -> _Segments:
+    """Return the segments of a surface with the numbers of its cells."""
+    sides = _box_sides(number)
+    return _Segments(number, sides, _edges(surface, number), _ends(surface, number, sides.shape[1]))
+
+
+def _are_free_standing(segments: _Segments, least: float, usual: float, largest: float) -> np.ndarray:
+    """Return which segments (s,) are free-standing.
+
+    ``least`` is the least height of a step (m), ``usual`` and ``largest`` are widths in cells.
+    """
+    is_wide = segments.width > usual
+    least_step = np.where(is_wide, max(_HALL_STEP, least), least)
+    least_step[segments.width > largest] = np.inf
+    is_free = np.zeros(len(segments.width), bool)
+    # The highest come first; what is lower beside their walls is judged by the rest of its edge.
+    while True:
+        found = _bounded_by_steps(segments, is_free, least_step, least) & ~is_free
+        if not found.any():
+            break
+        is_free |= found
+    # An island with houses on it has quays all round; what has higher walls carries towers.
+    podium_step = np.full(len(is_free), max(_HIGHEST_QUAY, least))
+    may_be_island = is_free & is_wide & ~_bounded_by_steps(segments, is_free, podium_step, least)
+    return is_free & ~_carry_others(segments.number, is_free, np.flatnonzero(may_be_island))
+
+
+def _bounded_by_steps(segments: _Segments, is_free: np.ndarray, least_step: np.ndarray, least: float) -> np.ndarray:
+    """Return which segments (s,) have steps down on most of the edge that nothing hides, and enough of that.
+
+    Parameters
+    ----------
+    segments : _Segments
+        The segments.
+    is_free : ndarray of shape (s,), bool
+        Those that are known to be free-standing: they hide the edges of others.
+    least_step : ndarray of shape (s,), float64
+        Least height (m) of the steps of each.
+    least : float
+        Least height (m) of any step, of which the heights of walls that are cut off are multiples.
+    """
+    lengths = segments.edges.lengths(is_free, least_step)
+    down = lengths.all_down
+    # The outline of its box is no longer for a jagged edge, nor for other segments inside.
+    outline = np.minimum(lengths.whole + segments.ends, 2 * segments.sides.sum(axis=0))
+    found = np.zeros(len(is_free), bool)
+    for rule in _CUT_RULES:
+        high = segments.edges.lengths(is_free, np.maximum(least_step, rule.least_step * least))
+        faces = high.facing >= _FACING * high.all_down
+        may_be = faces | ((segments.ends > _HARDLY_CUT * outline) & (not rule.must_face))
+        edge = outline - segments.ends if rule.is_open_of_rest else lengths.whole + segments.ends
+        is_seen = (segments.ends <= rule.most_cut * outline) & (lengths.open >= rule.open_share * edge)
+        found |= may_be & is_seen & (high.all_down >= _HIGH * down)
+    return found & (down > 0) & (down >= _FREE_EDGE * lengths.open)
+
+
+def _smooth_segments(surface: np.ndarray, least: float) -> np.ndarray:
+    """Label (from 1) cells that join without a step; 0 are rough cells that have steps on all sides or nearly so."""
+    beside = np.isnan(surface)
+    for here, other in adjacent_cells(surface.ndim):
+        beside[here] |= np.abs(surface[here] - surface[other]) >= least
+    segment, _ = ndimage.label(~beside)
+    small = np.bincount(segment.ravel()) < _LEAST_CELLS
+    segment[small[segment]] = 0
+    # The cells at a step go to the segment beside them from which they differ least.
+    for _ in range(2):
+        best = np.full(surface.shape, least)
+        grown = segment.copy()
+        for here, other in adjacent_cells(surface.ndim):
+            step = np.abs(surface[here] - surface[other])
+            takes = (segment[here] == 0) & (segment[other] > 0) & (step < best[here])
+            best[here] = np.where(takes, step, best[here])
+            grown[here] = np.where(takes, segment[other], grown[here])
+        segment = grown
+    return segment
+
+
+def _reunited(segments: _Segments, is_free: np.ndarray, least: float) -> np.ndarray:
+    """Give segments that meet without the step of a hall one number, if most of the edge of each steps down."""
+    count = len(is_free)
+    lengths = segments.edges.lengths(is_free, np.full(count, least))
+    is_part = ~is_free & (lengths.all_down > _PART_EDGE * lengths.open)
+    own, other = segments.edges.own, segments.edges.other
+    is_level = is_part[own] & is_part[other] & (np.abs(segments.edges.step) < max(_HALL_STEP, least))
+    # Components are numbered by their first segments: that of 0, which is no part, stays 0.
+    return components(own[is_level], other[is_level], count)[1][segments.number]
+
+
+def _on_roof(surface: np.ndarray, is_rough: np.ndarray, is_roof: np.ndarray, least: float) -> np.ndarray:
+    """Return the rough cells on a roof: machines and skylights, but no bushes at its walls."""
+    component, count = ndimage.label(is_rough & ~np.isnan(surface))
+    whole, on_roof = np.zeros((2, count + 1))
+    for here, other in adjacent_cells(surface.ndim):
+        edge = (component[here] > 0) & ~is_rough[other]
+        no_higher = edge & is_roof[other] & (surface[other] - surface[here] < least)
+        whole += np.bincount(component[here][edge], minlength=count + 1)
+        on_roof += np.bincount(component[here][no_higher], minlength=count + 1)
+    return (on_roof > _ON_ROOF * whole)[component]
+
+
+def _box_sides(segment: np.ndarray) -> np.ndarray:
+    """Return the sides (2, number of segments) of each segment's box, in cells."""
+    boxes = ndimage.find_objects(segment)
+    return np.array([(0, 0)] + [tuple(side.stop - side.start for side in box) if box else (0, 0) for box in boxes]).T
+
+
+def _edges(surface: np.ndarray, segment: np.ndarray) -> _Edges:
+    """Return the edges of all segments but 0."""
+    parts = []
+    for side, (here, other) in enumerate(adjacent_cells(surface.ndim)):
+        is_edge = (segment[here] > 0) & (segment[here] != segment[other]) & ~np.isnan(surface[other])
+        step = surface[here][is_edge] - surface[other][is_edge]
+        parts.append((segment[here][is_edge], segment[other][is_edge], step, np.full(len(step), side)))
+    return _Edges(*(np.concatenate(part) for part in zip(*parts)))
+
+
+def _ends(surface: np.ndarray, segment: np.ndarray, count: int) -> np.ndarray:
+    """Return how much of each segment's edge is the end of the surface, in cells."""
+    ends = np.zeros(count)
+    for here, other in adjacent_cells(segment.ndim):
+        ends += np.bincount(segment[here][np.isnan(surface[other])], minlength=count)
+    for axis in range(segment.ndim):
+        for side in (0, -1):
+            ends += np.bincount(np.take(segment, side, axis).ravel(), minlength=count)
+    return ends
+
+
+def _carry_others(segment: np.ndarray, is_free: np.ndarray, candidates: np.ndarray) -> np.ndarray:
+    """Return which candidates among the segments (s,) have free-standing ones inside on too much of their area."""
+    count = len(is_free)
+    area = np.bincount(segment.ravel(), minlength=count)
+    boxes = ndimage.find_objects(segment, count - 1)
+    carries = np.zeros(count, bool)
+    for number in candidates:
+        box = boxes[number - 1]
+        inside = ndimage.binary_fill_holes(segment[box] == number) & (segment[box] != number)
+        carries[number] = (inside & is_free[segment[box]]).sum() > _CARRIES * area[number]
+    return carries

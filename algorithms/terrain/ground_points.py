@@ -1,0 +1,66 @@
+"""The points that a ground filter looks at, and the classes that it returns."""
+
+from __future__ import annotations
+
+from typing import Optional
+
+import numpy as np
+
+from ..cloud.asprs import NOISE, PointClass
+from ..geometry.grid import grid_over
+from ..sampling.height_resolution import LEAST_RESOLUTION
+
+# Side of the squares by which points are ordered, in point spacings: a few hundred points each, which fit a cache.
+_SQUARE_SPACINGS = 10.0
+
+# Points that a plane needs.
+_MIN_POINTS = 3
+
+
+def usable_points(xyz: np.ndarray, classification: np.ndarray) -> np.ndarray:
+    """Return the indices of the points that are not noise; refuse those that span no area in plan."""
+    usable = np.flatnonzero(~np.isin(classification, NOISE))
+    if len(usable) < _MIN_POINTS:
+        raise ValueError(
+            f"Ground needs at least 3 points that are not noise, got {len(usable)}; choose a larger cloud."
+        )
+    plan = xyz[usable, :2]
+    centered = plan - plan.mean(axis=0)
+    extent = np.linalg.svd(centered.T @ centered, compute_uv=False)
+    if extent[1] <= LEAST_RESOLUTION**2 * len(usable):
+        raise ValueError(
+            f"All {len(usable)} points lie on one line or at one place in plan; ground needs an area, "
+            "choose a larger cloud, or reproject this one to meters if its coordinates are degrees."
+        )
+    return usable
+
+
+def in_plan_order(xyz: np.ndarray, usable: np.ndarray, spacing: float) -> np.ndarray:
+    """Return the indices ``usable`` sorted by squares in plan: points near in plan are near in memory then.
+
+    Triangulation and searches are faster, far more so where the order was random. ``spacing`` is that of the points, m.
+    """
+    squares = grid_over(xyz[usable], _SQUARE_SPACINGS * spacing)
+    return usable[np.argsort(squares.number(xyz[usable]), kind="stable")]
+
+
+def last_returns(
+    return_number: Optional[np.ndarray], number_of_returns: Optional[np.ndarray], usable: np.ndarray
+) -> np.ndarray:
+    """Return which of the usable points are last returns; all are where the returns are not numbered."""
+    if return_number is None or number_of_returns is None:
+        return np.ones(len(usable), bool)
+    last = return_number[usable] >= number_of_returns[usable]
+    return last if last.sum() >= _MIN_POINTS else np.ones(len(usable), bool)
+
+
+def with_ground(classification: np.ndarray, ground: np.ndarray, low_noise: Optional[np.ndarray] = None) -> np.ndarray:
+    """Return the classes with the points of the indices ``ground`` as ground, and no others.
+
+    Those of the indices ``low_noise``, where given, become low noise.
+    """
+    classes = np.where(classification == PointClass.GROUND, np.uint8(PointClass.UNCLASSIFIED), classification)
+    classes[ground] = PointClass.GROUND
+    if low_noise is not None:
+        classes[low_noise] = PointClass.LOW_NOISE
+    return classes.astype(np.uint8)

@@ -1,0 +1,251 @@
+"""Seeds of the terrain: points that are ground beyond doubt, from which a TIN can grow."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Optional
+
+import numpy as np
+
+from ..geometry.grid import plan_box, refuse_sparse, turned_in_plan
+from ..geometry.raster_opening import open_surface
+from ..stage import Monitor
+from .free_standing import find_free_standing
+from .removed_objects import ObjectRemoval, nearest_known
+
+# A pit steeper than this on all sides is multipath, not terrain (5 m deep in a cell of 1 m), unless within so far (m)
+# this share of the cells is as deep: a tenth of the pulses reach the ground of dense forest, far fewer go astray.
+_PIT_SLOPE, _PIT_REACH, _PIT_SHARE = 5.0, 10.0, 0.1
+
+# Cells are looked at one by one up to so far, and in as many steps beyond.
+_PIT_STEPS = 10
+
+# Without a largest building given, windows go up to this size (m); larger halls stand free.
+USUAL_BUILDING = 60.0
+
+# Where cells fall decides on single bushes and roofs, so that they are laid in three directions (°), which decide
+# together. The box of a narrow strip, turned, is more than so many times as large, and hardly filled.
+_TURNS, _MOST_TURNED = (0.0, 30.0, 60.0), 2.5
+
+
+@dataclass
+class Lowest:
+    """Lowest points of cells from ``origin`` on.
+
+    Index (along x, along y) of the lowest point, -1 where empty; size of the cells (m), and the number of each point's.
+    """
+
+    index: np.ndarray
+    origin: np.ndarray
+    cell_size: float
+    cell: np.ndarray
+
+    def points(self, chosen: np.ndarray) -> np.ndarray:
+        """Return the indices of the points of the chosen, occupied cells."""
+        index = self.index[chosen]
+        return index[index >= 0]
+
+    def at_points(self, values: np.ndarray) -> np.ndarray:
+        """Return the value (n,) of each point's cell."""
+        return values.ravel()[self.cell]
+
+
+def lowest_points(xyz: np.ndarray, cell_size: float) -> Lowest:
+    """Return the lowest point of each square cell of ``cell_size`` (m)."""
+    x, y, z = xyz.T
+    origin = plan_box(xyz)[0]
+    row, column = (np.floor((axis - start) / cell_size).astype(np.int32) for axis, start in zip((x, y), origin))
+    shape = int(row.max()) + 1, int(column.max()) + 1
+    cell = np.ravel_multi_index((row, column), shape)
+    least = np.full(shape, np.inf)
+    np.minimum.at(least.ravel(), cell, z)
+    as_low = np.flatnonzero(z == least.ravel()[cell])
+    # The last one that is written stays: ties go to the least x, then y, whatever the order.
+    as_low = as_low[np.lexsort((-y[as_low], -x[as_low]))]
+    index = np.full(shape, -1, np.int64)
+    index.ravel()[cell[as_low]] = as_low
+    return Lowest(index, origin, cell_size, cell)
+
+
+def seeds_by_opening(
+    xyz: np.ndarray, cell_size: float, max_building_size: Optional[float], monitor: Monitor, spacing: float = 0.0
+) -> tuple[np.ndarray, np.ndarray, float]:
+    """Find ground points by opening the lowest surface with growing windows.
+
+    Segments with steps down all round are free-standing objects. So is what a window lowers by more than terrain of the
+    local slope could rise; of that, regions that join the terrain on half of their edge come back, and so do smooth
+    parts that are level with the terrain around.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points (m).
+    cell_size : float
+        Cell of the surface, m.
+    max_building_size : float, optional
+        Least extent of the largest building, m: the last window. None is 60 m, and any size for what stands free.
+    monitor : Monitor
+        Receives progress.
+    spacing : float
+        Point spacing (m), where that is more than a cell.
+
+    Returns
+    -------
+    seeds : ndarray of shape (m,), int64
+        Indices of the seeds.
+    stands_free : ndarray of shape (n,), bool
+        Points of what stands free, or over it: no terrain.
+    size : float
+        Least extent of the largest building that was looked for or found, m.
+
+    Notes
+    -----
+    Progressive opening after Pingel et al. (2013), with a threshold that follows the slope of the result before, a
+    coarse one first; the return of smoothly joined regions is this project's, and so are the segments that
+    stand free. By these, low houses with large roofs on a slope are found, which windows shave down little by little,
+    and halls that no window is large enough for. All this is done on cells that are laid in three directions, which
+    decide together, so that less depends on where cells fall. Narrow strips have one direction.
+
+    References
+    ----------
+    Pingel, T. J., Clarke, K. C., McBride, W. A., 2013. An improved simple morphological filter for the terrain
+    classification of airborne LIDAR data. ISPRS Journal of Photogrammetry and Remote Sensing 77, 21-30.
+    """
+    refuse_sparse(xyz, cell_size)
+    box, slope, views = plan_box(xyz), None, []
+    angles = _TURNS if _is_compact(box) else _TURNS[:1]
+    for done, angle in enumerate(angles):
+        cells = _Cells(turned_in_plan(xyz, angle), box, angle, cell_size, spacing)
+        part = monitor.part(done / len(angles), (done + 1) / len(angles))
+        views.append(_view(cells, max_building_size, slope, part))
+        # The slope changes little from cell to cell: what the first direction measured will do.
+        slope = views[0].slope
+    candidates = views[0].candidates
+    # The first direction is that of the box: it tells best what the end of the cloud cuts off.
+    stands_free = views[0].stands_free | np.logical_and.reduce([view.stands_free for view in views[1:] or views])
+    is_terrain = (sum(view.says_terrain[candidates] for view in views) > 0) & ~stands_free[candidates]
+    return candidates[is_terrain], stands_free, max(max_building_size or USUAL_BUILDING, views[0].size)
+
+
+@dataclass(frozen=True)
+class _View:
+    """What cells tell that are laid in one direction.
+
+    Attributes
+    ----------
+    candidates : ndarray of shape (m,), int64
+        Lowest points of the cells, without pits.
+    says_terrain : ndarray of shape (n,), int8
+        1 for points on or below the lowest surface where it is terrain, 0 over it, -1 where it is an object.
+    stands_free : ndarray of shape (n,), bool
+        Which points lie where it stands free, or over that.
+    size : float
+        Shorter side (m) of the largest that stands free.
+    slope : ndarray of shape (n,), float64
+        Slope of the terrain (rise over run) at each point.
+    """
+
+    candidates: np.ndarray
+    says_terrain: np.ndarray
+    stands_free: np.ndarray
+    size: float
+    slope: np.ndarray
+
+
+@dataclass(frozen=True)
+class _Cells:
+    """Square cells over points that were turned.
+
+    Attributes
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        The points as they are turned, m.
+    box : ndarray of shape (2, 2), float64
+        The least and greatest easting and northing (m) that they had before.
+    angle : float
+        By how much they were turned, °.
+    size, spacing : float
+        Size of the cells and spacing of the points, m.
+    """
+
+    xyz: np.ndarray
+    box: np.ndarray
+    angle: float
+    size: float
+    spacing: float
+
+    def outside(self, lowest: Lowest) -> np.ndarray:
+        """Return which cells lie outside the box."""
+        cos, sin = np.cos(np.radians(self.angle)), np.sin(np.radians(self.angle))
+        middles = (start + self.size * (np.arange(n) + 0.5) for n, start in zip(lowest.index.shape, lowest.origin))
+        x, y = np.meshgrid(*middles, indexing="ij", sparse=True)
+        outside = np.zeros(lowest.index.shape, bool)
+        for place, low, high in zip((cos * x + sin * y, cos * y - sin * x), *self.box):
+            outside |= (place < low - self.size) | (place > high + self.size)
+        return outside
+
+
+def _view(cells: _Cells, max_building_size: Optional[float], slope: Optional[np.ndarray], monitor: Monitor) -> _View:
+    """Return what cells tell; the slope (n,) of the terrain is measured where it is not given."""
+    lowest = lowest_points(cells.xyz, cells.size)
+    surface, unknown = _surface(cells.xyz, lowest, monitor.part(0, 0.1))
+    size, largest = max_building_size or USUAL_BUILDING, max_building_size or np.inf
+    seen = np.where(cells.outside(lowest), np.nan, surface) if cells.angle else surface
+    is_free, found = find_free_standing(seen, cells.size, size, largest, cells.spacing, monitor.part(0.1, 0.3))
+    removal = ObjectRemoval(surface, is_free, size, cells.size, cells.spacing)
+    known = removal.slope(monitor.part(0.3, 0.75)) if slope is None else nearest_known(slope[lowest.index], unknown)
+    is_object = lowest.at_points(removal.objects(known, monitor.part(0.75, 1)))
+    slope = lowest.at_points(known)
+    above = cells.xyz[:, 2] - lowest.at_points(surface)
+    says_terrain = np.where(is_object, -1, above <= removal.rise(slope)).astype(np.int8)
+    # What is seen through a roof as through a pit lies lower than the surface there.
+    stands_free = lowest.at_points(is_free) & (above >= 0)
+    return _View(lowest.points(~unknown), says_terrain, stands_free, found, slope)
+
+
+def _is_compact(box: np.ndarray) -> bool:
+    """Return whether the box around a turned ``box`` (2, 2) is not so much larger that cells over it are too many."""
+    sides = np.ptp(box, axis=0)
+    turns = ((np.cos(angle), np.sin(angle)) for angle in np.radians(_TURNS))
+    return all((cos * sides + sin * sides[::-1]).prod() <= _MOST_TURNED * sides.prod() for cos, sin in turns)
+
+
+def seeds_by_lowest(xyz: np.ndarray, max_building_size: float) -> np.ndarray:
+    """Return the lowest point (its index) of each cell as large as the largest building, as Axelsson does."""
+    refuse_sparse(xyz, max_building_size)
+    lowest = lowest_points(xyz, max_building_size)
+    return lowest.points(lowest.index >= 0)
+
+
+def _surface(xyz: np.ndarray, lowest: Lowest, monitor: Monitor) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lowest surface without gaps and pits, and where these are."""
+    empty = lowest.index < 0
+    height = np.where(empty, np.inf, xyz[lowest.index, 2])
+    unknown = empty | _pits(height, lowest.cell_size, monitor)
+    return nearest_known(height, unknown), unknown
+
+
+def _pits(height: np.ndarray, cell_size: float, monitor: Monitor) -> np.ndarray:
+    """Return which cells hold stray points far below all others around, by their heights (inf where empty).
+
+    Ground seen through the gaps of a forest is as far below the crowns beside it, but other gaps are near.
+    """
+    depth = _PIT_SLOPE * cell_size
+    surface = nearest_known(height, np.isinf(height))
+    pits = (surface + open_surface(-surface, 1) < -depth) & np.isfinite(height)
+    row, column = np.nonzero(pits)
+    reach = max(1, round(_PIT_REACH / cell_size))
+    step = -(-reach // _PIT_STEPS)
+    offsets = step * np.arange(-(reach // step), reach // step + 1)
+    around = np.pad(height, reach, constant_values=np.inf)
+    level = height[row, column] + depth
+    n_deep, n_known = np.zeros((2, len(row)))
+    for done, down in enumerate(offsets, start=1):
+        for right in offsets:
+            other = around[row + reach + down, column + reach + right]
+            n_deep += other < level
+            n_known += np.isfinite(other)
+        monitor.progress(done / len(offsets))
+    # The cell itself is among them.
+    pits[row, column] = n_deep - 1 < _PIT_SHARE * n_known
+    return pits

@@ -1,0 +1,158 @@
+"""Terrain and surface as rasters."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..cloud.asprs import NOISE, PointClass
+from ..geometry.grid import refuse_sparse
+from ..geometry.tiled_tin import TiledTin
+from ..packages import ndimage
+from ..sampling.cloud_sampling import CloudSampling
+from ..stage import Monitor, Param, Raster, RasterSurface, stage
+
+# A cell so many point spacings wide holds four points on average, and one in fifty is empty.
+_CELL_SPACINGS, _LEAST_CELL, _MOST_CELL = 2.0, 0.05, 1000.0
+
+# People choose cells of 1, 2 or 5 times a power of ten.
+_ROUND = np.array([1.0, 2.0, 5.0, 10.0])
+
+# Gaps are filled up to so many cells from the nearest cell with points.
+_GAP_CELLS = 5.0
+
+
+@stage(
+    "Rasterize terrain",
+    group="Terrain",
+    tags="DTM,DSM,nDSM,DEM,CHM,elevation model,raster,GeoTIFF,interpolate,TIN,hillshade",
+    rasters=(
+        Raster("dtm", "Terrain model", "terrain", "m"),
+        Raster("dsm", "Surface model", "terrain", "m"),
+        Raster("ndsm", "Heights above the terrain", "heights", "m"),
+    ),
+)
+def rasterize_terrain(
+    xyz,
+    classification,
+    *,
+    cell_size: Annotated[
+        Optional[float],
+        Param(
+            "Cell size",
+            "Side of a cell of the rasters.",
+            unit="m",
+            low=0.01,
+            high=1000,
+            automatic="twice the point spacing, rounded to 1, 2 or 5 times a power of ten; at least 0.05 m.",
+        ),
+    ] = None,
+    gap_distance: Annotated[
+        Optional[float],
+        Param(
+            "Gap distance",
+            "Cells of the surface model without points are interpolated up to so far from cells with points.",
+            unit="m",
+            low=0,
+            high=10_000,
+            automatic="5 cells.",
+        ),
+    ] = None,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Make rasters of the terrain, of the surface with all that stands on it, and of the difference.
+
+    The terrain model (DTM) is the triangulated surface (TIN) of the ground points (class 2), at the middle of each
+    cell. The surface model (DSM) holds the highest point of each cell. The heights (nDSM) are surface minus terrain.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes; ground is 2, noise (7, 18) is left out.
+
+    Returns
+    -------
+    dtm, dsm, ndsm : RasterSurface
+        Elevations and heights, m, on the same cells; NaN where there is nothing.
+
+    Raises
+    ------
+    ValueError
+        If no point is ground, or the points are spread so thinly that the rasters are nearly empty.
+
+    Notes
+    -----
+    There is no terrain outside the hull of the ground points. Small gaps of the surface (shadows, dark roofs, water)
+    are interpolated linearly between the cells around them; larger ones stay empty.
+
+    References
+    ----------
+    Hrutka, B. P., Siki, Z., Takács, B., 2022, section 2.2.
+    """
+    is_ground = classification == PointClass.GROUND
+    if not is_ground.any():
+        raise ValueError("The cloud has no ground points (class 2); run 'Classify ground points (TIN)' first.")
+    sampling = sampling or CloudSampling.of(xyz, classification)
+    used = xyz[~np.isin(classification, NOISE)]
+    if cell_size is None:
+        cell_size = round_cell_size(_CELL_SPACINGS * sampling.spacing)
+    gap_distance = _GAP_CELLS * cell_size if gap_distance is None else gap_distance
+    monitor.resolved(cell_size=cell_size, gap_distance=gap_distance)
+    refuse_sparse(used, cell_size)
+
+    # Measured from the south-western corner, rounding is the same wherever on Earth that is.
+    corner = np.append(used[:, :2].min(axis=0), 0.0)
+    used, ground = used - corner, xyz[is_ground] - corner
+    columns, rows = (np.floor(used[:, :2].max(axis=0) / cell_size).astype(np.int64) + 1).tolist()
+    middle = _middles(cell_size, rows, columns)
+    dtm = TiledTin(ground).elevation(middle.reshape(-1, 3), monitor.part(0, 0.6)).reshape(rows, columns)
+    if np.isnan(dtm).all():
+        monitor.warn("The ground points span no area: the terrain model is empty.")
+    dsm = _highest(used, cell_size, rows, columns)
+    _fill_gaps(dsm, middle, gap_distance / cell_size, monitor.part(0.6, 1))
+    west, north = float(corner[0]), float(corner[1]) + rows * cell_size
+    return tuple(RasterSurface(values.astype(np.float32), west, north, cell_size) for values in (dtm, dsm, dsm - dtm))
+
+
+def round_cell_size(size: float) -> float:
+    """Return the round number nearest in proportion, from 0.05 to 1000."""
+    power = np.floor(np.log10(size))
+    number = _ROUND[np.argmin(np.abs(np.log(_ROUND * 10**power / size)))]
+    return float(np.clip(float(f"{number * 10**power:.0e}"), _LEAST_CELL, _MOST_CELL))
+
+
+def _middles(size: float, rows: int, columns: int) -> np.ndarray:
+    """Return the middle of each cell (rows, columns, 3) from the south-western corner, at elevation 0."""
+    middle = np.zeros((rows, columns, 3))
+    middle[..., 0] = (np.arange(columns) + 0.5) * size
+    middle[..., 1] = ((rows - np.arange(rows) - 0.5) * size)[:, None]
+    return middle
+
+
+def _highest(points: np.ndarray, size: float, rows: int, columns: int) -> np.ndarray:
+    """Return the elevation of the highest point of each cell (rows, columns), NaN where there is none."""
+    column, from_south = np.floor(points[:, :2] / size).astype(np.int64).T
+    number = (rows - 1 - from_south) * columns + column
+    order = np.argsort(number)
+    cell, start = np.unique(number[order], return_index=True)
+    highest = np.full(rows * columns, np.nan)
+    highest[cell] = np.maximum.reduceat(points[order, 2], start)
+    return highest.reshape(rows, columns)
+
+
+def _fill_gaps(surface: np.ndarray, middle: np.ndarray, reach: float, monitor: Monitor) -> None:
+    """Interpolate, in place, the empty cells at most ``reach`` cells from one that is not, between those around."""
+    empty = np.isnan(surface)
+    gap = empty & (ndimage.distance_transform_edt(empty) <= reach) if empty.any() else empty
+    monitor.progress(0.2)
+    if not gap.any():
+        return
+    # Cells inside the surface have no say in its gaps.
+    rim = ~empty & ndimage.binary_dilation(empty, np.ones((3, 3), bool))
+    nodes = middle[rim]
+    nodes[:, 2] = surface[rim]
+    surface[gap] = TiledTin(nodes).elevation(middle[gap], monitor.part(0.2, 1))

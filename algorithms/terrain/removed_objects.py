@@ -1,0 +1,340 @@
+"""Objects on the lowest surface: what an opening by windows removes and what of it does not join the terrain.
+
+The opening after Pingel et al. (2013) removes cells that are higher than terrain of the local slope could be. Regions
+of removed cells come back if they go on into the terrain around without a step, as banks, spits and hilltops do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..geometry.adjacent_cells import adjacent_cells
+from ..geometry.groups import components
+from ..geometry.raster_opening import open_surface
+from ..packages import ndimage
+from ..stage import Monitor
+
+# Step (m) that terrain may make within any window: kerbs, ruts, tussocks.
+_STEP = 0.1
+
+# Slope (tangent) that terrain may have beside the one measured around it.
+_FLAT_SLOPE = 0.1
+
+# Share of the measured slope that may come on top of it. Fitted on eight of the ISPRS samples.
+_SLOPE_SHARE = 0.4
+
+# Rise (m) that flat terrain may have within a window of any size: less than the lowest of large buildings.
+_FLAT_RISE = 1.0
+
+# Slope (tangent) that is allowed besides while that of the terrain is not known yet.
+_FIRST_SLOPE = 0.1
+
+# Slope (tangent) of a step at the edge of a region up to which the region joins the terrain there.
+_JOIN_SLOPE = 0.3
+
+# Share of the local slope that is added to it.
+_JOIN_SHARE = 0.5
+
+# Share of its open edge on which a region has to join the terrain to be terrain: most of it.
+_JOINED = 0.5
+
+# Share of its whole edge, other objects beside it included, on which it has to. Fitted on eight of the ISPRS samples.
+_JOINED_OF_ALL = 0.25
+
+# Share of a part's area that is no more than a step above the terrain around, from which on it is terrain whatever its
+# edge: objects are off the ground everywhere. Fitted on eight of the ISPRS samples.
+_LEVEL_SHARE = 0.25
+
+# Slope (tangent) of the steps at which such parts end: steeper than paths and lawns, less steep than soil can be.
+_PART_SLOPE = 0.4
+
+# Fewest cells of such a part: of a crown, the lowest leaf in a single cell may be as low as the ground.
+_LEAST_PART = 4
+
+# Slope (tangent) up to which a step beside a slope as steep as itself is the flank of a bank rather than a wall: 63°.
+_STEEPEST_BANK = 2.0
+
+# Slope (tangent) from which on a flank is a roof rather than soil, which lies on up to 45°: 50°, since it looks steeper
+# where lowest points lie unevenly in their cells.
+_STEEPEST_SOIL = 1.2
+
+# Fewest cells over which that slope is measured: the lowest point of a cell may lie anywhere in it.
+_EAVE_CELLS = 2
+
+# Share of the largest window from which on windows remove spits and hilltops rather than houses.
+_LARGE_WINDOW = 0.5
+
+# Factor by which windows grow from one to the next.
+_GROWTH = 1.25
+
+# Distance (m) over which a surface is smoothed before its slope is measured.
+_SLOPE_SMOOTHING = 2.0
+
+# Distance (m) over which the root mean square of slopes is taken: on crests and beside cliffs, where windows remove
+# terrain, it is the slope of the flanks that counts.
+_SLOPE_SCALE = 4.0
+
+
+@dataclass(frozen=True)
+class ObjectRemoval:
+    """The removal of objects from a surface by windows of growing size.
+
+    Attributes
+    ----------
+    surface : ndarray of shape (rows, columns), float64
+        Lowest elevation of each cell, m.
+    is_free_standing : ndarray of shape (rows, columns), bool
+        Cells of objects that are known already; windows leave them out.
+    largest : float
+        Largest window, m.
+    cell_size, spacing : float
+        Size of the cells, and spacing of the points where that is more, m.
+    """
+
+    surface: np.ndarray
+    is_free_standing: np.ndarray
+    largest: float
+    cell_size: float
+    spacing: float = 0.0
+
+    @property
+    def windows(self) -> list[int]:
+        """Radii of the windows, in cells."""
+        return _windows(self.largest / 2 / self.cell_size)
+
+    def slope(self, monitor: Monitor) -> np.ndarray:
+        """Return the slope of the terrain (rise over run), measured twice, each time without the objects before."""
+        first = np.full(self.surface.shape, _FIRST_SLOPE)
+        # Without free-standing objects, a low roof beside a higher one is as narrow as it is.
+        removed = self.is_free_standing | (self.removed_by_opening(first, monitor.part(0, 0.5)) > 0)
+        slope = self._slope_without(removed)
+        return self._slope_without(self._not_joined(slope, monitor.part(0.5, 1)))
+
+    def objects(self, slope: np.ndarray, monitor: Monitor) -> np.ndarray:
+        """Return which cells are objects on terrain of this slope."""
+        objects = self._not_joined(slope, monitor)
+        step = _PART_SLOPE * max(self.cell_size, self.spacing)
+        return _without_level_parts(objects, self.is_free_standing, self.surface, step)
+
+    def rise(self, slope: np.ndarray) -> np.ndarray:
+        """Return how far (m) terrain of such slopes may rise within a cell."""
+        return _STEP + (_FLAT_SLOPE + slope) * self.cell_size
+
+    def removed_by_opening(self, slope: np.ndarray, monitor: Monitor) -> np.ndarray:
+        """Return for each cell the radius (cells) of the first window that removes it, 0 where none does.
+
+        A window removes what it lowers by more than terrain of this slope may rise within it.
+        """
+        removed_by = np.zeros(self.surface.shape, np.int32)
+        opened = self.surface
+        for done, radius in enumerate(self.windows, start=1):
+            previous, opened = opened, open_surface(opened, radius, self.is_free_standing)
+            reach = radius * self.cell_size
+            is_removed = previous - opened > _STEP + min(_FLAT_SLOPE * reach, _FLAT_RISE) + slope * reach
+            removed_by[is_removed & (removed_by == 0)] = radius
+            monitor.progress(done / len(self.windows))
+        return removed_by
+
+    def without_joined(self, removed_by: np.ndarray, slope: np.ndarray) -> np.ndarray:
+        """Return which cells are objects: free-standing ones, and removed ones but for regions that join the terrain.
+
+        Parameters
+        ----------
+        removed_by : ndarray of shape (rows, columns), int32
+            Radius of the window that removed each cell, 0 for terrain.
+        slope : ndarray of shape (rows, columns), float64
+            Slope of the terrain (rise over run).
+
+        Notes
+        -----
+        Cells that smaller windows and those that larger windows removed make regions of their own: a house is removed
+        from the spit of land that comes back.
+        """
+        objects = (removed_by > 0) | self.is_free_standing
+        is_large = removed_by > _LARGE_WINDOW * self.windows[-1]
+        sides = [*_sides(self.surface, slope, self.cell_size, self.spacing)]
+        for group in (objects & ~is_large, is_large):
+            region, count = ndimage.label(group)
+            is_terrain = _region_edges(region, count, objects, sides).join_terrain()
+            objects &= ~is_terrain[region] | self.is_free_standing
+        return objects
+
+    def _not_joined(self, slope: np.ndarray, monitor: Monitor) -> np.ndarray:
+        return self.without_joined(self.removed_by_opening(_SLOPE_SHARE * slope, monitor), slope)
+
+    def _slope_without(self, objects: np.ndarray) -> np.ndarray:
+        return _slope(_interpolated(self.surface, objects), self.cell_size)
+
+
+@dataclass(frozen=True)
+class _Side:
+    """The cells of a surface and those beside them on one side.
+
+    Attributes
+    ----------
+    here, beside : tuple of slice
+        What selects them.
+    joins : ndarray of bool
+        Whether a cell joins the one beside it without a step.
+    is_eave : ndarray of bool
+        Whether it is the end of a flank steeper than soil, beyond which the surface is not as steep: if it belongs to a
+        roof, that one reaches down to the ground.
+    """
+
+    here: tuple[slice, ...]
+    beside: tuple[slice, ...]
+    joins: np.ndarray
+    is_eave: np.ndarray
+
+
+def _sides(surface: np.ndarray, slope: np.ndarray, cell_size: float, spacing: float) -> Iterator[_Side]:
+    """Yield the four sides of the cells of a surface, in the order of ``adjacent_cells``.
+
+    A step is none if it is low, or if the surface goes on as steeply on one of its sides: the flank of a bank. It goes
+    from point to point, so that flanks are measured over a spacing where that is more than a cell.
+    """
+    bank_cells = max(1, round(spacing / cell_size))
+    eave_cells = max(_EAVE_CELLS, bank_cells)
+    bank, steep = bank_cells * cell_size, _STEEPEST_SOIL * eave_cells * cell_size
+    allowed = (_JOIN_SLOPE + _JOIN_SHARE * slope) * cell_size
+    flanks = zip(_flanks(surface, bank_cells), _flanks(surface, eave_cells))
+    for (here, beside), ((fall, fall_beyond), (roof, beyond)) in zip(adjacent_cells(surface.ndim), flanks):
+        step = surface[here] - surface[beside]
+        highest_bank = np.minimum(np.maximum(fall, fall_beyond) + _JOIN_SLOPE * bank, _STEEPEST_BANK * bank)
+        yield _Side(here, beside, (step < allowed[here]) | (step < highest_bank), (roof >= steep) & (beyond < steep))
+
+
+@dataclass(frozen=True)
+class _RegionEdges:
+    """The edges of regions (r,), in cells; the first is what belongs to no region.
+
+    Attributes
+    ----------
+    whole : ndarray of shape (r,), int64
+        Cells along its edge, one for each side.
+    open : ndarray of shape (r,), int64
+        Those of them that have no other object beside them.
+    joined : ndarray of shape (r,), int64
+        Those of them that join the terrain.
+    eaves : ndarray of shape (4, r), int64
+        Those of them that are eaves, to each side.
+    """
+
+    whole: np.ndarray
+    open: np.ndarray
+    joined: np.ndarray
+    eaves: np.ndarray
+
+    def join_terrain(self) -> np.ndarray:
+        """Return which regions join the terrain on enough of their edge."""
+        # A roof has eaves on two sides that face one another, and as many cells on either.
+        roof = 2 * (np.minimum(self.eaves[0], self.eaves[1]) + np.minimum(self.eaves[2], self.eaves[3]))
+        joined = self.joined - roof
+        is_terrain = (joined >= _JOINED * np.maximum(self.open, 1)) & (joined >= _JOINED_OF_ALL * self.whole)
+        is_terrain[0] = False
+        return is_terrain
+
+
+def _region_edges(region: np.ndarray, count: int, objects: np.ndarray, sides: list[_Side]) -> _RegionEdges:
+    """Return the edges of regions, numbered from 1 to ``count``, among all objects."""
+    counts: list[list[np.ndarray]] = [[], [], [], []]
+    for side in sides:
+        own = region[side.here]
+        at_edge = (own > 0) & (region[side.beside] != own)
+        at_open_edge = at_edge & ~objects[side.beside]
+        at_joined_edge = at_open_edge & side.joins
+        lengths = (at_edge, at_open_edge, at_joined_edge, at_joined_edge & side.is_eave)
+        for of_kind, cells in zip(counts, lengths):
+            of_kind.append(np.bincount(own[cells], minlength=count + 1))
+    whole, is_open, joined, eaves = np.array(counts)
+    return _RegionEdges(whole.sum(axis=0), is_open.sum(axis=0), joined.sum(axis=0), eaves)
+
+
+def nearest_known(surface: np.ndarray, unknown: np.ndarray) -> np.ndarray:
+    """Fill unknown cells with the value of the nearest known one."""
+    if not unknown.any():
+        return surface
+    row, column = ndimage.distance_transform_edt(unknown, return_distances=False, return_indices=True)
+    return surface[row, column]
+
+
+def _windows(largest: float) -> list[int]:
+    """Return radii in cells from 1 to ``largest``, each larger than the one before by the factor of growth."""
+    radii = [1]
+    last = max(1, int(np.ceil(largest)))
+    while radii[-1] < last:
+        radii.append(min(last, max(radii[-1] + 1, round(radii[-1] * _GROWTH))))
+    return radii
+
+
+def _interpolated(surface: np.ndarray, unknown: np.ndarray) -> np.ndarray:
+    """Fill unknown cells with means of the known ones around, over ever larger surroundings."""
+    filled = np.where(unknown, np.nan, surface)
+    weight = (~unknown).astype(float)
+    weighted = np.where(unknown, 0.0, surface)
+    scale, widest = 1.0, 4.0 * max(surface.shape)
+    while np.isnan(filled).any() and scale < widest:
+        share = ndimage.gaussian_filter(weight, scale, mode="nearest")
+        mean = ndimage.gaussian_filter(weighted, scale, mode="nearest")
+        now = np.isnan(filled) & (share > 1e-3)
+        filled[now] = mean[now] / share[now]
+        scale *= 2
+    return nearest_known(filled, np.isnan(filled)) if np.isfinite(filled).any() else surface
+
+
+def _slope(surface: np.ndarray, cell_size: float) -> np.ndarray:
+    """Return the slope (rise over run) that the smoothed surface has around each cell."""
+    smooth = ndimage.gaussian_filter(surface, _SLOPE_SMOOTHING / cell_size, mode="nearest")
+    # A raster one cell wide has no gradient across.
+    axes = [axis for axis in (0, 1) if smooth.shape[axis] > 1]
+    gradients = [np.gradient(smooth, cell_size, axis=axis) for axis in axes]
+    squares = sum((gradient**2 for gradient in gradients), np.zeros_like(smooth))
+    return np.sqrt(ndimage.gaussian_filter(squares, _SLOPE_SCALE / cell_size, mode="nearest"))
+
+
+def _without_level_parts(
+    objects: np.ndarray, is_free_standing: np.ndarray, surface: np.ndarray, step: float
+) -> np.ndarray:
+    """Return the objects but for smooth parts that are no higher than the terrain around on a share of their area.
+
+    Parts end at a ``step`` (m) or a higher one: of a bank and the bushes on it, removed together, the bank comes back
+    alone. Free-standing objects stay.
+    """
+    part = _smooth_parts(objects & ~is_free_standing, surface, step)
+    above = surface - _interpolated(surface, objects)
+    level, area = np.bincount(part.ravel(), (above <= _STEP).ravel()), np.bincount(part.ravel())
+    is_terrain = (level >= _LEVEL_SHARE * area) & (area >= _LEAST_PART)
+    is_terrain[0] = False
+    return objects & ~is_terrain[part]
+
+
+def _smooth_parts(chosen: np.ndarray, surface: np.ndarray, step: float) -> np.ndarray:
+    """Label (from 1) the chosen cells that join by less than ``step`` (m) from cell to cell; 0 are all others."""
+    number = np.cumsum(chosen).reshape(chosen.shape) - 1
+    pairs = []
+    # Every second one: the others are the same pairs the other way round.
+    for here, beside in list(adjacent_cells(surface.ndim))[::2]:
+        joins = chosen[here] & chosen[beside] & (np.abs(surface[here] - surface[beside]) < step)
+        pairs.append(np.stack([number[here][joins], number[beside][joins]]))
+    one, other = np.concatenate(pairs, axis=1)
+    part = np.zeros(chosen.shape, np.int64)
+    part[chosen] = components(one, other, int(chosen.sum()))[1] + 1
+    return part
+
+
+def _flanks(surface: np.ndarray, apart: int) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Yield for each side the fall (m) over ``apart`` cells up to the step there, and over as many cells beyond it.
+
+    In the order of ``adjacent_cells``; it is -inf where the surface ends.
+    """
+    for axis in range(surface.ndim):
+        for upward in (False, True):
+            along = np.moveaxis(surface, axis, 0)
+            along = along[::-1] if upward else along
+            inner, outer = np.full((2, len(along) - 1, *along.shape[1:]), -np.inf)
+            inner[apart:] = along[: -apart - 1] - along[apart:-1]
+            outer[:-apart] = along[1:-apart] - along[1 + apart :]
+            yield tuple(np.moveaxis(flank[::-1] if upward else flank, 0, axis) for flank in (inner, outer))

@@ -1,0 +1,251 @@
+"""Progressive densification of a TIN: a surface that grows from ground seeds onto the points that fit it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Optional
+
+import numpy as np
+
+from ..geometry.grid import plan_box
+from ..geometry.tin import CORNERS, Tin, node_residuals, robust_deviation
+from ..packages import spatial
+from ..sampling.height_resolution import LEAST_RESOLUTION
+from ..stage import Monitor
+
+# A point may join the TIN within this many robust deviations of its nodes: of their distances from the plane of their
+# neighbors, and of the angles under which these appear where angles are estimated.
+_GROW_DEVIATIONS = 8.0
+
+# Beyond a breakline the surface continues where it is less steep than this, °.
+_LEVEL = 20.0
+
+# A mirrored point joins within this share of the distance at which others join.
+_MIRROR_SHARE = 0.25
+
+# A point nearer than this share of the edge length to a node makes a sliver and adds no information.
+_MIN_NODE_DISTANCE = 0.25
+
+# Where not every point is tried in every round, rounds end when they add at most this share of the nodes, ...
+_MIN_GROWTH = 0.005
+
+# ... or at this number, ...
+_MAX_ROUNDS = 50
+
+# ... and points farther than this from the first TIN, in its largest distances, are no candidates.
+_CANDIDATE_DISTANCES = 5.0
+
+# Share of the remaining progress that a round is taken for: how many rounds there are shows at the end only.
+_ROUND_PROGRESS = 0.07
+
+
+@dataclass(frozen=True)
+class JoinRules:
+    """When a point joins the TIN.
+
+    Attributes
+    ----------
+    max_angle : float
+        Largest angle between the facet and the lines to its nodes, °.
+    max_distance : float, optional
+        Largest distance from the facet, m; None is estimated in each round.
+    bend : float
+        Part of an estimated distance that allows for bends of the terrain between points, m.
+    edge_length : float
+        Facets whose edges are all shorter are closed, m.
+    mirror_reach : float
+        Longest distance in plan over which a point is mirrored, m.
+    least : float
+        Least roughness of a surface, m: that of rounded heights.
+    estimates_angle : bool
+        Whether the largest angle is estimated in each round, and ``max_angle`` bounds the estimate.
+    terrain_angle : float
+        Steepest line from a point to the nodes of its facet, °.
+    is_exhaustive : bool
+        Whether rounds go on until no point qualifies, and every point is tried in each; else rounds that add little
+        are the last, and points far from the first TIN or in closed facets are not tried again, which is faster.
+    """
+
+    max_angle: float
+    max_distance: Optional[float]
+    bend: float
+    edge_length: float
+    mirror_reach: float
+    least: float = LEAST_RESOLUTION
+    estimates_angle: bool = False
+    terrain_angle: float = 90.0
+    is_exhaustive: bool = False
+
+    def is_last(self, step: int, n_joining: int, n_nodes: int) -> bool:
+        """Return whether the round ``step`` (from 1), in which points joined ``n_nodes`` nodes, is the last."""
+        if self.is_exhaustive:
+            return n_joining == 0
+        return n_joining <= _MIN_GROWTH * n_nodes or step == _MAX_ROUNDS
+
+    def limits(self, nodes: np.ndarray) -> tuple[float, float]:
+        """Return the largest distance (m) and angle (°) at which a point joins the TIN of ``nodes``."""
+        return self.distance(nodes), self.angle(nodes)
+
+    def angle(self, nodes: np.ndarray) -> float:
+        """Return the largest angle (°) at which a point joins the TIN of ``nodes``."""
+        if not self.estimates_angle or len(nodes) <= 3:
+            return self.max_angle
+        nearest = spatial.cKDTree(nodes[:, :2]).query(nodes[:, :2], 2)[0][:, 1]
+        angles = np.degrees(np.arctan2(np.abs(node_residuals(nodes)), nearest))
+        return min(self.max_angle, _GROW_DEVIATIONS * robust_deviation(angles, 0.0))
+
+    def distance(self, nodes: np.ndarray) -> float:
+        """Return the largest distance (m) at which a point joins the TIN of ``nodes``."""
+        if self.max_distance is not None:
+            return self.max_distance
+        if len(nodes) <= 3:
+            return np.inf
+        rough = _GROW_DEVIATIONS * surface_roughness(nodes, self.least)
+        return max(rough, rough / 2 + self.bend)
+
+
+class Surface:
+    """A TIN of some of the points, its nodes, with the facet of each of the others.
+
+    Attributes
+    ----------
+    points : ndarray of shape (n, 3), float64
+        All points (m).
+    facet : ndarray of shape (n,), int32
+        The facet under each.
+    is_node : ndarray of shape (n,), bool
+    """
+
+    def __init__(self, points: np.ndarray, start: np.ndarray, monitor: Monitor) -> None:
+        self.points = points
+        self.tin = Tin(points[start], plan_box(points), monitor.part(0, 0.5))
+        self.facet = self.tin.locate(points, monitor.part(0.5, 1.0))
+        self.is_node = np.zeros(len(points), bool)
+        self.is_node[start] = True
+
+    @property
+    def nodes(self) -> np.ndarray:
+        """The nodes (m, 3), m."""
+        return self.points[self.is_node]
+
+    def add(self, joining: np.ndarray) -> None:
+        """Let the points with these indices become nodes."""
+        self.facet = self.tin.add(self.points, self.facet, joining)
+        self.is_node[joining] = True
+
+    def without(self, rows: np.ndarray, monitor: Monitor) -> Surface:
+        """Return the surface of those nodes that are not among the points with the indices ``rows`` (m,)."""
+        stays = self.is_node.copy()
+        stays[rows] = False
+        return Surface(self.points, np.flatnonzero(stays), monitor) if (stays != self.is_node).any() else self
+
+    def above(self) -> np.ndarray:
+        """Return how far (n,) the points lie above their facets, measured across these (m)."""
+        return (self.points[:, 2] - self.tin.elevation(self.points, self.facet)) * self.tin.slope_cosine()[self.facet]
+
+    def within(self, distance: float) -> np.ndarray:
+        """Return which points (n,) are nodes or lie at most ``distance`` (m) above or below the surface."""
+        # At distance 0 points that happen to lie on a facet are no nodes.
+        return self.is_node | ((np.abs(self.above()) <= distance) & (distance > 0))
+
+
+def surface_roughness(nodes: np.ndarray, least: float) -> float:
+    """Return the robust standard deviation of nodes (m, 3) across their surface, m, at least ``least``."""
+    # Three nodes or fewer have no neighbors to differ from.
+    residuals = node_residuals(nodes) if len(nodes) > 3 else np.zeros(1)
+    return robust_deviation(residuals, least)
+
+
+def grow(
+    points: np.ndarray, start: np.ndarray, may_join: np.ndarray, rules: JoinRules, monitor: Monitor
+) -> tuple[Surface, float, float]:
+    """Let the TIN of the points ``start`` grow onto those that may join.
+
+    Returns
+    -------
+    surface : Surface
+        The finished surface.
+    distance, angle : float
+        The largest distance (m) and angle (°) of the last round.
+    """
+    surface, step = Surface(points, start, monitor.part(0, 0.5)), 0
+    distance, angle = rules.limits(surface.nodes)
+    is_near = np.abs(surface.above()) <= _CANDIDATE_DISTANCES * distance
+    candidates = np.flatnonzero((is_near | rules.is_exhaustive) & may_join & ~surface.is_node)
+    is_last = False
+    while not is_last:
+        n_nodes, step = len(surface.nodes), step + 1
+        open_candidates, joining = _joining(surface, candidates, distance, angle, rules, len(start))
+        surface.add(joining)
+        candidates = np.setdiff1d(candidates if rules.is_exhaustive else open_candidates, joining, assume_unique=True)
+        monitor.progress(1 - 0.5 * (1 - _ROUND_PROGRESS) ** step)
+        is_last = rules.is_last(step, len(joining), n_nodes)
+        distance, angle = (distance, angle) if is_last else rules.limits(surface.nodes)
+    return surface, float(distance), float(angle)
+
+
+def _joining(
+    surface: Surface, candidates: np.ndarray, distance: float, max_angle: float, rules: JoinRules, n_start: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the candidates in open facets and away from nodes, and those of them that join now, one per facet."""
+    tin, facet = surface.tin, surface.facet[candidates]
+    # Small facets mostly get smaller, and a point beside a node makes a sliver and adds no information.
+    is_open = tin.longest_edge()[facet] > rules.edge_length
+    candidates, facet = candidates[is_open], facet[is_open]
+    apart = _to_nearest_node(tin, facet, surface.points[candidates]) > _MIN_NODE_DISTANCE * rules.edge_length
+    candidates, facet = candidates[apart], facet[apart]
+    here = surface.points[candidates]
+    offset, angle = _offset_and_angle(tin, facet, here)
+    fits = (offset <= distance) & (angle <= max_angle) & _is_terrain(tin, facet, here, rules.terrain_angle)
+    mirrored = np.flatnonzero(~fits)
+    angle[mirrored] = _mirrored_angle(tin, facet[mirrored], here[mirrored], distance, rules, n_start)
+    fits |= angle <= max_angle
+    # Ties go to the south-west, so that the points' order doesn't matter.
+    order = np.lexsort((here[fits, 1], here[fits, 0], angle[fits], facet[fits]))
+    first = np.unique(facet[fits][order], return_index=True)[1]
+    joining = candidates[fits][order][first]
+    return candidates, joining
+
+
+def _mirrored_angle(
+    tin: Tin, facet: np.ndarray, here: np.ndarray, distance: float, rules: JoinRules, n_start: int
+) -> np.ndarray:
+    """Return the angles (°) of points that lie beyond a breakline, at their mirror images; inf where they don't fit.
+
+    A point above its facet is turned about the facet's highest node (Axelsson's mirror point). Where the surface on
+    that other side is nearly level and has the image, the point carries it on to the upper edge of a terrace. Only
+    seeds mirror, so that the surface can't climb on by itself.
+    """
+    angle = np.full(len(here), np.inf)
+    corners = tin.facets[facet]
+    highest = corners[np.arange(len(corners)), np.argmax(tin.nodes[corners, 2], axis=1)]
+    image = 2 * (tin.nodes[highest] + tin.shift) - here
+    reach = np.linalg.norm(here[:, :2] - image[:, :2], axis=1) / 2
+    can = (corners >= CORNERS).all(axis=1) & (reach < rules.mirror_reach)
+    can[can] = (highest[can] < CORNERS + n_start) & (here[can, 2] > tin.elevation(here[can], facet[can]))
+    of, image = np.flatnonzero(can), image[can]
+    there = tin.locate_near(image, highest[of])
+    offset, found = _offset_and_angle(tin, there, image)
+    level = (tin.slope_cosine() > np.cos(np.radians(_LEVEL))) & ~tin.is_extrapolated()
+    fits = (offset <= _MIRROR_SHARE * distance) & level[there]
+    angle[of[fits]] = found[fits]
+    return angle
+
+
+def _offset_and_angle(tin: Tin, facet: np.ndarray, here: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the distance (m) of points to their facets, and the largest angle (°) to the nodes of these."""
+    offset = np.abs(here[:, 2] - tin.elevation(here, facet)) * tin.slope_cosine()[facet]
+    nearest = _to_nearest_node(tin, facet, here)
+    return offset, np.degrees(np.arcsin(np.clip(offset / np.maximum(nearest, 1e-9), 0, 1)))
+
+
+def _is_terrain(tin: Tin, facet: np.ndarray, here: np.ndarray, terrain_angle: float) -> np.ndarray:
+    """Return whether no line from a point to the nodes of its facet is steeper than ``terrain_angle`` (°)."""
+    lines = tin.nodes[tin.facets[facet]] - (here - tin.shift)[:, None]
+    slopes = np.arctan2(np.abs(lines[..., 2]), np.linalg.norm(lines[..., :2], axis=2))
+    return np.degrees(slopes).max(axis=1) <= terrain_angle
+
+
+def _to_nearest_node(tin: Tin, facet: np.ndarray, here: np.ndarray) -> np.ndarray:
+    """Return the distance (m) to the nearest node of each point's facet: the largest angle is there."""
+    return np.linalg.norm(tin.nodes[tin.facets[facet]] - (here - tin.shift)[:, None], axis=2).min(axis=1)

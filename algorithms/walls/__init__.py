@@ -1,0 +1,1 @@
+"""Walls and roofs in drone clouds, and the footprints of walls."""

@@ -1,0 +1,130 @@
+"""Which planes are roofs, and which roofs are of one building."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..cloud.asprs import NOISE, PointClass
+from ..params import MinBuildingArea, PointDensity, SplitHeight
+from ..sampling.cloud_sampling import CloudSampling
+from ..segmentation.cluster_measures import plan_areas
+from ..segmentation.segment_clusters import dbscan, points_at_corner
+from ..stage import Monitor, Param, stage
+
+# Surfaces of one roof lie within this distance (m), or so many point spacings; roofs of two buildings seldom do.
+# Farther apart than a lane is wide (m) they never are one roof, however few points there are.
+_LEAST_GAP, _GAP_SPACINGS, _MOST_GAP = 0.6, 3.0, 5.0
+
+
+@stage(
+    "Classify roofs",
+    group="Buildings",
+    tags="building,roof,plane,cluster,DBSCAN,photogrammetry,UAV,cadastre",
+    writes=("classification", "cluster_id"),
+)
+def classify_roofs(
+    xyz,
+    classification,
+    height_above_ground,
+    segment_id,
+    *,
+    split_height: SplitHeight = 2.5,
+    min_area: MinBuildingArea = 6.0,
+    gap: Annotated[
+        Optional[float],
+        Param(
+            "Gap between roofs",
+            "Points of planes at most this far apart belong to one building.",
+            unit="m",
+            low=0,
+            high=20,
+            open_low=True,
+            automatic="3 times the point spacing, from 0.6 to 5 m.",
+        ),
+    ] = None,
+    density: PointDensity = None,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Gather the planes above a height into the roofs of buildings.
+
+    Planes that lie higher above the ground than cars and hedges are roofs; those whose points lie near each other are
+    one building (class 6).
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes; noise (7, 18) is left out.
+    height_above_ground : ndarray of shape (n,), float32
+        Heights, m.
+    segment_id : ndarray of shape (n,), int32
+        Planes from 1, as "Segment planes (RANSAC)" finds them; 0 is none.
+
+    Returns
+    -------
+    classification : ndarray of shape (n,), uint8
+        Roofs get 6; what was 6 and is none becomes 1.
+    cluster_id : ndarray of shape (n,), int32
+        Buildings from 1, from west to east; 0 is none.
+
+    Notes
+    -----
+    The clusters are those of DBSCAN with the gap as radius and a quarter of the points that a level roof has within it.
+    The paper takes the points above the height; here a plane is taken whole, down to eaves that are lower, if half of
+    it is above. Numbers follow the westernmost points of clusters, not the order of points.
+
+    References
+    ----------
+    Hrutka, B. P., Siki, Z., Takács, B., 2022. Voxel-based point cloud segmentation and building detection.
+    International Archives of the Photogrammetry, Remote Sensing and Spatial Information Sciences XLVIII-4/W1,
+    section 2.3.
+    """
+    sampling = sampling or CloudSampling.of(xyz, classification)
+    density = sampling.density if density is None else density
+    if gap is None:
+        gap = float(np.clip(_GAP_SPACINGS / np.sqrt(density), _LEAST_GAP, _MOST_GAP))
+    monitor.resolved(density=density, gap=gap)
+    is_roof = _is_on_roof(segment_id, height_above_ground, split_height) & ~np.isin(classification, NOISE)
+    roof = np.flatnonzero(is_roof)
+    result = np.where(classification == PointClass.BUILDING, np.uint8(PointClass.UNCLASSIFIED), classification)
+    cluster_id = np.zeros(len(xyz), np.int32)
+    cluster_id[roof] = _clusters(xyz[roof], gap, min_area, density, monitor)
+    result[cluster_id > 0] = PointClass.BUILDING
+    if not cluster_id.any():
+        monitor.warn(
+            f"No plane of {min_area:g} m² lies {split_height:g} m or more above the ground, so no roof was found; "
+            "check that the cloud shows the ground beside the buildings."
+        )
+    return result.astype(np.uint8), cluster_id
+
+
+def _is_on_roof(segment_id: np.ndarray, height: np.ndarray, split_height: float) -> np.ndarray:
+    """Return which points (n,) are of planes that lie above the split height, by half of their points at least."""
+    # Other programs number segments as they like, and what is in none -1.
+    number, segment = np.unique(segment_id, return_inverse=True)
+    high = np.bincount(segment, height >= split_height)
+    on_roof = (2 * high >= np.bincount(segment)) & (number > 0)
+    return on_roof[segment]
+
+
+def _clusters(xyz: np.ndarray, gap: float, min_area: float, density: float, monitor: Monitor) -> np.ndarray:
+    """Return the building (n,) of each roof point, from 1 and from west to east; 0 where it is too small."""
+    if not len(xyz):
+        monitor.progress(1.0)
+        return np.zeros(0, np.int32)
+    cluster = dbscan(xyz, gap, points_at_corner(gap, density), monitor)
+    count = int(cluster.max()) + 1
+    if not count:
+        return np.zeros(len(xyz), np.int32)
+    member = cluster >= 0
+    large = plan_areas(xyz[member], cluster[member], density) >= min_area
+    west = np.full(count, np.inf)
+    np.minimum.at(west, cluster[member], xyz[member, 0])
+    order = np.argsort(np.where(large, west, np.inf), kind="stable")
+    number = np.zeros(count + 1, np.int32)
+    number[order[: large.sum()]] = np.arange(1, large.sum() + 1)
+    return number[cluster]

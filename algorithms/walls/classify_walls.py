@@ -1,0 +1,230 @@
+"""Which points are walls, and whose."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from ..geometry.groups import members
+from ..neighborhoods.covariance import (
+    Nearest,
+    Neighborhood,
+    Shapes,
+    Within,
+    defined_eigenvalues,
+    reduce_neighborhoods,
+    smallest_eigenvectors,
+)
+from ..packages import spatial
+from ..params import SplitHeight, SurfaceNoise
+from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.surface_noise import plane_roughness, surface_density
+from ..segmentation.candidate_points import NO_OBJECTS
+from ..stage import Monitor, Param, stage
+
+# Points of a wall deviate from its plane by no more (times the roughness); those of leaves and corners do.
+_SMOOTH = 2.3195
+
+# The points of a normal reach this far (times the roughness), which holds its error to a few degrees.
+_REACH_DEVIATIONS = 6.185
+
+# They are at least this many, ...
+_LEAST_NEIGHBORS = 8
+
+# ... and at most this many: more would reach around corners.
+_MOST_NEIGHBORS = 30
+
+# Roofs in plan are thinned to one point in a cell of this size (m) to find the nearest. A wall stands under its roof,
+# or as near to it as this (m) where the roof was seen in part.
+_ROOF_CELL, _NEAR = 0.25, 2.0
+
+# The hull of a roof without area: one side that everything is outside of.
+_NOWHERE = np.array([[0.0, 0.0, np.inf]])
+
+
+@stage(
+    "Classify walls",
+    group="Buildings",
+    tags="building,wall,facade,normal,vertical,photogrammetry,UAV,cadastre",
+    writes=("classification", "wall_of"),
+)
+def classify_walls(
+    xyz,
+    classification,
+    height_above_ground,
+    cluster_id,
+    *,
+    min_height: Annotated[
+        float,
+        Param("Minimum height", "Lower points may be ground, kerbs and plants.", unit="m", low=0, high=10),
+    ] = 0.3,
+    split_height: SplitHeight = 2.5,
+    max_tilt: Annotated[
+        float,
+        Param("Maximum tilt", "Angle of a wall's normal to the horizontal.", unit="°", low=0, high=90),
+    ] = 30.0,
+    neighborhood: Annotated[
+        str,
+        Param(
+            "Neighborhood",
+            "Which points give a point its normal: a number of nearest ones, or all within a radius.",
+            choices=("nearest", "radius"),
+        ),
+    ] = "nearest",
+    n_neighbors: Annotated[
+        Optional[int],
+        Param(
+            "Nearest points",
+            "Points that a normal is made of, the point itself among them; used by the neighborhood 'nearest'.",
+            low=3,
+            high=1000,
+            automatic="as many as reach 6.2 times the roughness at the density of low points near roofs, 8 to 30.",
+        ),
+    ] = None,
+    radius: Annotated[
+        float,
+        Param(
+            "Radius",
+            "Radius of the sphere around a point; used by the neighborhood 'radius'.",
+            unit="m",
+            low=0,
+            high=10,
+            open_low=True,
+        ),
+    ] = 0.5,
+    noise: SurfaceNoise = None,
+    margin: Annotated[
+        float,
+        Param(
+            "Margin around roofs",
+            "How far the convex hull of a roof is grown; walls outside it belong to nobody.",
+            unit="m",
+            low=0,
+            high=20,
+        ),
+    ] = 0.3,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Find the points of walls below roofs: lower than roofs, upright, and inside the grown hull of a roof.
+
+    Each wall point gets the number of the roof that it stands under (WallOf) and becomes building (class 6); ClusterID
+    stays that of roofs only, so that both can be told apart.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes; ground, water and noise are no walls.
+    height_above_ground : ndarray of shape (n,), float32
+        Heights, m.
+    cluster_id : ndarray of shape (n,), int32
+        Buildings of roof points from 1, as "Classify roofs" finds them; 0 is none.
+
+    Returns
+    -------
+    classification : ndarray of shape (n,), uint8
+        Walls get 6.
+    wall_of : ndarray of shape (n,), int32
+        Building of each wall point; 0 is none.
+
+    Raises
+    ------
+    ValueError
+        If the minimum height is above the split height.
+
+    Notes
+    -----
+    The normal is that of the plane of the neighbors, which are low points near roofs; neighbors that lie on no plane
+    (bushes, corners) make no wall. A point inside the hulls of two roofs goes to the nearest roof. The paper scales
+    hulls up; here they grow by the same distance on all sides, whatever their size.
+
+    References
+    ----------
+    Hrutka, B. P., Siki, Z., Takács, B., 2022. Voxel-based point cloud segmentation and building detection.
+    International Archives of the Photogrammetry, Remote Sensing and Spatial Information Sciences XLVIII-4/W1,
+    section 2.3.
+    """
+    if min_height > split_height:
+        raise ValueError(
+            f"The minimum height of walls ({min_height:g} m) is above the split height ({split_height:g} m); lower it."
+        )
+    sampling = sampling or CloudSampling.of(xyz, classification)
+    noise = sampling.noise if noise is None else noise
+    roughness = plane_roughness(noise, sampling.surface_density)
+    monitor.progress(0.2)
+    wall_of = np.zeros(len(xyz), np.int32)
+    is_low = (height_above_ground >= min_height) & (height_above_ground < split_height)
+    low = np.flatnonzero(is_low & (cluster_id == 0) & ~np.isin(classification, NO_OBJECTS))
+    owner = _owners(xyz[low, :2], xyz[:, :2], cluster_id, margin)
+    low, owner = low[owner > 0], owner[owner > 0]
+    monitor.progress(0.4)
+    n_neighbors = _neighbors(xyz[low], roughness) if n_neighbors is None else n_neighbors
+    monitor.resolved(noise=noise, n_neighbors=n_neighbors)
+    if len(low):
+        chosen: Neighborhood = Nearest(n_neighbors) if neighborhood == "nearest" else Within(radius)
+        upright = _upright(xyz[low], chosen, max_tilt, _SMOOTH * roughness, monitor.part(0.4, 1))
+        wall_of[low[upright]] = owner[upright]
+    if cluster_id.any() and not wall_of.any():
+        monitor.warn("No wall was seen under any roof, so footprints can show the outlines of roofs only.")
+    monitor.progress(1.0)
+    return np.where(wall_of > 0, np.uint8(PointClass.BUILDING), classification).astype(np.uint8), wall_of
+
+
+def _neighbors(xyz: np.ndarray, roughness: float) -> int:
+    """Return how many points make the normal of a wall: few where walls are precise or thinly covered."""
+    if not len(xyz):
+        return _LEAST_NEIGHBORS
+    # Not the density of the cloud: from above, and under eaves, walls are seen far more sparsely than all else.
+    facade_density = surface_density(xyz)
+    reached = np.pi * (_REACH_DEVIATIONS * roughness) ** 2 * facade_density
+    return int(np.clip(reached, _LEAST_NEIGHBORS, _MOST_NEIGHBORS))
+
+
+def _owners(xy: np.ndarray, all_xy: np.ndarray, cluster_id: np.ndarray, margin: float) -> np.ndarray:
+    """Return the roof (n,) that is nearest to each point in plan and whose grown hull holds it; 0 where none does."""
+    owner = np.zeros(len(xy), np.int32)
+    roof = np.flatnonzero(cluster_id)
+    if not len(roof) or not len(xy):
+        return owner
+    start = all_xy[roof[0]]
+    hulls = _hulls(all_xy[roof] - start, cluster_id[roof])
+    cell = np.floor((all_xy[roof] - start) / _ROOF_CELL).astype(np.int64)
+    _, first = np.unique(np.column_stack([cell, cluster_id[roof]]), axis=0, return_index=True)
+    places = (cell[first] + 0.5) * _ROOF_CELL
+    nearest = spatial.cKDTree(places).query(xy - start, distance_upper_bound=_NEAR + margin, workers=-1)[1]
+    found = np.flatnonzero(nearest < len(first))
+    owner[found] = cluster_id[roof[first]][nearest[found]]
+    for number, part in members(owner).items():
+        sides = hulls.get(number, _NOWHERE)
+        owner[part[((xy[part] - start) @ sides[:, :2].T + sides[:, 2] > margin).any(axis=1)]] = 0
+    return owner
+
+
+def _hulls(xy: np.ndarray, cluster_id: np.ndarray) -> dict[int, np.ndarray]:
+    """Return the sides (k, 3) of each cluster's convex hull: outward unit normal and offset, n·p + d <= 0 inside."""
+    hulls = {}
+    for number, part in members(cluster_id).items():
+        # A roof that is a line has no hull.
+        if len(part) >= 3 and np.linalg.eigvalsh(np.cov(xy[part].T))[0] > 1e-6:
+            hulls[number] = spatial.ConvexHull(xy[part]).equations
+    return hulls
+
+
+def _upright(
+    xyz: np.ndarray, neighborhood: Neighborhood, max_tilt: float, roughness: float, monitor: Monitor
+) -> np.ndarray:
+    """Return which points (n,) lie on a steep plane with their neighbors."""
+    upright = np.zeros(len(xyz), bool)
+
+    def keep(rows: np.ndarray, shapes: Shapes) -> None:
+        eigenvalues = defined_eigenvalues(shapes.covariances, shapes.counts)
+        lift = np.abs(smallest_eigenvectors(shapes.covariances, eigenvalues)[:, 2])
+        with np.errstate(invalid="ignore"):
+            upright[rows] = (lift <= np.sin(np.radians(max_tilt))) & (eigenvalues[:, 2] <= roughness**2)
+
+    reduce_neighborhoods(xyz, neighborhood, keep, monitor=monitor)
+    return upright

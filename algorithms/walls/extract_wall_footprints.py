@@ -1,0 +1,342 @@
+"""Footprints of walls: polygons with a quality for each edge, of roofs where no walls were seen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..footprints.alpha_shape import trace_outlines
+from ..footprints.regularization import regularize_outline
+from ..geometry.groups import members
+from ..geometry.line_segments import is_inside
+from ..geometry.rings import perimeter, signed_area
+from ..params import MinBuildingArea, Seed
+from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.density import point_spacing
+from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
+from .wall_outline import Limits, WallEdge, WallOutline, closed, outline_walls, share_seen
+
+WALL, ROOF = "wall", "roof"
+
+# Distance in plan within which points lie on a wall (times the roughness).
+_ON_WALL = 3.09
+
+# Bounds of that distance (m), those of the tunable.
+_LEAST_TOLERANCE, _MOST_TOLERANCE = 0.01, 2.0
+
+# An edge of which this share has points was seen.
+_SEEN = 0.5
+
+# Outlines of roofs may wiggle by so many point spacings, and no less than so much (m).
+_WIGGLE_SPACINGS, _LEAST_WIGGLE = 2.0, 0.3
+
+_FIELDS = (
+    Field("id", int, "number of the footprint, from 1"),
+    Field("cluster_id", int, "building that it outlines"),
+    Field("source", str, "wall: outline of the walls; roof: outline of the roof, as too few walls were seen"),
+    Field("area", float, "area without courtyards", "m²"),
+    Field("perimeter", float, "length of all edges", "m"),
+    Field("edges", int, "number of edges"),
+    Field("edges_seen", int, "edges of which at least half has wall points"),
+    Field("quality", float, "share of the perimeter that has wall points, 0 to 1"),
+    Field("worst_quality", float, "share of the least seen edge that has wall points, 0 to 1"),
+    Field("deviation", float, "standard deviation of wall points across their edges", "m"),
+    Field("overhang", float, "median distance from the walls to the edge of the roof", "m"),
+    Field("height", float, "median height of the roof's points above ground", "m"),
+    Field("points", int, "wall points on the edges"),
+)
+
+_EDGE_FIELDS = (
+    Field("id", int, "number of the edge, from 1"),
+    Field("footprint", int, "footprint that it belongs to"),
+    Field("edge", int, "number of the edge in its footprint, from 1, counterclockwise"),
+    Field("source", str, "wall: seen; roof: told from the edge of the roof"),
+    Field("length", float, "length", "m"),
+    Field("angle", float, "inner angle at the corner where it begins", "°"),
+    Field("quality", float, "share of the edge that has wall points, corners left out, 0 to 1"),
+    Field("points", int, "wall points on it"),
+    Field("deviation", float, "standard deviation of its points across it", "m"),
+    Field("precision", float, "standard deviation of its place across, from its points", "m"),
+)
+
+
+@stage(
+    "Extract wall footprints",
+    group="Buildings",
+    tags="polygons,walls,corners,RANSAC,lines,right angles,cadastre,land registry,vectorize,UAV",
+    layers=(
+        Layer("wall_footprints", "Wall footprints", "Polygon", _FIELDS),
+        Layer("wall_edges", "Wall edges", "LineString", _EDGE_FIELDS),
+    ),
+)
+def extract_wall_footprints(
+    xyz,
+    cluster_id,
+    wall_of=None,
+    height_above_ground=None,
+    *,
+    min_area: MinBuildingArea = 6.0,
+    min_length: Annotated[
+        float,
+        Param("Minimum wall length", "Length of the shortest wall that is looked for.", unit="m", low=0.2, high=100),
+    ] = 1.2,
+    max_overhang: Annotated[
+        float,
+        Param(
+            "Maximum overhang",
+            "How far roofs may jut out over their walls; what lies deeper under a roof is inside.",
+            unit="m",
+            low=0,
+            high=10,
+        ),
+    ] = 1.2,
+    min_seen: Annotated[
+        float,
+        Param(
+            "Minimum share of walls seen",
+            "Where less of the perimeter has wall points, the outline of the roof is given instead.",
+            low=0,
+            high=1,
+        ),
+    ] = 0.25,
+    tolerance: Annotated[
+        Optional[float],
+        Param(
+            "Tolerance",
+            "Distance within which points lie on a wall.",
+            unit="m",
+            low=0.01,
+            high=2,
+            automatic="3.1 times the roughness: the measured surface noise, at least 0.026 m, and 0.065 point "
+            "spacings on top.",
+        ),
+    ] = None,
+    seed: Seed = 1,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Outline the walls of each building, without the eaves: corners where walls meet, and a quality for every edge.
+
+    Lines are fitted to the wall points of each building in plan, one after the other. They, and lines for sides of the
+    roof under which no wall was seen, cut the plane into cells; the footprint is made of the cells whose outline runs
+    along walls that were seen, as far as there are any. Walls that are nearly square or parallel become so where
+    their points allow it.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    cluster_id : ndarray of shape (n,), int32
+        Building of each roof point from 1; 0 is none.
+    wall_of : ndarray of shape (n,), int32, optional
+        Building of each wall point from 1; 0 is none. Without it, footprints are outlines of roofs.
+    height_above_ground : ndarray of shape (n,), float32, optional
+        Heights, m, for the attributes only.
+
+    Returns
+    -------
+    wall_footprints : LayerFeatures
+        One polygon per building, by cluster number. ``source`` says whether it is of walls or of the roof.
+    wall_edges : LayerFeatures
+        The edges of all footprints with what was seen of them.
+
+    Raises
+    ------
+    ValueError
+        If the points of one building are spread so thinly that it would be nearly empty.
+
+    Notes
+    -----
+    Thresholds follow the data of each building: the distance of points to their line is that of the noise; a wall is
+    covered where the pieces of it that should hold three points hold any. An edge of the outline is judged by its
+    points between the corners, which are left out. The paper takes every pair of corners for a candidate edge; here
+    the whole outline is the one that costs least: unseen wall by the meter, corners by the piece and more where
+    they aren't square, what lies outside the roof by the area. It is found by a minimum cut, then line by line it is
+    tried whether the outline is better off without.
+
+    What lies deeper under a roof than it juts out over the other walls counts as inside: loggias, porches. Sides
+    without wall points lie as far inside the edge of the roof as the other walls in the median; ``quality`` 0 marks
+    them. The result depends on the seed, and not on the order of points.
+
+    References
+    ----------
+    Hrutka, B. P., Siki, Z., Takács, B., 2022. Voxel-based point cloud segmentation and building detection.
+    International Archives of the Photogrammetry, Remote Sensing and Spatial Information Sciences XLVIII-4/W1,
+    section 2.4. Fischler, M. A., Bolles, R. C., 1981. Random sample consensus: a paradigm for model fitting.
+    Communications of the ACM 24 (6), 381-395.
+    """
+    footprints = LayerFeatures([], {field.name: [] for field in _FIELDS})
+    edges = LayerFeatures([], {field.name: [] for field in _EDGE_FIELDS})
+    buildings = _buildings(xyz, cluster_id, wall_of)
+    if tolerance is None:
+        sampling = sampling or CloudSampling.of(xyz)
+        tolerance = min(max(_ON_WALL * sampling.roughness, _LEAST_TOLERANCE), _MOST_TOLERANCE)
+        monitor.resolved(tolerance=tolerance)
+    limits = Limits(tolerance, min_length, max_overhang)
+    for done, building in enumerate(buildings):
+        part = monitor.part(done / len(buildings), (done + 1) / len(buildings))
+        outline = building.walls_outline(limits, seed, part)
+        if outline is not None and outline.seen < min_seen:
+            outline = None
+        parts = _parts(outline.rings) if outline is not None else [_bare(rings) for rings in building.roof_outlines()]
+        for rings in parts:
+            if sum(signed_area(closed(ring)) for ring in rings) >= min_area:
+                _add(footprints, edges, rings, building, outline, height_above_ground)
+        part.progress(1.0)
+    monitor.progress(1.0)
+    _tell_unseen(footprints, monitor)
+    return footprints, edges
+
+
+def _tell_unseen(footprints: LayerFeatures, monitor: Monitor) -> None:
+    """Say how many footprints are outlines of roofs, and how many rest on few walls."""
+    source, quality = footprints.columns["source"], footprints.columns["quality"]
+    if ROOF in source:
+        monitor.warn(
+            f"{source.count(ROOF)} of {len(footprints)} footprints are outlines of roofs, "
+            "as too few of their walls were seen."
+        )
+    thin = sum(one == WALL and seen < _SEEN for one, seen in zip(source, quality))
+    if thin:
+        monitor.warn(
+            f"Of {thin} of {len(footprints)} footprints less than half of the walls was seen; "
+            "where the others are (edges of quality 0) is guessed from the edge of the roof."
+        )
+
+
+@dataclass(frozen=True)
+class _Building:
+    """The points of one building near their south-western corner, in an order that is theirs (m)."""
+
+    number: int
+    origin: np.ndarray
+    roof: np.ndarray
+    walls: np.ndarray
+    roof_rows: np.ndarray
+
+    @cached_property
+    def roof_spacing(self) -> float:
+        """Mean distance between points of the roof, m; 0 where they lie at one position.
+
+        Not the spacing of the cloud: a drone sees each roof from as near and as often as its flight lines pass.
+        """
+        return point_spacing(self.roof) if np.ptp(self.roof, axis=0).any() else 0.0
+
+    @cached_property
+    def traced(self) -> list:
+        """Outlines of the roof: a list of rings for each part, the largest first."""
+        if not self.roof_spacing:
+            return []
+        traced = trace_outlines(self.roof, np.ones(len(self.roof), np.int64), self.roof_spacing)
+        return sorted(traced.parts if traced else [], key=lambda rings: -sum(map(signed_area, rings)))
+
+    def walls_outline(self, limits: Limits, seed: int, monitor: Monitor) -> Optional[WallOutline]:
+        """Return the outline of the walls near the origin, None where there are too few."""
+        if not len(self.walls) or not self.traced:
+            return None
+        rng = np.random.default_rng(seed)
+        return outline_walls(self.walls, self.roof, self.traced[0], self.roof_spacing, limits, rng, monitor)
+
+    def roof_outlines(self) -> list:
+        """Return the outlines of the roof's parts, straight where they nearly are."""
+        wiggle, outset = max(_LEAST_WIGGLE, _WIGGLE_SPACINGS * self.roof_spacing), self.roof_spacing / 2
+        return [
+            regularize_outline(rings, wiggle, outset) or regularize_outline(rings, 2 * wiggle, outset) or rings
+            for rings in self.traced
+        ]
+
+
+def _buildings(xyz: np.ndarray, cluster_id: np.ndarray, wall_of: Optional[np.ndarray]) -> list[_Building]:
+    """Return the buildings that have a roof, by number."""
+    roofs, walls = members(cluster_id), {} if wall_of is None else members(wall_of)
+    buildings = []
+    for number, rows in roofs.items():
+        roof, own = (xyz[part[np.lexsort(xyz[part].T)], :2] for part in (rows, walls.get(number, rows[:0])))
+        origin = roof.min(axis=0)
+        buildings.append(_Building(number, origin, roof - origin, own - origin, rows))
+    return buildings
+
+
+def _bare(rings: list) -> list[list[WallEdge]]:
+    """Return rings as edges of which nothing was seen."""
+    nan = float("nan")
+    return [[WallEdge(a, b, 0.0, 0, nan, nan) for a, b in zip(ring, ring[1:])] for ring in rings]
+
+
+def _parts(rings: list[list[WallEdge]]) -> list[list[list[WallEdge]]]:
+    """Sort rings into parts: each exterior with the holes in it."""
+    outer = [ring for ring in rings if signed_area(closed(ring)) > 0]
+    holes = [ring for ring in rings if signed_area(closed(ring)) < 0]
+    return [[ring, *(hole for hole in holes if is_inside(hole[0].start, closed(ring)))] for ring in outer]
+
+
+def _add(
+    footprints: LayerFeatures,
+    edges: LayerFeatures,
+    rings: list[list[WallEdge]],
+    building: _Building,
+    outline: Optional[WallOutline],
+    height: Optional[np.ndarray],
+) -> None:
+    """Append a footprint, its rings told as edges with the exterior first, and the edges themselves."""
+    corners = [closed(ring) for ring in rings]
+    footprints.geometries.append([ring + building.origin for ring in corners])
+    own_edges = [edge for ring in rings for edge in ring]
+    quality = np.array([edge.quality for edge in own_edges])
+    points = np.array([edge.points for edge in own_edges])
+    described = {
+        "id": len(footprints.geometries),
+        "cluster_id": building.number,
+        "source": ROOF if outline is None else WALL,
+        "area": sum(map(signed_area, corners)),
+        "perimeter": sum(map(perimeter, corners)),
+        "edges": len(own_edges),
+        "edges_seen": int((quality >= _SEEN).sum()),
+        "quality": share_seen(rings),
+        "worst_quality": float(quality.min()),
+        "deviation": _pooled(np.array([edge.deviation for edge in own_edges]), points),
+        "overhang": float("nan") if outline is None else outline.overhang,
+        "height": float("nan") if height is None else float(np.median(height[building.roof_rows])),
+        "points": int(points.sum()),
+    }
+    for name, value in described.items():
+        footprints.columns[name].append(value)
+    first = 1
+    for ring in rings:
+        _add_edges(edges, ring, len(footprints), first, building.origin)
+        first += len(ring)
+
+
+def _pooled(deviation: np.ndarray, points: np.ndarray) -> float:
+    """Return the deviation of all points from that of each edge's points; NaN without any."""
+    seen = points > 0
+    return float(np.sqrt(np.average(deviation[seen] ** 2, weights=points[seen]))) if seen.any() else float("nan")
+
+
+def _add_edges(edges: LayerFeatures, ring: list[WallEdge], footprint: int, first: int, origin: np.ndarray) -> None:
+    """Append the edges of one ring of a footprint, numbered from ``first``."""
+    for number, (before, edge) in enumerate(zip([ring[-1], *ring], ring), start=first):
+        edges.geometries.append(np.array([edge.start, edge.end]) + origin)
+        described = {
+            "id": len(edges.geometries),
+            "footprint": footprint,
+            "edge": number,
+            "source": WALL if edge.quality >= _SEEN else ROOF,
+            "length": float(np.hypot(*(edge.end - edge.start))),
+            "angle": _inner_angle(before, edge),
+            "quality": edge.quality,
+            "points": edge.points,
+            "deviation": edge.deviation,
+            "precision": edge.precision,
+        }
+        for name, value in described.items():
+            edges.columns[name].append(value)
+
+
+def _inner_angle(before: WallEdge, edge: WallEdge) -> float:
+    """Return the angle (degrees) inside the building between an edge and the one before it."""
+    (x0, y0), (x1, y1) = before.end - before.start, edge.end - edge.start
+    return float(180.0 - np.degrees(np.arctan2(x0 * y1 - y0 * x1, x0 * x1 + y0 * y1)))

@@ -1,0 +1,300 @@
+"""Straight walls in plan: lines by sequential RANSAC, with thresholds that follow density and noise."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, Optional
+
+import numpy as np
+
+from ..packages import spatial
+from ..stage import Monitor
+
+# Hypotheses for each line: where a wall holds a tenth of the points, one pair in a hundred lies on it.
+_TRIALS = 500
+
+# Hypotheses are scored on so many points at most, and made of points at least so far apart (m).
+_SCORED, _LEAST_PAIR = 1500, 0.5
+
+# A wall goes on over a gap of this length (m): bushes, cars and holes.
+_GAP = 1.5
+
+# A line is a wall where at least this share of it has points.
+_LEAST_COVERED = 0.5
+
+# A piece of wall as long as a bin holds so many points on average.
+_POINTS_PER_BIN = 3.0
+
+# Angles are the same within so many of their deviations, and in any case within so much (radians): walls are built
+# no straighter. Beyond the larger figure no noise excuses.
+_SAME, _BUILT, _MOST = 3.0, np.deg2rad(0.7), np.deg2rad(8.0)
+
+# The way a wall runs shows in the points within this distance (m), where they are at least so much longer than wide;
+# points of a wall run within this angle of it (cosine), those of bushes and corners any way.
+_AROUND, _LONGER, _ALONG = 0.6, 2.0, np.cos(np.deg2rad(30.0))
+
+# Pairs of near points held at once, about 80 bytes each: in plan the points of a wall lie on top of one another, so
+# that each has hundreds around it.
+_PAIRS_AT_ONCE = 500_000
+
+# Lines are one wall where one line fits the points of both to this share of the tolerance.
+_ONE_WALL = 0.45
+
+
+@dataclass(frozen=True)
+class WallLine:
+    """A straight wall in plan.
+
+    Parameters
+    ----------
+    point : ndarray of shape (2,)
+        Middle of its points, m.
+    direction : ndarray of shape (2,)
+        Unit vector.
+    points : ndarray of shape (k,)
+        Numbers of the wall points on it; none where it was told from the roof.
+    along : ndarray of shape (k,)
+        Where these lie along the direction from the middle, m.
+    deviation : float
+        Standard deviation of the points across the line, m.
+    expected : bool
+        Whether a side of the roof runs as far outside of it as the roof juts out over the other walls.
+    """
+
+    point: np.ndarray
+    direction: np.ndarray
+    points: np.ndarray
+    along: np.ndarray
+    deviation: float
+    expected: bool = False
+
+    @property
+    def normal(self) -> np.ndarray:
+        """Unit vector across, to the left."""
+        return np.array([-self.direction[1], self.direction[0]])
+
+    @property
+    def is_seen(self) -> bool:
+        """Whether it has wall points."""
+        return len(self.points) > 0
+
+    @property
+    def angle_deviation(self) -> float:
+        """Standard deviation of the direction (radians)."""
+        spread = float(np.sqrt(np.sum(self.along**2)))
+        return self.deviation / spread if spread > 0 else np.inf
+
+    def across(self, xy: np.ndarray) -> np.ndarray:
+        """Return how far (m) points (n, 2) lie to the left of the line."""
+        return (xy - self.point) @ self.normal
+
+    def turned(self, direction: np.ndarray, xy: np.ndarray) -> WallLine:
+        """Return the line through the same middle in another direction."""
+        if direction @ self.direction < 0:
+            direction = -direction
+        turned = replace(self, direction=direction)
+        if not self.is_seen:
+            return turned
+        offsets = xy[self.points] - self.point
+        return replace(
+            turned, along=offsets @ direction, deviation=float(np.sqrt(np.mean((offsets @ turned.normal) ** 2)))
+        )
+
+
+@dataclass(frozen=True)
+class Scale:
+    """What the data say of a building's walls: how near to a line (m) its points lie, and a bin (m) that holds some."""
+
+    tolerance: float
+    bin: float
+
+    def covered(self, along: np.ndarray, start: float, end: float) -> float:
+        """Return the share of the stretch from ``start`` to ``end`` (m) whose bins hold points at ``along``."""
+        count = max(1, int(np.ceil((end - start) / self.bin)))
+        inside = along[(along >= start) & (along < end)]
+        return np.count_nonzero(np.bincount(((inside - start) / (end - start) * count).astype(np.int64))) / count
+
+
+def wall_scale(n_points: int, perimeter: float, tolerance: float) -> Scale:
+    """Return the scale of ``n_points`` on walls of a length (m) in all."""
+    return Scale(tolerance, float(np.clip(_POINTS_PER_BIN * perimeter / max(n_points, 1), 0.2, 1.0)))
+
+
+def find_lines(
+    xy: np.ndarray, scale: Scale, min_length: float, rng: np.random.Generator, monitor: Monitor
+) -> list[WallLine]:
+    """Return the walls among points in plan, longest first, about.
+
+    Parameters
+    ----------
+    xy : ndarray of shape (n, 2)
+        Wall points near the origin (m), in an order that says nothing.
+    scale : Scale
+        Tolerance and bins.
+    min_length : float
+        Shortest wall, m.
+    rng : Generator
+        Random numbers.
+    monitor : Monitor
+        Receives progress.
+
+    Returns
+    -------
+    list of WallLine
+        Lines through at least the minimum length of wall, most of it covered by points.
+    """
+    lines: list[WallLine] = []
+    ways = _ways(xy, monitor.part(0.0, 0.3))
+    left = np.flatnonzero(ways.any(axis=1))
+    least = max(6, int(min_length / scale.bin))
+    while len(left) >= least:
+        line = _best_line(xy, ways, left, scale, rng)
+        if line is None or len(line.points) < least or not _is_wall(line, scale, min_length):
+            break
+        lines.append(line)
+        left = left[~np.isin(left, line.points)]
+        monitor.progress(1 - 0.7 * len(left) / len(xy))
+    return lines
+
+
+def _is_wall(line: WallLine, scale: Scale, min_length: float) -> bool:
+    start, end = line.along.min(), line.along.max()
+    return bool(end - start >= min_length and scale.covered(line.along, start, end) >= _LEAST_COVERED)
+
+
+def _ways(xy: np.ndarray, monitor: Monitor) -> np.ndarray:
+    """Return the unit vector (n, 2) along which the points around each point lie; 0 where they lie along none."""
+    tree = spatial.cKDTree(xy)
+    ways = np.empty((len(xy), 2))
+    pairs = np.cumsum(tree.query_ball_point(xy[tree.indices], _AROUND, return_length=True))
+    parts = np.split(tree.indices, np.searchsorted(pairs, np.arange(_PAIRS_AT_ONCE, pairs[-1], _PAIRS_AT_ONCE)))
+    for done, rows in enumerate(parts, start=1):
+        if len(rows):
+            ways[rows] = _ways_of(rows, xy, tree)
+        monitor.progress(done / len(parts))
+    return ways
+
+
+def _ways_of(rows: np.ndarray, xy: np.ndarray, tree: Any) -> np.ndarray:
+    """Return what :func:`_ways` does for some of the points; ``tree`` is that of all."""
+    pairs = spatial.cKDTree(xy[rows]).sparse_distance_matrix(tree, _AROUND, output_type="ndarray")
+    point, offset = pairs["i"], xy[pairs["j"]] - xy[rows[pairs["i"]]]
+    count = np.bincount(point, minlength=len(rows))
+    mean = [np.bincount(point, offset[:, k], len(rows)) / count for k in (0, 1)]
+    xx, xy_, yy = (
+        np.bincount(point, offset[:, a] * offset[:, b], len(rows)) / count - mean[a] * mean[b]
+        for a, b in ((0, 0), (0, 1), (1, 1))
+    )
+    # Half the angle of (xx - yy, 2 xy) is that of the larger eigenvector.
+    angle, apart = np.arctan2(2 * xy_, xx - yy) / 2, np.hypot(xx - yy, 2 * xy_)
+    along, across = (xx + yy + apart) / 2, (xx + yy - apart) / 2
+    is_line = (count >= 3) & (along >= _LONGER**2 * across)
+    return np.column_stack([np.cos(angle), np.sin(angle)]) * is_line[:, None]
+
+
+def _best_line(
+    xy: np.ndarray, ways: np.ndarray, left: np.ndarray, scale: Scale, rng: np.random.Generator
+) -> Optional[WallLine]:
+    """Return the line that covers the longest stretch of wall, fitted to its points; None without any."""
+    scored = left if len(left) <= _SCORED else np.sort(rng.choice(left, _SCORED, replace=False))
+    pair = xy[left[rng.integers(0, len(left), (_TRIALS, 2))]]
+    step = pair[:, 1] - pair[:, 0]
+    length = np.hypot(*step.T)
+    pair, step, length = (values[length >= _LEAST_PAIR] for values in (pair, step, length))
+    if not len(pair):
+        return None
+    directions = step / length[:, None]
+    stretch = _longest_stretches(xy[scored], ways[scored], pair[:, 0], directions, scale)
+    best = int(np.argmax(stretch))
+    return _fitted(xy, ways, left, pair[best, 0], directions[best], scale)
+
+
+def _longest_stretches(
+    xy: np.ndarray, ways: np.ndarray, starts: np.ndarray, directions: np.ndarray, scale: Scale
+) -> np.ndarray:
+    """Return for each line how many bins of its longest stretch hold points; a stretch goes on over small gaps."""
+    normals = np.column_stack([-directions[:, 1], directions[:, 0]])
+    near = np.abs(normals @ xy.T - np.einsum("ij,ij->i", normals, starts)[:, None]) <= scale.tolerance
+    near &= np.abs(directions @ ways.T) >= _ALONG
+    along = directions @ xy.T
+    bins = np.floor((along - along.min()) / scale.bin).astype(np.int64)
+    count = int(bins.max()) + 1
+    line, point = np.nonzero(near)
+    occupied = np.bincount(line * count + bins[line, point], minlength=len(starts) * count).reshape(-1, count) > 0
+    gap, run, best = (np.zeros(len(starts), np.int64) for _ in range(3))
+    longest_gap = round(_GAP / scale.bin)
+    for column in occupied.T:
+        gap = np.where(column, 0, gap + 1)
+        run = np.where(gap > longest_gap, 0, run + column)
+        best = np.maximum(best, run)
+    return best
+
+
+def _fitted(
+    xy: np.ndarray, ways: np.ndarray, left: np.ndarray, point: np.ndarray, direction: np.ndarray, scale: Scale
+) -> Optional[WallLine]:
+    """Return the line of least squares through the longest stretch of points near a line."""
+    line = None
+    for _ in range(4):
+        offsets = xy[left] - point
+        along, across = offsets @ direction, offsets @ [-direction[1], direction[0]]
+        near = np.flatnonzero((np.abs(across) <= scale.tolerance) & (np.abs(ways[left] @ direction) >= _ALONG))
+        near = near[_longest_run(along[near])]
+        if len(near) < 3:
+            return None
+        line = _least_squares(xy, left[near])
+        point, direction = line.point, line.direction
+    return line
+
+
+def _longest_run(along: np.ndarray) -> np.ndarray:
+    """Return the positions of the points of the longest stretch without a gap."""
+    order = np.argsort(along, kind="stable")
+    parts = np.split(order, np.flatnonzero(np.diff(along[order]) > _GAP) + 1)
+    return max(parts, key=lambda part: np.ptp(along[part]) if len(part) else -1.0)
+
+
+def _least_squares(xy: np.ndarray, points: np.ndarray) -> WallLine:
+    """Return the line of least squares across through points."""
+    middle = xy[points].mean(axis=0)
+    offsets = xy[points] - middle
+    values, vectors = np.linalg.eigh(offsets.T @ offsets / len(points))
+    direction = vectors[:, 1]
+    return WallLine(middle, direction, points, offsets @ direction, float(np.sqrt(max(values[0], 0.0))))
+
+
+def merge_lines(lines: list[WallLine], xy: np.ndarray, scale: Scale) -> list[WallLine]:
+    """Join lines that are one wall: collinear pieces beside a gap, and doubles side by side."""
+    merged: list[WallLine] = []
+    for line in sorted(lines, key=lambda line: -np.ptp(line.along)):
+        for i, other in enumerate(merged):
+            both = _least_squares(xy, np.union1d(other.points, line.points))
+            parallel = abs(other.direction @ line.direction) > np.cos(2 * _MOST)
+            if parallel and both.deviation <= _ONE_WALL * scale.tolerance:
+                merged[i] = both
+                break
+        else:
+            merged.append(line)
+    return merged
+
+
+def square_up(lines: list[WallLine], xy: np.ndarray) -> list[WallLine]:
+    """Make lines parallel or square to each other where their points allow it; others keep their direction.
+
+    Each group of such lines gets the mean of their directions, the precise ones counting most.
+    """
+    result = list(lines)
+    angles = np.array([np.arctan2(line.direction[1], line.direction[0]) for line in lines])
+    deviations = np.array([np.hypot(line.angle_deviation, _BUILT / _SAME) for line in lines])
+    open_lines = list(np.argsort(deviations, kind="stable"))
+    while open_lines:
+        first = open_lines[0]
+        apart = np.angle(np.exp(4j * (angles[open_lines] - angles[first]))) / 4
+        allowed = np.minimum(_SAME * np.hypot(deviations[open_lines], deviations[first]), _MOST)
+        group = [i for i, near in zip(open_lines, np.abs(apart) <= allowed) if near]
+        mean = np.angle(np.sum(np.exp(4j * angles[group]) / deviations[group] ** 2)) / 4
+        for i in group:
+            angle = mean + np.round((angles[i] - mean) / (np.pi / 2)) * np.pi / 2
+            result[i] = lines[i].turned(np.array([np.cos(angle), np.sin(angle)]), xy)
+        open_lines = [i for i in open_lines if i not in group]
+    return result

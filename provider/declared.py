@@ -1,0 +1,66 @@
+"""Names, group, tags, icon and help of an algorithm, from the declaration of its stage or pipeline."""
+
+from __future__ import annotations
+
+from typing import Union
+
+from qgis.core import QgsApplication
+from qgis.PyQt.QtCore import QUrl
+from qgis.PyQt.QtGui import QIcon
+
+from ..algorithms.help import as_text
+from ..algorithms.pipeline import Pipeline
+from ..algorithms.stage import Stage
+from .paths import HELP, ICON
+
+
+class DeclaredAlgorithm:
+    """Answers QGIS's questions from the declaration of a stage or pipeline."""
+
+    declared: Union[Stage, Pipeline]
+
+    def name(self) -> str:
+        """Return the id, frozen: saved models depend on it."""
+        return self.declared.id
+
+    def displayName(self) -> str:  # noqa: N802 - QGIS asks for these names
+        """Return the title."""
+        return self.declared.title
+
+    def group(self) -> str:
+        """Return the group's title."""
+        return self.declared.group
+
+    def groupId(self) -> str:  # noqa: N802
+        """Return the group's id."""
+        return self.declared.group.lower().replace(" ", "")
+
+    def tags(self) -> list:
+        """Return words that the toolbox finds the algorithm by."""
+        return [tag.strip() for tag in self.declared.tags.split(",") if tag.strip()]
+
+    def icon(self) -> QIcon:
+        """Return the plugin's icon."""
+        return QIcon(str(ICON))
+
+    def svgIconPath(self) -> str:  # noqa: N802
+        """Return the icon's file."""
+        return str(ICON)
+
+    def shortDescription(self) -> str:  # noqa: N802
+        """Return what it is for, in a sentence."""
+        return self.declared.summary
+
+    def helpUrl(self) -> str:  # noqa: N802
+        """Return the help page, which comes with the plugin."""
+        return QUrl.fromLocalFile(str(HELP / f"{self.declared.id}.html")).toString()
+
+
+def on_command_line() -> bool:
+    """Whether this is ``qgis_process``, which shows HTML as it is written."""
+    return QgsApplication.platform() == "qgis_process"
+
+
+def shown_help(text: str) -> str:
+    """Return a help as dialogs or the command line show it."""
+    return as_text(text) if on_command_line() else text

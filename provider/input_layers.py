@@ -1,0 +1,292 @@
+"""Vector layers as input: declared, checked, and read as the features that stages are given."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import Any, Callable, Optional
+
+import numpy as np
+from qgis.core import (
+    Qgis,
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransform,
+    QgsCsException,
+    QgsFeatureRequest,
+    QgsGeometry,
+    QgsProcessingAlgorithm,
+    QgsProcessingContext,
+    QgsProcessingFeatureSource,
+    QgsProcessingParameterFeatureSource,
+    QgsProviderRegistry,
+    QgsRectangle,
+    QgsVariantUtils,
+    QgsWkbTypes,
+)
+
+from ..algorithms.cloud.files import read_extent
+from ..algorithms.stage import InputLayer, LayerFeatures, Monitor
+from .crs import crs_of, crs_of_layer
+from .places import Place, refuse_degrees
+from .vectors import SOURCE_TYPES
+
+_TYPES = {
+    "Polygon": Qgis.GeometryType.Polygon,
+    "LineString": Qgis.GeometryType.Line,
+    "Point": Qgis.GeometryType.Point,
+}
+_BETWEEN_CHECKS = 1000
+_WKB_POINT, _WKB_LINE, _WKB_POLYGON = 1, 2, 3
+_Z_OF_OLD_WKB = 0x80000000
+
+
+def input_layer_name(input_layer: InputLayer) -> str:
+    """Return the parameter's name, ``OLD_MAP`` of ``old_map``."""
+    return input_layer.name.upper()
+
+
+def input_layer_parameter(input_layer: InputLayer) -> QgsProcessingParameterFeatureSource:
+    """Return the Processing parameter of a source."""
+    definition = QgsProcessingParameterFeatureSource(
+        input_layer_name(input_layer),
+        input_layer.title,
+        [SOURCE_TYPES[input_layer.geometry]],
+        optional=input_layer.optional,
+    )
+    definition.setHelp(input_layer.help)
+    return definition
+
+
+def find_input_layer(
+    algorithm: QgsProcessingAlgorithm, input_layer: InputLayer, parameters: dict, context: QgsProcessingContext
+) -> Optional[QgsProcessingFeatureSource]:
+    """Return the layer that a parameter gives; None where an optional one is not given.
+
+    Raises
+    ------
+    ValueError
+        If it is missing, or no vector layer, or of another kind of geometry.
+    """
+    name = input_layer_name(input_layer)
+    value = parameters.get(name)
+    if QgsVariantUtils.isNull(value) or value == "":
+        if input_layer.optional:
+            return None
+        raise ValueError(f"{input_layer.title} ({name}) is missing; choose a layer of {input_layer.things}.")
+    found = algorithm.parameterAsSource(parameters, name, context)
+    if found is None:
+        raise ValueError(f"{input_layer.title} ({name}) must be a vector layer; there is none at {value}.")
+    kind = QgsWkbTypes.geometryType(found.wkbType())
+    if kind not in (_TYPES[input_layer.geometry], Qgis.GeometryType.Unknown):
+        raise ValueError(
+            f"{input_layer.title} ({name}) must be a layer of {input_layer.things}, got {found.sourceName()!r} with "
+            f"{QgsWkbTypes.geometryDisplayString(kind).lower()} geometries; choose another."
+        )
+    return found
+
+
+def input_layer_files(
+    algorithm: QgsProcessingAlgorithm,
+    input_layers: Iterable[InputLayer],
+    parameters: dict,
+    context: QgsProcessingContext,
+) -> list[Path]:
+    """Return the files of the layers that an algorithm reads, if they have one; refuse as :func:`find_input_layer`."""
+    files = []
+    for input_layer in input_layers:
+        if find_input_layer(algorithm, input_layer, parameters, context) is None:
+            continue
+        layer = algorithm.parameterAsVectorLayer(parameters, input_layer_name(input_layer), context)
+        if layer is not None:
+            uri = QgsProviderRegistry.instance().decodeUri(layer.providerType(), layer.source())
+            files.append(Path(uri.get("path") or ""))
+    return [path for path in files if path.is_file()]
+
+
+def refuse_elsewhere(
+    algorithm: QgsProcessingAlgorithm,
+    input_layers: Iterable[InputLayer],
+    clouds: Sequence[Path],
+    parameters: dict,
+    context: QgsProcessingContext,
+) -> None:
+    """Refuse layers that lie wholly outside of the clouds, before any work.
+
+    Raises
+    ------
+    ValueError
+        If a layer doesn't touch the bounding box of a single cloud.
+    """
+    found = {input_layer: find_input_layer(algorithm, input_layer, parameters, context) for input_layer in input_layers}
+    layers = {input_layer: layer for input_layer, layer in found.items() if layer is not None}
+    if not layers:
+        return
+    boxes = [_plan_box(cloud) for cloud in clouds]
+    for input_layer, layer in layers.items():
+        extent = layer.sourceExtent()
+        here = [_brought_to(input_layer, layer, box, crs, context) for box, crs in boxes]
+        if extent.isNull() or any(box is None or extent.intersects(box) for box in here):
+            continue
+        around = QgsRectangle()
+        for box in here:
+            around.combineExtentWith(box)
+        raise ValueError(
+            f"{input_layer.title} and the point cloud{'s' * (len(clouds) > 1)} don't overlap: {_range(extent)} against "
+            f"{_range(around)}; choose a layer of the place, or check the coordinate reference systems of both."
+        )
+
+
+def _plan_box(cloud: Path) -> tuple[QgsRectangle, QgsCoordinateReferenceSystem]:
+    """Return the bounding box of a cloud, empty where it has no area, and its CRS."""
+    low, high, wkt = read_extent(cloud)
+    return QgsRectangle(low[0], low[1], high[0], high[1]), crs_of(wkt)
+
+
+def _brought_to(
+    input_layer: InputLayer,
+    layer: QgsProcessingFeatureSource,
+    box: QgsRectangle,
+    crs: QgsCoordinateReferenceSystem,
+    context: QgsProcessingContext,
+) -> Optional[QgsRectangle]:
+    """Return the box of a cloud in the CRS of a layer; None where the cloud has no area or can't be brought there."""
+    if box.isEmpty():
+        return None
+    try:
+        # This way round: a cloud is small, while the box of a layer may leave what the cloud's system is made for.
+        transform = _transform(input_layer, layer, crs, context, Monitor())
+        return transform.transformBoundingBox(box, Qgis.TransformDirection.Reverse)
+    except QgsCsException:
+        return None
+
+
+def _range(box: QgsRectangle) -> str:
+    """Return the coordinates of a box as people read them."""
+    return f"x {box.xMinimum():.7g} to {box.xMaximum():.7g}, y {box.yMinimum():.7g} to {box.yMaximum():.7g}"
+
+
+def read_input_layer(
+    input_layer: InputLayer,
+    layer: QgsProcessingFeatureSource,
+    place: Place,
+    context: QgsProcessingContext,
+    monitor: Monitor,
+) -> LayerFeatures:
+    """Return a layer as a stage is given it: parts of geometries in local meters, with all attributes.
+
+    Arcs become lines. Features without a sound geometry of the declared kind are left out, which a
+    warning counts. Heights are taken in the vertical unit of the place; geometries that lack some are flat.
+
+    Raises
+    ------
+    ValueError
+        If there are features and all are left out.
+    """
+    transform = _transform(input_layer, layer, place.crs, context, monitor)
+    geometries: list = []
+    rows: list = []
+    count = left_out = 0
+    request = QgsFeatureRequest()
+    for feature in layer.getFeatures(request, Qgis.ProcessingFeatureSourceFlag.SkipGeometryValidityChecks):
+        if count % _BETWEEN_CHECKS == 0:
+            monitor.progress(min(1.0, count / max(1, layer.featureCount())))
+        parts = _parts(feature.geometry(), input_layer.geometry, transform, place)
+        geometries += parts
+        rows += [feature.attributes()] * len(parts)
+        count += 1
+        left_out += not parts
+    if left_out and not rows:
+        raise ValueError(
+            f"{input_layer.title} has no usable feature: none of {count} has a valid geometry of {input_layer.things}; "
+            "run 'Fix geometries' on the layer, or choose another."
+        )
+    if left_out:
+        monitor.warn(
+            f"{input_layer.title}: {left_out} of {count} features are left out; "
+            f"they have no valid geometry of {input_layer.things}."
+        )
+    names = layer.fields().names()
+    return LayerFeatures(geometries, {name: _column([row[i] for row in rows]) for i, name in enumerate(names)})
+
+
+def _transform(
+    input_layer: InputLayer,
+    layer: QgsProcessingFeatureSource,
+    there: QgsCoordinateReferenceSystem,
+    context: QgsProcessingContext,
+    monitor: Monitor,
+) -> QgsCoordinateTransform:
+    """Return what brings a layer to the CRS of the place; nothing to do where one of the two names none."""
+    own = crs_of_layer(layer)
+    if own.isValid() and there.isValid():
+        return QgsCoordinateTransform(own, there, context.transformContext())
+    if own.isValid():
+        refuse_degrees(input_layer.title, own)
+        monitor.warn(
+            f"{input_layer.title} is in {own.userFriendlyIdentifier()}; everything without a CRS is taken to be in it."
+        )
+    elif there.isValid():
+        monitor.warn(f"{input_layer.title} names no CRS; it is taken to be in {there.userFriendlyIdentifier()}.")
+    return QgsCoordinateTransform()
+
+
+def _parts(geometry: QgsGeometry, kind: str, transform: QgsCoordinateTransform, place: Place) -> list:
+    """Return the parts of a geometry as in :class:`LayerFeatures`; none where it is not valid or of another kind."""
+    if geometry.isNull() or geometry.isEmpty() or geometry.type() != _TYPES[kind]:
+        return []
+    straight = QgsGeometry(geometry.constGet().segmentize())
+    if not straight.isGeosValid():
+        return []
+    try:
+        straight.transform(transform)
+    except QgsCsException:
+        return []
+    straight.get().dropMValue()
+    if kind == "Polygon":
+        straight = straight.forcePolygonCounterClockwise()
+    parts = [_vertices(bytes(part.asWkb()), place) for part in straight.asGeometryCollection()]
+    if not all(len(rings) and all(np.isfinite(ring).all() for ring in rings) for rings in parts):
+        return []
+    return [_SHAPES[kind](rings) for rings in parts]
+
+
+def _vertices(wkb: bytes, place: Place) -> list:
+    """Return the vertices of WKB in local meters, one array (m, 2 or 3) per ring; none of what is no simple shape.
+
+    Five times as fast as QGIS's own lists of points.
+    """
+    code = int.from_bytes(wkb[1:5], "little")
+    kind = (code & 0xFFFF) % 1000
+    width = 3 if code & _Z_OF_OLD_WKB or (code & 0xFFFF) // 1000 == 1 else 2
+    if kind == _WKB_POINT:
+        rings = [np.frombuffer(wkb, "<f8", width, 5)[None]]
+    elif kind == _WKB_LINE:
+        rings = list(_rings(wkb, 5, width))
+    else:
+        rings = list(_rings(wkb, 9, width)) if kind == _WKB_POLYGON else []
+    return [place.from_map(ring if np.isfinite(ring).all() else ring[:, :2]) for ring in rings]
+
+
+def _rings(wkb: bytes, at: int, width: int) -> Iterator[np.ndarray]:
+    while at < len(wkb):
+        n = int.from_bytes(wkb[at : at + 4], "little")
+        yield np.frombuffer(wkb, "<f8", n * width, at + 4).reshape(n, width)
+        at += 4 + 8 * n * width
+
+
+_SHAPES: dict[str, Callable[[list], Any]] = {
+    "Polygon": lambda rings: rings,
+    "LineString": lambda rings: rings[0],
+    "Point": lambda rings: rings[0][0],
+}
+
+
+def _column(values: list) -> Any:
+    """Return an attribute's values: int64, or float64 with NaN for NULL, or what they are with None for NULL."""
+    plain = [None if QgsVariantUtils.isNull(value) else value for value in values]
+    kinds = {type(value) for value in plain}
+    if kinds == {int}:
+        return np.array(plain, np.int64)
+    if kinds and kinds <= {int, float, type(None)} and kinds != {type(None)}:
+        return np.array([np.nan if value is None else value for value in plain], float)
+    return plain

@@ -1,0 +1,65 @@
+"""Inputs and outputs that algorithms have in common: their names, titles and parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from qgis.core import (
+    QgsProcessingAlgorithm,
+    QgsProcessingContext,
+    QgsProcessingFeedback,
+    QgsProcessingParameterDefinition,
+)
+
+from ..algorithms.cloud.dimensions import DIMENSIONS
+from ..algorithms.stage import Stage
+from .clouds import CloudParameter, CloudsParameter, cloud_path, cloud_paths
+from .feedback import is_step
+
+INPUT, INPUTS, REFERENCE, OUTPUT, REPORT = "INPUT", "INPUTS", "REFERENCE", "OUTPUT", "REPORT"
+
+
+def with_help(definition: QgsProcessingParameterDefinition, text: str) -> QgsProcessingParameterDefinition:
+    """Return the parameter with its tooltip."""
+    definition.setHelp(text)
+    return definition
+
+
+def input_parameter(several: bool) -> QgsProcessingParameterDefinition:
+    """Return the parameter of the cloud, or of the clouds, that a stage or chain works on."""
+    if several:
+        return with_help(CloudsParameter(INPUTS, "Point clouds"), "Two or more files or layers of points.")
+    return with_help(CloudParameter(INPUT, "Point cloud"), "File or layer of the points.")
+
+
+def input_paths(
+    algorithm: QgsProcessingAlgorithm, several: bool, parameters: dict, context: QgsProcessingContext
+) -> list[Path]:
+    """Return the file of the cloud, or the files of the clouds, that an algorithm works on."""
+    if several:
+        return cloud_paths(algorithm, INPUTS, parameters, context)
+    return [cloud_path(algorithm, INPUT, parameters, context)]
+
+
+def subject_of(clouds: Sequence[Path], feedback: QgsProcessingFeedback) -> str:
+    """Return what the results of a run are of, the name of its first cloud; "" for a step, which reads temporaries."""
+    return clouds[0].name.split(".")[0] if clouds and not is_step(feedback) else ""
+
+
+def cloud_title(stages: Sequence[Stage]) -> str:
+    """Return what the cloud is called that these stages make one after the other, in the dialog and as a layer."""
+    # What a selection or a merger writes is what its points had before.
+    of_their_own = [stage for stage in stages if not (stage.selects or stage.merges)]
+    writes = [name for stage in of_their_own for name in stage.writes]
+    if any(stage.creates for stage in stages):
+        return "Simulated point cloud"
+    if all(stage.merges for stage in stages):
+        return "Merged point cloud"
+    if all(stage.selects for stage in stages):
+        return "Selected points"
+    if "classification" in writes:
+        return "Classified point cloud"
+    if len(writes) == 1:
+        return f"Point cloud with {DIMENSIONS[writes[0]].disk[0]}"
+    return "Point cloud with new dimensions"

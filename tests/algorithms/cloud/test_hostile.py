@@ -1,0 +1,257 @@
+"""Small files that promise what they can't hold: refused in one sentence, or read right, in little memory."""
+
+import io
+import json
+import struct
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
+
+from .conftest import vlr
+
+ROOT = Path(__file__).resolve().parents[3]
+POINTS = 150
+# What a process may take that reads a hostile file (MB): Python with its packages, and the files of a few kB.
+MOST_MEMORY = 600
+READ = """
+import json, re, sys
+from pathlib import Path
+import conftest
+from lidar_buildings.algorithms.cloud.files import read_cloud
+for path in sys.argv[1:]:
+    try:
+        said = len(read_cloud(path))
+    except ValueError as error:
+        said = str(error)
+    print(json.dumps([said, int(re.search(r"VmHWM:\\s*([0-9]+)", Path("/proc/self/status").read_text())[1]) / 1024]))
+"""
+pytestmark = pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="memory is measured as Linux tells it")
+
+
+@pytest.fixture(params=["old", "layered", "copc"])
+def laz(request, make_las, tmp_path):
+    """A sound file of a few kB of each way to compress, as bytes, with a name for what is made of it."""
+    source = make_las(point_format=3 if request.param == "old" else 7, n=POINTS)
+    path = tmp_path / ("sound.copc.laz" if request.param == "copc" else "sound.laz")
+    write_cloud(read_cloud(source), path)
+    return path.read_bytes(), tmp_path / path.name.replace("sound", "hostile")
+
+
+def record_at(raw):
+    """Where the payload of the LASzip record starts."""
+    return raw.index(b"laszip encoded") - 2 + 54
+
+
+def points_at(raw):
+    return struct.unpack_from("<I", raw, 96)[0]
+
+
+def patched(raw, at, kind, *values):
+    raw = bytearray(raw)
+    struct.pack_into(kind, raw, at, *values)
+    return bytes(raw)
+
+
+def readings(path, *hostile):
+    """Read each content in a process of their own; return the number of points or the sentence for each."""
+    paths = [path.with_name(f"{number}-{path.name}") for number in range(len(hostile))]
+    for one, raw in zip(paths, hostile):
+        one.write_bytes(raw)
+    command = [sys.executable, "-W", "ignore", "-c", READ, *paths]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    found = [json.loads(line) for line in done.stdout.splitlines()]
+    assert [memory for _, memory in found if memory >= MOST_MEMORY] == []
+    assert all(said == POINTS or (said.endswith(".") and "\n" not in said) for said, _ in found)
+    return [said for said, _ in found]
+
+
+def assert_refused(path, words, *hostile):
+    assert [said for said in readings(path, *hostile) if words not in str(said)] == []
+
+
+def test_chunks_of_more_points_than_there_are_take_no_memory(laz):
+    """Lazrs made room for a whole chunk: 4 GB for 150 points, and with 2^31 points (96 GB) the process ended."""
+    raw, path = laz
+    if path.name.endswith(".copc.laz"):
+        pytest.skip("chunks of COPC have no size in common")
+    sizes = (10**8, 2**31, 2**32 - 2)
+    assert readings(path, *(patched(raw, record_at(raw) + 12, "<I", size) for size in sizes)) == [POINTS] * 3
+
+
+def test_chunks_without_points(laz):
+    raw, path = laz
+    assert_refused(path, "damaged", patched(raw, record_at(raw) + 12, "<I", 0))
+
+
+def test_layers_larger_than_their_chunk(laz):
+    """Lazrs made room for every layer before it read it: 9 of 4 GB."""
+    raw, path = laz
+    size = struct.unpack_from("<H", raw, 105)[0]
+    if raw[104] & 63 < 6:
+        pytest.skip("points of old formats are not stored in layers")
+    layers_at = points_at(raw) + 8 + size + 4
+    nine, one = patched(raw, layers_at, "<9I", *[2**32 - 1] * 9), patched(raw, layers_at + 4, "<I", 10**9)
+    assert_refused(path, "layers of", nine, one)
+
+
+def test_more_chunks_than_bytes(laz):
+    raw, path = laz
+    (table,) = struct.unpack_from("<q", raw, points_at(raw))
+    assert_refused(path, "chunks can't stand in", *(patched(raw, table + 4, "<I", n) for n in (2**32 - 1, 10**6)))
+    assert_refused(path, "its chunks hold at most 0", patched(raw, table + 4, "<I", 0))
+
+
+def test_a_chunk_table_outside_of_the_points(laz):
+    raw, path = laz
+    places = (0, -2, 2**62, 10**6)
+    assert_refused(path, "chunk table should be at", *(patched(raw, points_at(raw), "<q", place) for place in places))
+
+
+def test_a_chunk_table_that_promises_too_much(laz):
+    lazrs = pytest.importorskip("lazrs")
+    raw, path = laz
+    (table_at,) = struct.unpack_from("<q", raw, points_at(raw))
+    size = struct.unpack_from("<H", raw, record_at(raw) - 34)[0]
+    record = lazrs.LazVlr(raw[record_at(raw) : record_at(raw) + size])
+    hostile = []
+    for table in ([(POINTS, 10**9)], [(POINTS, 2**31 - 1)], [(10**9, 100)], [(POINTS, 40), (0, 2**30)]):
+        stream = io.BytesIO(raw[:table_at])
+        stream.seek(table_at)
+        lazrs.write_chunk_table(stream, table, record)
+        hostile.append(stream.getvalue())
+    assert_refused(path, "damaged", *hostile)
+
+
+def test_points_of_another_size_in_the_laszip_record(laz):
+    raw, path = laz
+    sizes = (patched(raw, record_at(raw) + 36, "<H", size) for size in (65_535, 1, 0))
+    assert_refused(path, "its LASzip record tells of points of", *sizes)
+
+
+def test_more_items_in_the_laszip_record_than_it_has(laz):
+    raw, path = laz
+    assert_refused(path, "its LASzip record is too short", patched(raw, record_at(raw) + 32, "<H", 65_535))
+
+
+def test_many_points_promised(laz):
+    raw, path = laz
+    hostile = [patched(raw, 247, "<Q", count) for count in (10**6, 7 * 10**6, 2**40)]
+    if not path.name.endswith(".copc.laz"):
+        hostile += [patched(one, record_at(raw) + 12, "<I", 2**31) for one in hostile]
+    assert_refused(path, "truncated or damaged", *hostile)
+
+
+def test_long_records_of_many_points(make_las, tmp_path):
+    path = make_las(point_format=6, n=3, extra=2000)
+    write_cloud(read_cloud(path), tmp_path / "long.laz")
+    raw = (tmp_path / "long.laz").read_bytes()
+    assert_refused(tmp_path / "hostile.laz", "it promises 100000000 points", patched(raw, 247, "<Q", 100_000_000))
+
+
+def test_damage_in_the_chunk_table_and_the_heads_of_chunks(laz):
+    """Of 60 files with two changed bytes in the table one ended the process, and ten took over 1 GB."""
+    raw, path = laz
+    rng = np.random.default_rng(1)
+    (table_at,) = struct.unpack_from("<q", raw, points_at(raw))
+    hostile = []
+    for _ in range(60):
+        damaged = bytearray(raw)
+        for at in (*rng.integers(table_at, len(raw), 2), *rng.integers(points_at(raw), points_at(raw) + 90, 2)):
+            damaged[at] = rng.integers(256)
+        hostile.append(bytes(damaged))
+    assert len(readings(path, *hostile)) == 60
+
+
+# --- units ------------------------------------------------------------------------------------------------------------
+
+
+def geokeys(unit):
+    keys = (1, 1, 0, 3, 1024, 0, 1, 1, 3072, 0, 1, 32767, 3077, 34736, 1, 0)
+    return (
+        vlr("LASF_Projection", 34735, struct.pack("<16H", *keys)),
+        vlr("LASF_Projection", 34736, struct.pack("<d", unit)),
+    )
+
+
+@pytest.mark.parametrize("unit", [0.0, -0.0, -1.0, np.nan, np.inf, -np.inf, 1e-300, 1e300])
+def test_a_unit_that_is_no_length(make_las, unit):
+    """A unit of 1e-300 m ended in a division by zero, -1 mirrored the cloud, NaN was blamed on the points."""
+    with pytest.raises(ValueError, match=r"^The file gives its unit of length as .* m, which is damaged"):
+        read_cloud(make_las(vlrs=geokeys(unit)))
+    if np.isfinite(unit):
+        with pytest.raises(ValueError, match="which is damaged"):
+            read_cloud(make_las(vlrs=(vlr("LASF_Projection", 2112, f'PROJCS["a",UNIT["b",{unit!r}]]\0'.encode()),)))
+
+
+def test_axes_of_different_units(make_las):
+    """The unit of the first axis was taken for both."""
+    axes = 'AXIS["e",east,LENGTHUNIT["foot",0.3048]],AXIS["n",north,LENGTHUNIT["metre",1]]'
+    wkt = f'PROJCRS["mixed",CS[Cartesian,2],{axes}]\0'.encode()
+    with pytest.raises(ValueError, match=r"axes of the coordinates have different units \(0.3048 and 1 m\)"):
+        read_cloud(make_las(vlrs=(vlr("LASF_Projection", 2112, wkt),)))
+
+
+# --- virtual point clouds ---------------------------------------------------------------------------------------------
+
+
+def vpc(tmp_path, *hrefs):
+    path = tmp_path / "all.vpc"
+    path.write_text(json.dumps({"features": [{"assets": {"data": {"href": href}}} for href in hrefs]}))
+    return path
+
+
+@pytest.mark.parametrize("at", [179, 187, 219])
+@pytest.mark.parametrize("bound", [np.nan, np.inf, -np.inf])
+def test_a_tile_without_finite_bounds(make_las, tmp_path, at, bound):
+    """The merged cloud had NaN for an offset and could not be read again."""
+    one, two = make_las("one.las"), make_las("two.las")
+    two.write_bytes(patched(two.read_bytes(), at, "<d", bound))
+    with pytest.raises(ValueError, match=r"The tile two\.las has bounds in its header that are not finite"):
+        read_cloud(vpc(tmp_path, one.name, two.name))
+    assert len(read_cloud(two)) == len(read_cloud(vpc(tmp_path, "two.las"))) == 100
+
+
+def test_a_tile_named_twice_is_read_once(make_las, tmp_path):
+    make_las("one.las")
+    make_las("two.las", n=50)
+    names = ("one.las", "two.las", "./one.las", "one.las", f"../{tmp_path.name}/two.las")
+    assert len(read_cloud(vpc(tmp_path, *names))) == 150
+
+
+@pytest.mark.parametrize("depth", [2000, 100_000])
+def test_json_nested_deeply(tmp_path, depth):
+    path = tmp_path / "deep.vpc"
+    path.write_text("[" * depth + "]" * depth)
+    with pytest.raises(ValueError, match=r"deep\.vpc is not a virtual point cloud"):
+        read_cloud(path)
+
+
+def test_a_name_with_line_breaks_stays_one_sentence(tmp_path):
+    with pytest.raises(ValueError, match=r"^all\.vpc names the tile a b\.las, which is missing; .*\.$") as caught:
+        read_cloud(vpc(tmp_path, "a\nb.las"))
+    assert "\n" not in str(caught.value)
+
+
+def test_a_cloud_of_a_scale_below_zero_has_its_bounds(make_las, take_apart, tmp_path, monkeypatch):
+    monkeypatch.setattr("lidar_buildings.algorithms.cloud.points.AT_ONCE", 30)
+    path = make_las(scale=(-0.01, 0.01, -0.001))
+    cloud = read_cloud(path)
+    write_cloud(cloud, tmp_path / "b.las")
+    extent = take_apart(tmp_path / "b.las")["extent"]
+    on_map = cloud.to_map(cloud.get("xyz"))
+    np.testing.assert_allclose(extent[::2], on_map.max(axis=0))
+    np.testing.assert_allclose(extent[1::2], on_map.min(axis=0))
+
+
+def test_points_that_are_all_alike_are_read(tmp_path):
+    """They compress by more than anything else, and are no bomb."""
+    write_cloud(create_cloud({"xyz": np.zeros((1_000_000, 3))}), tmp_path / "alike.laz")
+    assert (tmp_path / "alike.laz").stat().st_size < 20_000
+    assert len(read_cloud(tmp_path / "alike.laz")) == 1_000_000

@@ -1,0 +1,270 @@
+"""Footprints of simulated houses: where they are, what they say, and that they are valid."""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.cloud.reasons import Reason
+from lidar_buildings.algorithms.footprints.extract_footprints import extract_footprints
+from lidar_buildings.algorithms.footprints.roof_points import is_under_roof
+from lidar_buildings.algorithms.geometry.rings import signed_area
+from lidar_buildings.algorithms.packages import spatial
+from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.tests.builders import roof
+from lidar_buildings.tests.polygon_validity import assert_valid
+
+
+@pytest.fixture
+def village(rng):
+    """A house with walls below its eaves, a block around a courtyard, a shed that is too small, and a field."""
+    house = roof(rng, 0, 0, 10, 8, 6.0, density=10)
+    wall = np.column_stack([rng.uniform(0, 10, 150), rng.uniform(-0.1, 0.1, 150), rng.uniform(0.5, 5.9, 150)])
+    block = roof(rng, 30, 0, 24, 24, 9.0, density=10)
+    block = block[(np.abs(block[:, :2] - [42, 12]) > 6).any(axis=1)]
+    shed = roof(rng, 70, 0, 1.5, 1.5, 2.5, density=10)
+    field = roof(rng, 0, 40, 60, 10, 0.0, density=2)
+    parts = [house, wall, block, shed, field]
+    sizes = [len(part) for part in parts]
+    xyz = np.concatenate(parts)
+    return {
+        "xyz": xyz,
+        "classification": np.repeat([6, 6, 6, 6, 2], sizes),
+        "cluster_id": np.repeat([3, 3, 7, 9, 0], sizes),
+        "height_above_ground": (xyz[:, 2] + 1).astype(np.float32),
+        "cluster_entropy": np.repeat([0.4, 0.4, 0.5, 0.6, np.nan], sizes).astype(np.float32),
+        "confidence": np.repeat([0.9, 0.9, 0.8, 0.3, np.nan], sizes).astype(np.float32),
+        "reason": np.repeat([Reason.SOLID_PLANE, Reason.ATTACHED, Reason.BESIDE, Reason.SOLID, 0], sizes),
+    }
+
+
+@pytest.mark.parametrize("regularize", [True, False])
+def test_village(village, regularize):
+    found = extract_footprints(**village, regularize=regularize)
+    for rings in found.geometries:
+        assert_valid(rings)
+    table = found.columns
+    assert table["id"] == [1, 2]
+    assert table["cluster_id"] == [3, 7]
+    assert table["area"] == pytest.approx([80, 24 * 24 - 144], rel=0.08)
+    assert [len(rings) for rings in found.geometries] == [1, 2]
+    assert table["regularized"] == [int(regularize)] * 2
+    assert table["points"] == [(village["cluster_id"] == number).sum() for number in (3, 7)]
+    assert table["height"] == pytest.approx([7, 10], abs=0.02)
+    assert table["max_height"] == pytest.approx([7, 10], abs=0.1)
+    assert table["ground_elevation"] == pytest.approx([-1, -1], abs=1e-5)
+    # Flat roofs: eaves and ridges are where the roof is, and the space is that of a box.
+    # Points of the wall down to a meter under the eaves are not told from the roof, but from its eaves.
+    assert table["eave_height"] == pytest.approx([7, 10], abs=0.1)
+    assert table["ridge_height"] == pytest.approx([7, 10], abs=0.1)
+    assert table["volume"] == pytest.approx([7 * table["area"][0], 10 * table["area"][1]], rel=0.01)
+    assert table["entropy"] == pytest.approx([0.4, 0.5])
+    assert table["confidence"] == pytest.approx([0.9, 0.8])
+    assert table["reason"] == [Reason.SOLID_PLANE.text, Reason.BESIDE.text]
+    if regularize:
+        assert [len(ring) - 1 for rings in found.geometries for ring in rings] == [4, 4, 4]
+        assert table["perimeter"] == pytest.approx([36, 96 + 48], rel=0.04)
+
+
+def test_the_reason_is_that_of_most_roof_points(village):
+    """What was added to a building says nothing of why it is one, and numbers of others are no reasons of ours."""
+    house = np.flatnonzero(village["cluster_id"] == 3)
+    village["reason"][house] = Reason.ATTACHED
+    village["reason"][house[:5]], village["reason"][house[5:8]] = Reason.SOLID, Reason.PLANE
+    village["reason"][village["cluster_id"] == 7] = 200
+    assert extract_footprints(**village).columns["reason"] == [Reason.SOLID.text, ""]
+    del village["reason"]
+    assert extract_footprints(**village).columns["reason"] == ["", ""]
+
+
+def test_eave_ridge_and_volume_of_a_gable_roof(rng):
+    """12 m by 8 m, eaves at 5 m, ridge at 8 m, with a chimney and a dormer wall that don't matter."""
+    n = 12 * 8 * 12
+    plan = rng.uniform([0, 0], [12, 8], (n, 2))
+    xyz = np.column_stack([plan, 8 - 0.75 * np.abs(plan[:, 1] - 4) + rng.normal(0, 0.02, n)])
+    xyz[(np.abs(plan - [6, 4]) < 0.3).all(axis=1), 2] += 1.5
+    xyz[:, 2] += 100
+    found = extract_footprints(xyz, np.full(n, 6), None, (xyz[:, 2] - 100).astype(np.float32)).columns
+    assert found["eave_height"] == pytest.approx([5], abs=0.4)
+    assert found["ridge_height"] == pytest.approx([8], abs=0.15)
+    assert found["max_height"] == pytest.approx([9.5], abs=0.1)
+    assert found["ground_elevation"] == pytest.approx([100], abs=1e-4)
+    assert found["volume"] == pytest.approx([12 * 8 * 6.5], rel=0.02)
+
+
+@pytest.mark.parametrize("slope", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("density", [4, 12, 40])
+def test_walls_do_not_lower_the_eaves(rng, slope, density):
+    """A house of 12 m by 8 m, its eaves at 5 m, with as many points on its two long walls as on so much roof."""
+    n, walls = 12 * 8 * density, 12 * 4 * density
+    plan = rng.uniform([0, 0], [12, 8], (n, 2))
+    house = np.column_stack([plan, 5 + slope * (4 - np.abs(plan[:, 1] - 4)) + rng.normal(0, 0.02, n)])
+    side = np.where(rng.random(walls) < 0.5, 0.0, 8.0) + rng.normal(0, 0.03, walls)
+    wall = np.column_stack([rng.uniform(0, 12, walls), side, rng.uniform(0.5, 5, walls)])
+    xyz = np.concatenate([house, wall])
+    found = extract_footprints(xyz, np.full(len(xyz), 6), None, xyz[:, 2].astype(np.float32)).columns
+    assert found["eave_height"] == pytest.approx([5], abs=0.1)
+    assert found["ridge_height"] == pytest.approx([5 + 4 * slope], abs=0.15)
+    assert found["volume"] == pytest.approx([96 * (5 + 2 * slope)], rel=0.06)
+
+
+def test_walls_do_not_widen_the_outline(village, rng):
+    """Points down a wall that leans out by 20 cm count as points of the house and leave its outline alone."""
+    only_roof = {name: values[:800] for name, values in village.items()}
+    before = extract_footprints(**only_roof, regularize=False)
+    along = rng.uniform(1, 9, 400)
+    wall = np.column_stack([along, np.full(400, -0.2), rng.uniform(0.2, 4.5, 400)])
+    more = {name: np.concatenate([values, values[:400]]) for name, values in only_roof.items()}
+    more["xyz"] = np.concatenate([only_roof["xyz"], wall])
+    after = extract_footprints(**more, regularize=False)
+    assert after.columns["area"] == pytest.approx(before.columns["area"], rel=0.01)
+    assert after.columns["points"] == [1200]
+
+
+def test_what_was_attached_below_the_eaves_hardly_widens_the_outline(rng):
+    """Bushes 30 cm from a house and 1.1 m below its eaves, where a steep roof could end, on 8 m of its wall."""
+    grown = []
+    for _ in range(6):
+        house = roof(rng, 0, 0, 10, 8, 6.0, density=10)
+        bushes = np.column_stack([rng.uniform(1, 9, 200), rng.uniform(-0.35, -0.3, 200), np.full(200, 4.9)])
+        xyz, area = np.concatenate([house, bushes]), []
+        for count, reason in ((len(house), 0), (len(xyz), Reason.SOLID_PLANE), (len(xyz), Reason.ATTACHED)):
+            reasons = np.repeat([Reason.SOLID_PLANE, reason], [len(house), 200])[:count]
+            made = extract_footprints(xyz[:count], np.full(count, 6), reason=reasons, regularize=False)
+            area += made.columns["area"]
+        grown.append(np.array(area[1:]) - area[0])
+    as_roof, attached = np.mean(grown, axis=0)
+    assert as_roof == pytest.approx(8 * 0.35, rel=0.4)
+    assert attached < 0.5 * as_roof
+
+
+@pytest.mark.parametrize("density", [4, 12, 40])
+def test_steep_roofs_are_no_walls(rng, density):
+    """A spire of 70° on a tower of 7 m, and a house whose roof rises by 62° from the ground."""
+    plan = rng.uniform(0, 7, (49 * density, 2))
+    spire = np.column_stack([plan, 15 + (3.5 - np.abs(plan - 3.5).max(axis=1)) * np.tan(np.radians(70))])
+    plan = rng.uniform(0, [12, 8], (96 * density, 2))
+    house = np.column_stack([plan + [20, 0], (4 - np.abs(plan[:, 1] - 4)) * np.tan(np.radians(62))])
+    xyz = np.concatenate([spire, house])
+    found = extract_footprints(xyz, np.full(len(xyz), 6))
+    assert [len(rings) for rings in found.geometries] == [1, 1]
+    assert found.columns["area"] == pytest.approx([49, 96], rel=0.12)
+
+
+def test_what_is_seen_under_the_eaves_does_not_end_the_roof(rng):
+    """A second flight line looks 1.5 m under the eaves of a house of 12 m by 8 m, at half the density."""
+    areas = []
+    for _ in range(6):
+        house = roof(rng, 0, 0, 12, 8, 6.0, density=12)
+        field = roof(rng, -4, -4, 20, 4, 0.0, density=12)
+        under = roof(rng, 0, 0, 12, 1.5, 0.0, density=6)
+        xyz = np.concatenate([house, field, under])
+        areas += extract_footprints(xyz, np.repeat([6, 2, 2], [len(house), len(field), len(under)])).columns["area"]
+    assert len(areas) == 6
+    assert np.mean(areas) == pytest.approx(96, rel=0.03)
+
+
+def test_small_holes_are_filled(village):
+    kept = extract_footprints(**village, min_hole_area=500.0)
+    assert [len(rings) for rings in kept.geometries] == [1, 1]
+
+
+def test_parts_of_a_cluster_are_separate_polygons_that_share_its_points(rng):
+    xyz = np.concatenate([roof(rng, 0, 0, 6, 6, 5.0, 10), roof(rng, 12, 0, 6, 8, 5.0, 10)])
+    found = extract_footprints(xyz, np.full(len(xyz), 6), np.ones(len(xyz), int))
+    assert found.columns["cluster_id"] == [1, 1]
+    assert sorted(found.columns["points"]) == [360, 480]
+
+
+def test_without_clusters_what_lies_together_is_a_building(village):
+    found = extract_footprints(village["xyz"], village["classification"])
+    assert sorted(found.columns["area"]) == pytest.approx([80, 432], rel=0.08)
+    assert np.isnan(found.columns["height"]).all()
+    assert np.isnan(found.columns["entropy"]).all()
+
+
+def test_minimum_area(village):
+    assert len(extract_footprints(**village, min_area=1.0)) == 3
+    assert len(extract_footprints(**village, min_area=100.0)) == 1
+
+
+def test_place_changes_nothing(village):
+    here = extract_footprints(**village)
+    moved = {**village, "xyz": village["xyz"] + [600_000.0, 5_000_000.0, 300.0]}
+    there = extract_footprints(**moved)
+    assert there.columns["area"] == pytest.approx(here.columns["area"], rel=0.02)
+    shift = there.geometries[0][0].mean(axis=0) - here.geometries[0][0].mean(axis=0)
+    assert shift == pytest.approx([600_000, 5_000_000], abs=0.2)
+
+
+def test_a_round_tower_stays_round(rng):
+    angle, radius = rng.uniform(0, 2 * np.pi, 3000), 8 * np.sqrt(rng.uniform(0, 1, 3000))
+    xyz = np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(3000, 20.0)])
+    found = extract_footprints(xyz, np.full(3000, 6), np.ones(3000, int), tolerance=0.3)
+    assert found.columns["regularized"] == [0]
+    assert_valid(found.geometries[0])
+    ring = found.geometries[0][0]
+    assert signed_area(ring) == pytest.approx(np.pi * 64, rel=0.06)
+    # Chords, each of a few points, and all of them near the wall.
+    assert len(ring) < 40
+    middle = (ring[1:] + ring[:-1]) / 2
+    assert (np.abs(np.hypot(*np.concatenate([ring, middle]).T) - 8) < 0.5).all()
+
+
+@pytest.mark.parametrize(
+    "xyz",
+    [
+        np.zeros((5, 3)),
+        np.column_stack([np.arange(9.0), np.zeros(9), np.zeros(9)]),
+        np.column_stack([np.zeros(9), np.zeros(9), np.arange(9.0)]),
+        [[0.0, 0, 0]],
+    ],
+)
+def test_buildings_without_area_give_no_polygon(xyz):
+    found = extract_footprints(np.asarray(xyz), np.full(len(xyz), 6), np.ones(len(xyz), int))
+    assert len(found) == 0
+
+
+def test_no_building_gives_an_empty_layer(village):
+    monitor = Monitor()
+    ground = np.full(len(village["xyz"]), 2)
+    found = extract_footprints(village["xyz"], ground, village["cluster_id"], monitor=monitor)
+    assert monitor.warnings == ["No point is called building (class 6), so there are no footprints."]
+    assert found.geometries == []
+    assert set(found.columns) == {field.name for field in extract_footprints.stage.layers[0].fields}
+    assert all(len(values) == 0 for values in found.columns.values())
+
+
+def test_buildings_without_a_number_are_told_from_none():
+    monitor = Monitor()
+    xyz, classes = np.random.default_rng(1).uniform(0, 9, (50, 3)), np.full(50, 6, np.uint8)
+    found = extract_footprints(xyz, classes, np.zeros(50, np.int32), monitor=monitor)
+    assert len(found) == 0
+    assert monitor.warnings == ["No point of class 6 (building) has a ClusterID, so there are no footprints."]
+
+
+def test_automatic_values_are_told(village):
+    monitor = Monitor()
+    extract_footprints(**village, monitor=monitor)
+    assert 0.5 < monitor.values["tolerance"] < 0.8
+    assert 1.0 < monitor.values["max_edge"] < 2.6
+
+
+def test_what_lies_inside_the_edge_of_a_roof_is_under_it():
+    """Rooms seen through windows, bushes and ground under eaves show no end of the roof; yards and corners of yards do.
+
+    Of the points around it, a place a spacing inside the edge has four fifths, one beyond the edge less than half.
+    """
+    shares = []
+    for seed in range(10):
+        rng = np.random.default_rng(seed)
+        roof = rng.uniform(0, 30, (3600, 2))
+        roof = roof[(roof < 20).any(axis=1)]  # a yard in the corner
+        along = rng.uniform(3, 17, 300)
+        inside = np.column_stack([along, np.full(300, 0.5)])
+        outside = np.column_stack([along, np.full(300, -0.15)])
+        yard = np.full((300, 2), 20) + rng.uniform(0.3, 0.6, (300, 2))
+        tree = spatial.cKDTree(roof)
+        shares.append([is_under_roof(places, tree, 0.5).mean() for places in (inside, outside, yard)])
+    inside, outside, yard = np.mean(shares, axis=0)
+    assert inside > 0.65
+    assert outside < 0.15
+    assert yard < 0.2

@@ -1,0 +1,251 @@
+"""Simulated rows: every house gets its polygon where its roof ends, and no house is cut in two."""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.footprints import row_houses as rows
+from lidar_buildings.algorithms.footprints.extract_footprints import extract_footprints
+from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.tests.monitors import Listening
+from lidar_buildings.tests.polygon_validity import assert_valid
+
+WIDTH, DEPTH = 5.5, 11.0
+
+
+def gables(a, v, number):
+    return 6 + 1.1 * (WIDTH / 2 - np.abs(a - WIDTH / 2))
+
+
+def steps(a, v, number):
+    return 7 + 0.6 * (number % 2) + 0.7 * (DEPTH / 2 - np.abs(v - DEPTH / 2))
+
+
+def flat_steps(a, v, number):
+    return 7 + 0.8 * (number % 2)
+
+
+def one_roof(a, v, number):
+    return 7 + 0.7 * (DEPTH / 2 - np.abs(v - DEPTH / 2))
+
+
+def firewalls(a, v, number):
+    return one_roof(a, v, number) + 0.6 * (np.minimum(a, WIDTH - a) < 0.2)
+
+
+def dormers(a, v, number):
+    return np.where((np.abs(a - WIDTH / 2) < 1.2) & (v > 1) & (v < 4), 9.0, one_roof(a, v, number))
+
+
+def row(rng, roof, density, houses=5, angle=0.5):
+    """Return the points of a row of houses and the ground around it, their classes, and how to turn back to the row."""
+    n = round(houses * WIDTH * DEPTH * density)
+    u, v = rng.uniform(0, houses * WIDTH, n), rng.uniform(0, DEPTH, n)
+    number = (u // WIDTH).astype(int)
+    z = roof(u - number * WIDTH, v, number)
+    m = round((houses * WIDTH + 16) * (DEPTH + 16) * density)
+    ground = rng.uniform([-8, -8], [houses * WIDTH + 8, DEPTH + 8], (m, 2))
+    is_under = (ground >= 0).all(axis=1) & (ground <= [houses * WIDTH, DEPTH]).all(axis=1)
+    plan = np.concatenate([np.column_stack([u, v]), ground[~is_under]])
+    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    z = np.concatenate([z, np.zeros((~is_under).sum())]) + rng.normal(0, 0.03, len(plan))
+    return np.column_stack([plan @ turn + [1000, 2000], z]), np.repeat([6, 2], [n, (~is_under).sum()]), turn
+
+
+def outlined(rng, roof, density, **more):
+    xyz, classification, turn = row(rng, roof, density, **more)
+    found = extract_footprints(xyz, classification, None, xyz[:, 2].astype(np.float32), split_rows=True)
+    return found, [(np.concatenate(rings) - [1000, 2000]) @ turn.T for rings in found.geometries]
+
+
+@pytest.mark.parametrize("roof", [gables, steps, flat_steps, firewalls])
+@pytest.mark.parametrize("density", [8, 20])
+def test_houses_of_a_row_are_polygons_that_share_their_walls(rng, roof, density):
+    found, places = outlined(rng, roof, density)
+    assert len(found) == 5
+    assert found.columns["cluster_id"] == [1] * 5
+    assert sorted(found.columns["id"]) == [1, 2, 3, 4, 5]
+    assert found.columns["area"] == pytest.approx([WIDTH * DEPTH] * 5, rel=0.06)
+    walls = sorted(x for place in places for x in (place[:, 0].min(), place[:, 0].max()))
+    # Inner walls are there twice, once for either house.
+    assert walls[1:-1] == pytest.approx(np.repeat(np.arange(1, 5) * WIDTH, 2), abs=0.3)
+    edges = [{tuple(edge) for edge in np.hstack([r[:-1], r[1:]]).tolist()} for (r,) in found.geometries]
+    back = [{(c, d, a, b) for a, b, c, d in one} for one in edges]
+    assert sum(bool(one & other) for one in edges for other in back) == 8
+    for rings in found.geometries:
+        assert_valid(rings)
+
+
+@pytest.mark.parametrize("density", [5, 8])
+def test_triangles_that_a_wall_cuts_off_at_the_outline_cost_no_house(density):
+    """A corner of a triangle behind a wall was taken for a piece too small for a house, and the wall was given up."""
+    for seed in range(6):
+        found, _ = outlined(np.random.default_rng(seed), flat_steps, density, houses=8, angle=0.3 * seed)
+        assert found.columns["area"] == pytest.approx([WIDTH * DEPTH] * 8, rel=0.2)
+
+
+def test_attributes_are_those_of_each_house(rng):
+    found, places = outlined(rng, flat_steps, 12)
+    heights = [7 + 0.8 * ((place[:, 0].min() + WIDTH / 2) // WIDTH % 2) for place in places]
+    for name in ("height", "ridge_height", "eave_height"):
+        assert found.columns[name] == pytest.approx(heights, abs=0.1)
+    assert found.columns["volume"] == pytest.approx([h * a for h, a in zip(heights, found.columns["area"])], rel=0.03)
+
+
+@pytest.mark.parametrize("roof", [one_roof, dormers])
+@pytest.mark.parametrize("density", [4, 20])
+def test_a_roof_that_goes_on_is_not_split(rng, roof, density):
+    assert len(outlined(rng, roof, density)[0]) == 1
+
+
+def test_two_gables_may_be_one_house(rng):
+    assert len(outlined(rng, gables, 12, houses=2)[0]) == 1
+
+
+def with_wings(a, v, number):
+    """A wing of 60 m² that is half as high as the house, on either side of it, and a tower on it."""
+    return np.where((number == 2) & (v < 4), 14.0, np.choose(number, [4.0, 8.0, 8.0, 8.0, 4.0]))
+
+
+def test_low_parts_and_towers_are_no_houses(rng):
+    assert len(outlined(rng, with_wings, 12)[0]) == 1
+
+
+def low_and_high(a, v, number):
+    """Garages of 60 m² between houses: half as high, and no houses themselves."""
+    return np.where(number % 2, 8.0, 4.0)
+
+
+def dormers_from_front_to_back(a, v, number):
+    """What is 2 m wide and 0.8 m higher ends before it would be a house."""
+    return 7 + 0.8 * (np.abs(a - WIDTH / 2) < 1)
+
+
+@pytest.mark.parametrize("roof", [low_and_high, dormers_from_front_to_back])
+def test_what_stands_side_by_side_and_is_no_house_is_no_row(rng, roof):
+    assert len(outlined(rng, roof, 12)[0]) == 1
+
+
+def test_no_house_is_narrower_than_houses_are(rng):
+    """Steps every 3 m: at least 3.5 m lie between two walls, so that every other step is left out."""
+
+    def narrow(a, v, number):
+        return 7 + 0.8 * ((a + number * WIDTH) // 3 % 2)
+
+    walls = sorted(place[:, 0].min() for place in outlined(rng, narrow, 12)[1])[1:]
+    assert len(walls) >= 3
+    assert np.diff(walls).min() > 3.3
+
+
+@pytest.mark.parametrize("elevation", [-300.0, 0.0, 3000.0])
+def test_without_heights_the_elevation_of_the_place_changes_nothing(rng, elevation):
+    """Shares of heights were shares of elevations: in the mountains a wing was a house, below sea level none was."""
+    for roof, houses in ((with_wings, 1), (gables, 5)):
+        xyz, classification, _ = row(rng, roof, 12)
+        assert len(extract_footprints(xyz + [0, 0, elevation], classification, split_rows=True)) == houses
+
+
+def test_without_splitting_a_row_is_one_polygon(rng):
+    xyz, classification, _ = row(rng, gables, 12)
+    assert len(extract_footprints(xyz, classification)) == 1
+
+
+def test_houses_are_the_same_in_any_order_and_place(rng):
+    xyz, classification, _ = row(rng, gables, 10)
+    areas = sorted(extract_footprints(xyz, classification, split_rows=True).columns["area"])
+    order = rng.permutation(len(xyz))
+    moved = extract_footprints(xyz[order] + [6e5, 5e6, 0], classification[order], split_rows=True)
+    assert sorted(moved.columns["area"]) == pytest.approx(areas, rel=1e-3)
+
+
+@pytest.mark.parametrize("spacing", [3.0, 1.4])
+def test_where_points_are_too_far_apart_to_see_roofs_this_is_told(rng, spacing):
+    """From 2.7 m on, not one place of the grid was beside a wall, and the stage broke off."""
+    plan = rng.uniform(0, 1, (round(4800 / spacing**2), 2)) * [80, 60]
+    monitor = Monitor()
+    found = extract_footprints(
+        np.column_stack([plan, np.full(len(plan), 8.0)]), np.full(len(plan), 6), split_rows=True, monitor=monitor
+    )
+    assert len(found) == 1
+    assert len(monitor.warnings) == 1
+    assert "too far to see where the houses of a row part" in monitor.warnings[0]
+
+
+def test_large_buildings_are_looked_at_piece_by_piece(rng, monkeypatch):
+    xyz, classification, _ = row(rng, steps, 10, houses=12)
+    at_once = extract_footprints(xyz, classification, split_rows=True)
+    monkeypatch.setattr(rows, "_AT_ONCE", 1000)
+    monitor = Listening()
+    found = extract_footprints(xyz, classification, split_rows=True, monitor=monitor)
+    assert len(found) == 12
+    for one, other in zip(found.geometries, at_once.geometries):
+        np.testing.assert_allclose(one[0], other[0], atol=1e-6)
+    assert monitor.heard == sorted(monitor.heard)
+    assert monitor.heard[-1] == pytest.approx(1)
+    # A grid of 70 m by 15 m has 17,000 places.
+    assert len(set(monitor.heard)) > 25
+    for stop_at in (0.1, 0.3, 0.45):
+        with pytest.raises(Cancelled):
+            extract_footprints(xyz, classification, split_rows=True, monitor=Listening(stop_at))
+
+
+def step_of(height, left=0.0, right=0.0, low=8.0):
+    """Return a roof across a wall at 0: so much higher there, and rising so much per meter to the left and right."""
+    return lambda x: low + np.where(x < 0, -left * x, height + right * x)
+
+
+@pytest.mark.parametrize(
+    ("seen", "unseen"),
+    [
+        # A valley from a slope of 0.25 on.
+        (step_of(0.0, 0.3, 0.3), step_of(0.0, 0.2, 0.2)),
+        # A step of 0.4 m between roofs whose slopes differ by less than 0.35, and one of 1 m between all but
+        # the sides of a ridge and those steeper than 1.5.
+        (step_of(0.45), step_of(0.35)),
+        (step_of(0.7, -0.1, 0.4), step_of(0.7, -0.1, 0.5)),
+        (step_of(1.1, 0.0, 0.6), step_of(0.9, 0.0, 0.6)),
+        (step_of(2.0, -0.2, -0.3), step_of(2.0, -0.3, -0.3)),
+        (step_of(1.2, -1.4, low=20.0), step_of(1.2, -1.6, low=20.0)),
+        # A wall 0.3 m above both roofs.
+        (lambda x: 8 + 0.4 * (np.abs(x) < 0.2), lambda x: 8 + 0.2 * (np.abs(x) < 0.2)),
+        # Roofs deviate by less than 0.25 m from a line.
+        (
+            lambda x: step_of(0.9)(x) + 0.18 * np.cos(4 * np.pi * x),
+            lambda x: step_of(0.9)(x) + 0.32 * np.cos(4 * np.pi * x),
+        ),
+        # Half of the step is still there 2.5 m from it.
+        (lambda x: step_of(0.9)(x) - 0.9 * (x > 2.8), lambda x: step_of(0.9)(x) - 0.9 * (x > 2.3)),
+        # The lower house has three quarters of the other's height.
+        (step_of(1.6, low=5.0), step_of(1.6, low=4.5)),
+    ],
+)
+def test_what_looks_like_a_wall_between_two_houses(seen, unseen):
+    """On a grid of 25 cm, with the wall in the middle of 20 m."""
+    across = 0.25 * np.arange(-40, 41)
+    for roof, is_wall in ((seen, True), (unseen, False)):
+        for turned in (1, -1):
+            height = np.tile(roof(across)[::turned], (20, 1))
+            strength, *_ = rows._evidence(height, np.ones(height.shape, bool), 0.25)
+            assert (strength[10, 40] > 0) == is_wall
+
+
+@pytest.mark.parametrize(
+    ("depth", "seen", "low", "is_wall"),
+    [
+        # A wall is from 4 to 22 m long.
+        (5.0, 5.0, 0.0, True),
+        (3.5, 3.5, 0.0, False),
+        (21.0, 21.0, 0.0, True),
+        (23.0, 23.0, 0.0, False),
+        # It is seen on three fifths, of what is no low part of a house.
+        (12.0, 8.5, 0.0, True),
+        (12.0, 6.0, 0.0, False),
+        (12.0, 6.0, 4.0, True),
+    ],
+)
+def test_how_long_a_wall_is_and_how_much_of_it_is_seen(depth, seen, low, is_wall):
+    """A step of 0.8 m across a row, of which so much is seen, and so much is beside roofs that are lower than 4 m."""
+    along = 0.25 * np.arange(round(depth / 0.25))[:, None]
+    roof = 8 + np.where((np.arange(81) >= 40) & (along < seen), 0.8, 0.0)
+    roof[along[:, 0] >= depth - low] = 3.0
+    column, *_ = rows._runs_of_party_walls(roof, np.ones(roof.shape, bool), 4.0, 0.25)
+    assert (40 in column.tolist()) == is_wall

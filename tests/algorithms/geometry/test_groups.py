@@ -1,0 +1,47 @@
+"""Runs, items, members and components, held against loops."""
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lidar_buildings.algorithms.geometry.groups import components, items, members, run_starts, split_groups
+
+numbers = st.lists(st.integers(-1, 4), max_size=12).map(lambda values: np.array(values, np.int64))
+
+
+@given(numbers)
+def test_a_run_starts_where_the_number_before_is_another(values):
+    wanted = [i for i in range(len(values)) if i == 0 or values[i] != values[i - 1]]
+    assert run_starts(values).tolist() == wanted
+
+
+@given(st.lists(st.integers(0, 4), max_size=8).map(lambda values: np.array(values, np.int64)))
+def test_items_are_counted_from_0_in_each_group(counts):
+    wanted = [(group, item) for group, count in enumerate(counts.tolist()) for item in range(count)]
+    assert list(zip(*(part.tolist() for part in items(counts)))) == wanted
+
+
+@given(numbers)
+def test_members_are_the_positions_of_each_number_from_1(values):
+    wanted = {n: np.flatnonzero(values == n).tolist() for n in np.unique(values).tolist() if n > 0}
+    found = members(values)
+    assert {n: part.tolist() for n, part in found.items()} == wanted
+    assert list(found) == sorted(found)
+
+
+@given(st.lists(st.tuples(st.integers(0, 7), st.integers(0, 7)), max_size=10))
+def test_things_are_of_one_group_where_a_chain_of_pairs_leads(pairs):
+    one, other = np.array(pairs, np.int64).reshape(-1, 2).T
+    count, group = components(one, other, 8)
+    wanted = list(range(8))
+    for _ in range(8):
+        for a, b in pairs:
+            wanted[a] = wanted[b] = min(wanted[a], wanted[b])
+    first = {}
+    assert group.tolist() == [first.setdefault(least, len(first)) for least in wanted]
+    assert count == len(first)
+
+
+def test_split_groups_gives_the_rows_of_each_in_order_and_leaves_out_minus_one():
+    rows = split_groups(np.array([2, -1, 0, 2, 0, -1]), 4)
+    assert [list(of_group) for of_group in rows] == [[2, 4], [], [0, 3], []]

@@ -1,0 +1,108 @@
+"""Segments that meet and rings that are valid, by hand."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.geometry import line_segments as module
+from lidar_buildings.algorithms.geometry.line_segments import (
+    distances_to,
+    edge_distances,
+    farthest,
+    is_inside,
+    is_valid,
+    meet_in_corners,
+    segments_meet,
+)
+from lidar_buildings.tests.builders import L_SHAPE
+
+
+def test_validity():
+    square = np.array([[0, 0], [4, 0], [4, 4], [0, 4], [0, 0]], float)
+    bow_tie = np.array([[0, 0], [4, 4], [4, 0], [0, 4], [0, 0]], float)
+    hole = square[::-1] / 4 + 1
+    assert is_valid([square])
+    assert not is_valid([bow_tie])
+    assert is_valid([square, hole])
+    assert not is_valid([square, hole + 10])
+    assert not is_valid([square, hole + 2.5])
+    assert not is_valid([square, hole, hole])
+    spike = np.array([[0, 0], [4, 0], [8, 0], [4, 0], [4, 4], [0, 4], [0, 0]], float)
+    assert not is_valid([spike])
+
+
+def meet_exactly(a, b, c, d):
+    """Whether the segments ab and cd, of whole numbers and some length, have a point in common, by their parameters."""
+    (ux, uy), (vx, vy), (wx, wy) = b - a, d - c, c - a
+    turn = int(ux * vy - uy * vx)
+    if turn:
+        return all(0 <= Fraction(int(x), turn) <= 1 for x in (wx * vy - wy * vx, wx * uy - wy * ux))
+    axis = int(abs(uy) > abs(ux))
+    one, other = sorted([a[axis], b[axis]]), sorted([c[axis], d[axis]])
+    return wx * uy == wy * ux and one[0] <= other[1] and other[0] <= one[1]
+
+
+def test_segments_meet_as_whole_numbers_say(rng):
+    """On a grid of five by five they touch, lie on one line and overlap as often as they cross."""
+    grid = rng.integers(0, 5, (600, 4, 2))
+    grid = grid[(grid[:, 0] != grid[:, 1]).any(axis=1) & (grid[:, 2] != grid[:, 3]).any(axis=1)]
+    expected = [meet_exactly(*four) for four in grid]
+    assert 0.2 < np.mean(expected) < 0.8
+    assert [segments_meet(*four[:, None].astype(float)) for four in grid] == expected
+
+
+@pytest.mark.parametrize("at_once", [1, 7, 1000])
+def test_rings_are_valid_as_whole_numbers_say(at_once, rng, monkeypatch):
+    """Sides may only meet the sides before and after them, however many are compared at once."""
+    monkeypatch.setattr(module, "_PAIRS_AT_ONCE", at_once)
+    rings = [rng.integers(0, 6, (count, 2)) for count in (4, 5, 6) for _ in range(60)]
+    found, expected = [], []
+    for corners in rings:
+        ring = np.concatenate([corners, corners[:1]])
+        sides = list(zip(ring[:-1], ring[1:]))
+        apart = [(one, other) for i, one in enumerate(sides) for other in sides[i + 2 : len(sides) - (i == 0)]]
+        has_length = all((a != b).any() for a, b in sides)
+        expected.append(has_length and not any(meet_exactly(*one, *other) for one, other in apart))
+        found.append(is_valid([ring.astype(float)]))
+    assert found == expected
+    assert 20 < sum(expected) < 160
+
+
+def test_distances_to_segments_by_hand():
+    """Beside one, before it, beyond it; and to one without length."""
+    points = np.array([[2.0, 3], [-3, 4], [8, 4]])
+    starts, ends = np.array([[0.0, 0], [2, 0]]), np.array([[5.0, 0], [2, 0]])
+    np.testing.assert_allclose(edge_distances(points, starts, ends), [[3, 3], [5, np.hypot(5, 4)], [5, np.hypot(6, 4)]])
+
+
+@pytest.mark.parametrize("at_once", [1, 20, 1000])
+def test_the_nearest_place_of_a_line_is_on_its_nearest_segment(at_once, rng, monkeypatch):
+    monkeypatch.setattr(module, "_PAIRS_AT_ONCE", at_once)
+    points, line = rng.uniform(-5, 25, (31, 2)), L_SHAPE
+    share = np.linspace(0, 1, 2001)[:, None, None]
+    places = (line[:-1] + share * (line[1:] - line[:-1])).reshape(-1, 2)
+    expected = np.hypot(*np.moveaxis(points[:, None] - places, -1, 0)).min(axis=1)
+    np.testing.assert_allclose(distances_to(points, line), expected, atol=1e-2)
+    assert farthest(points, line) == distances_to(points, line).max()
+
+
+def test_inside():
+    assert is_inside(np.array([5.0, 5]), L_SHAPE)
+    assert not is_inside(np.array([15.0, 12]), L_SHAPE)
+
+
+def test_segments_that_meet():
+    a, b = np.array([[0, 0], [10, 0]], float), np.array([[4, 0], [10, 4]], float)
+    assert segments_meet(a, b, np.array([[2.0, -1]]), np.array([[2.0, 1]]))
+    assert not segments_meet(a, b, np.array([[5.0, -1]]), np.array([[5.0, 1]]))
+
+
+def test_borders_meet_in_corners_only():
+    """Two squares that share a side, given once by each, and the same with a third line through both."""
+    starts = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [1, 1], [1, 0], [2, 0], [2, 1]], float)
+    ends = np.array([[1, 0], [1, 1], [0, 1], [0, 0], [1, 0], [2, 0], [2, 1], [1, 1]], float)
+    assert meet_in_corners(starts, ends)
+    assert not meet_in_corners(np.vstack([starts, [[0, 0]]]), np.vstack([ends, [[2, 0.5]]]))
+    # A corner on another's side is no corner of both.
+    assert not meet_in_corners(np.vstack([starts, [[0.5, 0]]]), np.vstack([ends, [[0.5, 0.5]]]))

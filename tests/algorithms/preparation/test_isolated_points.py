@@ -1,0 +1,104 @@
+"""What belongs to nothing is found in simulated towns, and nothing thin that stands or hangs in them is lost."""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.cloud.asprs import NOISE, PointClass
+from lidar_buildings.algorithms.preparation.classify_noise_histogram import classify_noise_histogram
+from lidar_buildings.algorithms.preparation.classify_noise_statistical import classify_noise_statistical
+from lidar_buildings.algorithms.preparation.isolated_points import in_the_air, under_ground
+from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.tests.noisy import noisy_town
+
+# Things that must stay, and what of the town must.
+STAYS = ("mast", "lamp", "wire", "chimney")
+TOWN = (PointClass.GROUND, PointClass.BUILDING, PointClass.HIGH_VEGETATION)
+
+
+def plain(rng, density=8.0, side=80.0, slope=0.0):
+    plan = rng.uniform(0, side, (int(density * side * side), 2))
+    return np.column_stack([plan, slope * plan[:, 0] + rng.normal(0, 0.02, len(plan))])
+
+
+@pytest.mark.parametrize("classify", [classify_noise_histogram, classify_noise_statistical])
+@pytest.mark.parametrize(
+    "differs", [{"density": 2.0}, {"density": 8.0, "slope": 25.0}, {"density": 8.0, "forest": 0.6}, {"density": 30.0}]
+)
+def test_noise_of_a_town_is_found_and_the_town_stays(classify, differs):
+    town = noisy_town(seed=21, **differs)
+    made = classify(town.xyz, np.ones(len(town.xyz), np.uint8))
+    found = np.isin(made, NOISE)
+    assert (found & town.is_noise).sum() >= 0.9 * town.is_noise.sum()
+    assert (found & town.is_noise).sum() >= 0.9 * found.sum()
+    for kind, share in (("bird", 0.9), ("dust", 0.95), ("far", 1.0), ("multipath", 0.6)):
+        assert found[town.kind == kind].mean() >= share, kind
+    assert not found[np.isin(town.kind, STAYS)].any()
+    of_town = (town.kind == "") & np.isin(town.classification, TOWN)
+    assert found[of_town].sum() <= 5e-4 * of_town.sum()
+    assert not found[of_town & (town.classification == PointClass.BUILDING)].any()
+
+
+def test_without_isolated_points_it_is_the_published_method(rng):
+    xyz = np.concatenate([plain(rng), rng.uniform([20, 20, -1.5], [60, 60, -1.4], (10, 3))])
+    one = np.ones(len(xyz), np.uint8)
+    assert (classify_noise_histogram(xyz, one, isolated=False) == 1).all()
+    made = classify_noise_histogram(xyz, one)
+    assert (made[-10:] == 7).all()
+    assert (made[:-10] == 1).all()
+
+
+@pytest.mark.parametrize("density", [2.0, 10.0, 40.0])
+@pytest.mark.parametrize("slope", [0.0, 0.5])
+def test_depth_under_open_ground(rng, density, slope):
+    xyz = plain(rng, density, slope=slope)
+    plan = np.stack(np.meshgrid([20.0, 40, 60], [20.0, 40, 60]), axis=-1).reshape(-1, 2)
+    low = np.column_stack([plan, slope * plan[:, 0] - 0.8 - np.arange(9)])
+    found = under_ground(np.concatenate([xyz, low]), density**-0.5, Monitor())
+    assert found[-9:].all()
+    assert not found[:-9].any()
+
+
+def test_pits_ditches_steps_and_ground_between_leaves_stay(rng):
+    xyz = plain(rng, 8.0)
+    x, y = xyz[:, 0], xyz[:, 1]
+    xyz[(np.abs(x - 20) < 1.5) & (np.abs(y - 20) < 1.5), 2] -= 3
+    xyz[np.abs(y - 40 - 0.1 * x) < 0.4, 2] -= 1
+    xyz[x > 70, 2] -= 4
+    in_wood = (x > 30) & (x < 60) & (y < 35) & (rng.random(len(x)) < 0.85)
+    xyz[in_wood, 2] += rng.uniform(4, 14, in_wood.sum())
+    assert under_ground(xyz, 8.0**-0.5, Monitor()).mean() <= 2e-4
+
+
+def test_points_that_are_ground_for_each_other_stay(rng):
+    """Four points of a hollow, seen here and there between leaves: 0.8 m apart and 0.2 m higher and lower."""
+    hollow = np.array([[40.0, 40, -0.8], [40.8, 40, -0.6], [40.8, 40.8, -0.8], [40, 40.8, -0.6]])
+    alone = np.array([[60.0, 60, -0.8]])
+    found = under_ground(np.concatenate([plain(rng, 16.0), hollow, alone]), 0.25, Monitor())
+    assert not found[-5:-1].any()
+    assert found[-1]
+
+
+def test_what_hangs_by_form_or_density_stays(rng):
+    ground = plain(rng)
+    roof = np.column_stack([rng.uniform(20, 30, (800, 2)), np.full(800, 12.0)])
+    crown = rng.uniform([50, 50, 9], [58, 58, 14], (500, 3))
+    along = np.arange(5, 75, 1.0)
+    wire = np.column_stack([along, np.full(70, 65.0), 20 + 0.002 * (along - 40) ** 2])
+    sparse_wire = np.column_stack([along[::4] + 0.3, np.full(18, 15.0), np.full(18, 18.0)])
+    pane = np.column_stack([rng.uniform([35, 5], [45, 12], (40, 2)), np.full(40, 7.0)])
+    lamp = rng.uniform([70, 40, 8], [70.4, 40.4, 8.1], (4, 3))
+    stays = np.concatenate([ground, roof, crown, wire, sparse_wire, pane, lamp])
+    birds = np.array([[40.0, 40, 8], [10, 50, 30], [25, 25, 20]])
+    dust = rng.uniform([5, 25, 20], [17, 37, 26], (150, 3))
+    found = in_the_air(np.concatenate([stays, birds, dust]), 8.0**-0.5, Monitor())
+    assert not found[: len(stays)].any()
+    assert found[len(stays) :].all()
+
+
+def test_place_and_order_change_nothing(rng):
+    town = noisy_town(density=4.0, size=80.0, seed=5)
+    made = classify_noise_histogram(town.xyz, np.ones(len(town.xyz), np.uint8))
+    order = rng.permutation(len(made))
+    assert (classify_noise_histogram(town.xyz[order], np.ones(len(made), np.uint8)) == made[order]).all()
+    far = classify_noise_histogram(town.xyz + [6e5, 5e6, 0], np.ones(len(made), np.uint8))
+    assert (far != made).sum() <= 0.01 * (made != 1).sum()

@@ -1,0 +1,127 @@
+"""What stands around groups of points, and what lies beneath: by hand, and by comparing everything with everything."""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.segmentation.cluster_measures import (
+    grow_to_adjacent_clusters,
+    penetration,
+    plan_areas,
+    points_below_share,
+    share_around,
+    share_joined,
+)
+
+
+def test_shares_by_hand():
+    """Boxes of 2 x 2 x 4 m in a row: three points of the first group, one of the second next to them, five apart."""
+    easting = [0.1, 0.2, 0.3, 2.5, 8.1, 8.2, 8.3, 8.4, 8.5]
+    xyz = np.column_stack([easting, np.zeros(9), np.zeros(9)])
+    group = np.array([0, 0, 0, 1, 2, 2, 2, 2, 2])
+    np.testing.assert_allclose(share_around(xyz, group, np.array([True, False, False])), [0.75, 0.75, 0])
+    np.testing.assert_allclose(share_around(xyz, group, np.array([True, True, True])), 1)
+    # What lies higher by a box and a half is as near as what lies a box beside, two boxes higher is not.
+    above = np.where(np.isin(group, 1)[:, None], xyz + [0, 0, 6], xyz)
+    np.testing.assert_allclose(share_around(above, group, np.array([True, False, False]))[:2], 0.75)
+    far_above = np.where(np.isin(group, 1)[:, None], xyz + [0, 0, 9], xyz)
+    np.testing.assert_allclose(share_around(far_above, group, np.array([True, False, False]))[:2], [1, 0])
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_shares_as_when_every_box_is_compared_with_every_other(seed):
+    rng = np.random.default_rng(seed)
+    xyz = rng.normal(0, 1, (400, 3)) * [8, 8, 5] + [6e5, 5e6, 100]
+    group = rng.integers(-1, 6, 400)
+    group[group == 3] = 2  # a number that no point has
+    chosen = rng.random(6) < 0.5
+    members = group >= 0
+    box = np.floor((xyz[members] - xyz[members].min(axis=0)) / [2, 2, 4])
+    near = np.abs(box[:, None] - box[None]).max(axis=2) <= 1
+    of_point = (near & chosen[group[members]][None]).sum(axis=1) / near.sum(axis=1)
+    expected = [of_point[group[members] == g].mean() if (group == g).any() else 0 for g in range(6)]
+    np.testing.assert_allclose(share_around(xyz, group, chosen), expected)
+
+
+def at_cells(*columns, z=5.0):
+    """Return points in square cells of 1.5 m, one each, in columns of a row at height z."""
+    return np.column_stack([1.51 * np.array(columns), np.zeros(len(columns)), np.full(len(columns), z)])
+
+
+def test_areas_are_cells_of_one_and_a_half_spacings_that_hold_points():
+    group = np.array([0, 0, 0, 2, 2])
+    np.testing.assert_allclose(plan_areas(at_cells(0, 1, 1, 1, 7), group, 1.0), [2 * 2.25, 0, 2 * 2.25])
+
+
+@pytest.mark.parametrize(("depth", "expected"), [(0.9, 0.0), (1.1, 2 / 5)])
+def test_penetration_by_hand(depth, expected):
+    """Of five cells of a group two have points of no or another group so far beneath; one point of ten goes on."""
+    group = np.repeat([1, 1, -1, 0], [5, 5, 1, 1])
+    own = at_cells(0, 1, 2, 3, 4)
+    xyz = np.concatenate([own, own + [0, 0, 2], at_cells(1, z=5 - depth), at_cells(3, z=5 - depth)])
+    assert penetration(xyz, group, 1.0).tolist() == [0.0, expected]
+    of_pulse = np.where(np.arange(12) == 7, 2, 1)
+    assert penetration(xyz, group, 1.0, np.ones(12), of_pulse)[1] == pytest.approx((expected + 0.1) / 2)
+
+
+def test_groups_grow_to_adjacent_clusters_others_on_a_fifth_of_their_cells():
+    """In a row: a strong group, a weak one of five cells, one beside that, one of six; and one over a strong one."""
+    groups = [(0,), (1, 2, 3, 4, 5), (6, 7), (8, 9, 10, 11, 12, 13), (30,), (30,)]
+    xyz = at_cells(*[column for columns in groups for column in columns])
+    group = np.repeat(np.arange(6), [len(columns) for columns in groups])
+    strong, weak = np.isin(np.arange(6), [0, 4]), np.ones(6, bool)
+    assert np.flatnonzero(~grow_to_adjacent_clusters(xyz, group, strong, weak, 1.0)).tolist() == [3]
+    # Without the second the third is beside nothing.
+    assert np.flatnonzero(~grow_to_adjacent_clusters(xyz, group, strong, weak & (np.arange(6) != 1), 1.0)).tolist() == [
+        1,
+        2,
+        3,
+    ]
+    assert np.flatnonzero(
+        ~grow_to_adjacent_clusters(xyz, np.where(group == 1, -1, group), strong, weak, 1.0)
+    ).tolist() == [1, 2, 3]
+
+
+def test_what_lies_beneath_by_hand():
+    """Cells of 1.5 m: a group of two points over three more than a meter lower, one less than that, one beside."""
+    xyz = np.array([[0, 0, 5], [1, 1, 6], [0, 1, 3.9], [1, 0, 3.9], [0.5, 0.5, 0], [0.2, 0.2, 4.2], [3.2, 0, 0]], float)
+    group = np.array([0, 0, -1, -1, -1, -1, -1])
+    np.testing.assert_allclose(points_below_share(xyz, group, density=1.0), [3 / 5])
+    np.testing.assert_allclose(penetration(xyz, group, density=1.0), [1])
+    # Over another group, which has less beneath.
+    group = np.array([0, 0, 2, 2, -1, -1, -1])
+    np.testing.assert_allclose(points_below_share(xyz, group, density=1.0), [3 / 5, 0, 1 / 3])
+
+
+@pytest.mark.parametrize(("size", "density"), [(1.0, 6.0), (1.5, 1.0)])
+def test_what_lies_beneath_as_when_every_point_is_compared_with_every_other(rng, size, density):
+    xyz = rng.normal(0, 1, (600, 3)) * [3, 3, 4] + [6e5, 5e6, 100]
+    group = rng.integers(-1, 4, 600)
+    cell = np.floor((xyz[:, :2] - xyz[:, :2].min(axis=0)) / size)
+    same = (cell[:, None] == cell[None]).all(axis=2)
+    expected = []
+    for number in range(4):
+        own = same & (group == number)[None]
+        bottom = np.where(own, xyz[None, :, 2], np.inf).min(axis=1)
+        passed = np.isfinite(bottom) & (xyz[:, 2] < bottom - 1)
+        expected.append(passed.sum() / (passed.sum() + (group == number).sum()))
+    np.testing.assert_allclose(points_below_share(xyz, group, density), expected)
+
+
+@pytest.mark.parametrize("density", [4.0, 12.0, 40.0, 80.0])
+def test_what_passes_a_surface_is_the_same_at_any_density(rng, density):
+    """A third of the points of 20 m by 20 m lie on the ground, the others on a roof."""
+    plan = rng.uniform(0, 20, (int(400 * density), 2))
+    passes = rng.random(len(plan)) < 1 / 3
+    xyz, group = np.column_stack([plan, np.where(passes, 0.0, 5.0)]), np.where(passes, -1, 0)
+    assert points_below_share(xyz, group, density)[0] == pytest.approx(1 / 3, abs=0.04)
+    # Cells hold 2.25 points on the mean; of those with a roof point 1 - exp(-0.75) have one beneath.
+    assert penetration(xyz, group, density)[0] == pytest.approx(0.53, abs=0.05)
+
+
+def test_shares_of_what_hangs_together_by_hand():
+    """Four cells in a row, one of them of two groups, and two cells apart: of each row so much is of the chosen."""
+    xyz = at_cells(0, 1, 2, 2, 3, 7, 8, 20)
+    group = np.array([0, 0, 0, 1, 1, 2, 3, -1])
+    np.testing.assert_allclose(share_joined(xyz, group, np.array([0, 1, 0, 1], bool), 1.0), [0.5, 0.5, 0.5, 0.5])
+    np.testing.assert_allclose(share_joined(xyz, group, np.array([1, 0, 0, 0], bool), 1.0), [0.75, 0.75, 0, 0])
+    np.testing.assert_allclose(share_joined(xyz, group, np.ones(4, bool), 1.0), 1)

@@ -1,0 +1,329 @@
+"""Roofs are told from terrain, crowns and clutter in scenes whose truth is known by construction."""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.buildings.classify_buildings import classify_buildings
+from lidar_buildings.algorithms.cloud.reasons import Reason
+from lidar_buildings.algorithms.sampling.density import point_density
+from lidar_buildings.algorithms.segmentation.decks_and_ramps import part_decks
+from lidar_buildings.algorithms.segmentation.segment_roofs import segment_roofs
+from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.tests.builders import FAR
+from lidar_buildings.tests.monitors import Listening
+
+FIELD, EAST, WEST, FLAT = range(4)
+SIDE = 30.0
+
+
+def village(rng, density=8.0, noise=0.02, slope=40.0):
+    """Return points, heights and truth of a gable house of 12 m by 16 m and a flat one of 6 m by 8 m in a field."""
+    plan = rng.uniform(0, SIDE, (int(SIDE**2 * density), 2))
+    truth, height = np.full(len(plan), FIELD), np.zeros(len(plan))
+    house = (np.abs(plan[:, 0] - 15) < 6) & (np.abs(plan[:, 1] - 15) < 8)
+    truth[house] = np.where(plan[house, 0] > 15, EAST, WEST)
+    height[house] = 3 + (6 - np.abs(plan[house, 0] - 15)) * np.tan(np.radians(slope))
+    flat = (plan > [24, 0]).all(axis=1) & (plan[:, 1] < 8)
+    truth[flat], height[flat] = FLAT, 2.8
+    return np.column_stack([plan, height + rng.normal(0, noise, len(plan))]), height, truth
+
+
+def ones(values):
+    return np.ones(len(values), np.uint8)
+
+
+def with_tree(rng, xyz, height, at, radius=3.0, crown=7.0, count=600):
+    """Add a ball of leaves over the field."""
+    direction = rng.normal(size=(count, 3))
+    ball = direction / np.linalg.norm(direction, axis=1)[:, None] * radius * rng.random((count, 1)) ** (1 / 3)
+    ball += [*at, crown]
+    return np.concatenate([xyz, ball]), np.concatenate([height, ball[:, 2]]), np.arange(len(xyz) + count) >= len(xyz)
+
+
+@pytest.mark.parametrize("density", [2, 6, 20, 50])
+@pytest.mark.parametrize("noise", [0.01, 0.03, 0.06])
+def test_roofs_at_any_density_and_noise_with_nothing_to_set(density, noise, rng):
+    xyz, height, truth = village(rng, density, noise)
+    segment, cluster, _ = segment_roofs(xyz, ones(xyz), height)
+    assert not cluster[truth == FIELD].any()
+    for roof in (EAST, WEST, FLAT):
+        # Where neighborhoods are smallest for their noise, normals scatter and a third of the points stay alone.
+        assert (segment[truth == roof] > 0).mean() > (0.8 if noise < 0.05 else 0.6)
+        assert (cluster[truth == roof] > 0).mean() > 0.8
+    assert (segment[truth > 0] > 0).mean() > (0.9 if noise < 0.05 else 0.75)
+
+
+def test_the_sides_of_a_gable_and_the_flat_roof_are_three_surfaces(rng):
+    xyz, height, truth = village(rng)
+    segment, cluster, _ = segment_roofs(xyz, ones(xyz), height)
+    assert segment.dtype == cluster.dtype == np.int32
+    numbers = [np.bincount(segment[truth == roof]).argmax() for roof in (EAST, WEST, FLAT)]
+    assert len(set(numbers)) == 3
+    assert 0 not in numbers
+    for roof, number in zip((EAST, WEST, FLAT), numbers):
+        assert (segment[truth == roof] == number).mean() > 0.95
+        assert (truth[segment == number] == roof).mean() > 0.97
+
+
+def test_roofs_keep_their_numbers_as_clusters_and_the_rest_follows(rng):
+    xyz, height, _ = village(rng)
+    xyz, height, is_leaf = with_tree(rng, xyz, height, (4, 4))
+    segment, cluster, _ = segment_roofs(xyz, ones(xyz), height)
+    np.testing.assert_array_equal(cluster[segment > 0], segment[segment > 0])
+    assert sorted(set(segment[segment > 0])) == list(range(1, segment.max() + 1))
+    assert sorted(set(cluster[cluster > 0])) == list(range(1, cluster.max() + 1))
+    assert (segment[is_leaf] > 0).mean() < 0.05
+    crown = np.bincount(cluster[is_leaf]).argmax()
+    assert crown > segment.max()
+    assert (cluster[is_leaf] == crown).mean() > 0.9
+    assert is_leaf[cluster == crown].all()
+
+
+@pytest.mark.parametrize(("max_slope", "apart"), [(90.0, True), (75.0, False)])
+def test_a_wall_is_told_from_the_crown_that_touches_it_unless_it_is_too_steep(max_slope, apart, rng):
+    """A wall 6 m wide, seen from 2 to 14 m above the ground, and a crown of 3 m radius that reaches it."""
+    along, up = rng.uniform([0, 2], [6, 14], (700, 2)).T
+    wall = np.column_stack([along + 10, rng.normal(10, 0.02, 700), up])
+    field = np.column_stack([rng.uniform(0, SIDE, (9000, 2)), np.zeros(9000)])
+    xyz = np.concatenate([field, wall])
+    xyz, height, is_crown = with_tree(rng, xyz, xyz[:, 2], at=(13, 12.8), crown=8.0)
+    is_wall = ~is_crown & (xyz[:, 2] > 0)
+    _, cluster, _ = segment_roofs(xyz, ones(xyz), height, max_slope=max_slope)
+    of_wall, of_crown = (np.bincount(cluster[one]).argmax() for one in (is_wall, is_crown))
+    assert of_wall > 0
+    assert of_crown > 0
+    assert (of_wall != of_crown) == apart
+    if apart:
+        assert (cluster[is_wall] == of_wall).mean() > 0.9
+        assert (cluster[is_crown] == of_crown).mean() > 0.9
+
+
+def test_low_and_small_surfaces_are_no_roofs(rng):
+    xyz, height, truth = village(rng)
+    is_flat = truth == FLAT
+    assert not segment_roofs(xyz, ones(xyz), height, min_height=3.2)[0][is_flat].any()
+    assert (segment_roofs(xyz, ones(xyz), height, min_height=2.5)[0][is_flat] > 0).mean() > 0.9
+    assert not segment_roofs(xyz, ones(xyz), height, min_area=60)[0][is_flat].any()
+    assert (segment_roofs(xyz, ones(xyz), height, min_area=35)[0][is_flat] > 0).mean() > 0.9
+
+
+def test_what_goes_on_into_the_ground_is_no_roof(rng):
+    """A ramp of 10 m that climbs from the ground to 6 m, 3 m on the mean, with a meter of ground on both sides."""
+    plan = rng.uniform([0, 14], [40, 26], (3800, 2))
+    is_ramp = np.abs(plan[:, 1] - 20) < 5
+    height = np.where(is_ramp, 0.15 * plan[:, 0], 0.0)
+    xyz = np.column_stack([plan, height + rng.normal(0, 0.02, 3800)])
+    segment, _, reason = segment_roofs(xyz, ones(xyz), height)
+    assert not segment.any()
+    is_raised = height >= 1.5
+    assert (reason[is_raised] == Reason.INTO_GROUND).mean() > 0.9
+    assert not reason[~is_raised].any()
+    assert reason.dtype == np.uint8
+
+
+def deck(rng, density, ramp_width, turn):
+    """Return points and heights of a deck of 24 m by 20 m, 3 m high, with a ramp of 20 m up to it from a field."""
+    plan = rng.uniform(-30, 30, (int(3600 * density), 2))
+    x, y = plan.T
+    is_deck = (x > 0) & (x < 24) & (np.abs(y) < 10)
+    is_ramp = (x <= 0) & (x > -20) & (np.abs(y) < ramp_width / 2)
+    height = np.where(is_deck, 3.0, np.where(is_ramp, 3.0 + 0.15 * x, 0.0))
+    cos, sin = np.cos(np.radians(turn)), np.sin(np.radians(turn))
+    xyz = np.column_stack([cos * x - sin * y, sin * x + cos * y, height + rng.normal(0, 0.02, len(x))])
+    return xyz, height, is_deck
+
+
+@pytest.mark.parametrize("density", [3, 12, 40])
+@pytest.mark.parametrize("turn", [0, 30, 45])
+def test_a_deck_with_a_narrow_ramp_is_a_roof(density, turn, rng):
+    xyz, height, is_deck = deck(rng, density, 6.0, turn)
+    segment, _, reason = segment_roofs(xyz, ones(xyz), height)
+    assert (segment[is_deck] > 0).mean() > 0.95
+    # Of the ramp its upper end belongs to the deck.
+    is_ramp = (height > 0) & (height < 1.6)
+    assert not segment[is_ramp | (height == 0)].any()
+    assert (reason[is_ramp & (height >= 1.5)] == Reason.INTO_GROUND).mean() > 0.9
+
+
+@pytest.mark.parametrize("density", [3, 12, 40])
+@pytest.mark.parametrize("turn", [0, 30, 45])
+def test_a_deck_with_a_ramp_as_wide_as_itself_is_none(density, turn, rng):
+    """A quay, a terrace in a slope, the head of a bridge."""
+    xyz, height, is_deck = deck(rng, density, 20.0, turn)
+    segment, _, reason = segment_roofs(xyz, ones(xyz), height)
+    assert not segment.any()
+    assert (reason[is_deck] == Reason.INTO_GROUND).mean() > 0.95
+
+
+def test_a_bridge_on_scan_lines_is_none(rng):
+    """A deck 8 m wide over a river 40 m wide and 4 m deep, on lines 1.2 m apart, across which it hangs together."""
+    x, y = rng.uniform([-60, -40], [60, 40], (115_200, 2)).T
+    x = np.round(x / 1.2) * 1.2 + rng.normal(0, 0.03, len(x))
+    is_road = np.abs(y) < 4
+    ground = -4 * np.clip((22 - np.abs(x)) / 6, 0, 1)
+    z = np.where(is_road, 0, ground) + rng.normal(0, 0.02, len(x))
+    turned = np.column_stack([x * np.cos(0.5) - y * np.sin(0.5), x * np.sin(0.5) + y * np.cos(0.5), z])
+    assert not segment_roofs(turned, ones(z), np.where(is_road, -ground, 0))[0].any()
+
+
+def test_a_high_part_without_a_ramp_to_be_seen_stays_with_its_patch(rng):
+    plan = rng.uniform(0, 40, (6400, 2))
+    is_high, is_between = plan[:, 0] < 15, (plan[:, 0] >= 15) & (plan[:, 0] < 25)
+    xyz = np.column_stack([plan, 3.0 * is_high])[~is_between]
+    patch = np.zeros(len(xyz), np.int32)
+    assert (part_decks(xyz, patch, xyz[:, 2], 4.0, 2.0, 2.0) == -1).all()
+
+
+@pytest.mark.parametrize("noise", [0.1, 0.15])
+def test_roofs_of_very_noisy_clouds_are_found(noise, rng):
+    xyz, height, truth = village(rng, 40, noise)
+    segment, _, _ = segment_roofs(xyz, ones(xyz), height)
+    assert (segment[truth > 0] > 0).mean() > 0.75
+
+
+def test_cars_parked_on_a_deck_make_it_no_narrower(rng):
+    """With holes every 6 m no circle of more than 6 m lies between them, and the ramp is 5 m wide."""
+    xyz, height, is_deck = deck(rng, 12, 5.0, 0)
+    is_car = is_deck & ((xyz[:, :2] % 6) < 2.2).all(axis=1)
+    segment, _, _ = segment_roofs(xyz[~is_car], ones(xyz[~is_car]), height[~is_car])
+    assert (segment[is_deck[~is_car]] > 0).mean() > 0.95
+
+
+@pytest.mark.parametrize("density", [2, 3, 4, 6, 12])
+def test_crops_are_no_roofs(density, rng):
+    """A field of 40 m, 3 m high, of whose leaves four fifths lie within 0.3 m of the top and the others below."""
+    plan = rng.uniform(0, 60, (3600 * density, 2))
+    is_field = (np.abs(plan - 30) < 20).all(axis=1)
+    top = 3.0 - np.abs(rng.normal(0, 0.25, len(plan))) - (rng.random(len(plan)) < 0.2) * rng.uniform(0, 2, len(plan))
+    height = np.where(is_field, np.maximum(top, 0.3), 0.0)
+    xyz = np.column_stack([plan, height + rng.normal(0, 0.02, len(plan))])
+    assert (segment_roofs(xyz, ones(xyz), height)[0] > 0).sum() < 0.02 * is_field.sum()
+
+
+@pytest.mark.parametrize("noise", [None, 0.03])
+def test_a_house_at_a_field_of_crops_is_found(noise, rng):
+    """A flat roof of 10 m at the edge of a rough field of 40 m as high, 2 points per m²; noise measured or given.
+
+    In so sparse a cloud a noise of 3 cm puts points 9 cm off the planes of their neighbors.
+    """
+    plan = rng.uniform(0, 60, (7200, 2))
+    is_field = (np.abs(plan - 30) < 20).all(axis=1)
+    is_house = (np.abs(plan - [55, 30]) < 5).all(axis=1)
+    height = np.select([is_house, is_field], [3.0, 3.0 - np.abs(rng.normal(0, 0.4, len(plan)))], 0.0)
+    xyz = np.column_stack([plan, height + rng.normal(0, 0.02, len(plan))])
+    segment, _, _ = segment_roofs(xyz, ones(xyz), height, noise=noise)
+    assert (segment[is_house] > 0).mean() > 0.95
+    # Of what touches the house, some hangs together with it.
+    assert (segment[is_field] > 0).mean() < 0.1
+
+
+@pytest.mark.parametrize("beside", [True, False])
+def test_rough_surfaces_are_roofs_beside_smooth_ones_only(beside, rng):
+    """A roof of 8 m by 4 m at 3 m, 9 cm rough, at the wall of a smooth one of 10 m at 5 m, or 4 m away from it."""
+    plan = rng.uniform(0, 40, (6400, 2))
+    is_smooth = (np.abs(plan - 20) < 5).all(axis=1)
+    is_rough = (np.abs(plan[:, 0] - (27 if beside else 31)) < 2) & (np.abs(plan[:, 1] - 20) < 4)
+    height = np.select([is_smooth, is_rough], [5.0, 3.0], 0.0)
+    xyz = np.column_stack([plan, height + rng.normal(0, np.where(is_rough, 0.09, 0.02))])
+    segment, _, _ = segment_roofs(xyz, ones(xyz), height)
+    assert (segment[is_smooth] > 0).mean() > 0.95
+    assert ((segment[is_rough] > 0).mean() > 0.5) == beside
+    assert segment[is_rough].any() == beside
+
+
+def test_roofs_and_crowns_are_given_no_reason_yet(rng):
+    xyz, height, _ = village(rng)
+    xyz, height, _ = with_tree(rng, xyz, height, (4, 4))
+    assert not segment_roofs(xyz, ones(xyz), height)[2].any()
+
+
+def test_noise_is_in_no_cluster(rng):
+    xyz, height, truth = village(rng)
+    classification = np.where(truth == FLAT, 7, np.where(truth == EAST, 18, 1)).astype(np.uint8)
+    segment, cluster, _ = segment_roofs(xyz, classification, height)
+    assert not segment[truth != WEST].any()
+    assert not cluster[truth != WEST].any()
+    assert (segment[truth == WEST] > 0).mean() > 0.9
+
+
+@pytest.mark.parametrize("side", [5.0, 10.0])
+def test_a_porous_plane_is_no_building_if_it_is_not_too_large_for_leaves(rng, side):
+    """A pergola, flat as a roof: half of the beams go through it. Solid roofs beside it are found, and glass is."""
+    plan = rng.uniform(0, 40, (16_000, 2))
+    over, solid = (
+        (np.abs(plan - middle) < reach).all(axis=1) for middle, reach in (([10, 20], side / 2), ([30, 20], 5))
+    )
+    caught = rng.random(len(plan)) < 0.5
+    height = np.where(solid | (over & caught), 4.0, 0.0)
+    xyz = np.column_stack([plan, height + rng.normal(0, 0.02, len(plan))])
+    cluster = segment_roofs(xyz, ones(xyz), height)[1]
+    found = classify_buildings(xyz, ones(xyz), cluster, n_neighbors=10)[0]
+    assert (found[over & caught] == 6).mean() > 0.95 if side > 6 else (found[over] != 6).all()
+    assert (found[solid] == 6).mean() > 0.95
+
+
+def test_nothing_above_the_ground_gives_no_cluster(rng):
+    plan = rng.uniform(0, 30, (3000, 2))
+    xyz = np.column_stack([plan, rng.normal(0, 0.02, 3000)])
+    segment, cluster, _ = segment_roofs(xyz, ones(xyz), xyz[:, 2])
+    assert not segment.any()
+    assert not cluster.any()
+
+
+def test_only_a_tree_gives_no_roof(rng):
+    """Where no surface is left at all, nothing may break either."""
+    xyz, height, _ = with_tree(rng, np.empty((0, 3)), np.empty(0), (10, 10), radius=2)
+    segment, cluster, _ = segment_roofs(xyz, ones(xyz), height, noise=0.02)
+    assert (segment > 0).mean() < 0.1
+    assert cluster.any()
+
+
+@pytest.mark.parametrize("classification", [7, 1])
+@pytest.mark.parametrize("count", [2, 5])
+def test_a_few_points_do_no_harm(count, classification):
+    xyz = np.column_stack([np.arange(count), np.zeros(count), np.full(count, 5.0)])
+    segment, cluster, _ = segment_roofs(xyz, np.full(count, classification), xyz[:, 2])
+    assert segment.tolist() == [0] * count
+    assert len(cluster) == count
+    assert not (classification == 7 and cluster.any())
+
+
+def test_order_and_place_change_nothing(rng):
+    xyz, height, _ = village(rng, 5)
+    xyz, height, _ = with_tree(rng, xyz, height, (4, 4))
+    xyz = xyz.round(3)
+    cluster = segment_roofs(xyz, ones(xyz), height)[1]
+    order = rng.permutation(len(xyz))
+    shuffled = segment_roofs(xyz[order], ones(xyz), height[order])[1]
+    moved = segment_roofs((xyz + FAR).round(3), ones(xyz), height)[1]
+    for other, of in ((shuffled, cluster[order]), (moved, cluster)):
+        assert ((other > 0) == (of > 0)).mean() > 0.999
+        common = (other > 0) & (of > 0)
+        assert len(set(zip(other[common].tolist(), of[common].tolist()))) == cluster.max() == other.max()
+
+
+def test_automatic_values_are_told(rng):
+    monitor = Monitor()
+    xyz, height, _ = village(rng, 8, 0.04)
+    segment_roofs(xyz, ones(xyz), height, monitor=monitor)
+    assert monitor.values["density"] == pytest.approx(8, rel=0.06)
+    assert 0.02 < monitor.values["noise"] < 0.05
+
+
+def test_gaps_between_scan_lines_are_no_gaps_of_the_cloud(rng):
+    """On lines 2 m apart points are dense where they lie, and scales of the roofs must cross the gaps all the same."""
+    monitor = Monitor()
+    xyz, height, _ = village(rng, 8)
+    xyz[:, 1] = 2 * np.round(xyz[:, 1] / 2)
+    segment_roofs(xyz, ones(xyz), height, monitor=monitor)
+    assert monitor.values["density"] < 0.6 * point_density(xyz)
+
+
+@pytest.mark.parametrize(("stop_at", "stops"), [(0.76, 0.8), (0.81, 0.85)])
+def test_cancel_gets_through_between_all_steps(stop_at, stops, rng):
+    """After the decks, and after the surfaces."""
+    xyz, height, _ = village(rng, 3)
+    monitor = Listening(stop_at=stop_at)
+    with pytest.raises(Cancelled):
+        segment_roofs(xyz, ones(xyz), height, monitor=monitor)
+    assert monitor.heard[-1] == pytest.approx(stops)

@@ -1,0 +1,90 @@
+"""Heights above a ground of a few points, worked out by hand, and above grounds given by formulas."""
+
+import numpy as np
+import pytest
+from scipy.interpolate import LinearNDInterpolator
+
+from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.algorithms.terrain.compute_height_above_ground import compute_height_above_ground
+from lidar_buildings.tests.builders import FAR
+
+
+def test_few_points_by_hand():
+    ground = [[0, 0, 10], [10, 0, 10], [10, 10, 20], [0, 10, 20]]  # rises by 1 m per meter of northing
+    above = [[5, 5, 18], [2, 1, 11], [9, 9, 12], [4, 10, 20.5]]
+    height = compute_height_above_ground(np.array(ground + above, float), [2, 2, 2, 2, 1, 6, 5, 18])
+    assert height.dtype == np.float32
+    np.testing.assert_allclose(height, [0, 0, 0, 0, 3, 0, -7, 0.5], atol=1e-6)
+
+
+def test_height_over_a_bumpy_ground(rng):
+    """Truth by formula: the ground is a wave, and the surface under a point misses it by less than its bend."""
+    plan = rng.uniform(0, 80, (6000, 2))
+    wave = 3 * np.sin(plan[:, 0] / 10) + 0.2 * plan[:, 1]
+    lift = np.where(np.arange(6000) % 3 == 0, rng.uniform(0, 30, 6000), 0.0)
+    inside = ((plan > 3) & (plan < 77)).all(axis=1)
+    height = compute_height_above_ground(np.column_stack([plan, wave + lift]), np.where(lift == 0, 2, 1))
+    np.testing.assert_allclose(height[inside], lift[inside], atol=0.08)
+
+
+def test_outside_the_ground_the_nearest_ground_point_counts_and_the_log_says_how_many():
+    ground = np.array([[0, 0, 1], [4, 0, 2], [0, 4, 3], [4, 4, 4]], float)
+    outside = np.array([[-3, -1, 6], [9, 5, 6], [2, 900, 6], [40_000, -30_000, 6]], float)
+    inside = np.array([[2, 2, 6]], float)
+    xyz = np.concatenate([ground, outside, inside])
+    monitor = Monitor()
+    height = compute_height_above_ground(xyz, [2] * 4 + [1] * 5, monitor=monitor)
+    np.testing.assert_allclose(height[4:8], [5, 2, 6 - 3, 4], atol=1e-6)
+    assert height[8] == pytest.approx(3.5)
+    assert len(monitor.infos) == 1
+    assert "4 of 9 points" in monitor.infos[0]
+
+
+def test_inside_the_ground_nothing_is_said():
+    monitor = Monitor()
+    compute_height_above_ground(np.array([[0, 0, 1], [4, 0, 2], [0, 4, 3], [1, 1, 4.0]]), [2, 2, 2, 1], monitor=monitor)
+    assert monitor.warnings == monitor.infos == []
+
+
+def test_every_point_over_the_hull_of_the_ground_is_measured_from_the_surface(rng):
+    """On steep, sparse ground points within 0.3 m of the hull's edge were taken for outside, and were 2.6 m off."""
+    ground = np.column_stack([rng.uniform(0, 60, (1100, 2)), np.zeros(1100)])
+    ground[:, 2] = ground[:, 0] + rng.normal(0, 0.3, 1100)
+    above = np.column_stack([rng.uniform(0, 60, (20_000, 2)), np.full(20_000, 100.0)])
+    expected = 100 - LinearNDInterpolator(ground[:, :2], ground[:, 2])(above[:, :2])
+    is_inside = np.isfinite(expected)
+    monitor = Monitor()
+    classes = np.repeat([2, 1], [1100, 20_000])
+    height = compute_height_above_ground(np.concatenate([ground, above]), classes, monitor=monitor)[1100:]
+    np.testing.assert_allclose(height[is_inside], expected[is_inside], atol=1e-4)
+    assert f"{(~is_inside).sum()} of 21100 points" in monitor.infos[0]
+
+
+def test_one_ground_point_is_a_level_ground():
+    height = compute_height_above_ground(np.array([[5, 5, 2], [9, 1, 10], [5, 5, 4.0]]), [2, 1, 1])
+    np.testing.assert_allclose(height, [0, 8, 2])
+
+
+def test_no_ground_is_refused():
+    with pytest.raises(ValueError, match=r"no ground points \(class 2\); run 'Classify ground points \(TIN\)' first"):
+        compute_height_above_ground(np.zeros((3, 3)), [1, 6, 7])
+
+
+def test_order_and_place_change_nothing(rng):
+    xyz = rng.uniform(0, 50, (2000, 3))
+    classification = np.where(rng.random(2000) < 0.4, 2, 1)
+    height = compute_height_above_ground(xyz, classification)
+    order = rng.permutation(2000)
+    np.testing.assert_array_equal(compute_height_above_ground(xyz[order], classification[order]), height[order])
+    np.testing.assert_allclose(compute_height_above_ground(xyz + FAR, classification), height, atol=1e-4)
+    lifted = compute_height_above_ground(xyz + [0, 0, 321.5], classification)
+    np.testing.assert_allclose(lifted, height, atol=1e-5)
+
+
+def test_points_above_change_nothing(rng):
+    """Only ground makes ground: heights of points don't depend on each other."""
+    xyz = rng.uniform(0, 50, (600, 3))
+    classification = np.repeat([2, 1], 300)
+    everything = compute_height_above_ground(xyz, classification)
+    some = compute_height_above_ground(xyz[:350], classification[:350])
+    np.testing.assert_array_equal(everything[:350], some)

@@ -1,0 +1,188 @@
+"""What windows remove from a surface, what of it comes back, and the slope of what is left."""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.algorithms.terrain import removed_objects as module
+from lidar_buildings.algorithms.terrain.removed_objects import (
+    ObjectRemoval,
+    _slope,
+    _windows,
+    _without_level_parts,
+)
+
+
+@pytest.mark.parametrize("largest", [0.3, 1, 1.2, 5, 30, 99.5])
+def test_windows_grow_from_one_to_the_largest(largest):
+    windows = _windows(largest)
+    assert windows[0] == 1
+    assert windows[-1] == max(1, np.ceil(largest))
+    assert all(a < b <= max(a + 1, 1.25 * a + 0.5) for a, b in zip(windows, windows[1:]))
+
+
+def test_the_slope_of_a_crest_is_that_of_its_flanks_and_a_plane_keeps_its_own():
+    across, along = np.meshgrid(np.arange(60.0), np.arange(50.0))
+    np.testing.assert_allclose(_slope(0.3 * across - 0.4 * along, 1.0)[15:-15, 15:-15], 0.5, rtol=1e-3)
+    crest = _slope(-0.5 * np.abs(across - 30), 1.0)
+    assert (crest[:, 20:41] > 0.35).all()
+    assert (crest < 0.5 + 1e-9).all()
+
+
+def removed_square(side=10, radius=4):
+    """Return a level surface of 40 by 40 cells of 1 m and what windows removed from it: a square from (15, 15)."""
+    removed_by = np.zeros((40, 40), np.int32)
+    removed_by[15 : 15 + side, 15 : 15 + side] = radius
+    return np.zeros((40, 40)), removed_by
+
+
+def objects_of(surface, removed_by, slope=0.0, free=False):
+    everywhere = np.ones(surface.shape)
+    removal = ObjectRemoval(surface, everywhere.astype(bool) & free, largest=60.0, cell_size=1.0)
+    return removal.without_joined(removed_by, slope * everywhere)
+
+
+@pytest.mark.parametrize(("smooth", "stays"), [(10, False), (9, True)])
+def test_what_joins_the_terrain_on_half_of_its_edge_comes_back(smooth, stays):
+    """Of a square of 10 m two sides and so much of a third join the terrain, or a little less; there are four."""
+    surface, removed_by = removed_square()
+    surface[:15] = surface[:, :15] = -2.0
+    surface[25:, 15 : 25 - smooth] = -2.0
+    np.testing.assert_array_equal(objects_of(surface, removed_by), (removed_by > 0) & stays)
+
+
+@pytest.mark.parametrize(("smooth", "stays"), [(10, False), (9, True)])
+def test_what_comes_back_joins_the_terrain_on_a_quarter_of_all_its_edge(smooth, stays):
+    """Beside the terrain there is nothing but other objects, which the largest windows removed."""
+    surface, removed_by = removed_square()
+    removed_by[10:15, 10:30] = removed_by[10:30, 10:15] = removed_by[10:30, 25:30] = 25
+    removed_by[25:30, 15 + smooth : 25] = 25
+    surface[removed_by == 25] = 8.0
+    np.testing.assert_array_equal(objects_of(surface, removed_by), (removed_by == 25) | ((removed_by == 4) & stays))
+
+
+def test_what_stands_on_a_spit_objects_of_where_the_spit_comes_back():
+    surface, removed_by = removed_square(side=20, radius=16)
+    removed_by[20:26, 20:26] = 4
+    surface[20:26, 20:26] = 5.0
+    np.testing.assert_array_equal(objects_of(surface, removed_by), removed_by == 4)
+
+
+def test_what_stands_free_stays_an_object_in_a_region_that_comes_back():
+    """It has no wall there: removed by the same windows, it joins the region around."""
+    surface, removed_by = removed_square(side=20)
+    free = np.zeros(removed_by.shape, bool)
+    free[20:26, 20:26] = True
+    np.testing.assert_array_equal(objects_of(surface, removed_by, free=free), free)
+    np.testing.assert_array_equal(objects_of(surface, np.zeros_like(removed_by), free=free), free)
+
+
+@pytest.mark.parametrize(("height", "stays"), [(0.05, False), (0.15, True), (-1.0, False)])
+def test_a_part_at_the_height_of_the_terrain_comes_back_and_what_stands_beside_it_does_not(height, stays):
+    """The windows took the strip between two hedges together with these."""
+    surface, removed_by = removed_square()
+    surface[15:18, 15:25] = surface[22:25, 15:25] = 2.0
+    surface[18:22, 15:25] = height
+    objects = removed_by > 0
+    expected = objects & ((surface == 2.0) | stays)
+    np.testing.assert_array_equal(_without_level_parts(objects, np.zeros_like(objects), surface, 0.4), expected)
+
+
+@pytest.mark.parametrize(("touching", "stays"), [(3, False), (2, True)])
+def test_a_part_that_comes_back_is_no_higher_than_the_terrain_on_a_quarter(touching, stays):
+    """Of ten rows of a bank so many are as low; the others rise by 0.35 m each, one smooth part."""
+    surface, removed_by = removed_square()
+    rise = 0.35 * np.maximum(np.arange(10) - touching + 1, 0)
+    surface[15:25, 15:25] = rise[:, None]
+    objects = removed_by > 0
+    np.testing.assert_array_equal(_without_level_parts(objects, np.zeros_like(objects), surface, 0.4), objects & stays)
+
+
+@pytest.mark.parametrize(("size", "stays"), [(2, False), (1, True)])
+def test_single_cells_tell_nothing_of_the_terrain(size, stays):
+    """A crown's lowest leaf may hang as low as the ground beside it."""
+    surface, removed_by = removed_square(side=size)
+    objects = removed_by > 0
+    np.testing.assert_array_equal(_without_level_parts(objects, np.zeros_like(objects), surface, 0.4), objects & stays)
+
+
+def test_what_stands_free_does_not_come_back_however_low_it_is():
+    surface, removed_by = removed_square()
+    objects = removed_by > 0
+    np.testing.assert_array_equal(_without_level_parts(objects, objects, surface, 0.4), objects)
+
+
+@pytest.mark.parametrize(("spacing", "step"), [(0.0, 0.4), (2.5, 1.0)])
+def test_parts_end_at_steep_steps_from_point_to_point(spacing, step, monkeypatch):
+    """Between cells, which hold a point each or less, they are as steep."""
+    monkeypatch.setattr(module, "_without_level_parts", lambda objects, *given: steps.append(given[-1]) or objects)
+    steps, level = [], np.zeros((30, 30))
+    ObjectRemoval(level, level > 0, 60.0, 1.0, spacing).objects(level, Monitor())
+    assert steps == [pytest.approx(step)]
+
+
+@pytest.mark.parametrize(("slope", "stays"), [(1.2, False), (1.9, False), (2.3, True)])
+def test_flanks_as_steep_as_the_step_make_a_bank_of_it_up_to_a_slope_of_two(slope, stays):
+    _, removed_by = removed_square()
+    rows, columns = np.mgrid[:40, :40]
+    pyramid = -slope * np.maximum(np.abs(rows - 19.5), np.abs(columns - 19.5))
+    np.testing.assert_array_equal(objects_of(pyramid, removed_by), (removed_by > 0) & stays)
+
+
+@pytest.mark.parametrize("turned", [np.asarray, np.transpose])
+@pytest.mark.parametrize(("slope", "stays"), [(1.1, False), (1.3, True), (1.7, True)])
+def test_a_roof_that_reaches_down_to_the_ground_is_steeper_than_soil_on_both_sides(slope, stays, turned):
+    """Its gables are walls, and its eaves half of its edge."""
+    surface, removed_by = removed_square()
+    surface[removed_by > 0] = (slope * (5 - np.abs(np.arange(40) - 19.5)) * np.ones((40, 1)))[removed_by > 0]
+    np.testing.assert_array_equal(objects_of(turned(surface), removed_by), (removed_by > 0) & stays)
+
+
+@pytest.mark.parametrize("fall", [0.0, 1.7])
+def test_a_steep_bank_on_one_side_is_no_eave(fall):
+    """On the other side the surface is level, or falls on beyond the edge."""
+    surface, removed_by = removed_square()
+    columns = np.arange(40.0)
+    surface[:] = 1.7 * np.clip(columns - 14.5, 0, 5) - fall * np.maximum(columns - 19, 0)
+    surface[:15] = surface[25:] = -90.0
+    np.testing.assert_array_equal(objects_of(surface, removed_by), np.zeros_like(removed_by, bool))
+
+
+@pytest.mark.parametrize(("slope", "stays"), [(0.0, True), (0.5, True), (0.7, False)])
+def test_on_slopes_higher_steps_are_smooth(slope, stays):
+    """A step of 0.6 m joins where terrain may rise by 0.3 m and half its slope from cell to cell."""
+    surface, removed_by = removed_square()
+    surface[removed_by > 0] = 0.6
+    np.testing.assert_array_equal(objects_of(surface, removed_by, slope), (removed_by > 0) & stays)
+
+
+@pytest.mark.parametrize(
+    ("side", "height", "slope", "is_removed"),
+    [
+        # The first window that is wider has a radius of 4 m: 0.1 m, a tenth of the radius, and the slope.
+        (7, 0.55, 0.0, True),
+        (7, 0.45, 0.0, False),
+        (7, 1.35, 0.2, True),
+        (7, 1.25, 0.2, False),
+        # Flat terrain rises by no more than a meter however large the window.
+        (45, 1.15, 0.0, True),
+        (45, 1.05, 0.0, False),
+    ],
+)
+def test_a_window_removes_what_rises_more_than_terrain_may(side, height, slope, is_removed):
+    """Looked at in the middle: corners are removed by smaller windows."""
+    surface, square = np.zeros((140, 140)), slice(70 - side // 2, 71 + side // 2)
+    surface[square, square] = height
+    removal = ObjectRemoval(surface, np.zeros(surface.shape, bool), largest=60.0, cell_size=1.0)
+    removed_by = removal.removed_by_opening(np.full(surface.shape, slope), Monitor())
+    assert (removed_by[70, 70] > 0) == is_removed
+    assert not removed_by[surface == 0].any()
+
+
+@pytest.mark.parametrize("cell_size", [0.5, 2.0])
+def test_the_slope_does_not_depend_on_the_cells(cell_size):
+    """It is smoothed over meters, whatever the cells."""
+    here, cells = np.arange(0.0, 80.0), np.arange(0.0, 80.0, cell_size)
+    crests = [np.repeat(-0.5 * np.abs(x - 40)[:, None], 40, axis=1) for x in (here, cells)]
+    expected, found = (_slope(crest, size)[:, 20] for crest, size in zip(crests, (1.0, cell_size)))
+    np.testing.assert_allclose(np.interp(here, cells, found)[20:60], expected[20:60], atol=0.02)

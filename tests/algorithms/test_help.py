@@ -1,0 +1,76 @@
+"""Help pages: generated, complete, and not older than the stages."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from lidar_buildings.algorithms.help import as_text, inline, page, paragraphs, pipeline_help, stage_help, tunable_help
+from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.stages import STAGES
+from lidar_buildings.tests.toys import TOYS
+
+HELP = Path(__file__).resolve().parents[2] / "resources" / "help"
+
+
+def test_pages_are_what_the_stages_say():
+    real = {f"{stage.id}.html": page(stage.title, stage_help(stage)) for n, stage in STAGES.items() if n not in TOYS}
+    real |= {f"{p.id}.html": page(p.title, pipeline_help(p)) for p in PIPELINES.values() if p.group != "Toys"}
+    shipped = {path.name: path.read_text(encoding="utf-8") for path in HELP.glob("*.html")}
+    assert shipped == real, "run make resources"
+
+
+def test_help_of_a_stage_has_all_its_parts():
+    text = stage_help(TOYS["toy_lift"])
+    assert "<p>Lift every point.</p>" in text
+    assert "<p>A text in two parts, with <code>code</code> and <i>emphasis</i>.</p>" in text
+    assert "reads X, Y, Z, Classification" in text
+    assert "<ul>\n<li>One.</li>\n<li>Two.</li>\n</ul>" in text
+    assert "<h3>References</h3>\n<p>Nobody (2000), Nothing.</p>" in text
+
+
+def test_help_of_a_tunable_has_unit_range_default_and_automatic():
+    tunables = TOYS["toy_lift"].tunables
+    assert tunable_help(tunables["step"]) == (
+        "<b>Step (m)</b>: Added to all heights. <i>(greater than 0 m and at most 10 m; default 1.5 m)</i>"
+    )
+    assert "Automatic: the lowest point. <i>(at least 0 m; default automatic)</i>" in tunable_help(tunables["base"])
+    assert "default ground, building" in tunable_help(tunables["only"])
+    assert "default no" in tunable_help(tunables["flat"])
+    limits = STAGES["filter_points"].tunables
+    assert "Empty: no limit; the log gives the range of the cloud." in tunable_help(limits["min_height"])
+    assert tunable_help(limits["min_height"]).endswith("default none)</i>")
+    assert tunable_help(limits["classes"]).endswith("<i>(default empty)</i>")
+
+
+def test_dimensions_to_choose_from_are_explained_one_by_one():
+    text = stage_help(STAGES["compute_features"])
+    assert "<i>(any of linearity, planarity, " in text
+    assert (
+        "<b>OUTPUT</b>: the cloud as it was, and what 'Features' names of these dimensions:\n<ul>\n"
+        "<li><i>linearity</i>: Linearity, (l1 - l2) / l1</li>\n"
+    ) in text
+    assert "<li><i>normal</i>: NormalX, NormalY, NormalZ, unit normal, upward</li>\n" in text
+    assert "<li><i>plan_radius</i>: PlanRadius, reach of the neighbors in plan (m)</li>\n" in text
+
+
+def test_the_command_line_shows_text():
+    text = as_text(stage_help(TOYS["toy_lift"]))
+    assert text.startswith("A text in two parts, with code and emphasis.\n\nInputs\n- INPUT: reads X, Y, Z")
+    assert text.endswith("\n\nNotes\n- One.\n- Two.\n\nReferences\nNobody (2000), Nothing.")
+    assert "- FOOTPRINTS: Footprints, with the attributes:\n  - id: Number of the polygon\n" in as_text(
+        stage_help(TOYS["toy_outline"])
+    )
+    # QGIS prints the summary before it, and every parameter with its tooltip after it.
+    assert "Lift every point" not in text
+    assert "Added to all heights" not in text
+    for stage in STAGES.values():
+        assert not set("<>") & set(as_text(stage_help(stage)).replace("->", "").replace(" < ", "").replace(" > ", ""))
+
+
+def test_text_is_escaped():
+    assert inline("a < b & ``c > d``") == "a &lt; b &amp; <code>c &gt; d</code>"
+    assert inline("2 * 3 * 4") == "2 * 3 * 4"
+
+
+def test_numbered_lists_are_lists():
+    assert paragraphs("1. One\n   goes on\n2. Two") == "<ol>\n<li>One goes on</li>\n<li>Two</li>\n</ol>"

@@ -1,0 +1,57 @@
+"""What all tests share: fixtures, and what pytest is to know of this project (the conftest of the root names it)."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, settings
+
+ROOT = Path(__file__).resolve().parent.parent
+PACKAGE = "lidar_buildings"
+
+# The tests that import QGIS: where there is none, they are not even read.
+QGIS_FOLDERS = (ROOT / "tests" / "provider", ROOT / "tests" / "qgis")
+
+# A busy machine is no failure, and the same examples in every run make a failure one that can be repeated.
+settings.register_profile("repeatable", deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("repeatable")
+
+
+def pytest_ignore_collect(collection_path):
+    """Leave out what needs QGIS where there is none, and of tests/ what holds no tests: only the core has doctests."""
+    needs_qgis = collection_path in QGIS_FOLDERS and importlib.util.find_spec("qgis") is None
+    is_library = ROOT / "tests" in collection_path.parents and not collection_path.name.startswith("test_")
+    return needs_qgis or (is_library and collection_path.is_file()) or None
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_setupnodes(config, specs):
+    """Give the QGIS of each worker settings of its own: two that write one file of settings disturb each other."""
+    for spec in specs:
+        folder = tempfile.mkdtemp(prefix="qgis-settings-")
+        config.add_cleanup(lambda folder=folder: shutil.rmtree(folder, ignore_errors=True))
+        spec.env["QGIS_CUSTOM_CONFIG_PATH"] = folder
+
+
+def pytest_collect_file(file_path):
+    """Let the doctests of a module of the core run in the module that the tests import.
+
+    Pytest names it by the folder of the checkout and would load it a second time, with classes of its own.
+    """
+    if file_path.suffix == ".py" and ROOT / "algorithms" in file_path.parents:
+        parts = file_path.relative_to(ROOT).with_suffix("").parts
+        parts = parts[:-1] if parts[-1] == "__init__" else parts
+        sys.modules[".".join((ROOT.name, *parts))] = importlib.import_module(".".join((PACKAGE, *parts)))
+
+
+@pytest.fixture
+def rng():
+    """Random numbers that are the same in every run."""
+    return np.random.default_rng(20190613)

@@ -1,0 +1,51 @@
+"""Benchmarks measure and judge nothing; what they write is held to its form."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lidar_buildings.tests.benchmarks.results import Table
+
+FOLDER = Path(__file__).resolve().parent / "benchmarks"
+
+
+def test_a_table_is_markdown_for_people_and_json_for_programs(tmp_path, capsys):
+    table = Table("towns", "town", "points", "F, %", "s")
+    table.add("as it comes", np.int64(1200), np.float64(98.76), None)
+    assert capsys.readouterr().out == (
+        "\n| town | points | F, % | s |\n| --- | ---: | ---: | ---: |\n| as it comes | 1200 | 98.8 |  |\n"
+    )
+    path = table.write(tmp_path / "new" / "folder")
+    assert path == tmp_path / "new" / "folder" / "towns.json"
+    content = json.loads(path.read_text(encoding="utf-8"))
+    assert content["table"] == "towns"
+    assert content["rows"] == [{"town": "as it comes", "points": 1200, "F, %": 98.76, "s": None}]
+    assert {"version", "commit", "changed", "date", "machine"} < set(content)
+    assert {"cores", "python", "numpy", "scipy"} < set(content["machine"])
+
+
+def test_what_is_no_number_is_null(tmp_path):
+    """JSON knows no NaN, and other programs refuse the file."""
+    table = Table("empty", "of", "mean", texts=1)
+    table.add("none", float("nan"))
+    assert json.loads(table.write(tmp_path).read_text(encoding="utf-8"))["rows"] == [{"of": "none", "mean": None}]
+
+
+def test_a_row_has_as_many_cells_as_the_table_and_no_heading_comes_twice():
+    with pytest.raises(ValueError, match="A row of towns needs 2 cells, it has 1"):
+        Table("towns", "town", "F").add("as it comes")
+    with pytest.raises(ValueError, match="must have different headings"):
+        Table("towns", "town", "s", "s")
+
+
+@pytest.mark.parametrize("script", ["accuracy.py", "benchmark.py", "structure.py"])
+def test_every_script_starts_and_tells_where_its_results_go(script):
+    done = subprocess.run([sys.executable, FOLDER / script, "--help"], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "--output" in done.stdout
