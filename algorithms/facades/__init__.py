@@ -1,0 +1,1 @@
+"""Facades: their faces, edges and openings, from scans of streets and fronts."""

@@ -1,0 +1,1 @@
+"""Buildings in three dimensions: roof faces, closed solids, and the files that hold them."""

@@ -1,0 +1,1 @@
+"""Planes, cylinders, spheres and trees: what a cloud consists of, as shapes with measures."""
