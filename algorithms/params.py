@@ -102,6 +102,56 @@ IgnoredClasses = Annotated[
     ),
 ]
 
+FacadeTilt = Annotated[
+    float,
+    Param("Maximum tilt", "Largest angle of a facade to the vertical.", unit="°", low=0, high=45),
+]
+
+FacadeGap = Annotated[
+    float,
+    Param(
+        "Widest gap",
+        "Points of one plane at most this far apart belong to one facade; trees and poles leave such gaps.",
+        unit="m",
+        low=0.1,
+        high=100,
+    ),
+]
+
+EdgeFactor = Annotated[
+    Optional[float],
+    Param(
+        "Longest edge",
+        "Triangles with an edge longer than this many point spacings are removed from the boundary inward.",
+        low=1,
+        high=20,
+        automatic="4 for straight edges; 1.5 for key points, as published.",
+        advanced=True,
+    ),
+]
+
+CornerDistance = Annotated[
+    float,
+    Param(
+        "Corner distance",
+        "Edges of neighboring facades move onto the intersection line of their planes from this far at most; "
+        "0 leaves them where they are.",
+        unit="m",
+        low=0,
+        high=10,
+    ),
+]
+
+Boundary = Annotated[
+    str,
+    Param(
+        "Boundary",
+        "Straight edges are fitted by least squares, along the main directions of the facade; key points are those "
+        "of the traced boundary where it turns by more than 40°, as published.",
+        choices=("straight edges", "key points"),
+    ),
+]
+
 
 def nearest_points(automatic: str) -> Param:
     """Return the declaration of N, the points of a neighborhood, which each method derives in its own way."""

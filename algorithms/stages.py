@@ -7,6 +7,7 @@ from typing import Any
 from .buildings.classify_buildings import classify_buildings
 from .buildings.classify_buildings_2019 import classify_buildings_2019
 from .buildings.complete_buildings import complete_buildings
+from .facades.extract_facades import extract_facades
 from .features.classify_dimensionality import classify_dimensionality
 from .features.compute_features import compute_features
 from .footprints.extract_footprints import extract_footprints
@@ -60,6 +61,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     classify_roofs,
     classify_walls,
     extract_wall_footprints,
+    extract_facades,
     assess_buildings,
     assess_ground,
     compare_corners,

@@ -71,6 +71,7 @@ STAGE_IDS = {
     "simulatetown",
     "simulateflight",
     "simulatevillage",
+    "extractfacades",
 }
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints"}
 
@@ -89,6 +90,7 @@ WITHOUT_UNIT = {
     "min_roof_share",
     "min_share_around",
     "holes",
+    "edge_factor",
     "map_changes",
     "max_penetration",
     "min_overlap",
@@ -134,6 +136,17 @@ each_with_input = pytest.mark.parametrize(
 # --- A scene that every stage can work on: all dimensions that some stage reads, as they would be read from a file.
 
 
+def front(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return xy (n, 2), heights (n,) and which points (n,) are of a pane, of a wall of 10 m by 4 m along y = 38.
+
+    It has 25 points per m² and an opening of 2 m by 2 m, whose pane lies 0.3 m behind it.
+    """
+    along, height = rng.uniform((8, 0), (18, 4), (1000, 2)).T
+    is_pane = (along > 12) & (along < 14) & (height > 1.2) & (height < 3.2)
+    xy = np.column_stack([along, 38.0 + 0.3 * is_pane + rng.normal(0, 0.02, len(along))])
+    return np.round(xy * 1024) / 1024, height, is_pane
+
+
 def scanned(
     rng: np.random.Generator, west: float, south: float, width: float, depth: float, density: float
 ) -> np.ndarray:
@@ -144,31 +157,36 @@ def scanned(
 
 @lru_cache(maxsize=1)
 def scene() -> dict[str, np.ndarray]:
-    """Two flat-roofed houses, a crown and two stray points on a gentle slope, 40 m by 40 m, 6 points per m²."""
+    """Two flat-roofed houses, a crown, a wall and two stray points on a gentle slope, 40 m by 40 m, 6 points per m²."""
     rng = np.random.default_rng(42)
     ground = scanned(rng, 0, 0, 40, 40, 6)
     houses = [scanned(rng, 5, 5, 12, 8, 6), scanned(rng, 22, 20, 9, 14, 6)]
     crown = scanned(rng, 28, 6, 6, 6, 12)
     for west, south, east, north in ((5, 5, 17, 13), (22, 20, 31, 34)):
         ground = ground[~((ground >= (west, south)) & (ground <= (east, north))).all(axis=1)]
-    parts = [ground, *houses, crown, np.array([[10.0, 30.0], [30.0, 15.0]])]
+    wall, wall_height, is_pane = front(np.random.default_rng(43))
+    parts = [ground, *houses, crown, np.array([[10.0, 30.0], [30.0, 15.0]]), wall]
     sizes = [len(part) for part in parts]
     xy = np.concatenate(parts)
-    height = np.repeat([0.0, 4.0, 6.0, 0.0, 0.0], sizes)
-    height[sum(sizes[:3]) : -2] = rng.uniform(2, 7, sizes[3])
-    height[-2:] = 60.0, -25.0
+    height = np.repeat([0.0, 4.0, 6.0, 0.0, 0.0, 0.0], sizes)
+    height[sum(sizes[:3]) : sum(sizes[:4])] = rng.uniform(2, 7, sizes[3])
+    height[sum(sizes[:4]) : sum(sizes[:5])] = 60.0, -25.0
+    height[sum(sizes[:5]) :] = wall_height
     z = np.round((0.05 * xy[:, 0] + height + rng.normal(0, 0.02, len(xy))) * 1024) / 1024
-    kind = np.repeat([0, 1, 2, 3, 4], sizes)
+    kind = np.repeat([0, 1, 2, 3, 4, 5], sizes)
     classes = [
         PointClass.GROUND,
         PointClass.BUILDING,
         PointClass.BUILDING,
         PointClass.UNCLASSIFIED,
         PointClass.HIGH_NOISE,
+        PointClass.UNCLASSIFIED,
     ]
     is_first = rng.random(len(xy)) < 0.5
-    entropy = np.array([0.2, 0.3, 0.3, 0.9, 0.5])[kind] + rng.normal(0, 0.02, len(xy))
-    cluster_id = np.array([0, 1, 2, 3, 0])[kind]
+    entropy = np.array([0.2, 0.3, 0.3, 0.9, 0.5, 0.5])[kind] + rng.normal(0, 0.02, len(xy))
+    cluster_id = np.array([0, 1, 2, 3, 0, 0])[kind]
+    segment_id = np.array([0, 1, 2, 3, 0, 4])[kind]
+    segment_id[np.flatnonzero(kind == 5)[is_pane]] = 0
     return {
         "xyz": np.column_stack([xy, z]),
         "classification": np.array(classes, np.uint8)[kind],
@@ -179,13 +197,13 @@ def scene() -> dict[str, np.ndarray]:
         "point_source_id": (np.arange(len(xy)) % 3).astype(np.uint16),
         "height_above_ground": height.astype(np.float32),
         "cluster_id": cluster_id.astype(np.int32),
-        "segment_id": cluster_id.astype(np.int32),
+        "segment_id": segment_id.astype(np.int32),
         "wall_of": np.zeros(len(xy), np.int32),
         "entropy": entropy.astype(np.float32),
         **{name: rng.random(len(xy)).astype(np.float32) for name in ("linearity", "planarity", "scattering")},
-        "cluster_entropy": np.array([np.nan, 0.3, 0.3, 0.9, np.nan], np.float32)[kind],
-        "confidence": np.array([np.nan, 0.9, 0.9, 0.1, np.nan], np.float32)[kind],
-        "reason": np.array([0, 2, 2, 11, 0], np.uint8)[kind],
+        "cluster_entropy": np.array([np.nan, 0.3, 0.3, 0.9, np.nan, np.nan], np.float32)[kind],
+        "confidence": np.array([np.nan, 0.9, 0.9, 0.1, np.nan, np.nan], np.float32)[kind],
+        "reason": np.array([0, 2, 2, 11, 0, 0], np.uint8)[kind],
     }
 
 
@@ -581,6 +599,13 @@ def test_results_have_the_promised_shape_and_dtype(stage):
         assert "</html>" in made.report.html
 
 
+def turn(ring: np.ndarray) -> np.ndarray:
+    """Return the normal (3,) of a closed ring (m, 2 or 3), as long as twice its area, by Newell."""
+    places = np.column_stack([ring, np.zeros((len(ring), 3 - ring.shape[1]))])
+    places -= places[0]
+    return np.cross(places[:-1], places[1:]).sum(axis=0)
+
+
 @each_stage
 def test_polygons_are_closed_and_turn_as_promised(stage):
     made, _ = made_by_default(stage.name)
@@ -591,9 +616,12 @@ def test_polygons_are_closed_and_turn_as_promised(stage):
             for i, ring in enumerate(rings):
                 assert len(ring) >= 4
                 np.testing.assert_array_equal(ring[0], ring[-1])
-                x, y = ring[:, 0], ring[:, 1]
-                doubled = float((x[:-1] * y[1:] - x[1:] * y[:-1]).sum())
-                assert (doubled > 0) == (i == 0), "exterior counterclockwise, holes clockwise"
+                if ring.shape[1] == 2:
+                    doubled = turn(ring)[2]
+                    assert (doubled > 0) == (i == 0), "exterior counterclockwise, holes clockwise"
+                else:
+                    # A wall has no area in plan: holes turn against the exterior, whichever way that one faces.
+                    assert (turn(ring) @ turn(rings[0]) > 0) == (i == 0), "holes against the exterior"
 
 
 @each_stage

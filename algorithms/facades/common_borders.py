@@ -1,0 +1,124 @@
+"""Intersection lines of neighboring facades as their common borders."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import combinations
+from typing import Optional
+
+import numpy as np
+
+from ..geometry.line_segments import is_valid
+from .facade_frame import Frame
+from .facade_outline import ring_of_lines
+from .facade_surfaces import Facade
+
+# Facades whose planes meet at a smaller angle (sine: 5°) have no intersection line that noise leaves in place.
+_LEAST_SINE = np.sin(np.radians(5.0))
+
+# An edge runs along an intersection line within this angle (cosine: 20°).
+_ALONG = np.cos(np.radians(20.0))
+
+# Least length (m) of the part that the edges of two neighbors share.
+_LEAST_COMMON = 0.3
+
+
+def with_common_borders(facades: Sequence[Facade], reach: float) -> list[Facade]:
+    """Return facades whose neighboring edges lie on the intersection lines of their planes.
+
+    Parameters
+    ----------
+    facades : sequence of Facade
+        With boundaries of their own.
+    reach : float
+        Edges farther from the line than this (m) stay where they are.
+    """
+    lines: list[dict[int, tuple]] = [{} for _ in facades]
+    neighbors: list[set[int]] = [set() for _ in facades]
+    boxes = [_box(facade, reach) for facade in facades]
+    for i, j in combinations(range(len(facades)), 2):
+        if (boxes[i][0] > boxes[j][1]).any() or (boxes[j][0] > boxes[i][1]).any():
+            continue
+        line = intersection_line(facades[i].frame, facades[j].frame)
+        if line is None:
+            continue
+        one, other = (_edges_along(facades[k], *line, reach) for k in (i, j))
+        for edge_a, off_a in one:
+            for edge_b, off_b in other:
+                if _common(facades[i], edge_a, facades[j], edge_b, *line) < _LEAST_COMMON:
+                    continue
+                neighbors[i].add(j)
+                neighbors[j].add(i)
+                _offer(lines[i], edge_a, off_a, line)
+                _offer(lines[j], edge_b, off_b, line)
+    return [
+        replace(facade, ring=_moved(facade, lines[k]), neighbors=len(neighbors[k])) for k, facade in enumerate(facades)
+    ]
+
+
+def intersection_line(one: Frame, other: Frame) -> Optional[tuple[np.ndarray, np.ndarray]]:
+    """Return a point (3,), m, and the unit direction (3,) of the line that two planes share, None if nearly parallel.
+
+    The point is the one nearest to the middle between the origins of both.
+    """
+    direction = np.cross(one.normal, other.normal)
+    sine = float(np.linalg.norm(direction))
+    if sine < _LEAST_SINE:
+        return None
+    direction = direction / sine
+    middle = (one.origin + other.origin) / 2
+    offsets = [plane.normal @ (plane.origin - middle) for plane in (one, other)]
+    point = middle + np.linalg.solve(np.array([one.normal, other.normal, direction]), [*offsets, 0.0])
+    return point, direction
+
+
+def _box(facade: Facade, margin: float) -> tuple[np.ndarray, np.ndarray]:
+    corners = facade.frame.space(facade.ring)
+    return corners.min(axis=0) - margin, corners.max(axis=0) + margin
+
+
+def _flat(frame: Frame, point: np.ndarray, direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return point and direction (2,) of a line of the plane in its own frame."""
+    place = frame.local(point[None])[0, :2]
+    return place, np.array([direction @ frame.along, direction @ frame.up])
+
+
+def _edges_along(facade: Facade, point: np.ndarray, direction: np.ndarray, reach: float) -> list[tuple[int, float]]:
+    """Return the edges of a facade that run along a line, with their distance (m) from it."""
+    place, way = _flat(facade.frame, point, direction)
+    steps = np.diff(facade.ring, axis=0)
+    length = np.linalg.norm(steps, axis=1)
+    across = np.array([-way[1], way[0]])
+    off = np.abs((facade.ring - place) @ across)
+    off = np.maximum(off[:-1], off[1:])
+    found = (np.abs(steps @ way) >= _ALONG * length) & (off <= reach) & (length >= _LEAST_COMMON)
+    return [(int(edge), float(off[edge])) for edge in np.flatnonzero(found)]
+
+
+def _common(one: Facade, edge: int, other: Facade, edge_of_other: int, point: np.ndarray, way: np.ndarray) -> float:
+    """Return the length (m) of the line beside both edges."""
+    spans = []
+    for facade, number in ((one, edge), (other, edge_of_other)):
+        ends = (facade.frame.space(facade.ring[number : number + 2]) - point) @ way
+        spans.append((ends.min(), ends.max()))
+    (low, high), (low_of_other, high_of_other) = spans
+    return float(min(high, high_of_other) - max(low, low_of_other))
+
+
+def _offer(lines: dict[int, tuple], edge: int, off: float, line: tuple) -> None:
+    """Keep the nearest line of an edge."""
+    if edge not in lines or off < lines[edge][0]:
+        lines[edge] = (off, *line)
+
+
+def _moved(facade: Facade, lines: dict[int, tuple]) -> np.ndarray:
+    """Return the ring with edges moved onto lines; unchanged where that makes no valid ring."""
+    if not lines:
+        return facade.ring
+    points, ways = facade.ring[:-1].copy(), np.diff(facade.ring, axis=0)
+    for edge, (_, point, direction) in lines.items():
+        place, way = _flat(facade.frame, point, direction)
+        points[edge], ways[edge] = place, way if way @ ways[edge] > 0 else -way
+    ring = ring_of_lines(points, ways, facade.ring[:-1])
+    return ring if is_valid([ring]) else facade.ring

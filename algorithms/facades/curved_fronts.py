@@ -1,0 +1,116 @@
+"""Curved fronts as upright strips: planes that cross each other at small angles, told apart by plan position."""
+
+from __future__ import annotations
+
+from itertools import combinations
+from typing import Optional
+
+import numpy as np
+
+from ..geometry.grid import distinct, grid_over
+from ..geometry.groups import components
+from ..segmentation.least_squares_planes import planes_of
+
+# Planes that meet at an angle between these (sines: 3° and 40°) may be strips of one curved front.
+_LEAST_SINE, _MOST_SINE = np.sin(np.radians(3.0)), np.sin(np.radians(40.0))
+
+# Side (m) of the cells in which two planes must both have points to be of one front, and least number of these.
+_TOUCH_CELL, _TOUCHES = 0.5, 2
+
+# Side of a column: tolerances, and m. The points of a column are of one strip.
+_COLUMN_TOLERANCES, _LEAST_COLUMN = 2.0, 0.1
+
+# Strips are fitted and columns assigned again this often: both hardly change after the third time.
+_ROUNDS = 5
+
+
+def as_strips(xyz: np.ndarray, wall: np.ndarray, tolerance: float) -> np.ndarray:
+    """Return wall numbers (n,) from 1, those of curved fronts as upright strips side by side; 0 stays 0.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Coordinates (m).
+    wall : ndarray of shape (n,)
+        Walls from 1 to m, each with a point; 0 is none. On a curved front planes overlap.
+    tolerance : float
+        Largest root mean square distance (m) of the points of a column from their strip.
+    """
+    result = wall.copy()
+    count = int(wall.max(initial=0))
+    for front in _fronts(xyz, wall, count):
+        rows = np.flatnonzero(np.isin(wall, front))
+        strip = _strips(xyz[rows] - xyz.min(axis=0), np.searchsorted(front, wall[rows]), len(front), tolerance)
+        result[rows] = front[strip]
+    return result
+
+
+def _fronts(xyz: np.ndarray, wall: np.ndarray, count: int) -> list[np.ndarray]:
+    """Return the walls, ascending, of each front with two planes or more that touch at small angles."""
+    rows = np.flatnonzero(wall > 0)
+    if count < 2:
+        return []
+    start = xyz.min(axis=0)
+    normal = planes_of(xyz[rows] - start, wall[rows] - 1, count).normal
+    grid = grid_over(xyz[rows], _TOUCH_CELL)
+    cells, cell = distinct(grid.number(xyz[rows]))
+    pairs = distinct(cell.astype(np.int64) * count + wall[rows] - 1)[0]
+    of_cell, of_wall = np.divmod(pairs, count)
+    seen = [set(part.tolist()) for part in np.split(of_cell[np.argsort(of_wall, kind="stable")], _ends(of_wall, count))]
+    one, other = [], []
+    for a, b in combinations(range(count), 2):
+        sine = np.linalg.norm(np.cross(normal[a], normal[b]))
+        if _LEAST_SINE <= sine <= _MOST_SINE and len(seen[a] & seen[b]) >= _TOUCHES:
+            one.append(a)
+            other.append(b)
+    _, group = components(np.array(one, int), np.array(other, int), count)
+    fronts = [np.flatnonzero(group == number) + 1 for number in np.unique(group)]
+    return [front for front in fronts if len(front) > 1]
+
+
+def _ends(of_wall: np.ndarray, count: int) -> np.ndarray:
+    return np.cumsum(np.bincount(of_wall, minlength=count))[:-1]
+
+
+def _strips(xyz: np.ndarray, label: np.ndarray, count: int, tolerance: float) -> np.ndarray:
+    """Return the plane (n,) from 0 of each point, the same for all points of a column; as few planes as will do."""
+    size = max(_COLUMN_TOLERANCES * tolerance, _LEAST_COLUMN)
+    column = distinct(grid_over(xyz, size).number(xyz))[1]
+    off = _deviations(xyz, label, count, column)
+    alive = np.ones(count, bool)
+    while True:
+        for _ in range(_ROUNDS):
+            label = np.argmin(np.where(alive, off, np.inf), axis=1)[column]
+            alive &= np.bincount(label, minlength=count) > 3
+            off = _deviations(xyz, label, count, column)
+        dropped = _dispensable(off, alive, tolerance)
+        if dropped is None:
+            return label
+        alive[dropped] = False
+
+
+def _deviations(xyz: np.ndarray, label: np.ndarray, count: int, column: np.ndarray) -> np.ndarray:
+    """Return how far (columns, planes) the points of columns lie off the planes (root mean square, m)."""
+    number, group = np.unique(label, return_inverse=True)
+    planes = planes_of(xyz, group, len(number))
+    points = np.bincount(column)
+    off = np.full((len(points), count), np.inf)
+    for k, plane in enumerate(number):
+        distance = (xyz - planes.center[k]) @ planes.normal[k]
+        off[:, plane] = np.sqrt(np.bincount(column, distance**2) / points)
+    return np.where(np.isnan(off), np.inf, off)
+
+
+def _dispensable(off: np.ndarray, alive: np.ndarray, tolerance: float) -> Optional[int]:
+    """Return the plane with fewest columns that the others can do without, None if they need all."""
+    best = np.argmin(np.where(alive, off, np.inf), axis=1)
+    columns = np.bincount(best, minlength=len(alive))
+    for plane in np.argsort(columns, kind="stable"):
+        if not alive[plane] or alive.sum() < 2:
+            continue
+        others = alive.copy()
+        others[plane] = False
+        own = np.flatnonzero(best == plane)
+        if (np.where(others, off[own], np.inf).min(axis=1) <= tolerance).all():
+            return int(plane)
+    return None

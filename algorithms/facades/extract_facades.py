@@ -1,0 +1,271 @@
+"""Facades as vertical polygons: planes by least squares, boundaries, and intersection lines as common borders."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..geometry.grid import connected_cells, distinct, find_cells, grid_over
+from ..geometry.groups import members
+from ..params import Boundary, CornerDistance, EdgeFactor, FacadeGap, FacadeTilt, Seed
+from ..sampling.cloud_sampling import CloudSampling
+from ..segmentation.least_squares_planes import Planes, planes_of
+from ..segmentation.segment_planes_ransac import segment_planes_ransac
+from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
+from .common_borders import with_common_borders
+from .curved_fronts import as_strips
+from .facade_outline import longest_edge
+from .facade_surfaces import Facade, facade_features, plane_of, surfaces_of
+
+# Plaster, joints and cladding lie this far (standard deviation, m) off the plane of a wall, beside the noise.
+_RELIEF = 0.01
+
+# Distance within which a point lies on a facade (standard deviations): one point of 400 is farther off.
+_ON_PLANE = 3.0
+
+_MOMENTS = ("count", "center", "covariance")
+
+FACADE_FIELDS = (
+    Field("id", int, "SegmentID of its points"),
+    Field("area", float, "Area of the polygon, openings left out", "m²"),
+    Field("height", float, "Height from the lowest to the highest corner", "m"),
+    Field("base", float, "Elevation of the lowest corner", "m"),
+    Field("azimuth", float, "Direction that it faces, clockwise from north", "°"),
+    Field("tilt", float, "Angle to the vertical, positive where it faces the sky", "°"),
+    Field("normal_x", float, "Outward unit normal, eastward component"),
+    Field("normal_y", float, "Outward unit normal, northward component"),
+    Field("normal_z", float, "Outward unit normal, upward component"),
+    Field("rms", float, "Root mean square distance of its points from the plane", "m"),
+    Field("points", int, "Its points"),
+    Field("density", float, "Points per square meter of the polygon", "points/m²"),
+    Field("hull_share", float, "Area within the boundary, as a share of the convex hull of the points"),
+    Field("neighbors", int, "Facades with which it has a common border"),
+)
+
+
+@stage(
+    "Extract facades",
+    group="Facades",
+    tags="facade,wall,street,mobile mapping,terrestrial,TIN,convex hull,boundary,polygon,3D,Peng",
+    writes=("segment_id",),
+    layers=(Layer("facades", "Facades", "Polygon", FACADE_FIELDS, style="facades"),),
+)
+def extract_facades(
+    xyz,
+    classification,
+    *,
+    tolerance: Annotated[
+        Optional[float],
+        Param(
+            "Tolerance",
+            "Distance within which a point lies on the plane of a facade. Smaller divides a curved front into more "
+            "strips and tells shallower recesses apart.",
+            unit="m",
+            low=0,
+            high=1,
+            open_low=True,
+            automatic="three standard deviations of the measured surface noise with 0.01 m of relief.",
+        ),
+    ] = None,
+    max_tilt: FacadeTilt = 10.0,
+    min_area: Annotated[
+        float,
+        Param("Minimum facade area", "Area of the smallest facade.", unit="m²", low=0.1, high=10_000),
+    ] = 2.0,
+    min_height: Annotated[
+        float,
+        Param(
+            "Minimum facade height",
+            "Height of the lowest facade; cars and hedges are lower than walls.",
+            unit="m",
+            low=0,
+            high=100,
+        ),
+    ] = 2.5,
+    max_gap: FacadeGap = 1.5,
+    edge_factor: EdgeFactor = None,
+    corner_distance: CornerDistance = 0.4,
+    boundary: Boundary = "straight edges",
+    seed: Seed = 1,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Find the facades of buildings and draw each as a vertical polygon with its common borders.
+
+    Steep planes are found and fitted by least squares. Each gets a boundary in its own plane: the convex hull of a
+    triangulation without its long edges, reduced to its corners and pushed out until it holds all points. Where
+    two facades meet, their border is the intersection line of the planes. A curved, recessed or protruding front
+    is several planes.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes; ground, water and noise are no facades. All points may be unclassified.
+
+    Returns
+    -------
+    segment_id : ndarray of shape (n,), int32
+        Facades from 1, from west to east; 0 is none.
+    facades : LayerFeatures
+        Polygons with Z, counterclockwise seen from outside, with the fields above.
+
+    Raises
+    ------
+    ValueError
+        If the points are spread too far for the search of planes.
+
+    Notes
+    -----
+    The paper clusters the normals of the triangles of a TIN around two means of their x and y components, which fits a
+    building with two kinds of slopes. Vertical walls fold a TIN over the plan, and a street has facades in all
+    directions; here the planes come from RANSAC in voxels ("Segment planes (RANSAC)"), whose pieces are joined where
+    their normals and offsets agree, which is the same clustering without a fixed number of clusters. Distances to
+    the planes are perpendicular, not along z, which a vertical plane doesn't have.
+
+    The paper removes triangles with an edge over 1.5 spacings and keeps the points where the boundary turns, which
+    keeps every bite that chance takes out of it ("key points"). Straight edges are fitted by least squares to
+    the boundary of triangles with edges up to 4 spacings. The spacing is measured where the points are farthest
+    apart, since the mean over a vehicle's scan lines would tear the triangulation between them. Where shadows cut a
+    facade, the longest edge grows until 95 % of the points are in one piece, at most to the widest gap.
+
+    The outer side is that from which points lie in front of the wall (street, cars) or behind its openings.
+    A window that is a plane of its own and large enough is a facade, too; "Detect openings" takes it as an opening.
+
+    References
+    ----------
+    Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on vehicle
+    LIDAR. EURASIP Journal on Image and Video Processing 2018:121, sections 3.1 to 3.3.
+    """
+    sampling = sampling or CloudSampling.of(xyz, classification)
+    tolerance = _ON_PLANE * float(np.hypot(sampling.noise, _RELIEF)) if tolerance is None else tolerance
+    edge_factor = longest_edge(boundary) if edge_factor is None else edge_factor
+    monitor.resolved(tolerance=tolerance, edge_factor=edge_factor)
+    plane, _ = segment_planes_ransac(
+        xyz,
+        classification,
+        tolerance=tolerance,
+        min_slope=90.0 - max_tilt,
+        max_slope=90.0,
+        min_area=min_area / 2,
+        seed=seed,
+        sampling=sampling,
+        monitor=_Quiet(monitor.part(0, 0.6)),
+    )
+    walls = as_strips(xyz, merged_planes(xyz, plane, tolerance), tolerance)
+    pieces = split_at_gaps(xyz, walls, max_gap)
+    _leave_small(xyz, pieces, min_height)
+    facades = surfaces_of(
+        xyz,
+        pieces,
+        max_tilt=max_tilt,
+        edge_factor=edge_factor,
+        max_gap=max_gap,
+        boundary=boundary,
+        monitor=monitor.part(0.6, 0.95),
+    )
+    facades = [facade for facade in facades if facade.area >= min_area and facade.height >= min_height]
+    facades = _numbered(facades)
+    if corner_distance:
+        facades = with_common_borders(facades, corner_distance)
+    monitor.progress(1.0)
+    return _result(facades, len(xyz), min_area, min_height, monitor)
+
+
+class _Quiet(Monitor):
+    """Passes progress on; the values and warnings of a search for planes are not those of this stage."""
+
+    def __init__(self, listener: Monitor) -> None:
+        super().__init__()
+        self.listener = listener
+
+    def progress(self, fraction: float) -> None:
+        self.listener.progress(fraction)
+
+
+def merged_planes(xyz: np.ndarray, segment_id: np.ndarray, tolerance: float) -> np.ndarray:
+    """Return numbers (n,) from 1 of planes, those that are one wall joined; 0 stays 0.
+
+    A wall that is not quite flat is found as several planes that cross each other. Two planes are one wall if the
+    points of the smaller lie within the tolerance (root mean square) of the plane of the larger.
+    """
+    on_plane = np.flatnonzero(segment_id > 0)
+    result = np.zeros(len(xyz), np.int64)
+    if not len(on_plane):
+        return result
+    _, group = np.unique(segment_id[on_plane], return_inverse=True)
+    pieces = planes_of(xyz[on_plane] - xyz.min(axis=0), group, int(group.max()) + 1)
+    # The largest first: each takes in what fits it, and is fitted again.
+    order = np.argsort(-pieces.count, kind="stable")
+    walls: list[Planes] = []
+    wall_of = np.zeros(len(pieces), np.int64)
+    for piece in order:
+        own = pieces.chosen(np.array([piece]))
+        off = [_deviation(own, wall) for wall in walls]
+        best = int(np.argmin(off)) if off else -1
+        if off and off[best] <= tolerance:
+            walls[best] = _joined(walls[best], own)
+        else:
+            walls.append(own)
+            best = len(walls) - 1
+        wall_of[piece] = best
+    result[on_plane] = wall_of[group] + 1
+    return result
+
+
+def _deviation(small: Planes, large: Planes) -> float:
+    """Return how far (root mean square, m) the points of a plane lie off another one."""
+    both = _stacked(small, large)
+    return float(both.deviation(np.array([0]), np.array([1]))[0])
+
+
+def _joined(one: Planes, other: Planes) -> Planes:
+    return _stacked(one, other).merged(np.zeros(2, np.int64), 1)
+
+
+def _stacked(one: Planes, other: Planes) -> Planes:
+    return Planes(*(np.concatenate([getattr(plane, name) for plane in (one, other)]) for name in _MOMENTS))
+
+
+def split_at_gaps(xyz: np.ndarray, segment_id: np.ndarray, gap: float) -> np.ndarray:
+    """Return new numbers (n,) from 1 of segments, each divided where its points leave a gap (m); 0 stays 0."""
+    result, count = np.zeros(len(xyz), np.int64), 0
+    for points in members(segment_id).values():
+        places = plane_of(xyz[points])[0].local(xyz[points])[:, :2]
+        grid = grid_over(places, gap / 2)
+        number = grid.number(places)
+        cells = distinct(number)[0]
+        found, group = connected_cells(grid, cells)
+        result[points] = count + 1 + group[find_cells(cells, number)[0]]
+        count += found
+    return result
+
+
+def _leave_small(xyz: np.ndarray, pieces: np.ndarray, min_height: float) -> None:
+    """Take pieces that are too low for a facade out, in place, before their boundaries are looked for."""
+    for points in members(pieces).values():
+        if np.ptp(xyz[points, 2]) < 0.9 * min_height:
+            pieces[points] = 0
+
+
+def _numbered(facades: list[Facade]) -> list[Facade]:
+    """Return facades with numbers from 1, from west to east and south to north."""
+    ordered = sorted(facades, key=lambda facade: tuple(np.round(facade.rings[0].min(axis=0), 2)))
+    return [replace(facade, number=number) for number, facade in enumerate(ordered, start=1)]
+
+
+def _result(
+    facades: list[Facade], n_points: int, min_area: float, min_height: float, monitor: Monitor
+) -> tuple[np.ndarray, LayerFeatures]:
+    segment_id = np.zeros(n_points, np.int32)
+    for facade in facades:
+        segment_id[facade.points] = facade.number
+    if not facades:
+        monitor.warn(
+            f"No vertical plane of {min_area:g} m² and {min_height:g} m height was found, so there are no facades; "
+            "lower these values, raise the maximum tilt, or use a cloud that was taken from the street or obliquely."
+        )
+    return segment_id, facade_features(facades)

@@ -1,0 +1,149 @@
+"""Facades of segments: least-squares plane, side that was seen, and boundary of each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..geometry.groups import members
+from ..packages import spatial
+from ..segmentation.least_squares_planes import Planes, planes_of
+from ..stage import LayerFeatures, Monitor
+from .facade_frame import Frame, facing_viewer, frame_of, thinned
+from .facade_outline import outline_of, ring_area
+
+# Points nearer to a facade's plane than this (m) may be frames and reliefs of it: they don't tell which side was seen.
+_THICKNESS = 0.05
+
+
+@dataclass(frozen=True)
+class Facade:
+    """A facade: a plane with a boundary.
+
+    Attributes
+    ----------
+    number : int
+        Segment that it was made of.
+    frame : Frame
+        Its plane.
+    ring : ndarray of shape (m, 2)
+        Boundary along and up the plane, closed and counterclockwise seen from outside (m).
+    points : ndarray of shape (k,)
+        Its points in the cloud.
+    rms : float
+        Root mean square distance of these from the plane, m.
+    spacing : float
+        Distance between these where they are farthest apart, m.
+    hull_area : float
+        Area of their convex hull, m².
+    neighbors : int
+        Facades with which it shares a border.
+    holes : list of ndarray of shape (m, 2)
+        Openings, clockwise.
+    """
+
+    number: int
+    frame: Frame
+    ring: np.ndarray
+    points: np.ndarray
+    rms: float
+    spacing: float
+    hull_area: float
+    neighbors: int = 0
+    holes: list = field(default_factory=list)
+
+    @property
+    def area(self) -> float:
+        """Area within the boundary, openings left out, m²."""
+        return ring_area(self.ring) - sum(ring_area(hole) for hole in self.holes)
+
+    @property
+    def height(self) -> float:
+        """Height of the boundary, m."""
+        return float(np.ptp(self.frame.space(self.ring)[:, 2]))
+
+    @property
+    def rings(self) -> list[np.ndarray]:
+        """Rings (m, 3) of the polygon: boundary, then openings."""
+        return [self.frame.space(ring) for ring in (self.ring, *self.holes)]
+
+
+def surfaces_of(
+    xyz: np.ndarray,
+    segment_id: np.ndarray,
+    *,
+    max_tilt: float,
+    edge_factor: float,
+    max_gap: float,
+    boundary: str,
+    monitor: Monitor,
+) -> list[Facade]:
+    """Return the facades of segments whose planes are steep and have an area, in the order of their numbers.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Coordinates of the whole cloud (m).
+    segment_id : ndarray of shape (n,)
+        Planes from 1; 0 is none.
+    max_tilt : float
+        Largest angle (°) of a facade to the vertical.
+    edge_factor, max_gap, boundary
+        As of :func:`.facade_outline.outline_of`.
+    monitor : Monitor
+        Receives progress.
+    """
+    groups = members(segment_id)
+    monitor.progress(0.0)
+    if not groups:
+        return []
+    start = xyz.min(axis=0)
+    around = thinned(xyz - start) + start
+    tree = spatial.cKDTree(around)
+    facades = []
+    for done, (number, points) in enumerate(groups.items(), start=1):
+        frame, rms = plane_of(xyz[points])
+        if len(points) >= 4 and abs(frame.tilt) <= max_tilt:
+            middle, reach = xyz[points].mean(axis=0), np.linalg.norm(np.ptp(xyz[points], axis=0)) / 2 + 10.0
+            near = around[np.sort(tree.query_ball_point(middle, reach))]
+            frame = facing_viewer(frame, xyz[points], near, max(_THICKNESS, 3 * rms))
+            outline = outline_of(frame.local(xyz[points])[:, :2], edge_factor, max_gap, boundary)
+            if outline is not None:
+                facades.append(Facade(number, frame, outline.ring, points, rms, outline.spacing, outline.hull_area))
+        monitor.progress(done / len(groups))
+    return facades
+
+
+def plane_of(xyz: np.ndarray) -> tuple[Frame, float]:
+    """Return the plane of least squares through points (n, 3), and their root mean square distance from it (m).
+
+    A plane that is level gets a normal that is slightly inclined, so that it has a direction along it.
+    """
+    start = xyz[0]
+    planes: Planes = planes_of(xyz - start, np.zeros(len(xyz), np.int64), 1)
+    normal = planes.normal[0]
+    if not np.isfinite(normal).all() or np.hypot(normal[0], normal[1]) < 1e-9:
+        normal = np.array([1e-9, 0.0, 1.0])
+    return frame_of(planes.center[0] + start, normal), float(np.sqrt(max(planes.eigenvalues[0, 2], 0.0)))
+
+
+def facade_features(facades: list[Facade]) -> LayerFeatures:
+    """Return facades as features of the layer that :data:`.extract_facades.FACADE_FIELDS` describes."""
+    columns: dict[str, list] = {
+        "id": [facade.number for facade in facades],
+        "area": [facade.area for facade in facades],
+        "height": [facade.height for facade in facades],
+        "base": [float(facade.rings[0][:, 2].min()) for facade in facades],
+        "azimuth": [facade.frame.azimuth for facade in facades],
+        "tilt": [facade.frame.tilt for facade in facades],
+        "normal_x": [float(facade.frame.normal[0]) for facade in facades],
+        "normal_y": [float(facade.frame.normal[1]) for facade in facades],
+        "normal_z": [float(facade.frame.normal[2]) for facade in facades],
+        "rms": [facade.rms for facade in facades],
+        "points": [len(facade.points) for facade in facades],
+        "density": [len(facade.points) / facade.area for facade in facades],
+        "hull_share": [ring_area(facade.ring) / max(facade.hull_area, 1e-9) for facade in facades],
+        "neighbors": [facade.neighbors for facade in facades],
+    }
+    return LayerFeatures([facade.rings for facade in facades], columns)
