@@ -52,6 +52,7 @@ IDS = {
     "simulatetown",
     "simulateflight",
     "simulatevillage",
+    "extractfacades",
 }
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints"}
 ALL = {**STAGES, **TOYS}
