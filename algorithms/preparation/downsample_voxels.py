@@ -10,14 +10,12 @@ from typing import Annotated, Optional
 import numpy as np
 
 from ..geometry.groups import items, run_starts
+from ..geometry.sparse_voxels import TOUCH, voxel_index
 from ..stage import Monitor, Param, stage
 from ..threads import in_chunks
 
 # Points worked on at once: what is gathered for them stays in the processor's cache.
 _CHUNK = 50_000
-
-# A coordinate this little (m) under the side of a voxel is on it: more than float64 rounds off, less than files tell.
-_TOUCH = 1e-7
 
 # Places inside a voxel are whole numbers of this fraction of its side, so that sums don't depend on the order.
 _STEPS = 2.0**32
@@ -151,7 +149,7 @@ def downsample_voxels(
         # The places inside each voxel, their sum, and the point nearest to their mean.
         place = _places(xyz.take(rows, axis=0), voxel_size)
         total = np.add.reduceat(place, run_starts(which), axis=0)
-        nearest = _nearest(place, total, which, _TOUCH / voxel_size * _STEPS, (gps_time, return_number), rows)
+        nearest = _nearest(place, total, which, TOUCH / voxel_size * _STEPS, (gps_time, return_number), rows)
         selected[these] = rows[nearest]
         shift = total / count[:, None] - place[nearest]
         center[these] = xyz.take(rows[nearest], axis=0) + shift * (voxel_size / _STEPS)
@@ -178,7 +176,7 @@ def _keys(xyz: np.ndarray, size: float, monitor: Monitor) -> np.ndarray:
             f"Voxels of {size:g} m are too fine for coordinates up to {np.abs(ends).max():g} m; "
             "take larger voxels or check the coordinates."
         )
-    low, high = _index(ends / size, size).T.astype(np.int64)
+    low, high = voxel_index(ends / size, size).T.astype(np.int64)
     _, n_y, n_z = shape = [int(count) for count in high - low + 1]
     if math.prod(shape) > _LARGEST_KEY:
         return _keys_of_wide(xyz, size)
@@ -186,7 +184,7 @@ def _keys(xyz: np.ndarray, size: float, monitor: Monitor) -> np.ndarray:
 
     def work(start: np.ndarray) -> None:
         rows = slice(start[0], start[0] + _CHUNK)
-        x, y, z = (_index(xyz[rows] / size, size).astype(np.int64) - low).T
+        x, y, z = (voxel_index(xyz[rows] / size, size).astype(np.int64) - low).T
         key[rows] = (x * n_y + y) * n_z + z
 
     in_chunks(work, np.arange(0, len(xyz), _CHUNK), 1, monitor)
@@ -197,17 +195,12 @@ def _keys_of_wide(xyz: np.ndarray, size: float) -> np.ndarray:
     """Return the same where there are more voxels than numbers: only those that have points are numbered."""
     key, n_keys = np.zeros(len(xyz), np.int64), 1
     for column in xyz.T:
-        index, n_index = _renumbered(_index(column / size, size))
+        index, n_index = _renumbered(voxel_index(column / size, size))
         if n_keys * n_index > _LARGEST_KEY:
             key, n_keys = _renumbered(key)
         key = key * n_index + index
         n_keys *= n_index
     return key
-
-
-def _index(scaled: np.ndarray, size: float) -> np.ndarray:
-    """Return the number of the voxel along an axis, a whole float64, of coordinates in voxels."""
-    return np.floor(scaled + _TOUCH / size)
 
 
 def _renumbered(key: np.ndarray) -> tuple[np.ndarray, int]:
@@ -219,7 +212,7 @@ def _renumbered(key: np.ndarray) -> tuple[np.ndarray, int]:
 def _places(points: np.ndarray, size: float) -> np.ndarray:
     """Return where points lie in their voxels, int64 (m, 3), in steps."""
     scaled = points / size
-    scaled -= _index(scaled, size)
+    scaled -= voxel_index(scaled, size)
     scaled *= _STEPS
     return np.rint(scaled).astype(np.int64)
 
