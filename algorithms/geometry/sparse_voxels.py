@@ -75,7 +75,7 @@ def voxelize(xyz: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray, np.n
 
 
 def neighbor_offsets(connectivity: int) -> np.ndarray:
-    """Return the steps to the neighbors of a voxel, sorted int64 (6, 18 or 26, 3); step i is opposite to step -1 - i."""
+    """Return the steps to the neighbors, sorted int64 (6, 18 or 26, 3); step i is opposite to step -1 - i."""
     steps = np.array(list(itertools.product((-1, 0, 1), repeat=3)))
     n_axes = np.abs(steps).sum(axis=1)
     return steps[(n_axes > 0) & (n_axes <= _AXES[connectivity])]
