@@ -24,6 +24,7 @@ from .segmentation.segment_clusters import segment_clusters
 from .segmentation.segment_planes_ransac import segment_planes_ransac
 from .segmentation.segment_regions import segment_regions
 from .segmentation.segment_roofs import segment_roofs
+from .shapes.segment_planes_hough import segment_planes_hough
 from .simulation.simulate_flight import simulate_flight
 from .simulation.simulate_town import simulate_town
 from .simulation.simulate_village import simulate_village
@@ -54,6 +55,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     segment_roofs,
     segment_clusters,
     segment_planes_ransac,
+    segment_planes_hough,
     classify_buildings,
     classify_buildings_2019,
     complete_buildings,

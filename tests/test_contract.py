@@ -58,6 +58,7 @@ STAGE_IDS = {
     "segmentroofs",
     "segmentclusters",
     "segmentplanesransac",
+    "segmentplaneshough",
     "classifybuildings",
     "classifybuildings2019",
     "completebuildings",
@@ -79,7 +80,7 @@ CLASSIFYING = {"classify", "complete"}
 VERBS = CLASSIFYING | {"segment", "cluster", "compute", "extract", "regularize", "simplify", "assess", "simulate"}
 VERBS |= {"filter", "downsample", "merge", "rasterize", "map", "compare", "interpret"}
 # Words that keep their capitals inside a title or label.
-NAMES = {"Gauss", "Delaunay", "Shannon"}
+NAMES = {"Gauss", "Delaunay", "Shannon", "Hough"}
 # Shares (0 to 1), multiples of what the data show, and limits of whatever dimension is named.
 WITHOUT_UNIT = {
     "time_step",
@@ -102,7 +103,10 @@ OWN_CLASSES = {"classify_dimensionality"}
 # Our own, after no publication.
 WITHOUT_REFERENCES = {"simulate_town", "simulate_village"}
 # Automatic tunables that matter only beside another setting.
-USED_WITH: dict[tuple[str, str], dict[str, Any]] = {("compute_features", "radius"): {"neighborhood": "radius"}}
+USED_WITH: dict[tuple[str, str], dict[str, Any]] = {
+    ("compute_features", "radius"): {"neighborhood": "radius"},
+    ("segment_planes_hough", "n_neighbors"): {"method": "normals"},
+}
 # Estimated again in each round: the log has the value of the last, and one value for all rounds is another surface.
 ESTIMATED_IN_ROUNDS = {("classify_ground_tin_2000", "iteration_distance")}
 # Tunables at which a stage that makes its own data is quick.
@@ -198,6 +202,7 @@ def scene() -> dict[str, np.ndarray]:
         "height_above_ground": height.astype(np.float32),
         "cluster_id": cluster_id.astype(np.int32),
         "segment_id": segment_id.astype(np.int32),
+        "shape": np.zeros(len(xy), np.uint8),
         "wall_of": np.zeros(len(xy), np.int32),
         "entropy": entropy.astype(np.float32),
         **{name: rng.random(len(xy)).astype(np.float32) for name in ("linearity", "planarity", "scattering")},

@@ -52,6 +52,7 @@ _WRITTEN = (
         aliases=("height above ground", "height_above_ground", "HAG"),
     ),
     Dimension("segment_id", ("SegmentID",), "i4", "segment, 0 is none", aliases=("segment_id",)),
+    Dimension("shape", ("Shape",), "u1", "1 plane, 2 cylinder, 3 sphere"),
     Dimension("cluster_id", ("ClusterID",), "i4", "cluster, 0 is none", aliases=("cluster_id",)),
     Dimension("wall_of", ("WallOf",), "i4", "cluster of the wall's roof", aliases=("wall_of",)),
     Dimension("linearity", ("Linearity",), "f4", "(l1 - l2) / l1"),

@@ -12,7 +12,7 @@ from ..geometry.grid import plan_box
 from ..neighborhoods.covariance import Nearest
 from ..neighborhoods.wide_in_plan import Wide
 from .density import effective_density, point_density
-from .height_resolution import height_resolution
+from .height_resolution import height_resolution, rounding_deviation
 from .surface_noise import SurfaceSample, plane_roughness
 
 # What is measured, with its name and unit in the log.
@@ -21,8 +21,13 @@ _MEASURES = {
     "effective_density": ("effective density", "points/m²"),
     "surface_density": ("density on surfaces", "points/m²"),
     "noise": ("surface noise", "m"),
+    "scan_noise": ("noise of the scan", "m"),
     "height_resolution": ("height resolution", "m"),
 }
+
+
+# Files keep coordinates to a millimeter: rounding to it leaves this deviation (m).
+_LEAST_SCAN_NOISE = 0.001 / float(np.sqrt(12))
 
 
 class CloudSampling:
@@ -80,6 +85,14 @@ class CloudSampling:
     def noise(self) -> float:
         """Standard deviation of points across smooth surfaces, m; at least the resolution of heights."""
         return self._surfaces.noise(self.height_resolution)
+
+    @cached_property
+    def scan_noise(self) -> float:
+        """Standard deviation of points across smooth surfaces, m, of scans finer than a centimeter, too.
+
+        It is bounded by the rounding of heights only, where ``noise`` is at least a centimeter.
+        """
+        return self._surfaces.noise(max(rounding_deviation(self._points()[:, 2]), _LEAST_SCAN_NOISE))
 
     @property
     def roughness(self) -> float:

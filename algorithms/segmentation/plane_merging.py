@@ -10,7 +10,7 @@ from ..geometry.boxes import Boxes, around
 from ..geometry.groups import items
 from ..stage import Monitor
 from ..threads import in_chunks
-from .least_squares_planes import Planes
+from .least_squares_planes import Planes, planes_of
 
 # Points spread evenly within a tolerance lie this share of it off the middle (root mean square).
 _EVEN = 1 / np.sqrt(3)
@@ -22,10 +22,59 @@ _MAX_ROUNDS = 1000
 # leaves in which a plane would end lie on it by chance, a fifth of them on one of automatic tolerance.
 _HELD, _LEAST_POINTS = 2 / 3, 4
 
+# A plane keeps this share of its points when each goes to the plane nearest to it, or it lies across others.
+_LEAST_LEFT = 0.5
+
 _CHUNK = 200_000
 
 # Boxes of the first array of a pair with those of the second.
 _Pairs = list[tuple[np.ndarray, np.ndarray]]
+
+
+def joined_planes(
+    boxes: Boxes, label: np.ndarray, tolerance: float, min_area: float, monitor: Monitor
+) -> tuple[Planes, np.ndarray]:
+    """Join the pieces of planes that were found voxel by voxel.
+
+    Parameters
+    ----------
+    boxes : Boxes
+        The voxels and their points.
+    label : ndarray of shape (n,), int
+        Plane of each point in the order of the boxes: from 1 in each voxel, 0 is none.
+    tolerance : float
+        Distance within which a point lies on a plane, m.
+    min_area : float
+        Area of the smallest plane, m².
+    monitor : Monitor
+        Receives progress.
+
+    Returns
+    -------
+    planes : Planes
+        The planes that are large enough.
+    plane : ndarray of shape (n,), int64
+        The nearest of them to each point in the order of the boxes, from 0; -1 where none is within the tolerance.
+    """
+    on_plane = np.flatnonzero(label)
+    box = boxes.box()
+    key, piece = np.unique(box[on_plane] * (int(label.max()) + 1) + label[on_plane], return_inverse=True)
+    voxel = key // (int(label.max()) + 1)
+    pieces = planes_of(boxes.xyz[on_plane], piece, len(key))
+    # Points of a scan line or an edge lie on many planes.
+    wide = np.flatnonzero(pieces.eigenvalues[:, 1] > tolerance**2)
+    pieces, voxel = pieces.chosen(wide), voxel[wide]
+    group = join_pieces(pieces, voxel, boxes, tolerance, monitor.part(0, 0.6))
+    planes = pieces.merged(group, int(group.max(initial=-1)) + 1)
+    nearest = nearest_plane(boxes, voxel, group, planes, tolerance, monitor.part(0.6, 0.8))
+    # A plane across a ridge loses most of its points to the roofs on both sides.
+    left = np.bincount(nearest[nearest >= 0], minlength=len(planes)) / planes.count
+    area = np.bincount(group, pieces.area, len(planes)) * np.minimum(left, 1)
+    large = (area >= min_area) & (left >= _LEAST_LEFT)
+    is_large = large[group]
+    group = (np.cumsum(large) - 1)[group[is_large]]
+    planes = planes.chosen(large)
+    return planes, grown_planes(boxes, voxel[is_large], group, planes, tolerance, monitor.part(0.8, 1))
 
 
 def join_pieces(pieces: Planes, voxel: np.ndarray, boxes: Boxes, tolerance: float, monitor: Monitor) -> np.ndarray:

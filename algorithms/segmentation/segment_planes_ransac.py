@@ -11,8 +11,8 @@ from ..params import MinClusterHeight, Seed
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Monitor, Param, stage
 from .candidate_points import candidates
-from .least_squares_planes import Planes, planes_of
-from .plane_merging import grown_planes, join_pieces, nearest_plane
+from .least_squares_planes import Planes
+from .plane_merging import joined_planes
 from .voxel_planes import VoxelPlanes
 
 # Distance within which a point lies on a plane (times the roughness).
@@ -20,9 +20,6 @@ _ON_PLANE = 2.3195
 
 # A surface puts so many points into a voxel, and a voxel is so many tolerances wide that it isn't filled by one.
 _POINTS_IN_VOXEL, _TOLERANCES_IN_VOXEL = 20.0, 10.0
-
-# A plane keeps this share of its points when each goes to the plane nearest to it, or it lies across others.
-_LEAST_LEFT = 0.5
 
 # The range of the paper, m.
 _SMALLEST_VOXEL, _LARGEST_VOXEL = 0.5, 3.0
@@ -148,7 +145,7 @@ def segment_planes_ransac(
         boxes = Boxes(xyz[used], voxel_size)
         in_voxel = VoxelPlanes(boxes, voxel_size, tolerance, max_planes, trials, seed)
         label = in_voxel.find(monitor.part(0, 0.6))
-        planes, plane[used[boxes.order]] = _joined(boxes, label, tolerance, min_area, monitor.part(0.6, 1))
+        planes, plane[used[boxes.order]] = joined_planes(boxes, label, tolerance, min_area, monitor.part(0.6, 1))
     return _kept(plane, planes, min_slope, max_slope, normals, monitor)
 
 
@@ -156,31 +153,6 @@ def _voxel_size(density: float, tolerance: float) -> float:
     """Return the side of a voxel that suits the density of surfaces and the tolerance, m."""
     wide = max(float(np.sqrt(_POINTS_IN_VOXEL / density)), _TOLERANCES_IN_VOXEL * tolerance)
     return min(max(wide, _SMALLEST_VOXEL), _LARGEST_VOXEL)
-
-
-def _joined(
-    boxes: Boxes, label: np.ndarray, tolerance: float, min_area: float, monitor: Monitor
-) -> tuple[Planes, np.ndarray]:
-    """Join the pieces ``label`` (n,) of planes in voxels; return the large planes, and the nearest to each point."""
-    on_plane = np.flatnonzero(label)
-    box = boxes.box()
-    key, piece = np.unique(box[on_plane] * (int(label.max()) + 1) + label[on_plane], return_inverse=True)
-    voxel = key // (int(label.max()) + 1)
-    pieces = planes_of(boxes.xyz[on_plane], piece, len(key))
-    # Points of a scan line or an edge lie on many planes.
-    wide = np.flatnonzero(pieces.eigenvalues[:, 1] > tolerance**2)
-    pieces, voxel = pieces.chosen(wide), voxel[wide]
-    group = join_pieces(pieces, voxel, boxes, tolerance, monitor.part(0, 0.6))
-    planes = pieces.merged(group, int(group.max(initial=-1)) + 1)
-    nearest = nearest_plane(boxes, voxel, group, planes, tolerance, monitor.part(0.6, 0.8))
-    # A plane across a ridge loses most of its points to the roofs on both sides.
-    left = np.bincount(nearest[nearest >= 0], minlength=len(planes)) / planes.count
-    area = np.bincount(group, pieces.area, len(planes)) * np.minimum(left, 1)
-    large = (area >= min_area) & (left >= _LEAST_LEFT)
-    is_large = large[group]
-    group = (np.cumsum(large) - 1)[group[is_large]]
-    planes = planes.chosen(large)
-    return planes, grown_planes(boxes, voxel[is_large], group, planes, tolerance, monitor.part(0.8, 1))
 
 
 def _kept(

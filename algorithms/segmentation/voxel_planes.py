@@ -68,21 +68,12 @@ class VoxelPlanes:
             if not len(open_):
                 return
             on_plane = self._refined(points[open_], is_left[open_], self._best(points[open_], is_left[open_], shares))
-            is_plane = self._is_more_than_chance(on_plane.sum(axis=1), is_left[open_].sum(axis=1))
+            is_plane = more_than_chance(
+                on_plane.sum(axis=1), is_left[open_].sum(axis=1), self.by_chance, self.shares.shape[1]
+            )
             open_, on_plane = open_[is_plane], on_plane[is_plane]
             plane[index[open_][on_plane]] = number
             is_left[open_] &= ~on_plane
-
-    def _is_more_than_chance(self, found: np.ndarray, left: np.ndarray) -> np.ndarray:
-        """Return whether ``found`` of the points ``left`` (v,) on a plane are more than scattered points would have.
-
-        The probability that so many come to lie within the tolerance is at most exp(-n KL(share, share by chance))
-        (Hoeffding's bound), three points of each plane aside, which always do; and many planes are tried.
-        """
-        share, expected = (found - 3) / (left - 3), self.by_chance
-        on, off = np.maximum(share, 1e-12), np.maximum(1 - share, 1e-12)
-        divergence = share * np.log(on / expected) + (1 - share) * np.log(off / (1 - expected))
-        return (share > expected) & ((left - 3) * divergence >= np.log(self.shares.shape[1] * _VOXELS_PER_CHANCE))
 
     def _padded(self, voxels: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return the points (v, k, 3) around each voxel's middle, their index, and which are no padding (v, k)."""
@@ -125,6 +116,31 @@ class VoxelPlanes:
             better = again.sum(axis=1) >= on_plane.sum(axis=1)
             on_plane = np.where(better[:, None], again, on_plane)
         return on_plane
+
+
+def more_than_chance(found, left, by_chance: float, trials: int) -> np.ndarray:
+    """Return whether more points lie on the best of many planes than scattered points would have on one.
+
+    Parameters
+    ----------
+    found, left : int or ndarray of shape (v,), int
+        Points on the plane, and points that it was looked for among.
+    by_chance : float
+        Share of scattered points that lies within the tolerance of a plane, below 1.
+    trials : int
+        Planes that were tried.
+
+    Notes
+    -----
+    The probability that so many come to lie within the tolerance is at most exp(-n KL(share, share by chance))
+    (Hoeffding's bound), three points of each plane aside, which always do; and many planes are tried. One of a
+    thousand voxels may have such a plane by chance.
+    """
+    others = np.maximum(np.asarray(left) - 3, 1)
+    share = (np.asarray(found) - 3) / others
+    on, off = np.maximum(share, 1e-12), np.maximum(1 - share, 1e-12)
+    divergence = share * np.log(on / by_chance) + (1 - share) * np.log(off / (1 - by_chance))
+    return (share > by_chance) & (others * divergence >= np.log(trials * _VOXELS_PER_CHANCE))
 
 
 def _chunks(most: np.ndarray) -> np.ndarray:

@@ -1,0 +1,227 @@
+"""Planes in windows of a cloud by the Hough transform, one maximum of the parameter space after the other."""
+
+from __future__ import annotations
+
+from typing import Optional
+
+import numpy as np
+
+from ..geometry.boxes import Boxes
+from ..segmentation.voxel_planes import more_than_chance
+from ..stage import Monitor
+from ..threads import in_chunks
+
+# Counters of the largest parameter space: of 8 bytes each, for each thread.
+_MOST_BINS = 20_000_000
+
+# Votes of points that one thread holds at once: 8 bytes each.
+_VOTES_AT_ONCE = 2_000_000
+
+# Least-squares fits to the points of a maximum, each to those near the fit before.
+_REFINEMENTS = 3
+
+# Planes that are looked for in one window: more than its surfaces.
+_MOST_PLANES = 20
+
+# Windows that one thread works on between two reports.
+_WINDOWS = 64
+
+# Points of the smallest plane of a window: three always lie on one.
+_LEAST_POINTS = 5
+
+
+class PlaneDirections:
+    """The slopes of the parameter space: bins of normals on the faces of a cube around the half sphere.
+
+    Z = s_x X + s_y Y + d has no steep planes. On each of three faces another coordinate is written as a function of the
+    two others, with slopes from -1 to 1, so that planes of every direction are there once.
+
+    Parameters
+    ----------
+    slope_bin : float
+        Width of a bin in both slopes.
+
+    Attributes
+    ----------
+    normal : ndarray of shape (m, 3)
+        Unit normals of the middles of the bins.
+    """
+
+    def __init__(self, slope_bin: float) -> None:
+        self.per_side = max(1, int(np.ceil(2 / slope_bin)))
+        self.normal = unit(self._cube(np.arange(3 * self.per_side**2)))
+
+    def __len__(self) -> int:
+        return len(self.normal)
+
+    def _cube(self, number: np.ndarray) -> np.ndarray:
+        face, cell = np.divmod(number, self.per_side**2)
+        slopes = (np.column_stack(np.divmod(cell, self.per_side)) + 0.5) * 2 / self.per_side - 1
+        cube = np.empty((len(number), 3))
+        for axis in range(3):
+            on_face = face == axis
+            cube[np.ix_(on_face, [axis])] = 1.0
+            cube[np.ix_(on_face, [i for i in range(3) if i != axis])] = slopes[on_face]
+        return cube
+
+    def bin_of(self, normal: np.ndarray) -> np.ndarray:
+        """Return the bin (n,) of unit normals (n, 3) of either sign."""
+        face = np.argmax(np.abs(normal), axis=1)
+        every = np.arange(len(normal))
+        others = np.array([[1, 2], [0, 2], [0, 1]])[face]
+        slopes = normal[every[:, None], others] / normal[every, face][:, None]
+        cell = np.clip(((slopes + 1) / 2 * self.per_side).astype(np.int64), 0, self.per_side - 1)
+        return (face * self.per_side + cell[:, 0]) * self.per_side + cell[:, 1]
+
+
+def unit(vectors: np.ndarray) -> np.ndarray:
+    """Return vectors (n, 3) of length one; zero stays zero."""
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0)
+
+
+class HoughPlanes:
+    """The Hough transform in the windows of a cloud.
+
+    Parameters
+    ----------
+    boxes : Boxes
+        The windows.
+    side : float
+        Side of a window, m.
+    tolerance : float
+        Distance within which a point lies on a plane, m.
+    distance_bin : float
+        Width of a bin in the distance of a plane, m.
+    slope_bin : float
+        Width of a bin in both slopes of a plane.
+    normals : ndarray of shape (n, 3), optional
+        Normals of the points in the order of the boxes, for the transform in two steps.
+    max_angle : float
+        Angle (°) between the normals of a plane and of its points, in two steps.
+
+    Raises
+    ------
+    ValueError
+        If the parameter space has too many bins for the memory.
+    """
+
+    def __init__(
+        self,
+        boxes: Boxes,
+        side: float,
+        tolerance: float,
+        distance_bin: float,
+        slope_bin: float,
+        normals: Optional[np.ndarray] = None,
+        max_angle: float = 10.0,
+    ) -> None:
+        self.boxes, self.tolerance, self.distance_bin, self.normals = boxes, tolerance, distance_bin, normals
+        self.reach = side * np.sqrt(3) / 2
+        self.levels = int(np.ceil(2 * self.reach / distance_bin)) + 1
+        per_side = np.ceil(2 / slope_bin)
+        n_bins = 3 * per_side**2 * self.levels
+        if n_bins > _MOST_BINS:
+            raise ValueError(
+                f"The parameter space of a window would have {n_bins / 1e6:,.0f} million bins, more than "
+                f"{_MOST_BINS / 1e6:.0f} million; take larger bins or smaller windows."
+            )
+        self.directions = PlaneDirections(slope_bin)
+        self.by_chance = min(0.99, 2 * tolerance / side)
+        self.trials = int(n_bins)
+        self.cosine = np.cos(np.radians(max_angle))
+
+    def find(self, monitor: Monitor) -> np.ndarray:
+        """Return the plane (n,), int16, of each point in the order of the boxes: from 1 in each window, 0 is none."""
+        plane = np.zeros(len(self.boxes.order), np.int16)
+        search = self._by_points if self.normals is None else self._by_normals
+
+        def work(windows: np.ndarray) -> None:
+            for window in windows:
+                start = self.boxes.start[window]
+                inside = slice(start, start + self.boxes.size[window])
+                xyz = self.boxes.xyz[inside]
+                normals = None if self.normals is None else self.normals[inside]
+                plane[inside] = search(xyz - (xyz.min(axis=0) + xyz.max(axis=0)) / 2, normals)
+
+        in_chunks(work, np.flatnonzero(self.boxes.size >= _LEAST_POINTS), _WINDOWS, monitor)
+        return plane
+
+    def _by_points(self, xyz: np.ndarray, _: Optional[np.ndarray]) -> np.ndarray:
+        """Return the plane (k,) of each point of a window: every point votes for all planes through it."""
+        plane, left = np.zeros(len(xyz), np.int16), np.arange(len(xyz))
+        votes = self._votes(xyz)
+        for number in range(1, _MOST_PLANES + 1):
+            # Planes at the border between two bins share their points among these.
+            best = int(np.argmax(votes[:, :-1] + votes[:, 1:]))
+            direction, level = np.divmod(best, self.levels - 1)
+            normal = self.directions.normal[direction]
+            on_plane = self._refined(xyz[left], normal, (level + 1) * self.distance_bin - self.reach)
+            if not self._is_plane(on_plane.sum(), len(left)):
+                return plane
+            plane[left[on_plane]] = number
+            votes -= self._votes(xyz[left[on_plane]])
+            left = left[~on_plane]
+        return plane
+
+    def _votes(self, xyz: np.ndarray) -> np.ndarray:
+        """Return how many of the points (k, 3) lie on the plane of each bin (m, levels)."""
+        directions = self.directions.normal
+        votes = np.zeros(len(directions) * self.levels, np.int64)
+        step = max(1, _VOTES_AT_ONCE // len(directions))
+        for first in range(0, len(xyz), step):
+            level = ((xyz[first : first + step] @ directions.T + self.reach) / self.distance_bin).astype(np.int64)
+            level += np.arange(len(directions)) * self.levels
+            votes += np.bincount(level.ravel(), minlength=len(votes))
+        return votes.reshape(len(directions), self.levels)
+
+    def _by_normals(self, xyz: np.ndarray, normals: Optional[np.ndarray]) -> np.ndarray:
+        """Return the plane (k,) of each point of a window: its normal votes for a direction, then it for a distance."""
+        assert normals is not None
+        plane = np.zeros(len(xyz), np.int16)
+        left = np.flatnonzero(normals.any(axis=1))
+        cells = self.directions.bin_of(normals[left]) if len(left) else left
+        for number in range(1, _MOST_PLANES + 1):
+            if len(left) < _LEAST_POINTS:
+                return plane
+            direction = self._direction(cells)
+            is_alike = np.abs(normals[left] @ direction) >= self.cosine
+            alike = left[is_alike]
+            if len(alike) < _LEAST_POINTS:
+                return plane
+            signs = np.sign(normals[alike] @ direction)
+            normal = unit((normals[alike] * signs[:, None]).sum(axis=0))
+            level = ((xyz[alike] @ normal + self.reach) / self.distance_bin).astype(np.int64)
+            votes = np.bincount(level, minlength=self.levels)
+            distance = (int(np.argmax(votes[:-1] + votes[1:])) + 1) * self.distance_bin - self.reach
+            on_plane = self._refined(xyz[alike], normal, distance)
+            if self._is_plane(on_plane.sum(), len(alike)):
+                plane[alike[on_plane]] = number
+                gone = plane[left] > 0
+            else:
+                # Many directions without a plane, as in a crown: they are left out.
+                gone = is_alike
+            left, cells = left[~gone], cells[~gone]
+        return plane
+
+    def _direction(self, cells: np.ndarray) -> np.ndarray:
+        """Return the maximum (3,) on the Gaussian half sphere: the cell around which most normals lie."""
+        occupied, count = np.unique(cells, return_counts=True)
+        normal = self.directions.normal[occupied]
+        return normal[np.argmax((np.abs(normal @ normal.T) >= self.cosine) @ count)]
+
+    def _is_plane(self, found: int, left: int) -> bool:
+        return found >= _LEAST_POINTS and bool(more_than_chance(found, left, self.by_chance, self.trials))
+
+    def _refined(self, xyz: np.ndarray, normal: np.ndarray, distance: float) -> np.ndarray:
+        """Return which points (k,) lie on the least-squares plane of the points around a maximum."""
+        # A bin is off by half of itself in its distance and, by its slopes, as much again at the end of the window.
+        on_plane = np.abs(xyz @ normal - distance) <= self.tolerance + self.distance_bin
+        for _ in range(_REFINEMENTS):
+            if on_plane.sum() < _LEAST_POINTS:
+                return np.zeros(len(xyz), bool)
+            center = xyz[on_plane].mean(axis=0)
+            offset = xyz[on_plane] - center
+            normal = np.linalg.eigh(offset.T @ offset)[1][:, 0]
+            on_plane = np.abs((xyz - center) @ normal) <= self.tolerance
+        return on_plane

@@ -1,0 +1,260 @@
+"""Planes by the Hough transform, in three dimensions or in two steps with normals."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..geometry.boxes import Boxes, by_first_point
+from ..geometry.groups import split_groups
+from ..sampling.cloud_sampling import CloudSampling
+from ..segmentation.plane_merging import joined_planes
+from ..segmentation.segment_clusters import dbscan
+from ..stage import Layer, Monitor, Param, stage
+from .hough_planes import HoughPlanes
+from .plane_polygons import PLANE_FIELDS, plane_polygons
+from .searched_points import SearchedPoints, Shape, WithinSegments, named, searched_points
+from .surface_normals import NormalPoints, normal_points, refuse_line, surface_normals
+
+METHODS = ("points", "normals")
+
+# Tolerance: 98 % of the points of a plane lie within so many deviations of it.
+_ON_PLANE = 2.3195
+
+# Surfaces are the rougher the farther apart the points are, by this share of the spacing (as roofs are).
+_ROUGHNESS_OF_SPACING = 0.06467
+
+# A surface puts so many points into a window, and a window is so many tolerances wide that none fills it.
+_POINTS_IN_WINDOW, _TOLERANCES_IN_WINDOW = 40.0, 20.0
+
+# Coarser slopes than this (ratio) join planes of different directions.
+_MOST_SLOPE_BIN = 0.2
+
+# A gap of three spacings is no accident of random sampling on a surface.
+_GAP_SPACINGS = 3.0
+
+# Angle (°) between the normals of a plane and of its points: three deviations of normals of 3°, rounded up.
+_MOST_ANGLE = 10.0
+
+
+@stage(
+    "Segment planes (Hough)",
+    group="Shapes",
+    tags="plane,Hough,Gaussian sphere,normal,roof,wall,facade,planar,segmentation,parameter space",
+    writes=("segment_id", "shape"),
+    layers=(Layer("planes", "Planes", "Polygon", PLANE_FIELDS),),
+)
+def segment_planes_hough(
+    xyz,
+    classification,
+    segment_id=None,
+    shape=None,
+    *,
+    method: Annotated[
+        str,
+        Param(
+            "Method",
+            "With points, each point votes for all planes through it. With normals, the normal of a point votes for a direction "
+            "first, the point for a distance then, which is faster and needs surfaces smooth enough for normals.",
+            choices=METHODS,
+        ),
+    ] = "points",
+    within_segments: WithinSegments = False,
+    tolerance: Annotated[
+        Optional[float],
+        Param(
+            "Tolerance",
+            "Distance within which a point lies on a plane.",
+            unit="m",
+            low=0,
+            high=10,
+            open_low=True,
+            automatic="2.3 times the noise of the scan and 0.065 point spacings.",
+        ),
+    ] = None,
+    distance_bin: Annotated[
+        Optional[float],
+        Param(
+            "Distance bin",
+            "Width of a bin in the distance of a plane. Smaller bins tell planes apart that lie closer; in bins "
+            "smaller than the noise the points of one plane scatter over several, and its maximum is lost.",
+            unit="m",
+            low=0,
+            high=10,
+            open_low=True,
+            automatic="the tolerance: two bins side by side then hold a plane with its noise.",
+        ),
+    ] = None,
+    slope_bin: Annotated[
+        Optional[float],
+        Param(
+            "Slope bin",
+            "Width of a bin in the slopes of a plane. Smaller bins tell directions apart, need more memory and time, "
+            "and scatter a plane over several.",
+            unit="°",
+            low=0,
+            high=30,
+            open_low=True,
+            automatic="a plane off by half a bin is off by one distance bin at the side of the window; at most 11°.",
+        ),
+    ] = None,
+    window_size: Annotated[
+        Optional[float],
+        Param(
+            "Window size",
+            "Side of the cubes in which planes are looked for; planes that continue in the next cube are joined.",
+            unit="m",
+            low=0,
+            high=100,
+            open_low=True,
+            automatic="wide enough for 40 points of a surface and for 20 tolerances.",
+        ),
+    ] = None,
+    max_gap: Annotated[
+        Optional[float],
+        Param(
+            "Maximum gap",
+            "Points of a plane at most this far apart are of one surface; wider gaps part coplanar surfaces.",
+            unit="m",
+            low=0,
+            high=1000,
+            open_low=True,
+            automatic="3 times the point spacing on surfaces.",
+        ),
+    ] = None,
+    min_area: Annotated[
+        Optional[float],
+        Param(
+            "Minimum plane area",
+            "Area of the smallest surface, measured on it.",
+            unit="m²",
+            low=0,
+            high=10_000,
+            automatic="half the side of a window, squared.",
+        ),
+    ] = None,
+    n_neighbors: NormalPoints = None,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Find planes as maxima of a parameter space, group their points by proximity, and draw them as polygons.
+
+    In each window every point votes for all planes through it, in a space of two slopes and a distance; the bin with
+    most votes is a plane. Its points are fitted, taken out, and the next maximum is looked for. With normals, the space
+    is searched in two steps: first the direction on the Gaussian half sphere, then the distance. Planes that continue
+    each other in neighboring windows are joined. Their points are then grouped by proximity, and groups that are large
+    enough become segments.
+
+    The bins decide between accuracy and reliability. Small bins give parameters more exactly and tell planes apart that
+    are nearly the same. But noise scatters the points of one plane over all bins that are smaller than it, until its
+    maximum is no higher than that of planes that exist by chance. Bins as wide as the noise are the best balance, since
+    the parameters are determined by a least-squares fit to the points afterwards, and automatic bins are so.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes; ground (2), noise (7, 18), water (9) and ignored ground (20) are left out.
+    segment_id : ndarray of shape (n,), int32, optional
+        Segments; needed to look within segments.
+    shape : ndarray of shape (n,), uint8, optional
+        Shapes found before: within segments, points that have one are left as they are.
+
+    Returns
+    -------
+    segment_id : ndarray of shape (n,), int32
+        Planes from 1, in the order of their first points; 0 is none. Within segments, numbers follow those before.
+    shape : ndarray of shape (n,), uint8
+        1 on planes.
+    planes : LayerFeatures
+        The largest piece of each plane as a polygon with heights.
+
+    Raises
+    ------
+    ValueError
+        If segments are asked for and missing, all points lie on one line, the points are spread too far for the
+        windows, or the parameter space would not fit into memory.
+
+    Notes
+    -----
+    Deviations from the paper. Steep planes have no finite slope: on two further faces of a cube X and Y are written as
+    functions of the other coordinates. The distance is that along the normal in place of the height at the origin, so
+    that bins are as wide for steep planes. The space is that of a window, not of the whole cloud: its maxima are not
+    those of planes that exist by chance through all objects, and its memory does not grow with the cloud. A
+    maximum counts with the bin beside it, where a plane at the border of two bins would be lost. A plane must hold more
+    points than scattered points would have on one in a thousand windows.
+
+    References
+    ----------
+    Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point clouds,
+    section 4.1. Hough, P. V. C., 1962. Method and means for recognizing complex patterns. U.S. Patent 3,069,654.
+    Vosselman, G., Dijkman, S., 2001. 3D building model reconstruction from point clouds and ground plans.
+    """
+    refuse_line(xyz)
+    sampling = sampling or CloudSampling.of(xyz, classification)
+    spacing = 1 / float(np.sqrt(sampling.surface_density))
+    roughness = float(np.hypot(sampling.scan_noise, _ROUGHNESS_OF_SPACING * spacing))
+    tolerance = _ON_PLANE * roughness if tolerance is None else tolerance
+    wide = max(np.sqrt(_POINTS_IN_WINDOW) * spacing, _TOLERANCES_IN_WINDOW * tolerance)
+    window_size = float(wide) if window_size is None else window_size
+    distance_bin = tolerance if distance_bin is None else distance_bin
+    slope_bin = _slope_bin(distance_bin, window_size) if slope_bin is None else slope_bin
+    max_gap = _GAP_SPACINGS * spacing if max_gap is None else max_gap
+    min_area = (window_size / 2) ** 2 if min_area is None else min_area
+    monitor.resolved(
+        tolerance=tolerance,
+        window_size=window_size,
+        distance_bin=distance_bin,
+        slope_bin=slope_bin,
+        max_gap=max_gap,
+        min_area=min_area,
+    )
+    if method == "normals":
+        n_neighbors = normal_points(sampling) if n_neighbors is None else n_neighbors
+        monitor.resolved(n_neighbors=n_neighbors)
+    points = searched_points(xyz, classification, segment_id, shape, within_segments, window_size)
+    label = np.zeros(len(points.rows), np.int64)
+    if len(points.rows):
+        boxes = Boxes(points.xyz, window_size)
+        normals = _normals(xyz, points, boxes, n_neighbors, monitor.part(0, 0.3)) if method == "normals" else None
+        slope = float(np.tan(np.radians(slope_bin)))
+        hough = HoughPlanes(boxes, window_size, tolerance, distance_bin, slope, normals, _MOST_ANGLE)
+        found = hough.find(monitor.part(0.3, 0.7))
+        plane = np.empty(len(label), np.int64)
+        plane[boxes.order] = joined_planes(boxes, found, tolerance, 0.0, monitor.part(0.7, 0.8))[1]
+        label = _surfaces(points.xyz, plane, max_gap, min_area * sampling.surface_density, monitor.part(0.8, 1))
+    if not label.any():
+        monitor.warn("No plane was found; no point got a new SegmentID.")
+    ids, shapes, first = named(points, label, Shape.PLANE, segment_id, shape, len(xyz), within_segments)
+    return ids, shapes, plane_polygons(xyz[points.rows], label, first, sampling.surface_density)
+
+
+def _slope_bin(distance_bin: float, window_size: float) -> float:
+    """Return the width of a bin of slopes (°) that suits the width of a bin of distances (m)."""
+    return float(np.degrees(np.arctan(min(4 * distance_bin / window_size, _MOST_SLOPE_BIN))))
+
+
+def _normals(
+    xyz: np.ndarray, points: SearchedPoints, boxes: Boxes, n_neighbors: Optional[int], monitor: Monitor
+) -> np.ndarray:
+    """Return the normals (k, 3) of the points in the order of the boxes, measured in the whole cloud."""
+    assert n_neighbors is not None
+    return surface_normals(xyz - points.origin, n_neighbors, monitor)[0][points.rows[boxes.order]]
+
+
+def _surfaces(xyz: np.ndarray, plane: np.ndarray, max_gap: float, min_points: float, monitor: Monitor) -> np.ndarray:
+    """Return the surface (k,), from 1, that each point of a plane (k,), -1 for none, is on; 0 for small ones."""
+    label = np.zeros(len(plane), np.int64)
+    n_planes = int(plane.max(initial=-1)) + 1
+    for number, part in enumerate(split_groups(plane, n_planes)):
+        monitor.progress(number / n_planes)
+        if len(part) >= min_points:
+            group = dbscan(xyz[part], max_gap, 1, Monitor())
+            size = np.bincount(group)
+            large = size[group] >= min_points
+            label[part[large]] = label.max(initial=0) + 1 + group[large]
+    found = label > 0
+    label[found] = by_first_point(label[found]) + 1
+    return label

@@ -1,0 +1,95 @@
+"""Normals of the surface at each point, from neighborhoods as large as the noise asks for."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..neighborhoods.covariance import (
+    Nearest,
+    defined_eigenvalues,
+    reduce_neighborhoods,
+    smallest_eigenvectors,
+)
+from ..neighborhoods.nearest_blocks import Shapes
+from ..sampling.cloud_sampling import CloudSampling
+from ..stage import Monitor, Param
+
+# Standard deviation (radians) that normals may have from the noise: 3°, so that directions tell surfaces apart.
+_NORMAL_ERROR = 0.05
+
+# Points of the smallest and the largest neighborhood of a normal. Fewer follow the noise; more cost time.
+_LEAST_POINTS, _MOST_POINTS = 12, 80
+
+# Ratio of the two larger variances below which points lie on one line, and the plane through them is undefined.
+_LINE = 1e-8
+
+NormalPoints = Annotated[
+    Optional[int],
+    Param(
+        "Points for normals",
+        "Points of the neighborhood that gives a point its normal, itself among them. More are less noisy and round "
+        "off edges and thin pipes.",
+        low=4,
+        high=1000,
+        automatic="as many as hold the error of normals from the noise to 3°, 12 to 80.",
+        advanced=True,
+    ),
+]
+
+
+def normal_points(sampling: CloudSampling) -> int:
+    """Return how many nearest points make normals good to 3°.
+
+    The slope of a plane fitted to k points with the deviation s that fill a disk of radius r is off by 2 s / (r
+    sqrt(k)), and r is sqrt(k / (pi density)).
+    """
+    needed = 2 * sampling.scan_noise * float(np.sqrt(np.pi * sampling.surface_density)) / _NORMAL_ERROR
+    return int(np.clip(np.ceil(min(needed, _MOST_POINTS)), _LEAST_POINTS, _MOST_POINTS))
+
+
+def surface_normals(xyz: np.ndarray, count: int, monitor: Monitor) -> tuple[np.ndarray, np.ndarray]:
+    """Return the normals of the planes through the ``count`` points nearest to each point, and how rough these are.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points (m).
+    count : int
+        Points of a neighborhood, the point itself among them.
+    monitor : Monitor
+        Receives progress.
+
+    Returns
+    -------
+    normal : ndarray of shape (n, 3), float64
+        Unit vectors, n_z >= 0; zero where the neighborhood has no plane.
+    deviation : ndarray of shape (n,), float64
+        Standard deviation (m) of the neighborhood across its plane.
+
+    Raises
+    ------
+    ValueError
+        If all points lie on one line, so that there are no normals.
+    """
+    refuse_line(xyz)
+    normal, deviation = np.zeros((len(xyz), 3)), np.zeros(len(xyz))
+
+    def keep(rows: np.ndarray, shapes: Shapes) -> None:
+        eigenvalues = defined_eigenvalues(shapes.covariances, shapes.counts)
+        is_plane = eigenvalues[:, 1] > _LINE * np.maximum(eigenvalues[:, 0], 1e-300)
+        normal[rows[is_plane]] = smallest_eigenvectors(shapes.covariances[is_plane], eigenvalues[is_plane])
+        deviation[rows] = np.sqrt(np.nan_to_num(eigenvalues[:, 2]))
+
+    reduce_neighborhoods(xyz, Nearest(count), keep, monitor=monitor)
+    return normal, deviation
+
+
+def refuse_line(xyz: np.ndarray) -> None:
+    """Refuse points that have no plane: fewer than three, or all on one line."""
+    if len(xyz) < 3:
+        raise ValueError(f"Shapes need at least three points, got {len(xyz)}; choose another cloud.")
+    spread = np.linalg.eigvalsh(np.cov((xyz - xyz.mean(axis=0)).T))
+    if spread[1] <= _LINE * max(spread[2], 1e-300):
+        raise ValueError("All points lie on one line, so that no surface has a normal; choose another cloud.")
