@@ -127,7 +127,8 @@ class HoughPlanes:
                 f"{_MOST_BINS / 1e6:.0f} million; take larger bins or smaller windows."
             )
         self.directions = PlaneDirections(slope_bin)
-        self.by_chance = min(0.99, 2 * tolerance / side)
+        # The largest section of a cube is the root of two times a face.
+        self.by_chance = min(0.99, 2 * np.sqrt(2) * tolerance / side)
         self.trials = int(n_bins)
         self.cosine = np.cos(np.radians(max_angle))
 

@@ -55,8 +55,8 @@ def segment_planes_hough(
         str,
         Param(
             "Method",
-            "With points, each point votes for all planes through it. With normals, the normal of a point votes for a direction "
-            "first, the point for a distance then, which is faster and needs surfaces smooth enough for normals.",
+            "With points, each point votes for all planes through it. With normals, the normal of a point votes for a "
+            "direction first, the point for a distance then, which needs surfaces smooth enough for normals.",
             choices=METHODS,
         ),
     ] = "points",
@@ -115,7 +115,8 @@ def segment_planes_hough(
         Optional[float],
         Param(
             "Maximum gap",
-            "Points of a plane at most this far apart are of one surface; wider gaps part coplanar surfaces.",
+            "Points of a plane at most this far apart are of one surface; wider gaps, and gaps wider than a window, "
+            "part coplanar surfaces.",
             unit="m",
             low=0,
             high=1000,
