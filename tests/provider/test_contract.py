@@ -53,6 +53,7 @@ IDS = {
     "simulateflight",
     "simulatevillage",
     "extractfacades",
+    "segmentplaneshough",
 }
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints"}
 ALL = {**STAGES, **TOYS}
