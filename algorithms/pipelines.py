@@ -110,18 +110,20 @@ _PIPELINES = (
         tags="cadastre,land registry,wall,footprint,corner,drone,UAV,photogrammetry,map,update,Hrutka",
         summary="Map the walls of buildings from a drone's point cloud, and compare them with the old map.",
         description=(
-            "Noise is removed and one point left per voxel; a cloth finds the ground, and a terrain model is made of "
-            "it; planes high above it are roofs, and what is low and upright below them is their walls. Footprints "
-            "are the outlines of walls, without the eaves, with a quality for every edge; where too little of the "
-            "walls was seen, which is what clouds from airplanes come to, they are outlines of roofs and say so. "
+            "Noise is removed and one point left per voxel; progressive TIN densification finds the ground, which flat "
+            "roofs of any size are kept out of, and a terrain model is made of it; planes high above it are "
+            "roofs, and what is low and upright below them is their walls. Footprints are the outlines of walls, "
+            "without the eaves, with a quality for every edge; where too little of the walls was seen, which is what "
+            "clouds from airplanes come to, they are outlines of roofs and say so. "
             "Where an old map is given, its corners are compared with the new ones. The terrain and the cloud of every "
-            "step can be kept."
+            "step can be kept. The paper's ground filter, a cloth, lies down on large flat roofs; to use it, open the "
+            "model and put 'Classify ground points (cloth)' in the place of the ground step."
         ),
         references=_HRUTKA,
         steps=(
             Step("noise", "classify_noise_statistical"),
             Step("voxels", "downsample_voxels"),
-            Step("ground", "classify_ground_cloth"),
+            Step("ground", "classify_ground_tin"),
             Step("terrain", "rasterize_terrain"),
             Step("height", "compute_height_above_ground"),
             Step("planes", "segment_planes_ransac", {"min_height": 1.5}),
@@ -131,7 +133,7 @@ _PIPELINES = (
             Step("comparison", "compare_corners", layers={"footprints": "footprints.wall_footprints"}),
         ),
         shared={"min_area": ("roofs", "footprints"), "split_height": ("roofs", "walls")},
-        shown=("min_area", "voxels_voxel_size", "ground_rigidness", "split_height", "footprints_min_seen"),
+        shown=("min_area", "voxels_voxel_size", "ground_max_building_size", "split_height", "footprints_min_seen"),
         kept=("noise", "voxels", "ground", "height", "planes", "roofs"),
     ),
 )

@@ -1,4 +1,4 @@
-"""Lines that cut the plane into cells, and the ring around some of the cells."""
+"""Lines that cut a rectangle into cells, and the cheapest choice of cells."""
 
 from __future__ import annotations
 
@@ -8,20 +8,33 @@ import numpy as np
 
 from ..packages import csgraph, sparse
 
-# Costs become whole numbers of 32 bits for the flow, to this precision. Those of a cell's sides on the rectangle, four
-# at most, and its own are added there: none may be more than a fifth of what fits.
+# Costs become whole numbers of 32 bits for the flow, to this precision. Those of a cell's edges and its own are added
+# there: none may be more than a fifth of what fits.
 _STEPS, _LARGEST_COST = 1000, 3e5
+
+# Lines are moved by up to this distance (m) where three of them meet in one point to within rounding.
+_NUDGE = 1e-6
 
 
 @dataclass(frozen=True)
-class Edge:
-    """A piece of a line between two cells: the line's number, its ends (m), the cells left and right of it."""
+class Edges:
+    """Pieces of lines between two crossings, in the direction of their lines.
 
-    line: int
-    start: tuple[int, int]
-    end: tuple[int, int]
-    left: int
-    right: int
+    Attributes
+    ----------
+    line, start, end, left, right : ndarray of shape (e,), int64
+        The line; the crossings at its ends; the cells beside it.
+    low, high : ndarray of shape (e,)
+        Positions of its ends along the line, from the line's point (m).
+    """
+
+    line: np.ndarray
+    start: np.ndarray
+    end: np.ndarray
+    left: np.ndarray
+    right: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
 
 
 class Arrangement:
@@ -36,148 +49,173 @@ class Arrangement:
 
     Attributes
     ----------
-    edges : list of Edge
-        Pieces of lines between two cells; beyond the rectangle's sides, which are the last four lines, lies nothing,
-        numbered as one cell more. A corner is named by the two lines that meet in it.
-    signs : ndarray of shape (cells, m), bool
-        On which side of each line each cell lies: True is left.
+    count : int
+        Number of cells.
+    edges : Edges
+        What separates them.
+    is_border : ndarray of shape (count,), bool
+        Which cells touch the sides of the rectangle.
+    crossing : ndarray of shape (k, 2), int64
+        The two lines that meet in each crossing; those numbered from ``k`` on are the ends of lines at the sides.
+    places : ndarray of shape (k + ends, 2)
+        Where crossings and ends are (m).
+    around : ndarray of shape (k, 4), int64
+        The cells around a crossing: left and right of its first line before it, left and right of that line after it.
+
+    Notes
+    -----
+    A cell is told by the lines to whose left it lies, as a sum of one random number for each. On the way along a line
+    that number changes only where another line is crossed, so that the time is that of sorting the crossings.
     """
 
     def __init__(self, points: np.ndarray, directions: np.ndarray, low: np.ndarray, high: np.ndarray) -> None:
-        m = len(points)
-        frame = np.array([low, [high[0], low[1]], high, [low[0], high[1]]], float)
-        self.points = np.concatenate([points, frame])
-        self.directions = np.concatenate([directions, [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)]])
-        # Numbers of Python's own are many times as fast as arrays of two.
-        self._lines = [(*point, *u) for point, u in zip(self.points.tolist(), self.directions.tolist())]
-        self._corners: dict[tuple[int, int], tuple[float, float]] = {}
-        # A cell is the list of lines around it, counterclockwise.
-        cells: list[tuple[list[int], list[bool]]] = [([m, m + 1, m + 2, m + 3], [])]
-        for line in range(m):
-            cells = [part for cell in cells for part in self._split(*cell, line)]
-        self.rings = [ring for ring, _ in cells]
-        self.signs = np.array([signs for _, signs in cells], bool).reshape(len(cells), m)
-        self.edges = self._shared_edges()
+        self.points, self.directions = np.asarray(points, float), np.asarray(directions, float)
+        rng = np.random.default_rng(0)
+        self._build(np.asarray(low, float), np.asarray(high, float))
+        while not self._fits():
+            self.points = self.points + rng.uniform(-_NUDGE, _NUDGE, self.points.shape)
+            self._build(np.asarray(low, float), np.asarray(high, float))
 
-    def corner(self, name: tuple[int, int]) -> np.ndarray:
-        """Return where two lines meet (m)."""
-        return np.array(self._corner(name))
+    def _build(self, low: np.ndarray, high: np.ndarray) -> None:
+        numbers = _numbers(len(self.points))
+        self.crossing, places, ways = _crossings(self.points, self.directions, low, high)
+        entry, leave = _clipped(self.points, self.directions, low, high)
+        own, k = np.flatnonzero(entry < leave), len(self.crossing)
+        none, ends = np.full(len(own), -1), k + np.arange(2 * len(own))
+        # All places on each line in order: where it enters the rectangle, crossings, where it leaves.
+        line = np.concatenate([own, *self.crossing.T, own])
+        other = np.concatenate([none, *self.crossing.T[::-1], none])
+        node = np.concatenate([ends[: len(own)], np.tile(np.arange(k), 2), ends[len(own) :]])
+        way = np.concatenate([entry[own], *ways.T, leave[own]])
+        order = np.lexsort((way, line))
+        line, other, node, way = line[order], other[order], node[order], way[order]
+        at_sides = [self.points[own] + at[own, None] * self.directions[own] for at in (entry, leave)]
+        self.places = np.concatenate([places, *at_sides])
+        first = np.flatnonzero(line[1:] == line[:-1])
+        right = self._right_keys(line, way, other, numbers)[first]
+        corner = sides_of(low[None], self.points, self.directions) @ numbers
+        self._keys, cell = np.unique(np.concatenate([right + numbers[line[first]], right, corner]), return_inverse=True)
+        left, right = cell[: len(first)], cell[len(first) : -1]
+        self.edges = Edges(line[first], node[first], node[first + 1], left, right, way[first], way[first + 1])
+        self.count = len(self._keys)
+        self.is_border = self._touching(low, high, np.concatenate(at_sides))
+        self.around = self._cells_around(k)
 
-    def _corner(self, name: tuple[int, int]) -> tuple[float, float]:
-        if name not in self._corners:
-            (x, y, ux, uy), (other_x, other_y, vx, vy) = (self._lines[line] for line in name)
-            way = ((other_x - x) * vy - (other_y - y) * vx) / (ux * vy - uy * vx)
-            self._corners[name] = x + way * ux, y + way * uy
-        return self._corners[name]
+    def _right_keys(self, line: np.ndarray, way: np.ndarray, other: np.ndarray, numbers: np.ndarray) -> np.ndarray:
+        """Return the number of the cell to the right of each line behind each of the places on it."""
+        is_first = np.append(True, line[1:] != line[:-1])[: len(line)]
+        starts, group = np.flatnonzero(is_first), np.cumsum(is_first) - 1
+        own = line[starts]
+        middle = (way[starts] + way[starts + 1]) / 2
+        sides = sides_of(self.points[own] + middle[:, None] * self.directions[own], self.points, self.directions)
+        sides[np.arange(len(own)), own] = False
+        # Crossing a line from its right to its left adds its number.
+        u, v = self.directions[line], self.directions[other]
+        rises = np.sign(v[:, 0] * u[:, 1] - v[:, 1] * u[:, 0]).astype(np.int64)
+        change = np.where(other >= 0, rises * numbers[other], 0)
+        # Behind the first place of a line, where it enters, the number is measured.
+        total = np.cumsum(change)
+        return total - total[starts][group] + (sides @ numbers)[group]
 
-    def _is_left(self, line: int, name: tuple[int, int]) -> bool:
-        (corner_x, corner_y), (x, y, ux, uy) = self._corner(name), self._lines[line]
-        return ux * (corner_y - y) - uy * (corner_x - x) > 0
+    def _touching(self, low: np.ndarray, high: np.ndarray, ends: np.ndarray) -> np.ndarray:
+        """Return which cells (count,) touch the sides of the rectangle."""
+        corners = np.array([low, [high[0], low[1]], high, [low[0], high[1]]])
+        touching = np.zeros(self.count, bool)
+        on_sides = np.concatenate([ends, corners])
+        for axis in (0, 1):
+            for limit in (low[axis], high[axis]):
+                own = np.sort(on_sides[np.abs(on_sides[:, axis] - limit) < 1e-6 * (1 + abs(limit)), 1 - axis])
+                middles = np.empty((max(len(own) - 1, 0), 2))
+                middles[:, axis], middles[:, 1 - axis] = limit, (own[1:] + own[:-1]) / 2
+                cells = self.cells_at(sides_of(middles, self.points, self.directions))
+                touching[cells[cells >= 0]] = True
+        return touching
 
-    def _split(self, ring: list[int], signs: list[bool], line: int) -> list[tuple[list[int], list[bool]]]:
-        """Return the one or two parts of a cell, left part first, with one sign more each."""
-        # Corner k is where side k begins.
-        is_left = [self._is_left(line, _name(before, here)) for before, here in zip([ring[-1], *ring], ring)]
-        if all(is_left) or not any(is_left):
-            return [(ring, [*signs, is_left[0]])]
-        parts = []
-        for side in (True, False):
-            part: list[int] = []
-            for k, here in enumerate(ring):
-                starts, ends = is_left[k] == side, is_left[(k + 1) % len(ring)] == side
-                if starts or ends:
-                    part.append(here)
-                if starts and not ends:
-                    part.append(line)
-            parts.append((part, [*signs, side]))
-        return parts
+    def _cells_around(self, k: int) -> np.ndarray:
+        """Return the cells (k, 4) around each crossing, seen from its first line."""
+        edges, around = self.edges, np.full((k, 4), -1, np.int64)
+        for node, column in ((edges.end, 0), (edges.start, 2)):
+            own = np.flatnonzero(node < k)
+            own = own[self.crossing[node[own], 0] == edges.line[own]]
+            around[node[own], column], around[node[own], column + 1] = edges.left[own], edges.right[own]
+        return around
 
-    def _shared_edges(self) -> list[Edge]:
-        found: dict[tuple, tuple[int, tuple, tuple]] = {}
-        edges = []
-        for cell, ring in enumerate(self.rings):
-            for before, here, after in zip([ring[-1], *ring], ring, [*ring[1:], ring[0]]):
-                start, end = _name(before, here), _name(here, after)
-                key = (here, *sorted((start, end)))
-                if key in found:
-                    edges.append(Edge(here, *found[key][1:], found[key][0], cell))
-                else:
-                    found[key] = (cell, start, end)
-        m, nothing = self.signs.shape[1], len(self.rings)
-        return edges + [
-            Edge(key[0], start, end, cell, nothing) for key, (cell, start, end) in found.items() if key[0] >= m
-        ]
+    def _fits(self) -> bool:
+        """Return whether both lines of each crossing see the same cells around it."""
+        edges, k = self.edges, len(self.crossing)
+        for node, is_after in ((edges.end, False), (edges.start, True)):
+            own = np.flatnonzero(node < k)
+            own = own[self.crossing[node[own], 1] == edges.line[own]]
+            u, v = (self.directions[self.crossing[node[own], i]] for i in (0, 1))
+            is_left = (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0] > 0) == is_after
+            # Of the first line, seen along the second, the cells before are to its left or right.
+            column = np.where(is_left, 0, 1)
+            back, ahead = self.around[node[own], column], self.around[node[own], column + 2]
+            leftward = is_left if is_after else ~is_left
+            left, right = np.where(leftward, back, ahead), np.where(leftward, ahead, back)
+            if (left != edges.left[own]).any() or (right != edges.right[own]).any():
+                return False
+        return True
 
     def cells_at(self, sides: np.ndarray) -> np.ndarray:
         """Return the cell (n,) of points that lie on these ``sides`` (n, m) of the lines, -1 where there is none."""
-        keys, wanted = keys_of(self.signs), keys_of(sides)
-        order = np.argsort(keys)
-        cell = order[np.minimum(np.searchsorted(keys, wanted, sorter=order), len(keys) - 1)]
+        wanted = keys_of(sides)
+        cell = np.minimum(np.searchsorted(self._keys, wanted), self.count - 1)
         # Rounding may put a point into a cell that is too small to exist.
-        return np.where(keys[cell] == wanted, cell, -1)
+        return np.where(self._keys[cell] == wanted, cell, -1)
 
-    def outline(self, inside: np.ndarray) -> list[list[tuple[int, tuple[int, int]]]]:
-        """Return the rings around the cells ``inside`` (cells,), bool: (line, corner where its edge begins) in order.
+    def outline(self, inside: np.ndarray) -> list[list[tuple[int, int]]]:
+        """Return the rings around the cells ``inside`` (count,), bool: (line, crossing where its edge begins) in order.
 
-        Exteriors run counterclockwise and holes clockwise; edges on one line that follow each other are one.
+        Exteriors run counterclockwise and holes clockwise; edges on one line that follow each other are one. Cells that
+        touch the sides of the rectangle are left out, as no line ends them.
         """
-        following: dict[tuple[int, int], list[tuple[int, tuple[int, int]]]] = {}
-        inside = np.append(inside, False)
-        for edge in self.edges:
-            if inside[edge.left] != inside[edge.right]:
-                start, end = (edge.start, edge.end) if inside[edge.left] else (edge.end, edge.start)
-                following.setdefault(start, []).append((edge.line, end))
+        edges, inside = self.edges, inside & ~self.is_border
+        cut = np.flatnonzero(inside[edges.left] != inside[edges.right])
+        forward = inside[edges.left[cut]]
+        starts, ends = np.where(forward, (edges.start[cut], edges.end[cut]), (edges.end[cut], edges.start[cut]))
+        following: dict[int, list[tuple[int, int]]] = {}
+        for line, start, end in zip(edges.line[cut].tolist(), starts.tolist(), ends.tolist()):
+            following.setdefault(start, []).append((line, end))
         rings = []
         while following:
             start = next(iter(following))
-            rings.append(self._walk(following, start))
+            rings.append(_walk(following, start))
         return rings
 
-    def _walk(self, following: dict, start: tuple[int, int]) -> list[tuple[int, tuple[int, int]]]:
-        """Take one ring out of ``following`` and return it."""
-        here, came, ring = start, -1, []
-        while True:
-            ways = following[here]
-            # Where two rings touch, leaving the line parts them.
-            way = next((i for i, (line, _) in enumerate(ways) if line != came), 0) if len(ways) > 1 else 0
-            line, end = ways.pop(way)
-            if not ways:
-                del following[here]
-            if line != came:
-                ring.append((line, here))
-            here, came = end, line
-            if here == start:
-                break
-        if len(ring) > 1 and ring[0][0] == came:
-            ring.pop(0)
-        return ring
-
     def cheapest(self, cost: np.ndarray, if_inside: np.ndarray, if_outside: np.ndarray) -> np.ndarray:
-        """Return the cells (cells,), bool, whose choice costs least: a minimum cut.
+        """Return the cells (count,), bool, whose choice costs least; see :func:`cheapest_cut`."""
+        return cheapest_cut(self.edges.left, self.edges.right, cost, if_inside, if_outside)
 
-        Parameters
-        ----------
-        cost : ndarray of shape (edges,)
-            Of an edge with one of its cells inside and the other outside, >= 0.
-        if_inside, if_outside : ndarray of shape (cells,)
-            Of a cell that is inside, and of one that is not, >= 0.
-        """
-        n = len(self.rings)
-        source, sink, cells = n, n + 1, np.arange(n)
-        left, right = (np.array([getattr(edge, side) for edge in self.edges], int) for side in ("left", "right"))
-        right = np.where(right == n, sink, right)
-        rows = np.concatenate([left, right, np.full(n, source), cells])
-        columns = np.concatenate([right, left, cells, np.full(n, sink)])
-        costs = np.minimum(np.concatenate([cost, cost, if_outside, if_inside]), _LARGEST_COST)
-        capacity = np.rint(costs * _STEPS).astype(np.int32)
-        graph = sparse.csr_matrix((capacity, (rows, columns)), shape=(n + 2, n + 2))
-        residual = graph - csgraph.maximum_flow(graph, source, sink).flow
-        residual.data = np.maximum(residual.data, 0)
-        residual.eliminate_zeros()
-        reached = csgraph.breadth_first_order(residual, source, return_predecessors=False)
-        inside = np.zeros(n + 2, bool)
-        inside[reached] = True
-        return inside[:n]
+
+def cheapest_cut(
+    left: np.ndarray, right: np.ndarray, cost: np.ndarray, if_inside: np.ndarray, if_outside: np.ndarray
+) -> np.ndarray:
+    """Return which cells (n,), bool, to put inside so that it costs least: a minimum cut.
+
+    Parameters
+    ----------
+    left, right : ndarray of shape (e,)
+        The two cells of each edge.
+    cost : ndarray of shape (e,)
+        Of an edge with one of its cells inside and the other outside, >= 0.
+    if_inside, if_outside : ndarray of shape (n,)
+        Of a cell that is inside, and of one that is not, >= 0.
+    """
+    n = len(if_inside)
+    source, sink, cells = n, n + 1, np.arange(n)
+    rows = np.concatenate([left, right, np.full(n, source), cells])
+    columns = np.concatenate([right, left, cells, np.full(n, sink)])
+    costs = np.minimum(np.concatenate([cost, cost, if_outside, if_inside]), _LARGEST_COST)
+    capacity = np.rint(costs * _STEPS).astype(np.int32)
+    graph = sparse.csr_matrix((capacity, (rows, columns)), shape=(n + 2, n + 2))
+    residual = graph - csgraph.maximum_flow(graph, source, sink).flow
+    residual.data = np.maximum(residual.data, 0)
+    residual.eliminate_zeros()
+    reached = csgraph.breadth_first_order(residual, source, return_predecessors=False)
+    inside = np.zeros(n + 2, bool)
+    inside[reached] = True
+    return inside[:n]
 
 
 def sides_of(xy: np.ndarray, points: np.ndarray, directions: np.ndarray) -> np.ndarray:
@@ -188,8 +226,57 @@ def sides_of(xy: np.ndarray, points: np.ndarray, directions: np.ndarray) -> np.n
 
 def keys_of(sides: np.ndarray) -> np.ndarray:
     """Return the sides of lines (n, m), bool, as one number each: a sum of random ones, which no two cells share."""
-    return sides @ np.random.default_rng(0).integers(1, 2**62, sides.shape[1])
+    return sides @ _numbers(sides.shape[1])
 
 
-def _name(a: int, b: int) -> tuple[int, int]:
-    return (a, b) if a < b else (b, a)
+def _numbers(m: int) -> np.ndarray:
+    """Return a random number (m,) for each line."""
+    return np.random.default_rng(0).integers(1, 2**62, m)
+
+
+def _crossings(
+    points: np.ndarray, directions: np.ndarray, low: np.ndarray, high: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return pairs of lines (k, 2) that meet in a rectangle, where (k, 2), and the ways there along both (k, 2) (m)."""
+    first, second = np.triu_indices(len(points), 1)
+    u, v, apart = directions[first], directions[second], points[second] - points[first]
+    turn = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        way = (apart[:, 0] * v[:, 1] - apart[:, 1] * v[:, 0]) / turn
+        other = (apart[:, 0] * u[:, 1] - apart[:, 1] * u[:, 0]) / turn
+        places = points[first] + way[:, None] * u
+        meets = (turn != 0) & ((places > low) & (places < high)).all(axis=1)
+    return np.column_stack([first, second])[meets], places[meets], np.column_stack([way, other])[meets]
+
+
+def _clipped(
+    points: np.ndarray, directions: np.ndarray, low: np.ndarray, high: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return where each line enters and leaves a rectangle, (m,) each; it leaves before it enters where it misses."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ways = np.sort([(limit - points) / directions for limit in (low, high)], axis=0)
+    level = directions == 0
+    within = (points > low) & (points < high)
+    entry = np.where(level, np.where(within, -np.inf, np.inf), ways[0]).max(axis=1, initial=-np.inf)
+    leave = np.where(level, np.where(within, np.inf, -np.inf), ways[1]).min(axis=1, initial=np.inf)
+    return entry, leave
+
+
+def _walk(following: dict, start: int) -> list[tuple[int, int]]:
+    """Take one ring out of ``following`` and return it."""
+    here, came, ring = start, -1, []
+    while True:
+        ways = following[here]
+        # Where two rings touch, leaving the line parts them.
+        way = next((i for i, (line, _) in enumerate(ways) if line != came), 0) if len(ways) > 1 else 0
+        line, end = ways.pop(way)
+        if not ways:
+            del following[here]
+        if line != came:
+            ring.append((line, here))
+        here, came = end, line
+        if here == start:
+            break
+    if len(ring) > 1 and ring[0][0] == came:
+        ring.pop(0)
+    return ring

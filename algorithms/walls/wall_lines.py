@@ -114,6 +114,15 @@ class Scale:
         inside = along[(along >= start) & (along < end)]
         return np.count_nonzero(np.bincount(((inside - start) / (end - start) * count).astype(np.int64))) / count
 
+    def seen_until(self, along: np.ndarray, ends: np.ndarray) -> np.ndarray:
+        """Return the length (n,) (m) of the bins with points at ``along`` before each of ``ends`` (n,) (m)."""
+        if not len(along):
+            return np.zeros(len(ends))
+        starts = np.unique(np.floor(along / self.bin)) * self.bin
+        begun = np.searchsorted(starts, ends, side="right")
+        last = starts[np.maximum(begun - 1, 0)]
+        return np.where(begun > 0, (begun - 1) * self.bin + np.clip(ends - last, 0.0, self.bin), 0.0)
+
 
 def wall_scale(n_points: int, perimeter: float, tolerance: float) -> Scale:
     """Return the scale of ``n_points`` on walls of a length (m) in all."""
