@@ -24,6 +24,7 @@ from .segmentation.segment_clusters import segment_clusters
 from .segmentation.segment_planes_ransac import segment_planes_ransac
 from .segmentation.segment_regions import segment_regions
 from .segmentation.segment_roofs import segment_roofs
+from .segmentation.segment_voxels import segment_voxels
 from .shapes.segment_planes_hough import segment_planes_hough
 from .simulation.simulate_flight import simulate_flight
 from .simulation.simulate_town import simulate_town
@@ -56,6 +57,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     segment_clusters,
     segment_planes_ransac,
     segment_planes_hough,
+    segment_voxels,
     classify_buildings,
     classify_buildings_2019,
     complete_buildings,

@@ -59,6 +59,7 @@ STAGE_IDS = {
     "segmentclusters",
     "segmentplanesransac",
     "segmentplaneshough",
+    "segmentvoxels",
     "classifybuildings",
     "classifybuildings2019",
     "completebuildings",

@@ -133,6 +133,12 @@ def find_keys(keys: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     return place
 
 
+def locate_voxels(cells: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """Return where each ``wanted`` voxel (k, 3) stands among sorted ``cells`` (m, 3), int64 (k,); -1: nowhere."""
+    box = Keys(np.concatenate([cells, wanted]))
+    return find_keys(box.of(cells), box.of(wanted))
+
+
 def neighbor_pairs(cells: np.ndarray, connectivity: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return each pair of neighboring voxels once.
 

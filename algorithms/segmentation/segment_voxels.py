@@ -1,0 +1,207 @@
+"""Segments as connected components of voxels, after operations of mathematical morphology."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..geometry.boxes import by_first_point
+from ..geometry.components import number_large
+from ..geometry.sparse_voxels import (
+    close_voxels,
+    dilate,
+    distance_to_background,
+    erode,
+    label_components,
+    locate_voxels,
+    open_voxels,
+    voxelize,
+)
+from ..geometry.voxel_skeleton import skeleton
+from ..sampling.cloud_sampling import CloudSampling, without_noise
+from ..stage import Field, Layer, LayerFeatures, Param, stage
+
+# Side of an automatic voxel in point spacings on surfaces: it holds four points on average, so that fewer than 2 % of
+# the voxels of an evenly sampled surface are empty (Poisson).
+_VOXEL_SPACINGS = 2.0
+
+_OPERATIONS = {"erosion": erode, "dilation": dilate, "opening": open_voxels, "closing": close_voxels}
+
+
+@stage(
+    "Segment voxels",
+    group="Segmentation",
+    tags="voxel,connected components,morphology,erosion,dilation,opening,closing,distance transform,skeleton,3D grid",
+    writes=("segment_id",),
+    layers=(
+        Layer(
+            "voxels",
+            "Voxels",
+            "Point",
+            (
+                Field("segment_id", int, "segment of the voxel, 0 is none"),
+                Field("count", int, "points in the voxel; 0 where the operation added it"),
+                Field("distance", float, "distance from the voxel's center to the nearest empty voxel's", "m"),
+            ),
+        ),
+    ),
+)
+def segment_voxels(
+    xyz,
+    classification,
+    *,
+    voxel_size: Annotated[
+        Optional[float],
+        Param(
+            "Voxel size",
+            "Side of a voxel. Points closer than about this belong together; larger voxels bridge wider gaps.",
+            unit="m",
+            low=0.001,
+            high=1000,
+            automatic="2 times the point spacing on surfaces.",
+        ),
+    ] = None,
+    neighbors: Annotated[
+        str,
+        Param(
+            "Neighbors",
+            "Voxels that belong together: those that share a face (6), a face or an edge (18), or a face, an edge or a "
+            "corner (26).",
+            choices=("6", "18", "26"),
+        ),
+    ] = "26",
+    operation: Annotated[
+        str,
+        Param(
+            "Operation",
+            "Applied before voxels are connected: erosion shrinks and dilation enlarges objects, opening removes thin "
+            "parts, closing fills narrow gaps.",
+            choices=("none", *_OPERATIONS),
+        ),
+    ] = "none",
+    element: Annotated[
+        str,
+        Param(
+            "Structuring element",
+            "Neighbors that the operation reaches with each step: 6, 18 or 26.",
+            choices=("6", "18", "26"),
+            advanced=True,
+        ),
+    ] = "26",
+    steps: Annotated[
+        int, Param("Steps", "How many times the operation erodes or dilates.", low=1, high=100, advanced=True)
+    ] = 1,
+    min_count: Annotated[
+        int,
+        Param(
+            "Minimum points of a voxel",
+            "Voxels with fewer points count as empty: more of them suppress scattered points.",
+            low=1,
+            high=1_000_000,
+        ),
+    ] = 1,
+    min_points: Annotated[
+        int,
+        Param("Minimum points", "Segments with fewer points get no id.", low=1, high=1_000_000),
+    ] = 1,
+    thin: Annotated[
+        bool,
+        Param(
+            "Skeleton only",
+            "Thin the voxels of the layer to lines in the middle of the objects; the segments of the points stay.",
+        ),
+    ] = False,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Group points by the connected components of the voxels that they occupy.
+
+    The cloud becomes a 3D grid of occupied and empty voxels, to which erosion, dilation, opening or closing may be
+    applied. Voxels that are connected make a segment. The layer has the voxels as points at their centers, with
+    counts and distances to the background (distance transform), or their skeleton.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes; noise (7, 18) is left out.
+
+    Returns
+    -------
+    segment_id : ndarray of shape (n,), int32
+        Segments from 1, in the order of their first points; 0 is noise, and points of voxels that were empty by count,
+        removed by the operation, or of segments that are too small.
+    voxels : LayerFeatures
+        Centers of voxels, from west to east, then south to north, then upward. With *Skeleton only* those of the
+        skeleton; distances are those before thinning.
+
+    Raises
+    ------
+    ValueError
+        If the points are spread over more voxels than can be numbered.
+
+    Notes
+    -----
+    Only voxels that are occupied are held in memory, never the box around the cloud. The space around the cloud
+    is empty without an end, so that objects are not cut off at its border. Voxels start at the least coordinates of the
+    points used. The skeleton is thinned by simple points, see :mod:`.voxel_skeleton`.
+
+    References
+    ----------
+    Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point clouds,
+    section 2.3. Gorte, B. G. H., Pfeifer, N., 2004. Structuring laser-scanned trees using 3D mathematical morphology.
+    IAPRS 35 (B5), 929-933. Palágyi, K., Kuba, A., 1999. Directional 3D thinning using 8 subiterations. LNCS 1568,
+    325-336.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from lidar_buildings.algorithms.segmentation.segment_voxels import segment_voxels
+    >>> xyz = np.array([[0.0, 0, 0], [1.2, 1.1, 0], [5.0, 0, 0]])
+    >>> segment_voxels(xyz, np.ones(3, np.uint8), voxel_size=1.0)[0].tolist()
+    [1, 1, 2]
+    >>> segment_voxels(xyz, np.ones(3, np.uint8), voxel_size=1.0, neighbors="6")[0].tolist()
+    [1, 2, 3]
+    """
+    used = np.flatnonzero(without_noise(classification))
+    if voxel_size is None:
+        sampling = sampling or CloudSampling.of(xyz, classification)
+        voxel_size = _VOXEL_SPACINGS / float(np.sqrt(sampling.surface_density))
+    monitor.resolved(voxel_size=voxel_size)
+    low = xyz[used].min(axis=0)
+    occupied, voxel, count = voxelize(xyz[used] - low, voxel_size)
+    monitor.progress(0.3)
+
+    cells = occupied[count >= min_count]
+    if operation != "none":
+        cells = _OPERATIONS[operation](cells, int(element), steps)
+    monitor.progress(0.5)
+    component = label_components(cells, int(neighbors))
+    monitor.progress(0.7)
+
+    where = locate_voxels(cells, occupied)
+    of_point = np.where(where >= 0, component[where] if len(component) else -1, -1)[voxel]
+    segment_id = np.zeros(len(xyz), np.int32)
+    segment_id[used] = number_large(_in_order_of_points(of_point), min_points)
+    of_component = np.zeros(len(component) + 1, np.int32)
+    of_component[of_point] = segment_id[used]
+
+    layer_count = np.zeros(len(cells), np.int64)
+    layer_count[where[where >= 0]] = count[where >= 0]
+    distance = distance_to_background(cells) * voxel_size
+    shown = skeleton(cells, monitor.part(0.8, 1)) if thin else np.ones(len(cells), bool)
+    centers = (cells[shown] + 0.5) * voxel_size + low
+    columns = {"segment_id": of_component[component[shown]], "count": layer_count[shown], "distance": distance[shown]}
+    monitor.progress(1.0)
+    return segment_id, LayerFeatures(list(centers), columns)
+
+
+def _in_order_of_points(component: np.ndarray) -> np.ndarray:
+    """Return components (n,) numbered from 0 in the order of their first points; -1 stays."""
+    ordered = np.full(len(component), -1, np.int64)
+    inside = component >= 0
+    if inside.any():
+        ordered[inside] = by_first_point(component[inside])
+    return ordered
