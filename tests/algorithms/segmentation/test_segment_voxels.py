@@ -63,18 +63,19 @@ def test_opening_cuts_a_wire_and_closing_fills_a_gap(rng):
 
 
 def test_distances_and_skeleton_of_a_bar(rng):
-    """A bar of 0.9 by 0.9 by 6 m: the distance in its middle, and one line through it."""
+    """A bar of 0.9 by 0.9 by 6 m: the distance in its middle, and one line through it.
+
+    One voxel is empty by chance; a skeleton would keep the cavity as a hollow ball.
+    """
     xyz = rng.uniform(0, [6, 0.9, 0.9], (40_000, 3))
     xyz[0] = 0.0
     ids, voxels = segment_voxels(xyz, voxel_size=0.1)
     assert max(voxels.columns["distance"]) == pytest.approx(0.5)
-    thin_ids, line = segment_voxels(xyz, voxel_size=0.1, thin=True)
+    thin_ids, line = segment_voxels(xyz, voxel_size=0.1, operation="closing", thin=True)
     np.testing.assert_array_equal(thin_ids, ids)
     centers = np.array(line.geometries)
-    # At its ends the line forks to the corners, as a medial axis does, within half of the width.
-    middle = centers[np.abs(centers[:, 0] - 3) < 2.3]
-    np.testing.assert_allclose(middle[:, 1:], 0.45, atol=1e-9)
-    assert len(middle) == 46
+    np.testing.assert_allclose(centers[:, 1:], 0.45, atol=1e-9)
+    assert len(centers) == pytest.approx(54, abs=2)
 
 
 def test_a_segment_of_too_few_points_and_noise_have_no_id(rng):
