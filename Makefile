@@ -2,6 +2,8 @@
 #
 #   PROFILE=folder   keep QGIS's settings and the plugin there instead of in your own profile
 #   TILE=path.laz    let "make demo" look for buildings in your own tile
+#   MINUTES=5 SEED=7 KINDS="laz vpc" how long "make fuzz" looks (5), with which damage (another one each time), at what
+#   GUIDED=1         let "make fuzz" choose the damage by the lines that it reaches, which needs atheris
 #   SIZES="0.1 1 10" million points that "make bench" measures (0.1 1); STAGES="…" only these stages
 
 .DEFAULT_GOAL := help
@@ -29,7 +31,7 @@ Makefile: ;
 
 else
 
-.PHONY: help install resources demo test test-core lint bench package clean
+.PHONY: help install resources demo test test-core lint bench fuzz package clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.* ## /  make \1\t/p' Makefile | expand -t 18
@@ -54,6 +56,10 @@ lint: $(VENV)/made ## ruff and mypy
 
 bench: install $(VENV)/made ## time and memory of every stage (a table, and benchmarks/times.json)
 	@scripts/offscreen.sh $(VENV)/bin/python tests/benchmarks/benchmark.py $(if $(SIZES),--sizes $(SIZES)) $(if $(STAGES),--stages $(STAGES))
+
+fuzz: $(VENV)/made ## read damaged files for MINUTES, with the damage of SEED (findings in benchmarks/fuzz)
+	@$(VENV)/bin/python tests/attacks/fuzz.py $(if $(MINUTES),--minutes $(MINUTES)) $(if $(SEED),--seed $(SEED)) \
+		$(if $(KINDS),--kinds $(KINDS)) $(if $(GUIDED),--guided)
 
 resources: install ## write the help pages and models anew, after a change of a stage or pipeline
 	@scripts/offscreen.sh $(PYTHON) scripts/generate_resources.py

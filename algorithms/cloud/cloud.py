@@ -14,6 +14,7 @@ from .header import Header
 from .point_formats import OF_COPC, Layout
 from .point_records import PointRecords, find_extra, unit_factor
 from .units import Units, crs_records, units_of, wkt_of
+from .wording import shown
 
 _ORIGIN_STEP = 1000.0
 _NEW_SCALE = 0.001
@@ -198,7 +199,7 @@ class Cloud:
         if wanted in known:
             return known[wanted][1]()
         names = dict.fromkeys(shown for shown, _ in known.values())
-        raise ValueError(f"The cloud has no dimension {name!r}; it has {', '.join(names)}.")
+        raise ValueError(f"The cloud has no dimension {name!r}; it has {', '.join(map(shown, names))}.")
 
     def _known(self) -> dict[str, tuple[str, Callable[[], np.ndarray]]]:
         """Return for every name of a dimension, in lower case, how it is shown and what gives its values."""

@@ -24,6 +24,12 @@ from .points import check_points, open_header, read_points, write_points
 from .units import Resolver, crs_records, has_wkt, units_of, wkt_of
 from .vpc import read_tiles, tiles_of
 
+# One sentence for every step of a chain.
+_WAVEFORMS_APART = (
+    "The waveforms of the input are in a file of their own (.wdp), which is not copied; "
+    "copy it beside the output, under the name of that."
+)
+
 
 def read_cloud(
     path: Union[str, Path], monitor: Optional[Monitor] = None, crs_units: Optional[Resolver] = None
@@ -199,6 +205,8 @@ def _write_las(cloud: Cloud, path: Path, stream: BinaryIO, monitor: Monitor) -> 
             f"Classes over 31 don't fit point format {cloud.header.layout.point_format}; "
             f"{path.name} is written in format {records.layout.point_format} (LAS 1.4)."
         )
+    if header.has_waveforms_outside:
+        monitor.warn(_WAVEFORMS_APART)
     write_points(stream, header, lambda a, b: records.take(slice(a, b)), kind_of(path) == LAZ, monitor)
 
 

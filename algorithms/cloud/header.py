@@ -13,7 +13,7 @@ import numpy as np
 
 from .extra_bytes import fields_of, payload_of
 from .laspy_library import need_laspy
-from .point_formats import FORMATS, Layout
+from .point_formats import FORMATS, WITH_WAVEFORMS, Layout
 
 # Header size, offset to the points, number of VLRs, point format, record length and 32-bit number of points.
 _SIZES_AT, _START_SIZES = 94, struct.Struct("<HIIBHI")
@@ -28,7 +28,7 @@ SIZES = {0: 227, 1: 227, 2: 227, 3: 235, 4: 375}
 _FIRST_MINOR = {0: 1, 1: 1, 2: 2, 3: 2, 4: 3, 5: 3}
 
 WKT_BIT = 16
-_WAVEFORMS_INSIDE = 2
+_WAVEFORMS_INSIDE, _WAVEFORMS_OUTSIDE = 2, 4
 _COMPRESSED = 128
 _LARGEST_OLD_COUNT = 2**32 - 1
 _LARGEST_VLR = 65_535
@@ -103,6 +103,11 @@ class Header:
     points_at: int = 0
     vlrs: list[Vlr] = field(default_factory=list)
     evlrs: list[Vlr] = field(default_factory=list)
+
+    @property
+    def has_waveforms_outside(self) -> bool:
+        """Whether the points refer to waveforms in a file of their own (.wdp)."""
+        return self.layout.point_format in WITH_WAVEFORMS and bool(self.encoding & _WAVEFORMS_OUTSIDE)
 
     def find(self, key: tuple[bytes, int]) -> Optional[Vlr]:
         """Return the first VLR or EVLR of that user and record id, or None."""
@@ -295,7 +300,12 @@ class _Reader:
             header.evlrs = [self._record(_EVLR, self.total) for _ in range(n_evlrs)]
         if header.waveforms_at and header.encoding & _WAVEFORMS_INSIDE and header.find(WAVEFORMS) is None:
             self.stream.seek(header.waveforms_at)
-            header.evlrs.append(self._record(_EVLR, self.total))
+            record = self._record(_EVLR, self.total)
+            if record.key == WAVEFORMS:
+                header.evlrs.append(record)
+            else:
+                # A position without waveforms would lie anywhere in the output.
+                header.waveforms_at = 0
 
     def _record(self, head: struct.Struct, end: int) -> Vlr:
         raw = self.stream.read(head.size)
@@ -305,7 +315,7 @@ class _Reader:
         start = self.stream.tell()
         if start + size > end:
             name = user_id.split(b"\0")[0].decode("ascii", "replace")
-            # In damaged files it is anything, and would spoil the sentence.
+            # In damaged files it is anything, and would say nothing.
             known = f"{name} {record_id} " if name.isascii() and name.isprintable() else ""
             raise truncated(self.path, f"a record {known}of {size} bytes runs past byte {end}")
         record = Vlr(user_id, record_id, None, description, reserved, self.path, start, size)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import struct
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,14 +17,16 @@ from .point_formats import WITH_WAVEFORMS
 # The size of LAZ chunks that laszip and lazrs use when nothing else is asked for.
 POINTS_PER_CHUNK = 50_000
 # laspy's names of its backends.
-_LAZRS, _LASZIP = "LazrsParallel", "Laszip"
-_POINTWISE = 1
+_LAZRS, _LAZRS_IN_TURN, _LASZIP = "LazrsParallel", "Lazrs", "Laszip"
+# How points are compressed: all in one go, as before 2011, or in chunks.
+_POINTWISE, _CHUNKED = 1, 2
 _VARIABLE_CHUNKS = 2**32 - 1
 _CHUNK_SIZE_AT, _ITEMS_AT = 12, 34
 # Type, size in bytes and version of an item of the record; the position and the head of the chunk table.
 _ITEM, _TABLE_POSITION, _TABLE_START = struct.Struct("<HHH"), struct.Struct("<q"), struct.Struct("<II")
 # Items of version 3 and 4 are stored in layers: so many for each type, and one for each byte of extra bytes (type 14).
 _LAYERED = 3
+_READ_AT_ONCE = 2**20
 _LAYERS = {10: 9, 11: 1, 12: 2, 13: 1}
 
 
@@ -88,6 +91,11 @@ class _Laz:
             n_layers = sum(_LAYERS.get(kind, size) for kind, size, _ in _items(record))
             self._check_layers(np.array(sizes), n_layers)
 
+    def check_pointwise(self, record: bytes) -> None:
+        """Refuse layers in points that are compressed in one go: laszip ends the process on them."""
+        if _items(record)[0][2] >= _LAYERED or _items(record)[0][0] in _LAYERS:
+            raise truncated(self.path, "its LASzip record tells of points without chunks that are stored in layers")
+
     def _check_layers(self, sizes: np.ndarray, n_layers: int) -> None:
         """Hold the sizes of the layers, which are allocated before they are read, against those of their chunks."""
         # A chunk begins with one whole record, its number of points and the size of each layer, 4 bytes each.
@@ -110,6 +118,45 @@ class _Laz:
         return kind.unpack(raw)
 
 
+class _OneChunk(io.RawIOBase):
+    """The points of a LAZ file of before 2011 with what lazrs wants around them: one chunk has no table."""
+
+    def __init__(self, stream: BinaryIO, header: Header, record: bytes) -> None:
+        super().__init__()
+        self._stream, self._start, self._at = stream, header.points_at, 0
+        size = stream.seek(0, io.SEEK_END) - header.points_at
+        self._head = _TABLE_POSITION.pack(_TABLE_POSITION.size + size)
+        table = io.BytesIO()
+        need_lazrs().write_chunk_table(table, [(header.count, size)], need_lazrs().LazVlr(record))
+        self._table, self._table_at = table.getvalue(), len(self._head) + size
+
+    def readable(self) -> bool:
+        return True
+
+    def seekable(self) -> bool:
+        return True
+
+    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
+        start = {io.SEEK_SET: 0, io.SEEK_CUR: self._at, io.SEEK_END: self._table_at + len(self._table)}[whence]
+        self._at = start + offset
+        return self._at
+
+    def readinto(self, buffer: Any) -> int:
+        part = self._part(len(buffer))
+        buffer[: len(part)] = part
+        self._at += len(part)
+        return len(part)
+
+    def _part(self, size: int) -> bytes:
+        """Return at most ``size`` bytes from the position on, of the head, the points or the table."""
+        if self._at < len(self._head):
+            return self._head[self._at : self._at + size]
+        if self._at < self._table_at:
+            self._stream.seek(self._start + self._at - len(self._head))
+            return self._stream.read(min(size, self._table_at - self._at))
+        return self._table[self._at - self._table_at :][:size]
+
+
 def _chunk_size(record: bytes) -> int:
     return struct.unpack_from("<I", record, _CHUNK_SIZE_AT)[0]
 
@@ -130,10 +177,15 @@ def open_laz(path: Path, header: Header, stream: BinaryIO) -> Callable[[np.ndarr
     """
     laz = _Laz(path, header, stream)
     record = laz.record()
-    if record[0] == _POINTWISE and not has_backend(_LASZIP):
-        raise ValueError(f"{path.name} is LAZ of an old kind (before 2011); install the package laszip to read it.")
-    backend = _backend(*((_LASZIP, _LAZRS) if record[0] == _POINTWISE else (_LAZRS, _LASZIP)))
-    if record[0] != _POINTWISE:
+    backend, stream_at = _backend(_LAZRS, _LASZIP), header.points_at
+    if record[0] == _POINTWISE:
+        laz.check_pointwise(record)
+        if has_backend(_LAZRS_IN_TURN):
+            record = struct.pack("<H", _CHUNKED) + record[2:]
+            backend, stream_at = need_laspy().LazBackend[_LAZRS_IN_TURN], 0
+            with explained(path):
+                stream = io.BufferedReader(_OneChunk(stream, header, record), _READ_AT_ONCE)
+    else:
         table_at = laz.table_at()
         laz.check_number(table_at, _chunk_size(record))
         if has_backend(_LAZRS):
@@ -144,7 +196,7 @@ def open_laz(path: Path, header: Header, stream: BinaryIO) -> Callable[[np.ndarr
         record = record[:_CHUNK_SIZE_AT] + size + record[_CHUNK_SIZE_AT + len(size) :]
     las = header.las()
     las.vlrs.append(need_laspy().vlrs.known.LasZipVlr(record))
-    stream.seek(header.points_at)
+    stream.seek(stream_at)
     with explained(path):
         reader = backend.create_reader(stream, las)
     # What laspy's read_n_points calls, without the copy of all points that it makes.

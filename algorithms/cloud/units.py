@@ -10,6 +10,7 @@ from typing import Any, Callable, Optional, Union
 import numpy as np
 
 from .header import WKT_BIT, Header, Vlr
+from .wording import shown
 
 # EPSG code -> (meters per horizontal unit, meters per vertical unit, whether it is geographic), or None if unknown.
 Resolver = Callable[[int], Optional[tuple[float, float, bool]]]
@@ -179,7 +180,8 @@ def _refuse_ellipsoid(root: _Node) -> None:
 def _not_plane(name: str, geocentric: bool) -> ValueError:
     what = "geocentric" if geocentric else "degrees"
     return ValueError(
-        f"The coordinates are {what} ({name}); reproject the cloud to a projected system in meters or feet first."
+        f"The coordinates are {what} ({shown(name)}); "
+        "reproject the cloud to a projected system in meters or feet first."
     )
 
 

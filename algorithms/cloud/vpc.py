@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,10 +15,17 @@ from .outputs import COPC, LAS, LAZ, kind_of
 from .point_records import convert, merged_layout
 from .points import open_header, read_chunks
 from .units import crs_identity, wkt_of
+from .wording import shown
 
 _LARGEST_INT = 2**31 - 1
 _GPS_TIME_BIT = 1
 _DATA_ROLE = "data"
+# Memory that the content of a virtual point cloud may take (bytes): enough for 4,000 tiles with the statistics of all
+# their dimensions, of 20 kB each.
+_MOST_MEMORY = 450_000_000
+# Memory that one value of JSON takes at most (bytes), a text of a few characters beyond ASCII. One of four characters
+# stands before it, which texts may hold too. Texts take 1 byte for a character of ASCII, and at most 4 for another.
+_BYTES_PER_VALUE = 90
 
 
 def tiles_of(path: Path) -> list[Path]:
@@ -26,10 +34,11 @@ def tiles_of(path: Path) -> list[Path]:
     Raises
     ------
     ValueError
-        If the file is no virtual point cloud, names no tiles, or one of them is missing.
+        If the file is no virtual point cloud, is far too large for one, names no tiles, or one of them is missing.
     """
+    raw = _content(path)
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
+        content = json.loads(raw.decode("utf-8"))
         hrefs = [href for feature in content["features"] for href in _hrefs(feature["assets"])]
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         raise ValueError(
@@ -39,6 +48,28 @@ def tiles_of(path: Path) -> list[Path]:
         raise ValueError(f"{path.name} names no tiles; build it again.")
     # A tile that is named twice is read once, whichever way it is named.
     return list({tile.resolve(): tile for tile in (_tile(path, href) for href in dict.fromkeys(hrefs))}.values())
+
+
+def _content(path: Path) -> bytes:
+    """Return the bytes of a file that is parsed in a bounded memory.
+
+    Raises
+    ------
+    ValueError
+        If it would take more.
+    """
+    size = path.stat().st_size
+    needed = 2 * size
+    if needed <= _MOST_MEMORY:
+        raw = path.read_bytes()
+        n_values = sum(map(raw.count, (b"[", b"{", b",", b":")))
+        needed = len(raw) * (2 if raw.isascii() else 5) + n_values * _BYTES_PER_VALUE
+    if needed > _MOST_MEMORY:
+        raise ValueError(
+            f"{path.name} ({size / 1e6:.0f} MB) is larger than a virtual point cloud of a thousand tiles; "
+            "build it of fewer tiles."
+        )
+    return raw
 
 
 def _hrefs(assets: dict) -> list[str]:
@@ -53,12 +84,11 @@ def _tile(path: Path, href: str) -> Path:
         why = "is not a local file; download it and"
     elif kind_of(tile) not in (LAS, LAZ, COPC):
         why = "is no LAS, LAZ or COPC file; leave it out and"
-    elif not tile.is_file():
+    elif not os.path.isfile(tile):  # noqa: PTH113 - a name that the system can't even look up is missing, too
         why = "is missing; put it back or"
     else:
         return tile
-    # Whatever stands there, a message is one line.
-    raise ValueError(f"{path.name} names the tile {' '.join(href.split())}, which {why} build {path.name} again.")
+    raise ValueError(f"{path.name} names the tile {shown(href)}, which {why} build {path.name} again.")
 
 
 def read_tiles(paths: list[Path], monitor: Monitor) -> tuple[Header, np.ndarray]:
@@ -94,7 +124,7 @@ def _check_tiles(paths: list[Path], headers: list[Header]) -> None:
         if one != seen[0]:
             raise ValueError(
                 f"The tiles {paths[0].name} and {path.name} have different coordinate reference systems "
-                f"({seen[0][:40] or 'none'}, {one[:40] or 'none'}); reproject them to one first."
+                f"({shown(seen[0], 40) or 'none'}, {shown(one, 40) or 'none'}); reproject them to one first."
             )
         if not np.isfinite([header.low, header.high]).all():
             raise ValueError(
@@ -120,7 +150,7 @@ def merged_header(headers: list[Header], what: str, monitor: Monitor) -> Header:
         If they span more than their scale can store.
     """
     first = headers[0]
-    if any(header.find(WAVEFORMS) for header in headers):
+    if any(header.find(WAVEFORMS) or header.has_waveforms_outside for header in headers):
         monitor.warn(f"The waveforms of the {what} are not merged; their references are kept.")
     if any((header.encoding ^ first.encoding) & _GPS_TIME_BIT for header in headers):
         monitor.warn(f"The {what} count GPS time in different ways; the values are kept as they are.")

@@ -12,8 +12,7 @@ from lidar_buildings.algorithms.cloud import points
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import check_readable, read_cloud, write_cloud
 from lidar_buildings.algorithms.stage import Monitor
-
-from .conftest import vlr
+from lidar_buildings.tests.las_files import vlr
 
 
 @pytest.fixture

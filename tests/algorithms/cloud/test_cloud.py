@@ -9,9 +9,8 @@ from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.dimensions import DIMENSIONS
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.tests.las_files import RECORD_SIZES, descriptor, random_records, vlr
 from lidar_buildings.tests.monitors import Listening
-
-from .conftest import RECORD_SIZES, descriptor, random_records, vlr
 
 FOOT, SURVEY_FOOT = 0.3048, 1200 / 3937
 IN_FEET = f'PROJCS["a plane",GEOGCS["g",UNIT["degree",0.0174]],UNIT["US survey foot",{SURVEY_FOOT!r}]]'

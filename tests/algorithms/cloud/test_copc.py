@@ -7,9 +7,8 @@ from lidar_buildings.algorithms.cloud import copc
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.tests.las_files import FORMATS, evlr, vlr
 from lidar_buildings.tests.monitors import Listening
-
-from .conftest import FORMATS, evlr, vlr
 
 
 @pytest.fixture

@@ -8,8 +8,7 @@ import pytest
 
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.stage import Monitor
-
-from .conftest import FORMATS, RECORD_SIZES, descriptor, evlr, random_records, vlr
+from lidar_buildings.tests.las_files import FORMATS, RECORD_SIZES, descriptor, evlr, random_records, vlr
 
 KEPT = (
     "source_id",
@@ -137,6 +136,20 @@ def test_waveforms_of_las_13_stay_where_the_header_says(make_las, take_apart, tm
     write_cloud(cloud, tmp_path / "b.las")
     raw = (tmp_path / "b.las").read_bytes()
     assert raw[take_apart(tmp_path / "b.las")["waveforms_at"] :] == packets
+
+
+@pytest.mark.parametrize(
+    ("point_format", "encoding", "told"), [(9, 4, True), (4, 4, True), (9, 0, False), (6, 4, False)]
+)
+def test_waveforms_in_a_file_of_their_own_are_told(make_las, take_apart, tmp_path, point_format, encoding, told):
+    """The output kept its references, and lay beside no file to which they could refer, without a word."""
+    path = make_las(point_format=point_format, minor=3 if point_format < 6 else 4, encoding=encoding)
+    path.with_suffix(".wdp").write_bytes(b"waveforms")
+    monitor = Monitor()
+    write_cloud(read_cloud(path), tmp_path / "b.las", monitor)
+    assert any(".wdp), which is not copied; copy it beside" in sentence for sentence in monitor.warnings) == told
+    assert take_apart(tmp_path / "b.las")["encoding"] == encoding
+    assert not (tmp_path / "b.wdp").exists()
 
 
 def test_long_evlrs_are_copied_without_being_held(make_las, take_apart, tmp_path, monkeypatch):

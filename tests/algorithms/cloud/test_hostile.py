@@ -12,8 +12,8 @@ import pytest
 
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
-
-from .conftest import vlr
+from lidar_buildings.tests.attacks.mutants import pointwise
+from lidar_buildings.tests.las_files import descriptor, evlr, vlr
 
 ROOT = Path(__file__).resolve().parents[3]
 POINTS = 150
@@ -169,6 +169,45 @@ def test_damage_in_the_chunk_table_and_the_heads_of_chunks(laz):
     assert len(readings(path, *hostile)) == 60
 
 
+def test_points_without_chunks_that_tell_of_layers(laz):
+    """Laszip ended the process with a segmentation fault."""
+    raw, path = laz
+    for hostile in (
+        patched(raw, record_at(raw), "<H", 1),
+        patched(raw, record_at(raw), "<HHBBHII", 1, 0, 2, 2, 0, 0, 0),
+    ):
+        if raw[104] & 63 >= 6:
+            assert_refused(path, "without chunks that are stored in layers", hostile)
+            types = patched(hostile, record_at(raw) + 38, "<H", 2)
+            assert_refused(path, "without chunks that are stored in layers", types)
+        else:
+            assert_refused(path, "can't be decompressed", patched(hostile, record_at(raw) + 34, "<H", 300))
+
+
+def test_waveforms_where_the_header_says_but_none_are(make_las, tmp_path):
+    """Any record there was taken for them, and the output, whose header kept the position, could not be read."""
+    evlrs = (evlr("someone", 7, b"anything"), evlr("LASF_Spec", 2047, bytes(64)))
+    path = make_las(point_format=9, waveforms=True, evlrs=evlrs)
+    cloud = read_cloud(path)
+    cloud.set("cluster_id", np.zeros(len(cloud)))
+    for name in ("b.las", "b.laz"):
+        write_cloud(cloud, tmp_path / name)
+        again = read_cloud(tmp_path / name)
+        assert [record.key for record in again.header.evlrs] == [(b"someone", 7), (b"LASF_Spec", 2047)]
+
+
+@pytest.mark.parametrize("point_format", [0, 1, 3])
+def test_laz_of_before_2011_has_no_chunks(make_las, tmp_path, point_format):
+    """Only laszip read it, which trusts the file."""
+    cloud = read_cloud(make_las(point_format=point_format, minor=2, n=POINTS, extra=3))
+    write_cloud(cloud, tmp_path / "chunked.laz")
+    (tmp_path / "whole.laz").write_bytes(pointwise((tmp_path / "chunked.laz").read_bytes()))
+    assert read_cloud(tmp_path / "whole.laz").points.tobytes() == cloud.points.tobytes()
+    (tmp_path / "cut.laz").write_bytes((tmp_path / "whole.laz").read_bytes()[:-900])
+    with pytest.raises(ValueError, match="can't be decompressed"):
+        read_cloud(tmp_path / "cut.laz")
+
+
 # --- units ------------------------------------------------------------------------------------------------------------
 
 
@@ -237,6 +276,47 @@ def test_a_name_with_line_breaks_stays_one_sentence(tmp_path):
     with pytest.raises(ValueError, match=r"^all\.vpc names the tile a b\.las, which is missing; .*\.$") as caught:
         read_cloud(vpc(tmp_path, "a\nb.las"))
     assert "\n" not in str(caught.value)
+
+
+def test_json_takes_a_bounded_memory(tmp_path):
+    """100 MB of JSON took 2.4 GB."""
+    just, over = [], []
+    for value in ("[]", '"\u00e9b"', '"\U0001f332"', '{"":[]}'):
+        size = len(value.encode()) + 1
+        cost = size * (2 if value.isascii() else 5) + 90 * sum(map(f"{value},".count, "[{,:"))
+        number = 450_000_000 // cost
+        just.append(f"[{','.join([value] * (number - 10))}]".encode())
+        over.append(f"[{','.join([value] * (number + 10))}]".encode())
+    said = readings(tmp_path / "a.vpc", *just, *over)
+    assert all("is not a virtual point cloud" in sentence for sentence in said[: len(just)])
+    assert all("larger than a virtual point cloud of a thousand" in sentence for sentence in said[len(just) :])
+
+
+def test_json_far_too_large_is_not_read(tmp_path):
+    path = tmp_path / "a.vpc"
+    with path.open("wb") as file:
+        file.truncate(10**12)
+    with pytest.raises(ValueError, match=r"a\.vpc \(1000000 MB\) is larger than"):
+        read_cloud(path)
+
+
+@pytest.mark.parametrize("name", ["\0.las", "\ud800.las", "\u202ea.las", "\x1b[2J.las", "x" * 5000 + ".las"])
+def test_names_of_tiles_are_shown_in_one_printable_line(tmp_path, name):
+    with pytest.raises(ValueError, match=r"^all\.vpc names the tile .*, which is missing") as caught:
+        read_cloud(vpc(tmp_path, name))
+    assert str(caught.value).isprintable()
+    assert len(str(caught.value)) < 200
+
+
+def test_names_of_systems_and_dimensions_are_shown_in_one_printable_line(make_las):
+    degrees = b'GEOGCS["\x1b\nWGS \x00"]\0'
+    with pytest.raises(ValueError, match="The coordinates are degrees") as caught:
+        read_cloud(make_las(vlrs=(vlr("LASF_Projection", 2112, degrees.replace(b'\x00"', b'"')),)))
+    assert str(caught.value).isprintable()
+    cloud = read_cloud(make_las(extra=1, vlrs=(vlr("LASF_Spec", 4, descriptor("a\n\x1bb", 1)),)))
+    with pytest.raises(ValueError, match="has no dimension 'c'; it has .*, a b, ") as caught:
+        cloud.named("c")
+    assert str(caught.value).isprintable()
 
 
 def test_a_cloud_of_a_scale_below_zero_has_its_bounds(make_las, take_apart, tmp_path, monkeypatch):

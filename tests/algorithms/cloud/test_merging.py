@@ -11,7 +11,7 @@ from lidar_buildings.algorithms.cloud.merging import merge_records
 from lidar_buildings.algorithms.preparation.merge_clouds import merge_clouds
 from lidar_buildings.algorithms.run import run_stage
 from lidar_buildings.algorithms.stage import Monitor
-from lidar_buildings.tests.algorithms.cloud.conftest import descriptor, vlr
+from lidar_buildings.tests.las_files import descriptor, vlr
 
 FORMATS = range(11)
 

@@ -8,8 +8,7 @@ import pytest
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.stage import Monitor
-
-from .conftest import descriptor, random_records, vlr
+from lidar_buildings.tests.las_files import descriptor, random_records, vlr
 
 RD = 'PROJCS["RD",UNIT["metre",1],AUTHORITY["EPSG","28992"]]'
 
@@ -109,7 +108,7 @@ def test_tiles_of_different_crs_are_refused(make_las, make_vpc, wkt):
 
 
 def test_waveforms_and_gps_times_that_do_not_merge_are_told(make_las, make_vpc):
-    from .conftest import evlr
+    from lidar_buildings.tests.las_files import evlr
 
     packets = evlr("LASF_Spec", 65535, b"w" * 100)
     make_las("one.las", point_format=9, waveforms=True, evlrs=(packets,), encoding=1)
@@ -119,6 +118,10 @@ def test_waveforms_and_gps_times_that_do_not_merge_are_told(make_las, make_vpc):
     assert cloud.header.evlrs == []
     assert any("waveforms" in sentence for sentence in monitor.warnings)
     assert any("GPS time" in sentence for sentence in monitor.warnings)
+    make_las("one.las", point_format=9, encoding=4)
+    monitor = Monitor()
+    read_cloud(make_vpc("one.las", "two.las"), monitor)
+    assert any("waveforms" in sentence for sentence in monitor.warnings)
 
 
 @pytest.mark.parametrize(
