@@ -152,6 +152,15 @@ Boundary = Annotated[
     ),
 ]
 
+CompleteFacades = Annotated[
+    bool,
+    Param(
+        "Complete hidden parts",
+        "Fill what cars, trees and people hide of the foot and the sides of a facade; without it a facade ends where "
+        "its points do.",
+    ),
+]
+
 
 def nearest_points(automatic: str) -> Param:
     """Return the declaration of N, the points of a neighborhood, which each method derives in its own way."""

@@ -27,6 +27,7 @@ from .segmentation.segment_roofs import segment_roofs
 from .segmentation.segment_voxels import segment_voxels
 from .shapes.segment_planes_hough import segment_planes_hough
 from .simulation.simulate_flight import simulate_flight
+from .simulation.simulate_street import simulate_street
 from .simulation.simulate_town import simulate_town
 from .simulation.simulate_village import simulate_village
 from .terrain.classify_ground_cloth import classify_ground_cloth
@@ -72,6 +73,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     simulate_town,
     simulate_flight,
     simulate_village,
+    simulate_street,
 )
 
 STAGES = {function.stage.name: function.stage for function in _FUNCTIONS}

@@ -74,6 +74,7 @@ STAGE_IDS = {
     "simulateflight",
     "simulatevillage",
     "extractfacades",
+    "simulatestreet",
 }
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints"}
 
@@ -102,7 +103,7 @@ WITHOUT_UNIT = {
 # Sort points into kinds of their own, which are no classes of ASPRS.
 OWN_CLASSES = {"classify_dimensionality"}
 # Our own, after no publication.
-WITHOUT_REFERENCES = {"simulate_town", "simulate_village"}
+WITHOUT_REFERENCES = {"simulate_town", "simulate_village", "simulate_street"}
 # Automatic tunables that matter only beside another setting.
 USED_WITH: dict[tuple[str, str], dict[str, Any]] = {
     ("compute_features", "radius"): {"neighborhood": "radius"},
@@ -116,6 +117,7 @@ QUICK: dict[str, dict[str, Any]] = {
     "simulate_town": {"size": 80.0},
     "simulate_flight": {"duration": 20.0, "line_rate": 4.0},
     "simulate_village": {"size": 90.0, "density": 5.0},
+    "simulate_street": {"length": 12.0, "line_rate": 10.0, "angular_step": 2.0},
 }
 
 # As they are when tests are collected: tests of the provider add toys of their own while they run.

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..geometry.grid import connected_cells, distinct, find_cells, grid_over
 from ..geometry.groups import members
-from ..params import Boundary, CornerDistance, EdgeFactor, FacadeGap, FacadeTilt, Seed
+from ..params import Boundary, CompleteFacades, CornerDistance, EdgeFactor, FacadeGap, FacadeTilt, Seed
 from ..sampling.cloud_sampling import CloudSampling
 from ..segmentation.least_squares_planes import Planes, planes_of
 from ..segmentation.segment_planes_ransac import segment_planes_ransac
@@ -21,6 +21,9 @@ from .facade_surfaces import Facade, facade_features, plane_of, surfaces_of
 
 # Plaster, joints and cladding lie this far (standard deviation, m) off the plane of a wall, beside the noise.
 _RELIEF = 0.01
+
+# Side (m) of the cells in plan in which a facade has points above one another.
+_PLAN_CELL = 0.5
 
 # Distance within which a point lies on a facade (standard deviations): one point of 400 is farther off.
 _ON_PLANE = 3.0
@@ -41,6 +44,7 @@ FACADE_FIELDS = (
     Field("points", int, "Its points"),
     Field("density", float, "Points per square meter of the polygon", "points/m²"),
     Field("hull_share", float, "Area within the boundary, as a share of the convex hull of the points"),
+    Field("seen_share", float, "Share of the area within the boundary that has points, openings with points included"),
     Field("neighbors", int, "Facades with which it has a common border"),
 )
 
@@ -84,10 +88,11 @@ def extract_facades(
             high=100,
         ),
     ] = 2.5,
-    max_gap: FacadeGap = 1.5,
+    max_gap: FacadeGap = 1.0,
     edge_factor: EdgeFactor = None,
     corner_distance: CornerDistance = 0.4,
     boundary: Boundary = "straight edges",
+    complete: CompleteFacades = True,
     seed: Seed = 1,
     sampling: Optional[CloudSampling] = None,
     monitor=None,
@@ -132,6 +137,10 @@ def extract_facades(
     apart, since the mean over a vehicle's scan lines would tear the triangulation between them. Where shadows cut a
     facade, the longest edge grows until 95 % of the points are in one piece, at most to the widest gap.
 
+    Cars, trees and people take bites out of the foot and the sides of a facade. Pockets between the boundary and its
+    convex hull are filled where the hull is upright or follows the foot, and hidden corners of the foot are where
+    side and foot meet; a passage that is open to the street is filled, too. Steps and gables at the top stay.
+
     The outer side is that from which points lie in front of the wall (street, cars) or behind its openings.
     A window that is a plane of its own and large enough is a facade, too; "Detect openings" takes it as an opening.
 
@@ -144,17 +153,7 @@ def extract_facades(
     tolerance = _ON_PLANE * float(np.hypot(sampling.noise, _RELIEF)) if tolerance is None else tolerance
     edge_factor = longest_edge(boundary) if edge_factor is None else edge_factor
     monitor.resolved(tolerance=tolerance, edge_factor=edge_factor)
-    plane, _ = segment_planes_ransac(
-        xyz,
-        classification,
-        tolerance=tolerance,
-        min_slope=90.0 - max_tilt,
-        max_slope=90.0,
-        min_area=min_area / 2,
-        seed=seed,
-        sampling=sampling,
-        monitor=_Quiet(monitor.part(0, 0.6)),
-    )
+    plane = _steep_planes(xyz, classification, tolerance, max_tilt, min_area, min_height, seed, sampling, monitor)
     walls = as_strips(xyz, merged_planes(xyz, plane, tolerance), tolerance)
     pieces = split_at_gaps(xyz, walls, max_gap)
     _leave_small(xyz, pieces, min_height)
@@ -165,6 +164,7 @@ def extract_facades(
         edge_factor=edge_factor,
         max_gap=max_gap,
         boundary=boundary,
+        complete=complete,
         monitor=monitor.part(0.6, 0.95),
     )
     facades = [facade for facade in facades if facade.area >= min_area and facade.height >= min_height]
@@ -173,6 +173,44 @@ def extract_facades(
         facades = with_common_borders(facades, corner_distance)
     monitor.progress(1.0)
     return _result(facades, len(xyz), min_area, min_height, monitor)
+
+
+def _steep_planes(
+    xyz: np.ndarray,
+    classification: np.ndarray,
+    tolerance: float,
+    max_tilt: float,
+    min_area: float,
+    min_height: float,
+    seed: int,
+    sampling: CloudSampling,
+    monitor: Monitor,
+) -> np.ndarray:
+    """Return the steep planes (n,) from 1 of points that stand above one another; 0 is none."""
+    plane = np.zeros(len(xyz), np.int64)
+    rows = np.flatnonzero(_is_stacked(xyz, min_height))
+    if len(rows):
+        plane[rows] = segment_planes_ransac(
+            xyz[rows],
+            classification[rows],
+            tolerance=tolerance,
+            min_slope=90.0 - max_tilt,
+            max_slope=90.0,
+            min_area=min_area / 2,
+            seed=seed,
+            sampling=sampling,
+            monitor=_Quiet(monitor.part(0, 0.6)),
+        )[0]
+    return plane
+
+
+def _is_stacked(xyz: np.ndarray, min_height: float) -> np.ndarray:
+    """Return which points (n,) share a cell in plan with points far above or below, as those of walls do."""
+    cells, cell = distinct(grid_over(xyz, _PLAN_CELL).number(xyz))
+    low, high = np.full(len(cells), np.inf), np.full(len(cells), -np.inf)
+    np.minimum.at(low, cell, xyz[:, 2])
+    np.maximum.at(high, cell, xyz[:, 2])
+    return (high - low >= min_height / 2)[cell]
 
 
 class _Quiet(Monitor):

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..footprints.alpha_shape import Tracing, trace_outlines
 from ..footprints.regularization import regularize_outline
+from ..geometry.groups import items
 from ..geometry.line_segments import edge_distances, is_valid
 from ..geometry.polylines import simplify_ring
 from ..geometry.rings import signed_area
@@ -34,6 +35,12 @@ _PERCENTILE = 95
 # Tolerance of straight edges: spacings, and m.
 _TOLERANCE_SPACINGS, _LEAST_TOLERANCE = 2.0, 0.05
 
+# Angles (rad) within which an edge of the hull is the foot of a facade, which may lie on a slope, and a side.
+_FOOT_ANGLE, _SIDE_ANGLE = np.radians(12.0), np.radians(4.0)
+
+# A parked car or a bush hides so much of a corner of the foot, along and up the facade (m).
+_HIDDEN = (5.0, 2.5)
+
 # Times the boundary is pushed out: a corner that moves may leave a point of the edge beside it outside.
 _PUSHES = 4
 
@@ -53,11 +60,14 @@ class Outline:
         Distance between points where they are farthest apart, m.
     hull_area : float
         Area of the convex hull of the points, m².
+    seen_area : float
+        Area of the triangles between the points, m².
     """
 
     ring: np.ndarray
     spacing: float
     hull_area: float
+    seen_area: float
 
 
 def longest_edge(boundary: str) -> float:
@@ -65,7 +75,9 @@ def longest_edge(boundary: str) -> float:
     return _PUBLISHED_EDGE if boundary == "key points" else _LONGEST_EDGE
 
 
-def outline_of(places: np.ndarray, edge_factor: float, max_gap: float, boundary: str) -> Optional[Outline]:
+def outline_of(
+    places: np.ndarray, edge_factor: float, max_gap: float, boundary: str, complete: bool
+) -> Optional[Outline]:
     """Return the boundary of points on a plane, None where they have no area.
 
     Parameters
@@ -78,11 +90,16 @@ def outline_of(places: np.ndarray, edge_factor: float, max_gap: float, boundary:
         Widest shadow (m) that is bridged.
     boundary : str
         "straight edges": edges by least squares; "key points": the points of the boundary where it turns.
+    complete : bool
+        Whether what cars and trees hide of the foot and the sides is filled.
     """
     spacing = sparse_spacing(places)
     traced = _traced(places, spacing, edge_factor, max_gap) if spacing else None
     if traced is None:
         return None
+    seen = ring_area(traced)
+    if complete:
+        traced = _divided(completed(traced), spacing)
     tolerance = max(_TOLERANCE_SPACINGS * spacing, _LEAST_TOLERANCE)
     if boundary == "key points":
         ring, limit = key_points(traced), np.inf
@@ -92,7 +109,81 @@ def outline_of(places: np.ndarray, edge_factor: float, max_gap: float, boundary:
     if not is_valid([ring]):
         ring = traced
     hull = spatial.ConvexHull(places)
-    return Outline(pushed_out(ring, traced[:-1], limit), spacing, float(hull.volume))
+    return Outline(pushed_out(ring, traced[:-1], limit), spacing, float(hull.volume), seen)
+
+
+def completed(ring: np.ndarray) -> np.ndarray:
+    """Return a traced boundary without the bites that cars, trees and people take out of its foot and its sides.
+
+    Bites are the pockets between the boundary and its convex hull. They are filled where the hull is upright or follows
+    the foot of the facade; where a corner of the foot is hidden, the side goes on down to the line of the foot.
+    Upward, a facade may have any shape: steps and gables stay.
+
+    Parameters
+    ----------
+    ring : ndarray of shape (m, 2)
+        Closed, counterclockwise, along and up the facade (m).
+    """
+    places = ring[:-1]
+    corners = np.sort(spatial.ConvexHull(places).vertices)
+    lids = np.roll(places[corners], -1, axis=0) - places[corners]
+    length = np.linalg.norm(lids, axis=1)
+    is_foot = lids[:, 0] >= np.cos(_FOOT_ANGLE) * length
+    is_side = np.abs(lids[:, 1]) >= np.cos(_SIDE_ANGLE) * length
+    if not is_foot.any():
+        return ring
+    hidden = _hidden_corners(places[corners], lids, length, is_foot, is_side)
+    made = []
+    for k, start in enumerate(corners):
+        end = corners[(k + 1) % len(corners)]
+        made.append(places[start][None])
+        if k in hidden:
+            made.append(hidden[k])
+        elif not (is_foot[k] or is_side[k]):
+            made.append(places[np.arange(start + 1, end if end > start else end + len(places)) % len(places)])
+    found = np.concatenate(made)
+    found = np.concatenate([found, found[:1]])
+    return found if is_valid([found]) else ring
+
+
+def _divided(ring: np.ndarray, spacing: float) -> np.ndarray:
+    """Return a closed ring whose long edges have vertices as those that were traced have, for straight edges to fit.
+
+    Edges are long beyond what a triangle's may be, and are divided into pieces of ``spacing`` (m).
+    """
+    steps = np.diff(ring, axis=0)
+    length = np.linalg.norm(steps, axis=1)
+    count = np.where(length > _LONGEST_EDGE * spacing, np.ceil(length / spacing), 1).astype(np.int64)
+    edge, item = items(count)
+    return np.concatenate([ring[edge] + (item / count[edge])[:, None] * steps[edge], ring[:1]])
+
+
+def _hidden_corners(
+    corners: np.ndarray, lids: np.ndarray, length: np.ndarray, is_foot: np.ndarray, is_side: np.ndarray
+) -> dict[int, np.ndarray]:
+    """Return what takes the place of the hull edges (k) between foot and sides: the corner, or nothing (1 or 0, 2)."""
+    foot = int(np.argmax(np.where(is_foot, length, 0.0)))
+    hidden: dict[int, np.ndarray] = {}
+    for step in (1, -1):
+        run: list[int] = []
+        last, k = foot, (foot + step) % len(corners)
+        # Foot edges beside the longest one go on along it; then diagonal ones lead up to the side.
+        while is_foot[k] and k != foot:
+            last, k = k, (k + step) % len(corners)
+        while not is_side[k] and len(run) < len(corners) and lids[k, 0] > 0:
+            run.append(k)
+            k = (k + step) % len(corners)
+        if not run or not is_side[k]:
+            continue
+        low, side = (last + 1, k) if step == 1 else (last, k + 1)
+        low_end, side_end = corners[low % len(corners)], corners[side % len(corners)]
+        reach = np.abs(side_end - low_end)
+        if reach[0] <= _HIDDEN[0] and reach[1] <= _HIDDEN[1]:
+            slope = lids[foot, 1] / lids[foot, 0]
+            corner = np.array([side_end[0], low_end[1] + slope * (side_end[0] - low_end[0])])
+            hidden |= {edge: np.zeros((0, 2)) for edge in run}
+            hidden[run[0] if step == 1 else run[-1]] = corner[None]
+    return hidden
 
 
 def sparse_spacing(places: np.ndarray) -> float:

@@ -37,6 +37,8 @@ class Facade:
         Distance between these where they are farthest apart, m.
     hull_area : float
         Area of their convex hull, m².
+    seen_area : float
+        Area of the triangles between them, m².
     neighbors : int
         Facades with which it shares a border.
     holes : list of ndarray of shape (m, 2)
@@ -50,6 +52,7 @@ class Facade:
     rms: float
     spacing: float
     hull_area: float
+    seen_area: float
     neighbors: int = 0
     holes: list = field(default_factory=list)
 
@@ -77,6 +80,7 @@ def surfaces_of(
     edge_factor: float,
     max_gap: float,
     boundary: str,
+    complete: bool,
     monitor: Monitor,
 ) -> list[Facade]:
     """Return the facades of segments whose planes are steep and have an area, in the order of their numbers.
@@ -89,7 +93,7 @@ def surfaces_of(
         Planes from 1; 0 is none.
     max_tilt : float
         Largest angle (°) of a facade to the vertical.
-    edge_factor, max_gap, boundary
+    edge_factor, max_gap, boundary, complete
         As of :func:`.facade_outline.outline_of`.
     monitor : Monitor
         Receives progress.
@@ -108,9 +112,13 @@ def surfaces_of(
             middle, reach = xyz[points].mean(axis=0), np.linalg.norm(np.ptp(xyz[points], axis=0)) / 2 + 10.0
             near = around[np.sort(tree.query_ball_point(middle, reach))]
             frame = facing_viewer(frame, xyz[points], near, max(_THICKNESS, 3 * rms))
-            outline = outline_of(frame.local(xyz[points])[:, :2], edge_factor, max_gap, boundary)
+            outline = outline_of(frame.local(xyz[points])[:, :2], edge_factor, max_gap, boundary, complete)
             if outline is not None:
-                facades.append(Facade(number, frame, outline.ring, points, rms, outline.spacing, outline.hull_area))
+                facades.append(
+                    Facade(
+                        number, frame, outline.ring, points, rms, outline.spacing, outline.hull_area, outline.seen_area
+                    )
+                )
         monitor.progress(done / len(groups))
     return facades
 
@@ -144,6 +152,7 @@ def facade_features(facades: list[Facade]) -> LayerFeatures:
         "points": [len(facade.points) for facade in facades],
         "density": [len(facade.points) / facade.area for facade in facades],
         "hull_share": [ring_area(facade.ring) / max(facade.hull_area, 1e-9) for facade in facades],
+        "seen_share": [min(facade.seen_area / ring_area(facade.ring), 1.0) for facade in facades],
         "neighbors": [facade.neighbors for facade in facades],
     }
     return LayerFeatures([facade.rings for facade in facades], columns)

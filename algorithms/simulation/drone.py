@@ -121,16 +121,16 @@ class Surroundings(World):
         radius = np.linalg.norm(high - low, axis=1) / 2 + np.linalg.norm(beams.origin - middle, axis=1).max()
         distance = np.linalg.norm(away, axis=1)
         near = np.flatnonzero(distance - radius < self.reach)
-        bearing = np.column_stack(_bearing(away[near]))
-        half = _half_widths(bearing[:, 1], radius[near], distance[near])
+        middles = np.column_stack(bearing(away[near]))
+        half = _half_widths(middles[:, 1], radius[near], distance[near])
         # Seen all around, the azimuth goes on after a full turn.
         turn = np.repeat([-2 * np.pi, 0.0, 2 * np.pi], len(near))[:, None] * [1.0, 0.0]
-        bearing, half = np.tile(bearing, (3, 1)) + turn, np.tile(half, (3, 1))
-        beam, thing = in_boxes(beams.aim, bearing - half, bearing + half)
+        middles, half = np.tile(middles, (3, 1)) + turn, np.tile(half, (3, 1))
+        beam, thing = in_boxes(beams.aim, middles - half, middles + half)
         return beam, np.tile(near, 3)[thing]
 
 
-def _bearing(direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def bearing(direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return azimuth, from east, and elevation (rad) of directions (n, 3) of any length."""
     x, y, z = direction.T
     return np.arctan2(y, x), np.arctan2(z, np.hypot(x, y))
@@ -171,10 +171,10 @@ def fly(
     for i, (name, time) in enumerate(blocks):
         rng = generators[name]
         beams, left = _pulses(flight, name, time, line_rate)
-        echoes = _first(world, beams, rng)
+        echoes = first_met(world, beams, rng)
         # The noise of the range lies along the beam.
         ranges = echoes.range + range_noise * rng.standard_normal(len(echoes))
-        part = _recorded(echoes, left, SCANNERS[name], rng)
+        part = recorded(echoes, left, SCANNERS[name], rng)
         part["gps_time"] = time[echoes.pulse]
         part["xyz"] = beams.at(echoes.pulse, ranges)
         parts.append(part)
@@ -205,10 +205,10 @@ def _pulses(flight: Flight, scanner: str, time: np.ndarray, line_rate: float) ->
     angle = np.deg2rad(np.mod(time * line_rate, 1.0) * 360.0 - FIELD / 2)[:, None]
     ahead = forward if scanner == "horizontal" else -up
     direction = np.cos(angle) * ahead + np.sin(angle) * left
-    return Beams(np.arange(len(time)), flight.positions(time), direction, np.column_stack(_bearing(direction))), left
+    return Beams(np.arange(len(time)), flight.positions(time), direction, np.column_stack(bearing(direction))), left
 
 
-def _first(world: Surroundings, beams: Beams, rng: np.random.Generator) -> Echoes:
+def first_met(world: Surroundings, beams: Beams, rng: np.random.Generator) -> Echoes:
     """Return what each beam meets first, of those that meet anything within reach; order of the beams."""
     ends = world.surfaces(beams, *world.met("solids", beams))
     leaves = world.leaves(beams, *world.met("crowns", beams), rng)
@@ -218,7 +218,7 @@ def _first(world: Surroundings, beams: Beams, rng: np.random.Generator) -> Echoe
     return echoes.take(rank(echoes.pulse) == 0)
 
 
-def _recorded(echoes: Echoes, left: np.ndarray, number: int, rng: np.random.Generator) -> dict[str, np.ndarray]:
+def recorded(echoes: Echoes, left: np.ndarray, number: int, rng: np.random.Generator) -> dict[str, np.ndarray]:
     """Return the dimensions of echoes but place and time."""
     side = np.einsum("ij,ij->i", echoes.direction, left[echoes.pulse])
     nadir = np.rad2deg(np.arccos(np.clip(-echoes.direction[:, 2], -1.0, 1.0)))

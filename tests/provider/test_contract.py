@@ -54,6 +54,7 @@ IDS = {
     "simulatevillage",
     "extractfacades",
     "segmentplaneshough",
+    "simulatestreet",
 }
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints"}
 ALL = {**STAGES, **TOYS}

@@ -8,7 +8,7 @@ from lidar_buildings.algorithms.facades.extract_facades import extract_facades, 
 from lidar_buildings.algorithms.facades.facade_outline import key_points, pushed_out
 from lidar_buildings.algorithms.stage import Monitor
 from lidar_buildings.tests.builders import FAR, turned
-from lidar_buildings.tests.facades import corner_errors, street_floor, wall
+from lidar_buildings.tests.facades import corner_errors, street_floor, wall, without
 
 # A house at a street corner, 8 m by 6 m, 5 m high; the street is south and east of it.
 CORNERS = np.array([[x, y, z] for x, y in ((0, 0), (8, 0), (8, 6)) for z in (0.0, 5.0)])
@@ -136,6 +136,24 @@ def test_recesses_and_bays_are_planes_of_their_own(rng):
     assert len(facades) == 5
     assert missed.mean() < 0.03
     assert invented.max() < 0.1
+
+
+def test_what_cars_and_trees_hide_of_foot_and_sides_is_completed(rng):
+    """A car hides a corner of the foot, another a piece of it, a tree a piece of a side; a step at the top stays."""
+    points = wall(rng, (0, 0), (14, 0), density=80)
+    for low, high in (((-1, -1, -1), (3, 1, 1.5)), ((6, -1, -1), (9, 1, 1.4)), ((12, -1, 2), (15, 1, 3.5))):
+        points = without(points, low, high)
+    points = without(points, (-1, -1, 4), (5, 1, 6))
+    classes = np.zeros(len(points), np.uint8)
+    whole, bare = (extract_facades(points, classes, complete=complete)[1] for complete in (True, False))
+    missed, invented = corner_errors(
+        whole.geometries, [[0, 0, 0], [14, 0, 0], [14, 0, 5], [5, 0, 5], [5, 0, 4], [0, 0, 4]]
+    )
+    assert missed.max() < 0.08
+    assert invented.max() < 0.08
+    assert whole.columns["area"] == pytest.approx([65], rel=0.01)
+    assert bare.columns["area"] == pytest.approx([65 - 4.5 - 4.2 - 3.0], rel=0.03)
+    assert whole.columns["seen_share"] == pytest.approx([1 - 11.7 / 65], abs=0.02)
 
 
 def test_shadows_are_bridged_up_to_the_widest_gap(rng):

@@ -1,0 +1,224 @@
+"""A street scanned from a vehicle, of which every facade, opening and corner is known."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..params import Seed
+from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
+from .scanner import MAX_PULSES
+from .street_fronts import Truth
+from .street_scene import build_street
+from .vehicle import Drive, drive_along, pulses_of
+
+# The scanners are this high over the street (m).
+_HEIGHT = 2.2
+
+# Points of a wall this far from its front (m, and standard deviations of the noise) are on its ends and reveals.
+_ON_FRONT, _DEVIATIONS = 0.01, 4.0
+
+_CREATED = (
+    "xyz",
+    "classification",
+    "return_number",
+    "number_of_returns",
+    "intensity",
+    "scan_angle",
+    "point_source_id",
+    "gps_time",
+    "segment_id",
+    "cluster_id",
+)
+
+_FACADE_FIELDS = (
+    Field("id", int, "number of the facade, as SegmentID of its points"),
+    Field("kind", str, "kind of the front that it is part of: plain, recess, bay, curved or balconies"),
+)
+_OPENING_FIELDS = (
+    Field("id", int, "number of the opening, as ClusterID of its points"),
+    Field("facade", int, "number of its facade"),
+    Field("kind", str, "window or door"),
+    Field("width", float, "Width", "m"),
+    Field("height", float, "Height", "m"),
+)
+_CORNER_FIELDS = (Field("facade", int, "number of the facade"),)
+
+
+@stage(
+    "Simulate street",
+    group="Simulation",
+    tags="synthetic,mobile mapping,vehicle,facade,window,street,demo,example,test,truth,teaching,generate",
+    creates=_CREATED,
+    layers=(
+        Layer("facades", "True facades", "Polygon", _FACADE_FIELDS, style="facades"),
+        Layer("openings", "True openings", "Polygon", _OPENING_FIELDS),
+        Layer("corners", "True corners", "Point", _CORNER_FIELDS),
+    ),
+)
+def simulate_street(
+    *,
+    length: Annotated[float, Param("Length", "Length of the street.", unit="m", low=10, high=2000)] = 60.0,
+    width: Annotated[
+        float, Param("Width", "Distance between the fronts of both sides.", unit="m", low=12, high=60)
+    ] = 16.0,
+    slope: Annotated[float, Param("Slope", "Slope along the street.", unit="°", low=0, high=10)] = 1.0,
+    clutter: Annotated[
+        bool,
+        Param("Clutter", "Put parked cars, trees, poles and people before the fronts, which hide parts of them."),
+    ] = True,
+    glass: Annotated[
+        float,
+        Param(
+            "Glass",
+            "Share of the pulses on window panes that pass them and are lost.",
+            unit="%",
+            low=0,
+            high=100,
+        ),
+    ] = 70.0,
+    speed: Annotated[float, Param("Speed", "Speed of the vehicle.", unit="m/s", low=0.5, high=30, advanced=True)] = 5.0,
+    line_rate: Annotated[
+        float, Param("Line rate", "Scan lines of each scanner.", unit="1/s", low=1, high=500, advanced=True)
+    ] = 100.0,
+    angular_step: Annotated[
+        float,
+        Param(
+            "Angular step", "Angle between neighboring beams of a scanner.", unit="°", low=0.02, high=5, advanced=True
+        ),
+    ] = 0.25,
+    max_range: Annotated[
+        float, Param("Maximum range", "How far the scanners see.", unit="m", low=5, high=200, advanced=True)
+    ] = 40.0,
+    range_noise: Annotated[
+        float,
+        Param("Range noise", "Standard deviation of the measured distances.", unit="m", low=0, high=0.2, advanced=True),
+    ] = 0.01,
+    seed: Seed = 1,
+    monitor: Optional[Monitor] = None,
+):
+    """Scan a made-up street from a vehicle, with the true facades, windows, doors and corners.
+
+    Houses stand side by side along both sides: plain fronts, fronts with a recess, a bay, balconies, and curved ones,
+    all with windows and doors. Parked cars, trees, poles and people hide parts of them. The vehicle drives through
+    the street once, with two scanners whose planes look ahead and back.
+
+    Returns
+    -------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates (m), by time.
+    classification : ndarray of shape (n,), uint8
+        The truth: 2 ground; 3, 4, 5 vegetation by height; 6 buildings with their balconies; 1 cars, poles and people.
+    return_number, number_of_returns : ndarray of shape (n,), uint8
+        1: the scanners hear the first echo only.
+    intensity : ndarray of shape (n,), uint16
+        Brightness by material.
+    scan_angle : ndarray of shape (n,), float32
+        Angle of the beam to the nadir (°), negative to the left of the vehicle.
+    point_source_id : ndarray of shape (n,), uint16
+        1 for the scanner that looks ahead on the left, 2 for the other one.
+    gps_time : ndarray of shape (n,), float64
+        Time of the pulse (s).
+    segment_id : ndarray of shape (n,), int32
+        Number of the facade; 0 for everything else, reveals, panes and frames too.
+    cluster_id : ndarray of shape (n,), int32
+        Number of the opening that a pane or frame belongs to; 0 for everything else.
+    facades, openings : LayerFeatures
+        Polygons with Z, counterclockwise seen from the street; openings in the plane of the facade's front.
+    corners : LayerFeatures
+        Corners of the facades, points with Z.
+
+    Raises
+    ------
+    ValueError
+        If there would be more than 50 million pulses, or no beam meets anything.
+
+    Notes
+    -----
+    A curved front is made of six flat strips; walls of neighboring houses in one plane are one facade. The position of
+    the vehicle is known exactly; the noise lies along the beam. Frames stand 10 cm and panes 16 cm behind the front.
+    Not simulated: rooms behind panes, roofs, mirror images in glass, and echoes that mix two surfaces at an edge.
+
+    Examples
+    --------
+    >>> from lidar_buildings.algorithms.simulation.simulate_street import simulate_street
+    >>> *_, facades, openings, corners = simulate_street(length=20.0, line_rate=5.0, angular_step=2.0)
+    >>> len(corners) >= 4 * len(facades)
+    True
+    """
+    monitor = monitor or Monitor()
+    pulses = pulses_of(length, speed, line_rate, angular_step)
+    if pulses > MAX_PULSES:
+        raise ValueError(
+            f"A street of {length:g} m has {pulses / 1e6:.0f} million pulses, more than {MAX_PULSES / 1e6:.0f} "
+            "million; shorten it, lower the line rate, or take a larger speed or angular step."
+        )
+    scene, truth, street = build_street(length, width, slope, clutter, seed)
+    ground = scene.relief.plane
+    # In the right lane: the fronts of both sides are seen at different distances.
+    ends = [np.array(street.at(sign * length / 2, -width / 8)) for sign in (-1, 1)]
+    ends = [np.array([*end, float(ground(*end)) + _HEIGHT]) for end in ends]
+    way = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
+    made = drive_along(
+        scene,
+        Drive(ends[0], way, length, speed),
+        line_rate=line_rate,
+        angular_step=angular_step,
+        max_range=max_range,
+        range_noise=range_noise,
+        seed=seed,
+        monitor=monitor,
+    )
+    made = _with_numbers(_through_glass(made, truth, glass, seed), truth, range_noise)
+    if not len(made["xyz"]):
+        raise ValueError(f"Nothing is within {max_range:g} m of the scanners; raise the maximum range.")
+    return (*(made[name] for name in _CREATED), *_layers(truth))
+
+
+def _through_glass(made: dict[str, np.ndarray], truth: Truth, share: float, seed: int) -> dict[str, np.ndarray]:
+    """Return the points that are left after panes let a share (%) of the pulses pass."""
+    is_glass = np.isin(made["segment_id"], sorted(truth.glass))
+    chance = np.random.default_rng([seed, 6]).random(len(is_glass))
+    kept = ~is_glass | (chance >= share / 100)
+    return {name: values[kept] for name, values in made.items()}
+
+
+def _with_numbers(made: dict[str, np.ndarray], truth: Truth, noise: float) -> dict[str, np.ndarray]:
+    """Return points with the numbers of facade and opening instead of those of objects."""
+    number = made["segment_id"]
+    facade, opening = np.zeros((2, int(number.max(initial=0)) + 1), np.int32)
+    for of, table in ((truth.facade_of, facade), (truth.opening_of, opening)):
+        for own, true in of.items():
+            if own < len(table):
+                table[own] = true
+    on_facade = facade[number]
+    # The sides of openings and the ends of walls are of the same solids, and not of the front.
+    start = np.array([ring[0] for ring in truth.facades])
+    step = np.array([ring[1] - ring[0] for ring in truth.facades])
+    across = np.column_stack([-step[:, 1], step[:, 0]]) / np.hypot(step[:, 0], step[:, 1])[:, None]
+    own = on_facade - 1
+    off = np.einsum("ij,ij->i", (made["xyz"] - start[own])[:, :2], across[own])
+    on_facade[np.abs(off) > _ON_FRONT + _DEVIATIONS * noise] = 0
+    return {**made, "segment_id": on_facade, "cluster_id": opening[number]}
+
+
+def _layers(truth: Truth) -> tuple[LayerFeatures, LayerFeatures, LayerFeatures]:
+    """Return the true facades, openings and corners."""
+    walls = truth.facades
+    numbers = list(range(1, len(walls) + 1))
+    facades = LayerFeatures([[ring] for ring in walls], {"id": numbers, "kind": truth.kinds})
+    rings = truth.openings
+    openings = LayerFeatures(
+        [[ring] for ring in rings],
+        {
+            "id": list(range(1, len(rings) + 1)),
+            "facade": truth.opening_facades,
+            "kind": truth.opening_kinds,
+            "width": [float(np.hypot(*(ring[1] - ring[0])[:2])) for ring in rings],
+            "height": [float(ring[2, 2] - ring[1, 2]) for ring in rings],
+        },
+    )
+    corners = [corner for ring in walls for corner in ring[:-1]]
+    owner = np.repeat(numbers, [len(ring) - 1 for ring in walls]).tolist()
+    return facades, openings, LayerFeatures(corners, {"facade": owner})

@@ -1,0 +1,234 @@
+"""Fronts of houses along a street: walls with openings, recesses, bays, balconies and curved fronts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from .scene import Scene
+from .solids import Rect, Solid, flat
+
+KINDS = ("plain", "recess", "bay", "curved", "balconies")
+
+# Walls are this thick (m); below ground they go on so far (m).
+_WALL, _BELOW = 0.3, 1.0
+
+# Heights of a storey, of a sill over the floor, of windows and doors, and their widths (m).
+_STOREY, _SILL, _WINDOW, _DOOR = 3.0, 0.9, (1.2, 1.5), (1.1, 2.2)
+
+# Panes lie this far behind the front, frames before them (m); frames are so wide.
+_PANE, _FRAME, _FRAME_WIDTH = 0.16, 0.10, 0.07
+
+# Width of the axis of windows, least distance of a window from the end of a wall (m).
+_AXIS, _MARGIN = 2.4, 0.5
+
+# Depth of recesses and bays, depth and height of balconies (m).
+_STEP, _BALCONY, _PARAPET = 1.2, 1.1, 1.0
+
+# Strips of a curved front, and the angle (°) that it turns by.
+_STRIPS, _TURN = 6, 60.0
+
+
+@dataclass
+class Truth:
+    """What is true of the fronts: polygons and kinds, and the object ids that belong to them.
+
+    Walls that go on in one plane are one facade, of however many houses.
+    """
+
+    walls: list[list[tuple[np.ndarray, np.ndarray, float]]] = field(default_factory=list)
+    kinds: list[str] = field(default_factory=list)
+    openings: list[np.ndarray] = field(default_factory=list)
+    opening_kinds: list[str] = field(default_factory=list)
+    opening_facades: list[int] = field(default_factory=list)
+    facade_of: dict[int, int] = field(default_factory=dict)
+    opening_of: dict[int, int] = field(default_factory=dict)
+    glass: set[int] = field(default_factory=set)
+
+    @property
+    def facades(self) -> list[np.ndarray]:
+        """Closed rings (m, 3), counterclockwise seen from the street (m)."""
+        return [_ring(walls) for walls in self.walls]
+
+    def add_wall(self, start: np.ndarray, end: np.ndarray, top: float, kind: str) -> int:
+        """Add a wall between two feet (3,), m, to the facade that it goes on, or to a new one; return its number."""
+        if self.walls and np.allclose(self.walls[-1][-1][1], start):
+            before, step = self.walls[-1][-1][1] - self.walls[-1][-1][0], end - start
+            if abs(before[0] * step[1] - before[1] * step[0]) < 1e-6 and before[:2] @ step[:2] > 0:
+                self.walls[-1].append((start, end, top))
+                return len(self.walls)
+        self.walls.append([(start, end, top)])
+        self.kinds.append(kind)
+        return len(self.walls)
+
+
+def _ring(walls: list[tuple[np.ndarray, np.ndarray, float]]) -> np.ndarray:
+    """Return the ring of walls side by side, with a step where tops differ."""
+    ring = [walls[0][0], walls[-1][1]]
+    for start, end, top in reversed(walls):
+        for x, y, _ in (end, start):
+            corner = np.array([x, y, top])
+            # Of walls of one height the corner between them is none.
+            if len(ring) > 3 and np.allclose(ring[-1], corner):
+                ring.pop()
+            else:
+                ring.append(corner)
+    return np.array([*ring, ring[0]])
+
+
+@dataclass(frozen=True)
+class Line:
+    """The foot of a wall: from a point (2,), m, so far in a direction (2,), the street on its right."""
+
+    start: np.ndarray
+    way: np.ndarray
+    length: float
+
+    def at(self, along: float, inward: float = 0.0) -> np.ndarray:
+        """Return the point (2,) so far along the wall and behind its front (m)."""
+        return self.start + along * self.way + inward * np.array([-self.way[1], self.way[0]])
+
+    def rect(self, along: tuple[float, float], inward: tuple[float, float]) -> Rect:
+        """Return the rectangle between two positions along the wall and two behind its front (m)."""
+        x, y = self.at(sum(along) / 2, sum(inward) / 2)
+        angle = float(np.arctan2(self.way[1], self.way[0]))
+        return Rect(float(x), float(y), along[1] - along[0], inward[1] - inward[0], angle)
+
+
+def build_front(scene: Scene, truth: Truth, line: Line, height: float, kind: str) -> None:
+    """Put the front of a house with this height over the ground at its start (m) behind a line."""
+    top = float(scene.relief.plane(*line.start)) + height
+    for part, is_front in _parts(line, kind):
+        _build_wall(scene, truth, part, top, kind, has_openings=is_front and part.length > 1.8)
+    if kind == "balconies":
+        _hang_balconies(scene, line, top, height)
+
+
+def _parts(line: Line, kind: str) -> list[tuple[Line, bool]]:
+    """Return the walls of a front in order, and whether each runs along the street."""
+    third, step = line.length / 3, _STEP
+    if kind in ("recess", "bay"):
+        inward = step if kind == "recess" else -step
+        corners = [(0, 0), (third, 0), (third, inward), (2 * third, inward), (2 * third, 0), (3 * third, 0)]
+        points = [line.at(*corner) for corner in corners]
+        return [(_between(a, b), k % 2 == 0) for k, (a, b) in enumerate(zip(points, points[1:]))]
+    if kind == "curved":
+        half = np.deg2rad(_TURN / 2)
+        radius = line.length / (2 * np.sin(half))
+        angle = np.linspace(-half, half, _STRIPS + 1)
+        # The arc bulges toward the street.
+        out = radius * (np.cos(angle) - np.cos(half))
+        points = [line.at(line.length / 2 + radius * np.sin(a), -o) for a, o in zip(angle, out)]
+        return [(_between(a, b), False) for a, b in zip(points, points[1:])]
+    return [(line, True)]
+
+
+def _between(a: np.ndarray, b: np.ndarray) -> Line:
+    length = float(np.hypot(*(b - a)))
+    return Line(a, (b - a) / length, length)
+
+
+def _build_wall(scene: Scene, truth: Truth, line: Line, top: float, kind: str, has_openings: bool) -> None:
+    """Put one flat wall with its openings, and what is true of it."""
+    ends = [line.at(0.0), line.at(line.length)]
+    feet = [float(scene.relief.plane(*end)) for end in ends]
+    start, end = (np.array([*end, foot]) for end, foot in zip(ends, feet))
+    number = truth.add_wall(start, end, top, kind)
+    own = scene.new_id()
+    truth.facade_of[own] = number
+    floor = max(feet)
+    axes = _axes(line.length) if has_openings else []
+    spans, last = [], 0.0
+    for middle, width in axes:
+        spans.append((last, middle - width / 2))
+        last = middle + width / 2
+    for start, end in [*spans, (last, line.length)]:
+        _block(scene, line, (start, end), (0.0, _WALL), min(feet) - _BELOW, top, own)
+    for k, (middle, width) in enumerate(axes):
+        along = (middle - width / 2, middle + width / 2)
+        _build_axis(scene, truth, line, along, floor, (min(feet) - _BELOW, top), own, number, k == len(axes) // 2)
+
+
+def _axes(length: float) -> list[tuple[float, float]]:
+    """Return middle and width (m) of the axes of openings of a wall."""
+    count = int((length - 2 * _MARGIN + (_AXIS - _WINDOW[0])) // _AXIS)
+    return [(length / 2 + (k - (count - 1) / 2) * _AXIS, _WINDOW[0]) for k in range(max(count, 0))]
+
+
+def _build_axis(
+    scene: Scene,
+    truth: Truth,
+    line: Line,
+    along: tuple[float, float],
+    floor: float,
+    heights: tuple[float, float],
+    own: int,
+    facade: int,
+    has_door: bool,
+) -> None:
+    """Put the openings of one axis and the wall between them."""
+    bottom, top = heights
+    level, below = floor, bottom
+    while level + _SILL + _WINDOW[1] + 0.3 < top:
+        is_door = has_door and level == floor
+        low, high = (bottom, level + _DOOR[1]) if is_door else (level + _SILL, level + _SILL + _WINDOW[1])
+        if low > below:
+            _block(scene, line, along, (0.0, _WALL), below, low, own)
+        _build_opening(scene, truth, line, along, (low, high), "door" if is_door else "window", facade)
+        below, level = high, level + _STOREY
+    _block(scene, line, along, (0.0, _WALL), below, top, own)
+
+
+def _build_opening(
+    scene: Scene,
+    truth: Truth,
+    line: Line,
+    along: tuple[float, float],
+    heights: tuple[float, float],
+    kind: str,
+    facade: int,
+) -> None:
+    """Put pane and frame of an opening; a door is opaque."""
+    number = len(truth.openings) + 1
+    pane, frame = scene.new_id(), scene.new_id()
+    truth.opening_of |= {pane: number, frame: number}
+    if kind == "window":
+        truth.glass.add(pane)
+    _block(scene, line, along, (_PANE, _PANE + 0.05), *heights, pane)
+    (start, end), (low, high) = along, heights
+    inward, width = (_FRAME, _PANE), _FRAME_WIDTH
+    for side in ((start, start + width), (end - width, end)):
+        _block(scene, line, side, inward, low, high, frame)
+    for bar in ((low, low + width), (high - width, high)):
+        _block(scene, line, along, inward, *bar, frame)
+    ground = max(low, min(float(scene.relief.plane(*line.at(position))) for position in along))
+    corners = [(start, ground), (end, ground), (end, high), (start, high), (start, ground)]
+    truth.openings.append(np.array([(*line.at(a), z) for a, z in corners]))
+    truth.opening_kinds.append(kind)
+    truth.opening_facades.append(facade)
+
+
+def _block(
+    scene: Scene,
+    line: Line,
+    along: tuple[float, float],
+    inward: tuple[float, float],
+    bottom: float,
+    top: float,
+    number: int,
+) -> None:
+    """Put a box that is part of a wall."""
+    if along[1] - along[0] > 1e-6 and top - bottom > 1e-6:
+        rect = line.rect(along, inward)
+        scene.solids.append(Solid(rect, flat(rect, top), bottom, PointClass.BUILDING, number))
+
+
+def _hang_balconies(scene: Scene, line: Line, top: float, height: float) -> None:
+    """Put a balcony before the middle axis of each upper storey."""
+    middle, floor = line.length / 2, top - height
+    for level in np.arange(floor + _STOREY, top - _STOREY + 0.5, _STOREY):
+        number, along = scene.new_id(), (middle - 1.4, middle + 1.4)
+        _block(scene, line, along, (-_BALCONY, 0.0), level - 0.15, level, number)
+        _block(scene, line, along, (-_BALCONY, -_BALCONY + 0.05), level, level + _PARAPET, number)

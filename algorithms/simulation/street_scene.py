@@ -1,0 +1,102 @@
+"""A made-up street for a vehicle: fronts on both sides, and what stands, grows, parks and walks before them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from .plants import plant_tree
+from .relief import Relief
+from .scene import Scene
+from .solids import Rect, Solid, flat
+from .street_fronts import KINDS, Line, Truth, build_front
+from .town_layout import park_car
+
+# Widths of houses, and heights of the eaves of a side (m); houses of one side differ by less than a storey.
+_WIDTHS, _EAVES, _DIFFERENCE = (8.0, 12.0), (7.0, 11.0), 0.8
+
+# Rows of things, from the fronts toward the street (m).
+_PEOPLE, _TREES, _POLES, _CARS = 1.2, 2.2, 2.4, 3.6
+
+# A person and a pole: width (m) and height (m).
+_PERSON, _POLE = (0.45, 1.75), (0.16, 6.0)
+
+
+def build_street(length: float, width: float, slope: float, clutter: bool, seed: int) -> tuple[Scene, Truth, Rect]:
+    """Make up a street.
+
+    Parameters
+    ----------
+    length, width : float
+        Of the street, from front to front (m).
+    slope : float
+        Slope along the street (°).
+    clutter : bool
+        Whether cars, trees, poles and people stand before the fronts.
+    seed : int
+        For all that is drawn.
+
+    Returns
+    -------
+    scene : Scene
+        The same for the same arguments.
+    truth : Truth
+        Of the fronts.
+    street : Rect
+        Between the fronts.
+    """
+    rng = np.random.default_rng([seed, 4])
+    angle = float(rng.uniform(0.0, 2 * np.pi))
+    size = length + 2 * width
+    scene, truth = Scene(Relief(size, angle, float(np.tan(np.deg2rad(slope))))), Truth()
+    street = Rect(size / 2, size / 2, length, width, angle)
+    for side in (1, -1):
+        _build_side(scene, truth, street, side, rng)
+    if clutter:
+        for side in (1, -1):
+            _put_clutter(scene, street, side, rng)
+    return scene, truth, street
+
+
+def _build_side(scene: Scene, truth: Truth, street: Rect, side: int, rng: np.random.Generator) -> None:
+    """Put houses side by side, each with another kind of front, the ends of a street closed by plain ones."""
+    # Seen along the line, the street is on the right: on the left of the street the line runs forward.
+    start = np.array(street.at(-side * street.length / 2, side * street.width / 2))
+    way = side * np.array([np.cos(street.angle), np.sin(street.angle)])
+    eave = rng.uniform(*_EAVES)
+    widths = _divided(street.length, rng)
+    first = int(rng.integers(len(KINDS)))
+    for k, width in enumerate(widths):
+        kind = KINDS[(first + k) % len(KINDS)]
+        build_front(scene, truth, Line(start, way, width), eave + rng.uniform(0, _DIFFERENCE), kind)
+        start = start + width * way
+
+
+def _divided(length: float, rng: np.random.Generator) -> np.ndarray:
+    """Return widths of houses that fill a length (m)."""
+    count = max(1, round(length / np.mean(_WIDTHS)))
+    share = rng.uniform(*_WIDTHS, count)
+    return share / share.sum() * length
+
+
+def _put_clutter(scene: Scene, street: Rect, side: int, rng: np.random.Generator) -> None:
+    """Put what hides parts of the fronts of one side."""
+    half = street.width / 2
+    for along in np.arange(-street.length / 2 + 4.0, street.length / 2 - 3.0, 6.5):
+        if rng.random() < 0.6:
+            park_car(scene, street.part(float(along), side * (half - _CARS), 4.3, 1.8))
+    for along in np.arange(-street.length / 2 + 6.0, street.length / 2 - 2.0, 15.0):
+        x, y = street.at(along + rng.uniform(-2, 2), side * (half - _TREES))
+        foot = (float(x), float(y), float(scene.relief.plane(x, y)))
+        plant_tree(scene, foot, rng.uniform(5.0, 7.0), rng)
+        _put_post(scene, street, along + 7.0, side * (half - _POLES), _POLE)
+    for along in rng.uniform(-street.length / 2, street.length / 2, max(1, round(street.length / 8))):
+        _put_post(scene, street, float(along), side * (half - _PEOPLE), _PERSON)
+
+
+def _put_post(scene: Scene, street: Rect, along: float, across: float, size: tuple[float, float]) -> None:
+    rect = street.part(along, across, size[0], size[0])
+    ground = float(scene.relief.plane(rect.x, rect.y))
+    scene.solids.append(
+        Solid(rect, flat(rect, ground + size[1]), ground - 0.5, PointClass.UNCLASSIFIED, scene.new_id())
+    )

@@ -1,0 +1,112 @@
+"""A vehicle with two line scanners on its roof: its drive along a street, and what the beams meet first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..stage import Monitor
+from .beams import Beams
+from .drone import Surroundings, bearing, first_met, recorded
+from .scene import Scene
+
+# Scanners turn in upright planes that look this far ahead of and behind the perpendicular of the way (°), as on most
+# mapping vehicles: so each side of a recess is seen by one of them. By their number, the source id of their points.
+PLANES = {1: 45.0, 2: -45.0}
+
+# Pulses worked on at once, and the way (m) that the vehicle goes meanwhile at most.
+_BLOCK, _BLOCK_WAY = 50_000, 1.0
+
+
+@dataclass(frozen=True)
+class Drive:
+    """A straight drive.
+
+    Parameters
+    ----------
+    start : ndarray of shape (3,)
+        Where the scanners are at first (m).
+    way : ndarray of shape (3,)
+        Unit vector of the drive.
+    length, speed : float
+        m and m/s.
+    """
+
+    start: np.ndarray
+    way: np.ndarray
+    length: float
+    speed: float
+
+    def positions(self, time: np.ndarray) -> np.ndarray:
+        """Return where the scanners are (n, 3) (m) at times (n,) (s)."""
+        return self.start + self.speed * time[:, None] * self.way
+
+
+def drive_along(
+    scene: Scene,
+    drive: Drive,
+    *,
+    line_rate: float,
+    angular_step: float,
+    max_range: float,
+    range_noise: float,
+    seed: int,
+    monitor: Monitor,
+) -> dict[str, np.ndarray]:
+    """Scan a street from a vehicle. The tunables are those of :func:`.simulate_street.simulate_street`.
+
+    Returns
+    -------
+    dict of str to ndarray
+        Dimensions by name, in the order of time.
+    """
+    world, parts = Surroundings(scene, max_range), []
+    blocks = [(number, time) for number in PLANES for time in _blocks(drive, line_rate, angular_step)]
+    for i, (number, time) in enumerate(blocks):
+        rng = np.random.default_rng([seed, 5, i])
+        beams, left = _pulses(drive, PLANES[number], time, line_rate)
+        echoes = first_met(world, beams, rng)
+        part = recorded(echoes, left, number, rng)
+        part["gps_time"] = time[echoes.pulse]
+        # The noise of the range lies along the beam.
+        part["xyz"] = beams.at(echoes.pulse, echoes.range + range_noise * rng.standard_normal(len(echoes)))
+        parts.append(part)
+        monitor.progress((i + 1) / len(blocks))
+    made = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    order = np.argsort(made["gps_time"], kind="stable")
+    return {name: values[order] for name, values in made.items()}
+
+
+def pulses_of(length: float, speed: float, line_rate: float, angular_step: float) -> float:
+    """Return how many pulses a drive has."""
+    return len(PLANES) * length / speed * line_rate * pulses_per_turn(angular_step)
+
+
+def pulses_per_turn(angular_step: float) -> int:
+    """Return how many pulses a scanner sends in one turn, which is one line."""
+    return max(1, int(360.0 / angular_step + 1e-9))
+
+
+def _blocks(drive: Drive, line_rate: float, angular_step: float) -> Iterator[np.ndarray]:
+    """Yield the times (s) of the pulses of some scan lines each."""
+    per_line = pulses_per_turn(angular_step)
+    n_lines = max(1, int(drive.length / drive.speed * line_rate))
+    step = max(1, min(_BLOCK // per_line, int(_BLOCK_WAY / drive.speed * line_rate)))
+    for line in range(0, n_lines, step):
+        lines = np.arange(line, min(line + step, n_lines))
+        yield (lines[:, None] + np.arange(per_line) / per_line).ravel() / line_rate
+
+
+def _pulses(drive: Drive, turn: float, time: np.ndarray, line_rate: float) -> tuple[Beams, np.ndarray]:
+    """Return the beams of pulses, and what is left of the vehicle (n, 3)."""
+    cos, sin = np.cos(np.deg2rad(turn)), np.sin(np.deg2rad(turn))
+    left = np.array([-drive.way[1], drive.way[0], 0.0]) / np.hypot(*drive.way[:2])
+    ahead = np.array([left[1], -left[0], 0.0])
+    across = cos * left + sin * ahead
+    # A line begins at the zenith and comes down on the left.
+    angle = 2 * np.pi * np.mod(time * line_rate, 1.0)[:, None]
+    direction = np.cos(angle) * [0.0, 0.0, 1.0] + np.sin(angle) * across
+    aim = np.column_stack(bearing(direction))
+    return Beams(np.arange(len(time)), drive.positions(time), direction, aim), np.tile(left, (len(time), 1))
