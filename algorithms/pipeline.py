@@ -83,6 +83,28 @@ class Pipeline:
                 found.setdefault(self.parameter(step, tunable.name), (step, tunable))
         return {name: found[name] for name in (*self.shown, *(name for name in found if name not in self.shown))}
 
+    def by_step(self, tunables: dict[str, Any]) -> list[tuple[Step, dict[str, Any]]]:
+        """Return each step with its tunables: those of the composite that are given, over the step's own defaults.
+
+        Raises
+        ------
+        ValueError
+            If the composite has no tunable of a name.
+        """
+        unknown = [name for name in tunables if name not in self.parameters]
+        if unknown:
+            raise ValueError(f"{self.name} has no tunable {unknown[0]!r}; it has {', '.join(self.parameters)}.")
+        chosen = []
+        for step in self.steps:
+            names = {name: self.parameter(step, name) for name in step.stage.tunables}
+            given = {name: tunables[named] for name, named in names.items() if named in tunables}
+            chosen.append((step, {**step.tunables, **given}))
+        return chosen
+
+    def reach(self, tunables: dict[str, Any]) -> float:
+        """Return how far (m) from a point others may lie that decide on it: the sum of the reaches of all steps."""
+        return sum(step.stage.reach_of(chosen) for step, chosen in self.by_step(tunables))
+
     def cloud_of(self, step: Step) -> Optional[str]:
         """Return the name of the step whose cloud ``step`` works on, "" for what is given, None where it reads none."""
         if not step.stage.reads_cloud:

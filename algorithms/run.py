@@ -273,7 +273,7 @@ def run_pipeline(
         If a tunable or layer is unknown, a layer is missing, or a step refuses its data.
     """
     monitor = monitor or Monitor()
-    chosen = _by_step(pipeline, tunables)
+    chosen = {step.name: of_step for step, of_step in pipeline.by_step(tunables)}
     given = given_layers(pipeline.name, pipeline.input_layers.values(), input_layers or {})
     # Later steps change the cloud that they work on: what is wanted as it was is copied when it is made.
     wanted = {*(pipeline.kept if kept is None else kept), *(step.cloud for step in pipeline.steps)}
@@ -324,17 +324,3 @@ def _results(
         elif output.name != CLOUD and output.step.name in copies:
             results.clouds[output.name] = copies[output.step.name]
     return results
-
-
-def _by_step(pipeline: Pipeline, tunables: dict[str, Any]) -> dict[str, dict[str, Any]]:
-    """Sort the composite's parameters by step, over the pipeline's own defaults."""
-    unknown = [name for name in tunables if name not in pipeline.parameters]
-    if unknown:
-        raise ValueError(f"{pipeline.name} has no tunable {unknown[0]!r}; it has {', '.join(pipeline.parameters)}.")
-    chosen = {step.name: dict(step.tunables) for step in pipeline.steps}
-    for step in pipeline.steps:
-        for tunable in step.stage.tunables:
-            name = pipeline.parameter(step, tunable)
-            if name in tunables:
-                chosen[step.name][tunable] = tunables[name]
-    return chosen

@@ -15,11 +15,22 @@ from .stage import Monitor
 _MOST_THREADS = 32
 
 
+# What a process that shares the machine with others of its kind was told to take.
+_TOLD: list[int] = []
+
+
 def n_threads() -> int:
     """Return how many threads work at once: one for each core that this process may use, at most 32."""
+    if _TOLD:
+        return _TOLD[-1]
     # Where batch systems and containers give a process some of the cores, only Linux tells which.
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     return min(cores, _MOST_THREADS)
+
+
+def use_threads(count: int) -> None:
+    """Let this process work with ``count`` threads at once, one of several that share the cores."""
+    _TOLD[:] = [count]
 
 
 def in_chunks(work: Callable[[np.ndarray], None], rows: np.ndarray, size: int, monitor: Monitor) -> None:

@@ -39,6 +39,7 @@ ROOMS = (
     "quality",
     "simulation",
     "top",
+    "tiling",
 )
 HELPERS = {"packages", "threads", "params"}
 # Lines of a room, of the lines of all rooms: a larger one holds more than one idea.

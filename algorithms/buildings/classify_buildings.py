@@ -26,12 +26,17 @@ _POINTS_PER_PLANE = 1.5
 _POINTS_PER_PLANE_ON_LINES = 1.75
 
 
+# Neighborhoods, and what stands around a cluster (m).
+_REACH = 5.0
+
+
 @stage(
     "Classify buildings",
     group="Buildings",
     tags="building,entropy,k-means,unsupervised,classification",
     writes=("classification", "entropy", "cluster_entropy", "confidence", "reason"),
     measures=MEASURES,
+    reach=_REACH,
 )
 def classify_buildings(
     xyz,

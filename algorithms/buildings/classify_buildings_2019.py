@@ -17,12 +17,17 @@ from .entropy_split import two_means
 _MIN_NEIGHBORS = 3
 
 
+# Neighborhoods of 4 m², in sparse clouds more (m).
+_REACH = 5.0
+
+
 @stage(
     "Classify buildings (as published 2019)",
     group="Buildings",
     tags="building,entropy,k-means,unsupervised,classification,Santos",
     writes=("classification", "entropy", "cluster_entropy", "confidence", "reason"),
     measures=MEASURES,
+    reach=_REACH,
 )
 def classify_buildings_2019(
     xyz,

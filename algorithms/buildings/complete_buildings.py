@@ -43,11 +43,16 @@ _CROWN, _PASSED, _WITHIN = np.ones((2, 2), bool), 0.5, 5
 _EIGHT = np.ones((3, 3), bool)
 
 
+# Gaps of 3 to 20 m are closed from both sides; usual clouds have the least (m).
+_REACH = 10.0
+
+
 @stage(
     "Complete buildings",
     group="Buildings",
     tags="building,roof,facade,chimney,dormer,attach",
     writes=("classification", "cluster_id", "confidence", "reason"),
+    reach=lambda tunables: tunables["gap"] or _REACH,
 )
 def complete_buildings(
     xyz,

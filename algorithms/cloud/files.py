@@ -53,7 +53,7 @@ def read_cloud(
     """
     path, monitor = Path(path), monitor or Monitor()
     with _readable(path):
-        files = _files_of(path)
+        files = files_of(path)
         header = open_header(files[0])
         units = units_of(header, crs_units)
         if len(files) == 1:
@@ -76,7 +76,7 @@ def check_readable(path: Union[str, Path], crs_units: Optional[Resolver] = None)
     """
     path = Path(path)
     with _readable(path):
-        for file in _files_of(path):
+        for file in files_of(path):
             header = open_header(file)
             units_of(header, crs_units)
             check_points(file, header)
@@ -111,7 +111,7 @@ def count_points(path: Union[str, Path]) -> int:
 def _headers(path: Path) -> list[Header]:
     """Return the headers of a file or of all its tiles."""
     with _readable(path):
-        return [open_header(file) for file in _files_of(path)]
+        return [open_header(file) for file in files_of(path)]
 
 
 @contextmanager
@@ -124,7 +124,14 @@ def _readable(path: Path) -> Iterator[None]:
         ) from error
 
 
-def _files_of(path: Path) -> list[Path]:
+def files_of(path: Path) -> list[Path]:
+    """Return the files that hold the points of a cloud: itself, or the tiles of a VPC.
+
+    Raises
+    ------
+    ValueError
+        If it is no point cloud, or a tile is missing.
+    """
     if path.is_dir():
         raise ValueError(f"{path} is a folder; choose a point cloud file in it.")
     kind = kind_of(path)

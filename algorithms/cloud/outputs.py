@@ -232,6 +232,19 @@ def _is_abandoned(folder: Path) -> bool:
 
 
 @contextmanager
+def locked_folder(folder: Path) -> Iterator[bool]:
+    """Tell whether no other running program has locked a folder, and lock it for as long as the block lasts."""
+    with (folder / _LOCK).open("ab") as lock:
+        try:
+            if fcntl is not None:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            yield False
+            return
+        yield True
+
+
+@contextmanager
 def all_or_nothing() -> Iterator[ResultFiles]:
     """Give the files of a run, which are put in place when the block ends well and vanish otherwise.
 

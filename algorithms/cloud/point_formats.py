@@ -32,6 +32,10 @@ class Layout:
     point_format: int
     extras: tuple[ExtraField, ...] = ()
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what another process needs: laspy's objects are made anew there, after it is imported as here."""
+        return {"point_format": self.point_format, "extras": self.extras}
+
     @cached_property
     def standard(self) -> np.dtype:
         """Packed structured dtype of the standard fields, with laspy's names; bit fields share bytes."""

@@ -5,13 +5,15 @@ from __future__ import annotations
 import json
 import os
 from dataclasses import replace
+from datetime import datetime, timezone
 from pathlib import Path
+from typing import Callable, Optional
 
 import numpy as np
 
 from ..stage import Monitor
 from .header import COPC_HIERARCHY, COPC_INFO, LASZIP, WAVEFORMS, WKT_BIT, Header, Vlr
-from .outputs import COPC, LAS, LAZ, kind_of
+from .outputs import COPC, LAS, LAZ, kind_of, replacing
 from .point_records import convert, merged_layout
 from .points import open_header, read_chunks
 from .units import crs_identity, wkt_of
@@ -26,6 +28,12 @@ _MOST_MEMORY = 450_000_000
 # Memory that one value of JSON takes at most (bytes), a text of a few characters beyond ASCII. One of four characters
 # stands before it, which texts may hold too. Texts take 1 byte for a character of ASCII, and at most 4 for another.
 _BYTES_PER_VALUE = 90
+_EXTENSIONS = (
+    "https://stac-extensions.github.io/pointcloud/v1.0.0/schema.json",
+    "https://stac-extensions.github.io/projection/v1.1.0/schema.json",
+)
+
+ToDegrees = Callable[[np.ndarray], np.ndarray]
 
 
 def tiles_of(path: Path) -> list[Path]:
@@ -91,6 +99,73 @@ def _tile(path: Path, href: str) -> Path:
     raise ValueError(f"{path.name} names the tile {shown(href)}, which {why} build {path.name} again.")
 
 
+def write_vpc(tiles: list[Path], path: Path, to_degrees: Optional[ToDegrees] = None) -> None:
+    """Write a virtual point cloud that names ``tiles``; paths are relative to its folder where they can be.
+
+    Parameters
+    ----------
+    tiles : list of Path
+        LAS, LAZ or COPC files of one coordinate reference system.
+    path : Path
+        The .vpc file; it appears when it is complete.
+    to_degrees : callable, optional
+        Turns coordinates (n, 2) of the tiles into longitude and latitude (n, 2), by which catalogs look tiles up;
+        without it they stay as they are.
+
+    Raises
+    ------
+    ValueError
+        If a tile can't be read or the file can't be written.
+    """
+    features = [_feature(tile, path.parent, to_degrees) for tile in tiles]
+    with replacing(path) as stream:
+        stream.write(json.dumps({"type": "FeatureCollection", "features": features}, indent=1).encode())
+
+
+def _feature(tile: Path, folder: Path, to_degrees: Optional[ToDegrees]) -> dict:
+    """Return the STAC item of a tile."""
+    header = open_header(tile)
+    low, high = header.low, header.high
+    corners = np.array([[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]], [low[0], low[1]]])
+    there = corners if to_degrees is None else to_degrees(corners)
+    return {
+        "type": "Feature",
+        "stac_version": "1.0.0",
+        "stac_extensions": list(_EXTENSIONS),
+        "id": tile.name.split(".")[0],
+        "geometry": {"type": "Polygon", "coordinates": [there.tolist()]},
+        "bbox": [*there.min(axis=0).tolist(), float(low[2]), *there.max(axis=0).tolist(), float(high[2])],
+        "properties": {
+            "datetime": datetime.fromtimestamp(tile.stat().st_mtime, timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"),
+            "pc:count": header.count,
+            "pc:encoding": "LASzip" if header.is_compressed else "LAS",
+            "pc:type": "lidar",
+            "pc:schemas": _schemas(header),
+            "proj:bbox": [*low.tolist(), *high.tolist()],
+            "proj:wkt2": wkt_of(header),
+            "proj:geometry": {"type": "Polygon", "coordinates": [corners.tolist()]},
+        },
+        "links": [],
+        "assets": {"data": {"href": _href(tile, folder), "roles": [_DATA_ROLE]}},
+    }
+
+
+def _schemas(header: Header) -> list[dict]:
+    """Return the dimensions of the records of a tile."""
+    kinds = {"f": "floating", "u": "unsigned", "i": "signed"}
+    fields = header.layout.dtype.fields or {}
+    return [
+        {"name": name, "size": fields[name][0].itemsize, "type": kinds[fields[name][0].kind]}
+        for name in fields
+        if fields[name][0].kind in kinds
+    ]
+
+
+def _href(tile: Path, folder: Path) -> str:
+    tile, folder = tile.resolve(), folder.resolve()
+    return f"./{tile.relative_to(folder).as_posix()}" if folder in tile.parents else str(tile)
+
+
 def read_tiles(paths: list[Path], monitor: Monitor) -> tuple[Header, np.ndarray]:
     """Return all tiles as one cloud, tile after tile: its header and its records.
 
@@ -104,21 +179,32 @@ def read_tiles(paths: list[Path], monitor: Monitor) -> tuple[Header, np.ndarray]
         scale can store.
     """
     headers = [open_header(path) for path in paths]
-    _check_tiles(paths, headers)
+    check_tiles(paths, headers)
     header = merged_header(headers, "tiles", monitor)
     points = np.zeros(header.count, header.layout.dtype)
     start = 0
     for path, tile in zip(paths, headers):
         part = monitor.part(start / header.count, (start + tile.count) / header.count)
         for at, chunk in read_chunks(path, tile, part):
-            out = points[start + at : start + at + len(chunk)]
-            convert(chunk, tile.layout, header.layout, out)
-            _rescale(chunk, tile, header, out)
+            fill_merged(points[start + at : start + at + len(chunk)], chunk, tile, header)
         start += tile.count
     return header, points
 
 
-def _check_tiles(paths: list[Path], headers: list[Header]) -> None:
+def fill_merged(out: np.ndarray, records: np.ndarray, tile: Header, merged: Header) -> None:
+    """Write ``records`` (n,) of a tile to ``out`` (n,) as records of the merged cloud.
+
+    Raises
+    ------
+    ValueError
+        If a point lies where the scale of the merged cloud doesn't reach.
+    """
+    convert(records, tile.layout, merged.layout, out)
+    _rescale(records, tile, merged, out)
+
+
+def check_tiles(paths: list[Path], headers: list[Header]) -> None:
+    """Refuse tiles that can't be one cloud: of different reference systems, or with bounds that are not finite."""
     seen = [crs_identity(wkt_of(header)) for header in headers]
     for path, header, one in zip(paths, headers, seen):
         if one != seen[0]:
@@ -202,6 +288,6 @@ def _rescale(chunk: np.ndarray, tile: Header, merged: Header, out: np.ndarray) -
         if tile.scale[i] == merged.scale[i] and tile.offset[i] == merged.offset[i]:
             continue
         steps = np.rint((chunk[axis] * tile.scale[i] + (tile.offset[i] - merged.offset[i])) / merged.scale[i])
-        if not np.abs(steps).max() <= _LARGEST_INT:
+        if len(steps) and not np.abs(steps).max() <= _LARGEST_INT:
             raise ValueError("A tile has points outside the bounds in its header; repair its header first.")
         out[axis] = steps

@@ -26,11 +26,16 @@ _GAP_BINS = 2
 _GROUP_SIZE, _GROUP_SPACINGS = 3, 3.0
 
 
+# A cell borrows the histograms of the cells around it, which are some 5 to 10 m wide (m).
+_REACH = 10.0
+
+
 @stage(
     "Classify noise by height histogram",
     group="Preparation",
     tags="noise,outliers,birds,low points,high points,multipath,histogram,clean",
     writes=("classification",),
+    reach=_REACH,
 )
 def classify_noise_histogram(
     xyz,

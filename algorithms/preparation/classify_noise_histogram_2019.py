@@ -21,11 +21,16 @@ _MIN_BIN_HEIGHT = 1.0
 _BIN_SPACINGS = 2.0
 
 
+# A cell borrows the histograms of the cells around it, which are some 5 to 10 m wide (m).
+_REACH = 10.0
+
+
 @stage(
     "Classify noise by height histogram (as published 2019)",
     group="Preparation",
     tags="noise,outliers,birds,low points,high points,multipath,histogram,clean,CH filter,Carrilho",
     writes=("classification",),
+    reach=_REACH,
 )
 def classify_noise_histogram_2019(
     xyz,

@@ -20,11 +20,16 @@ _HEIGHT_NOISE_FACTOR = 10.0
 _MIN_HEIGHT_DISTANCE, _MAX_HEIGHT_DISTANCE = 0.2, 0.3
 
 
+# Points of one region are linked over less than this; the regions themselves may be of any size (m).
+_REACH = 5.0
+
+
 @stage(
     "Segment regions",
     group="Segmentation",
     tags="cluster,region growing,connected components,segmentation",
     writes=("cluster_id",),
+    reach=_REACH,
 )
 def segment_regions(
     xyz,

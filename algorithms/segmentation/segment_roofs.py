@@ -45,11 +45,16 @@ _ROUGHEST_OFF_PLANE = 0.7732
 _SMOOTH_SHARE, _LARGE = 0.3, 10.0
 
 
+# What surrounds a cluster decides on it; the clusters themselves may be of any size (m).
+_REACH = 5.0
+
+
 @stage(
     "Segment roofs",
     group="Segmentation",
     tags="roof,plane,planar,surface growing,segmentation",
     writes=("segment_id", "cluster_id", "reason"),
+    reach=_REACH,
 )
 def segment_roofs(
     xyz,

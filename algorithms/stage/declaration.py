@@ -6,7 +6,7 @@ import functools
 import inspect
 import typing
 from dataclasses import dataclass, field, replace
-from typing import Any, Callable
+from typing import Any, Callable, Union
 
 from .arguments import REFERENCE_PREFIX, check_arrays
 from .docstrings import before_first_section, sections, with_tunables
@@ -19,6 +19,10 @@ VALUES, DIMENSION = "values", "dimension"
 
 # Keyword arguments that the runner fills in: no tunables.
 MONITOR, SAMPLING = "monitor", "sampling"
+
+
+# Meters, or what gives them from the tunables of a run.
+Reach = Union[float, Callable[[dict[str, Any]], float]]
 
 
 @dataclass(frozen=True)
@@ -41,6 +45,7 @@ class Stage:
     rasters: tuple[Raster, ...] = ()
     selects: bool = False
     merges: bool = False
+    reach: Reach = 0.0
 
     @property
     def name(self) -> str:
@@ -94,6 +99,10 @@ class Stage:
             raise ValueError(f"{self.name} has no tunable {unknown[0]!r}; it has {', '.join(self.tunables) or 'none'}.")
         return {name: t.check(tunables[name]) if name in tunables else t.default for name, t in self.tunables.items()}
 
+    def reach_of(self, tunables: dict[str, Any]) -> float:
+        """Return how far (m) from a point others may lie that the stage decides on it by, with these tunables."""
+        return self.reach(self.check(tunables)) if callable(self.reach) else self.reach
+
     def unpack(self, returned: Any) -> StageResults:
         """Give what the function returned its names."""
         results = list(returned) if isinstance(returned, tuple) else [returned]
@@ -123,6 +132,7 @@ def stage(
     rasters: tuple[Raster, ...] = (),
     selects: bool = False,
     merges: bool = False,
+    reach: Reach = 0.0,
 ) -> Callable[[Callable], Callable]:
     """Declare a function as a stage.
 
@@ -134,6 +144,9 @@ def stage(
     and a :class:`Report` when there are measures. A stage that merges and writes nothing
     returns None for the cloud that it makes. The decorated function checks its arrays
     and tunables on every call and carries its :class:`Stage` as ``function.stage``.
+
+    ``reach`` is how far (m) from a point others may lie that decide on it, a number or a function of all tunables by
+    name: where a cloud is worked on in parts, each is seen with what surrounds it that far.
     """
     makes = {
         "writes": writes,
@@ -144,6 +157,7 @@ def stage(
         "rasters": rasters,
         "selects": selects,
         "merges": merges,
+        "reach": reach,
     }
 
     def declare(function: Callable) -> Callable:

@@ -51,11 +51,17 @@ _ANGLE = 20.0
 _GRANULARITIES = {"coarse": (2.0, 1.0), "medium": (1.0, 1.0), "fine": (1.0, 0.5), "extra fine": (0.5, 0.5)}
 
 
+# In blocks of Delft with this much around them, and 40 m for all other steps, the buildings are those of the whole
+# cloud on 99.8 % of the points, as with twice as much; the rest is where cells fall (m).
+_REACH = 40.0
+
+
 @stage(
     "Classify ground points (TIN)",
     group="Terrain",
     tags="ground,filter,terrain,bare earth,DTM,Axelsson,PTD",
     writes=("classification",),
+    reach=lambda tunables: max(tunables["max_building_size"] or 0.0, _REACH),
 )
 def classify_ground_tin(
     xyz,

@@ -25,11 +25,16 @@ _MIN_EDGE = 2.0
 _MIN_MIRROR_REACH = 1.0
 
 
+# The largest building that a cell of the seeds sees past where nothing is set (m).
+_REACH = 60.0
+
+
 @stage(
     "Classify ground points (TIN, as published 2000)",
     group="Terrain",
     tags="ground,filter,terrain,bare earth,DTM,Axelsson,PTD",
     writes=("classification",),
+    reach=lambda tunables: tunables["max_building_size"] or _REACH,
 )
 def classify_ground_tin_2000(
     xyz,

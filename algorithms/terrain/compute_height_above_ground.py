@@ -8,12 +8,16 @@ from ..cloud.asprs import PointClass
 from ..geometry.tiled_tin import TiledTin
 from ..stage import stage
 
+# Half the width of a usual building: how far the ground points are whose triangle a point is in (m).
+_REACH = 10.0
+
 
 @stage(
     "Height above ground",
     group="Terrain",
     tags="normalize,HAG,height,terrain,TIN",
     writes=("height_above_ground",),
+    reach=_REACH,
 )
 def compute_height_above_ground(xyz, classification, *, monitor=None):
     """Measure how high each point lies above the ground points around it.

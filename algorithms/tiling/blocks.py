@@ -1,0 +1,297 @@
+"""One block of a survey: the chain run on its points and those around, and what came of it kept in a file."""
+
+from __future__ import annotations
+
+import json
+import time
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, Optional
+
+import numpy as np
+
+from ..cloud.outputs import replacing
+from ..pipelines import PIPELINES
+from ..run import run_pipeline
+from ..sampling.cloud_sampling import CloudSampling
+from ..stage import Cancelled, LayerFeatures, Monitor
+from .survey import Survey, Window
+
+# Dimensions that number what points belong to: each block has numbers of its own, which are joined afterwards.
+NUMBERED = ("segment_id", "cluster_id")
+
+# Points up to this far (m) outside a block tell which of its segments go on in the next one. Points of one segment are
+# closer together in any cloud that the methods are for (0.1 points/m² and more).
+_BESIDE = 4.0
+
+# A feature that comes this close (m) to the edge of the window may have been cut off by it.
+_CUT = 1.0
+
+# A window is enlarged for features that it cuts off, to at most this many times its halo on each side.
+_MOST_HALOS = 8
+
+# Seconds between two looks at whether to stop.
+_BETWEEN_LOOKS = 0.5
+
+
+# Arrays of a result that are kept by the names of dimensions.
+_KINDS = ("dimensions", "used", "inside", "beside")
+
+
+@dataclass(frozen=True)
+class Block:
+    """A square of a survey that is worked on at once: column and row of a lattice from zero, and its side (m)."""
+
+    column: int
+    row: int
+    side: float
+
+    @property
+    def box(self) -> np.ndarray:
+        """Least and greatest easting and northing (2, 2), m; the upper edges belong to the next blocks."""
+        return np.array([[self.column, self.row], [self.column + 1, self.row + 1]]) * self.side
+
+    @property
+    def name(self) -> str:
+        """Name for files and messages: its lower left corner in meters."""
+        return f"{self.column * self.side:.0f}_{self.row * self.side:.0f}"
+
+
+@dataclass(frozen=True)
+class BlockTask:
+    """What a worker needs to know of a block: all paths are seen by all workers."""
+
+    block: Block
+    survey: Survey
+    numbers: tuple[int, ...]
+    pipeline: str
+    tunables: dict[str, Any]
+    sampling: CloudSampling
+    halo: float
+    result: Path
+    stop: Path
+
+
+@dataclass
+class BlockResult:
+    """What came of a block.
+
+    Attributes
+    ----------
+    source, position : ndarrays of shape (n,)
+        File and place in it of every record of the block.
+    dimensions : dict of str to ndarray of shape (n, ...)
+        What the chain wrote.
+    used : dict of str to ndarray of shape (k,), int64
+        For each numbered dimension the numbers that records of the block have, ascending.
+    inside, beside : dict of str to ndarray of shape (m, 3), int64
+        For each numbered dimension file, place and number of records that lie just inside and just outside the edges.
+    layers : dict of str to LayerFeatures
+        Features that have a part in the block, in meters from the survey's origin.
+    messages : list of str
+        Warnings, each once.
+    """
+
+    source: np.ndarray
+    position: np.ndarray
+    dimensions: dict[str, np.ndarray] = field(default_factory=dict)
+    used: dict[str, np.ndarray] = field(default_factory=dict)
+    inside: dict[str, np.ndarray] = field(default_factory=dict)
+    beside: dict[str, np.ndarray] = field(default_factory=dict)
+    layers: dict[str, LayerFeatures] = field(default_factory=dict)
+    messages: list[str] = field(default_factory=list)
+
+    def write(self, path: Path) -> None:
+        """Write everything to a file, which is complete when it appears."""
+        arrays = {"source": self.source, "position": self.position}
+        for kind in _KINDS:
+            arrays.update({f"{kind}.{name}": values for name, values in getattr(self, kind).items()})
+        for name, features in self.layers.items():
+            arrays.update({f"layer.{name}.{key}": values for key, values in _flat(features).items()})
+        arrays["messages"] = _text(self.messages)
+        with replacing(path) as stream:
+            np.savez(stream, **arrays)
+
+    @classmethod
+    def read(cls, path: Path, with_points: bool = True) -> BlockResult:
+        """Return what :meth:`write` wrote; without the points there are no records and no dimensions in it."""
+        with np.load(path, allow_pickle=False) as stored:
+            by_kind: dict[str, dict[str, np.ndarray]] = {kind: {} for kind in _KINDS}
+            layers: dict[str, dict[str, np.ndarray]] = {}
+            for key in stored.files:
+                kind, _, name = key.partition(".")
+                if kind == "layer":
+                    layer, _, part = name.partition(".")
+                    layers.setdefault(layer, {})[part] = stored[key]
+                elif kind in by_kind and (with_points or kind != "dimensions"):
+                    by_kind[kind][name] = stored[key]
+            return cls(
+                stored["source"] if with_points else np.zeros(0, np.int32),
+                stored["position"] if with_points else np.zeros(0, np.int64),
+                **by_kind,
+                layers={name: _features(parts) for name, parts in layers.items()},
+                messages=json.loads(bytes(stored["messages"])),
+            )
+
+
+class _StoppableMonitor(Monitor):
+    """Stops a worker when a file appears that says so."""
+
+    def __init__(self, stop: Path) -> None:
+        super().__init__()
+        self.stop, self._looked = stop, 0.0
+
+    def progress(self, fraction: float) -> None:
+        now = time.monotonic()
+        if now - self._looked > _BETWEEN_LOOKS:
+            self._looked = now
+            if self.stop.exists():
+                raise Cancelled
+
+
+def work_on_block(task: BlockTask) -> Path:
+    """Run the chain on a block and its surroundings; return the file of what came of it.
+
+    The window is enlarged where it cuts off a feature that has a part in the block.
+
+    Raises
+    ------
+    ValueError
+        If a file can't be read or the chain refuses the points.
+    """
+    monitor, halo = _StoppableMonitor(task.stop), task.halo
+    while True:
+        box = task.block.box + np.array([[-halo], [halo]])
+        window = _window(task, box, monitor)
+        if window is None:
+            result = BlockResult(np.zeros(0, np.int32), np.zeros(0, np.int64))
+            break
+        result, is_cut = _run(task, window, box, monitor)
+        if not is_cut or halo >= _MOST_HALOS * task.halo:
+            break
+        halo *= 2
+    result.write(task.result)
+    return task.result
+
+
+def _window(task: BlockTask, box: np.ndarray, monitor: Monitor) -> Optional[Window]:
+    """Return the points in a box, None where the block itself has none of them."""
+    window = task.survey.window(box, monitor)
+    if window is None or not _inside(_places(task.survey, window), task.block.box).any():
+        return None
+    return replace(window, source=np.array(task.numbers, np.int32)[window.source])
+
+
+def _places(survey: Survey, window: Window) -> np.ndarray:
+    """Return easting and northing (n, 2) of the records of a window, m, as the edges of blocks count them."""
+    header, records = survey.header, window.cloud.points
+    unit = survey.units.horizontal
+    places = [records[axis] * (header.scale[i] * unit) + header.offset[i] * unit for i, axis in enumerate("XY")]
+    return np.column_stack(places)[window.point]
+
+
+def _inside(places: np.ndarray, box: np.ndarray) -> np.ndarray:
+    return ((places >= box[0]) & (places < box[1])).all(axis=1)
+
+
+def _run(task: BlockTask, window: Window, box: np.ndarray, monitor: Monitor) -> tuple[BlockResult, bool]:
+    """Run the chain on a window; return what came of the block, and whether a feature of it was cut off."""
+    pipeline, cloud = PIPELINES[task.pipeline], window.cloud
+    places = _places(task.survey, window)
+    made = run_pipeline(pipeline, cloud, monitor, kept=(), sampling=task.sampling, **task.tunables)
+    written = dict.fromkeys(name for step in pipeline.steps for name in step.stage.writes)
+    values = {name: cloud.get(name)[window.point] for name in written if cloud.has(name)}
+    core = _inside(places, task.block.box)
+    result = BlockResult(window.source[core], window.position[core])
+    result.dimensions = {name: of_all[core] for name, of_all in values.items()}
+    _number(result, window, values, places, task.block)
+    cuts = []
+    for name, features in made.layers.items():
+        boxes = feature_boxes(features) + task.survey.origin[:2]
+        meets = (boxes[:, 0] < task.block.box[1]).all(axis=1) & (boxes[:, 1] >= task.block.box[0]).all(axis=1)
+        result.layers[name] = take_features(features, np.flatnonzero(meets))
+        cuts.append(meets & _cut_off(boxes, box, task.survey.box))
+    result.messages = list(dict.fromkeys(monitor.warnings))
+    return result, any(cut.any() for cut in cuts)
+
+
+def _number(
+    result: BlockResult, window: Window, values: dict[str, np.ndarray], places: np.ndarray, block: Block
+) -> None:
+    """Keep in a result which numbers its points have, and those of records on both sides of its edges."""
+    near = _inside(places, block.box + np.array([[-_BESIDE], [_BESIDE]]))
+    near &= ~_inside(places, block.box + np.array([[_BESIDE], [-_BESIDE]]))
+    core = _inside(places, block.box)
+    for name in (name for name in NUMBERED if name in values):
+        number = values[name].astype(np.int64)
+        records = np.column_stack([window.source, window.position, number])
+        result.used[name] = np.setdiff1d(number[core], [0])
+        result.inside[name] = records[near & core & (number > 0)]
+        result.beside[name] = records[near & ~core & (number > 0)]
+
+
+def _cut_off(boxes: np.ndarray, window: np.ndarray, survey: np.ndarray) -> np.ndarray:
+    """Return which features (n,), by their boxes, reach the edge of the window; where the survey ends there is none."""
+    low = (boxes[:, 0] < window[0] + _CUT) & (window[0] > survey[0])
+    high = (boxes[:, 1] > window[1] - _CUT) & (window[1] < survey[1])
+    return (low | high).any(axis=1)
+
+
+def feature_boxes(features: LayerFeatures) -> np.ndarray:
+    """Return the least and greatest easting and northing (n, 2, 2) of each feature."""
+    boxes = np.zeros((len(features), 2, 2))
+    for row, geometry in enumerate(features.geometries):
+        plan = np.reshape(_vertices(geometry)[:, :2], (-1, 2))
+        boxes[row] = plan.min(axis=0), plan.max(axis=0)
+    return boxes
+
+
+def take_features(features: LayerFeatures, rows: np.ndarray) -> LayerFeatures:
+    """Return some features of a layer by their positions (m,), in that order."""
+    columns = {
+        name: values[rows] if isinstance(values, np.ndarray) else [values[row] for row in rows]
+        for name, values in features.columns.items()
+    }
+    return LayerFeatures([features.geometries[row] for row in rows], columns)
+
+
+def _vertices(geometry: Any) -> np.ndarray:
+    """Return the vertices (m, 2 or 3) of a geometry of any kind: rings, a line, a point."""
+    return np.concatenate(geometry) if isinstance(geometry, list) else np.atleast_2d(geometry)
+
+
+def _flat(features: LayerFeatures) -> dict[str, np.ndarray]:
+    """Return features as arrays: vertices, how many each ring has, how many rings each feature has, columns as JSON."""
+    rings = [geometry if isinstance(geometry, list) else [np.asarray(geometry)] for geometry in features.geometries]
+    all_rings = [ring for of_one in rings for ring in of_one]
+    kind = "rings" if features.geometries and isinstance(features.geometries[0], list) else "array"
+    columns = {name: np.asarray(values).tolist() for name, values in features.columns.items()}
+    return {
+        "vertices": np.concatenate([np.ravel(ring) for ring in all_rings]) if all_rings else np.zeros(0),
+        "shapes": np.array([_shape(ring) for ring in all_rings], np.int64).reshape(-1, 3),
+        "counts": np.array([len(of_one) for of_one in rings], np.int64),
+        "columns": _text({"kind": kind, "values": columns}),
+    }
+
+
+def _shape(ring: np.ndarray) -> tuple[int, ...]:
+    """Return the number of axes of vertices (m, 2 or 3) or of a point (2 or 3,), and their lengths."""
+    return (2, *ring.shape) if np.ndim(ring) > 1 else (1, len(ring), 0)
+
+
+def _features(parts: dict[str, np.ndarray]) -> LayerFeatures:
+    """Return the features that :func:`_flat` flattened."""
+    described = json.loads(bytes(parts["columns"]))
+    rings, start = [], 0
+    for axes, rows, columns in parts["shapes"].tolist():
+        size = rows * columns if axes > 1 else rows
+        shape = (rows, columns) if axes > 1 else (rows,)
+        rings.append(parts["vertices"][start : start + size].reshape(shape))
+        start += size
+    ends = np.cumsum(parts["counts"])
+    grouped = [rings[end - count : end] for end, count in zip(ends, parts["counts"])]
+    return LayerFeatures(grouped if described["kind"] == "rings" else [one[0] for one in grouped], described["values"])
+
+
+def _text(value: Any) -> np.ndarray:
+    return np.frombuffer(json.dumps(value).encode(), np.uint8)

@@ -1,0 +1,103 @@
+"""A survey cut into square tiles, streamed: no file is ever read whole."""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+
+from ..cloud.outputs import LAS, LAZ, replacing
+from ..cloud.points import read_chunks, write_points
+from ..cloud.vpc import fill_merged
+from ..geometry.groups import run_starts
+from ..stage import Monitor
+from .blocks import Block
+from .survey import Survey
+
+# Share of the time that reading takes; the rest is writing.
+_READ = 0.5
+
+
+def cut_into_tiles(
+    survey: Survey, side: float, folder: Path, stem: str, compressed: bool, monitor: Monitor
+) -> list[Path]:
+    """Write the points of a survey as tiles of a lattice that starts at the zero of the map.
+
+    Every record of every file is in exactly one tile, with all its dimensions, in the order of the files. Memory: one
+    portion of a file at a time; on the disk the points lie once uncompressed beside the tiles while they are made.
+
+    Parameters
+    ----------
+    survey : Survey
+        What is cut.
+    side : float
+        Side of a tile, m.
+    folder : Path
+        Where the tiles go; it exists.
+    stem : str
+        What the names of tiles begin with; their lower left corner in meters follows.
+    compressed : bool
+        LAZ instead of LAS.
+    monitor : Monitor
+        Receives progress.
+
+    Returns
+    -------
+    list of Path
+        The tiles, from south-west to north-east.
+
+    Raises
+    ------
+    ValueError
+        If a file is damaged or a tile can't be written.
+    """
+    kind = LAZ if compressed else LAS
+    with tempfile.TemporaryDirectory(prefix=".cut-", dir=folder) as heaps:
+        blocks = _sort_out(survey, side, Path(heaps), monitor.part(0.0, _READ))
+        tiles = []
+        for done, block in enumerate(blocks):
+            tile = folder / f"{stem}_{block.name}{kind}"
+            heap = Path(heaps) / block.name
+            records = np.memmap(heap, survey.header.layout.dtype, "r")
+            part = monitor.part(_READ, 1.0).part(done / len(blocks), (done + 1) / len(blocks))
+            with replacing(tile) as stream:
+                _write(survey, records, compressed, stream, part)
+            del records
+            heap.unlink()
+            tiles.append(tile)
+    return tiles
+
+
+def _sort_out(survey: Survey, side: float, folder: Path, monitor: Monitor) -> list[Block]:
+    """Append the records of all files to one file for each tile; return the tiles that have points."""
+    found: set[tuple[int, int]] = set()
+    share = 1 / len(survey.sources)
+    for number, source in enumerate(survey.sources):
+        header = source.header
+        unit = survey.units.horizontal
+        for _, chunk in read_chunks(source.path, header, monitor.part(number * share, (number + 1) * share)):
+            records = np.zeros(len(chunk), survey.header.layout.dtype)
+            fill_merged(records, chunk, header, survey.header)
+            column, row = (
+                np.floor((chunk[axis] * (header.scale[i] * unit) + header.offset[i] * unit) / side).astype(np.int64)
+                for i, axis in enumerate("XY")
+            )
+            order = np.lexsort([np.arange(len(chunk)), column, row])
+            column, row, records = column[order], row[order], records[order]
+            starts = run_starts(row * (1 << 32) + column)
+            for start, stop in zip(starts, [*starts[1:], len(records)]):
+                place = int(column[start]), int(row[start])
+                found.add(place)
+                with (folder / Block(*place, side).name).open("ab") as heap:
+                    records[start:stop].tofile(heap)
+    return [Block(column, row, side) for column, row in sorted(found, key=lambda place: place[::-1])]
+
+
+def _write(survey: Survey, records: np.ndarray, compressed: bool, stream: BinaryIO, monitor: Monitor) -> None:
+    header = replace(survey.header, count=len(records))
+    if not header.layout.is_old:
+        header = replace(header, minor=4)
+    write_points(stream, header, lambda start, stop: np.array(records[start:stop]), compressed, monitor)

@@ -1,0 +1,140 @@
+"""What blocks found each for itself, as one: segments that go on in the next block, features that several found."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..geometry.grid import find_cells
+from ..geometry.groups import components
+from ..geometry.polygon_overlap import as_polygons, overlaps
+from ..stage import LayerFeatures, Monitor
+from .blocks import NUMBERED, Block, BlockResult, feature_boxes
+
+# Two features of different blocks are the same one if they share more than this part of the smaller one.
+_SAME = 0.5
+
+# The number of a feature in its layer, and what numbers the cluster that it is the outline of.
+_ID, _CLUSTER = "id", "cluster_id"
+
+
+def join_numbers(results: list[BlockResult]) -> list[dict[str, np.ndarray]]:
+    """Return for each block and numbered dimension what its numbers become: an array that they are positions in.
+
+    A segment of one block and a segment of another are one if a record just outside the first block has the number of
+    the first there and of the second in its own block. Numbers go from 1 without gaps, in the order of the blocks;
+    0 stays 0.
+    """
+    joined: list[dict[str, np.ndarray]] = [{} for _ in results]
+    for name in NUMBERED:
+        most = [_largest(one, name) for one in results]
+        first = np.concatenate([[0], np.cumsum(most)])
+        _, group = components(*_links(results, name, first), int(first[-1]))
+        used = [start + one.used[name] - 1 for one, start in zip(results, first) if name in one.used]
+        # Numbers in the order of the blocks, as those of one cloud are in that of its points.
+        distinct, at = np.unique(group[np.concatenate([np.zeros(0, np.int64), *used])], return_index=True)
+        final = np.zeros(len(group) + 1, np.int32)
+        final[distinct[np.argsort(at)]] = np.arange(1, len(distinct) + 1, dtype=np.int32)
+        for one, start, count in zip(joined, first, most):
+            one[name] = np.concatenate([np.zeros(1, np.int32), final[group[start : start + count]]])
+    return joined
+
+
+def _largest(result: BlockResult, name: str) -> int:
+    """Return the largest number that a block gave, in it and just outside."""
+    parts = [result.used.get(name, np.zeros(0, np.int64))]
+    parts += [rows[:, 2] for rows in (result.inside.get(name), result.beside.get(name)) if rows is not None]
+    return int(max(part.max(initial=0) for part in parts))
+
+
+def _links(results: list[BlockResult], name: str, first: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return pairs of segments that are one, each by its position among those of all blocks."""
+    inside, beside = (
+        np.concatenate(
+            [np.zeros((0, 2), np.int64)]
+            + [
+                np.column_stack([_record_keys(rows[:, 0], rows[:, 1]), rows[:, 2] + start - 1])
+                for rows, start in ((getattr(one, kind).get(name), start) for one, start in zip(results, first))
+                if rows is not None
+            ]
+        )
+        for kind in ("inside", "beside")
+    )
+    # Every record is inside one block; it may be beside three others.
+    inside = inside[np.argsort(inside[:, 0])]
+    at, is_there = find_cells(inside[:, 0], beside[:, 0])
+    return inside[at[is_there], 1], beside[is_there, 1]
+
+
+def _record_keys(source: np.ndarray, position: np.ndarray) -> np.ndarray:
+    """Return one number for each record: files have far fewer than 2^40 records."""
+    return (source.astype(np.int64) << 40) | position.astype(np.int64)
+
+
+def join_features(
+    blocks: list[Block], layers: list[LayerFeatures], numbers: list[np.ndarray], origin: np.ndarray, monitor: Monitor
+) -> LayerFeatures:
+    """Return the features of all blocks, each once, numbered from north-west to south-east.
+
+    Parameters
+    ----------
+    blocks : list of Block
+        Where they were found.
+    layers : list of LayerFeatures
+        Of one layer, in meters from ``origin``; those that cross an edge were found by several blocks.
+    numbers : list of ndarray
+        What the cluster numbers of each block become.
+    origin : ndarray of shape (3,)
+        Of the survey, m.
+    monitor : Monitor
+        Receives progress.
+    """
+    features = _all(layers, numbers)
+    if not len(features):
+        return features
+    of_block = np.repeat(np.arange(len(blocks)), [len(layer) for layer in layers])
+    boxes = feature_boxes(features)
+    middle = boxes.mean(axis=1) + origin[:2]
+    own = np.array([block.box for block in blocks])[of_block]
+    is_own = ((middle >= own[:, 0]) & (middle < own[:, 1])).all(axis=1)
+    is_polygon = isinstance(features.geometries[0], list)
+    is_kept = _once(features, of_block, is_own, monitor) if is_polygon else is_own
+    rows = np.flatnonzero(is_kept)
+    rows = rows[np.lexsort([boxes[rows, 0, 0], -boxes[rows, 1, 1]])]
+    columns = {name: [values[row] for row in rows] for name, values in features.columns.items()}
+    if _ID in columns:
+        columns[_ID] = list(range(1, len(rows) + 1))
+    return LayerFeatures([features.geometries[row] for row in rows], columns)
+
+
+def _all(layers: list[LayerFeatures], numbers: list[np.ndarray]) -> LayerFeatures:
+    """Return the features of all blocks together, with the numbers that their clusters have in the end."""
+    geometries = [geometry for layer in layers for geometry in layer.geometries]
+    columns: dict[str, Any] = {}
+    for layer, becomes in zip(layers, numbers):
+        for name, values in layer.columns.items():
+            final = [int(becomes[value]) for value in values] if name == _CLUSTER and len(becomes) else list(values)
+            columns.setdefault(name, []).extend(final)
+    return LayerFeatures(geometries, columns)
+
+
+def _once(features: LayerFeatures, of_block: np.ndarray, is_own: np.ndarray, monitor: Monitor) -> np.ndarray:
+    """Return which polygons (n,) stay where several blocks have found the same one.
+
+    That of the block that its middle lies in stays; where none or several claim it, the largest.
+    """
+    polygons = as_polygons(features.geometries)
+    area = np.abs(polygons.area)
+    one, other, shared = overlaps(polygons, polygons, monitor)
+    is_same = (of_block[one] != of_block[other]) & (shared > _SAME * np.minimum(area[one], area[other]))
+    one, other = one[is_same], other[is_same]
+    # Best first: the own block's, then the largest; a polygon stays if none that is better stays beside it.
+    rank = np.empty(len(area), np.int64)
+    rank[np.lexsort([np.arange(len(area)), -area, ~is_own])] = np.arange(len(area))
+    is_kept = np.ones(len(area), bool)
+    order = np.argsort(rank[one], kind="stable")
+    for better, worse in zip(one[order], other[order]):
+        if rank[better] < rank[worse] and is_kept[better]:
+            is_kept[worse] = False
+    return is_kept

@@ -1,0 +1,460 @@
+"""Run a composite on a survey of any size: block by block in several processes, tile by tile into a folder."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import pickle
+import shutil
+import time
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import Any, Callable, Optional, Union
+
+import numpy as np
+
+from ..cloud.files import read_cloud, write_cloud
+from ..cloud.outputs import LAS, LAZ, kind_of, locked_folder, same_file
+from ..cloud.units import Resolver
+from ..pipeline import Pipeline
+from ..sampling.cloud_sampling import CloudSampling, without_noise
+from ..stage import LayerFeatures, Monitor
+from .blocks import Block, BlockResult, BlockTask, work_on_block
+from .cutting import cut_into_tiles
+from .joining import join_features, join_numbers
+from .survey import Survey, Window, open_survey
+from .workers import Workers, run_all
+
+# A window has at most about this many points, so that a worker needs some 2 GB.
+_MOST_POINTS = 6_000_000
+
+# Sides of blocks to choose from, m; smaller ones would work mostly on what lies around them.
+_SIDES = (100.0, 200.0, 400.0, 800.0, 1600.0)
+
+# A file of more points is cut first: read again for each of its blocks it would be read too often.
+_LARGEST_FILE = 25_000_000
+
+# How a survey was sampled is measured on all its points up to this many, else on windows of that side (m), as many in
+# each direction.
+_SAMPLED_WHOLE = 3_000_000
+_SAMPLES_ACROSS, _SAMPLE_SIDE = 4, 100.0
+
+# Shares of the progress: cutting, sampling, blocks; the rest is writing.
+_CUT, _SAMPLED, _WORKED = 0.05, 0.1, 0.9
+
+# What a run keeps beside the tiles until it is complete.
+_WORK = ".lidar-buildings"
+
+# Seconds between two messages about how far it is.
+_BETWEEN_MESSAGES = 10.0
+
+
+@dataclass
+class TilesOutcome:
+    """What came of a survey: the tiles written, layers in meters from ``survey.origin``, and what went wrong."""
+
+    survey: Survey
+    tiles: list[Path]
+    layers: dict[str, LayerFeatures] = field(default_factory=dict)
+    failures: list[str] = field(default_factory=list)
+    sampling: Optional[CloudSampling] = None
+    blocks: int = 0
+    points: int = 0
+
+
+@dataclass(frozen=True)
+class _TileTask:
+    """A tile of the output: the file that it is made of, and the blocks that have its points."""
+
+    source: Path
+    number: int
+    target: Path
+    results: tuple[Path, ...]
+    becomes: tuple[Path, ...]
+    stop: Path
+
+
+def run_in_tiles(
+    pipeline: Pipeline,
+    paths: Iterable[Union[str, Path]],
+    folder: Union[str, Path],
+    monitor: Optional[Monitor] = None,
+    *,
+    workers: Optional[Workers] = None,
+    block_side: Optional[float] = None,
+    compressed: bool = True,
+    crs_units: Optional[Resolver] = None,
+    largest_file: int = _LARGEST_FILE,
+    **tunables: Any,
+) -> TilesOutcome:
+    """Run a composite on a survey; write its classified tiles to a folder and return its layers.
+
+    The survey is worked on in blocks of a lattice that starts at the zero of the map, each with the points around it
+    as far as the steps reach. So the result does not depend on how the points are spread over files. How the cloud was
+    sampled is measured once for all blocks. Segments that go on in the next block get one number, and features that
+    several blocks found come once. A run that was stopped goes on where it was when it is started again with the same
+    files, tunables and version.
+
+    Parameters
+    ----------
+    pipeline : Pipeline
+        A composite that works on one cloud and keeps its points.
+    paths : iterable of str or Path
+        Files, virtual point clouds or folders. Each file becomes a tile of the same name; a file of more than
+        ``largest_file`` points becomes tiles of the size of a block.
+    folder : str or Path
+        Where the tiles go; it is made where it is missing.
+    monitor : Monitor, optional
+        Receives progress, and how far it is in words.
+    workers : Workers, optional
+        Processes of this machine, one for each core, where nothing is given.
+    block_side : float, optional
+        Side of a block, m; None is the largest of 100, 200, 400, 800, 1600 m with room for its points.
+    compressed : bool
+        Tiles as LAZ, or as LAS.
+    crs_units : callable, optional
+        As for :func:`.read_cloud`.
+    largest_file : int
+        Points of the largest file that is read as it is.
+    **tunables
+        Of the composite.
+
+    Raises
+    ------
+    ValueError
+        If the composite can't be run in tiles, an input can't be read or is in the folder, another run works in it, or
+        a tunable is unknown.
+    """
+    monitor, workers, folder = monitor or Monitor(), workers or Workers(), Path(folder)
+    check_can_be_tiled(pipeline)
+    for step, chosen in pipeline.by_step(tunables):
+        step.stage.check(chosen)
+    survey = open_survey(paths, crs_units, monitor)
+    _check_folder(folder, survey)
+    with _work_folder(folder) as work:
+        run = _Run(pipeline, survey, folder, work, monitor, workers, tunables, compressed, crs_units)
+        return run.all(block_side, largest_file)
+
+
+def check_can_be_tiled(pipeline: Pipeline) -> None:
+    """Refuse a composite whose points or steps can't be put together from parts.
+
+    Raises
+    ------
+    ValueError
+        If it merges clouds, makes a cloud of other points, or reads layers.
+    """
+    if not can_be_tiled(pipeline):
+        raise ValueError(f"{pipeline.title} can't be run in tiles: it makes a cloud of other points than it is given.")
+
+
+def can_be_tiled(pipeline: Pipeline) -> bool:
+    """Whether a composite can be run in tiles: every step keeps the points of the one cloud that it is given."""
+    stages = [step.stage for step in pipeline.steps]
+    return pipeline.reads_cloud and not any(
+        stage.merges or stage.selects or stage.creates or stage.rasters for stage in stages
+    )
+
+
+def _check_folder(folder: Path, survey: Survey) -> None:
+    """Refuse a folder that has an input of the run in it, or make it where it is missing."""
+    if folder.exists() and not folder.is_dir():
+        raise ValueError(f"{folder} is a file; choose a folder for the tiles.")
+    inside = [source.path for source in survey.sources if folder.exists() and same_file(source.path.parent, folder)]
+    if inside:
+        raise ValueError(f"{inside[0].name} is in the folder {folder}, where the tiles go; choose another folder.")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ValueError(f"The folder {folder} can't be made ({error.strerror}); choose another one.") from error
+
+
+@contextmanager
+def _work_folder(folder: Path) -> Iterator[Path]:
+    """Give the folder in which a run keeps what it has done so far; refuse it while another run has it."""
+    work = folder / _WORK
+    try:
+        work.mkdir(exist_ok=True)
+    except OSError as error:
+        raise ValueError(f"The folder {folder} can't be written ({error.strerror}); choose another one.") from error
+    with locked_folder(work) as is_ours:
+        if not is_ours:
+            raise ValueError(f"Another run is writing to {folder}; wait for its end or choose another folder.")
+        (work / "stop").unlink(missing_ok=True)
+        yield work
+
+
+class _Run:
+    """One run: what all its steps need."""
+
+    def __init__(
+        self,
+        pipeline: Pipeline,
+        survey: Survey,
+        folder: Path,
+        work: Path,
+        monitor: Monitor,
+        workers: Workers,
+        tunables: dict[str, Any],
+        compressed: bool,
+        crs_units: Optional[Resolver],
+    ) -> None:
+        self.crs_units = crs_units
+        self.pipeline, self.survey, self.folder, self.work = pipeline, survey, folder, work
+        self.monitor, self.workers, self.tunables = monitor, workers, tunables
+        self.suffix = LAZ if compressed else LAS
+        self.stop = work / "stop"
+
+    def all(self, block_side: Optional[float], largest_file: int) -> TilesOutcome:
+        """Sample, work on the blocks, write the tiles."""
+        given = self.survey
+        halo = self.pipeline.reach(self.tunables)
+        sampling = self._sampling(given, self.monitor.part(0.0, _CUT))
+        side = block_side or _side(sampling.density, halo)
+        self.monitor.resolved(sampling=sampling, block_side=side, halo=halo)
+        self._cut_large_files(side, largest_file)
+        outcome = TilesOutcome(self.survey, [], sampling=sampling, points=len(self.survey))
+        with self.workers.open() as executor:
+            blocks, results, failed = self._work_on_blocks(executor, side, halo, sampling)
+            outcome.blocks = len(blocks)
+            outcome.failures = [f"Block {blocks[number].name}: {why}" for number, why in sorted(failed.items())]
+            done = [(blocks[number], results[number]) for number in sorted(results)]
+            found = [BlockResult.read(path, with_points=False) for _, path in done]
+            numbers = join_numbers(found)
+            outcome.layers = self._layers([block for block, _ in done], found, numbers)
+            for sentence in dict.fromkeys(one for result in found for one in result.messages):
+                self.monitor.warn(sentence)
+            self._write_tiles(executor, done, numbers, [blocks[number] for number in failed], outcome)
+        if not outcome.failures:
+            # Nothing is left to go on with.
+            shutil.rmtree(self.work)
+        self.monitor.progress(1.0)
+        return outcome
+
+    def _sampling(self, survey: Survey, monitor: Monitor) -> CloudSampling:
+        """Return how the survey was sampled, measured on windows whose places depend on its extent alone."""
+        low, high = survey.box
+        if len(survey) <= _SAMPLED_WHOLE:
+            boxes = [np.array([low, high + 1.0])]
+        else:
+            across = (np.arange(_SAMPLES_ACROSS) + 0.5) / _SAMPLES_ACROSS
+            centers = [low + (high - low) * (x, y) for x in across for y in across]
+            corners = [np.floor(center / _SAMPLE_SIDE) * _SAMPLE_SIDE for center in centers]
+            boxes = [np.array([corner, corner + _SAMPLE_SIDE]) for corner in corners]
+        windows = []
+        for done, box in enumerate(boxes):
+            windows.append(survey.window(box, monitor.part(done / len(boxes), (done + 1) / len(boxes))))
+        points = [_counted(window) for window in windows if window is not None]
+        if not points:
+            points = [_counted(window) for window in [survey.window(np.array([low, high + 1.0]), monitor)] if window]
+        together = np.concatenate(points)
+        sampling = CloudSampling(lambda: together)
+        # All measures are taken now and the points left behind, as on the way to another process.
+        return pickle.loads(pickle.dumps(sampling))
+
+    def _cut_large_files(self, side: float, largest_file: int) -> None:
+        """Cut files that are too large to be read once for each of their blocks, and take the pieces in their place."""
+        large = [source for source in self.survey.sources if source.header.count > largest_file]
+        if not large:
+            return
+        pieces = self.work / "pieces"
+        key = self._key([source.path for source in large], side)
+        if not (pieces / key).is_file():
+            shutil.rmtree(pieces, ignore_errors=True)
+            pieces.mkdir()
+            for done, source in enumerate(large):
+                part = self.monitor.part(_CUT, _SAMPLED).part(done / len(large), (done + 1) / len(large))
+                alone = open_survey([source.path], self.crs_units)
+                cut_into_tiles(alone, side, pieces, source.path.name.split(".")[0], False, part)
+            (pieces / key).touch()
+        rest = [source.path for source in self.survey.sources if source not in large]
+        self.survey = open_survey([*rest, *sorted(pieces.glob(f"*{LAS}"))], self.crs_units)
+
+    def _key(self, paths: Iterable[Path], *facts: Any) -> str:
+        """Return a name for what is made of files in their present state, of facts, tunables and this version."""
+        stats = [(str(path.resolve()), path.stat().st_size, path.stat().st_mtime_ns) for path in paths]
+        described = [stats, self.pipeline.name, self.tunables, _version(), facts]
+        return hashlib.sha256(json.dumps(described, default=str, sort_keys=True).encode()).hexdigest()[:16]
+
+    def _work_on_blocks(
+        self, executor: Any, side: float, halo: float, sampling: CloudSampling
+    ) -> tuple[list[Block], dict[int, Path], dict[int, str]]:
+        """Have all blocks worked on that are not done yet; return blocks, results and failures by position."""
+        blocks = _blocks(self.survey, side)
+        tasks = [self._task(block, halo, sampling) for block in blocks]
+        known = {number: task.result for number, task in enumerate(tasks) if task.result.is_file()}
+        if known:
+            self.monitor.inform(
+                f"{len(known)} of {len(blocks)} blocks were worked on before and are taken as they are."
+            )
+        todo = [number for number in range(len(blocks)) if number not in known]
+        tell = self._teller(len(todo), len(self.survey) * len(todo) / max(1, len(blocks)))
+        results, failed = run_all(
+            executor,
+            work_on_block,
+            [tasks[number] for number in todo],
+            self.stop,
+            self.monitor.part(_SAMPLED, _WORKED),
+            tell,
+        )
+        known.update({todo[at]: path for at, path in results.items()})
+        return blocks, known, {todo[at]: why for at, why in failed.items()}
+
+    def _task(self, block: Block, halo: float, sampling: CloudSampling) -> BlockTask:
+        margin = np.array([[-8 * halo], [8 * halo]])
+        near = self.survey.near(block.box + margin)
+        within = self.survey.near(block.box + np.array([[-halo], [halo]]))
+        key = self._key((self.survey.sources[one].path for one in within), block.name, block.side, halo, str(sampling))
+        part = Survey(
+            tuple(self.survey.sources[one] for one in near),
+            self.survey.header,
+            self.survey.units,
+            self.survey.wkt,
+            self.survey.origin,
+        )
+        result = self.work / f"block-{block.name}-{key}.npz"
+        return BlockTask(block, part, tuple(near), self.pipeline.name, self.tunables, sampling, halo, result, self.stop)
+
+    def _teller(self, blocks: int, points: float) -> Callable[[int], None]:
+        """Return what tells from time to time how many blocks are done, how fast, and how long it will take."""
+        start = last = time.monotonic()
+        done = 0
+
+        def tell(_: int) -> None:
+            nonlocal done, last
+            done += 1
+            now = time.monotonic()
+            if now - last > _BETWEEN_MESSAGES or done == blocks:
+                last = now
+                pace = done / max(now - start, 1e-9)
+                self.monitor.inform(
+                    f"{done} of {blocks} blocks, {pace * points / max(1, blocks):,.0f} points per second, "
+                    f"{_minutes((blocks - done) / pace)} left."
+                )
+
+        return tell
+
+    def _layers(
+        self, blocks: list[Block], found: list[BlockResult], numbers: list[dict[str, np.ndarray]]
+    ) -> dict[str, LayerFeatures]:
+        """Return each layer of the composite, of all blocks together."""
+        names = dict.fromkeys(name for result in found for name in result.layers)
+        layers = {}
+        for name in names:
+            have = [at for at, result in enumerate(found) if name in result.layers]
+            layers[name] = join_features(
+                [blocks[at] for at in have],
+                [found[at].layers[name] for at in have],
+                [numbers[at].get("cluster_id", np.zeros(0, np.int32)) for at in have],
+                self.survey.origin,
+                Monitor(),
+            )
+        return layers
+
+    def _write_tiles(
+        self,
+        executor: Any,
+        done: list[tuple[Block, Path]],
+        numbers: list[dict[str, np.ndarray]],
+        failed: list[Block],
+        outcome: TilesOutcome,
+    ) -> None:
+        """Write every tile whose blocks are all done."""
+        becomes = []
+        for (block, _), of_block in zip(done, numbers):
+            becomes.append(self.work / f"numbers-{block.name}.npz")
+            np.savez(becomes[-1], **of_block)
+        tasks = []
+        for number, (source, target) in enumerate(zip(self.survey.sources, self._targets())):
+            if any(source.meets(block.box) for block in failed):
+                outcome.failures.append(f"{source.path.name} is not written, as a block of it failed.")
+                continue
+            near = [at for at, (block, _) in enumerate(done) if source.meets(block.box)]
+            parts, final = tuple(done[at][1] for at in near), tuple(becomes[at] for at in near)
+            tasks.append(_TileTask(source.path, number, target, parts, final, self.stop))
+        results, errors = run_all(
+            executor, write_tile, tasks, self.stop, self.monitor.part(_WORKED, 1.0), lambda _: None
+        )
+        outcome.tiles = [results[at] for at in sorted(results)]
+        outcome.failures += [f"{tasks[at].source.name}: {why}" for at, why in sorted(errors.items())]
+
+    def _targets(self) -> list[Path]:
+        """Return the tiles of the output, named as the files, also where two folders have files of one name."""
+        taken: set[str] = set()
+        targets = []
+        for source in self.survey.sources:
+            stem = source.path.name[: -len(kind_of(source.path))]
+            name, again = stem, 1
+            while name in taken:
+                again += 1
+                name = f"{stem}_{again}"
+            taken.add(name)
+            targets.append(self.folder / f"{name}{self.suffix}")
+        return targets
+
+
+def write_tile(task: _TileTask) -> Path:
+    """Write a tile with what its blocks found; return it.
+
+    Raises
+    ------
+    ValueError
+        If a file can't be read or written.
+    """
+    cloud = read_cloud(task.source)
+    values: dict[str, np.ndarray] = {}
+    for path, numbers in zip(task.results, task.becomes):
+        result = BlockResult.read(path)
+        rows = np.flatnonzero(result.source == task.number)
+        if not len(rows):
+            continue
+        with np.load(numbers, allow_pickle=False) as final:
+            for name, of_block in result.dimensions.items():
+                found = final[name][of_block[rows]] if name in final.files else of_block[rows]
+                whole = values.setdefault(name, np.zeros((len(cloud), *found.shape[1:]), found.dtype))
+                whole[result.position[rows]] = found
+    for name, whole in values.items():
+        cloud.set(name, whole)
+    write_cloud(cloud, task.target)
+    return task.target
+
+
+def _counted(window: Window) -> np.ndarray:
+    """Return the points (n, 3) of a window that the sampling is measured on."""
+    cloud = window.cloud
+    counted = ~cloud.withheld
+    if not counted.any():
+        return np.zeros((0, 3))
+    counted[counted] = without_noise(cloud.get("classification")[counted])
+    return cloud.get("xyz")[counted]
+
+
+def _side(density: float, halo: float) -> float:
+    """Return the largest side of a block, m, whose window has room for its points."""
+    fitting = [side for side in _SIDES if (side + 2 * halo) ** 2 * density <= _MOST_POINTS]
+    return max(fitting, default=_SIDES[0])
+
+
+def _blocks(survey: Survey, side: float) -> list[Block]:
+    """Return the blocks that files of the survey reach into, from south-west to north-east."""
+    found = set()
+    for source in survey.sources:
+        low, high = np.floor(source.box / side).astype(int)
+        found |= {(column, row) for row in range(low[1], high[1] + 1) for column in range(low[0], high[0] + 1)}
+    return [Block(column, row, side) for column, row in sorted(found, key=lambda place: place[::-1])]
+
+
+def _minutes(seconds: float) -> str:
+    return f"{seconds:.0f} s" if seconds < 100 else f"{seconds / 60:.0f} min"
+
+
+@cache
+def _version() -> str:
+    """Return what tells one state of the program from another: a digest of its source."""
+    digest = hashlib.sha256()
+    for path in sorted(Path(__file__).resolve().parents[1].rglob("*.py")):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()

@@ -1,0 +1,215 @@
+"""A survey of many tiles as one cloud: which files it has, where they lie, and the points of any part of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Optional, Union
+
+import numpy as np
+
+from ..cloud.cloud import Cloud
+from ..cloud.files import files_of
+from ..cloud.header import COPC_HIERARCHY, COPC_INFO, LASZIP, Header
+from ..cloud.outputs import kind_of
+from ..cloud.points import check_points, open_header, read_chunks
+from ..cloud.units import Resolver, Units, units_of, wkt_of
+from ..cloud.vpc import check_tiles, fill_merged, merged_header
+from ..stage import Monitor
+
+# Local meters begin at a multiple of this (m), as those of a single cloud do.
+_ORIGIN_STEP = 1000.0
+
+# What tells whether two records are the same measurement.
+_KEYS = ("gps_time", "return_number", "number_of_returns", "point_source_id", "intensity")
+
+
+@dataclass(frozen=True)
+class Source:
+    """A file of the survey: its header, and the least and greatest easting and northing (2, 2) of its points, m."""
+
+    path: Path
+    header: Header
+    box: np.ndarray
+
+    def meets(self, box: np.ndarray) -> bool:
+        """Whether the file may have points in a box (2, 2), m."""
+        return bool((self.box[0] <= box[1]).all() and (self.box[1] >= box[0]).all())
+
+
+@dataclass(frozen=True)
+class Window:
+    """The points of a survey that lie in a box.
+
+    Attributes
+    ----------
+    cloud : Cloud
+        Every measurement once, in an order that depends on neither the files nor their order.
+    source, position : ndarrays of shape (n,), int32 and int64
+        File, by its position in the survey, and place in that file of every record.
+    point : ndarray of shape (n,), int64
+        Which point of ``cloud`` a record is; records of one measurement in overlapping tiles are the same point.
+    """
+
+    cloud: Cloud
+    source: np.ndarray
+    position: np.ndarray
+    point: np.ndarray
+
+
+@dataclass(frozen=True)
+class Survey:
+    """Files that are tiles of one cloud.
+
+    Attributes
+    ----------
+    sources : tuple of Source
+        The files.
+    header : Header
+        Of all points as one cloud: finest scale, all dimensions.
+    units : Units
+        Meters per unit of the coordinates.
+    wkt : str
+        Coordinate reference system, as :attr:`.Cloud.wkt`.
+    origin : float64 array, (3,)
+        What local coordinates are relative to, m.
+    """
+
+    sources: tuple[Source, ...]
+    header: Header
+    units: Units
+    wkt: str
+    origin: np.ndarray = field(default_factory=lambda: np.zeros(3))
+
+    def __len__(self) -> int:
+        return sum(source.header.count for source in self.sources)
+
+    @property
+    def box(self) -> np.ndarray:
+        """Least and greatest easting and northing (2, 2) of all files, m, as their headers tell."""
+        boxes = np.array([source.box for source in self.sources])
+        return np.array([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)])
+
+    def near(self, box: np.ndarray) -> list[int]:
+        """Return the positions of the files that may have points in a box (2, 2), m."""
+        return [number for number, source in enumerate(self.sources) if source.meets(box)]
+
+    def part(self, numbers: Iterable[int]) -> dict[int, Source]:
+        """Return some of the files by their positions."""
+        return {number: self.sources[number] for number in numbers}
+
+    def window(self, box: np.ndarray, monitor: Optional[Monitor] = None) -> Optional[Window]:
+        """Return the points in a box (2, 2), m: its lower edges belong to it, its upper ones don't; None if none.
+
+        Memory: the records of the window, and one portion of a file at a time.
+        """
+        monitor = monitor or Monitor()
+        numbers = self.near(box)
+        found = []
+        for done, number in enumerate(numbers):
+            part = monitor.part(done / len(numbers), (done + 1) / len(numbers))
+            found += [(number, *one) for one in self._records(self.sources[number], box, part)]
+        if not found:
+            return None
+        records = np.concatenate([records for _, _, records in found])
+        source = np.repeat(np.array([number for number, _, _ in found], np.int32), [len(one[1]) for one in found])
+        position = np.concatenate([position for _, position, _ in found])
+        return self._in_order(records, source, position)
+
+    def _records(self, source: Source, box: np.ndarray, monitor: Monitor) -> Iterable[tuple[np.ndarray, np.ndarray]]:
+        """Yield the positions in a file and the records, as those of the survey, of the points in a box."""
+        header = source.header
+        scale, offset = (values * self.units.horizontal for values in (header.scale, header.offset))
+        for start, chunk in read_chunks(source.path, header, monitor):
+            inside = np.ones(len(chunk), bool)
+            for i, axis in enumerate("XY"):
+                place = chunk[axis] * scale[i] + offset[i]
+                inside &= (place >= box[0, i]) & (place < box[1, i])
+            rows = np.flatnonzero(inside)
+            if len(rows):
+                records = np.zeros(len(rows), self.header.layout.dtype)
+                fill_merged(records, chunk[rows], header, self.header)
+                yield start + rows, records
+
+    def _in_order(self, records: np.ndarray, source: np.ndarray, position: np.ndarray) -> Window:
+        """Sort records by what was measured, and leave every measurement once."""
+        layout = self.header.layout
+        keys = [records[axis] for axis in "XYZ"]
+        keys += [layout.get(records, name) for name in _KEYS if name in layout.names]
+        order = np.lexsort([position, source, *keys[::-1]])
+        is_next = np.zeros(len(records), bool)
+        is_next[0] = True
+        for key in keys:
+            is_next[1:] |= key[order][1:] != key[order][:-1]
+        group = np.cumsum(is_next) - 1
+        # Two equal records of one file are two points: what is left out is what another file has again.
+        first = source[order][is_next][group]
+        is_kept = source[order] == first
+        point = np.cumsum(is_kept) - 1
+        start = point[is_next][group]
+        point = np.where(is_kept, point, start)
+        cloud = self.cloud(records[order[is_kept]])
+        return Window(cloud, source[order], position[order], point)
+
+    def cloud(self, records: np.ndarray) -> Cloud:
+        """Return records of the survey as a cloud."""
+        cloud = Cloud(replace(self.header, count=len(records)), records, self.units)
+        cloud.wkt, cloud.origin = self.wkt, self.origin
+        return cloud
+
+
+def open_survey(
+    paths: Iterable[Union[str, Path]], crs_units: Optional[Resolver] = None, monitor: Optional[Monitor] = None
+) -> Survey:
+    """Return the survey that files, virtual point clouds and folders of files make.
+
+    Parameters
+    ----------
+    paths : iterable of str or Path
+        A folder stands for all .las, .laz and .copc.laz files in it; a file that comes twice is one.
+    crs_units : callable, optional
+        As for :func:`.read_cloud`.
+    monitor : Monitor, optional
+        Receives warnings about what can't be merged.
+
+    Raises
+    ------
+    ValueError
+        If there are no files, one can't be read, or they have different coordinate reference systems or units.
+    """
+    monitor = monitor or Monitor()
+    files = _files(paths)
+    headers = [open_header(file) for file in files]
+    check_tiles(files, headers)
+    for file, header in zip(files, headers):
+        check_points(file, header)
+    units = units_of(headers[0], crs_units)
+    if units.warning:
+        monitor.warn(units.warning)
+    header = merged_header(headers, "tiles", monitor) if len(headers) > 1 else headers[0]
+    sources = tuple(Source(file, one, _box(one, units)) for file, one in zip(files, headers))
+    survey = Survey(sources, header.without(LASZIP, COPC_INFO, COPC_HIERARCHY), units, wkt_of(headers[0]))
+    low = np.floor(survey.box[0] / _ORIGIN_STEP) * _ORIGIN_STEP
+    return replace(survey, origin=np.append(low, 0.0))
+
+
+def _files(paths: Iterable[Union[str, Path]]) -> list[Path]:
+    found: dict[Path, Path] = {}
+    for path in map(Path, paths):
+        inside = sorted(one for one in path.iterdir() if one.is_file() and kind_of(one)) if path.is_dir() else [path]
+        for file in inside:
+            # A VPC in a folder names files that are in the folder too, or it was put there to be read.
+            found.update({one.resolve(): one for one in files_of(file)})
+    if not found:
+        raise ValueError("There are no point clouds in the folder; choose one with .las, .laz or .copc.laz files.")
+    return list(found.values())
+
+
+def _box(header: Header, units: Units) -> np.ndarray:
+    box = np.array([header.low[:2], header.high[:2]]) * units.horizontal
+    if not np.isfinite(box).all():
+        raise ValueError("The bounds in the header of a file are not finite; repair its header first.")
+    # The bounds are rounded in some files: a step of the scale more misses no point.
+    step = np.abs(header.scale[:2]) * units.horizontal
+    return box + np.array([-step, step])

@@ -1,0 +1,298 @@
+"""A survey in tiles gives what it gives as one file: however it is cut, stopped, damaged, or spread over workers."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
+from lidar_buildings.algorithms.cloud.vpc import write_vpc
+from lidar_buildings.algorithms.pipeline import Pipeline, Step
+from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.run import run_pipeline
+from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.algorithms.tiling import run_in_tiles as module
+from lidar_buildings.algorithms.tiling.run_in_tiles import can_be_tiled, run_in_tiles
+from lidar_buildings.algorithms.tiling.workers import Workers
+from lidar_buildings.tests.builders import crown, roof
+from lidar_buildings.tests.monitors import Listening
+
+DETECT = PIPELINES["detect_buildings"]
+HERE = Workers(processes=1)
+# Blocks of this side (m) have edges through the houses below.
+SIDE = 40.0
+# Southwest corner of the survey: houses lie on edges of blocks and of tiles.
+CORNER = np.array([600_010.0, 5_000_010.0, 0.0])
+SIZE = 66
+HOUSES = ((24, 8), (10, 24), (48, 44))
+# What is tested of runs and not of results takes a chain of one quick step.
+QUICK = Pipeline("quick", "Quick", "Tests", "", "", "", "", (Step("clusters", "segment_clusters", {"radius": 1.0}),))
+
+
+def survey():
+    """Return points, GPS times and which points are roofs: three flat houses and two crowns on 66 m by 66 m."""
+    rng = np.random.default_rng(3)
+    plan = rng.uniform(0, SIZE, (SIZE * SIZE * 4, 2))
+    under = np.zeros(len(plan), bool)
+    for x, y in HOUSES:
+        under |= ((plan > [x, y]) & (plan < [x + 12, y + 10])).all(axis=1)
+    ground = np.column_stack([plan, rng.normal(0, 0.02, len(plan))])[~under]
+    roofs = np.concatenate([roof(rng, x, y, 12, 10, 5.0, density=4.0) for x, y in HOUSES])
+    crowns = np.concatenate([crown(rng, x, y) for x, y in ((50, 20), (15, 55))])
+    xyz = np.concatenate([ground, roofs, crowns]) + CORNER
+    is_roof = np.repeat([False, True, False], [len(ground), len(roofs), len(crowns)])
+    order = rng.permutation(len(xyz))
+    return np.round(xyz[order], 3), np.arange(len(xyz)) * 1e-5, is_roof[order]
+
+
+@pytest.fixture(scope="module")
+def points():
+    return survey()
+
+
+def tiles_of(folder, xyz, times, *parts):
+    """Write tiles, each of the points that a mask tells; return their paths."""
+    paths = []
+    for number, part in enumerate(parts):
+        paths.append(folder / f"tile{number}.las")
+        write_cloud(create_cloud({"xyz": xyz[part], "gps_time": times[part]}, "EPSG:28992"), paths[-1])
+    return paths
+
+
+def run(paths, folder, monitor=None, pipeline=DETECT, **options):
+    options = {"workers": HERE, "block_side": SIDE, "compressed": False, **options}
+    return run_in_tiles(pipeline, paths, folder, monitor, **options)
+
+
+@pytest.fixture(autouse=True)
+def _quick(monkeypatch):
+    """Let workers, which are in this process, know the quick chain."""
+    monkeypatch.setitem(PIPELINES, QUICK.name, QUICK)
+
+
+def classes_by_time(outcome):
+    """Return the times of all points, ascending, with their classes and clusters."""
+    clouds = [read_cloud(path) for path in outcome.tiles]
+    time, classes, cluster = (
+        np.concatenate([cloud.get(name) for cloud in clouds]) for name in ("gps_time", "classification", "cluster_id")
+    )
+    order = np.argsort(time, kind="stable")
+    return time[order], classes[order], cluster[order]
+
+
+@pytest.fixture(scope="module")
+def whole(points, tmp_path_factory):
+    """The survey from one file."""
+    xyz, times, _ = points
+    folder = tmp_path_factory.mktemp("whole")
+    return run(tiles_of(folder, xyz, times, np.ones(len(xyz), bool)), folder / "result")
+
+
+def test_roofs_are_found_and_houses_come_once(points, whole):
+    _, classes, cluster = classes_by_time(whole)
+    is_roof = points[2]
+    assert whole.blocks == 4
+    assert (classes[is_roof] == 6).mean() > 0.98
+    assert (classes[~is_roof] != 6).mean() > 0.98
+    assert len(whole.layers["footprints"]) == len(HOUSES)
+    # A house is one cluster, though edges of blocks go through each of them.
+    assert sorted(np.unique(cluster[(classes == 6) & is_roof])) == sorted(
+        whole.layers["footprints"].columns["cluster_id"]
+    )
+    areas = whole.layers["footprints"].columns["area"]
+    np.testing.assert_allclose(areas, 120, rtol=0.1)
+    assert whole.layers["footprints"].columns["id"] == [1, 2, 3]
+
+
+def test_blocks_say_what_the_whole_cloud_says(points, whole):
+    xyz, times, _ = points
+    cloud = create_cloud({"xyz": xyz, "gps_time": times}, "EPSG:28992")
+    run_pipeline(DETECT, cloud)
+    assert (classes_by_time(whole)[1] == cloud.get("classification")).mean() > 0.99
+
+
+def cuts(xyz):
+    """Return ways to cut the survey into tiles: 9, and irregular ones that overlap by 15 m."""
+    x, y = (xyz - CORNER)[:, :2].T
+    yield [(x // 23 == i) & (y // 24 == j) for i in range(3) for j in range(3)]
+    yield [x < 40, (x > 25) & (y < 50), (x > 25) & (y > 35)]
+
+
+@pytest.mark.parametrize("number", range(2))
+def test_how_the_survey_is_cut_changes_nothing(points, whole, tmp_path, number):
+    xyz, times, _ = points
+    parts = list(cuts(xyz))[number]
+    outcome = run(tiles_of(tmp_path, xyz, times, *parts), tmp_path / "result")
+    time, classes, cluster = classes_by_time(outcome)
+    one, *of_one = classes_by_time(whole)
+    at = np.searchsorted(one, time)
+    assert len(time) == sum(part.sum() for part in parts)
+    np.testing.assert_array_equal(classes, of_one[0][at])
+    np.testing.assert_array_equal(cluster, of_one[1][at])
+    found, expected = outcome.layers["footprints"], whole.layers["footprints"]
+    for rings, wanted in zip(found.geometries, expected.geometries):
+        np.testing.assert_allclose(rings[0] + outcome.survey.origin[:2], wanted[0] + whole.survey.origin[:2], atol=1e-3)
+    assert len(found) == len(expected)
+
+
+def test_a_file_too_large_to_be_read_at_once_is_cut_first(points, tmp_path):
+    xyz, times, _ = points
+    path = tiles_of(tmp_path, xyz, times, np.ones(len(xyz), bool))
+    outcome = run(path, tmp_path / "result", pipeline=QUICK, largest_file=len(xyz) - 1)
+    expected = run(path, tmp_path / "expected", pipeline=QUICK)
+    assert (len(outcome.tiles), len(expected.tiles)) == (4, 1)
+    for found, wanted in zip(classes_by_time(outcome), classes_by_time(expected)):
+        np.testing.assert_array_equal(found, wanted)
+    assert sorted(p.name for p in (tmp_path / "result").iterdir()) == sorted(p.name for p in outcome.tiles)
+
+
+def test_a_tile_keeps_its_points_and_their_order(points, tmp_path):
+    xyz, times, _ = points
+    paths = tiles_of(tmp_path, xyz, times, xyz[:, 0] < CORNER[0] + 50, xyz[:, 0] >= CORNER[0] + 50)
+    before = [path.read_bytes() for path in paths]
+    outcome = run(paths, tmp_path / "result", pipeline=QUICK)
+    for path, tile in zip(paths, outcome.tiles):
+        np.testing.assert_array_equal(read_cloud(path).get("xyz"), read_cloud(tile).get("xyz"))
+        assert tile == tmp_path / "result" / path.name
+    assert [path.read_bytes() for path in paths] == before
+
+
+def test_several_processes_give_what_one_gives(points, whole, tmp_path, monkeypatch):
+    # New processes import the package by its name, whatever the folder of the checkout is called.
+    (tmp_path / "packages").mkdir()
+    (tmp_path / "packages" / "lidar_buildings").symlink_to(Path(module.__file__).resolve().parents[2])
+    monkeypatch.syspath_prepend(tmp_path / "packages")
+    xyz, times, _ = points
+    paths = tiles_of(tmp_path, xyz, times, *next(cuts(xyz)))
+    outcome = run(paths, tmp_path / "result", workers=Workers(processes=2))
+    for found, expected in zip(classes_by_time(outcome), classes_by_time(whole)):
+        np.testing.assert_array_equal(found, expected)
+
+
+def counted(monkeypatch):
+    """Count the blocks that are worked on."""
+    done = []
+    work = module.work_on_block
+
+    def count(task):
+        done.append(task.block.name)
+        return work(task)
+
+    monkeypatch.setattr(module, "work_on_block", count)
+    return done
+
+
+def stopped(paths, folder, done, **tunables):
+    """Stop a run in the middle; return the blocks that were begun."""
+    before = len(done)
+    with pytest.raises(Cancelled):
+        run(paths, folder, Listening(stop_at=0.5), pipeline=QUICK, block_side=10.0, **tunables)
+    return set(done[before:])
+
+
+def test_a_stopped_run_goes_on_where_it_was(points, tmp_path, monkeypatch):
+    xyz, times, _ = points
+    paths = tiles_of(tmp_path, xyz, times, np.ones(len(xyz), bool))
+    done = counted(monkeypatch)
+    assert stopped(paths, tmp_path / "result", done)
+    assert not list((tmp_path / "result").glob("*.las"))
+    first, monitor = len(done), Monitor()
+    outcome = run(paths, tmp_path / "result", monitor, pipeline=QUICK, block_side=10.0)
+    assert first < outcome.blocks
+    # The one that was stopped is begun again.
+    assert len(done) - outcome.blocks <= 1
+    assert any("were worked on before" in sentence for sentence in monitor.infos)
+    expected = run(paths, tmp_path / "expected", pipeline=QUICK, block_side=10.0)
+    np.testing.assert_array_equal(classes_by_time(outcome)[2], classes_by_time(expected)[2])
+
+
+def test_other_tunables_or_changed_files_begin_anew(points, tmp_path, monkeypatch):
+    xyz, times, _ = points
+    paths = tiles_of(tmp_path, xyz, times, np.ones(len(xyz), bool))
+    done = counted(monkeypatch)
+    first = stopped(paths, tmp_path / "result", done)
+    assert stopped(paths, tmp_path / "result", done, clusters_min_points=2) & first
+    tiles_of(tmp_path, xyz, times + 1, np.ones(len(xyz), bool))
+    assert stopped(paths, tmp_path / "result", done) & first
+
+
+def test_two_runs_into_one_folder_are_refused(points, tmp_path):
+    xyz, times, _ = points
+    paths = tiles_of(tmp_path, xyz, times, np.ones(len(xyz), bool))
+
+    class Second(Monitor):
+        tried = ""
+
+        def progress(self, fraction):
+            if not self.tried and fraction > 0.1:
+                self.tried = "yes"
+                with pytest.raises(ValueError, match="Another run is writing to"):
+                    run(paths, tmp_path / "result", pipeline=QUICK)
+
+    monitor = Second()
+    run(paths, tmp_path / "result", monitor, pipeline=QUICK)
+    assert monitor.tried
+
+
+def test_a_block_that_fails_is_named_and_the_rest_is_there(points, tmp_path, monkeypatch):
+    xyz, times, _ = points
+    x = xyz[:, 0] - CORNER[0]
+    paths = tiles_of(tmp_path, xyz, times, x < 40, x >= 40)
+    work = module.work_on_block
+
+    def fail(task):
+        if task.block.box[0, 0] == CORNER[0] + 50:
+            raise ValueError("This block is damaged.")
+        return work(task)
+
+    monkeypatch.setattr(module, "work_on_block", fail)
+    outcome = run(paths, tmp_path / "result", pipeline=QUICK, block_side=10.0)
+    assert [tile.name for tile in outcome.tiles] == ["tile0.las"]
+    assert any("This block is damaged." in sentence for sentence in outcome.failures)
+    assert any("tile1.las is not written" in sentence for sentence in outcome.failures)
+    # What was done stays for the next try.
+    monkeypatch.setattr(module, "work_on_block", work)
+    done = counted(monkeypatch)
+    again = run(paths, tmp_path / "result", pipeline=QUICK, block_side=10.0)
+    assert not again.failures
+    assert len(done) < again.blocks
+
+
+def test_folders_and_virtual_point_clouds_are_surveys_too(points, tmp_path):
+    xyz, times, _ = points
+    paths = tiles_of(tmp_path, xyz, times, *next(cuts(xyz)))
+    write_vpc(paths, tmp_path / "all.vpc")
+    of_tiles, of_folder, of_vpc = (
+        classes_by_time(run(given, tmp_path / name, pipeline=QUICK))
+        for given, name in ((paths, "one"), ([tmp_path], "two"), ([tmp_path / "all.vpc"], "three"))
+    )
+    for tiles, folder, vpc in zip(of_tiles, of_folder, of_vpc):
+        np.testing.assert_array_equal(tiles, folder)
+        np.testing.assert_array_equal(tiles, vpc)
+
+
+def test_tiles_and_their_folder_are_checked_before_anything_runs(points, tmp_path):
+    xyz, times, _ = points
+    paths = tiles_of(tmp_path, xyz[:500], times[:500], np.ones(500, bool))
+    with pytest.raises(ValueError, match="is in the folder"):
+        run(paths, tmp_path)
+    with pytest.raises(ValueError, match="is a file; choose a folder"):
+        run(paths, paths[0])
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(ValueError, match="There are no point clouds in the folder"):
+        run([tmp_path / "empty"], tmp_path / "result")
+    with pytest.raises(ValueError, match="has no tunable 'nonsense'"):
+        run(paths, tmp_path / "result", nonsense=1)
+    with pytest.raises(ValueError, match="can't be run in tiles"):
+        run_in_tiles(PIPELINES["interpret_structure"], paths, tmp_path / "result")
+    assert can_be_tiled(DETECT)
+    assert not (tmp_path / "result").exists()
+
+
+def test_progress_only_grows(points, tmp_path):
+    xyz, times, _ = points
+    monitor = Listening()
+    run(tiles_of(tmp_path, xyz, times, np.ones(len(xyz), bool)), tmp_path / "result", monitor, pipeline=QUICK)
+    assert monitor.heard == sorted(monitor.heard)
+    assert monitor.heard[-1] == 1.0
