@@ -78,6 +78,23 @@ class CloudsParameter(_TakesFiles, QgsProcessingParameterMultipleLayers):
         return super().valueAsPythonString(value, context) if names is None else repr(names)
 
 
+class SurveyParameter(_TakesFiles, QgsProcessingParameterMultipleLayers):
+    """The tiles of a survey: a folder, or any number of files and layers."""
+
+    def __init__(self, name: str, description: str) -> None:
+        super().__init__(name, description, Qgis.ProcessingSourceType.PointCloud)
+        self.setMinimumNumberInputs(1)
+
+    def clone(self) -> SurveyParameter:
+        """Return a copy of this very type; the base class would return its own."""
+        return self._as_this(SurveyParameter(self.name(), self.description()))
+
+    def valueAsPythonString(self, value: Any, context: QgsProcessingContext) -> str:  # noqa: N802
+        """Return the tiles as a script and the log name them."""
+        names = _names(value)
+        return super().valueAsPythonString(value, context) if names is None else repr(names)
+
+
 def files_read(clouds: Iterable[Path]) -> list[Path]:
     """Return all files that hold the points of clouds: themselves, and the tiles of virtual point clouds.
 
@@ -114,6 +131,21 @@ def cloud_paths(
     if len(paths) < 2:
         raise ValueError(f"{title} ({name}) must be at least two, got {len(paths)}; choose another.")
     return paths
+
+
+def survey_paths(
+    algorithm: QgsProcessingAlgorithm, name: str, parameters: dict, context: QgsProcessingContext
+) -> list[Path]:
+    """Return the folders and the files of the point clouds that a parameter gives, see :func:`cloud_path`."""
+    title = algorithm.parameterDefinition(name).description()
+    values = [_plain(algorithm, name, value, context) for value in _flat(parameters.get(name))]
+    given = [value for value in values if value is not None and value != ""]
+    if not given:
+        raise ValueError(f"{title} ({name}) is missing; choose a folder or files of points.")
+    return [
+        Path(value) if isinstance(value, str) and Path(value).is_dir() else _path(title, name, value, context)
+        for value in given
+    ]
 
 
 def _flat(value: Any) -> list:

@@ -7,12 +7,14 @@ from qgis.PyQt.QtGui import QIcon
 
 from ..algorithms.pipelines import PIPELINES
 from ..algorithms.stages import STAGES
+from ..algorithms.tiling.tiled_pipelines import TILED_PIPELINES
 from . import PROVIDER_ID
 from .dependencies import missing_sentence
 from .paths import ICON
 from .pipeline_algorithm import PipelineAlgorithm
 from .rasters import EXTENSIONS as RASTER_EXTENSIONS
 from .stage_algorithm import StageAlgorithm
+from .tiles_algorithm import TilesAlgorithm
 
 CLOUD_EXTENSIONS = ("las", "laz", "copc.laz")
 
@@ -28,12 +30,14 @@ class Provider(QgsProcessingProvider):
         self._with_pipelines = with_pipelines
 
     def loadAlgorithms(self) -> None:  # noqa: N802 - QGIS asks for this name
-        """Add one algorithm per stage and per pipeline."""
+        """Add one algorithm per stage and per pipeline, and one per pipeline that runs in tiles."""
         for stage in STAGES.values():
             self.addAlgorithm(StageAlgorithm(stage))
         # A model finds its outputs by asking its children, which have to be there.
         for pipeline in PIPELINES.values() if self._with_pipelines else ():
             self.addAlgorithm(PipelineAlgorithm(pipeline))
+        for tiled in TILED_PIPELINES.values():
+            self.addAlgorithm(TilesAlgorithm(tiled))
 
     def id(self) -> str:
         """Return the prefix of all algorithm ids; frozen, saved models depend on it."""

@@ -8,10 +8,8 @@ from typing import Any, Optional
 
 from qgis.core import (
     QgsCoordinateReferenceSystem,
-    QgsFeatureSink,
     QgsProcessingAlgorithm,
     QgsProcessingContext,
-    QgsProcessingException,
     QgsProcessingFeedback,
     QgsProcessingOutputNumber,
     QgsProcessingParameterFeatureSink,
@@ -25,7 +23,7 @@ from ..algorithms.cloud.files import count_points, read_cloud, read_extent
 from ..algorithms.cloud.outputs import replacing
 from ..algorithms.help import stage_help
 from ..algorithms.run import Outcome, run_stage
-from ..algorithms.stage import Layer, LayerFeatures, Monitor, Raster, RasterSurface, Stage
+from ..algorithms.stage import Monitor, Raster, RasterSurface, Stage
 from .clouds import CloudParameter, cloud_path, files_read
 from .crs import crs_units, make_in_main_thread, renew_in_main_thread
 from .declared import DeclaredAlgorithm, shown_help
@@ -34,22 +32,17 @@ from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, announce, warn_unknown_parameters
 from .input_layers import find_input_layer, input_layer_files, input_layer_parameter, read_input_layer, refuse_elsewhere
 from .inputs import OUTPUT, REFERENCE, REPORT, cloud_title, input_parameter, input_paths, subject_of, with_help
+from .layer_outputs import UNWANTED, write_layer
 from .memory import warn_if_memory_is_short
 from .outputs import all_in_place, check_targets, write_for_qgis
 from .parameters import automatic_numbers, number_outputs, parameter, tunable_values, used_name
 from .places import Place, place_of_cloud, place_of_layers
 from .rasters import write_raster
 from .styles import cloud_style, layer_style, show_on_load
-from .vectors import SOURCE_TYPES, fields_of, plain, qgis_features, wkb_type
+from .vectors import SOURCE_TYPES, plain
 
 # How far the progress is when clouds are read, when the stage is done, and when the cloud is written.
 _READ, _RUN, _WRITTEN = 0.15, 0.8, 0.97
-
-# What an optional output is that nobody asks for: left out, or written without a value on the command line.
-_UNWANTED = (None, "")
-
-# Features that are written between two looks at whether to stop.
-_BETWEEN_CHECKS = 1000
 
 
 @dataclass
@@ -186,7 +179,8 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
                 results[OUTPUT] = self._write_cloud(outcome.cloud, run.parameters, context, part)
             for layer in self.stage.layers:
                 features = outcome.layers[layer.name]
-                results.update(self._write_layer(layer, features, place, run.parameters, context, monitor))
+                part, name = monitor.part(_WRITTEN, _WRITTEN), layer.name.upper()
+                results.update(write_layer(self, name, layer, features, place, run.parameters, context, part))
             for raster in self.stage.rasters:
                 surface = outcome.rasters[raster.name]
                 results.update(self._write_raster(raster, surface, place, run.parameters, context, monitor))
@@ -234,39 +228,6 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         show_on_load(context, shown, "Cloud", cloud_style(self.stage, cloud))
         return target
 
-    def _write_layer(
-        self,
-        layer: Layer,
-        features: LayerFeatures,
-        place: Place,
-        parameters: dict,
-        context: QgsProcessingContext,
-        monitor: Monitor,
-    ) -> dict:
-        """Write a layer, if it is wanted; return its output. Features are in meters from the origin of the place."""
-        name = layer.name.upper()
-        if parameters.get(name) in _UNWANTED:
-            return {}
-        sink, target = self.parameterAsSink(
-            parameters, name, context, fields_of(layer), wkb_type(layer, features), place.crs
-        )
-        if sink is None:
-            raise QgsProcessingException(self.invalidSinkError(parameters, name))
-        monitor.resolved(**{layer.name: len(features)})
-        try:
-            for row, feature in enumerate(qgis_features(layer, features, place.to_map)):
-                if row % _BETWEEN_CHECKS == 0:
-                    monitor.progress(_WRITTEN)
-                if not sink.addFeature(feature, QgsFeatureSink.Flag.FastInsert):
-                    raise QgsProcessingException(_unwritten(layer, target, sink))
-            if not sink.flushBuffer():
-                raise QgsProcessingException(_unwritten(layer, target, sink))
-        finally:
-            # The file is closed with the sink: complete for the next step of a model, or free to be removed.
-            del sink
-        show_on_load(context, target, layer.geometry, layer_style(layer), layer.fields)
-        return {name: target}
-
     def _write_raster(
         self,
         raster: Raster,
@@ -278,7 +239,7 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
     ) -> dict:
         """Write a raster, if it is wanted; return its output."""
         name = raster.name.upper()
-        if parameters.get(name) in _UNWANTED:
+        if parameters.get(name) in UNWANTED:
             return {}
         target = self.parameterAsOutputLayer(parameters, name, context)
         write_raster(raster, surface, place, Path(target), monitor.part(_WRITTEN, _WRITTEN))
@@ -293,9 +254,3 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         with replacing(Path(target)) as stream:
             stream.write(html.encode())
         return {REPORT: target}
-
-
-def _unwritten(layer: Layer, target: str, sink: QgsFeatureSink) -> str:
-    """Return why a layer can't be written, with the reason that its format gives, if any."""
-    why = f" ({sink.lastError()})" if sink.lastError() else ""
-    return f"{layer.title} can't be written to {target}{why}; free some space or choose another folder."

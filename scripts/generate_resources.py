@@ -19,6 +19,7 @@ import conftest  # noqa: E402, F401 - registers the checkout as the package lida
 from lidar_buildings.algorithms.help import page, pipeline_help, stage_help  # noqa: E402
 from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
+from lidar_buildings.algorithms.tiling.tiled_pipelines import TILED_PIPELINES, tiled_pipeline_help  # noqa: E402
 from lidar_buildings.provider import models  # noqa: E402
 from lidar_buildings.provider.paths import HELP, MODELS  # noqa: E402
 from lidar_buildings.provider.provider import Provider  # noqa: E402
@@ -28,6 +29,9 @@ def help_pages() -> dict[str, str]:
     """Return the help pages by file name."""
     pages = {f"{stage.id}.html": page(stage.title, stage_help(stage)) for stage in STAGES.values()}
     pages.update({f"{p.id}.html": page(p.title, pipeline_help(p)) for p in PIPELINES.values()})
+    pages.update(
+        {f"{tiled.id}.html": page(tiled.title, tiled_pipeline_help(tiled)) for tiled in TILED_PIPELINES.values()}
+    )
     return pages
 
 

@@ -179,7 +179,7 @@ def open_survey(
         If there are no files, one can't be read, or they have different coordinate reference systems or units.
     """
     monitor = monitor or Monitor()
-    files = _files(paths)
+    files = files_of_survey(paths)
     headers = [open_header(file) for file in files]
     check_tiles(files, headers)
     for file, header in zip(files, headers):
@@ -194,7 +194,14 @@ def open_survey(
     return replace(survey, origin=np.append(low, 0.0))
 
 
-def _files(paths: Iterable[Union[str, Path]]) -> list[Path]:
+def files_of_survey(paths: Iterable[Union[str, Path]]) -> list[Path]:
+    """Return the files that files, virtual point clouds and folders of files stand for, each once.
+
+    Raises
+    ------
+    ValueError
+        If there are none, or one is no point cloud.
+    """
     found: dict[Path, Path] = {}
     for path in map(Path, paths):
         inside = sorted(one for one in path.iterdir() if one.is_file() and kind_of(one)) if path.is_dir() else [path]

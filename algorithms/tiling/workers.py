@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pickle
 import shutil
 import sys
 import tempfile
@@ -103,9 +104,30 @@ class Workers:
             client.register_plugin(distributed.diagnostics.plugin.UploadFile(str(_archive(Path(folder)))))
             executor = client.get_executor(pure=False, retries=1)
             try:
-                yield executor
+                yield _Remote(executor)
             finally:
                 executor.shutdown(wait=False)
+
+
+class _Call:
+    """A call that is made where it is unpickled."""
+
+    def __init__(self, function: Callable, argument: Any) -> None:
+        self.function, self.argument = function, argument
+
+    def __reduce__(self) -> tuple:
+        return self.function, (self.argument,)
+
+
+class _Remote(Executor):
+    """An executor of a cluster. Its scheduler reads all that it passes on, and only its workers have this program."""
+
+    def __init__(self, executor: Executor) -> None:
+        self._executor = executor
+
+    def submit(self, fn: Callable, /, *args: Any, **kwargs: Any) -> Future:
+        """Have a worker call a function with one argument."""
+        return self._executor.submit(pickle.loads, pickle.dumps(_Call(fn, *args)))
 
 
 def _archive(folder: Path) -> Path:

@@ -16,6 +16,7 @@ from qgis.core import (
 from lidar_buildings.algorithms.help import pipeline_help
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.stages import STAGES
+from lidar_buildings.algorithms.tiling.tiled_pipelines import TILED_PIPELINES
 from lidar_buildings.provider.clouds import CloudParameter, CloudsParameter
 from lidar_buildings.provider.vectors import SOURCE_TYPES
 from lidar_buildings.tests.toys import TOYS
@@ -56,6 +57,7 @@ IDS = {
     "segmentplaneshough",
     "simulatestreet",
 }
+TILED_IDS = {"detectbuildingsintiles", "detectbuildings2019intiles"}
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints"}
 ALL = {**STAGES, **TOYS}
 
@@ -73,11 +75,13 @@ def algorithm(stage, provider):
 def test_ids_are_frozen():
     assert {stage.id for name, stage in STAGES.items() if name not in TOYS} == IDS
     assert {pipeline.id for pipeline in PIPELINES.values() if pipeline.group != "Toys"} == PIPELINE_IDS
+    assert {tiled.id for tiled in TILED_PIPELINES.values()} == TILED_IDS
 
 
 def test_the_toolbox_has_all_and_nothing_else(provider):
     shown = {algorithm.name() for algorithm in provider.algorithms()}
-    assert shown == {stage.id for stage in ALL.values()} | {pipeline.id for pipeline in PIPELINES.values()}
+    made = (*ALL.values(), *PIPELINES.values(), *TILED_PIPELINES.values())
+    assert shown == {one.id for one in made}
 
 
 def test_the_algorithm_is_the_stage(stage, algorithm):

@@ -1,0 +1,85 @@
+"""The composites that run in tiles, as users meet them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..help import paragraphs, pipeline_help
+from ..pipeline import Output, Pipeline
+from ..pipelines import PIPELINES
+from .run_in_tiles import can_be_tiled
+
+_DESCRIPTION = """
+For surveys of any size: the input is a folder of tiles, a virtual point cloud, any number of files, or one file of any
+size. Each file becomes a classified tile of the same name in the output folder, with a virtual point cloud over all of
+them; a file of more than 25 million points becomes tiles of the size of a block. The layers are those of the whole
+survey, without seams and duplicates.
+
+The work is done in blocks of a lattice that starts at the zero of the map, each with the points around it as far as the
+steps reach, so that the result does not depend on how the points are spread over files. How the cloud was sampled is
+measured once for all blocks; the two means of the clusters are taken block by block. A block that cuts off a building
+is worked on again with more around it.
+
+A run that was stopped goes on where it was when it is started again with the same input, parameters and version; until
+it is complete, what it has done is kept in a hidden folder among the tiles. Blocks that fail are named at the end; the
+tiles that they touch are missing then, all others are written.
+
+The blocks are worked on by one process for each core, or by the workers of a Dask cluster that runs already. These must
+see the same folders under the same paths; they get the program from here, and need numpy, scipy, laspy and lazrs.
+"""
+
+
+@dataclass(frozen=True)
+class TiledPipeline:
+    """A composite that is run in tiles."""
+
+    pipeline: Pipeline
+
+    @property
+    def name(self) -> str:
+        """Name, ``detect_buildings_in_tiles``."""
+        return f"{self.pipeline.name}_in_tiles"
+
+    @property
+    def id(self) -> str:
+        """Processing id, ``detectbuildingsintiles``: frozen, saved models depend on it."""
+        return self.name.replace("_", "")
+
+    @property
+    def title(self) -> str:
+        """What people call it."""
+        return f"{self.pipeline.title}, in tiles"
+
+    @property
+    def group(self) -> str:
+        """The group of the toolbox."""
+        return "Surveys in tiles"
+
+    @property
+    def tags(self) -> str:
+        """Words that the toolbox finds it by."""
+        return f"{self.pipeline.tags},tile,tiles,folder,survey,large,batch,parallel,Dask,cluster"
+
+    @property
+    def summary(self) -> str:
+        """What it is for, in a sentence."""
+        return f"{self.pipeline.title} on a survey of any size, tile by tile, in several processes."
+
+    @property
+    def layers(self) -> list[Output]:
+        """The outputs that are layers."""
+        return [
+            output
+            for output in self.pipeline.outputs
+            if output.of in [layer.name for layer in output.step.stage.layers]
+        ]
+
+
+TILED_PIPELINES = {
+    tiled.name: tiled for tiled in (TiledPipeline(one) for one in PIPELINES.values() if can_be_tiled(one))
+}
+
+
+def tiled_pipeline_help(tiled: TiledPipeline) -> str:
+    """Return what a composite does in tiles, and then what it does, as HTML that QGIS's help pane shows."""
+    return "\n".join([paragraphs(tiled.summary), paragraphs(_DESCRIPTION), pipeline_help(tiled.pipeline)])

@@ -1,0 +1,64 @@
+"""Layers that algorithms make, written where the user wants them."""
+
+from __future__ import annotations
+
+from qgis.core import QgsFeatureSink, QgsProcessingAlgorithm, QgsProcessingContext, QgsProcessingException
+
+from ..algorithms.stage import Layer, LayerFeatures, Monitor
+from .places import Place
+from .styles import layer_style, show_on_load
+from .vectors import fields_of, qgis_features, wkb_type
+
+# What an optional output is that nobody asks for: left out, or written without a value on the command line.
+UNWANTED = (None, "")
+
+# Features that are written between two looks at whether to stop.
+_BETWEEN_CHECKS = 1000
+
+
+def write_layer(
+    algorithm: QgsProcessingAlgorithm,
+    name: str,
+    layer: Layer,
+    features: LayerFeatures,
+    place: Place,
+    parameters: dict,
+    context: QgsProcessingContext,
+    monitor: Monitor,
+) -> dict:
+    """Write a layer, if it is wanted, to the output ``name``; return it by that name.
+
+    Features are in meters from the origin of the place.
+
+    Raises
+    ------
+    QgsProcessingException
+        If it can't be written.
+    """
+    if parameters.get(name) in UNWANTED:
+        return {}
+    sink, target = algorithm.parameterAsSink(
+        parameters, name, context, fields_of(layer), wkb_type(layer, features), place.crs
+    )
+    if sink is None:
+        raise QgsProcessingException(algorithm.invalidSinkError(parameters, name))
+    monitor.resolved(**{layer.name: len(features)})
+    try:
+        for row, feature in enumerate(qgis_features(layer, features, place.to_map)):
+            if row % _BETWEEN_CHECKS == 0:
+                monitor.progress(1.0)
+            if not sink.addFeature(feature, QgsFeatureSink.Flag.FastInsert):
+                raise QgsProcessingException(_unwritten(layer, target, sink))
+        if not sink.flushBuffer():
+            raise QgsProcessingException(_unwritten(layer, target, sink))
+    finally:
+        # The file is closed with the sink: complete for the next step of a model, or free to be removed.
+        del sink
+    show_on_load(context, target, layer.geometry, layer_style(layer), layer.fields)
+    return {name: target}
+
+
+def _unwritten(layer: Layer, target: str, sink: QgsFeatureSink) -> str:
+    """Return why a layer can't be written, with the reason that its format gives, if any."""
+    why = f" ({sink.lastError()})" if sink.lastError() else ""
+    return f"{layer.title} can't be written to {target}{why}; free some space or choose another folder."

@@ -1,0 +1,284 @@
+"""A composite in tiles as a Processing algorithm: a survey in, a folder of tiles and the layers of the whole out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Optional
+
+import numpy as np
+from qgis.core import (
+    Qgis,
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransform,
+    QgsPointXY,
+    QgsProcessingAlgorithm,
+    QgsProcessingContext,
+    QgsProcessingFeedback,
+    QgsProcessingOutputFile,
+    QgsProcessingOutputNumber,
+    QgsProcessingParameterBoolean,
+    QgsProcessingParameterDefinition,
+    QgsProcessingParameterFeatureSink,
+    QgsProcessingParameterFolderDestination,
+    QgsProcessingParameterNumber,
+    QgsProcessingParameterString,
+)
+
+from ..algorithms.cloud.files import read_extent
+from ..algorithms.cloud.vpc import write_vpc
+from ..algorithms.tiling.run_in_tiles import TilesOutcome, run_in_tiles
+from ..algorithms.tiling.survey import files_of_survey
+from ..algorithms.tiling.tiled_pipelines import TiledPipeline, tiled_pipeline_help
+from ..algorithms.tiling.workers import Workers
+from .clouds import SurveyParameter, survey_paths
+from .crs import crs_units, make_in_main_thread, renew_in_main_thread
+from .declared import DeclaredAlgorithm, shown_help
+from .dependencies import missing_sentence
+from .errors import as_processing_errors
+from .feedback import FeedbackMonitor, warn_unknown_parameters
+from .inputs import INPUT, OUTPUT, with_help
+from .layer_outputs import write_layer
+from .models import pipeline_parameters
+from .outputs import all_in_place, check_targets
+from .parameters import tunable_values
+from .places import place_of_cloud
+from .vectors import SOURCE_TYPES
+
+BLOCK_SIDE, PROCESSES, SCHEDULER, CERTIFICATES, COMPRESSED = (
+    "BLOCK_SIDE",
+    "PROCESSES",
+    "SCHEDULER",
+    "CERTIFICATES",
+    "COMPRESSED",
+)
+VPC = "VPC"
+
+# Numbers that the algorithm returns.
+_NUMBERS = {
+    "TILES": "Tiles written",
+    "BLOCKS": "Blocks",
+    "POINTS": "Points",
+    "FAILURES": "Blocks and tiles that failed",
+}
+
+# The progress when blocks and tiles are done; the rest is writing the layers.
+_DONE = 0.97
+
+_WGS84 = "EPSG:4326"
+
+
+class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
+    """A composite on a survey of any size; everything it shows comes from the composite's declaration."""
+
+    def __init__(self, tiled: TiledPipeline) -> None:
+        super().__init__()
+        self.tiled = self.declared = tiled
+
+    def createInstance(self) -> TilesAlgorithm:  # noqa: N802 - QGIS asks for these names
+        """Return a new algorithm of the same composite."""
+        return TilesAlgorithm(self.tiled)
+
+    def shortHelpString(self) -> str:  # noqa: N802
+        """Return the help that the dialog shows beside the parameters."""
+        return shown_help(tiled_pipeline_help(self.tiled))
+
+    def initAlgorithm(self, configuration: Optional[dict] = None) -> None:  # noqa: N802
+        """Declare the survey, the composite's parameters, how it is worked on, and the outputs."""
+        survey = SurveyParameter(INPUT, "Survey")
+        self.addParameter(with_help(survey, "A folder of .las and .laz files, a .vpc file, or any number of files."))
+        for definition in pipeline_parameters(self.tiled.pipeline).values():
+            self.addParameter(definition)
+        for definition in _work_parameters():
+            self.addParameter(definition)
+        folder = QgsProcessingParameterFolderDestination(OUTPUT, "Folder of the tiles")
+        self.addParameter(with_help(folder, "A tile for each file, and a virtual point cloud over all of them."))
+        for output in self.tiled.layers:
+            layer = next(one for one in output.step.stage.layers if one.name == output.of)
+            sink = QgsProcessingParameterFeatureSink(
+                output.name.upper(), layer.title, SOURCE_TYPES[layer.geometry], optional=True
+            )
+            self.addParameter(with_help(sink, "A GeoPackage or any other vector format that QGIS writes."))
+        self.addOutput(QgsProcessingOutputFile(VPC, "Virtual point cloud over the tiles"))
+        for name, title in _NUMBERS.items():
+            self.addOutput(QgsProcessingOutputNumber(name, title))
+
+    def canExecute(self) -> tuple[bool, str]:  # noqa: N802
+        """Whether all packages are there, and how to install what is missing."""
+        missing = missing_sentence()
+        return not missing, missing
+
+    def checkParameterValues(self, parameters: dict, context: QgsProcessingContext) -> tuple[bool, str]:  # noqa: N802
+        """Refuse what can be refused before the run, in the words that the run would use."""
+        try:
+            self._check(parameters, context)
+        except ValueError as error:
+            return False, str(error)
+        return super().checkParameterValues(parameters, context)
+
+    def _check(self, parameters: dict, context: QgsProcessingContext) -> None:
+        """Find out files, tunables and workers; refuse with a ValueError what can be refused before the run."""
+        missing = missing_sentence()
+        if missing:
+            raise ValueError(missing)
+        self.paths = survey_paths(self, INPUT, parameters, context)
+        self.files = files_of_survey(self.paths)
+        self.tunables = self._tunables(parameters, context)
+        self.workers = self._workers(parameters, context)
+        sinks = [one for one in self.destinationParameterDefinitions() if one.name() != OUTPUT]
+        check_targets(sinks, parameters, self.files)
+
+    def _tunables(self, parameters: dict, context: QgsProcessingContext) -> dict[str, Any]:
+        """Return the composite's parameters by its own names."""
+        pipeline = self.tiled.pipeline
+        values = {}
+        for step in pipeline.steps:
+            named = {name: pipeline.parameter(step, name) for name in step.stage.tunables}
+            shown = {name: composite.upper() for name, composite in named.items()}
+            for name, value in tunable_values(self, step.stage, parameters, context, shown).items():
+                values[named[name]] = value
+        return values
+
+    def _workers(self, parameters: dict, context: QgsProcessingContext) -> Workers:
+        processes = parameters.get(PROCESSES)
+        count = None if processes is None else self.parameterAsInt(parameters, PROCESSES, context)
+        scheduler = self.parameterAsString(parameters, SCHEDULER, context).strip()
+        listed = self.parameterAsString(parameters, CERTIFICATES, context).split(";")
+        certificates = tuple(one.strip() for one in listed if one.strip())
+        if certificates and len(certificates) != 3:
+            raise ValueError(
+                f"The certificates must be three files (authority; certificate; key), got {len(certificates)}."
+            )
+        missing = [one for one in certificates if not Path(one).is_file()]
+        if missing:
+            raise ValueError(f"There is no certificate {missing[0]}; check the name.")
+        return Workers(count, scheduler, certificates)
+
+    def prepareAlgorithm(  # noqa: N802
+        self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ) -> bool:
+        """Find out files and values; layers may be asked only here, in the main thread."""
+        with as_processing_errors():
+            self._check(parameters, context)
+            self._systems = make_in_main_thread([read_extent(self.files[0])[2], _WGS84])
+        return True
+
+    def postProcessAlgorithm(self, context: QgsProcessingContext, feedback: QgsProcessingFeedback) -> dict:  # noqa: N802
+        """Make the CRS of results last."""
+        renew_in_main_thread(context.temporaryLayerStore().mapLayers().values())
+        return {}
+
+    def processAlgorithm(  # noqa: N802
+        self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ) -> dict:
+        """Run the survey; then write the layers. What failed is named at the end, and the run fails with it."""
+        warn_unknown_parameters(self, parameters, feedback)
+        monitor = FeedbackMonitor(feedback)
+        folder = Path(self.parameterAsString(parameters, OUTPUT, context))
+        sinks = [one for one in self.destinationParameterDefinitions() if one.name() != OUTPUT]
+        with as_processing_errors(feedback):
+            with all_in_place(sinks, parameters, context, folder.name) as run:
+                outcome = self._run(folder, parameters, context, monitor)
+                results = self._write_layers(outcome, run.parameters, context, monitor)
+                results[VPC] = str(self._write_vpc(outcome, folder, context))
+                results = run.final(results)
+            _refuse_failures(outcome, folder)
+            monitor.progress(1.0)
+            numbers = (len(outcome.tiles), outcome.blocks, outcome.points, len(outcome.failures))
+            return {OUTPUT: str(folder), **results, **dict(zip(_NUMBERS, numbers))}
+        return {}
+
+    def _run(
+        self, folder: Path, parameters: dict, context: QgsProcessingContext, monitor: FeedbackMonitor
+    ) -> TilesOutcome:
+        side = parameters.get(BLOCK_SIDE)
+        return run_in_tiles(
+            self.tiled.pipeline,
+            self.paths,
+            folder,
+            monitor.part(0.0, _DONE),
+            workers=self.workers,
+            block_side=None if side is None else self.parameterAsDouble(parameters, BLOCK_SIDE, context),
+            compressed=self.parameterAsBool(parameters, COMPRESSED, context),
+            crs_units=crs_units,
+            **self.tunables,
+        )
+
+    def _write_layers(
+        self, outcome: TilesOutcome, parameters: dict, context: QgsProcessingContext, monitor: FeedbackMonitor
+    ) -> dict:
+        """Write the layers that are wanted; return their outputs."""
+        survey, results = outcome.survey, {}
+        place = place_of_cloud(survey.cloud(np.zeros(1, survey.header.layout.dtype)))
+        for output in self.tiled.layers:
+            features = outcome.layers.get(output.name)
+            layer = next(one for one in output.step.stage.layers if one.name == output.of)
+            if features is not None:
+                part, name = monitor.part(_DONE, _DONE), output.name.upper()
+                results.update(write_layer(self, name, layer, features, place, parameters, context, part))
+        return results
+
+    def _write_vpc(self, outcome: TilesOutcome, folder: Path, context: QgsProcessingContext) -> Path:
+        """Write the virtual point cloud over the tiles; return its path."""
+        crs = place_of_cloud(outcome.survey.cloud(np.zeros(1, outcome.survey.header.layout.dtype))).crs
+        to_degrees = None
+        if crs.isValid():
+            change = QgsCoordinateTransform(crs, QgsCoordinateReferenceSystem(_WGS84), context.transformContext())
+
+            def to_degrees(coordinates: np.ndarray) -> np.ndarray:
+                there = [change.transform(QgsPointXY(*place)) for place in coordinates.tolist()]
+                return np.array([(place.x(), place.y()) for place in there])
+
+        path = folder / f"{folder.name}.vpc"
+        write_vpc(outcome.tiles, path, to_degrees)
+        return path
+
+
+def _refuse_failures(outcome: TilesOutcome, folder: Path) -> None:
+    """Say what failed, if anything did.
+
+    Raises
+    ------
+    ValueError
+        With all that failed.
+    """
+    if outcome.failures:
+        raise ValueError(
+            f"{len(outcome.failures)} parts of the survey failed; all others are in {folder}. "
+            f"{' '.join(outcome.failures)} Run it again to try these once more."
+        )
+
+
+def _work_parameters() -> list[QgsProcessingParameterDefinition]:
+    """Return the parameters of how a survey is worked on."""
+    number = Qgis.ProcessingNumberParameterType
+    made = [
+        with_help(
+            QgsProcessingParameterNumber(
+                BLOCK_SIDE, "Side of a block (m, empty = automatic)", number.Double, None, True, 20.0, 10_000.0
+            ),
+            "Larger blocks take more memory and less time, as less of what surrounds them is worked on twice. Empty: "
+            "the largest of 100 to 1600 m, doubled each time, that has at most 6 million points with those around it.",
+        ),
+        with_help(
+            QgsProcessingParameterNumber(
+                PROCESSES, "Processes (empty = one for each core)", number.Integer, None, True, 1, 512
+            ),
+            "How many blocks are worked on at once; each takes about 2 GB of memory.",
+        ),
+        with_help(
+            QgsProcessingParameterString(SCHEDULER, "Address of a Dask scheduler", "", False, True),
+            "For example tcp://head-node:8786 or tls://head-node:8786; empty: processes of this machine. The workers "
+            "must see the input and the output folder under the same paths.",
+        ),
+        with_help(
+            QgsProcessingParameterString(CERTIFICATES, "Certificates for tls", "", False, True),
+            "Three files of PEM, with semicolons between: certificate authority; certificate; key.",
+        ),
+        with_help(
+            QgsProcessingParameterBoolean(COMPRESSED, "Write LAZ", True),
+            "Tiles are compressed (.laz); otherwise they are .las files.",
+        ),
+    ]
+    for definition in made:
+        definition.setFlags(definition.flags() | Qgis.ProcessingParameterFlag.Advanced)
+    return made

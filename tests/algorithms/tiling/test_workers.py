@@ -1,0 +1,112 @@
+"""Blocks on a Dask cluster: a real scheduler and its workers, in processes of their own, with certificates."""
+
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
+from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
+from lidar_buildings.algorithms.tiling.workers import Workers
+from lidar_buildings.tests.builders import roof
+
+DETECT = PIPELINES["detect_buildings"]
+
+
+@pytest.fixture
+def tile(tmp_path):
+    """A field with a house on it."""
+    rng = np.random.default_rng(11)
+    plan = rng.uniform(0, 60, (60 * 60 * 3, 2))
+    under = ((plan > [24, 20]) & (plan < [36, 30])).all(axis=1)
+    ground = np.column_stack([plan, rng.normal(0, 0.02, len(plan))])[~under]
+    xyz = np.concatenate([ground, roof(rng, 24, 20, 12, 10, 5.0, density=3.0)]) + [85_000, 447_000, 0]
+    write_cloud(create_cloud({"xyz": xyz}, "EPSG:28992"), tmp_path / "tile.las")
+    return tmp_path / "tile.las"
+
+
+def certificates(folder):
+    """Make an authority, and a certificate and key that it has signed."""
+    for arguments in (
+        "req -x509 -newkey rsa:2048 -nodes -keyout ca.key -out ca.pem -days 2 -subj /CN=authority",
+        "req -newkey rsa:2048 -nodes -keyout key.pem -out request.pem -subj /CN=localhost",
+        "x509 -req -in request.pem -CA ca.pem -CAkey ca.key -CAcreateserial -out cert.pem -days 2",
+    ):
+        subprocess.run(["openssl", *arguments.split()], cwd=folder, check=True, capture_output=True)
+    return tuple(str(folder / name) for name in ("ca.pem", "cert.pem", "key.pem"))
+
+
+def started(arguments, folder):
+    environment = {**os.environ, "DASK_DISTRIBUTED__WORKER__DAEMON": "False"}
+    with (folder / f"{len(list(folder.glob('*.log')))}.log").open("w") as log:
+        return subprocess.Popen(
+            [sys.executable, "-m", "distributed.cli." + arguments[0], *arguments[1:]],
+            cwd=folder,
+            env=environment,
+            stdout=log,
+            stderr=log,
+            start_new_session=True,
+        )
+
+
+@pytest.fixture
+def cluster(tmp_path):
+    """A scheduler and two workers on loopback, with certificates; their address, certificates and processes."""
+    pytest.importorskip("distributed")
+    if shutil.which("openssl") is None:
+        pytest.skip("openssl is not installed")
+    folder = tmp_path / "cluster"
+    folder.mkdir()
+    authority, certificate, key = files = certificates(folder)
+    tls = ["--tls-ca-file", authority, "--tls-cert", certificate, "--tls-key", key]
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    address = f"tls://127.0.0.1:{port}"
+    processes = [started(["dask_scheduler", "--host", address, "--no-dashboard", *tls], folder)]
+    for _ in range(2):
+        one = ["dask_worker", address, "--nthreads", "1", "--no-dashboard", "--no-nanny", *tls]
+        processes.append(started(one, folder))
+    yield address, files, processes
+    for process in processes:
+        if process.poll() is None:
+            os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+
+
+class Killing(Monitor):
+    """Kills a worker when the first block is done."""
+
+    def __init__(self, process):
+        super().__init__()
+        self.process = process
+
+    def progress(self, fraction):
+        if fraction > 0.3 and self.process.poll() is None:
+            os.killpg(self.process.pid, signal.SIGKILL)
+            self.process.wait()
+
+
+def test_a_cluster_gives_what_this_machine_gives_though_a_worker_is_killed(tile, cluster, tmp_path):
+    address, files, processes = cluster
+    expected = run_in_tiles(DETECT, [tile], tmp_path / "here", block_side=20.0, workers=Workers(processes=1))
+    workers = Workers(scheduler=address, certificates=files)
+    begun = time.monotonic()
+    outcome = run_in_tiles(DETECT, [tile], tmp_path / "there", Killing(processes[1]), block_side=20.0, workers=workers)
+    assert time.monotonic() - begun < 120
+    assert processes[1].poll() is not None
+    assert outcome.failures == []
+    one, other = (read_cloud(path.tiles[0]).get("classification") for path in (expected, outcome))
+    np.testing.assert_array_equal(one, other)
+    assert len(outcome.layers["footprints"]) == 1
+    assert Path(outcome.tiles[0]).is_file()

@@ -1,0 +1,105 @@
+"""Surveys in tiles through Processing: what goes in, where it comes out, and what is said where it can't."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
+from lidar_buildings.tests.builders import roof
+
+
+def refused():
+    from qgis.core import QgsProcessingException
+
+    return QgsProcessingException
+
+
+QUICKLY = {"PROCESSES": 1, "BLOCK_SIDE": 60.0}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Two tiles with a house on their edge."""
+    rng = np.random.default_rng(7)
+    folder = tmp_path_factory.mktemp("survey")
+    plan = rng.uniform(0, 50, (50 * 50 * 4, 2))
+    under = ((plan > [19, 20]) & (plan < [31, 30])).all(axis=1)
+    ground = np.column_stack([plan, rng.normal(0, 0.02, len(plan))])[~under]
+    xyz = np.concatenate([ground, roof(rng, 19, 20, 12, 10, 5.0, density=4.0)]) + [85_000, 447_000, 0]
+    for name, part in (("west", xyz[:, 0] < 85_025), ("east", xyz[:, 0] >= 85_025)):
+        write_cloud(create_cloud({"xyz": xyz[part]}, "EPSG:28992"), folder / f"{name}.laz")
+    return folder
+
+
+@pytest.fixture
+def algorithm(provider):
+    return provider.algorithm("detectbuildingsintiles")
+
+
+def test_a_folder_becomes_tiles_a_virtual_point_cloud_and_one_layer(algorithm, context, log, folder, tmp_path):
+    from qgis.core import QgsVectorLayer
+
+    target = tmp_path / "footprints.gpkg"
+    given = {"INPUT": str(folder), "OUTPUT": str(tmp_path / "tiles"), "FOOTPRINTS": str(target), **QUICKLY}
+    results, succeeded = algorithm.run(given, context, log)
+    assert succeeded, log.textLog()
+    assert (results["TILES"], results["FAILURES"]) == (2, 0)
+    assert results["POINTS"] == sum(len(read_cloud(path)) for path in folder.glob("*.laz"))
+    layer = QgsVectorLayer(str(target))
+    assert layer.crs().authid() == "EPSG:28992"
+    (house,) = layer.getFeatures()
+    assert house["area"] == pytest.approx(120, rel=0.1)
+    center = house.geometry().centroid().asPoint()
+    assert (center.x(), center.y()) == (pytest.approx(85_025, abs=0.5), pytest.approx(447_025, abs=0.5))
+    whole = read_cloud(results["VPC"])
+    assert len(whole) == results["POINTS"]
+    assert (whole.get("classification") == 6).sum() > 400
+
+
+def test_the_virtual_point_cloud_lies_where_it_is_on_earth(algorithm, context, log, folder, tmp_path):
+    given = {"INPUT": [str(folder / "west.laz")], "OUTPUT": str(tmp_path / "tiles"), **QUICKLY}
+    results, succeeded = algorithm.run(given, context, log)
+    assert succeeded, log.textLog()
+    (tile,) = json.loads(Path(results["VPC"]).read_text(encoding="utf-8"))["features"]
+    # Delft.
+    np.testing.assert_allclose(np.array(tile["bbox"])[[0, 1, 3, 4]], [4.37, 52.0, 4.37, 52.0], atol=0.03)
+    assert tile["assets"]["data"]["href"] == "./west.laz"
+    assert tile["properties"]["pc:count"] == results["POINTS"]
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ({"INPUT": "nowhere"}, "must be a point cloud file or layer; there is none at nowhere"),
+        ({"CERTIFICATES": "one.pem"}, "must be three files"),
+        ({"CERTIFICATES": "a.pem;b.pem;c.pem"}, "There is no certificate a.pem"),
+        ({"BLOCK_SIDE": 1.0}, "BLOCK_SIDE"),
+        ({"FOOTPRINTS": "footprints.nonsense"}, "give it the extension .gpkg"),
+    ],
+)
+def test_what_is_wrong_is_said_before_anything_runs(algorithm, context, folder, tmp_path, given, sentence):
+    whole = {"INPUT": str(folder), "OUTPUT": str(tmp_path / "tiles"), **QUICKLY, **given}
+    accepted, why = algorithm.checkParameterValues(whole, context)
+    assert not accepted
+    assert sentence in why
+    assert not (tmp_path / "tiles").exists()
+
+
+def test_a_scheduler_that_is_not_there_is_a_sentence(algorithm, context, log, folder, tmp_path, monkeypatch):
+    from lidar_buildings.algorithms.tiling import workers
+
+    pytest.importorskip("distributed")
+    monkeypatch.setattr(workers, "_ANSWER", 1)
+    given = {"INPUT": str(folder), "OUTPUT": str(tmp_path / "tiles"), "SCHEDULER": "tcp://127.0.0.1:9", **QUICKLY}
+    with pytest.raises(refused(), match="No Dask scheduler answers at tcp://127.0.0.1:9"):
+        algorithm.run(given, context, log, {}, False)
+
+
+def test_tiles_are_not_written_over_those_that_are_read(algorithm, context, log, folder):
+    before = {path: path.read_bytes() for path in folder.iterdir()}
+    with pytest.raises(refused(), match="choose another folder"):
+        algorithm.run({"INPUT": str(folder), "OUTPUT": str(folder), **QUICKLY}, context, log, {}, False)
+    assert {path: path.read_bytes() for path in folder.iterdir()} == before
