@@ -47,6 +47,7 @@ IDS = {
     "extractwallfootprints",
     "filterpoints",
     "segmentclusters",
+    "segmentvoxels",
     "segmentplanesransac",
     "segmentregions",
     "segmentroofs",
