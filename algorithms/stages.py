@@ -8,6 +8,7 @@ from .buildings.classify_buildings import classify_buildings
 from .buildings.classify_buildings_2019 import classify_buildings_2019
 from .buildings.complete_buildings import complete_buildings
 from .facades.extract_facades import extract_facades
+from .facades.extract_openings import extract_openings
 from .features.classify_dimensionality import classify_dimensionality
 from .features.compute_features import compute_features
 from .footprints.extract_footprints import extract_footprints
@@ -67,6 +68,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     classify_walls,
     extract_wall_footprints,
     extract_facades,
+    extract_openings,
     assess_buildings,
     assess_ground,
     compare_corners,

@@ -75,6 +75,7 @@ STAGE_IDS = {
     "simulatevillage",
     "extractfacades",
     "simulatestreet",
+    "extractopenings",
 }
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints"}
 

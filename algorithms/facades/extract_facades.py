@@ -142,7 +142,7 @@ def extract_facades(
     side and foot meet; a passage that is open to the street is filled, too. Steps and gables at the top stay.
 
     The outer side is that from which points lie in front of the wall (street, cars) or behind its openings.
-    A window that is a plane of its own and large enough is a facade, too; "Detect openings" takes it as an opening.
+    A window that is a plane of its own and large enough is a facade, too; "Extract openings" takes it as an opening.
 
     References
     ----------

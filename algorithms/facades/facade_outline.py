@@ -330,6 +330,12 @@ def ring_of_lines(points: np.ndarray, directions: np.ndarray, corners: np.ndarra
     return np.concatenate([ring, ring[:1]])
 
 
+def grown(ring: np.ndarray, distance: float) -> np.ndarray:
+    """Return a closed counterclockwise ring whose edges are moved outward by a distance (m)."""
+    starts, ends = ring[:-1], ring[1:]
+    return ring_of_lines(starts + distance * _outward(starts, ends), ends - starts, starts)
+
+
 def ring_area(ring: np.ndarray) -> float:
     """Return the area (m²) within a ring, however it turns."""
     return abs(signed_area(ring))

@@ -57,6 +57,7 @@ IDS = {
     "extractfacades",
     "segmentplaneshough",
     "simulatestreet",
+    "extractopenings",
 }
 TILED_IDS = {"detectbuildingsintiles", "detectbuildings2019intiles"}
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints"}

@@ -1,0 +1,235 @@
+"""Windows and doors of facades: as holes in their polygons, and as features with size, position and row."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Annotated, Callable
+
+import numpy as np
+
+from ..geometry.line_segments import is_valid
+from ..packages import spatial
+from ..params import Boundary, CompleteFacades, CornerDistance, EdgeFactor, FacadeGap, FacadeTilt
+from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
+from .common_borders import with_common_borders
+from .extract_facades import FACADE_FIELDS
+from .facade_frame import thinned
+from .facade_outline import longest_edge
+from .facade_surfaces import Facade, facade_features, surfaces_of
+from .opening_search import Opening, find_openings
+
+# A segment with this share of its points in the openings of others is what fills them: panes, curtains, shop fronts.
+_FILLING = 0.5
+
+# Openings whose middles differ in height by less than this share of their height are in one row.
+_SAME_ROW = 0.5
+
+# The ground before an opening is the lowest hundredth of the points within this distance in plan (m), one to a cell of
+# this size (m).
+_GROUND_REACH, _GROUND_CELL, _LOWEST = 1.5, 0.2, 0.01
+
+# A hole ends this far (m) inside the boundary: the sill of a door lies on it.
+_INSIDE = 0.01
+
+OPENING_FIELDS = (
+    Field("id", int, "Number of the opening, from 1"),
+    Field("facade", int, "Number of its facade"),
+    Field("kind", str, "window or door"),
+    Field("row", int, "Row on the facade, from 1 at the bottom"),
+    Field("place", int, "Place in the row, from 1 at the left, seen from outside"),
+    Field("width", float, "Width", "m"),
+    Field("height", float, "Height", "m"),
+    Field("area", float, "Area", "m²"),
+    Field("from_left", float, "Distance of its left side from the left end of the facade", "m"),
+    Field("sill", float, "Height of its lower side over the foot of the facade", "m"),
+    Field("depth", float, "Median distance of its points behind the wall", "m"),
+    Field("enclosed", float, "Share of its outline with wall beside it"),
+    Field("seen", float, "Share of its area with points"),
+)
+
+
+@stage(
+    "Extract openings",
+    group="Facades",
+    tags="window,door,opening,facade,wall,shop front,glass,mobile mapping,terrestrial,Peng",
+    layers=(
+        Layer("facades", "Facades with openings", "Polygon", FACADE_FIELDS, style="facades"),
+        Layer("openings", "Windows and doors", "Polygon", OPENING_FIELDS, style="openings"),
+    ),
+)
+def extract_openings(
+    xyz,
+    segment_id,
+    *,
+    max_depth: Annotated[
+        float,
+        Param(
+            "Maximum depth",
+            "How far behind the wall points may belong to its openings; deeper recesses are parts of the building.",
+            unit="m",
+            low=0.05,
+            high=10,
+        ),
+    ] = 0.8,
+    min_size: Annotated[
+        float,
+        Param("Minimum size", "Least width and height of a window or door.", unit="m", low=0.05, high=10),
+    ] = 0.4,
+    max_tilt: FacadeTilt = 10.0,
+    max_gap: FacadeGap = 1.0,
+    edge_factor: EdgeFactor = None,
+    corner_distance: CornerDistance = 0.4,
+    boundary: Boundary = "straight edges",
+    complete: CompleteFacades = True,
+    monitor=None,
+):
+    """Find windows and doors, cut them out of the facades, and tell their size, position and row.
+
+    An opening is where points lie behind the wall (frames, panes, curtains, reveals) and wall encloses them. Holes
+    with nothing behind them are shadows or unknown, and no openings. A plane that fills openings of another
+    facade, such as a shop front, is not drawn as a facade.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    segment_id : ndarray of shape (n,), int32
+        Facades from 1, as "Extract facades" finds them; 0 is none. Segments that are not steep are left out.
+
+    Returns
+    -------
+    facades : LayerFeatures
+        Polygons with Z; openings are their holes.
+    openings : LayerFeatures
+        Polygons with Z in the planes of the facades, with the fields above.
+
+    Notes
+    -----
+    The paper states that size, position and arrangement of the elements of a facade are obtained (section 4), and
+    not how. Points within three times the rms of the plane are wall; points up to the maximum depth behind it
+    are of openings. Both are laid on cells of 1.2 spacings of the wall. Cells behind that lie within 0.3 m of each
+    other with no wall between are one opening. It must have wall within 0.15 m along half of its outline, where the
+    sill of a door does not count, and points in a tenth of its area. Its sides are the edges of the wall
+    where these lie within 0.3 m of the points. It is a rectangle unless the convex hull of its points fills less than
+    three quarters of it, as that of a triangular window. Panes with at most 0.15 m between them are one window. Sills
+    up to 0.4 m over the lowest points within 1.5 m are those of doors.
+
+    References
+    ----------
+    Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on vehicle
+    LIDAR. EURASIP Journal on Image and Video Processing 2018:121, section 4.
+    """
+    edge_factor = longest_edge(boundary) if edge_factor is None else edge_factor
+    monitor.resolved(edge_factor=edge_factor)
+    facades = surfaces_of(
+        xyz,
+        segment_id,
+        max_tilt=max_tilt,
+        edge_factor=edge_factor,
+        max_gap=max_gap,
+        boundary=boundary,
+        complete=complete,
+        monitor=monitor.part(0, 0.5),
+    )
+    if corner_distance:
+        facades = with_common_borders(facades, corner_distance)
+    found = _searched(facades, xyz, max_depth, min_size, monitor.part(0.5, 1))
+    if not facades:
+        monitor.warn("No segment is a vertical plane, so there are no facades; run 'Extract facades' first.")
+    elif not any(openings for _, openings in found):
+        monitor.warn(
+            "No opening was found in any facade: nothing lies behind the walls and is enclosed by them; openings need "
+            "about 50 points per m² and frames or panes that are set back."
+        )
+    pierced = [replace(facade, holes=_holes(facade, openings)) for facade, openings in found]
+    return facade_features(pierced), _features(found)
+
+
+def _searched(
+    facades: list[Facade], xyz: np.ndarray, max_depth: float, min_size: float, monitor: Monitor
+) -> list[tuple[Facade, list[Opening]]]:
+    """Return facades with their openings, without those that fill openings of others; larger ones come first."""
+    is_filling = np.zeros(len(xyz), bool)
+    ground = _ground_near(xyz)
+    found: list[tuple[Facade, list[Opening]]] = []
+    for done, facade in enumerate(sorted(facades, key=lambda facade: -facade.area), start=1):
+        monitor.progress((done - 1) / len(facades))
+        if is_filling[facade.points].mean() >= _FILLING:
+            continue
+        openings = find_openings(facade, xyz, _near(facade, xyz, max_depth), ground, max_depth, min_size)
+        for opening in openings:
+            is_filling[opening.points] = True
+        found.append((facade, openings))
+    monitor.progress(1.0)
+    return sorted(found, key=lambda item: item[0].number)
+
+
+def _ground_near(xyz: np.ndarray) -> Callable[[np.ndarray], float]:
+    """Return a function that tells the elevation (m) of the lowest points near a point (3,), m, in plan."""
+    points = thinned(xyz - xyz.min(axis=0), _GROUND_CELL) + xyz.min(axis=0)
+    tree = spatial.cKDTree(points[:, :2])
+
+    def ground(point: np.ndarray) -> float:
+        near = tree.query_ball_point(point[:2], _GROUND_REACH)
+        return float(np.quantile(points[near, 2], _LOWEST)) if near else float(point[2])
+
+    return ground
+
+
+def _near(facade: Facade, xyz: np.ndarray, max_depth: float) -> np.ndarray:
+    """Return the points in the box around a facade and what is behind it."""
+    corners = facade.rings[0]
+    low, high = corners.min(axis=0) - max_depth, corners.max(axis=0) + max_depth
+    inside = np.ones(len(xyz), bool)
+    for axis in range(3):
+        inside &= (xyz[:, axis] >= low[axis]) & (xyz[:, axis] <= high[axis])
+    return np.flatnonzero(inside)
+
+
+def _holes(facade: Facade, openings: list[Opening]) -> list[np.ndarray]:
+    """Return the rings of openings, clockwise and strictly inside the facade, without those that cross it."""
+    holes: list[np.ndarray] = []
+    low = facade.ring[:, 1].min() + _INSIDE
+    for opening in openings:
+        ring = opening.ring.copy()
+        if opening.kind == "door":
+            ring[:, 1] = np.maximum(ring[:, 1], low)
+        if is_valid([facade.ring, *holes, ring[::-1]]):
+            holes.append(ring[::-1])
+    return holes
+
+
+def _features(found: list[tuple[Facade, list[Opening]]]) -> LayerFeatures:
+    """Return the openings as features."""
+    columns: dict[str, list] = {field.name: [] for field in OPENING_FIELDS}
+    geometries = []
+    for facade, openings in found:
+        rows, places = _arrangement(openings)
+        for opening, row, place in zip(openings, rows, places):
+            geometries.append([facade.frame.space(opening.ring)])
+            left, low = opening.box[0] - facade.ring.min(axis=0)
+            width, height = opening.size
+            x, y = (opening.ring - opening.ring[0]).T
+            area = 0.5 * abs(float(np.sum(x[:-1] * y[1:] - x[1:] * y[:-1])))
+            values: tuple = (len(geometries), facade.number, opening.kind, row, place, width, height, area, left, low)
+            values += (opening.depth, opening.enclosed, opening.seen)
+            for name, value in zip(columns, values):
+                columns[name].append(value.item() if isinstance(value, np.generic) else value)
+    return LayerFeatures(geometries, columns)
+
+
+def _arrangement(openings: list[Opening]) -> tuple[np.ndarray, np.ndarray]:
+    """Return row from the bottom and place from the left, both from 1, of each opening."""
+    count = len(openings)
+    rows, places = np.zeros(count, np.int64), np.zeros(count, np.int64)
+    if not count:
+        return rows, places
+    middle = np.array([opening.box[:, 1].mean() for opening in openings])
+    height = np.array([opening.size[1] for opening in openings])
+    order = np.argsort(middle, kind="stable")
+    step = np.diff(middle[order]) > _SAME_ROW * np.minimum(height[order][1:], height[order][:-1])
+    rows[order] = 1 + np.concatenate([[0], np.cumsum(step)])
+    for row in np.unique(rows):
+        own = np.flatnonzero(rows == row)
+        places[own[np.argsort([openings[k].box[0, 0] for k in own], kind="stable")]] = np.arange(1, len(own) + 1)
+    return rows, places

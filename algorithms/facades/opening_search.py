@@ -1,0 +1,306 @@
+"""Openings in the plane of a facade: what is seen behind the wall, and enclosed by it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Callable, Optional
+
+import numpy as np
+
+from ..geometry.groups import components, members
+from ..geometry.polylines import simplify_ring
+from ..packages import ndimage, spatial
+from .facade_outline import grown
+from .facade_surfaces import Facade
+
+# Points this far from the plane (times its rms; m) are not of the wall.
+_OFF_WALL, _LEAST_OFF = 3.0, 0.03
+
+# Side of a cell (spacings of the wall; m at least): a wall leaves none empty but by chance.
+_CELL_SPACINGS, _LEAST_CELL = 1.2, 0.02
+
+# Points behind the wall this far apart (m; cells at least) are of one opening: bars, curtains and panes leave gaps.
+_LINK, _LINK_CELLS = 0.3, 1.5
+
+# A side of an opening is the edge of the wall where that lies within this distance (m) of what is seen in it.
+_REACH = 0.3
+
+# Share of the outline of an opening, its sill left out where it is a door, that must have wall beside it.
+_ENCLOSED = 0.5
+
+# Share of the cells of an opening in which points behind the wall must be seen.
+_SEEN = 0.1
+
+# An opening higher than this (m) must have wall above it: the recessed part of a front has not.
+_TALL = 4.0
+
+# An opening whose lower edge lies within this height (m) over the ground before it is a door.
+_SILL = 0.4
+
+# Panes side by side with no more than this between them (m) are one window: a pier of wall is wider than a mullion.
+_MULLION = 0.15
+
+# Panes of one window end at one height within this distance (m).
+_LEVEL = 0.2
+
+# Pieces of which the smaller shares this part of its box with the larger are one opening: a shop front has many.
+_SHARED = 0.3
+
+# Distance (spacings; m at least) within which the wall must go straight on to be the side of an opening.
+_STRAIGHT_SPACINGS, _LEAST_STRAIGHT = 2.0, 0.06
+
+# Area of the convex hull of an opening, as a share of its rectangle, from which it is that rectangle.
+_RECTANGULAR = 0.75
+
+
+@dataclass(frozen=True)
+class Opening:
+    """One window or door.
+
+    Attributes
+    ----------
+    ring : ndarray of shape (m, 2)
+        Closed, counterclockwise, along and up the facade (m).
+    kind : str
+        "window" or "door".
+    depth : float
+        Median distance of its points behind the wall, m.
+    enclosed : float
+        Share of its outline that has wall beside it, 0 to 1.
+    seen : float
+        Share of its area with points, 0 to 1.
+    points : ndarray of shape (k,)
+        Its points in the cloud.
+    """
+
+    ring: np.ndarray
+    kind: str
+    depth: float
+    enclosed: float
+    seen: float
+    points: np.ndarray
+
+    @property
+    def box(self) -> np.ndarray:
+        """Least and greatest position (2, 2) along and up the facade (m)."""
+        return np.array([self.ring.min(axis=0), self.ring.max(axis=0)])
+
+    @property
+    def size(self) -> np.ndarray:
+        """Width and height (2,), m."""
+        return self.box[1] - self.box[0]
+
+
+class Raster:
+    """Cells on a facade, and which hold wall.
+
+    Parameters
+    ----------
+    wall : ndarray of shape (n, 2)
+        Positions of the points of the wall (m).
+    behind : ndarray of shape (m, 2)
+        Of those behind it.
+    size : float
+        Side of a cell (m).
+    """
+
+    def __init__(self, wall: np.ndarray, behind: np.ndarray, size: float) -> None:
+        self.size, self.margin = size, int(np.ceil(_REACH / size)) + 2
+        both = np.concatenate([wall, behind])
+        self.low = both.min(axis=0) - self.margin * size
+        self.shape = tuple(np.floor((both.max(axis=0) - self.low) / size).astype(np.int64) + self.margin + 1)
+        self.behind = self.mask(behind)
+        self.wall = self.mask(wall)
+        self.behind &= ~self.wall
+        # Chance leaves cells of the wall empty; a cell with something behind is not one of these.
+        closed = ndimage.binary_closing(self.wall, np.ones((3, 3), bool))
+        self.wall |= closed & ~self.behind
+
+    def cell(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the cells of positions (n, 2), along and up."""
+        along, up = np.floor((places - self.low) / self.size).astype(np.int64).T
+        return along, up
+
+    def mask(self, places: np.ndarray) -> np.ndarray:
+        """Return which cells hold positions (n, 2)."""
+        mask = np.zeros(self.shape, bool)
+        mask[self.cell(places)] = True
+        return mask
+
+    def groups(self) -> tuple[np.ndarray, int]:
+        """Return the group from 1 of each cell with something behind the wall, and how many; 0 is none.
+
+        Cells are of one group if they are near each other with no wall between them.
+        """
+        reach = max(_LINK / 2, _LINK_CELLS * self.size)
+        near = ndimage.distance_transform_edt(~self.behind) * self.size <= reach
+        label, count = ndimage.label(near & ~self.wall, np.ones((3, 3), bool))
+        return np.where(self.behind, label, 0), count
+
+
+def find_openings(
+    facade: Facade,
+    xyz: np.ndarray,
+    rows: np.ndarray,
+    ground: Callable[[np.ndarray], float],
+    max_depth: float,
+    min_size: float,
+) -> list:
+    """Return the openings of a facade, from its left to its right.
+
+    Parameters
+    ----------
+    facade : Facade
+        The wall.
+    xyz : ndarray of shape (n, 3)
+        The whole cloud (m).
+    rows : ndarray of shape (k,)
+        The points near the facade.
+    ground : callable
+        Returns the elevation (m) of the ground near a point (3,), m.
+    max_depth : float
+        How far behind the wall (m) points may be of its openings.
+    min_size : float
+        Least width and height (m).
+    """
+    local = facade.frame.local(xyz[rows])
+    off_wall = max(_OFF_WALL * facade.rms, _LEAST_OFF)
+    is_wall = np.abs(local[:, 2]) <= off_wall
+    is_behind = (local[:, 2] < -off_wall) & (local[:, 2] >= -max_depth)
+    if not is_wall.any() or not is_behind.any():
+        return []
+    wall, behind, own = local[is_wall, :2], local[is_behind], rows[is_behind]
+    raster = Raster(wall, behind[:, :2], max(_CELL_SPACINGS * facade.spacing, _LEAST_CELL))
+    label, count = raster.groups()
+    group = _joined(behind[:, :2], label[raster.cell(behind[:, :2])], count)
+    found = []
+    for chosen in members(group).values():
+        made = _opening(facade, raster, wall, behind[chosen], own[chosen], ground, min_size)
+        if made is not None:
+            found.append(made)
+    return sorted(_apart(found), key=lambda opening: tuple(opening.box[0]))
+
+
+def _joined(places: np.ndarray, group: np.ndarray, count: int) -> np.ndarray:
+    """Return groups (n,) from 1 of places (n, 2), those joined that are parts of one opening; 0 stays 0."""
+    boxes = np.full((count + 1, 2, 2), np.nan)
+    for number, rows in members(group).items():
+        boxes[number] = places[rows].min(axis=0), places[rows].max(axis=0)
+    low, high = boxes[:, 0], boxes[:, 1]
+    shared = np.minimum(high[:, None], high) - np.maximum(low[:, None], low)
+    area = np.prod(high - low, axis=1)
+    overlap = np.prod(np.maximum(shared, 0), axis=2) >= _SHARED * np.fmin(area[:, None], area)
+    overlap &= (shared > 0).all(axis=2)
+    level = (np.abs(low[:, None, 1] - low[:, 1]) <= _LEVEL) & (np.abs(high[:, None, 1] - high[:, 1]) <= _LEVEL)
+    beside = level & (shared[..., 0] > -_MULLION) & (shared[..., 1] > 0)
+    one, other = np.nonzero(overlap | beside)
+    joined = components(one, other, count + 1)[1] + 1
+    return np.where(group > 0, joined[group], 0)
+
+
+def _opening(
+    facade: Facade,
+    raster: Raster,
+    wall: np.ndarray,
+    behind: np.ndarray,
+    points: np.ndarray,
+    ground: Callable[[np.ndarray], float],
+    min_size: float,
+) -> Optional[Opening]:
+    """Return the opening that points behind a wall show, None where they show none."""
+    if len(behind) < 4 or (np.ptp(behind[:, :2], axis=0) < min_size / 2).any():
+        return None
+    spacing = facade.spacing
+    box = np.array([behind[:, :2].min(axis=0), behind[:, :2].max(axis=0)])
+    box, beside = _bounded(box, wall, raster.size, spacing)
+    if (box[1] - box[0] < min_size).any():
+        return None
+    sill = facade.frame.space(np.array([[box[:, 0].mean(), box[0, 1]]]))[0]
+    is_door = sill[2] - ground(sill) <= _SILL
+    ring, share = _shape(box, behind[:, :2], spacing)
+    enclosed = _enclosure(raster, ring, box[0, 1] if is_door else None)
+    cells = len(np.unique(np.column_stack(raster.cell(behind[:, :2])), axis=0)) * raster.size**2
+    seen = min(1.0, cells / (share * float(np.prod(box[1] - box[0]))))
+    is_tall = box[1, 1] - box[0, 1] > _TALL and beside[3] < _ENCLOSED
+    if enclosed < _ENCLOSED or seen < _SEEN or is_tall:
+        return None
+    depth = -float(np.median(behind[:, 2]))
+    return Opening(ring, "door" if is_door else "window", depth, enclosed, seen, points)
+
+
+def _bounded(box: np.ndarray, wall: np.ndarray, cell: float, spacing: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return a box whose sides are the edges of the wall where it lies beside them, and the share (4,) where it does.
+
+    The sides are left, right, lower and upper one.
+    """
+    bounded, shares = box.copy(), np.zeros(4)
+    for axis, end in ((0, 0), (0, 1), (1, 0), (1, 1)):
+        sign, other = (-1, 1)[end], 1 - axis
+        # Positions outward of the side: the wall beside the opening is the first beyond its middle.
+        outward = sign * (wall[:, axis] - box[end, axis])
+        near = (outward > -np.ptp(box[:, axis]) / 2) & (outward <= _REACH)
+        near &= (wall[:, other] >= box[0, other]) & (wall[:, other] <= box[1, other])
+        lines = max(1, int(np.ceil((box[1, other] - box[0, other]) / cell)))
+        line = np.minimum(((wall[near, other] - box[0, other]) / cell).astype(np.int64), lines - 1)
+        nearest = np.full(lines, np.inf)
+        np.minimum.at(nearest, line, outward[near])
+        has_wall = np.abs(nearest) <= _REACH
+        shares[2 * axis + end] = has_wall.mean()
+        if has_wall.any():
+            edge = float(np.median(nearest[has_wall]))
+            is_straight = np.abs(nearest - edge) <= max(_STRAIGHT_SPACINGS * spacing, _LEAST_STRAIGHT)
+            # A slanting edge bounds the opening by its shape, not by its box.
+            if is_straight.mean() >= _ENCLOSED:
+                bounded[end, axis] = box[end, axis] + sign * (edge - spacing / 2)
+    return bounded, shares
+
+
+def _shape(box: np.ndarray, places: np.ndarray, spacing: float) -> tuple[np.ndarray, float]:
+    """Return the ring of an opening, its rectangle or its convex hull, and its share of the rectangle."""
+    (west, low), (east, high) = box
+    rectangle = np.array([[west, low], [east, low], [east, high], [west, high], [west, low]])
+    inside = np.clip(places, box[0], box[1])
+    if len(places) < 4 or (np.ptp(inside, axis=0) < 1e-6).any():
+        return rectangle, 1.0
+    hull = spatial.ConvexHull(inside, qhull_options="QJ")
+    share = float(hull.volume) / float(np.prod(box[1] - box[0]))
+    if share >= _RECTANGULAR:
+        return rectangle, 1.0
+    corners = inside[hull.vertices]
+    # The edge lies halfway between the outermost points behind and the wall.
+    ring = grown(np.concatenate([corners, corners[:1]]), spacing / 2)
+    ring = simplify_ring(ring, max(2 * spacing, _LEAST_STRAIGHT))
+    return (ring, share) if len(ring) > 3 else (rectangle, 1.0)
+
+
+def _enclosure(raster: Raster, ring: np.ndarray, sill: Optional[float]) -> float:
+    """Return the share of a ring with wall within reach; a sill (m) on the ground does not count."""
+    steps = np.diff(ring, axis=0)
+    length = np.linalg.norm(steps, axis=1)
+    counted = np.ones(len(steps), bool)
+    if sill is not None:
+        counted = ~((ring[:-1, 1] <= sill + 0.05) & (ring[1:, 1] <= sill + 0.05))
+    pieces = np.maximum(np.ceil(length / raster.size), 1).astype(int)
+    places = [
+        start + (np.arange(n)[:, None] + 0.5) / n * step
+        for start, step, n, is_counted in zip(ring[:-1], steps, pieces, counted)
+        if is_counted
+    ]
+    if not places:
+        return 0.0
+    distance = ndimage.distance_transform_edt(~raster.wall) * raster.size
+    along, up = (np.clip(cell, 0, size - 1) for cell, size in zip(raster.cell(np.concatenate(places)), raster.shape))
+    return float(np.mean(distance[along, up] <= _REACH / 2 + raster.size))
+
+
+def _apart(openings: list) -> list:
+    """Return openings without those that lie in larger ones by half of their area."""
+    kept: list = []
+    for opening in sorted(openings, key=lambda opening: -float(np.prod(opening.size))):
+        shared = [
+            np.clip(np.minimum(opening.box[1], other.box[1]) - np.maximum(opening.box[0], other.box[0]), 0, None).prod()
+            for other in kept
+        ]
+        if max(shared, default=0.0) < 0.5 * float(np.prod(opening.size)):
+            kept.append(opening)
+    return kept
