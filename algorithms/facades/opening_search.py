@@ -269,7 +269,7 @@ def _shape(box: np.ndarray, places: np.ndarray, spacing: float) -> tuple[np.ndar
     corners = inside[hull.vertices]
     # The edge lies halfway between the outermost points behind and the wall.
     ring = grown(np.concatenate([corners, corners[:1]]), spacing / 2)
-    ring = simplify_ring(ring, max(2 * spacing, _LEAST_STRAIGHT))
+    ring = simplify_ring(ring, max(spacing, _LEAST_STRAIGHT))
     return (ring, share) if len(ring) > 3 else (rectangle, 1.0)
 
 
