@@ -49,11 +49,20 @@ def meet_in_corners(starts: np.ndarray, ends: np.ndarray) -> bool:
 
 
 def is_inside(point: np.ndarray, ring: np.ndarray) -> bool:
-    """Return whether a point (2,) lies inside a ring, by the parity of the walls to its east."""
+    """Return whether a point (2,) lies inside a ring."""
+    return bool(are_inside(point[None], ring)[0])
+
+
+def are_inside(points: np.ndarray, ring: np.ndarray) -> np.ndarray:
+    """Return which points (n, 2) lie inside a ring, by the parity of the walls to their east."""
     (x0, y0), (x1, y1) = ring[:-1].T, ring[1:].T
-    crosses = (y0 > point[1]) != (y1 > point[1])
-    slope = np.divide(x1 - x0, y1 - y0, out=np.zeros_like(x0), where=crosses)
-    return bool(np.sum(crosses & (point[0] < x0 + (point[1] - y0) * slope)) % 2)
+    slope = np.divide(x1 - x0, y1 - y0, out=np.zeros_like(x0), where=y0 != y1)
+    inside, step = np.empty(len(points), bool), max(1, _PAIRS_AT_ONCE // len(x0))
+    for low in range(0, len(points), step):
+        x, y = points[low : low + step, :, None].transpose(1, 0, 2)
+        crosses = ((y0 > y) != (y1 > y)) & (x < x0 + (y - y0) * slope)
+        inside[low : low + step] = crosses.sum(axis=1) % 2
+    return inside
 
 
 def distances_to(points: np.ndarray, line: np.ndarray) -> np.ndarray:

@@ -12,6 +12,7 @@ from ..sampling.cloud_sampling import CloudSampling
 from ..segmentation.cluster_measures import plan_areas
 from ..segmentation.segment_clusters import dbscan, points_at_corner
 from ..stage import Monitor, Param, stage
+from .stacked_roofs import join_stacked
 
 # Surfaces of one roof lie within this distance (m), or so many point spacings; roofs of two buildings seldom do.
 # Farther apart than a lane is wide (m) they never are one roof, however few points there are.
@@ -74,8 +75,10 @@ def classify_roofs(
     Notes
     -----
     The clusters are those of DBSCAN with the gap as radius and a quarter of the points that a level roof has within it.
-    The paper takes the points above the height; here a plane is taken whole, down to eaves that are lower, if half of
-    it is above. Numbers follow the westernmost points of clusters, not the order of points.
+    A cluster that one larger cluster surrounds on more than three fifths of its border, seen from above, belongs to it:
+    stair houses and penthouses on flat roofs, skylights in them. The paper takes the points above the height; here a
+    plane is taken whole, down to eaves that are lower, if half of it is above. Numbers follow the westernmost points of
+    clusters, not the order of points.
 
     References
     ----------
@@ -116,7 +119,7 @@ def _clusters(xyz: np.ndarray, gap: float, min_area: float, density: float, moni
     if not len(xyz):
         monitor.progress(1.0)
         return np.zeros(0, np.int32)
-    cluster = dbscan(xyz, gap, points_at_corner(gap, density), monitor)
+    cluster = join_stacked(xyz, dbscan(xyz, gap, points_at_corner(gap, density), monitor), gap)
     count = int(cluster.max()) + 1
     if not count:
         return np.zeros(len(xyz), np.int32)

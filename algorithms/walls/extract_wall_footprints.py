@@ -11,13 +11,14 @@ import numpy as np
 from ..footprints.alpha_shape import trace_outlines
 from ..footprints.regularization import regularize_outline
 from ..geometry.groups import members
-from ..geometry.line_segments import is_inside
+from ..geometry.line_segments import are_inside, is_inside
 from ..geometry.rings import perimeter, signed_area
 from ..params import MinBuildingArea, Seed
 from ..sampling.cloud_sampling import CloudSampling
 from ..sampling.density import point_spacing
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
-from .wall_outline import Limits, WallEdge, WallOutline, closed, outline_walls, share_seen
+from .surroundings import Surroundings, without_nested
+from .wall_outline import Limits, WallEdge, WallOutline, closed, outline_roof, outline_walls, share_seen
 
 WALL, ROOF = "wall", "roof"
 
@@ -157,6 +158,11 @@ def extract_wall_footprints(
     they aren't square, what lies outside the roof by the area. It is found by a minimum cut, then line by line it is
     tried whether the outline is better off without.
 
+    Gaps of a roof, and bites at its edge up to 4 m wide, are roof where no point is seen in them, as long as surfaces are
+    seen all around; gaps with points a meter and more below the eaves are courtyards. Sides beside which another roof
+    begins are party walls: they lie under the edge of the roof, and are not counted in the share of walls seen. Parts
+    of a roof inside of others are left out.
+
     What lies deeper under a roof than it juts out over the other walls counts as inside: loggias, porches. Sides
     without wall points lie as far inside the edge of the roof as the other walls in the median; ``quality`` 0 marks
     them. The result depends on the seed, and not on the order of points.
@@ -170,18 +176,18 @@ def extract_wall_footprints(
     """
     footprints = LayerFeatures([], {field.name: [] for field in _FIELDS})
     edges = LayerFeatures([], {field.name: [] for field in _EDGE_FIELDS})
-    buildings = _buildings(xyz, cluster_id, wall_of)
+    sampling = sampling or CloudSampling.of(xyz)
+    buildings = _buildings(xyz, cluster_id, wall_of, sampling)
     if tolerance is None:
-        sampling = sampling or CloudSampling.of(xyz)
         tolerance = min(max(_ON_WALL * sampling.roughness, _LEAST_TOLERANCE), _MOST_TOLERANCE)
         monitor.resolved(tolerance=tolerance)
     limits = Limits(tolerance, min_length, max_overhang)
     for done, building in enumerate(buildings):
         part = monitor.part(done / len(buildings), (done + 1) / len(buildings))
         outline = building.walls_outline(limits, seed, part)
-        if outline is not None and outline.seen < min_seen:
+        if outline is not None and building.seen_of(outline) < min_seen:
             outline = None
-        parts = _parts(outline.rings) if outline is not None else [_bare(rings) for rings in building.roof_outlines()]
+        parts = _parts(outline.rings) if outline is not None else building.roof_outlines(limits, part)
         for rings in parts:
             if sum(signed_area(closed(ring)) for ring in rings) >= min_area:
                 _add(footprints, edges, rings, building, outline, height_above_ground)
@@ -216,6 +222,8 @@ class _Building:
     roof: np.ndarray
     walls: np.ndarray
     roof_rows: np.ndarray
+    roof_xyz: np.ndarray
+    surroundings: Surroundings
 
     @cached_property
     def roof_spacing(self) -> float:
@@ -230,33 +238,61 @@ class _Building:
         """Outlines of the roof: a list of rings for each part, the largest first."""
         if not self.roof_spacing:
             return []
-        traced = trace_outlines(self.roof, np.ones(len(self.roof), np.int64), self.roof_spacing)
-        return sorted(traced.parts if traced else [], key=lambda rings: -sum(map(signed_area, rings)))
+        traced = trace_outlines(self.whole_roof, np.ones(len(self.whole_roof), np.int64), self.roof_spacing)
+        return sorted(without_nested(traced.parts if traced else []), key=lambda rings: -sum(map(signed_area, rings)))
+
+    @cached_property
+    def whole_roof(self) -> np.ndarray:
+        """Points of the roof (n, 2), and others where nothing was seen in gaps of it."""
+        gaps = self.surroundings.gaps(self.roof_xyz, self.roof_spacing) - self.origin
+        return np.concatenate([self.roof, gaps])
+
+    def is_party(self, sides: np.ndarray) -> np.ndarray:
+        """Return beside which sides (k, 2, 2) of the roof another roof begins."""
+        return self.surroundings.is_party(sides + self.origin, self.number)
+
+    def seen_of(self, outline: WallOutline) -> float:
+        """Return the share of an outline that has wall points, 0 to 1, of the walls that can be seen from outside."""
+        edges = [edge for ring in outline.rings for edge in ring]
+        is_party = self.is_party(np.array([[edge.start, edge.end] for edge in edges]))
+        free = [edge for edge, hidden in zip(edges, is_party) if not hidden]
+        return share_seen([free]) if free else outline.seen
 
     def walls_outline(self, limits: Limits, seed: int, monitor: Monitor) -> Optional[WallOutline]:
         """Return the outline of the walls near the origin, None where there are too few."""
         if not len(self.walls) or not self.traced:
             return None
         rng = np.random.default_rng(seed)
-        return outline_walls(self.walls, self.roof, self.traced[0], self.roof_spacing, limits, rng, monitor)
+        return outline_walls(
+            self.walls, self.whole_roof, self.traced[0], self.roof_spacing, limits, self.is_party, rng, monitor
+        )
 
-    def roof_outlines(self) -> list:
-        """Return the outlines of the roof's parts, straight where they nearly are."""
+    def roof_outlines(self, limits: Limits, monitor: Monitor) -> list[list[list[WallEdge]]]:
+        """Return the outlines of the roof's parts as edges of which nothing is seen, straight where they nearly are."""
         wiggle, outset = max(_LEAST_WIGGLE, _WIGGLE_SPACINGS * self.roof_spacing), self.roof_spacing / 2
-        return [
-            regularize_outline(rings, wiggle, outset) or regularize_outline(rings, 2 * wiggle, outset) or rings
-            for rings in self.traced
-        ]
+        outlines = []
+        for rings in self.traced:
+            straight = regularize_outline(rings, wiggle, outset) or regularize_outline(rings, 2 * wiggle, outset)
+            if straight:
+                outlines.append(_bare(straight))
+            else:
+                own = np.concatenate([self.whole_roof[are_inside(self.whole_roof, rings[0])], rings[0]])
+                made = outline_roof(own, rings, self.roof_spacing, limits, monitor)
+                outlines += _parts(made) or [_bare(rings)]
+        return outlines
 
 
-def _buildings(xyz: np.ndarray, cluster_id: np.ndarray, wall_of: Optional[np.ndarray]) -> list[_Building]:
+def _buildings(
+    xyz: np.ndarray, cluster_id: np.ndarray, wall_of: Optional[np.ndarray], sampling: CloudSampling
+) -> list[_Building]:
     """Return the buildings that have a roof, by number."""
+    surroundings = Surroundings(xyz, cluster_id, sampling)
     roofs, walls = members(cluster_id), {} if wall_of is None else members(wall_of)
     buildings = []
     for number, rows in roofs.items():
         roof, own = (xyz[part[np.lexsort(xyz[part].T)], :2] for part in (rows, walls.get(number, rows[:0])))
         origin = roof.min(axis=0)
-        buildings.append(_Building(number, origin, roof - origin, own - origin, rows))
+        buildings.append(_Building(number, origin, roof - origin, own - origin, rows, xyz[rows], surroundings))
     return buildings
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Optional
 
@@ -11,7 +12,7 @@ from ..footprints.regularization import regularize_outline
 from ..geometry.arrangement import Arrangement, cheapest_cut, sides_of
 from ..geometry.grid import refuse_sparse
 from ..geometry.groups import components, members
-from ..geometry.line_segments import edge_distances
+from ..geometry.line_segments import are_inside, edge_distances
 from ..geometry.polylines import simplify_ring
 from ..geometry.rings import signed_area
 from ..packages import ndimage
@@ -125,7 +126,7 @@ class Limits:
 class _Roof:
     """Where a roof is, in small cells, and how deep (m) under it a place lies, negative beyond its edge."""
 
-    def __init__(self, roof: np.ndarray) -> None:
+    def __init__(self, roof: np.ndarray, courtyards: list) -> None:
         self.cell = float(np.clip(np.sqrt(np.ptp(roof, axis=0).prod() / _MOST_CELLS), _CELL, _LARGEST_CELL))
         refuse_sparse(roof, self.cell)
         room = int(_ROOM / self.cell)
@@ -133,11 +134,13 @@ class _Roof:
         column, row = ((roof - self.low) / self.cell).astype(np.int64).T
         mask = np.zeros((row.max() + room + 2, column.max() + room + 2), bool)
         mask[row, column] = True
-        self.mask = ndimage.binary_fill_holes(ndimage.binary_closing(mask, np.ones((3, 3), bool), iterations=2))
-        inside, outside = ndimage.distance_transform_edt(self.mask), ndimage.distance_transform_edt(~self.mask)
-        self.depth = np.where(self.mask, inside - 0.5, 0.5 - outside) * self.cell
         rows, columns = np.indices(mask.shape).reshape(2, -1)
         self.places = np.column_stack([columns, rows]) * self.cell + self.cell / 2 + self.low
+        self.mask = ndimage.binary_fill_holes(ndimage.binary_closing(mask, np.ones((3, 3), bool), iterations=2))
+        for ring in courtyards:
+            self.mask &= ~are_inside(self.places, ring).reshape(mask.shape) | mask
+        inside, outside = ndimage.distance_transform_edt(self.mask), ndimage.distance_transform_edt(~self.mask)
+        self.depth = np.where(self.mask, inside - 0.5, 0.5 - outside) * self.cell
         self.high = self.low + np.array(mask.shape[::-1]) * self.cell
 
     def depth_at(self, xy: np.ndarray) -> np.ndarray:
@@ -152,6 +155,7 @@ def outline_walls(
     traced: list,
     spacing: float,
     limits: Limits,
+    is_party: Callable[[np.ndarray], np.ndarray],
     rng: np.random.Generator,
     monitor: Monitor,
 ) -> Optional[WallOutline]:
@@ -167,6 +171,8 @@ def outline_walls(
         Mean distance between the roof's points, m.
     limits : Limits
         What walls may be like.
+    is_party : callable
+        Returns beside which sides (k, 2, 2) of the roof another roof begins: no eave juts out there.
     rng : Generator
         Random numbers.
     monitor : Monitor
@@ -174,7 +180,7 @@ def outline_walls(
     """
     perimeter = float(np.hypot(*np.diff(simplify_ring(traced[0], 0.5), axis=0).T).sum())
     scale = wall_scale(len(walls), perimeter, limits.tolerance)
-    cover = _Roof(roof)
+    cover = _Roof(roof, traced[1:])
     seen = find_lines(walls, scale, limits.min_length, rng, monitor.part(0.0, 0.3))
     seen = [line for line in seen if np.median(cover.depth_at(walls[line.points])) > -_FLUSH]
     seen = square_up(merge_lines(seen, walls, scale), walls)
@@ -184,14 +190,29 @@ def outline_walls(
     on_walls = np.concatenate([walls[line.points] for line in seen])
     to_roof = edge_distances(on_walls, *np.moveaxis(sides, 1, 0)).min(axis=1)
     overhang = float(np.clip(np.median(to_roof), 0.0, limits.max_overhang))
-    seen = [_expectation(line, sides, overhang) for line in seen]
-    sides = np.concatenate([sides, _bends(traced, sides, spacing)])
-    lines = [*seen, *_from_roof(seen, sides, overhang, walls, scale)]
+    straight, sides = len(sides), np.concatenate([sides, _bends(traced, sides, spacing)])
+    overhangs = np.where(is_party(sides), 0.0, overhang)
+    seen = [_expectation(line, sides[:straight], overhangs[:straight]) for line in seen]
+    lines = [*seen, *_from_roof(seen, sides, overhangs, walls, scale)]
     near = [_near(walls, line, scale) for line in lines]
     case = _Case(cover, scale, limits, overhang)
     cells = _Cells(lines, near, case, monitor.part(0.3, 0.4))
     rings = cells.rings(_Simplification(cells).run(monitor.part(0.4, 1.0)))
     return WallOutline(rings, overhang) if rings else None
+
+
+def outline_roof(roof: np.ndarray, traced: list, spacing: float, limits: Limits, monitor: Monitor) -> list:
+    """Return the outline of a roof as rings of edges of which nothing was seen, made as those of walls are.
+
+    The parameters are those of :func:`outline_walls`. Bites out of the edge of the roof are left out where they cost
+    more corners than they are worth.
+    """
+    sides, nothing, scale = _sides(traced, spacing), np.zeros((0, 2)), Scale(limits.tolerance, 1.0)
+    sides = np.concatenate([sides, _bends(traced, sides, spacing)])
+    lines = _from_roof([], sides, np.zeros(len(sides)), nothing, scale)
+    case = _Case(_Roof(roof, traced[1:]), scale, limits, 0.0)
+    cells = _Cells(lines, [nothing] * len(lines), case, monitor.part(0.0, 0.5))
+    return cells.rings(_Simplification(cells).run(monitor.part(0.5, 1.0)))
 
 
 def _sides(traced: list, spacing: float) -> np.ndarray:
@@ -213,10 +234,10 @@ def _edges_of(rings: list) -> np.ndarray:
     return np.concatenate([np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings])
 
 
-def _expectation(line: WallLine, sides: np.ndarray, overhang: float) -> WallLine:
+def _expectation(line: WallLine, sides: np.ndarray, overhangs: np.ndarray) -> WallLine:
     """Return a wall, marked as expected where it lies as a side of the roof says that it should."""
-    expected = any(_is_eave_of(line, _expected(side, overhang, []), _AS_EXPECTED) for side in sides)
-    return replace(line, expected=expected)
+    walls = (_expected(side, overhang, []) for side, overhang in zip(sides, overhangs))
+    return replace(line, expected=any(_is_eave_of(line, wall, _AS_EXPECTED) for wall in walls))
 
 
 def _expected(side: np.ndarray, overhang: float, seen: list[WallLine]) -> WallLine:
@@ -241,14 +262,14 @@ def _is_eave_of(wall: WallLine, line: WallLine, within: float) -> bool:
 
 
 def _from_roof(
-    seen: list[WallLine], sides: np.ndarray, overhang: float, walls: np.ndarray, scale: Scale
+    seen: list[WallLine], sides: np.ndarray, overhangs: np.ndarray, walls: np.ndarray, scale: Scale
 ) -> list[WallLine]:
     """Return lines for sides of the roof without a known wall: through the few points there, or as expected."""
     lines: list[WallLine] = []
     length = np.hypot(*(sides[:, 1] - sides[:, 0]).T)
     # A long side meets more points than the rest of it beyond a notch, which would stand for it.
     for number in np.argsort(-length, kind="stable"):
-        line = _expected(sides[number], overhang, seen)
+        line = _expected(sides[number], float(overhangs[number]), seen)
         if not any(_is_eave_of(wall, line, _EAVE) for wall in [*seen, *lines]):
             lines.append(_through_few(line, float(length[number]) / 2, walls, scale))
     return lines

@@ -1,0 +1,152 @@
+"""What lies beside a roof and in its holes: other roofs, and ground that is seen."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from ..geometry.grid import Grid, distinct, find_cells, grid_over, refuse_sparse
+from ..geometry.line_segments import are_inside
+from ..geometry.rings import signed_area
+from ..packages import ndimage
+from ..sampling.cloud_sampling import CloudSampling
+
+# Side of the cells (m) in which surroundings are looked up, and no less than so many point spacings: chance leaves less
+# than one cell in two hundred of a surface without a point.
+_CELL, _CELL_SPACINGS = 0.25, 2.5
+
+# Where matching finds nothing on a roof, it finds nothing below it either. A gap in a roof or a bite at its edge is
+# roof where nothing is seen; bites up to this width (m), gaps of any width.
+_BITE = 4.0
+
+# That nothing is seen tells something where surfaces are seen all around: in this share of the cells beside the roof.
+_SEEN_BESIDE = 0.8
+
+# A gap is a courtyard where this share of its cells shows points so far (m) below the eaves.
+_SEEN, _BELOW = 0.3, 1.0
+
+# The eaves of a roof: this percentile of its heights.
+_EAVES = 5
+
+# Points put into gaps are at most this many spacings of the roof's points apart.
+_FILLED = 2.0
+
+# A side of a roof is a party wall where beside so much of it another roof begins, looked for so far outward (m).
+_SHARED, _OUTWARD = 0.5, (0.25, 0.5, 0.75, 1.0)
+
+# Distance (m) between the places on a side where that is looked for.
+_STEP = 0.5
+
+
+class Surroundings:
+    """Roofs and lowest points of a cloud in small cells.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        All points (m).
+    cluster_id : ndarray of shape (n,)
+        Building of each roof point from 1; 0 is none.
+    sampling : CloudSampling
+        How the cloud was sampled.
+    """
+
+    def __init__(self, xyz: np.ndarray, cluster_id: np.ndarray, sampling: CloudSampling) -> None:
+        self._xyz, self._cluster_id, self._sampling = xyz, cluster_id, sampling
+
+    @cached_property
+    def grid(self) -> Grid:
+        """The cells."""
+        return grid_over(self._xyz, max(_CELL, _CELL_SPACINGS * self._sampling.spacing))
+
+    @cached_property
+    def _table(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Numbers of the cells with points, ascending, the lowest elevation in each (m), and a roof in it, or 0."""
+        cells, which = distinct(self.grid.number(self._xyz))
+        lowest, roof = np.full(len(cells), np.inf), np.zeros(len(cells), np.int64)
+        np.minimum.at(lowest, which, self._xyz[:, 2])
+        # Of two roofs in a cell either one is beside a third.
+        np.maximum.at(roof, which, self._cluster_id)
+        return cells, lowest, roof
+
+    def _at(self, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the lowest elevation (n,) (m) in the cells of places (n, 2), NaN without points, and a roof, or 0."""
+        (west, south), size = self.grid.origin, self.grid.size
+        east, north = west + self.grid.columns * size, south + self.grid.rows * size
+        inside = (xy >= (west, south)).all(axis=1) & (xy < (east, north)).all(axis=1)
+        cells, lowest, roof = self._table
+        position, found = find_cells(cells, self.grid.number(xy))
+        found &= inside
+        return np.where(found, lowest[position], np.nan), np.where(found, roof[position], 0)
+
+    def gaps(self, roof: np.ndarray, spacing: float) -> np.ndarray:
+        """Return places (k, 2) (m) as far apart as its points that fill the gaps and bites of a roof (n, 3)."""
+        if self.grid.size > _BITE / 2:
+            return np.zeros((0, 2))
+        refuse_sparse(roof, self.grid.size)
+        room = int(np.ceil(_BITE / self.grid.size)) + 1
+        cell = np.floor((roof[:, :2] - self.grid.origin) / self.grid.size).astype(np.int64)
+        low = cell.min(axis=0) - room
+        column, row = (cell - low).T
+        is_roof = np.zeros((row.max() + room + 1, column.max() + room + 1), bool)
+        is_roof[row, column] = True
+        rows, columns = np.indices(is_roof.shape).reshape(2, -1)
+        centers = (np.column_stack([columns, rows]) + low + 0.5) * self.grid.size + self.grid.origin
+        lowest = self._at(centers)[0].reshape(is_roof.shape)
+        is_seen, is_low = np.isfinite(lowest), lowest < np.percentile(roof[:, 2], _EAVES) - _BELOW
+        filled, radius = ndimage.binary_fill_holes(is_roof), _BITE / 2 / self.grid.size
+        beside = ndimage.distance_transform_edt(~filled)
+        if is_seen[(beside > radius) & (beside <= 2 * radius)].mean() < _SEEN_BESIDE:
+            return np.zeros((0, 2))
+        is_gap = _closed(is_roof, radius) & ~is_seen
+        holes, count = ndimage.label(ndimage.binary_fill_holes(is_roof | is_gap) & ~is_roof)
+        share = ndimage.mean(is_low, holes, np.arange(1, count + 1)) if count else np.zeros(0)
+        is_gap |= np.append(False, np.asarray(share) < _SEEN)[holes]
+        return _spread(centers[is_gap.ravel()], self.grid.size, _FILLED * spacing)
+
+    def is_party(self, sides: np.ndarray, number: int) -> np.ndarray:
+        """Return beside which sides (k, 2, 2) of roof ``number``, which lies to their left, other roofs begin."""
+        length = np.hypot(*(sides[:, 1] - sides[:, 0]).T)
+        return np.array([self._shared(side, float(own), number) >= _SHARED for side, own in zip(sides, length)], bool)
+
+    def _shared(self, side: np.ndarray, length: float, number: int) -> float:
+        """Return the share of a side beside which another roof begins."""
+        if length <= 0:
+            return 0.0
+        direction = (side[1] - side[0]) / length
+        count = max(1, round(length / _STEP))
+        along = side[0] + (np.arange(count)[:, None] + 0.5) * length / count * direction
+        is_beside = np.zeros(count, bool)
+        for outward in _OUTWARD:
+            roof = self._at(along + outward * np.array([direction[1], -direction[0]]))[1]
+            is_beside |= (roof > 0) & (roof != number)
+        return float(is_beside.mean())
+
+
+def _closed(mask: np.ndarray, radius: float) -> np.ndarray:
+    """Return cells with all gaps filled that a disk of a radius (cells) has no room in."""
+    near = ndimage.distance_transform_edt(~mask) <= radius
+    return ndimage.distance_transform_edt(np.pad(near, 1))[1:-1, 1:-1] > radius
+
+
+def _spread(centers: np.ndarray, size: float, step: float) -> np.ndarray:
+    """Return places (k, 2) (m) in cells around ``centers``, at most ``step`` (m) apart."""
+    count = int(np.ceil(size / step))
+    inner = (np.arange(count) + 0.5) / count * size - size / 2
+    offsets = np.stack(np.meshgrid(inner, inner), axis=-1).reshape(-1, 2)
+    return (centers[:, None] + offsets).reshape(-1, 2)
+
+
+def without_nested(parts: list) -> list:
+    """Return the parts of a roof, each a list of rings, without those that lie in larger ones beside their holes."""
+    kept: list = []
+    for rings in sorted(parts, key=lambda rings: -signed_area(rings[0])):
+        if not any(_lies_in(rings[0][0], other) for other in kept):
+            kept.append(rings)
+    return kept
+
+
+def _lies_in(place: np.ndarray, rings: list) -> bool:
+    """Return whether a place lies in a part of a roof and in none of its holes."""
+    return bool(np.sum([are_inside(place[None], ring)[0] for ring in rings]) == 1)
