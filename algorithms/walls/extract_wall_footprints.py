@@ -158,10 +158,10 @@ def extract_wall_footprints(
     they aren't square, what lies outside the roof by the area. It is found by a minimum cut, then line by line it is
     tried whether the outline is better off without.
 
-    Gaps of a roof, and bites at its edge up to 4 m wide, are roof where no point is seen in them, as long as surfaces are
-    seen all around; gaps with points a meter and more below the eaves are courtyards. Sides beside which another roof
-    begins are party walls: they lie under the edge of the roof, and are not counted in the share of walls seen. Parts
-    of a roof inside of others are left out.
+    Gaps of a roof, and bites at its edge up to 4 m wide, are roof where no point is seen in them, as long as surfaces
+    are seen all around; gaps with points a meter and more below the eaves are courtyards. Sides beside which another
+    roof begins are party walls: they lie under the edge of the roof, and are not counted in the share of walls seen.
+    Parts of a roof inside of others are left out.
 
     What lies deeper under a roof than it juts out over the other walls counts as inside: loggias, porches. Sides
     without wall points lie as far inside the edge of the roof as the other walls in the median; ``quality`` 0 marks
