@@ -8,7 +8,7 @@ from typing import Optional
 
 from .cloud.dimensions import DIMENSIONS
 from .pipeline import Output, Pipeline, Step
-from .stage import REFERENCE_PREFIX, VALUES, Field, InputLayer, Layer, Raster, Stage, Tunable
+from .stage import REFERENCE_PREFIX, VALUES, Field, InputLayer, Layer, Raster, Stage, TextFile, Tunable
 
 
 def stage_help(stage: Stage) -> str:
@@ -65,7 +65,8 @@ def _output_text(pipeline: Pipeline, output: Output) -> str:
     if output.of == "report":
         return _report_text(stage, name)
     texts = {layer.name: _layer_text(layer, name) for layer in stage.layers}
-    return {**texts, **{raster.name: _raster_text(raster, name) for raster in stage.rasters}}[output.of]
+    texts.update({raster.name: _raster_text(raster, name) for raster in stage.rasters})
+    return {**texts, **{file.name: _file_text(file, name) for file in stage.files}}[output.of]
 
 
 def step_title(step: Step) -> str:
@@ -134,6 +135,7 @@ def outputs(stage: Stage) -> list:
     made = [f"<b>OUTPUT</b>: {_cloud_text(stage)}"] if stage.makes_cloud else []
     made += [_layer_text(layer, layer.name.upper()) for layer in stage.layers]
     made += [_raster_text(raster, raster.name.upper()) for raster in stage.rasters]
+    made += [_file_text(file, file.name.upper()) for file in stage.files]
     if stage.measures:
         made.append(_report_text(stage, "REPORT"))
     used = [f"{t.name.upper()}_USED" for t in stage.tunables.values() if t.is_automatic and t.type in (int, float)]
@@ -177,6 +179,11 @@ def _report_text(stage: Stage, name: str) -> str:
 def _raster_text(raster: Raster, name: str) -> str:
     unit = f" ({raster.unit})" if raster.unit else ""
     return f"<b>{name}</b>: {html.escape(raster.title + unit)}, a raster."
+
+
+def _file_text(file: TextFile, name: str) -> str:
+    formats = "; ".join(f"{called} ({', '.join(endings)})" for called, endings in file.formats.items())
+    return f"<b>{name}</b>: {html.escape(file.title)}, a text file: {html.escape(formats)}."
 
 
 def _layer_text(layer: Layer, name: str) -> str:

@@ -8,7 +8,7 @@ from typing import Any, Optional
 from .stage import InputLayer, Stage, Tunable
 from .stages import STAGES
 
-# What outputs are called that are no layer and no raster.
+# What outputs are called that are no layer, raster or text file.
 CLOUD, REPORT = "output", "report"
 
 
@@ -39,7 +39,7 @@ class Step:
 class Output:
     """One output of a composite: its name, and which output of which step it is.
 
-    ``of`` is ``"output"`` for a cloud, ``"report"``, or the name of a layer or raster.
+    ``of`` is ``"output"`` for a cloud, ``"report"``, or the name of a layer, raster or file.
     """
 
     name: str
@@ -51,7 +51,7 @@ class Output:
 class Pipeline:
     """A chain of stages that users meet as one algorithm.
 
-    The last step that makes a cloud gives the composite's OUTPUT; every layer, raster and
+    The last step that makes a cloud gives the composite's OUTPUT; every layer, raster, file and
     report of every step is an output of its own, and so are the clouds of the steps that
     ``kept`` names. ``shared`` names tunables that are one parameter of the composite and go
     to all the steps beside them; they have the same declaration and default there. ``shown``
@@ -160,7 +160,8 @@ class Pipeline:
 
 
 def _made(step: Step) -> list[str]:
-    """Return what a step makes: its cloud, layers, rasters, report."""
+    """Return what a step makes: its cloud, layers, rasters, text files, report."""
     stage = step.stage
-    files = [*(layer.name for layer in stage.layers), *(raster.name for raster in stage.rasters)]
+    layers, rasters, texts = stage.layers, stage.rasters, stage.files
+    files = [*(one.name for one in layers), *(one.name for one in rasters), *(one.name for one in texts)]
     return [CLOUD] * stage.makes_cloud + files + [REPORT] * bool(stage.measures)

@@ -19,6 +19,26 @@ _HRUTKA = (
     "International Archives of the Photogrammetry, Remote Sensing and Spatial Information Sciences XLVIII-4/W1."
 )
 
+_PETERS = (
+    "Peters, R., Dukai, B., Vitalis, S., van Liempt, J., Stoter, J., 2022. Automated 3D reconstruction of LoD2 and "
+    "LoD1 models for all 10 million buildings of the Netherlands. Photogrammetric Engineering & Remote Sensing 88(3)."
+)
+
+# From the raw cloud to footprints.
+_DETECTION = (
+    Step("noise", "classify_noise_histogram"),
+    Step("ground", "classify_ground_tin"),
+    Step("height", "compute_height_above_ground"),
+    Step("roofs", "segment_roofs"),
+    Step("buildings", "classify_buildings"),
+    Step("complete", "complete_buildings"),
+    Step("footprints", "extract_footprints"),
+)
+_DETECTION_SHARED: dict[str, tuple[str, ...]] = {
+    "min_area": ("buildings", "complete", "footprints"),
+    "density": ("roofs", "buildings", "complete"),
+}
+
 _PIPELINES = (
     Pipeline(
         name="detect_buildings",
@@ -33,20 +53,25 @@ _PIPELINES = (
             "tolerances follow the density and the noise of the cloud."
         ),
         references=_SANTOS,
-        steps=(
-            Step("noise", "classify_noise_histogram"),
-            Step("ground", "classify_ground_tin"),
-            Step("height", "compute_height_above_ground"),
-            Step("roofs", "segment_roofs"),
-            Step("buildings", "classify_buildings"),
-            Step("complete", "complete_buildings"),
-            Step("footprints", "extract_footprints"),
-        ),
-        shared={
-            "min_area": ("buildings", "complete", "footprints"),
-            "density": ("roofs", "buildings", "complete"),
-        },
+        steps=_DETECTION,
+        shared=_DETECTION_SHARED,
         shown=("min_area", "roofs_min_height", "ground_max_building_size", "footprints_regularize"),
+    ),
+    Pipeline(
+        name="model_buildings",
+        title="Model buildings",
+        group="Models",
+        tags="3D,LoD2,LoD1,building,city model,roof,CityJSON,OBJ,solid",
+        summary="Model the buildings of a point cloud in three dimensions: roofs and walls as layers and CityJSON.",
+        description=(
+            "Finds the buildings as 'Detect buildings' does, and models each on its footprint: the planes of its roof, "
+            "walls and ground as a closed solid, at levels of detail 1.2, 1.3 and 2.2. Where there is a map of the "
+            "buildings, 'Reconstruct roofs' takes that instead of the footprints found."
+        ),
+        references=f"{_PETERS}\n\n{_SANTOS}",
+        steps=(*_DETECTION, Step("models", "reconstruct_roofs", layers={"footprints": "footprints.footprints"})),
+        shared=_DETECTION_SHARED,
+        shown=("min_area", "models_level_of_detail", "models_min_plane_area", "ground_max_building_size"),
     ),
     Pipeline(
         name="detect_buildings_2019",

@@ -21,6 +21,7 @@ from .stage import (
     REFERENCE_PREFIX,
     SAMPLING,
     VALUES,
+    FileContent,
     LayerFeatures,
     Monitor,
     RasterSurface,
@@ -34,12 +35,13 @@ from .stages import STAGES
 
 @dataclass
 class Outcome:
-    """What a stage made: the cloud with its new dimensions, its layers and rasters by name, its report."""
+    """What a stage made: the cloud with its new dimensions, its layers, rasters and files by name, its report."""
 
     cloud: Optional[Cloud]
     layers: dict[str, LayerFeatures] = field(default_factory=dict)
     report: Optional[Report] = None
     rasters: dict[str, RasterSurface] = field(default_factory=dict)
+    files: dict[str, FileContent] = field(default_factory=dict)
 
 
 def run_stage(
@@ -87,7 +89,7 @@ def run_stage(
     result = _result(stage, clouds, used, made, monitor)
     if stage.merges and result is not None:
         _see_from(origin, [*together, result])
-    return Outcome(result, made.layers, made.report, made.rasters)
+    return Outcome(result, made.layers, made.report, made.rasters, made.files)
 
 
 def sampling_of(cloud: Cloud) -> CloudSampling:
@@ -240,7 +242,7 @@ def _whole(cloud: Cloud, name: str, values: np.ndarray, used: Optional[np.ndarra
 
 @dataclass
 class Results(Outcome):
-    """What a chain made: the last cloud, and layers, rasters, reports and kept clouds by the composite's names."""
+    """What a chain made: the last cloud; layers, rasters, files, reports and kept clouds by the composite's names."""
 
     clouds: dict[str, Cloud] = field(default_factory=dict)
     reports: dict[str, Report] = field(default_factory=dict)
@@ -319,6 +321,8 @@ def _results(
             results.layers[output.name] = outcome.layers[output.of]
         elif output.of in outcome.rasters:
             results.rasters[output.name] = outcome.rasters[output.of]
+        elif output.of in outcome.files:
+            results.files[output.name] = outcome.files[output.of]
         elif output.of == REPORT and outcome.report is not None:
             results.report = results.reports[output.name] = outcome.report
         elif output.name != CLOUD and output.step.name in copies:

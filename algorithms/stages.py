@@ -12,6 +12,7 @@ from .facades.extract_openings import extract_openings
 from .features.classify_dimensionality import classify_dimensionality
 from .features.compute_features import compute_features
 from .footprints.extract_footprints import extract_footprints
+from .models3d.reconstruct_roofs import reconstruct_roofs
 from .preparation.classify_noise_histogram import classify_noise_histogram
 from .preparation.classify_noise_histogram_2019 import classify_noise_histogram_2019
 from .preparation.classify_noise_statistical import classify_noise_statistical
@@ -69,6 +70,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     extract_wall_footprints,
     extract_facades,
     extract_openings,
+    reconstruct_roofs,
     assess_buildings,
     assess_ground,
     compare_corners,

@@ -132,7 +132,7 @@ def output_title(pipeline: Pipeline, output: Output) -> str:
         makers = [step.stage for step in pipeline.steps if step.stage.makes_cloud]
         title = cloud_title(makers if output.name == "output" else [stage])
     else:
-        titles = {made.name: made.title for made in (*stage.layers, *stage.rasters)}
+        titles = {made.name: made.title for made in (*stage.layers, *stage.rasters, *stage.files)}
         title = titles.get(output.of, "Report")
     return title if output.name == output.of else step_label(output.step, title)
 

@@ -33,7 +33,7 @@ from ..algorithms.cloud.outputs import (
     os_errors_as_messages,
     same_file,
 )
-from ..algorithms.stage import Monitor
+from ..algorithms.stage import Monitor, TextFile
 from .clouds import reads_las
 from .rasters import check_raster
 from .styles import load_from, name_after
@@ -54,8 +54,8 @@ _BESIDE = {
     ".tiff": (".tiff.aux.xml",),
 }
 
-# Reports are pages.
-PAGE = ".html"
+# An ending in the filter of a file's dialog.
+_ENDING = re.compile(r"\*(\.[\w.]+)")
 
 # The smallest results, an empty GeoPackage among them, need about so much (bytes).
 _LEAST_SPACE = 2**18
@@ -142,12 +142,26 @@ def _check_target(definition, path: Path, inputs: list) -> None:
         check_raster(path)
     elif isinstance(definition, QgsProcessingParameterFeatureSink):
         check_layer(path)
-    elif path.suffix.lower() != PAGE:
-        raise ValueError(f"{path.name} can't be written as a report: give it the extension {PAGE}.")
+    else:
+        _check_ending(definition, path)
     for file in files_of(definition, str(path)):
         if any(same_file(file, source) for source in inputs):
             raise ValueError(f"The output {file} is also an input; choose another name.")
     _check_file(path)
+
+
+def file_filter(file: TextFile) -> str:
+    """Return the filter of the dialog that asks for a text file: a line for each format."""
+    return ";;".join(f"{called} (*{' *'.join(endings)})" for called, endings in file.formats.items())
+
+
+def _check_ending(definition, path: Path) -> None:
+    """Refuse a name that tells none of a text file's formats."""
+    endings = _ENDING.findall(definition.fileFilter())
+    if not path.name.lower().endswith(tuple(endings)):
+        what = definition.description()
+        what = f"a {what.lower()}" if what.islower() or what[1:].islower() else what
+        raise ValueError(f"{path.name} can't be written as {what}: give it the extension {' or '.join(endings)}.")
 
 
 def _check_file(path: Path) -> None:

@@ -23,7 +23,7 @@ from ..algorithms.cloud.files import count_points, read_cloud, read_extent
 from ..algorithms.cloud.outputs import replacing
 from ..algorithms.help import stage_help
 from ..algorithms.run import Outcome, run_stage
-from ..algorithms.stage import Monitor, Raster, RasterSurface, Stage
+from ..algorithms.stage import FileContent, MapFrame, Monitor, Raster, RasterSurface, Stage, TextFile
 from .clouds import CloudParameter, cloud_path, files_read
 from .crs import crs_units, make_in_main_thread, renew_in_main_thread
 from .declared import DeclaredAlgorithm, shown_help
@@ -34,7 +34,7 @@ from .input_layers import find_input_layer, input_layer_files, input_layer_param
 from .inputs import OUTPUT, REFERENCE, REPORT, cloud_title, input_parameter, input_paths, subject_of, with_help
 from .layer_outputs import UNWANTED, write_layer
 from .memory import warn_if_memory_is_short
-from .outputs import all_in_place, check_targets, write_for_qgis
+from .outputs import all_in_place, check_targets, file_filter, write_for_qgis
 from .parameters import automatic_numbers, number_outputs, parameter, tunable_values, used_name
 from .places import Place, place_of_cloud, place_of_layers
 from .rasters import write_raster
@@ -90,7 +90,7 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         self._add_numbers()
 
     def _add_destinations(self) -> None:
-        """Declare what the stage writes: cloud, layers, rasters, report."""
+        """Declare what the stage writes: cloud, layers, rasters, text files, report."""
         stage = self.stage
         if stage.makes_cloud:
             cloud = QgsProcessingParameterPointCloudDestination(OUTPUT, cloud_title([stage]))
@@ -108,6 +108,11 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         for raster in stage.rasters:
             image = QgsProcessingParameterRasterDestination(raster.name.upper(), raster.title, optional=optional)
             self.addParameter(with_help(image, "A GeoTIFF, tiled and compressed."))
+        for file in stage.files:
+            text = QgsProcessingParameterFileDestination(
+                file.name.upper(), file.title, file_filter(file), optional=True
+            )
+            self.addParameter(with_help(text, f"A text file: {' or '.join(file.formats)}, as its name ends."))
         if self.stage.measures:
             page = QgsProcessingParameterFileDestination(REPORT, "Report", "HTML files (*.html)", optional=True)
             self.addParameter(with_help(page, "A page that shows the numbers."))
@@ -184,6 +189,8 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
             for raster in self.stage.rasters:
                 surface = outcome.rasters[raster.name]
                 results.update(self._write_raster(raster, surface, place, run.parameters, context, monitor))
+            for file in self.stage.files:
+                results.update(self._write_text(file, outcome.files[file.name], place, run.parameters, context))
             if outcome.report is not None:
                 results.update(self._write_report(outcome.report.html, run.parameters, context))
             monitor.progress(1.0)
@@ -244,6 +251,20 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         target = self.parameterAsOutputLayer(parameters, name, context)
         write_raster(raster, surface, place, Path(target), monitor.part(_WRITTEN, _WRITTEN))
         show_on_load(context, target, "Raster", layer_style(raster))
+        return {name: target}
+
+    def _write_text(
+        self, file: TextFile, content: FileContent, place: Place, parameters: dict, context: QgsProcessingContext
+    ) -> dict:
+        """Write a text file, if it is wanted; return its output."""
+        name = file.name.upper()
+        target = "" if parameters.get(name) in UNWANTED else self.parameterAsFileOutput(parameters, name, context)
+        if not target:
+            return {}
+        frame = MapFrame(place.to_map, place.crs.authid())
+        with replacing(Path(target)) as stream:
+            for piece in content.pieces(file.format_of(target), frame):
+                stream.write(piece.encode())
         return {name: target}
 
     def _write_report(self, html: str, parameters: dict, context: QgsProcessingContext) -> dict:

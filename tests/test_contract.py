@@ -25,7 +25,9 @@ from lidar_buildings.algorithms.stage import (
     SAMPLING,
     VALUES,
     Cancelled,
+    FileContent,
     LayerFeatures,
+    MapFrame,
     Monitor,
     RasterSurface,
     Report,
@@ -67,6 +69,7 @@ STAGE_IDS = {
     "classifyroofs",
     "classifywalls",
     "extractwallfootprints",
+    "reconstructroofs",
     "assessbuildings",
     "assessground",
     "comparecorners",
@@ -77,11 +80,11 @@ STAGE_IDS = {
     "simulatestreet",
     "extractopenings",
 }
-PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints"}
+PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints", "modelbuildings"}
 
 CLASSIFYING = {"classify", "complete"}
 VERBS = CLASSIFYING | {"segment", "cluster", "compute", "extract", "regularize", "simplify", "assess", "simulate"}
-VERBS |= {"filter", "downsample", "merge", "rasterize", "map", "compare", "interpret"}
+VERBS |= {"filter", "downsample", "merge", "rasterize", "map", "compare", "interpret", "reconstruct", "model"}
 # Words that keep their capitals inside a title or label.
 NAMES = {"Gauss", "Delaunay", "Shannon", "Hough"}
 # Shares (0 to 1), multiples of what the data show, and limits of whatever dimension is named.
@@ -277,7 +280,16 @@ def made_by_default(name: str) -> tuple[StageResults, Monitor]:
 
 def results_of(made: StageResults) -> list:
     """Return all results in a row."""
-    return [made.selected, *made.dimensions.values(), *made.layers.values(), *made.rasters.values(), made.report]
+    layers, rasters = made.layers.values(), made.rasters.values()
+    return [made.selected, *made.dimensions.values(), *layers, *rasters, *made.files.values(), made.report]
+
+
+def text_of(content: FileContent) -> str:
+    """Return what a stage writes into a text file, in the first of its formats, on a map of meters."""
+    stages = [stage for stage in ALL.values() if stage.files]
+    called = [called for stage in stages for file in stage.files for called in file.formats]
+    frame = MapFrame(np.asarray, "EPSG:25832")
+    return "".join("".join(content.pieces(one, frame)) for one in dict.fromkeys(called))
 
 
 def assert_same(made: StageResults, expected: StageResults) -> None:
@@ -294,6 +306,8 @@ def assert_same(made: StageResults, expected: StageResults) -> None:
         elif isinstance(one, RasterSurface):
             np.testing.assert_array_equal(one.values, other.values)
             assert (one.west, one.north, one.cell_size) == (other.west, other.north, other.cell_size)
+        elif isinstance(one, FileContent):
+            assert text_of(one) == text_of(other)
         elif isinstance(one, Report):
             np.testing.assert_equal(one.values, other.values)
         elif one is None:

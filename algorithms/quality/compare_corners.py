@@ -14,7 +14,7 @@ from ..geometry.rings import signed_area
 from ..packages import spatial
 from ..report.charts import BLUE, Mark, Series, draw_histogram, draw_scatter
 from ..report.page import Row, build_page
-from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Param, Report, stage
+from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Param, Report, feature_names, stage
 
 # A vertex at which the outline turns by less is no corner but a point on a straight or round wall, degrees.
 _LEAST_TURN = 20.0
@@ -211,7 +211,7 @@ class _Map:
 
 def _cleaned(features: LayerFeatures, called: str, monitor: Monitor) -> _Map:
     """Return the polygons of a layer that have an area; say how many don't, and how many cross themselves."""
-    usable = [(rings, name) for rings, name in zip(map(_proper, features.geometries), _names(features)) if rings]
+    usable = [(rings, name) for rings, name in zip(map(_proper, features.geometries), feature_names(features)) if rings]
     if len(usable) < len(features):
         monitor.warn(f"{len(features) - len(usable)} of {len(features)} {called} have no area and were left out.")
     rings = [rings for rings, _ in usable]
@@ -246,20 +246,6 @@ def _proper(rings: list) -> list:
     plan = [np.asarray(ring, float)[:, :2] for ring in rings]
     sound = [len(ring) > 3 and np.isfinite(ring).all() and abs(signed_area(ring)) > _NO_AREA for ring in plan]
     return [ring for ring, is_sound in zip(plan, sound) if is_sound] if sound and sound[0] else []
-
-
-def _names(features: LayerFeatures) -> list[str]:
-    """Return the attribute "id" or "fid" (in any case) of features as text, their number from 1 where there is none."""
-    columns = {name.lower(): values for name, values in features.columns.items()}
-    ids = columns.get("id", columns.get("fid", [None] * len(features)))
-    return [_text(value) or str(number) for number, value in enumerate(ids, start=1)]
-
-
-def _text(value: object) -> str:
-    """Return an attribute as text, "" where there is none; whole numbers come as floats where some are missing."""
-    if isinstance(value, (float, np.floating)):
-        return "" if math.isnan(value) else f"{value:.15g}"
-    return "" if value is None else str(value)
 
 
 @dataclass(frozen=True)

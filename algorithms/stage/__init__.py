@@ -17,7 +17,7 @@ A stage is an ordinary function with a declaration beside it:
 * ``monitor`` (a :class:`Monitor`) receives progress, automatic values and warnings.
 
 It returns values for the points it was given (``writes``), a new cloud
-(``creates``), vector layers (``layers``), rasters (``rasters``), numbers with a
+(``creates``), vector layers (``layers``), rasters (``rasters``), text files (``files``), numbers with a
 page (``measures``), or several of these. Two kinds make a cloud of other points:
 one that ``selects`` says first which points its result has, and in which order;
 one that ``merges`` reads several clouds, each argument a list with one array per
@@ -33,14 +33,18 @@ from .arguments import REFERENCE_PREFIX
 from .declaration import DIMENSION, SAMPLING, VALUES, Stage, stage
 from .inputs_outputs import (
     Field,
+    FileContent,
     InputLayer,
     Layer,
     LayerFeatures,
+    MapFrame,
     Measure,
     Raster,
     RasterSurface,
     Report,
     StageResults,
+    TextFile,
+    feature_names,
     given_layers,
 )
 from .monitor import Cancelled, Monitor
@@ -51,6 +55,9 @@ __all__ = [
     "DIMENSION",
     "LayerFeatures",
     "Field",
+    "FileContent",
+    "MapFrame",
+    "TextFile",
     "Layer",
     "StageResults",
     "Measure",
@@ -65,6 +72,7 @@ __all__ = [
     "RasterSurface",
     "Tunable",
     "VALUES",
+    "feature_names",
     "given_layers",
     "stage",
 ]

@@ -10,7 +10,7 @@ from typing import Any, Callable, Union
 
 from .arguments import REFERENCE_PREFIX, check_arrays
 from .docstrings import before_first_section, sections, with_tunables
-from .inputs_outputs import InputLayer, Layer, Measure, Raster, StageResults, given_layers
+from .inputs_outputs import InputLayer, Layer, Measure, Raster, StageResults, TextFile, given_layers
 from .monitor import Monitor
 from .tunables import Tunable
 
@@ -43,6 +43,7 @@ class Stage:
     measures: tuple[Measure, ...] = ()
     input_layers: tuple[InputLayer, ...] = ()
     rasters: tuple[Raster, ...] = ()
+    files: tuple[TextFile, ...] = ()
     selects: bool = False
     merges: bool = False
     reach: Reach = 0.0
@@ -106,7 +107,7 @@ class Stage:
     def unpack(self, returned: Any) -> StageResults:
         """Give what the function returned its names."""
         results = list(returned) if isinstance(returned, tuple) else [returned]
-        names = (*(self.creates or self.writes), *self.layers, *self.rasters)
+        names = (*(self.creates or self.writes), *self.layers, *self.rasters, *self.files)
         declared = self.selects + len(names) + bool(self.measures)
         if len(results) != max(1, declared):
             raise TypeError(f"{self.name} declares {declared} results and returned {len(results)}.")
@@ -115,6 +116,7 @@ class Stage:
             dimensions={name: results.pop(0) for name in self.creates or self.writes},
             layers={layer.name: results.pop(0) for layer in self.layers},
             rasters={raster.name: results.pop(0) for raster in self.rasters},
+            files={file.name: results.pop(0) for file in self.files},
             report=results.pop(0) if self.measures else None,
         )
 
@@ -130,6 +132,7 @@ def stage(
     measures: tuple[Measure, ...] = (),
     input_layers: tuple[InputLayer, ...] = (),
     rasters: tuple[Raster, ...] = (),
+    files: tuple[TextFile, ...] = (),
     selects: bool = False,
     merges: bool = False,
     reach: Reach = 0.0,
@@ -141,8 +144,8 @@ def stage(
     one array per name in ``writes`` (length n, with ``selects`` m, with ``merges`` that of all
     clouds together; None for one that the user did not ask for) or ``creates`` (a new
     cloud of any length), one :class:`LayerFeatures` per layer, one :class:`RasterSurface` per raster,
-    and a :class:`Report` when there are measures. A stage that merges and writes nothing
-    returns None for the cloud that it makes. The decorated function checks its arrays
+    one :class:`FileContent` per file, and a :class:`Report` when there are measures. A stage
+    that merges and writes nothing returns None for the cloud that it makes. The decorated function checks its arrays
     and tunables on every call and carries its :class:`Stage` as ``function.stage``.
 
     ``reach`` is how far (m) from a point others may lie that decide on it, a number or a function of all tunables by
@@ -155,6 +158,7 @@ def stage(
         "measures": measures,
         "input_layers": input_layers,
         "rasters": rasters,
+        "files": files,
         "selects": selects,
         "merges": merges,
         "reach": reach,

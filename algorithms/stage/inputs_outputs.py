@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Optional
+from typing import Any, Callable, Optional
 
 import numpy as np
 
@@ -77,6 +78,20 @@ class LayerFeatures:
         return len(self.geometries)
 
 
+def feature_names(features: LayerFeatures) -> list[str]:
+    """Return the attribute "id" or "fid" (in any case) of features as text, their number from 1 where there is none."""
+    columns = {name.lower(): values for name, values in features.columns.items()}
+    ids = columns.get("id", columns.get("fid", [None] * len(features)))
+    return [_text(value) or str(number) for number, value in enumerate(ids, start=1)]
+
+
+def _text(value: object) -> str:
+    """Return an attribute as text, "" where there is none; whole numbers come as floats where some are missing."""
+    if isinstance(value, (float, np.floating)):
+        return "" if math.isnan(value) else f"{value:.15g}"
+    return "" if value is None else str(value)
+
+
 def given_layers(
     reader: str, input_layers: Iterable[InputLayer], given: dict[str, Optional[LayerFeatures]]
 ) -> dict[str, Optional[LayerFeatures]]:
@@ -135,6 +150,48 @@ class RasterSurface:
 
 
 @dataclass(frozen=True)
+class TextFile:
+    """A text file that a stage makes, in a format that its name tells.
+
+    ``name`` becomes the output's name (``CITYJSON``); ``formats`` are the formats by what they are called, each with
+    the endings of its files, the preferred one first.
+    """
+
+    name: str
+    title: str
+    formats: Mapping[str, tuple[str, ...]]
+
+    def format_of(self, file_name: str) -> str:
+        """Return the format that a file's name tells.
+
+        Raises
+        ------
+        ValueError
+            If it tells none.
+        """
+        endings = {ending: called for called, endings in self.formats.items() for ending in endings}
+        for ending in sorted(endings, key=len, reverse=True):
+            if file_name.lower().endswith(ending):
+                return endings[ending]
+        raise ValueError(f"{file_name} can't be written as {self.title}: give it the extension {' or '.join(endings)}.")
+
+
+@dataclass(frozen=True)
+class MapFrame:
+    """Where local meters are on the map: what turns them (m, 3) into coordinates, and the CRS ("EPSG:28992" or "")."""
+
+    to_map: Callable[[np.ndarray], np.ndarray]
+    crs: str = ""
+
+
+@dataclass(frozen=True)
+class FileContent:
+    """The content of a :class:`TextFile`: ``pieces`` returns its text, in parts, in a format and for a map."""
+
+    pieces: Callable[[str, MapFrame], Iterator[str]]
+
+
+@dataclass(frozen=True)
 class Measure:
     """One number that a stage's :class:`Report` holds."""
 
@@ -163,4 +220,5 @@ class StageResults:
     dimensions: dict[str, Optional[np.ndarray]] = field(default_factory=dict)
     layers: dict[str, LayerFeatures] = field(default_factory=dict)
     rasters: dict[str, RasterSurface] = field(default_factory=dict)
+    files: dict[str, FileContent] = field(default_factory=dict)
     report: Optional[Report] = None

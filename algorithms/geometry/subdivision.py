@@ -1,0 +1,177 @@
+"""A rectangle cut into convex cells by pieces of lines, each of which ends where it meets other ones."""
+
+from __future__ import annotations
+
+import numpy as np
+
+# A cut that passes a vertex this closely (m) goes through it.
+SNAP = 0.02
+
+# A piece of a line that reaches less far into a cell than this many times the snapping distance does not cut it.
+_LEAST_REACH = 2.5
+
+OUTSIDE = -1
+
+
+class Subdivision:
+    """Convex cells with common vertices: where an edge of one cell meets several others, it has a vertex.
+
+    Parameters
+    ----------
+    low, high : ndarray of shape (2,)
+        Corners of the rectangle (m).
+    xy : ndarray of shape (n, 2)
+        Points in it, which are sorted into the cells.
+
+    Attributes
+    ----------
+    vertices : list of tuple
+        Positions (x, y), m.
+    loops : list of list of int
+        The vertices around each cell, counterclockwise; some lie on straight edges.
+    members : list of ndarray
+        The points in each cell.
+    cell_of : dict
+        The cell to the left of each edge, which is a pair of vertices (start, end).
+    """
+
+    def __init__(self, low: np.ndarray, high: np.ndarray, xy: np.ndarray) -> None:
+        (x0, y0), (x1, y1) = np.asarray(low, float).tolist(), np.asarray(high, float).tolist()
+        self.vertices: list[tuple[float, float]] = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+        self.loops: list[list[int]] = [[0, 1, 2, 3]]
+        self.members: list[np.ndarray] = [np.arange(len(xy))]
+        self.cell_of: dict[tuple[int, int], int] = {(0, 1): 0, (1, 2): 0, (2, 3): 0, (3, 0): 0}
+        self.is_closed: list[bool] = [False]
+        self._xy = xy
+
+    def __len__(self) -> int:
+        return len(self.loops)
+
+    def copy(self) -> Subdivision:
+        """Return a copy that can be given vertices and cuts by itself."""
+        copy = Subdivision.__new__(Subdivision)
+        copy.vertices, copy.loops = list(self.vertices), [list(loop) for loop in self.loops]
+        copy.members, copy.cell_of = list(self.members), dict(self.cell_of)
+        copy.is_closed, copy._xy = list(self.is_closed), self._xy
+        return copy
+
+    def close(self, is_closed: np.ndarray) -> None:
+        """Mark the cells (cells,), bool, that no further line cuts."""
+        self.is_closed = list(is_closed)
+
+    def cut(self, start: np.ndarray, end: np.ndarray, snap: float = SNAP) -> None:
+        """Cut all open cells that the piece of a line from ``start`` to ``end`` (m) passes through.
+
+        A cell is cut from side to side. Vertices at most ``snap`` (m) off the line become vertices of the cut.
+        """
+        (x0, y0), (x1, y1) = np.asarray(start, float).tolist(), np.asarray(end, float).tolist()
+        length = float(np.hypot(x1 - x0, y1 - y0))
+        if length == 0:
+            return
+        line = (x0, y0, (x1 - x0) / length, (y1 - y0) / length)
+        for cell in range(len(self.loops)):
+            if not self.is_closed[cell]:
+                self._cut_cell(cell, line, length, snap)
+
+    def _cut_cell(self, cell: int, line: tuple, length: float, snap: float) -> None:
+        """Split one cell where the line crosses it within its length."""
+        x0, y0, ux, uy = line
+        loop = self.loops[cell]
+        places = [self.vertices[v] for v in loop]
+        across = [ux * (y - y0) - uy * (x - x0) for x, y in places]
+        if max(across) <= snap or min(across) >= -snap:
+            return
+        side = [0 if abs(d) <= snap else 1 if d > 0 else -1 for d in across]
+        crossings = _crossings(side)
+        if len(crossings) != 2:
+            return
+        along = []
+        for i, j in crossings:
+            (xa, ya), (xb, yb) = places[i], places[j]
+            share = 0.0 if i == j else across[i] / (across[i] - across[j])
+            along.append(ux * (xa + share * (xb - xa) - x0) + uy * (ya + share * (yb - ya) - y0))
+        first, last = min(along), max(along)
+        if min(last, length) - max(first, 0.0) < min(_LEAST_REACH * snap, 0.5 * (last - first)):
+            return
+        # A new vertex moves the others along the loop.
+        found = [(loop[i], loop[j], across[i], across[j]) for i, j in crossings]
+        one, other = (u if u == v else self._vertex_on(u, v, from_u, from_v) for u, v, from_u, from_v in found)
+        self._split(cell, one, other, line)
+
+    def _vertex_on(self, u: int, v: int, from_u: float, from_v: float) -> int:
+        """Put a vertex on an edge where the distances of its ends to a line, of opposite signs, become zero."""
+        (xa, ya), (xb, yb) = self.vertices[u], self.vertices[v]
+        share = from_u / (from_u - from_v)
+        return self.insert(u, v, (xa + share * (xb - xa), ya + share * (yb - ya)))
+
+    def insert(self, u: int, v: int, place: tuple[float, float]) -> int:
+        """Put a vertex on the edge from ``u`` to ``v`` of the cells on both sides; return its number."""
+        new = len(self.vertices)
+        self.vertices.append(place)
+        for start, end in ((u, v), (v, u)):
+            cell = self.cell_of.pop((start, end), None)
+            if cell is not None:
+                loop = self.loops[cell]
+                loop.insert(loop.index(start) + 1, new)
+                self.cell_of[start, new] = self.cell_of[new, end] = cell
+        return new
+
+    def _split(self, cell: int, one: int, other: int, line: tuple) -> None:
+        """Part a cell between two of its vertices; what lies to the right of the line becomes a new cell."""
+        loop = self.loops[cell]
+        i, j = loop.index(one), loop.index(other)
+        first = loop[i : j + 1] if i < j else loop[i:] + loop[: j + 1]
+        second = loop[j : i + 1] if j < i else loop[j:] + loop[: i + 1]
+        x0, y0, ux, uy = line
+        # The first part runs from one to other; it lies to the left where its middle does.
+        beyond = [ux * (self.vertices[v][1] - y0) - uy * (self.vertices[v][0] - x0) for v in first]
+        if max(beyond) < -min(beyond):
+            first, second = second, first
+        new = len(self.loops)
+        self.loops[cell] = first
+        self.loops.append(second)
+        self.is_closed.append(False)
+        for start, end in zip(second, [*second[1:], second[0]]):
+            self.cell_of[start, end] = new
+        self.cell_of[first[-1], first[0]] = cell
+        rows = self.members[cell]
+        is_left = ux * (self._xy[rows, 1] - y0) - uy * (self._xy[rows, 0] - x0) > 0
+        self.members[cell] = rows[is_left]
+        self.members.append(rows[~is_left])
+
+    def areas(self) -> np.ndarray:
+        """Return the areas (cells,), m²."""
+        return np.array([self.area(loop) for loop in self.loops])
+
+    def area(self, loop: list[int]) -> float:
+        """Return the area (m²) within a ring of vertices."""
+        x0, y0 = self.vertices[loop[0]]
+        places = [(self.vertices[v][0] - x0, self.vertices[v][1] - y0) for v in loop]
+        return 0.5 * sum(xa * yb - xb * ya for (xa, ya), (xb, yb) in zip(places, [*places[1:], places[0]]))
+
+    def centers(self) -> np.ndarray:
+        """Return the means of the vertices (cells, 2), m, which lie inside."""
+        places = np.array(self.vertices)
+        return np.array([places[loop].mean(axis=0) for loop in self.loops])
+
+    def edges(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return each edge between two cells once: its vertices (m, 2), and the cells to its left and right (m, 2)."""
+        pairs = [(u, v, cell, self.cell_of[v, u]) for (u, v), cell in self.cell_of.items() if (v, u) in self.cell_of]
+        table = np.array([pair for pair in pairs if pair[2] < pair[3]], int).reshape(-1, 4)
+        return table[:, :2], table[:, 2:]
+
+
+def _crossings(side: list[int]) -> list[tuple[int, int]]:
+    """Return where a ring of sides (-1, 0, 1) changes its sign: (i, i + 1) between two corners, (i, i) in one."""
+    n = len(side)
+    found = []
+    for i in range(n):
+        j = (i + 1) % n
+        if side[i] * side[j] < 0:
+            found.append((i, j))
+        elif side[i] == 0:
+            before = next((side[i - k] for k in range(1, n) if side[i - k]), 0)
+            # Of a run of corners on the line its last one counts.
+            if side[j] and before * side[j] < 0:
+                found.append((i, i))
+    return found

@@ -1,0 +1,164 @@
+"""What models say of buildings and of their faces: the attributes of layers and of CityJSON."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..stage import Field
+from .building_models import BuildingModel
+from .solids import ROOF, Solid
+
+# Roofs below this slope (°) are flat: drains need 1 to 3°, and 5° is the least for tiles.
+_FLAT = 5.0
+
+# Faces whose azimuths differ by less than this (°) face the same way.
+_SAME_WAY = 20.0
+
+# Directions of less than this share of the sloping area say nothing of the type.
+_MINOR = 0.08
+
+# Two slopes of one direction that differ by more than this (°) make a mansard roof.
+_MANSARD = 12.0
+
+BUILDING_FIELDS = (
+    Field("id", int, "number of the building, from 1"),
+    Field("building", str, "footprint that it stands on: its attribute id, or its number"),
+    Field("level", str, "level of detail that it has: 1.2, 1.3 or 2.2"),
+    Field("reason", str, "why it has not the level that was wanted, empty where it has"),
+    Field("roof_type", str, "flat, stepped flat, shed, gable, hip, mansard or other"),
+    Field("ground", float, "elevation of its ground", "m"),
+    Field("eave_height", float, "height of the lowest corner of its roof above the ground", "m"),
+    Field("ridge_height", float, "height of the highest corner of its roof above the ground", "m"),
+    Field("roof_area", float, "area of its roof, in its slopes", "m²"),
+    Field("volume", float, "volume", "m³"),
+    Field("rms", float, "root mean square distance of its roof points to the model", "m"),
+    Field("explained", float, "share of its points that lie on the model's roof, 0 to 1"),
+    Field("covered", float, "share of its area that has points, 0 to 1"),
+    Field("confidence", float, "sureness of the model: explained times covered, 0 to 1"),
+    Field("points", int, "points over its footprint"),
+)
+ROOF_FIELDS = (
+    Field("id", int, "number of the face, from 1"),
+    Field("building", str, "building that it is part of, as in the layer of buildings"),
+    Field("slope", float, "slope", "°"),
+    Field("azimuth", float, "direction that it faces, clockwise from north; empty for level faces", "°"),
+    Field("area", float, "area, in the slope", "m²"),
+    Field("eave", float, "elevation of its lowest corner", "m"),
+    Field("ridge", float, "elevation of its highest corner", "m"),
+    Field("rms", float, "root mean square distance of its points", "m"),
+)
+WALL_FIELDS = (
+    Field("id", int, "number of the face, from 1"),
+    Field("building", str, "building that it is part of, as in the layer of buildings"),
+    Field("azimuth", float, "direction that it faces, clockwise from north", "°"),
+    Field("area", float, "area", "m²"),
+)
+
+
+@dataclass(frozen=True)
+class NamedModel:
+    """A model with the name of its footprint and the rings of this (m)."""
+
+    name: str
+    rings: list
+    model: BuildingModel
+
+
+def slope_and_azimuth(solid: Solid, face: int) -> tuple[float, float]:
+    """Return slope and azimuth (°) of a face; the azimuth of a level one is NaN."""
+    x, y, z = solid.normal(face).tolist()
+    across = math.hypot(x, y)
+    if across < 1e-6 * abs(z):
+        return 0.0, math.nan
+    return math.degrees(math.atan2(across, abs(z))), math.degrees(math.atan2(x, y)) % 360
+
+
+def face_area(solid: Solid, face: int) -> float:
+    """Return the area (m²) of a face."""
+    return float(np.linalg.norm(solid.normal(face)))
+
+
+def faces_of(solids: Sequence[Solid], kind: str) -> list[tuple[Solid, int]]:
+    """Return the faces of one kind: roof, wall or ground."""
+    return [(solid, face) for solid in solids for face, this in enumerate(solid.kinds) if this == kind]
+
+
+def face_rings(solid: Solid, face: int) -> list[np.ndarray]:
+    """Return the closed rings (k, 3) of a face, m."""
+    return [solid.vertices[[*ring, ring[0]]] for ring in solid.faces[face]]
+
+
+def building_attributes(one: NamedModel) -> dict[str, Any]:
+    """Return what a model says of its building, by the fields of the layer but its number."""
+    model = one.model
+    roofs = faces_of(model.best, ROOF)
+    z = np.concatenate([solid.vertices[ring][:, 2] for solid, face in roofs for ring in solid.faces[face]])
+    return {
+        "building": one.name,
+        "level": model.level,
+        "reason": model.reason,
+        "roof_type": roof_type(model.best),
+        "ground": model.base,
+        "eave_height": float(z.min() - model.base),
+        "ridge_height": float(z.max() - model.base),
+        "roof_area": sum(face_area(solid, face) for solid, face in roofs),
+        "volume": sum(solid.volume for solid in model.best),
+        "rms": model.rms,
+        "explained": model.explained,
+        "covered": model.covered,
+        "confidence": model.explained * model.covered,
+        "points": model.n_points,
+    }
+
+
+def face_attributes(one: NamedModel, solid: Solid, face: int) -> dict[str, Any]:
+    """Return what a model says of one of its faces, by the fields of the face's layer but its number."""
+    slope, azimuth = slope_and_azimuth(solid, face)
+    facts = {"building": one.name, "azimuth": azimuth, "area": face_area(solid, face)}
+    if solid.kinds[face] != ROOF:
+        return facts
+    z = solid.vertices[solid.faces[face][0]][:, 2]
+    rms = one.model.face_rms.get(solid.planes[face], math.nan)
+    return {**facts, "slope": slope, "eave": float(z.min()), "ridge": float(z.max()), "rms": rms}
+
+
+def roof_type(solids: Sequence[Solid]) -> str:
+    """Return the type of a roof by the slopes and directions of its faces."""
+    roofs = faces_of(solids, ROOF)
+    area = np.array([face_area(solid, face) for solid, face in roofs])
+    slope, azimuth = np.array([slope_and_azimuth(solid, face) for solid, face in roofs]).T
+    sloping = slope > _FLAT
+    if area[sloping].sum() < 0.5 * area.sum():
+        return "flat" if len(area) == 1 else "stepped flat" if not sloping.any() else "other"
+    ways = _ways(azimuth[sloping], area[sloping])
+    if area[~sloping].sum() > 2 * _MINOR * area.sum():
+        return "other"
+    if len(ways) == 1:
+        return "shed"
+    opposite = abs((ways[0] - ways[1]) % 360 - 180) < _SAME_WAY
+    if len(ways) == 2 and opposite:
+        steep = max(np.ptp(slope[sloping][_near(azimuth[sloping], way)]) for way in ways)
+        return "mansard" if steep > _MANSARD and sloping.sum() >= 4 else "gable"
+    return "hip" if opposite and len(ways) in (3, 4) and sloping.sum() == len(ways) else "other"
+
+
+def _near(azimuth: np.ndarray, way: float) -> np.ndarray:
+    return np.abs((azimuth - way + 180) % 360 - 180) < _SAME_WAY
+
+
+def _ways(azimuth: np.ndarray, area: np.ndarray) -> list[float]:
+    """Return the directions (°) in which a roof slopes, the one of the largest area first."""
+    ways: list[float] = []
+    left = area.copy()
+    while left.sum() > 0:
+        best = azimuth[np.argmax(left)]
+        close = _near(azimuth, best) & (left > 0)
+        if left[close].sum() >= _MINOR * area.sum():
+            ways.append(float(best))
+        left[close] = 0
+    return sorted(ways, key=lambda way: -area[_near(azimuth, way)].sum())

@@ -1,0 +1,152 @@
+"""Models of buildings as CityJSON 2.0 and CityJSONSeq."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..stage import MapFrame
+from .building_facts import NamedModel, building_attributes, face_attributes
+from .solids import GROUND, ROOF, WALL, Solid
+
+CITYJSON, CITYJSON_SEQ = "CityJSON", "CityJSONSeq"
+FORMATS = {CITYJSON: (".city.json", ".json"), CITYJSON_SEQ: (".city.jsonl", ".jsonl")}
+
+# Vertices are whole numbers of this (map units): finer than any survey, coarser than rounding errors.
+_SCALE = 0.001
+
+_SURFACES = {ROOF: "RoofSurface", WALL: "WallSurface", GROUND: "GroundSurface"}
+
+# Decimals of attributes.
+_DECIMALS = 3
+
+
+def cityjson_pieces(models: Sequence[NamedModel], called: str, frame: MapFrame) -> Iterator[str]:
+    """Yield the text of a CityJSON file, or, for CityJSONSeq, its lines.
+
+    References
+    ----------
+    CityJSON Specifications 2.0.1, sections 2 to 6; CityJSONSeq, RFC 8142 without record separators.
+    """
+    mapped = [[frame.to_map(solid.vertices) for solid in _solids(one)] for one in models]
+    every = np.concatenate([np.zeros((0, 3)), *(places for of_one in mapped for places in of_one)])
+    low, high = (every.min(axis=0), every.max(axis=0)) if len(every) else (np.zeros(3), np.zeros(3))
+    translate = np.floor(low)
+    head = _head(low, high, translate, frame.crs, bool(len(every)))
+    names = unique_names([one.name for one in models])
+    if called == CITYJSON_SEQ:
+        yield _dumped({**head, "CityObjects": {}, "vertices": []}) + "\n"
+        for one, name, places in zip(models, names, mapped):
+            vertices = _Vertices(translate)
+            feature = {"type": "CityJSONFeature", "id": name, "CityObjects": {name: _building(one, places, vertices)}}
+            yield _dumped({**feature, "vertices": vertices.rows}) + "\n"
+        return
+    vertices = _Vertices(translate)
+    yield _dumped(head)[:-1] + ',"CityObjects":{'
+    for number, (one, name, places) in enumerate(zip(models, names, mapped)):
+        yield ("," if number else "") + f"\n{json.dumps(name)}:{_dumped(_building(one, places, vertices))}"
+    yield '\n},"vertices":' + _dumped(vertices.rows) + "}\n"
+
+
+def unique_names(names: Sequence[str]) -> list[str]:
+    """Return names with a number behind those that came before: parts of one footprint share a name."""
+    taken: set[str] = set()
+    unique = []
+    for name in names:
+        free, number = name, 1
+        while free in taken:
+            number += 1
+            free = f"{name}-{number}"
+        taken.add(free)
+        unique.append(free)
+    return unique
+
+
+def _head(low: np.ndarray, high: np.ndarray, translate: np.ndarray, crs: str, is_filled: bool) -> dict[str, Any]:
+    metadata: dict[str, Any] = {}
+    if is_filled:
+        metadata["geographicalExtent"] = np.round([*low, *high], _DECIMALS).tolist()
+    authority = re.fullmatch(r"([A-Za-z]+):(\w+)", crs)
+    if authority:
+        metadata["referenceSystem"] = f"https://www.opengis.net/def/crs/{authority[1].upper()}/0/{authority[2]}"
+    return {
+        "type": "CityJSON",
+        "version": "2.0",
+        "transform": {"scale": [_SCALE] * 3, "translate": translate.tolist()},
+        "metadata": metadata,
+    }
+
+
+class _Vertices:
+    """The vertices of a file or feature, each place once."""
+
+    def __init__(self, translate: np.ndarray) -> None:
+        self.translate = translate
+        self.rows: list[list[int]] = []
+        self._number: dict[tuple[int, ...], int] = {}
+
+    def numbers(self, places: np.ndarray) -> list[int]:
+        """Return the numbers of places (n, 3), map units; new ones are added."""
+        found = []
+        for row in np.rint((places - self.translate) / _SCALE).astype(np.int64).tolist():
+            key = tuple(row)
+            if key not in self._number:
+                self._number[key] = len(self.rows)
+                self.rows.append(row)
+            found.append(self._number[key])
+        return found
+
+
+def _solids(one: NamedModel) -> list[Solid]:
+    return [solid for solids in one.model.solids.values() for solid in solids]
+
+
+def _building(one: NamedModel, places: list[np.ndarray], vertices: _Vertices) -> dict[str, Any]:
+    """Return the city object of a building with a geometry for each level of detail."""
+    left = iter(places)
+    geometry = []
+    for level, solids in one.model.solids.items():
+        parts = [_shell(one, solid, vertices.numbers(next(left)), level == one.model.level) for solid in solids]
+        surfaces = [surface for _, of_part in parts for surface in of_part]
+        first = np.cumsum([0, *(len(of_part) for _, of_part in parts)]).tolist()
+        values = [[list(range(start, end))] for start, end in zip(first, first[1:])]
+        boundaries = [[shell] for shell, _ in parts]
+        is_single = len(parts) == 1
+        geometry.append(
+            {
+                "type": "Solid" if is_single else "MultiSolid",
+                "lod": level,
+                "boundaries": boundaries[0] if is_single else boundaries,
+                "semantics": {"surfaces": surfaces, "values": values[0] if is_single else values},
+            }
+        )
+    return {"type": "Building", "attributes": _plain(building_attributes(one)), "geometry": geometry}
+
+
+def _shell(one: NamedModel, solid: Solid, numbers: list[int], is_best: bool) -> tuple[list, list[dict[str, Any]]]:
+    """Return the faces of a solid as rings of vertices, and what each of them is."""
+    shell = [[[numbers[v] for v in ring] for ring in rings] for rings in solid.faces]
+    surfaces = []
+    for face, kind in enumerate(solid.kinds):
+        facts = _plain(face_attributes(one, solid, face)) if is_best and kind == ROOF else {}
+        facts.pop("building", None)
+        surfaces.append({"type": _SURFACES[kind], **facts})
+    return shell, surfaces
+
+
+def _plain(facts: dict[str, Any]) -> dict[str, Any]:
+    """Return attributes as JSON has them: rounded, null where undefined."""
+    rounded = {name: round(value, _DECIMALS) if isinstance(value, float) else value for name, value in facts.items()}
+    return {
+        name: None if isinstance(value, float) and not math.isfinite(value) else value
+        for name, value in rounded.items()
+    }
+
+
+def _dumped(value: Any) -> str:
+    return json.dumps(value, separators=(",", ":"), allow_nan=False, ensure_ascii=False)

@@ -1,0 +1,94 @@
+"""Triangles of a plane face with holes, on its own vertices."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def triangulate_face(vertices: np.ndarray, rings: list[list[int]]) -> list[list[int]]:
+    """Return triangles (a, b, c) that cover a plane face, oriented as it is.
+
+    Parameters
+    ----------
+    vertices : ndarray of shape (n, 3)
+        Positions (m).
+    rings : list of list of int
+        Exterior and holes, open, counterclockwise and clockwise seen from outside.
+
+    References
+    ----------
+    Held, M., 2001. FIST: fast industrial-strength triangulation of polygons (bridges to holes, then ears).
+    """
+    used = sorted({v for ring in rings for v in ring})
+    places = dict(zip(used, _in_plane(vertices, rings, used).tolist()))
+    ring = list(rings[0])
+    # The rightmost hole first: its bridge then crosses no other hole.
+    for hole in sorted(rings[1:], key=lambda hole: -max(places[v][0] for v in hole)):
+        ring = _bridged(ring, hole, places)
+    triangles = []
+    while len(ring) > 3:
+        ear = next((i for i in range(len(ring)) if _is_ear(ring, i, places)), None)
+        if ear is None:
+            # Only vertices on straight edges are left over by rounding.
+            ear = int(np.argmax([_turn(*(places[v] for v in _corner(ring, i))) for i in range(len(ring))]))
+        triangles.append(list(_corner(ring, ear)))
+        ring.pop(ear)
+    return [*triangles, ring]
+
+
+def _in_plane(vertices: np.ndarray, rings: list[list[int]], used: list[int]) -> np.ndarray:
+    """Return the vertices of a face in two axes of its plane, counterclockwise for the exterior."""
+    corners = vertices[rings[0]] - vertices[rings[0][0]]
+    normal = np.cross(corners, np.roll(corners, -1, axis=0)).sum(axis=0)
+    normal /= np.linalg.norm(normal)
+    axis = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
+    axis /= np.linalg.norm(axis)
+    return (vertices[used] - vertices[rings[0][0]]) @ np.column_stack([axis, np.cross(normal, axis)])
+
+
+def _corner(ring: list[int], i: int) -> tuple[int, int, int]:
+    return ring[i - 1], ring[i], ring[(i + 1) % len(ring)]
+
+
+def _turn(a, b, c) -> float:
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def _is_ear(ring: list[int], i: int, places: dict) -> bool:
+    names = _corner(ring, i)
+    a, b, c = (places[v] for v in names)
+    if _turn(a, b, c) <= 1e-9:
+        return False
+    return not any(
+        _turn(a, b, p) >= 0 and _turn(b, c, p) >= 0 and _turn(c, a, p) >= 0
+        for p in (places[v] for v in ring if v not in names)
+    )
+
+
+def _bridged(ring: list[int], hole: list[int], places: dict) -> list[int]:
+    """Return one ring of a ring and a hole in it, joined along a line that crosses neither."""
+    start = max(range(len(hole)), key=lambda i: places[hole[i]])
+    order = sorted(range(len(ring)), key=lambda i: _distance(places[ring[i]], places[hole[start]]))
+    for i in order:
+        if _sees(ring, i, hole, places[hole[start]], places):
+            return [*ring[: i + 1], *hole[start:], *hole[: start + 1], *ring[i:]]
+    return ring
+
+
+def _distance(a, b) -> float:
+    return (a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2
+
+
+def _sees(ring: list[int], i: int, hole: list[int], place, places: dict) -> bool:
+    before, here, after = (places[v] for v in _corner(ring, i))
+    # Of a vertex that an earlier bridge doubled, the corner that faces the hole counts.
+    is_convex = _turn(before, here, after) >= 0
+    within = (_turn(before, here, place) > 0, _turn(here, after, place) > 0)
+    if not (all(within) if is_convex else any(within)):
+        return False
+    edges = [*zip(ring, [*ring[1:], ring[0]]), *zip(hole, [*hole[1:], hole[0]])]
+    return not any(_cross(here, place, places[u], places[v]) for u, v in edges)
+
+
+def _cross(a, b, c, d) -> bool:
+    return _turn(a, b, c) * _turn(a, b, d) < 0 and _turn(c, d, a) * _turn(c, d, b) < 0

@@ -1,0 +1,327 @@
+"""Models of buildings: closed solids with the planes of their roofs, from points and footprints."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from typing import Annotated, Any, Callable, Optional
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from ..geometry.rings import signed_area
+from ..packages import spatial
+from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.density import point_spacing
+from ..stage import (
+    FileContent,
+    InputLayer,
+    Layer,
+    LayerFeatures,
+    Monitor,
+    Param,
+    TextFile,
+    feature_names,
+    stage,
+)
+from . import cityjson, wavefront
+from .building_facts import (
+    BUILDING_FIELDS,
+    ROOF_FIELDS,
+    WALL_FIELDS,
+    NamedModel,
+    building_attributes,
+    face_attributes,
+    face_rings,
+    faces_of,
+)
+from .building_models import LEVELS, Settings, model_building
+from .roof_partition import inside_rings
+from .solids import ROOF, WALL
+
+# Points of a roof lie on its plane within this many times their roughness; in the mean of many that is all of them.
+_TOLERANCE_ROUGHNESS = 3.0
+
+# Tolerances (m) that are neither finer than the courses of tiles, nor coarser than the steps that parts have.
+_TOLERANCES = 0.08, 0.35
+
+# Fewer points than this over a footprint show no roof.
+_LEAST_POINTS = 4
+
+# The ground of a building is this percentile of the ground points nearest to its outline, taken every so many meters.
+_GROUND_PERCENTILE, _GROUND_STEP = 5.0, 2.0
+
+# Rings with less area (m²) are no footprints.
+_NO_AREA = 0.5
+
+
+@stage(
+    "Reconstruct roofs",
+    group="Models in three dimensions",
+    tags="3D,LoD1.2,LoD1.3,LoD2.2,LOD2,roof,solid,city model,CityJSON,CityJSONSeq,OBJ,3DBAG,ridge,gable,hip,dormer",
+    input_layers=(
+        InputLayer(
+            "footprints",
+            "Footprints",
+            "Polygon",
+            "Outlines of the buildings: those of 'Extract footprints', or any other map of roofs or walls.",
+        ),
+    ),
+    layers=(
+        Layer("buildings", "Buildings", "Polygon", BUILDING_FIELDS, style="model_grounds"),
+        Layer("walls", "Walls", "Polygon", WALL_FIELDS, style="model_walls"),
+        Layer("roofs", "Roofs", "Polygon", ROOF_FIELDS, style="model_roofs"),
+    ),
+    files=(
+        TextFile("cityjson", "CityJSON", cityjson.FORMATS),
+        TextFile("obj", "Wavefront OBJ", wavefront.FORMATS),
+    ),
+)
+def reconstruct_roofs(
+    xyz,
+    classification,
+    footprints,
+    *,
+    level_of_detail: Annotated[
+        str,
+        Param(
+            "Level of detail",
+            "1.2: one level top per building; 1.3: one per part where heights differ clearly; 2.2: the planes of the "
+            "roof. Files have the simpler levels too.",
+            choices=LEVELS,
+        ),
+    ] = "2.2",
+    min_plane_area: Annotated[
+        float,
+        Param(
+            "Minimum plane area",
+            "Area of the smallest roof plane, seen from above; dormers have 2 m² and more.",
+            unit="m²",
+            low=0.1,
+            high=1000,
+        ),
+    ] = 1.5,
+    min_step: Annotated[
+        float,
+        Param(
+            "Minimum step",
+            "At level 1.3, parts of a roof that step by less are one part.",
+            unit="m",
+            low=0,
+            high=100,
+        ),
+    ] = 3.0,
+    top_percentile: Annotated[
+        float,
+        Param(
+            "Percentile of level tops",
+            "At levels 1.2 and 1.3, the share of the roof points below the top: 50 is the median, 100 the ridge.",
+            unit="%",
+            low=0,
+            high=100,
+            advanced=True,
+        ),
+    ] = 70.0,
+    max_slope: Annotated[
+        float,
+        Param("Maximum slope", "Slope of the steepest roof plane.", unit="°", low=1, high=85, advanced=True),
+    ] = 75.0,
+    tolerance: Annotated[
+        Optional[float],
+        Param(
+            "Tolerance",
+            "Distance at which a point lies on a plane. A larger one gives fewer planes.",
+            unit="m",
+            low=0.01,
+            high=5,
+            automatic="3 times the roughness of the cloud's surfaces, 0.08 to 0.35 m.",
+            advanced=True,
+        ),
+    ] = None,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Model buildings as closed solids of roof planes, walls and a level ground, at levels of detail 1.2, 1.3 and 2.2.
+
+    Planes grow over the points of each footprint. The lines in which they intersect, and those where one ends above
+    another, divide the footprint into cells; each cell takes a plane, all together so that points and borders cost
+    least. A building whose planes don't explain it gets the next simpler level, and says why.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Coordinates (m).
+    classification : ndarray of shape (n,)
+        Classes; points of class 6 are modelled, those of class 2 are the ground.
+    footprints : LayerFeatures
+        Outlines of the buildings.
+
+    Returns
+    -------
+    buildings : LayerFeatures
+        The ground of each building, at its height, with what is known of the model.
+    walls, roofs : LayerFeatures
+        The other faces of the best level of each building, as polygons with heights.
+    cityjson, obj : FileContent
+        The same in one file: CityJSON 2.0 or CityJSONSeq with all levels and semantic surfaces, and Wavefront OBJ.
+
+    Raises
+    ------
+    ValueError
+        If no point is called building, or none ground, or no footprint has an area.
+
+    Notes
+    -----
+    Faces are plane to 1 cm and solids are closed two-manifolds: where more than two walls would meet in an edge, the
+    smallest piece of roof there joins a neighbor. Parts of a footprint that touch in a point only are solids of their
+    own. A level that is farther from the points than a simpler one, or is no valid solid, is left out. The ground is
+    level, at the 5th percentile of the ground points nearest to the outline. Curved roofs become strips.
+
+    Other than in the publications, lines cut only the cells along which planes are beside each other, so that the cost
+    grows with the border of planes and not with the square of their number; and a border costs its length and the
+    wall that it needs, in the same unit as the roof that no plane explains: square meters.
+
+    References
+    ----------
+    Peters, R., Dukai, B., Vitalis, S., van Liempt, J., Stoter, J., 2022. Automated 3D reconstruction of LoD2 and LoD1
+    models for all 10 million buildings of the Netherlands. Photogrammetric Engineering & Remote Sensing 88(3).
+    Nan, L., Wonka, P., 2017. PolyFit: polygonal surface reconstruction from point clouds. ICCV.
+    Huang, J., Stoter, J., Peters, R., Nan, L., 2022. City3D: large-scale building reconstruction from airborne LiDAR
+    point clouds. Remote Sensing 14(9).
+    Biljecki, F., Ledoux, H., Stoter, J., 2016. An improved LOD specification for 3D building models. Computers,
+    Environment and Urban Systems 59.
+    """
+    building, ground = _points(xyz, classification)
+    outlines = _outlines(footprints, monitor)
+    sampling = sampling or CloudSampling.of(xyz, classification)
+    if tolerance is None:
+        tolerance = float(np.clip(_TOLERANCE_ROUGHNESS * sampling.roughness, *_TOLERANCES))
+        monitor.resolved(tolerance=tolerance)
+    settings = Settings(
+        point_spacing(building), tolerance, min_plane_area, max_slope, min_step, top_percentile, level_of_detail
+    )
+    models = _modelled(building, ground, outlines, settings, monitor)
+    layers = _building_layer(models), _face_layer(models, WALL), _face_layer(models, ROOF)
+    return *layers, _file(models, cityjson.cityjson_pieces), _file(models, wavefront.obj_pieces)
+
+
+@dataclass(frozen=True)
+class _Outline:
+    """A footprint: its name and its closed rings in plan (m)."""
+
+    name: str
+    rings: list
+
+
+def _points(xyz: np.ndarray, classification: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the points of buildings in the order of their eastings, and those of the ground."""
+    building = xyz[classification == PointClass.BUILDING]
+    if not len(building):
+        raise ValueError("No point is called building (class 6); run 'Detect buildings' first.")
+    ground = xyz[classification == PointClass.GROUND]
+    if not len(ground):
+        raise ValueError("No point is called ground (class 2); run 'Classify ground points (TIN)' first.")
+    return building[np.argsort(building[:, 0], kind="stable")], ground
+
+
+def _outlines(footprints: LayerFeatures, monitor: Monitor) -> list[_Outline]:
+    """Return the footprints that have an area; say how many don't."""
+    outlines = []
+    for rings, name in zip(footprints.geometries, feature_names(footprints)):
+        plan = [np.asarray(ring, float)[:, :2] for ring in rings]
+        sound = [ring for ring in plan if len(ring) > 3 and np.isfinite(ring).all() and abs(signed_area(ring)) > 1e-6]
+        if sound and sound[0] is plan[0] and abs(signed_area(plan[0])) >= _NO_AREA:
+            outlines.append(_Outline(name, sound))
+    if not outlines:
+        raise ValueError(
+            f"None of the {len(footprints)} footprints has an area of {_NO_AREA} m² or more; choose another layer."
+        )
+    if len(outlines) < len(footprints):
+        monitor.warn(
+            f"{len(footprints) - len(outlines)} of {len(footprints)} footprints have no area and are left out."
+        )
+    return outlines
+
+
+def _modelled(
+    building: np.ndarray, ground: np.ndarray, outlines: list[_Outline], settings: Settings, monitor: Monitor
+) -> list[NamedModel]:
+    """Return the models of all footprints that have points; say how many don't, and which levels there are."""
+    base_of = _ground_heights(ground)
+    models, empty = [], 0
+    for number, outline in enumerate(outlines):
+        points = _points_over(building, outline.rings)
+        if len(points) >= _LEAST_POINTS:
+            base = base_of(outline.rings)
+            model = model_building(points, outline.rings, base, settings)
+            if model.level:
+                models.append(NamedModel(outline.name, outline.rings, model))
+        empty += not models or models[-1].name != outline.name or len(points) < _LEAST_POINTS
+        monitor.progress((number + 1) / len(outlines))
+    _tell(models, empty, len(outlines), settings.level, monitor)
+    return models
+
+
+def _tell(models: list[NamedModel], empty: int, count: int, level: str, monitor: Monitor) -> None:
+    """Say which levels the models have, and how many footprints have none."""
+    levels = Counter(one.model.level for one in models)
+    shares = ", ".join(f"{levels[name]} at level {name}" for name in LEVELS[::-1] if levels[name])
+    if shares:
+        monitor.inform(f"Of {count} footprints: {shares}.")
+    if empty:
+        monitor.warn(f"{empty} of {count} footprints have no points of buildings over them, and so no model.")
+
+
+def _points_over(building: np.ndarray, rings: list) -> np.ndarray:
+    """Return the points, of those in the order of their eastings, that lie over a footprint."""
+    (west, south), (east, north) = rings[0].min(axis=0), rings[0].max(axis=0)
+    some = building[np.searchsorted(building[:, 0], west) : np.searchsorted(building[:, 0], east, side="right")]
+    some = some[(some[:, 1] >= south) & (some[:, 1] <= north)]
+    return some[inside_rings(some[:, :2], rings)]
+
+
+def _ground_heights(ground: np.ndarray) -> Callable[[list], float]:
+    """Return what tells the height of the ground (m) of a footprint."""
+    tree = spatial.cKDTree(ground[:, :2])
+
+    def base_of(rings: list) -> float:
+        return float(np.percentile(ground[tree.query(_along(rings[0]))[1], 2], _GROUND_PERCENTILE))
+
+    return base_of
+
+
+def _along(ring: np.ndarray) -> np.ndarray:
+    """Return places (k, 2) along a ring, its vertices and what is needed between them."""
+    parts = []
+    for start, end in zip(ring[:-1], ring[1:]):
+        count = max(1, int(np.ceil(np.hypot(*(end - start)) / _GROUND_STEP)))
+        parts.append(start + (end - start) * np.arange(count)[:, None] / count)
+    return np.concatenate(parts)
+
+
+def _building_layer(models: list[NamedModel]) -> LayerFeatures:
+    """Return the grounds of buildings."""
+    rows = [building_attributes(one) for one in models]
+    rings = [[np.column_stack([ring, np.full(len(ring), one.model.base)]) for ring in one.rings] for one in models]
+    return _layer(rings, rows, BUILDING_FIELDS)
+
+
+def _face_layer(models: list[NamedModel], kind: str) -> LayerFeatures:
+    """Return the faces of one kind."""
+    faces = [(one, solid, face) for one in models for solid, face in faces_of(one.model.best, kind)]
+    rows = [face_attributes(*face) for face in faces]
+    return _layer(
+        [face_rings(solid, face) for _, solid, face in faces], rows, ROOF_FIELDS if kind == ROOF else WALL_FIELDS
+    )
+
+
+def _layer(geometries: list, rows: list[dict[str, Any]], fields: tuple) -> LayerFeatures:
+    names = [field.name for field in fields if field.name != "id"]
+    return LayerFeatures(
+        geometries, {"id": list(range(1, len(rows) + 1)), **{name: [row[name] for row in rows] for name in names}}
+    )
+
+
+def _file(models: list[NamedModel], pieces: Callable) -> FileContent:
+    """Return the content of a file of all models."""
+    return FileContent(lambda called, frame: pieces(models, called, frame))

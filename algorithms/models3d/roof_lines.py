@@ -1,0 +1,202 @@
+"""Lines along which the planes of a roof may meet or end, in plan."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..geometry.delaunay import triangulate
+from .roof_planes import RoofPlanes
+
+# Points of two planes are beside each other where a triangle joins them whose side is at most this long (spacings, m).
+_BESIDE_SPACINGS, _BESIDE = 6.0, 2.0
+
+# Planes whose slopes differ by less than this (rise per meter) have no intersection that the points could place.
+_LEAST_TURN = 0.05
+
+# A contact of two planes is at their intersection where this is no farther off than that (spacings, m).
+_AT_LINE_SPACINGS, _AT_LINE = 2.0, 0.5
+
+# Contacts that make a line.
+_LEAST_CONTACTS = 3
+
+# Lines of steps along one border of two planes.
+_MOST_STEPS = 6
+
+# How far lines reach beyond their contacts (spacings, m): a cell is cut from side to side anyway.
+_BEYOND_SPACINGS, _BEYOND = 2.0, 0.5
+
+# Lines that turn by less than this (rad) and lie no farther apart (m) are the same.
+_SAME_TURN, _SAME_OFFSET = 0.04, 0.10
+
+# Main directions are preferred by this share of the contacts.
+_PREFERENCE = 1.15
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A piece of a line in plan: its ends (m), and its weight, the contacts that it stands for."""
+
+    start: np.ndarray
+    end: np.ndarray
+    weight: float
+
+    @property
+    def direction(self) -> np.ndarray:
+        """Unit vector (2,) from start to end."""
+        return (self.end - self.start) / np.hypot(*(self.end - self.start))
+
+
+def find_roof_lines(xyz: np.ndarray, planes: RoofPlanes, rings: list, spacing: float) -> list[Piece]:
+    """Return where planes intersect and where they step, in the order in which they are to cut.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Points (m).
+    planes : RoofPlanes
+        Their planes.
+    rings : list of ndarray
+        The footprint, whose walls give the main directions.
+    spacing : float
+        Mean distance between neighboring points (m).
+
+    Returns
+    -------
+    list of Piece
+        Intersections first, heaviest first; without those that lie on a heavier one.
+    """
+    member = np.flatnonzero(planes.label >= 0)
+    if len(planes) < 2 or len(member) < 4:
+        return []
+    one, other, middle = _contacts(xyz[member, :2], planes.label[member], spacing)
+    main = main_directions(rings)
+    meeting, stepping = [], []
+    order = np.lexsort((other, one))
+    one, other, middle = one[order], other[order], middle[order]
+    starts = np.flatnonzero(np.r_[True, (one[1:] != one[:-1]) | (other[1:] != other[:-1])]) if len(one) else []
+    for begin, end in zip(starts, [*starts[1:], len(one)]):
+        border = _Border(planes, int(one[begin]), int(other[begin]), middle[begin:end], spacing)
+        meeting += border.intersection()
+        stepping += border.steps(main)
+    return _without_doubles(sorted(meeting, key=lambda p: -p.weight) + sorted(stepping, key=lambda p: -p.weight))
+
+
+def main_directions(rings: list) -> np.ndarray:
+    """Return unit vectors (k, 2) along and across the walls of a footprint, the longest direction first; at most 6."""
+    edge = np.concatenate([np.diff(ring, axis=0) for ring in rings])
+    length = np.hypot(*edge.T)
+    edge, length = edge[length > 0], length[length > 0]
+    angle = np.arctan2(edge[:, 1], edge[:, 0]) % (np.pi / 2)
+    found: list[float] = []
+    left = length.copy()
+    for _ in range(3):
+        if left.sum() < 0.1 * length.sum():
+            break
+        apart = np.abs((angle[:, None] - angle + np.pi / 4) % (np.pi / 2) - np.pi / 4)
+        best = np.argmax((apart < _SAME_TURN) @ left * (left > 0))
+        close = (apart[best] < _SAME_TURN) & (left > 0)
+        turn = (angle[close] - angle[best] + np.pi / 4) % (np.pi / 2) - np.pi / 4
+        found.append(float(angle[best] + np.average(turn, weights=left[close])))
+        left[apart[best] < 2 * _SAME_TURN] = 0
+    both = np.array([a + quarter for a in found for quarter in (0, np.pi / 2)])
+    return np.column_stack([np.cos(both), np.sin(both)])
+
+
+def _contacts(xy: np.ndarray, label: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the two planes (m,), (m,) of neighbors that lie on two, the smaller number first, and their middles."""
+    if np.linalg.matrix_rank(xy - xy.mean(axis=0)) < 2:
+        return np.zeros(0, int), np.zeros(0, int), np.zeros((0, 2))
+    mesh = triangulate(xy)
+    side = np.concatenate([mesh.facets[:, [0, 1]], mesh.facets[:, [1, 2]], mesh.facets[:, [2, 0]]])
+    side = np.unique(np.sort(side, axis=1), axis=0)
+    side = side[label[side[:, 0]] != label[side[:, 1]]]
+    long = np.hypot(*(xy[side[:, 0]] - xy[side[:, 1]]).T)
+    side = side[long <= max(_BESIDE, _BESIDE_SPACINGS * spacing)]
+    pair = np.sort(label[side], axis=1)
+    return pair[:, 0], pair[:, 1], xy[side].mean(axis=1)
+
+
+class _Border:
+    """Where two planes are beside each other: places (m, 2) between their points."""
+
+    def __init__(self, planes: RoofPlanes, one: int, other: int, places: np.ndarray, spacing: float) -> None:
+        self.difference = planes.coefficients[one] - planes.coefficients[other]
+        self.slopes = planes.coefficients[[one, other], :2]
+        self.places, self.spacing = places, spacing
+        self.turn = float(np.hypot(*self.difference[:2]))
+        step = np.abs(places @ self.difference[:2] + self.difference[2])
+        limit = max(_AT_LINE, _AT_LINE_SPACINGS * spacing)
+        self.at_line = step <= limit * self.turn if self.turn > _LEAST_TURN else np.zeros(len(places), bool)
+
+    def intersection(self) -> list[Piece]:
+        """Return the piece of the line in which the planes intersect, if they meet there."""
+        if self.at_line.sum() < _LEAST_CONTACTS:
+            return []
+        normal = self.difference[:2] / self.turn
+        place = -normal * self.difference[2] / self.turn
+        return [self._piece(place, np.array([-normal[1], normal[0]]), self.places[self.at_line])]
+
+    def steps(self, main: np.ndarray) -> list[Piece]:
+        """Return lines along the contacts where one plane is above the other."""
+        left = self.places[~self.at_line]
+        directions, weight = self._directions(main)
+        found: list[Piece] = []
+        width = max(0.3, self.spacing)
+        while len(left) >= _LEAST_CONTACTS and len(found) < _MOST_STEPS:
+            best, on_best = 0.0, None
+            for direction, preference in zip(directions, weight):
+                normal = np.array([-direction[1], direction[0]])
+                offset = left @ normal
+                order = np.sort(offset)
+                count = np.searchsorted(order, order + width, side="right") - np.arange(len(order))
+                first = int(np.argmax(count))
+                if count[first] * preference > best:
+                    best = count[first] * preference
+                    on_best = direction, normal, (offset >= order[first]) & (offset <= order[first] + width)
+            if on_best is None or on_best[2].sum() < _LEAST_CONTACTS:
+                break
+            direction, normal, chosen = on_best
+            place = normal * float(np.median(left[chosen] @ normal))
+            found.append(self._piece(place, direction, left[chosen]))
+            left = left[~chosen]
+        return found
+
+    def _directions(self, main: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return directions (k, 2) that steps may have, and how much they are preferred (k,)."""
+        found, weight = list(main), [_PREFERENCE] * len(main)
+        for slope in self.slopes:
+            size = np.hypot(*slope)
+            if size > _LEAST_TURN:
+                found += [slope / size, np.array([-slope[1], slope[0]]) / size]
+                weight += [_PREFERENCE, _PREFERENCE]
+        found += [np.array([np.cos(a), np.sin(a)]) for a in np.deg2rad(np.arange(0, 180, 15))]
+        weight += [1.0] * 12
+        return np.array(found), np.array(weight)
+
+    def _piece(self, place: np.ndarray, direction: np.ndarray, contacts: np.ndarray) -> Piece:
+        along = (contacts - place) @ direction
+        beyond = max(_BEYOND, _BEYOND_SPACINGS * self.spacing)
+        low, high = along.min() - beyond, along.max() + beyond
+        return Piece(place + low * direction, place + high * direction, float(len(contacts)))
+
+
+def _without_doubles(pieces: list[Piece]) -> list[Piece]:
+    """Return the pieces but those that an earlier one covers."""
+    kept: list[Piece] = []
+    for piece in pieces:
+        if not any(_covers(one, piece) for one in kept):
+            kept.append(piece)
+    return kept
+
+
+def _covers(one: Piece, other: Piece) -> bool:
+    u, v = one.direction, other.direction
+    if abs(u[0] * v[1] - u[1] * v[0]) > _SAME_TURN:
+        return False
+    ends = np.array([other.start, other.end]) - one.start
+    if np.abs(ends @ (-u[1], u[0])).max() > _SAME_OFFSET:
+        return False
+    along = ends @ u
+    return bool(along.min() >= -0.5 and along.max() <= np.hypot(*(one.end - one.start)) + 0.5)

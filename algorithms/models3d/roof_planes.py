@@ -1,0 +1,225 @@
+"""The planes of one building's roof, grown from its smoothest places."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..neighborhoods.covariance import Nearest, smallest_eigenvectors, symmetric_eigenvalues
+from ..packages import spatial
+from ..segmentation.least_squares_planes import planes_of
+
+# Points of the neighborhood whose plane tells which way a roof faces: two rings around a point.
+_NEIGHBORS = 12
+
+# Points of a plane face the same way to this (°); normals of a dozen points with 3 cm of noise vary by less than half.
+_FACING = 25.0
+
+# Planes that differ by less than this (°) may be one; roofs with a smaller turn look the same.
+_SAME_FACING = 6.0
+
+# Share of a plane's points that a round of growth must add before the plane is fitted anew.
+_REFIT = 0.3
+
+# Rounds in which points choose the best plane of their neighborhood.
+_CHOICES = 3
+
+
+@dataclass(frozen=True)
+class RoofPlanes:
+    """Planes z = a x + b y + c of a roof, ``coefficients`` (m, 3), and that of each point: ``label`` (n,), -1 none."""
+
+    coefficients: np.ndarray
+    label: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.coefficients)
+
+    def height(self, plane, xy: np.ndarray) -> np.ndarray:
+        """Return the height (n,), m, of planes at places (n, 2); one plane, or one per place."""
+        a, b, c = self.coefficients[plane].T
+        return a * xy[..., 0] + b * xy[..., 1] + c
+
+    @property
+    def cosine(self) -> np.ndarray:
+        """Cosine (m,) of the slope: the distance off a plane per difference in height."""
+        return 1 / np.sqrt(1 + self.coefficients[:, 0] ** 2 + self.coefficients[:, 1] ** 2)
+
+
+def find_roof_planes(xyz: np.ndarray, tolerance: float, max_slope: float, min_points: int) -> RoofPlanes:
+    """Find the planes of a roof.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Points of the building (m), relative to a place nearby.
+    tolerance : float
+        Distance at which a point lies on a plane (m).
+    max_slope : float
+        Slope of the steepest roof plane (°); what is steeper is a wall.
+    min_points : int
+        Points of the smallest plane.
+
+    Returns
+    -------
+    RoofPlanes
+        Largest plane first.
+    """
+    if len(xyz) < max(min_points, 4):
+        return RoofPlanes(np.zeros((0, 3)), np.full(len(xyz), -1))
+    rows = np.arange(len(xyz))
+    columns = np.ascontiguousarray(xyz.T)
+    neighbors, _, covariance = Nearest(_NEIGHBORS).moments(columns, spatial.cKDTree(xyz), rows)
+    eigenvalues = symmetric_eigenvalues(covariance)
+    normal = np.nan_to_num(smallest_eigenvectors(covariance, eigenvalues))
+    growth = _Growth(xyz, neighbors, normal, tolerance, float(np.cos(np.deg2rad(max_slope))))
+    label = growth.all_planes(eigenvalues[:, 2], min_points)
+    label = _chosen_by_neighborhood(xyz, neighbors, label, tolerance)
+    label = _merged(xyz, neighbors, label, tolerance)
+    return _fitted(xyz, _large(label, min_points))
+
+
+class _Growth:
+    """Growing of planes over the graph of nearest points."""
+
+    def __init__(
+        self,
+        xyz: np.ndarray,
+        neighbors: np.ndarray,
+        normal: np.ndarray,
+        tolerance: float,
+        least_upward: float,
+    ) -> None:
+        self.xyz, self.neighbors, self.normal = xyz, neighbors, normal
+        self.tolerance, self.least_upward = tolerance, least_upward
+        self.facing = float(np.cos(np.deg2rad(_FACING)))
+
+    def all_planes(self, off_plane: np.ndarray, min_points: int) -> np.ndarray:
+        """Return the plane of each point (n,), -1 for none; seeds in the order of their deviation ``off_plane``."""
+        label = np.full(len(self.xyz), -1)
+        usable = (off_plane < self.tolerance**2) & (self.normal[:, 2] >= self.least_upward)
+        tried, count = ~usable, 0
+        for seed in np.argsort(off_plane, kind="stable").tolist():
+            if tried[seed] or label[seed] >= 0:
+                continue
+            grown = self._grow(seed, label < 0)
+            tried[seed] = True
+            if len(grown) >= min_points:
+                label[grown] = count
+                count += 1
+            else:
+                # The same few points would be found again from each of them.
+                tried[grown] = True
+        return label
+
+    def _grow(self, seed: int, free: np.ndarray) -> np.ndarray:
+        """Return the free points of the plane around a seed, grown twice: from its normal, then from its plane."""
+        center, normal = self.xyz[self.neighbors[seed, :4]].mean(axis=0), self.normal[seed]
+        grown = self._reached(np.array([seed]), center, normal, free)
+        if len(grown) < 4:
+            return grown
+        center, normal = _plane(self.xyz[grown])
+        if normal[2] < self.least_upward:
+            return np.array([seed])
+        kept = grown[np.abs((self.xyz[grown] - center) @ normal) <= self.tolerance]
+        return self._reached(kept, center, normal, free) if len(kept) else grown
+
+    def _reached(self, start: np.ndarray, center: np.ndarray, normal: np.ndarray, free: np.ndarray) -> np.ndarray:
+        """Return the points of a plane that are connected with ``start``, refitting it as it grows."""
+        is_open = free.copy()
+        is_open[start] = False
+        found, front, fitted = [start], start, max(len(start), 8)
+        count = len(start)
+        while len(front):
+            near = self.neighbors[front].ravel()
+            near = np.unique(near[is_open[near]])
+            off = np.abs((self.xyz[near] - center) @ normal)
+            front = near[(off <= self.tolerance) & (self.normal[near] @ normal >= self.facing)]
+            is_open[front] = False
+            found.append(front)
+            count += len(front)
+            if count > (1 + _REFIT) * fitted:
+                center, normal = _plane(self.xyz[np.concatenate(found)])
+                fitted = count
+        return np.concatenate(found)
+
+
+def _plane(xyz: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return center and upward normal of the least-squares plane of points."""
+    center = xyz.mean(axis=0)
+    offset = xyz - center
+    normal = np.linalg.eigh(offset.T @ offset)[1][:, 0]
+    return center, normal if normal[2] >= 0 else -normal
+
+
+def _chosen_by_neighborhood(xyz: np.ndarray, neighbors: np.ndarray, label: np.ndarray, tolerance: float) -> np.ndarray:
+    """Return the labels after each point has taken the nearest plane of those that its neighbors have."""
+    for _ in range(_CHOICES):
+        if label.max() < 0:
+            break
+        fitted = _fitted(xyz, label)
+        label = fitted.label
+        options = label[neighbors]
+        scale = fitted.cosine
+        a, b, c = fitted.coefficients[options].transpose(2, 0, 1)
+        off = np.abs(xyz[:, 2:] - a * xyz[:, :1] - b * xyz[:, 1:2] - c) * scale[options]
+        off[options < 0] = np.inf
+        best = np.argmin(off, axis=1)
+        rows = np.arange(len(xyz))
+        chosen = np.where(off[rows, best] <= tolerance, options[rows, best], -1)
+        # A plane needs company: a point keeps its own where no better one is at hand.
+        label = np.where(chosen >= 0, chosen, -1)
+    return label
+
+
+def _merged(xyz: np.ndarray, neighbors: np.ndarray, label: np.ndarray, tolerance: float) -> np.ndarray:
+    """Return the labels with touching planes joined that one plane describes as well."""
+    while label.max() >= 0:
+        fitted = _fitted(xyz, label)
+        label, n = fitted.label, len(fitted)
+        other = label[neighbors]
+        pair = np.unique(np.sort(np.column_stack([np.repeat(label, other.shape[1]), other.ravel()]), axis=1), axis=0)
+        pair = pair[(pair[:, 0] >= 0) & (pair[:, 0] != pair[:, 1])]
+        if not len(pair):
+            break
+        member = label >= 0
+        planes = planes_of(xyz[member], label[member], n)
+        cosine = np.einsum("ij,ij->i", planes.normal[pair[:, 0]], planes.normal[pair[:, 1]])
+        pair = pair[cosine > np.cos(np.deg2rad(_SAME_FACING))]
+        joined = planes.deviation(pair[:, 0], pair[:, 1]), planes.deviation(pair[:, 1], pair[:, 0])
+        # The smaller one lies on the plane of the larger one, as well as points lie on planes.
+        size = planes.count
+        off = np.where(size[pair[:, 0]] < size[pair[:, 1]], *joined)
+        if not len(off) or off.min() > 0.5 * tolerance:
+            break
+        one, two = pair[np.argmin(off)]
+        label = np.where(label == two, one, label)
+    return label
+
+
+def _large(label: np.ndarray, min_points: int) -> np.ndarray:
+    """Return the labels, numbered anew from the largest; -1 for planes with fewer points."""
+    if label.max(initial=-1) < 0:
+        return label
+    size = np.bincount(label[label >= 0])
+    order = np.argsort(-size, kind="stable")
+    number = np.full(len(size) + 1, -1)
+    kept = order[size[order] >= min_points]
+    number[kept] = np.arange(len(kept))
+    return number[label]
+
+
+def _fitted(xyz: np.ndarray, label: np.ndarray) -> RoofPlanes:
+    """Return the least-squares planes of labeled points, numbered without gaps."""
+    member = label >= 0
+    if not member.any():
+        return RoofPlanes(np.zeros((0, 3)), np.full(len(label), -1))
+    number, group = np.unique(label[member], return_inverse=True)
+    planes = planes_of(xyz[member], group, len(number))
+    normal = np.where(np.abs(planes.normal[:, 2:]) > 1e-6, planes.normal, [0.0, 0.0, 1.0])
+    slope = -normal[:, :2] / normal[:, 2:]
+    constant = planes.center[:, 2] - np.einsum("ij,ij->i", slope, planes.center[:, :2])
+    compact = np.full(len(label), -1)
+    compact[member] = group
+    return RoofPlanes(np.column_stack([slope, constant]), compact)

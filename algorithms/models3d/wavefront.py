@@ -1,0 +1,55 @@
+"""Models of buildings as a Wavefront OBJ file."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from ..stage import MapFrame
+from .building_facts import NamedModel
+from .cityjson import unique_names
+from .face_triangles import triangulate_face
+from .solids import Solid
+
+OBJ = "Wavefront OBJ"
+FORMATS = {OBJ: (".obj",)}
+
+# Programs that read OBJ have numbers of 24 bits: coordinates are kept below what these hold to a millimeter.
+_ROUND = 1000.0
+
+
+def obj_pieces(models: Sequence[NamedModel], called: str, frame: MapFrame) -> Iterator[str]:
+    """Yield the text of an OBJ file: an object per building, a group per kind of face.
+
+    Notes
+    -----
+    Coordinates are map units less an offset that the second line names. Faces with holes are triangles, as OBJ has no
+    holes.
+    """
+    offset = np.zeros(3)
+    if models:
+        first = frame.to_map(models[0].model.best[0].vertices[:1])[0]
+        offset[:2] = np.floor(first[:2] / _ROUND) * _ROUND
+    yield f"# Buildings at the best level of detail of each, {frame.crs or 'no CRS'}\n"
+    yield f"# offset {offset[0]:.0f} {offset[1]:.0f} 0\n"
+    number = 1
+    for one, name in zip(models, unique_names([one.name for one in models])):
+        yield "o building_" + re.sub(r"[^\w.-]+", "_", name) + "\n"
+        for solid in one.model.best:
+            places = frame.to_map(solid.vertices) - offset
+            yield "".join(f"v {x:.3f} {y:.3f} {z:.3f}\n" for x, y, z in places.tolist())
+            yield from _faces(solid, number)
+            number += len(places)
+
+
+def _faces(solid: Solid, number: int) -> Iterator[str]:
+    """Yield the faces of a solid whose first vertex has a number."""
+    group = ""
+    for rings, kind in sorted(zip(solid.faces, solid.kinds), key=lambda face: face[1]):
+        if kind != group:
+            yield f"g {kind}\n"
+            group = kind
+        for ring in rings if len(rings) == 1 else triangulate_face(solid.vertices, rings):
+            yield "f " + " ".join(str(number + v) for v in ring) + "\n"

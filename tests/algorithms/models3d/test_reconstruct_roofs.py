@@ -1,0 +1,199 @@
+import json
+import re
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.models3d.cityjson import CITYJSON, CITYJSON_SEQ
+from lidar_buildings.algorithms.models3d.reconstruct_roofs import reconstruct_roofs
+from lidar_buildings.algorithms.models3d.wavefront import OBJ
+from lidar_buildings.algorithms.stage import LayerFeatures, MapFrame, Monitor
+from lidar_buildings.tests.roof_shapes import SHAPES, moved
+from lidar_buildings.tests.solid_validity import assert_valid_cityjson, assert_valid_sequence, edges_of
+
+ORIGIN = (600_000.0, 5_000_000.0)
+
+
+def scene(shape, density=12.0, seed=0, turn=0.0, origin=(0.0, 0.0)):
+    """Return points and classes of a house on level ground, and its footprint."""
+    points, ring = shape.scanned(density, seed=seed, turn=turn, origin=origin)
+    rng = np.random.default_rng(seed)
+    around = np.column_stack([rng.uniform(-12, 26, (2000, 2)) + origin, rng.normal(0, 0.03, 2000)])
+    xyz = np.concatenate([points, around])
+    classes = np.repeat([6, 2], [len(points), len(around)]).astype(np.uint8)
+    return xyz, classes, LayerFeatures([[ring]], {"id": np.array([7])})
+
+
+def reconstructed(xyz, classes, footprints, **tunables):
+    """Return what the stage made, by name, and what it told."""
+    monitor = Monitor()
+    made = reconstruct_roofs.stage.unpack(reconstruct_roofs(xyz, classes, footprints, monitor=monitor, **tunables))
+    return made.layers, made.files, monitor
+
+
+def written(files, name, called, crs="EPSG:28992", offset=(0.0, 0.0, 0.0)):
+    return "".join(files[name].pieces(called, MapFrame(lambda local: np.asarray(local) + offset, crs)))
+
+
+def corners_of(layers):
+    return np.unique(np.concatenate([ring for rings in layers["roofs"].geometries for ring in rings]), axis=0)
+
+
+def distances(places, others):
+    return np.sqrt(((places[:, None] - others[None]) ** 2).sum(axis=2)).min(axis=1)
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_ridges_eaves_and_corners_are_where_they_are(name):
+    shape = SHAPES[name]
+    layers, files, _ = reconstructed(*scene(shape, turn=20.0))
+    facts = {key: values[0] for key, values in layers["buildings"].columns.items()}
+    assert facts["level"] == "2.2", facts["reason"]
+    assert facts["ground"] + facts["ridge_height"] == pytest.approx(shape.ridge, abs=0.05)
+    assert facts["ground"] + facts["eave_height"] == pytest.approx(shape.eave, abs=0.05)
+    true = np.column_stack([moved(shape.corners, 20.0, (0, 0)), shape.corners[:, 2]])
+    walls = np.concatenate([ring for rings in layers["walls"].geometries for ring in rings])
+    assert distances(true, np.concatenate([corners_of(layers), walls])).max() < 0.15
+    assert_valid_cityjson(written(files, "cityjson", CITYJSON))
+
+
+@pytest.mark.parametrize("name", ["flat", "shed", "gable", "hip", "mansard", "steps"])
+def test_roof_types(name):
+    layers, _, _ = reconstructed(*scene(SHAPES[name]))
+    assert layers["buildings"].columns["roof_type"] == [SHAPES[name].kind]
+
+
+def test_faces_know_their_slope_direction_and_area():
+    layers, _, _ = reconstructed(*scene(SHAPES["gable"]))
+    roofs = layers["roofs"].columns
+    assert sorted(np.round(roofs["azimuth"], -1)) == [0, 180] or sorted(np.round(roofs["azimuth"], -1)) == [180, 360]
+    assert roofs["slope"] == pytest.approx([np.degrees(np.arctan(0.8))] * 2, abs=0.5)
+    assert roofs["area"] == pytest.approx([12 * 4 * np.hypot(1, 0.8)] * 2, rel=0.01)
+    assert roofs["building"] == ["7", "7"]
+    # The noise of the points, 3 cm in height.
+    assert roofs["rms"] == pytest.approx([0.03 / np.hypot(1, 0.8)] * 2, rel=0.1)
+    assert sum(layers["walls"].columns["area"]) == pytest.approx(2 * 12 * 4 + 2 * 8 * 5.6, rel=0.02)
+    assert layers["buildings"].columns["volume"] == pytest.approx([12 * 8 * 5.6], rel=0.02)
+
+
+def test_simpler_levels_have_level_tops():
+    scanned = scene(SHAPES["steps"])
+    simple, _, _ = reconstructed(*scanned, level_of_detail="1.2", top_percentile=50.0)
+    assert simple["buildings"].columns["level"] == ["1.2"]
+    assert corners_of(simple)[:, 2] == pytest.approx(6.5, abs=0.03)
+    parts, files, _ = reconstructed(*scanned, level_of_detail="1.3", min_step=2.0)
+    assert sorted({round(z) for z in 2 * corners_of(parts)[:, 2]}) == [7, 13, 19]
+    geometry = next(iter(assert_valid_cityjson(written(files, "cityjson", CITYJSON))["CityObjects"].values()))[
+        "geometry"
+    ]
+    assert [one["lod"] for one in geometry] == ["1.2", "1.3"]
+    merged, _, _ = reconstructed(*scanned, level_of_detail="1.3", min_step=3.5)
+    assert len(merged["roofs"]) == 1
+
+
+def test_order_of_points_and_far_coordinates_change_nothing():
+    xyz, classes, footprints = scene(SHAPES["hip"])
+    here, _, _ = reconstructed(xyz, classes, footprints)
+    order = np.random.default_rng(1).permutation(len(xyz))
+    mixed, _, _ = reconstructed(xyz[order], classes[order], footprints)
+    assert corners_of(mixed) == pytest.approx(corners_of(here), abs=1e-6)
+    far = LayerFeatures([[footprints.geometries[0][0] + ORIGIN]], footprints.columns)
+    there, _, _ = reconstructed(xyz + [*ORIGIN, 0.0], classes, far)
+    assert corners_of(there) - [*ORIGIN, 0.0] == pytest.approx(corners_of(here), abs=0.01)
+
+
+def test_cityjson_names_crs_and_place():
+    _, files, _ = reconstructed(*scene(SHAPES["gable"]))
+    whole = assert_valid_cityjson(written(files, "cityjson", CITYJSON, offset=(85_000.0, 446_000.0, 0.0)))
+    assert whole["metadata"]["referenceSystem"] == "https://www.opengis.net/def/crs/EPSG/0/28992"
+    assert whole["metadata"]["geographicalExtent"] == pytest.approx([85000, 446000, 0, 85012, 446008, 7.2], abs=0.05)
+    places = np.array(whole["vertices"]) * whole["transform"]["scale"] + whole["transform"]["translate"]
+    assert places.max(axis=0) == pytest.approx([85012, 446008, 7.2], abs=0.05)
+    building = whole["CityObjects"]["7"]
+    assert building["attributes"]["roof_type"] == "gable"
+    assert [geometry["lod"] for geometry in building["geometry"]] == ["1.2", "1.3", "2.2"]
+    assert "referenceSystem" not in json.loads(written(files, "cityjson", CITYJSON, crs=""))["metadata"]
+
+
+def test_cityjsonseq_has_a_line_per_building():
+    one, two = scene(SHAPES["gable"]), scene(SHAPES["hip"], origin=(40.0, 0.0))
+    xyz, classes = (np.concatenate(pair) for pair in zip(one[:2], two[:2]))
+    # Parts of one footprint share its name.
+    footprints = LayerFeatures(one[2].geometries + two[2].geometries, {"id": ["a b", "a b"]})
+    _, files, _ = reconstructed(xyz, classes, footprints)
+    _, *features = assert_valid_sequence(written(files, "cityjson", CITYJSON_SEQ))
+    assert [feature["id"] for feature in features] == ["a b", "a b-2"]
+
+
+def test_obj_is_closed():
+    _, files, _ = reconstructed(*scene(SHAPES["dormer"]))
+    lines = written(files, "obj", OBJ, offset=(85_000.0, 446_000.0, 0.0)).splitlines()
+    assert lines[1] == "# offset 85000 446000 0"
+    places = [[float(value) for value in line.split()[1:]] for line in lines if line.startswith("v ")]
+    assert np.array(places)[:, :2].max() == pytest.approx(12, abs=0.01)
+    faces = [[int(value) for value in line.split()[1:]] for line in lines if line.startswith("f ")]
+    edges = edges_of(faces)
+    assert len(set(edges)) == len(edges)
+    assert {(b, a) for a, b in edges} == set(edges)
+    assert {line for line in lines if line.startswith("g ")} == {"g ground", "g roof", "g wall"}
+
+
+def test_cloud_without_buildings_is_refused():
+    xyz, classes, footprints = scene(SHAPES["flat"])
+    with pytest.raises(ValueError, match=re.escape("No point is called building (class 6); run 'Detect buildings'")):
+        reconstructed(xyz, np.full(len(classes), 2, np.uint8), footprints)
+
+
+def test_cloud_without_ground_is_refused():
+    xyz, classes, footprints = scene(SHAPES["flat"])
+    with pytest.raises(ValueError, match=re.escape("No point is called ground (class 2); run 'Classify ground points")):
+        reconstructed(xyz[classes == 6], classes[classes == 6], footprints)
+
+
+def test_footprints_without_points_or_area_are_counted():
+    xyz, classes, footprints = scene(SHAPES["flat"])
+    ring = footprints.geometries[0][0]
+    geometries = [[ring], [ring + 500.0], [np.repeat(ring[:1], 4, axis=0)]]
+    layers, _, monitor = reconstructed(xyz, classes, LayerFeatures(geometries, {"id": [1, 2, 3]}))
+    assert layers["buildings"].columns["building"] == ["1"]
+    assert any("1 of 3 footprints have no area" in warning for warning in monitor.warnings)
+    assert any("1 of 2 footprints have no points" in warning for warning in monitor.warnings)
+    with pytest.raises(ValueError, match="None of the 1 footprints has an area"):
+        reconstructed(xyz, classes, LayerFeatures(geometries[2:], {"id": [3]}))
+
+
+def test_footprint_that_crosses_itself_gives_valid_solids():
+    xyz, classes, _ = scene(SHAPES["flat"])
+    # Two triangles that touch in a point, one of them larger.
+    bow = np.array([[0, 0], [12, 8], [12, 0], [0, 6], [0, 0]], float)
+    layers, files, _ = reconstructed(xyz, classes, LayerFeatures([[bow]], {"id": [1]}))
+    building = assert_valid_cityjson(written(files, "cityjson", CITYJSON))["CityObjects"]["1"]
+    assert {geometry["type"] for geometry in building["geometry"]} == {"MultiSolid"}
+    share = 6 / 14
+    area = 0.5 * 6 * 12 * share + 0.5 * 8 * 12 * (1 - share)
+    assert layers["buildings"].columns["volume"] == pytest.approx([6 * area], rel=0.01)
+
+
+def test_roof_with_a_court_and_a_tower_in_it():
+    """A hole of the footprint, and a part that touches no outline."""
+    rng = np.random.default_rng(3)
+    xy = rng.uniform(0, 20, (8000, 2))
+    in_court = (np.abs(xy - 5) < 2).all(axis=1)
+    z = np.where((np.abs(xy - 14) < 2).all(axis=1), 12.0, 6.0) + rng.normal(0, 0.03, len(xy))
+    ring = np.array([[0, 0], [20, 0], [20, 20], [0, 20], [0, 0]], float)
+    court = np.array([[3, 3], [3, 7], [7, 7], [7, 3], [3, 3]], float)
+    xyz = np.column_stack([xy, z])[~in_court]
+    footprints = LayerFeatures([[ring, court]], {"id": [1]})
+    ground = np.column_stack([rng.uniform(-5, 25, (500, 2)), np.zeros(500)])
+    classes = np.repeat([6, 2], [len(xyz), 500]).astype(np.uint8)
+    layers, files, _ = reconstructed(np.concatenate([xyz, ground]), classes, footprints)
+    assert_valid_cityjson(written(files, "cityjson", CITYJSON))
+    assert layers["buildings"].columns["level"] == ["2.2"]
+    assert layers["buildings"].columns["volume"] == pytest.approx([6 * (400 - 16) + 6 * 16], rel=0.01)
+    assert sorted(len(rings) for rings in layers["roofs"].geometries) == [1, 3]
+    objects = written(files, "obj", OBJ).splitlines()
+    faces = [[int(value) for value in line.split()[1:]] for line in objects if line.startswith("f ")]
+    places = np.array([[float(v) for v in line.split()[1:]] for line in objects if line.startswith("v ")])
+    top = [face for face in faces if np.allclose(places[np.array(face) - 1, 2], 6, atol=0.02)]
+    area = sum(np.cross(places[b - 1] - places[a - 1], places[c - 1] - places[a - 1])[2] / 2 for a, b, c in top)
+    assert area == pytest.approx(400 - 16 - 16, rel=0.01)
