@@ -125,6 +125,7 @@ MEASURE_PARTS = {
     "algorithms/footprints/extract_footprints.py",
     "algorithms/walls/extract_wall_footprints.py",
     "algorithms/walls/classify_walls.py",
+    "algorithms/models3d/reconstruct_roofs.py",
 }
 
 

@@ -22,6 +22,9 @@ _MOST_ROUNDS = 60
 # A roof of which less than this share is explained by planes has no LoD2.2.
 _LEAST_EXPLAINED = 0.5
 
+# Parts of a footprint with less than this share of its area are not modelled.
+_SLIVER = 0.01
+
 # Distances off the model count at most this much (m) when levels are compared: what is farther is no roof.
 _FARTHEST = 1.0
 
@@ -180,7 +183,7 @@ def _level_tops(top: _Top) -> tuple[Optional[Partition], str]:
         heights[number] = max(float(np.percentile(z, top.settings.percentile)), top.base + 0.5)
     coefficients = np.column_stack([np.zeros((n, 2)), heights])
     cost = np.zeros((len(roof.cells), n))
-    return Partition(roof.cells.copy(), np.where(inside, part, -1), coefficients, cost), ""
+    return Partition(roof.cells, np.where(inside, part, -1), coefficients, cost), ""
 
 
 def _roof(top: _Top) -> tuple[Optional[Partition], str]:
@@ -188,7 +191,7 @@ def _roof(top: _Top) -> tuple[Optional[Partition], str]:
     roof = top.roof
     if roof is None:
         return None, "no roof plane was found"
-    return Partition(roof.cells.copy(), roof.label.copy(), roof.coefficients, roof.cost), ""
+    return Partition(roof.cells, roof.label, roof.coefficients, roof.cost), ""
 
 
 def _joined_parts(roof: Partition, min_step: float) -> np.ndarray:
@@ -212,24 +215,33 @@ def _joined_parts(roof: Partition, min_step: float) -> np.ndarray:
 
 
 def _solids(partition: Partition, base: float) -> list[Solid]:
-    """Return the solids of a partition after places are cleared where too many walls meet."""
-    if not _cleared(partition, base):
-        return []
+    """Return the solids of a partition, one for each connected part, none where one cannot be made."""
+    areas = partition.cells.areas()
+    total = areas[partition.label >= 0].sum()
+    waiting, solids = _connected(partition), []
+    while waiting:
+        part = waiting.pop()
+        before = part.label >= 0
+        # Slivers that touch the rest only in a point are no building.
+        if areas[before].sum() <= _SLIVER * total:
+            continue
+        if not _cleared(part, base):
+            return []
+        if (before & (part.label < 0)).any():
+            waiting += _connected(part)
+        else:
+            solids.append(build_solid(part.cells, part.label, part.coefficients, base))
+    return solids
+
+
+def _connected(partition: Partition) -> list[Partition]:
+    """Return the parts of a partition whose cells have edges in common."""
     inside = partition.label >= 0
-    if not inside.any():
-        return []
     _, beside = partition.cells.edges()
     both = inside[beside].all(axis=1)
     _, group = components(beside[both, 0], beside[both, 1], len(inside))
-    areas = partition.cells.areas()
-    solids = []
-    for number in np.unique(group[inside]):
-        chosen = inside & (group == number)
-        # Slivers that touch the rest only in a point are no building.
-        if areas[chosen].sum() > 0.01 * areas[inside].sum():
-            label = np.where(chosen, partition.label, -1)
-            solids.append(build_solid(partition.cells.copy(), label, partition.coefficients, base))
-    return solids
+    labels = [np.where(inside & (group == number), partition.label, -1) for number in np.unique(group[inside])]
+    return [Partition(partition.cells.copy(), label, partition.coefficients, partition.cost) for label in labels]
 
 
 def _fault(solids: list[Solid]) -> str:

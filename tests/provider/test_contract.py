@@ -51,6 +51,7 @@ IDS = {
     "segmentplanesransac",
     "segmentregions",
     "segmentroofs",
+    "reconstructroofs",
     "simulatetown",
     "simulateflight",
     "simulatevillage",
@@ -60,7 +61,7 @@ IDS = {
     "extractopenings",
 }
 TILED_IDS = {"detectbuildingsintiles", "detectbuildings2019intiles"}
-PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints"}
+PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints", "modelbuildings"}
 ALL = {**STAGES, **TOYS}
 
 
