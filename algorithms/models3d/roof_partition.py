@@ -14,7 +14,7 @@ from .roof_lines import find_roof_lines
 from .roof_planes import RoofPlanes
 
 # The footprint itself is kept to this, m.
-_SNAP_OUTLINE = 0.001
+_SNAP_OUTLINE = 0.005
 
 # A point off a plane by this many tolerances explains nothing more; farther ones count the same.
 _FAR_OFF = 2.0

@@ -14,10 +14,14 @@ from ..geometry.subdivision import OUTSIDE, Subdivision
 ROOF, WALL, GROUND = "roof", "wall", "ground"
 
 # Heights at one place that differ by at most this (m) become one: planes stay plane to half of that.
-_SAME_HEIGHT = 0.012
+_SAME_HEIGHT = 0.016
 
 # Faces are plane to this (m); vertices lie no closer together than that (m).
 PLANAR, _APART = 0.01, 0.002
+
+# A vertex with two edges that is off the line of their other ends by less than this (m), in plan by a tenth of it, is
+# superfluous: heights that became one have moved by as much.
+_SUPERFLUOUS = 0.005
 
 # Walls that turn by less than this (rad) are one face.
 _STRAIGHT = 1e-3
@@ -400,8 +404,10 @@ def _straight(positions: np.ndarray, beside: dict[int, set[int]]) -> set[int]:
         if b in links[a]:
             continue
         u, v = positions[vertex] - positions[a], positions[b] - positions[a]
-        off = np.linalg.norm(np.cross(u, v)) / max(np.linalg.norm(v), 1e-12)
-        if off < _APART / 4 and u @ v > 0:
+        length = max(float(np.linalg.norm(v)), 1e-12)
+        off = np.linalg.norm(np.cross(u, v)) / length
+        off_in_plan = abs(u[0] * v[1] - u[1] * v[0]) / length
+        if off < _SUPERFLUOUS and off_in_plan < 0.1 * _SUPERFLUOUS and u @ v > 0:
             straight.add(vertex)
             links[a].remove(vertex)
             links[b].remove(vertex)

@@ -155,7 +155,7 @@ def can_be_tiled(pipeline: Pipeline) -> bool:
     """Whether a composite can be run in tiles: every step keeps the points of the one cloud that it is given."""
     stages = [step.stage for step in pipeline.steps]
     return pipeline.reads_cloud and not any(
-        stage.merges or stage.selects or stage.creates or stage.rasters for stage in stages
+        stage.merges or stage.selects or stage.creates or stage.rasters or stage.files for stage in stages
     )
 
 
