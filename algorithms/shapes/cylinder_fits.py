@@ -1,0 +1,133 @@
+"""Cylinders and spheres fitted to points by least squares, and how well these support them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .hough_planes import unit
+
+# Rounds of Gauss and Newton: from a start within a few percent they converge in three to five.
+_ROUNDS = 8
+
+# Sectors of the circumference in which a cylinder is seen or not: 10° each.
+SECTORS = 36
+
+
+@dataclass(frozen=True)
+class Cylinder:
+    """An endless cylinder: a point of its axis (3,), the direction of the axis (3,), upward, and the radius, m."""
+
+    center: np.ndarray
+    axis: np.ndarray
+    radius: float
+
+    def local(self, xyz: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the position along the axis, the distance from it (m), and the directions away from it (n, 3)."""
+        offset = xyz - self.center
+        along = offset @ self.axis
+        across = offset - along[:, None] * self.axis
+        distance = np.linalg.norm(across, axis=1)
+        return along, distance, across / np.maximum(distance, 1e-12)[:, None]
+
+    def angle(self, away: np.ndarray) -> np.ndarray:
+        """Return the angle (n,) around the axis, radians, of directions away from it (n, 3)."""
+        first, second = across_axis(self.axis)
+        return np.arctan2(away @ second, away @ first)
+
+
+def across_axis(axis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return two unit vectors across an axis (3,) and each other."""
+    x, y, z = axis
+    # Across the coordinate that the axis follows least.
+    least = int(np.argmin(np.abs(axis)))
+    first = np.array([(0.0, z, -y), (-z, 0.0, x), (y, -x, 0.0)][least])
+    first /= np.sqrt(first @ first)
+    a, b, c = first
+    return first, np.array([y * c - z * b, z * a - x * c, x * b - y * a])
+
+
+def upward(axis: np.ndarray) -> np.ndarray:
+    """Return the axis turned so that its last component that is not zero is positive."""
+    for component in axis[::-1]:
+        if abs(component) > 1e-9:
+            return axis if component > 0 else -axis
+    return axis
+
+
+def fit_cylinder(xyz: np.ndarray, start: Cylinder) -> Cylinder:
+    """Return the cylinder with the least sum of squared distances of points (n, 3), n >= 6, from it."""
+    cylinder = start
+    for _ in range(_ROUNDS):
+        middle = cylinder.center + cylinder.axis * float(((xyz - cylinder.center) @ cylinder.axis).mean())
+        cylinder = Cylinder(middle, cylinder.axis, cylinder.radius)
+        along, distance, away = cylinder.local(xyz)
+        first, second = across_axis(cylinder.axis)
+        a, b = away @ first, away @ second
+        # The distance falls as the axis moves or leans toward the point, and as the radius grows.
+        design = np.column_stack([a, b, along * a, along * b, np.ones(len(xyz))])
+        step = _solved(design, distance - cylinder.radius)
+        if not np.isfinite(step).all() or abs(step[4]) > cylinder.radius:
+            return start
+        axis = unit(cylinder.axis + step[2] * first + step[3] * second)
+        center = cylinder.center + step[0] * first + step[1] * second
+        cylinder = Cylinder(center, axis, cylinder.radius + float(step[4]))
+        if np.abs(step).max() < 1e-7:
+            break
+    return Cylinder(cylinder.center, upward(cylinder.axis), cylinder.radius)
+
+
+def _solved(design: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Return the least-squares solution, NaN where there is none: columns are scaled, so that products stay precise."""
+    scale = np.maximum(np.sqrt((design * design).sum(axis=0)), 1e-300)
+    scaled = design / scale
+    try:
+        return np.linalg.solve(scaled.T @ scaled, scaled.T @ values) / scale
+    except np.linalg.LinAlgError:
+        return np.full(len(scale), np.nan)
+
+
+def fit_sphere(xyz: np.ndarray, center: np.ndarray, radius: float) -> tuple[np.ndarray, float]:
+    """Return center (3,) and radius of the sphere with the least sum of squared distances of points (n, 3), n >= 5."""
+    at, size = center, radius
+    for _ in range(_ROUNDS):
+        offset = xyz - at
+        distance = np.linalg.norm(offset, axis=1)
+        design = np.column_stack([offset / np.maximum(distance, 1e-12)[:, None], np.ones(len(xyz))])
+        step = _solved(design, distance - size)
+        if not np.isfinite(step).all() or abs(step[3]) > size:
+            return center, radius
+        at, size = at + step[:3], size + float(step[3])
+        if np.abs(step).max() < 1e-7:
+            break
+    return at, size
+
+
+def explained(residual: np.ndarray, patterns: np.ndarray) -> float:
+    """Return the deviation (root mean square, m) that patterns (n, k) explain of residuals (n,), m, beyond chance.
+
+    Chance lets k patterns explain k of n parts of the variance.
+    """
+    fitted = patterns @ np.linalg.lstsq(patterns, residual, rcond=1e-8)[0]
+    count, k = patterns.shape
+    by_chance = k * float(residual @ residual) / count
+    return float(np.sqrt(max(float(fitted @ fitted) - 2 * by_chance, 0.0) / count))
+
+
+def bends(cylinder: Cylinder, xyz: np.ndarray) -> float:
+    """Return the deviation (m) of points that a torus, a cone, a sphere or faces explain.
+
+    The distances of the points of a cylinder from its axis depend on neither the position along it nor the angle
+    around it. On a torus, a cone or a sphere they follow the position, and its square, by the angle; on faces, the
+    angle.
+    """
+    along, distance, away = cylinder.local(xyz)
+    u = (along - (along.max() + along.min()) / 2) / max(float(np.ptp(along)) / 2, 1e-9)
+    first, second = across_axis(cylinder.axis)
+    a, b = away @ first, away @ second
+    square = u * u - 1 / 3
+    waves = [wave(k * np.arctan2(b, a)) for k in range(2, 7) for wave in (np.cos, np.sin)]
+    patterns = np.column_stack([u, square, u * a, u * b, square * a, square * b, *waves])
+    residual = distance - cylinder.radius
+    return explained(residual - residual.mean(), patterns)

@@ -1,0 +1,81 @@
+"""Tunables that the searches for cylinders and spheres share, and what they are where nothing is set."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..sampling.cloud_sampling import CloudSampling
+from ..stage import Param
+
+# Surfaces are the rougher the farther apart the points are, by this share of the spacing (as roofs are).
+_ROUGHNESS_OF_SPACING = 0.06467
+
+# Least radius: spacings, so that half a circumference has five points, and deviations, so that it is no noise.
+_RADIUS_SPACINGS, _RADIUS_DEVIATIONS = 1.5, 6.0
+
+# Largest radius (m) that is looked for with nothing set, and share of the extent that it may have.
+_LARGEST_RADIUS, _SHARE_OF_EXTENT = 20.0, 0.5
+
+MinRadius = Annotated[
+    Optional[float],
+    Param(
+        "Minimum radius",
+        "Least radius that is looked for.",
+        unit="m",
+        low=0.001,
+        high=1000,
+        automatic="1.5 times the point spacing and 6 times the noise.",
+    ),
+]
+
+MaxRadius = Annotated[
+    Optional[float],
+    Param(
+        "Maximum radius",
+        "Largest radius that is looked for.",
+        unit="m",
+        low=0.001,
+        high=1000,
+        automatic="20 m, but no more than half of the longest side of the cloud.",
+    ),
+]
+
+ShapeTolerance = Annotated[
+    Optional[float],
+    Param(
+        "Tolerance",
+        "Distance within which a point lies on the surface.",
+        unit="m",
+        low=0,
+        high=10,
+        open_low=True,
+        automatic="3 times the noise of the scan and 0.065 point spacings.",
+    ),
+]
+
+
+def point_noise(sampling: CloudSampling) -> float:
+    """Return the standard deviation of points across the surface of a shape, m."""
+    return float(np.hypot(sampling.scan_noise, _ROUGHNESS_OF_SPACING / np.sqrt(sampling.surface_density)))
+
+
+def check_radii(
+    min_radius: Optional[float], max_radius: Optional[float], noise: float, spacing: float, xyz: np.ndarray
+) -> tuple[float, float]:
+    """Return the range of radii (m), automatic where it is None.
+
+    Raises
+    ------
+    ValueError
+        If it is empty.
+    """
+    low = max(_RADIUS_SPACINGS * spacing, _RADIUS_DEVIATIONS * noise) if min_radius is None else min_radius
+    high = min(_LARGEST_RADIUS, _SHARE_OF_EXTENT * float(np.ptp(xyz, axis=0).max())) if max_radius is None else max_radius
+    if low >= high:
+        raise ValueError(
+            f"The range of radii is empty: the minimum radius is {low:.3g} m and the maximum radius {high:.3g} m; "
+            "set a larger maximum or a smaller minimum."
+        )
+    return low, high

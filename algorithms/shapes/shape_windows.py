@@ -1,0 +1,88 @@
+"""Windows of growing size over growing spacing: where shapes of one range of radii are looked for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..geometry.boxes import Boxes
+
+# Radii of one level: from the least to so many times it.
+OCTAVE = 2.0
+
+# Side of a window and spacing of its points (times the least radius of the level).
+WINDOW, _THINNING = 4.0, 0.15
+
+
+@dataclass(frozen=True)
+class Level:
+    """Radii that are looked for together.
+
+    Attributes
+    ----------
+    low, high : float
+        Their range (m).
+    rows : ndarray of shape (k,)
+        Points that are left for it, thinned to one per cell.
+    windows : list of ndarray
+        Which of ``rows`` lie in each window, the fullest window first.
+    """
+
+    low: float
+    high: float
+    rows: np.ndarray
+    windows: list[np.ndarray]
+
+
+def levels(low: float, high: float) -> list[tuple[float, float]]:
+    """Return the ranges of radii from ``low`` to ``high`` (m), each at most an octave wide."""
+    count = max(1, int(np.ceil(np.log2(high / low) - 1e-9)))
+    edges = np.geomspace(low, high, count + 1)
+    return list(zip(edges[:-1].tolist(), edges[1:].tolist()))
+
+
+def level_of(xyz: np.ndarray, is_free: np.ndarray, low: float, high: float, min_points: int) -> Level:
+    """Return a level of the free points of a cloud.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Points (m), from zero.
+    is_free : ndarray of shape (n,), bool
+        Points that no shape has taken yet.
+    low, high : float
+        Range of the radii (m).
+    min_points : int
+        Points of the emptiest window.
+    """
+    free = np.flatnonzero(is_free)
+    rows = free[np.sort(_one_per_cell(xyz[free], _THINNING * low))] if len(free) else free
+    windows: list[np.ndarray] = []
+    if len(rows):
+        side = WINDOW * low
+        for shift in (0.0, 0.5):
+            # A second set of windows, half a side apart, has in its middle what the first cuts in two.
+            boxes = Boxes(np.concatenate([xyz[rows], [xyz[rows].min(axis=0) - shift * side]]), side)
+            parts = np.split(boxes.order, boxes.start[1:])
+            parts = [np.sort(part[part < len(rows)]) for part in parts]
+            windows += [part for part in parts if len(part) >= min_points]
+        windows.sort(key=lambda part: -len(part))
+    return Level(low, high, rows, windows)
+
+
+def _one_per_cell(xyz: np.ndarray, cell: float) -> np.ndarray:
+    """Return the first point of each occupied cell."""
+    boxes = Boxes(xyz, cell)
+    return boxes.order[boxes.start]
+
+
+def near_axis(xyz: np.ndarray, start: np.ndarray, end: np.ndarray, reach: float) -> np.ndarray:
+    """Return the points in the box around the line between two places, ``reach`` (m) wider on all sides."""
+    low, high = np.minimum(start, end) - reach, np.maximum(start, end) + reach
+    rows = np.flatnonzero((xyz[:, 0] >= low[0]) & (xyz[:, 0] <= high[0]))
+    for axis in (1, 2):
+        rows = rows[(xyz[rows, axis] >= low[axis]) & (xyz[rows, axis] <= high[axis])]
+    return rows
+
+

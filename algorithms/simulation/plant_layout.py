@@ -1,0 +1,158 @@
+"""The layout of a simulated plant: racks of pipes, tanks, spheres and clutter on bays with aisles between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..shapes.searched_points import Shape
+from .plant_parts import Part, beam, cylinder, disk, elbow, grating, heap, plate, sphere
+
+# Distance between the middles of bays (m), and length of the pipes of a rack, at most.
+PITCH, _LENGTH = 10.0, 6.0
+
+# Heights of the levels of a rack (m), width that pipes may take, and gaps between them (m).
+_LEVELS, _WIDTH, _GAPS = (1.2, 2.4, 3.6), 4.6, (0.15, 0.5)
+
+# Diameters of pipes and tanks (m).
+PIPES, TANKS = (0.05, 0.6), (5.0, 30.0)
+
+# Radius of the axis of an elbow (diameters): the common long one.
+_BEND = 1.5
+
+# Share of the pipes of the lowest and the highest level that turn down or up at their end, and that have a flange.
+_TURNING, _FLANGED = 0.6, 0.3
+
+_UP = np.array([0.0, 0.0, 1.0])
+
+
+@dataclass
+class Plant:
+    """Parts, and where the scanner stands (k, 3), m."""
+
+    parts: list[Part] = field(default_factory=list)
+    stations: list[np.ndarray] = field(default_factory=list)
+
+
+def build_plant(pipes: int, tanks: int, spheres: int, clutter: bool, rng: np.random.Generator) -> Plant:
+    """Return a plant with so many straight pipes, tanks and spherical vessels."""
+    plant, bay = Plant(), 0
+    left = pipes
+    columns = max(1, int(np.ceil(np.sqrt(max(1, pipes / 9)))))
+    while left > 0:
+        corner = np.array([bay % columns, bay // columns, 0.0]) * PITCH
+        left -= _rack(plant, corner + PITCH / 2 * np.array([1.0, 1.0, 0.0]), left, clutter, rng)
+        _stations(plant, corner)
+        bay += 1
+    rows = int(np.ceil(bay / columns))
+    width, depth = max(columns, 1) * PITCH, max(rows, 1) * PITCH
+    edge = _tanks(plant, tanks, depth, rng)
+    _spheres(plant, spheres, width, rng)
+    plant.parts.append(_floor(min(-2.0, edge), width + 2.0 + 6.0 * (spheres > 0), depth))
+    return plant
+
+
+def _rack(plant: Plant, middle: np.ndarray, most: int, clutter: bool, rng: np.random.Generator) -> int:
+    """Add a rack with at most so many pipes; return how many it has."""
+    turn = rng.uniform(0, np.pi)
+    along, across = np.array([np.cos(turn), np.sin(turn), 0.0]), np.array([-np.sin(turn), np.cos(turn), 0.0])
+    made = 0
+    for level, height in enumerate(_LEVELS):
+        at = -_WIDTH / 2
+        while made < most:
+            diameter = float(np.exp(rng.uniform(*np.log(PIPES))))
+            gap = float(rng.uniform(*_GAPS))
+            if at + diameter > _WIDTH / 2:
+                break
+            center = middle + (at + diameter / 2) * across + height * _UP
+            made += _pipe_run(plant, center, along, diameter / 2, level, most - made, rng)
+            at += diameter + gap
+    if clutter:
+        _frame(plant, middle, along, across)
+        plant.parts.append(heap(middle + 3.4 * across + 0.3 * _UP, 0.3))
+    return made
+
+
+def _pipe_run(
+    plant: Plant, center: np.ndarray, along: np.ndarray, radius: float, level: int, most: int, rng: np.random.Generator
+) -> int:
+    """Add a pipe of a rack, perhaps with a flange, and an elbow with another pipe up or down; return how many."""
+    # Some pipes fall by up to one in twenty.
+    along = along + rng.choice([0.0, 0.0, rng.uniform(-0.05, 0.05)]) * _UP
+    along /= np.linalg.norm(along)
+    low, high = -_LENGTH / 2 + rng.uniform(0, 0.5), _LENGTH / 2 - rng.uniform(0, 0.5)
+    start, end = center + low * along, center + high * along
+    plant.parts.append(cylinder("pipe", start, end, radius))
+    if rng.random() < _FLANGED:
+        at, wide, thick = start + rng.uniform(0.3, 0.7) * (end - start), radius * 1.4 + 0.02, 0.02 + 0.1 * radius
+        plant.parts.append(cylinder("flange", at - thick * along, at + thick * along, wide))
+        plant.parts += [disk("flange", at + sign * thick * along, sign * along, radius, wide) for sign in (-1, 1)]
+    bend = 2 * _BEND * radius
+    if level == 1 or most < 2 or rng.random() > _TURNING:
+        return 1
+    side = np.cross(along, np.cross(_UP, along))
+    toward = side / np.linalg.norm(side) * (1.0 if level else -1.0)
+    length = float(rng.uniform(1.0, 2.5)) if level else float(end[2] - bend - 0.05)
+    if length < max(0.4, 4 * radius):
+        return 1
+    plant.parts.append(elbow(end, along, toward, bend, radius))
+    first = end + bend * (along + toward)
+    plant.parts.append(cylinder("pipe", first, first + length * toward, radius))
+    return 2
+
+
+def _frame(plant: Plant, middle: np.ndarray, along: np.ndarray, across: np.ndarray) -> None:
+    """Add the columns and the beams that carry a rack, and a grating beside it."""
+    for share in (-0.35, 0.35):
+        place = middle + share * _LENGTH * along
+        for side in (-1, 1):
+            foot = place + side * (_WIDTH / 2 + 0.3) * across
+            plant.parts += beam(foot, foot + 4.2 * _UP, 0.2, 0.2, along)
+        for height in _LEVELS:
+            # Beams lie under the widest pipe.
+            ends = (place + sign * (_WIDTH / 2 + 0.2) * across + (height - 0.45) * _UP for sign in (-1, 1))
+            plant.parts += beam(*ends, 0.2, 0.15, _UP)
+    corner = middle - 0.4 * _LENGTH * along + (_WIDTH / 2 + 0.5) * across + 1.0 * _UP
+    plant.parts.append(grating(corner, 0.8 * _LENGTH * along, 0.8 * across))
+
+
+def _stations(plant: Plant, corner: np.ndarray) -> None:
+    """Let the scanner stand at the four corners of a bay, low and high in turn, where it does not stand yet."""
+    for i, j in ((0, 0), (1, 0), (0, 1), (1, 1)):
+        place = corner + PITCH * np.array([i, j, 0.0])
+        high = round(place[0] / PITCH + place[1] / PITCH) % 2
+        place = place + (5.5 if high else 1.7) * _UP
+        if not any(np.allclose(place, other) for other in plant.stations):
+            plant.stations.append(place)
+
+
+def _tanks(plant: Plant, count: int, depth: float, rng: np.random.Generator) -> float:
+    """Add tanks west of the racks with stations around them; return where they end in the west."""
+    edge = -4.0
+    for number in range(count):
+        share = number / max(1, count - 1) if count > 1 else 0.3
+        radius = float(np.exp(np.log(TANKS[0]) + share * np.log(TANKS[1] / TANKS[0]))) / 2
+        height = float(rng.uniform(0.6, 0.9) * min(2 * radius, 12.0))
+        foot = np.array([edge - radius, depth / 2, 0.0])
+        top = foot + height * _UP
+        plant.parts += [cylinder("tank", foot, top, radius), disk("roof", top, _UP, 0.0, radius)]
+        for turn in (0.25 * np.pi, 0.9 * np.pi, 1.5 * np.pi):
+            away = np.array([np.cos(turn), np.sin(turn), 0.0]) * (radius + 5.0)
+            plant.stations.append(foot + away + (height + 3.0 if turn < 1.0 else 1.7) * _UP)
+        edge -= 2 * radius + 4.0
+    return edge
+
+
+def _spheres(plant: Plant, count: int, east: float, rng: np.random.Generator) -> None:
+    """Add spherical vessels east of the racks."""
+    for number in range(count):
+        radius = float(rng.uniform(0.5, 1.5))
+        center = np.array([east + 4.0, 3.0 + 5.0 * number, radius + 0.8])
+        plant.parts.append(sphere(center, radius))
+        plant.stations += [center + np.array([x, y, 1.7 - center[2]]) for x, y in ((-4.0, -3.0), (3.0, 3.0))]
+
+
+def _floor(west: float, east: float, depth: float) -> Part:
+    part = plate("floor", np.array([west, -2.0, 0.0]), np.array([east - west, 0.0, 0.0]), np.array([0.0, depth + 4.0, 0.0]))
+    return Part("floor", Shape.PLANE, part.area, part.middle, part.sample)

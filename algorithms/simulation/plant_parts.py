@@ -1,0 +1,166 @@
+"""The parts of an industrial plant: surfaces that are sampled with points and know what they are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Callable, Optional
+
+import numpy as np
+
+from ..shapes.cylinder_fits import across_axis
+from ..shapes.searched_points import Shape
+
+# What a surface gives: places (k, 3) and outward normals (k, 3) of k random points on it.
+Sampler = Callable[[np.random.Generator, int], tuple[np.ndarray, np.ndarray]]
+
+
+@dataclass(frozen=True)
+class Part:
+    """One surface of a plant.
+
+    Attributes
+    ----------
+    kind : str
+        "pipe", "tank", "sphere", "elbow", "flange", "beam", "grating", "roof", "floor" or "clutter".
+    shape : int
+        Its value of the dimension ``shape``.
+    area : float
+        Its area, m².
+    middle : ndarray of shape (3,)
+        A place in its middle (m).
+    sample : callable
+        Draws points on it.
+    axis : ndarray of shape (2, 3), optional
+        Ends of the axis of a pipe or tank, or twice the center of a sphere (m).
+    radius : float
+        Radius of a pipe, tank or sphere (m), otherwise 0.
+    """
+
+    kind: str
+    shape: int
+    area: float
+    middle: np.ndarray
+    sample: Sampler
+    axis: Optional[np.ndarray] = None
+    radius: float = 0.0
+
+
+def cylinder(kind: str, start: np.ndarray, end: np.ndarray, radius: float) -> Part:
+    """Return the side of a cylinder between two places (3,), m."""
+    length = float(np.linalg.norm(end - start))
+    axis = (end - start) / length
+    first, second = across_axis(axis)
+
+    def sample(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:
+        angle = rng.uniform(0, 2 * np.pi, count)[:, None]
+        away = np.cos(angle) * first + np.sin(angle) * second
+        return start + rng.uniform(0, length, count)[:, None] * axis + radius * away, away
+
+    shape = Shape.NONE if kind == "flange" else Shape.CYLINDER
+    ends = np.array([start, end])
+    return Part(kind, shape, 2 * np.pi * radius * length, ends.mean(axis=0), sample, ends, radius)
+
+
+def disk(kind: str, center: np.ndarray, normal: np.ndarray, inner: float, outer: float) -> Part:
+    """Return a ring or disk across a normal (3,), between two radii (m)."""
+    first, second = across_axis(normal)
+
+    def sample(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:
+        angle = rng.uniform(0, 2 * np.pi, count)[:, None]
+        reach = np.sqrt(rng.uniform(inner**2, outer**2, count))[:, None]
+        places = center + reach * (np.cos(angle) * first + np.sin(angle) * second)
+        return places, np.broadcast_to(normal, places.shape)
+
+    shape = Shape.PLANE if kind == "roof" else Shape.NONE
+    return Part(kind, shape, float(np.pi * (outer**2 - inner**2)), center, sample)
+
+
+def sphere(center: np.ndarray, radius: float) -> Part:
+    """Return a sphere."""
+
+    def sample(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:
+        away = rng.normal(size=(count, 3))
+        away /= np.linalg.norm(away, axis=1)[:, None]
+        return center + radius * away, away
+
+    return Part("sphere", Shape.SPHERE, 4 * np.pi * radius**2, center, sample, np.array([center, center]), radius)
+
+
+def elbow(start: np.ndarray, along: np.ndarray, toward: np.ndarray, bend: float, radius: float) -> Part:
+    """Return a quarter of a torus that turns a pipe from one direction (3,) to another across it.
+
+    Parameters
+    ----------
+    start : ndarray of shape (3,)
+        Where the pipe ends (m).
+    along, toward : ndarray of shape (3,)
+        Directions of the pipe before and after, unit vectors.
+    bend, radius : float
+        Radii of the bent axis and of the pipe, m.
+    """
+    center, side = start + bend * toward, np.cross(along, toward)
+
+    def sample(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:
+        # The outside of a bend is longer: of twice the points those are taken that area asks for.
+        turn, around, keep = rng.uniform(0, 1, (3, 3 * count))
+        turn, around = turn * np.pi / 2, around * 2 * np.pi
+        kept = np.flatnonzero(keep * (bend + radius) <= bend + radius * np.cos(around))[:count]
+        turn, around = turn[kept, None], around[kept, None]
+        outward = np.sin(turn) * along - np.cos(turn) * toward
+        away = np.cos(around) * outward + np.sin(around) * side
+        return center + bend * outward + radius * away, away
+
+    return Part("elbow", Shape.NONE, float(np.pi**2 * bend * radius), center, sample)
+
+
+def plate(kind: str, corner: np.ndarray, first: np.ndarray, second: np.ndarray) -> Part:
+    """Return a parallelogram that is seen from both sides, from a corner (3,) along two edges (3,), m."""
+    across = np.cross(first, second)
+    area = float(np.linalg.norm(across))
+    normal = across / area
+
+    def sample(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:
+        share = rng.uniform(0, 1, (count, 2))
+        side = np.where(rng.random(count) < 0.5, 1.0, -1.0)[:, None]
+        # A plate is a centimeter thick.
+        places = corner + share[:, :1] * first + share[:, 1:] * second + 0.005 * side * normal
+        return places, side * normal
+
+    return Part(kind, Shape.PLANE, 2 * area, corner + (first + second) / 2, sample)
+
+
+def beam(start: np.ndarray, end: np.ndarray, height: float, width: float, up: np.ndarray) -> list[Part]:
+    """Return the web and the two flanges of an I-beam between two places (3,), m; its web stands along ``up``."""
+    along = end - start
+    side = np.cross(along, up)
+    side *= width / np.linalg.norm(side)
+    rise = up * height
+    web = plate("beam", start - rise / 2, along, rise)
+    return [web, *(plate("beam", start + sign * rise / 2 - side / 2, along, side) for sign in (-1, 1))]
+
+
+def grating(corner: np.ndarray, first: np.ndarray, second: np.ndarray, mesh: float = 0.04) -> Part:
+    """Return a level grating: bars of 4 mm by 3 cm across two edges (3,), with gaps between them."""
+    long, wide = float(np.linalg.norm(first)), float(np.linalg.norm(second))
+    n_bars = max(1, int(wide / mesh))
+
+    def sample(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:
+        along = rng.uniform(0, 1, count)[:, None]
+        bar = (rng.integers(0, n_bars, count) / n_bars)[:, None]
+        down = rng.uniform(0, 0.03, count)[:, None]
+        side = np.where(rng.random(count) < 0.5, 1.0, -1.0)[:, None]
+        places = corner + along * first + bar * second + 0.002 * side * second / wide - down * [0.0, 0.0, 1.0]
+        return places, side * second / wide
+
+    return Part("grating", Shape.NONE, 2 * n_bars * long * 0.03, corner + (first + second) / 2, sample)
+
+
+def heap(center: np.ndarray, size: float) -> Part:
+    """Return clutter: surfaces of all directions at random in a ball (hoses, tools, cables, bushes)."""
+
+    def sample(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:
+        away, normal = rng.normal(size=(2, count, 3))
+        away *= size * np.cbrt(rng.random((count, 1))) / np.linalg.norm(away, axis=1)[:, None]
+        return center + away, normal / np.linalg.norm(normal, axis=1)[:, None]
+
+    return Part("clutter", Shape.NONE, 4 * np.pi * size**2, center, sample)
