@@ -27,8 +27,10 @@ from .segmentation.segment_planes_ransac import segment_planes_ransac
 from .segmentation.segment_regions import segment_regions
 from .segmentation.segment_roofs import segment_roofs
 from .segmentation.segment_voxels import segment_voxels
+from .shapes.detect_cylinders import detect_cylinders
 from .shapes.segment_planes_hough import segment_planes_hough
 from .simulation.simulate_flight import simulate_flight
+from .simulation.simulate_plant import simulate_plant
 from .simulation.simulate_street import simulate_street
 from .simulation.simulate_town import simulate_town
 from .simulation.simulate_village import simulate_village
@@ -60,6 +62,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     segment_clusters,
     segment_planes_ransac,
     segment_planes_hough,
+    detect_cylinders,
     segment_voxels,
     classify_buildings,
     classify_buildings_2019,
@@ -76,6 +79,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     compare_corners,
     simulate_town,
     simulate_flight,
+    simulate_plant,
     simulate_village,
     simulate_street,
 )

@@ -61,6 +61,8 @@ STAGE_IDS = {
     "segmentclusters",
     "segmentplanesransac",
     "segmentplaneshough",
+    "detectcylinders",
+    "simulateplant",
     "segmentvoxels",
     "classifybuildings",
     "classifybuildings2019",
@@ -84,7 +86,7 @@ PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", 
 
 CLASSIFYING = {"classify", "complete"}
 VERBS = CLASSIFYING | {"segment", "cluster", "compute", "extract", "regularize", "simplify", "assess", "simulate"}
-VERBS |= {"filter", "downsample", "merge", "rasterize", "map", "compare", "interpret", "reconstruct", "model"}
+VERBS |= {"detect", "filter", "downsample", "merge", "rasterize", "map", "compare", "interpret", "reconstruct", "model"}
 # Words that keep their capitals inside a title or label.
 NAMES = {"Gauss", "Delaunay", "Shannon", "Hough"}
 # Shares (0 to 1), multiples of what the data show, and limits of whatever dimension is named.
@@ -107,7 +109,7 @@ WITHOUT_UNIT = {
 # Sort points into kinds of their own, which are no classes of ASPRS.
 OWN_CLASSES = {"classify_dimensionality"}
 # Our own, after no publication.
-WITHOUT_REFERENCES = {"simulate_town", "simulate_village", "simulate_street"}
+WITHOUT_REFERENCES = {"simulate_plant", "simulate_town", "simulate_village", "simulate_street"}
 # Automatic tunables that matter only beside another setting.
 USED_WITH: dict[tuple[str, str], dict[str, Any]] = {
     ("compute_features", "radius"): {"neighborhood": "radius"},
@@ -117,6 +119,7 @@ USED_WITH: dict[tuple[str, str], dict[str, Any]] = {
 ESTIMATED_IN_ROUNDS = {("classify_ground_tin_2000", "iteration_distance")}
 # Tunables at which a stage that makes its own data is quick.
 QUICK: dict[str, dict[str, Any]] = {
+    "simulate_plant": {"pipes": 2, "tanks": 0, "spheres": 1, "density": 200.0},
     "filter_points": {"dimension": "Intensity"},
     "simulate_town": {"size": 80.0},
     "simulate_flight": {"duration": 20.0, "line_rate": 4.0},
@@ -158,6 +161,17 @@ def front(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]
     return np.round(xy * 1024) / 1024, height, is_pane
 
 
+def tank(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """Return xy (n, 2) and heights (n,) over the slope of an upright tank of 4 m with a half sphere on it."""
+    angle = rng.uniform(0, 2 * np.pi, 2510)
+    rise = np.concatenate([np.zeros(1880), rng.uniform(0, 1, 630)])
+    reach = np.sqrt(1 - rise**2) * (2 + rng.normal(0, 0.02, len(angle)))
+    xy = np.column_stack([36 + reach * np.cos(angle), 27 + reach * np.sin(angle)])
+    xy = np.round(xy * 1024) / 1024
+    elevation = np.where(rise > 0, 8 + 2 * rise, rng.uniform(2, 8, len(angle)))
+    return xy, elevation - 0.05 * xy[:, 0]
+
+
 def scanned(
     rng: np.random.Generator, west: float, south: float, width: float, depth: float, density: float
 ) -> np.ndarray:
@@ -168,7 +182,7 @@ def scanned(
 
 @lru_cache(maxsize=1)
 def scene() -> dict[str, np.ndarray]:
-    """Two flat-roofed houses, a crown, a wall and two stray points on a gentle slope, 40 m by 40 m, 6 points per m²."""
+    """Two flat-roofed houses, a crown, a wall, a tank and two stray points on a slope of 40 m by 40 m, 6 per m²."""
     rng = np.random.default_rng(42)
     ground = scanned(rng, 0, 0, 40, 40, 6)
     houses = [scanned(rng, 5, 5, 12, 8, 6), scanned(rng, 22, 20, 9, 14, 6)]
@@ -176,15 +190,17 @@ def scene() -> dict[str, np.ndarray]:
     for west, south, east, north in ((5, 5, 17, 13), (22, 20, 31, 34)):
         ground = ground[~((ground >= (west, south)) & (ground <= (east, north))).all(axis=1)]
     wall, wall_height, is_pane = front(np.random.default_rng(43))
-    parts = [ground, *houses, crown, np.array([[10.0, 30.0], [30.0, 15.0]]), wall]
+    tank_xy, tank_height = tank(np.random.default_rng(44))
+    parts = [ground, *houses, crown, np.array([[10.0, 30.0], [30.0, 15.0]]), wall, tank_xy]
     sizes = [len(part) for part in parts]
     xy = np.concatenate(parts)
-    height = np.repeat([0.0, 4.0, 6.0, 0.0, 0.0, 0.0], sizes)
+    height = np.repeat([0.0, 4.0, 6.0, 0.0, 0.0, 0.0, 0.0], sizes)
     height[sum(sizes[:3]) : sum(sizes[:4])] = rng.uniform(2, 7, sizes[3])
     height[sum(sizes[:4]) : sum(sizes[:5])] = 60.0, -25.0
-    height[sum(sizes[:5]) :] = wall_height
+    height[sum(sizes[:5]) : sum(sizes[:6])] = wall_height
+    height[sum(sizes[:6]) :] = tank_height
     z = np.round((0.05 * xy[:, 0] + height + rng.normal(0, 0.02, len(xy))) * 1024) / 1024
-    kind = np.repeat([0, 1, 2, 3, 4, 5], sizes)
+    kind = np.repeat([0, 1, 2, 3, 4, 5, 6], sizes)
     classes = [
         PointClass.GROUND,
         PointClass.BUILDING,
@@ -192,11 +208,12 @@ def scene() -> dict[str, np.ndarray]:
         PointClass.UNCLASSIFIED,
         PointClass.HIGH_NOISE,
         PointClass.UNCLASSIFIED,
+        PointClass.UNCLASSIFIED,
     ]
     is_first = rng.random(len(xy)) < 0.5
-    entropy = np.array([0.2, 0.3, 0.3, 0.9, 0.5, 0.5])[kind] + rng.normal(0, 0.02, len(xy))
-    cluster_id = np.array([0, 1, 2, 3, 0, 0])[kind]
-    segment_id = np.array([0, 1, 2, 3, 0, 4])[kind]
+    entropy = np.array([0.2, 0.3, 0.3, 0.9, 0.5, 0.5, 0.5])[kind] + rng.normal(0, 0.02, len(xy))
+    cluster_id = np.array([0, 1, 2, 3, 0, 0, 0])[kind]
+    segment_id = np.array([0, 1, 2, 3, 0, 4, 5])[kind]
     segment_id[np.flatnonzero(kind == 5)[is_pane]] = 0
     return {
         "xyz": np.column_stack([xy, z]),
@@ -213,9 +230,9 @@ def scene() -> dict[str, np.ndarray]:
         "wall_of": np.zeros(len(xy), np.int32),
         "entropy": entropy.astype(np.float32),
         **{name: rng.random(len(xy)).astype(np.float32) for name in ("linearity", "planarity", "scattering")},
-        "cluster_entropy": np.array([np.nan, 0.3, 0.3, 0.9, np.nan, np.nan], np.float32)[kind],
-        "confidence": np.array([np.nan, 0.9, 0.9, 0.1, np.nan, np.nan], np.float32)[kind],
-        "reason": np.array([0, 2, 2, 11, 0, 0], np.uint8)[kind],
+        "cluster_entropy": np.array([np.nan, 0.3, 0.3, 0.9, np.nan, np.nan, np.nan], np.float32)[kind],
+        "confidence": np.array([np.nan, 0.9, 0.9, 0.1, np.nan, np.nan, np.nan], np.float32)[kind],
+        "reason": np.array([0, 2, 2, 11, 0, 0, 0], np.uint8)[kind],
     }
 
 

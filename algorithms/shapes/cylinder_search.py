@@ -57,7 +57,7 @@ _MOST_LOOKED_AT = 1500
 # Median angle (°) between normals and the directions away from the axis: on the rounded normals of an edge it is more.
 _MOST_MEDIAN_ANGLE = 10.0
 
-# Around a cylinder there is air: points up to so many radii from its axis, per point on it. The plates of an edge go on.
+# Around a cylinder there is air: points up to so many radii from its axis, per point on it. Plates go on.
 _AROUND, _MOST_AROUND = 1.5, 0.6
 
 # Least height of the arc that is seen over its chord (times the noise): a flatter one is a plane.

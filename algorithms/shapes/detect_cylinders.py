@@ -122,9 +122,7 @@ def detect_cylinders(
     if len(points.rows):
         # Noise is what the tolerance says where that is set.
         deviation = max(noise, tolerance / 3)
-        search = CylinderSearch(
-            points.xyz, normals[points.rows], deviation, tolerance, spacing, min_seen, min_points
-        )
+        search = CylinderSearch(points.xyz, normals[points.rows], deviation, tolerance, spacing, min_seen, min_points)
         found = search.find(min_radius, max_radius, monitor.part(0.2, 1))
         for number, one in enumerate(found, start=1):
             label[one.points] = number

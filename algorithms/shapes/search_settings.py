@@ -72,7 +72,9 @@ def check_radii(
         If it is empty.
     """
     low = max(_RADIUS_SPACINGS * spacing, _RADIUS_DEVIATIONS * noise) if min_radius is None else min_radius
-    high = min(_LARGEST_RADIUS, _SHARE_OF_EXTENT * float(np.ptp(xyz, axis=0).max())) if max_radius is None else max_radius
+    high = (
+        min(_LARGEST_RADIUS, _SHARE_OF_EXTENT * float(np.ptp(xyz, axis=0).max())) if max_radius is None else max_radius
+    )
     if low >= high:
         raise ValueError(
             f"The range of radii is empty: the minimum radius is {low:.3g} m and the maximum radius {high:.3g} m; "

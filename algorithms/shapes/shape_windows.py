@@ -84,5 +84,3 @@ def near_axis(xyz: np.ndarray, start: np.ndarray, end: np.ndarray, reach: float)
     for axis in (1, 2):
         rows = rows[(xyz[rows, axis] >= low[axis]) & (xyz[rows, axis] <= high[axis])]
     return rows
-
-

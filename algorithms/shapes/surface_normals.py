@@ -75,14 +75,17 @@ def surface_normals(xyz: np.ndarray, count: int, monitor: Monitor) -> tuple[np.n
     """
     refuse_line(xyz)
     normal, deviation = np.zeros((len(xyz), 3)), np.zeros(len(xyz))
+    # In an order of their own, so that rounding does not depend on that of the cloud.
+    order = np.lexsort(xyz.T)
 
-    def keep(rows: np.ndarray, shapes: Shapes) -> None:
+    def keep(places: np.ndarray, shapes: Shapes) -> None:
+        rows = order[places]
         eigenvalues = defined_eigenvalues(shapes.covariances, shapes.counts)
         is_plane = eigenvalues[:, 1] > _LINE * np.maximum(eigenvalues[:, 0], 1e-300)
         normal[rows[is_plane]] = smallest_eigenvectors(shapes.covariances[is_plane], eigenvalues[is_plane])
         deviation[rows] = np.sqrt(np.nan_to_num(eigenvalues[:, 2]))
 
-    reduce_neighborhoods(xyz, Nearest(count), keep, monitor=monitor)
+    reduce_neighborhoods(xyz[order], Nearest(count), keep, monitor=monitor)
     return normal, deviation
 
 

@@ -111,8 +111,8 @@ def _frame(plant: Plant, middle: np.ndarray, along: np.ndarray, across: np.ndarr
             plant.parts += beam(foot, foot + 4.2 * _UP, 0.2, 0.2, along)
         for height in _LEVELS:
             # Beams lie under the widest pipe.
-            ends = (place + sign * (_WIDTH / 2 + 0.2) * across + (height - 0.45) * _UP for sign in (-1, 1))
-            plant.parts += beam(*ends, 0.2, 0.15, _UP)
+            first, last = (place + sign * (_WIDTH / 2 + 0.2) * across + (height - 0.45) * _UP for sign in (-1, 1))
+            plant.parts += beam(first, last, 0.2, 0.15, _UP)
     corner = middle - 0.4 * _LENGTH * along + (_WIDTH / 2 + 0.5) * across + 1.0 * _UP
     plant.parts.append(grating(corner, 0.8 * _LENGTH * along, 0.8 * across))
 
@@ -154,5 +154,7 @@ def _spheres(plant: Plant, count: int, east: float, rng: np.random.Generator) ->
 
 
 def _floor(west: float, east: float, depth: float) -> Part:
-    part = plate("floor", np.array([west, -2.0, 0.0]), np.array([east - west, 0.0, 0.0]), np.array([0.0, depth + 4.0, 0.0]))
+    part = plate(
+        "floor", np.array([west, -2.0, 0.0]), np.array([east - west, 0.0, 0.0]), np.array([0.0, depth + 4.0, 0.0])
+    )
     return Part("floor", Shape.PLANE, part.area, part.middle, part.sample)

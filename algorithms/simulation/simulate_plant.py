@@ -61,7 +61,12 @@ def simulate_plant(
     ] = 200,
     tanks: Annotated[
         int,
-        Param("Tanks", "Upright tanks with diameters from 5 to 30 m, of which the sides and the roof are seen.", low=0, high=20),
+        Param(
+            "Tanks",
+            "Upright tanks with diameters from 5 to 30 m, of which the sides and the roof are seen.",
+            low=0,
+            high=20,
+        ),
     ] = 3,
     spheres: Annotated[int, Param("Spheres", "Spherical vessels with diameters of 1 to 3 m.", low=0, high=50)] = 4,
     clutter: Annotated[

@@ -57,6 +57,8 @@ IDS = {
     "simulatevillage",
     "extractfacades",
     "segmentplaneshough",
+    "detectcylinders",
+    "simulateplant",
     "simulatestreet",
     "extractopenings",
 }
