@@ -28,6 +28,7 @@ from .segmentation.segment_regions import segment_regions
 from .segmentation.segment_roofs import segment_roofs
 from .segmentation.segment_voxels import segment_voxels
 from .shapes.detect_cylinders import detect_cylinders
+from .shapes.detect_spheres import detect_spheres
 from .shapes.segment_planes_hough import segment_planes_hough
 from .simulation.simulate_flight import simulate_flight
 from .simulation.simulate_plant import simulate_plant
@@ -63,6 +64,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     segment_planes_ransac,
     segment_planes_hough,
     detect_cylinders,
+    detect_spheres,
     segment_voxels,
     classify_buildings,
     classify_buildings_2019,

@@ -62,6 +62,7 @@ STAGE_IDS = {
     "segmentplanesransac",
     "segmentplaneshough",
     "detectcylinders",
+    "detectspheres",
     "simulateplant",
     "segmentvoxels",
     "classifybuildings",

@@ -11,7 +11,7 @@ from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Field, Layer, LayerFeatures, Param, stage
 from .cylinder_search import LEAST_POINTS, CylinderSearch, Found
 from .search_settings import MaxRadius, MinRadius, ShapeTolerance, check_radii, point_noise
-from .searched_points import SearchedPoints, Shape, WithinSegments, named, searched_points
+from .searched_points import WHOLE_CLOUD, SearchedPoints, SearchIn, Shape, named, searched_points
 from .shape_windows import WINDOW
 from .surface_normals import NormalPoints, normal_points, surface_normals
 
@@ -54,7 +54,7 @@ def detect_cylinders(
     min_points: Annotated[
         int, Param("Minimum points", "Points of the smallest cylinder.", low=LEAST_POINTS, high=1_000_000)
     ] = 40,
-    within_segments: WithinSegments = False,
+    search_in: SearchIn = WHOLE_CLOUD,
     n_neighbors: NormalPoints = None,
     sampling: Optional[CloudSampling] = None,
     monitor=None,
@@ -74,14 +74,14 @@ def detect_cylinders(
     classification : ndarray of shape (n,), uint8
         ASPRS classes; ground (2), noise (7, 18), water (9) and ignored ground (20) are left out.
     segment_id : ndarray of shape (n,), int32, optional
-        Segments; needed to look within segments.
+        Segments; needed to search in each of them.
     shape : ndarray of shape (n,), uint8, optional
-        Shapes found before: within segments, points that have one are left as they are.
+        Shapes found before: but in a search of the whole cloud, points that have one are left as they are.
 
     Returns
     -------
     segment_id : ndarray of shape (n,), int32
-        Cylinders from 1, in the order of their first points; 0 is none. Within segments, numbers follow those before.
+        Cylinders from 1, in the order of their first points; 0 is none. Numbers follow those that are kept.
     shape : ndarray of shape (n,), uint8
         2 on cylinders.
     axes : LayerFeatures
@@ -117,7 +117,7 @@ def detect_cylinders(
     n_neighbors = normal_points(sampling) if n_neighbors is None else n_neighbors
     monitor.resolved(tolerance=tolerance, min_radius=min_radius, max_radius=max_radius, n_neighbors=n_neighbors)
     normals = surface_normals(xyz - xyz.min(axis=0), n_neighbors, monitor.part(0, 0.2))[0]
-    points = searched_points(xyz, classification, segment_id, shape, within_segments, WINDOW * max_radius)
+    points = searched_points(xyz, classification, segment_id, shape, search_in, WINDOW * max_radius)
     label, found = np.zeros(len(points.rows), np.int64), []
     if len(points.rows):
         # Noise is what the tolerance says where that is set.
@@ -131,7 +131,7 @@ def detect_cylinders(
     inside = label > 0
     old, label[inside] = label[inside], by_first_point(label[inside]) + 1
     number_of = dict(zip(old.tolist(), label[inside].tolist()))
-    ids, shapes, first = named(points, label, Shape.CYLINDER, segment_id, shape, len(xyz), within_segments)
+    ids, shapes, first = named(points, label, Shape.CYLINDER, segment_id, shape, len(xyz), search_in)
     return ids, shapes, _axes(points, found, number_of, first)
 
 

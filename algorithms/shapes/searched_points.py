@@ -25,12 +25,16 @@ class Shape(IntEnum):
     SPHERE = 3
 
 
-WithinSegments = Annotated[
-    bool,
+WHOLE_CLOUD, WITHOUT_SHAPE, EACH_SEGMENT = SEARCHES = ("whole cloud", "points without a shape", "each segment")
+
+SearchIn = Annotated[
+    str,
     Param(
-        "Within segments",
-        "Look for shapes within each segment (SegmentID) by itself. Points that have a shape already keep it and their "
-        "segment, and so do points on which none is found.",
+        "Search in",
+        "What shapes are looked for in: the whole cloud, which forgets segments and shapes found before; the points "
+        "that have no shape yet; or those of each segment (SegmentID) by itself, where points on which no shape is "
+        "found keep their segment.",
+        choices=SEARCHES,
     ),
 ]
 
@@ -66,10 +70,10 @@ def searched_points(
     classification: np.ndarray,
     segment_id: Optional[np.ndarray],
     shape: Optional[np.ndarray],
-    within_segments: bool,
+    search_in: str,
     side: float,
 ) -> SearchedPoints:
-    """Return the points that are neither ground, water nor noise; within segments, those of segments without a shape.
+    """Return the points that are neither ground, water nor noise, and belong to what is searched.
 
     Parameters
     ----------
@@ -77,8 +81,8 @@ def searched_points(
         The cloud.
     segment_id, shape : ndarray of shape (n,), optional
         Segments and shapes found before.
-    within_segments : bool
-        Whether segments are searched one by one.
+    search_in : str
+        One of ``SEARCHES``.
     side : float
         Side of the largest window (m).
 
@@ -88,19 +92,20 @@ def searched_points(
         If segments are asked for and the cloud has none.
     """
     rows = candidates(classification, None, 0)
-    if within_segments:
+    if search_in != WHOLE_CLOUD and shape is not None:
+        rows = rows[shape[rows] == Shape.NONE]
+    if search_in == EACH_SEGMENT:
         if segment_id is None:
             raise ValueError(
-                "Within segments needs SegmentID; run a segmentation first, or look for shapes in the whole cloud."
+                "Searching in each segment needs SegmentID; run a segmentation first, or search the whole cloud."
             )
         rows = rows[segment_id[rows] > 0]
-        rows = rows if shape is None else rows[shape[rows] == Shape.NONE]
     origin = xyz.min(axis=0)
     places = xyz[rows] - origin
     order = np.lexsort(places.T)
     rows, places = rows[order], places[order]
     shift = np.zeros(len(rows))
-    if within_segments and segment_id is not None and len(rows):
+    if search_in == EACH_SEGMENT and segment_id is not None and len(rows):
         # Numbers of segments follow the first points in this order, as the order of the cloud must not matter.
         number = by_first_point(segment_id[rows])
         shift = number * (np.ptp(xyz[:, 0]) + _SIDES_APART * side)
@@ -115,7 +120,7 @@ def named(
     segment_id: Optional[np.ndarray],
     shape: Optional[np.ndarray],
     n: int,
-    within_segments: bool,
+    search_in: str,
 ) -> tuple[np.ndarray, np.ndarray, int]:
     """Return the dimensions ``segment_id`` and ``shape`` of a cloud in which shapes of one kind were found.
 
@@ -128,11 +133,11 @@ def named(
     kind : Shape
         What was found.
     segment_id, shape : ndarray of shape (n,), optional
-        What the cloud had before; kept where segments were searched.
+        What the cloud had before; kept but where the whole cloud was searched.
     n : int
         Points of the cloud.
-    within_segments : bool
-        Whether segments were searched one by one.
+    search_in : str
+        One of ``SEARCHES``.
 
     Returns
     -------
@@ -142,9 +147,13 @@ def named(
         What is added to the numbers of the shapes.
     """
     ids, shapes = np.zeros(n, np.int32), np.zeros(n, np.uint8)
-    if within_segments and segment_id is not None:
+    if search_in == EACH_SEGMENT and segment_id is not None:
         ids[:] = segment_id
-        shapes[:] = 0 if shape is None else shape
+    if search_in != WHOLE_CLOUD and shape is not None:
+        shapes[:] = shape
+        has_shape = shape != Shape.NONE
+        if segment_id is not None:
+            ids[has_shape] = segment_id[has_shape]
     first = int(ids.max(initial=0))
     found = label > 0
     ids[points.rows[found]] = label[found] + first

@@ -14,7 +14,7 @@ from ..segmentation.segment_clusters import dbscan
 from ..stage import Layer, Monitor, Param, stage
 from .hough_planes import HoughPlanes
 from .plane_polygons import PLANE_FIELDS, plane_polygons
-from .searched_points import SearchedPoints, Shape, WithinSegments, named, searched_points
+from .searched_points import WHOLE_CLOUD, SearchedPoints, SearchIn, Shape, named, searched_points
 from .surface_normals import NormalPoints, normal_points, refuse_line, surface_normals
 
 METHODS = ("points", "normals")
@@ -60,7 +60,7 @@ def segment_planes_hough(
             choices=METHODS,
         ),
     ] = "points",
-    within_segments: WithinSegments = False,
+    search_in: SearchIn = WHOLE_CLOUD,
     tolerance: Annotated[
         Optional[float],
         Param(
@@ -159,14 +159,14 @@ def segment_planes_hough(
     classification : ndarray of shape (n,), uint8
         ASPRS classes; ground (2), noise (7, 18), water (9) and ignored ground (20) are left out.
     segment_id : ndarray of shape (n,), int32, optional
-        Segments; needed to look within segments.
+        Segments; needed to search in each of them.
     shape : ndarray of shape (n,), uint8, optional
-        Shapes found before: within segments, points that have one are left as they are.
+        Shapes found before: but in a search of the whole cloud, points that have one are left as they are.
 
     Returns
     -------
     segment_id : ndarray of shape (n,), int32
-        Planes from 1, in the order of their first points; 0 is none. Within segments, numbers follow those before.
+        Planes from 1, in the order of their first points; 0 is none. Numbers follow those that are kept.
     shape : ndarray of shape (n,), uint8
         1 on planes.
     planes : LayerFeatures
@@ -215,7 +215,7 @@ def segment_planes_hough(
     if method == "normals":
         n_neighbors = normal_points(sampling) if n_neighbors is None else n_neighbors
         monitor.resolved(n_neighbors=n_neighbors)
-    points = searched_points(xyz, classification, segment_id, shape, within_segments, window_size)
+    points = searched_points(xyz, classification, segment_id, shape, search_in, window_size)
     label = np.zeros(len(points.rows), np.int64)
     if len(points.rows):
         boxes = Boxes(points.xyz, window_size)
@@ -228,7 +228,7 @@ def segment_planes_hough(
         label = _surfaces(points.xyz, plane, max_gap, min_area * sampling.surface_density, monitor.part(0.8, 1))
     if not label.any():
         monitor.warn("No plane was found; no point got a new SegmentID.")
-    ids, shapes, first = named(points, label, Shape.PLANE, segment_id, shape, len(xyz), within_segments)
+    ids, shapes, first = named(points, label, Shape.PLANE, segment_id, shape, len(xyz), search_in)
     return ids, shapes, plane_polygons(xyz[points.rows], label, first, sampling.surface_density)
 
 

@@ -58,6 +58,7 @@ IDS = {
     "extractfacades",
     "segmentplaneshough",
     "detectcylinders",
+    "detectspheres",
     "simulateplant",
     "simulatestreet",
     "extractopenings",

@@ -85,12 +85,12 @@ def test_segments_are_searched_one_by_one(rng):
     """A pipe cut into two segments by hand is two cylinders; what has a shape is left alone."""
     xyz = pipe(rng, 0.1, 2.0, 0.02, 0.002, (1, 0, 0))
     segment_id = np.where(xyz[:, 0] < 0, 3, 5).astype(np.int32)
-    ids, shape, axes = detect(xyz, segment_id=segment_id, max_radius=0.4, within_segments=True)
+    ids, shape, axes = detect(xyz, segment_id=segment_id, max_radius=0.4, search_in="each segment")
     assert sorted(axes.columns["id"]) == [6, 7]
     for line in axes.geometries:
         assert np.abs(line).max() < 1.1, "axes lie where the points are"
     shape = np.where(segment_id == 3, 1, 0).astype(np.uint8)
-    ids, shapes, axes = detect(xyz, segment_id=segment_id, shape=shape, max_radius=0.4, within_segments=True)
+    ids, shapes, axes = detect(xyz, segment_id=segment_id, shape=shape, max_radius=0.4, search_in="each segment")
     assert (ids[segment_id == 3] == 3).all()
     assert (shapes[segment_id == 3] == 1).all()
     assert len(axes) == 1
@@ -146,7 +146,7 @@ def test_an_empty_range_of_radii_is_refused(rng):
         ValueError, match="The range of radii is empty: the minimum radius is 2 m and the maximum radius"
     ):
         detect(xyz, min_radius=2.0, max_radius=1.0)
-    with pytest.raises(ValueError, match="Within segments needs SegmentID"):
-        detect(xyz, within_segments=True)
+    with pytest.raises(ValueError, match="Searching in each segment needs SegmentID"):
+        detect(xyz, search_in="each segment")
     with pytest.raises(ValueError, match="All points lie on one line"):
         detect(np.column_stack([np.arange(50.0)] * 3))

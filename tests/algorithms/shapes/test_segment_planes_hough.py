@@ -120,7 +120,7 @@ def test_segments_are_searched_one_by_one(method, rng):
     segment_id[:50] = 7
     shape = np.zeros(len(xyz), np.uint8)
     shape[:50] = 2
-    ids, shapes, planes = segment(xyz, segment_id=segment_id, shape=shape, method=method, within_segments=True)
+    ids, shapes, planes = segment(xyz, segment_id=segment_id, shape=shape, method=method, search_in="each segment")
     assert (ids[:50] == 7).all()
     assert (shapes[:50] == 2).all()
     assert sorted(planes.columns["id"]) == [8, 9]
@@ -128,8 +128,8 @@ def test_segments_are_searched_one_by_one(method, rng):
         assert set(ids[segment_id == old]) <= {old, 8, 9}
         assert len(set(ids[(segment_id == old) & (shapes == 1)])) == 1
     assert (shapes[50:] == 1).mean() > 0.9
-    with pytest.raises(ValueError, match="Within segments needs SegmentID; run a segmentation first"):
-        segment(xyz, within_segments=True)
+    with pytest.raises(ValueError, match="Searching in each segment needs SegmentID; run a segmentation first"):
+        segment(xyz, search_in="each segment")
 
 
 @each_method
