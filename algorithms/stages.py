@@ -21,6 +21,7 @@ from .preparation.filter_points import filter_points
 from .preparation.merge_clouds import merge_clouds
 from .quality.assess_buildings import assess_buildings
 from .quality.assess_ground import assess_ground
+from .quality.assess_models import assess_models
 from .quality.compare_corners import compare_corners
 from .segmentation.segment_clusters import segment_clusters
 from .segmentation.segment_planes_ransac import segment_planes_ransac
@@ -78,6 +79,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     reconstruct_roofs,
     assess_buildings,
     assess_ground,
+    assess_models,
     compare_corners,
     simulate_town,
     simulate_flight,

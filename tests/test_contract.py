@@ -75,6 +75,7 @@ STAGE_IDS = {
     "reconstructroofs",
     "assessbuildings",
     "assessground",
+    "assessmodels",
     "comparecorners",
     "simulatetown",
     "simulateflight",
@@ -118,6 +119,8 @@ USED_WITH: dict[tuple[str, str], dict[str, Any]] = {
 }
 # Estimated again in each round: the log has the value of the last, and one value for all rounds is another surface.
 ESTIMATED_IN_ROUNDS = {("classify_ground_tin_2000", "iteration_distance")}
+# Read layers whose geometries have heights (m): those of roofs.
+READS_HEIGHTS = {"assess_models": 6.0}
 # Tunables at which a stage that makes its own data is quick.
 QUICK: dict[str, dict[str, Any]] = {
     "simulate_plant": {"pipes": 2, "tanks": 0, "spheres": 1, "density": 200.0},
@@ -272,6 +275,8 @@ def drawn(stage: Stage, shift: tuple[float, float] = (0.0, 0.0)) -> dict[str, La
     for i, input_layer in enumerate(stage.input_layers):
         rings = [np.array([[w, s], [e, s], [e, n], [w, n], [w, s]], float) for w, s, e, n in boxes]
         rings = [ring + (0.0, 0.125 * i) + shift for ring in rings]
+        if stage.name in READS_HEIGHTS:
+            rings = [np.column_stack([ring, np.full(len(ring), READS_HEIGHTS[stage.name])]) for ring in rings]
         shapes = {"Polygon": [[ring] for ring in rings], "LineString": rings, "Point": [ring[0] for ring in rings]}
         layers[input_layer.name] = LayerFeatures(
             shapes[input_layer.geometry], {"id": np.array([1, 2]), "name": ["one", None]}

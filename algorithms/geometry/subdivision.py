@@ -42,6 +42,7 @@ class Subdivision:
         self.members: list[np.ndarray] = [np.arange(len(xy))]
         self.cell_of: dict[tuple[int, int], int] = {(0, 1): 0, (1, 2): 0, (2, 3): 0, (3, 0): 0}
         self.is_closed: list[bool] = [False]
+        self._boxes: list[tuple[float, float, float, float]] = [(x0, y0, x1, y1)]
         self._xy = xy
 
     def __len__(self) -> int:
@@ -52,7 +53,7 @@ class Subdivision:
         copy = Subdivision.__new__(Subdivision)
         copy.vertices, copy.loops = list(self.vertices), [list(loop) for loop in self.loops]
         copy.members, copy.cell_of = list(self.members), dict(self.cell_of)
-        copy.is_closed, copy._xy = list(self.is_closed), self._xy
+        copy.is_closed, copy._boxes, copy._xy = list(self.is_closed), list(self._boxes), self._xy
         return copy
 
     def close(self, is_closed: np.ndarray) -> None:
@@ -69,8 +70,11 @@ class Subdivision:
         if length == 0:
             return
         line = (x0, y0, (x1 - x0) / length, (y1 - y0) / length)
+        (west, east), (south, north) = sorted((x0, x1)), sorted((y0, y1))
         for cell in range(len(self.loops)):
-            if not self.is_closed[cell]:
+            low_x, low_y, high_x, high_y = self._boxes[cell]
+            is_near = low_x <= east and low_y <= north and high_x >= west and high_y >= south
+            if is_near and not self.is_closed[cell]:
                 self._cut_cell(cell, line, length, snap)
 
     def _cut_cell(self, cell: int, line: tuple, length: float, snap: float) -> None:
@@ -134,10 +138,16 @@ class Subdivision:
         for start, end in zip(second, [*second[1:], second[0]]):
             self.cell_of[start, end] = new
         self.cell_of[first[-1], first[0]] = cell
+        self._boxes[cell] = self._box(first)
+        self._boxes.append(self._box(second))
         rows = self.members[cell]
         is_left = ux * (self._xy[rows, 1] - y0) - uy * (self._xy[rows, 0] - x0) > 0
         self.members[cell] = rows[is_left]
         self.members.append(rows[~is_left])
+
+    def _box(self, loop: list[int]) -> tuple[float, float, float, float]:
+        xs, ys = zip(*(self.vertices[v] for v in loop))
+        return min(xs), min(ys), max(xs), max(ys)
 
     def areas(self) -> np.ndarray:
         """Return the areas (cells,), m²."""

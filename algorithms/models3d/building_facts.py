@@ -20,7 +20,10 @@ _FLAT = 5.0
 _SAME_WAY = 20.0
 
 # Directions of less than this share of the sloping area say nothing of the type.
-_MINOR = 0.08
+_MINOR = 0.03
+
+# Roofs with more than this share of level parts are of no simple type.
+_LEVEL = 0.15
 
 # Two slopes of one direction that differ by more than this (°) make a mansard roof.
 _MANSARD = 12.0
@@ -136,11 +139,11 @@ def roof_type(solids: Sequence[Solid]) -> str:
     if area[sloping].sum() < 0.5 * area.sum():
         return "flat" if len(area) == 1 else "stepped flat" if not sloping.any() else "other"
     ways = _ways(azimuth[sloping], area[sloping])
-    if area[~sloping].sum() > 2 * _MINOR * area.sum():
+    if area[~sloping].sum() > _LEVEL * area.sum():
         return "other"
     if len(ways) == 1:
         return "shed"
-    opposite = abs((ways[0] - ways[1]) % 360 - 180) < _SAME_WAY
+    opposite = any(abs((ways[0] - way) % 360 - 180) < _SAME_WAY for way in ways[1:])
     if len(ways) == 2 and opposite:
         steep = max(np.ptp(slope[sloping][_near(azimuth[sloping], way)]) for way in ways)
         return "mansard" if steep > _MANSARD and sloping.sum() >= 4 else "gable"

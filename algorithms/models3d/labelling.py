@@ -19,7 +19,9 @@ _SWEEPS = 4
 Border = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
-def cheapest_labels(cost: np.ndarray, edges: np.ndarray, border: Border, start: np.ndarray) -> np.ndarray:
+def cheapest_labels(
+    cost: np.ndarray, edges: np.ndarray, border: Border, most: np.ndarray, start: np.ndarray
+) -> np.ndarray:
     """Return the labels (n,) of cells, from the labels ``start`` on changed one label at a time until none helps.
 
     Parameters
@@ -30,6 +32,8 @@ def cheapest_labels(cost: np.ndarray, edges: np.ndarray, border: Border, start: 
         Cells that touch.
     border : callable
         Cost of the labels (k,) of both cells of each edge; a metric.
+    most : ndarray of shape (n,)
+        The most that all edges of a cell together can cost.
     start : ndarray of shape (n,)
         Labels to begin with.
 
@@ -42,7 +46,11 @@ def cheapest_labels(cost: np.ndarray, edges: np.ndarray, border: Border, start: 
     for _ in range(_SWEEPS):
         before = lowest
         for alpha in range(cost.shape[1]):
-            changed = _expanded(cost, edges, border, label, alpha)
+            # Where a label costs more than all borders of a cell could save, the cell never takes it.
+            wanted = cost[:, alpha] - cost[np.arange(len(cost)), label] <= most
+            if not (wanted & (label != alpha)).any():
+                continue
+            changed = _expanded(cost, edges, border, label, alpha, wanted)
             energy = _energy(cost, edges, border, changed)
             if energy < lowest - 1e-9:
                 label, lowest = changed, energy
@@ -56,18 +64,32 @@ def _energy(cost: np.ndarray, edges: np.ndarray, border: Border, label: np.ndarr
     return float(cost[np.arange(len(cost)), label].sum() + on_edges.sum())
 
 
-def _expanded(cost: np.ndarray, edges: np.ndarray, border: Border, label: np.ndarray, alpha: int) -> np.ndarray:
-    """Return the labels after those cells have taken ``alpha`` for which that is cheapest, together."""
-    n, cells = len(cost), np.arange(len(cost))
+def _expanded(
+    cost: np.ndarray, edges: np.ndarray, border: Border, label: np.ndarray, alpha: int, wanted: np.ndarray
+) -> np.ndarray:
+    """Return the labels after those cells ``wanted`` have taken ``alpha`` for which that is cheapest, together."""
     p, q = edges.T
-    keep, take = cost[cells, label].copy(), cost[:, alpha].copy()
     other = np.full(len(edges), alpha)
     both, first, second = border(label[p], label[q]), border(other, label[q]), border(label[p], other)
+    rows = np.arange(len(cost))
+    keep, take = cost[rows, label].copy(), cost[:, alpha].copy()
     # An edge costs "both" where both cells keep their labels, "first" or "second" where that one changes alone, and
     # nothing where both change: a sum of terms of one cell each, and one of the first keeping while the second changes.
-    np.add.at(take, p, first - both)
-    np.add.at(take, q, -first)
-    capacity = np.maximum(first + second - both, 0.0)
+    inner, from_p, from_q = wanted[p] & wanted[q], wanted[p] & ~wanted[q], wanted[q] & ~wanted[p]
+    np.add.at(take, p[inner | from_p], (first - both)[inner | from_p])
+    np.add.at(take, q[inner], -first[inner])
+    np.add.at(take, q[from_q], (second - both)[from_q])
+    chosen = np.flatnonzero(wanted)
+    number = np.cumsum(wanted) - 1
+    changed = label.copy()
+    capacity = np.maximum(first + second - both, 0.0)[inner]
+    changed[chosen[_takes(keep[chosen], take[chosen], number[p[inner]], number[q[inner]], capacity)]] = alpha
+    return changed
+
+
+def _takes(keep: np.ndarray, take: np.ndarray, p: np.ndarray, q: np.ndarray, capacity: np.ndarray) -> np.ndarray:
+    """Return which cells (n,) change, given what keeping and changing cost, and p keeping while q changes."""
+    n, cells = len(keep), np.arange(len(keep))
     least = np.minimum(keep, take)
     keep, take = keep - least, take - least
     # The source's side keeps its label: to be cut from the source costs what taking costs.
@@ -83,4 +105,4 @@ def _expanded(cost: np.ndarray, edges: np.ndarray, border: Border, label: np.nda
     reached = csgraph.breadth_first_order(residual, source, return_predecessors=False)
     keeps = np.zeros(n + 2, bool)
     keeps[reached] = True
-    return np.where(keeps[:n], label, alpha)
+    return ~keeps[:n]

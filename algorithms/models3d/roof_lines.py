@@ -42,11 +42,6 @@ class Piece:
     end: np.ndarray
     weight: float
 
-    @property
-    def direction(self) -> np.ndarray:
-        """Unit vector (2,) from start to end."""
-        return (self.end - self.start) / np.hypot(*(self.end - self.start))
-
 
 def find_roof_lines(xyz: np.ndarray, planes: RoofPlanes, rings: list, spacing: float) -> list[Piece]:
     """Return where planes intersect and where they step, in the order in which they are to cut.
@@ -184,19 +179,21 @@ class _Border:
 
 def _without_doubles(pieces: list[Piece]) -> list[Piece]:
     """Return the pieces but those that an earlier one covers."""
-    kept: list[Piece] = []
-    for piece in pieces:
-        if not any(_covers(one, piece) for one in kept):
-            kept.append(piece)
-    return kept
-
-
-def _covers(one: Piece, other: Piece) -> bool:
-    u, v = one.direction, other.direction
-    if abs(u[0] * v[1] - u[1] * v[0]) > _SAME_TURN:
-        return False
-    ends = np.array([other.start, other.end]) - one.start
-    if np.abs(ends @ (-u[1], u[0])).max() > _SAME_OFFSET:
-        return False
-    along = ends @ u
-    return bool(along.min() >= -0.5 and along.max() <= np.hypot(*(one.end - one.start)) + 0.5)
+    if not pieces:
+        return []
+    start, end = np.array([one.start for one in pieces]), np.array([one.end for one in pieces])
+    length = np.hypot(*(end - start).T)
+    direction = (end - start) / length[:, None]
+    kept: list[int] = []
+    for i in range(len(pieces)):
+        u = direction[kept]
+        is_parallel = np.abs(u[:, 0] * direction[i, 1] - u[:, 1] * direction[i, 0]) <= _SAME_TURN
+        covers = is_parallel.copy()
+        for place in (start[i], end[i]):
+            offset = place - start[kept]
+            along = np.einsum("ij,ij->i", offset, u)
+            across = np.abs(u[:, 0] * offset[:, 1] - u[:, 1] * offset[:, 0])
+            covers &= (across <= _SAME_OFFSET) & (along >= -_BEYOND) & (along <= length[kept] + _BEYOND)
+        if not covers.any():
+            kept.append(i)
+    return [pieces[i] for i in kept]

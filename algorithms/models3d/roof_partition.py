@@ -134,7 +134,8 @@ def _labels(planes: RoofPlanes, cells: Subdivision, used: np.ndarray, cost: np.n
         step = sum(np.minimum(np.abs(height[one, rows] - height[other, rows]), _MOST_STEP) for height in heights) / 2
         return length * np.where(one == other, 0.0, _BORDER + _STEP * step)
 
-    return cheapest_labels(cost, beside, border, np.argmin(cost, axis=1))
+    at_most = np.bincount(beside.ravel(), np.repeat(length, 2) * (_BORDER + _STEP * _MOST_STEP), len(used))
+    return cheapest_labels(cost, beside, border, at_most, np.argmin(cost, axis=1))
 
 
 def _costs(

@@ -25,6 +25,7 @@ from lidar_buildings.tests.toys import TOYS
 IDS = {
     "assessbuildings",
     "assessground",
+    "assessmodels",
     "classifybuildings",
     "classifybuildings2019",
     "classifydimensionality",

@@ -1,0 +1,452 @@
+"""How far models of buildings are from the points of their roofs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Any, Optional
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from ..geometry.cell_outlines import outline_cells
+from ..geometry.grid import connected_cells, find_cells, grid_over
+from ..geometry.rings import signed_area
+from ..models3d.roof_partition import inside_rings
+from ..models3d.roof_planes import find_roof_planes
+from ..report.charts import BLUE, Mark, Series, draw_histogram
+from ..report.page import Row, build_page, percent
+from ..sampling.cloud_sampling import CloudSampling
+from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Param, Report, stage
+
+# A point that lies under a face by this (m), with another one of a building as much higher in its cell or one beside,
+# is on a wall or on a floor seen through glass. Cells have this size (m, or spacings).
+_BELOW, _CELL, _CELL_SPACINGS = 1.0, 0.5, 1.5
+
+# Points of one plane lie within this many times their roughness of it, 0.08 to 0.35 m.
+_TOLERANCE_ROUGHNESS, _TOLERANCES = 3.0, (0.08, 0.35)
+
+# A plane is there where this share of its points lies on it, or on the model.
+_THERE = 0.5
+
+# Distances count at most this much (m): a tree that is called building says nothing of the model.
+_FARTHEST = 5.0
+
+# Faces with less than this area in plan (m²) stand on their edge: they are walls.
+_UPRIGHT = 1e-3
+
+_PERCENTILE = 95.0
+
+MATCHED, MISSING, INVENTED, UNSEEN = "matched", "missing", "invented", "unseen"
+
+_FACES = Layer(
+    "faces",
+    "Distances of faces",
+    "Polygon",
+    (
+        Field("id", int, "number of the face, from 1"),
+        Field("building", str, "its building: the attribute building of the roofs, or empty"),
+        Field(
+            "status",
+            str,
+            f"{MATCHED}: most of its points lie on it; {INVENTED}: they don't; {UNSEEN}: it has no points; "
+            f"{MISSING}: a plane of the points that the model has not",
+        ),
+        Field("points", int, "roof points above or below it"),
+        Field("mean", float, "mean distance of these, positive above the face", "m"),
+        Field("rms", float, "root mean square distance", "m"),
+        Field("p95", float, "95th percentile of the distances", "m"),
+    ),
+)
+_BUILDINGS = Layer(
+    "building_distances",
+    "Distances of buildings",
+    "Point",
+    (
+        Field("id", int, "number of the building, from 1"),
+        Field("building", str, "the attribute building of the roofs, or empty"),
+        Field("points", int, "points of its roof"),
+        Field("rms", float, "root mean square distance of these to the model", "m"),
+        Field("p95", float, "95th percentile of the distances", "m"),
+        Field("faces", int, "faces of its roof"),
+        Field("missing", int, "planes of the points that the model has not"),
+        Field("invented", int, "faces that most of their points don't lie on"),
+        Field("volume", float, "volume between its roof and the lowest of its points or of the ground beside it", "m³"),
+    ),
+)
+_MEASURES = (
+    Measure("buildings", "Buildings"),
+    Measure("points", "Roof points"),
+    Measure("rms", "RMS of the distances", "m"),
+    Measure("p95", "95th percentile of the distances", "m"),
+    Measure("median_rms", "Median of the buildings' RMS", "m"),
+    Measure("on_model", "Points on the model", "%"),
+    Measure("all_faces", "Faces"),
+    Measure("missing", "Missing planes"),
+    Measure("invented", "Invented faces"),
+    Measure("volume", "Volume", "m³"),
+)
+
+
+@stage(
+    "Assess models",
+    group="Quality",
+    tags="3D,LoD2,city model,roof,accuracy,rms,distance,evaluation,validation",
+    input_layers=(
+        InputLayer(
+            "roofs",
+            "Roofs",
+            "Polygon",
+            "Roof faces with heights, of any program; faces with the same attribute 'building' are one building.",
+        ),
+    ),
+    layers=(_FACES, _BUILDINGS),
+    measures=_MEASURES,
+)
+def assess_models(
+    xyz,
+    classification,
+    roofs,
+    *,
+    min_plane_area: Annotated[
+        float,
+        Param(
+            "Minimum plane area",
+            "Planes of the points that are smaller, seen from above, are not missed.",
+            unit="m²",
+            low=0.1,
+            high=1000,
+        ),
+    ] = 2.0,
+    tolerance: Annotated[
+        Optional[float],
+        Param(
+            "Tolerance",
+            "Distance at which a point lies on a face or plane.",
+            unit="m",
+            low=0.01,
+            high=5,
+            automatic="3 times the roughness of the cloud's surfaces, 0.08 to 0.35 m.",
+            advanced=True,
+        ),
+    ] = None,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Measure how far models of buildings are from the points of their roofs, and which planes are missing or invented.
+
+    Each point of a roof is compared with the face above or below it. Planes that grow over the points of a building by
+    themselves tell what the model lacks.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Coordinates (m).
+    classification : ndarray of shape (n,)
+        Classes; points of class 6 are compared.
+    roofs : LayerFeatures
+        Faces with heights, rings (k, 3).
+
+    Returns
+    -------
+    faces : LayerFeatures
+        The faces with their distances, and the planes that are missing, as cells with their points.
+    building_distances : LayerFeatures
+        A point per building, with its distances.
+    report : Report
+        Distances and counts of all, and a page. What there is nothing to compute from is NaN.
+
+    Raises
+    ------
+    ValueError
+        If no point is called building, or the layer has no faces with heights.
+
+    Notes
+    -----
+    Distances are across the planes of the faces; above 5 m they count as 5 m. Points more than a meter below both
+    the model and others of class 6 beside them are of walls and are not counted. A face without points is unseen,
+    neither matched nor invented. The volume is that of prisms between the faces and the lowest point of class 6 or 2 in
+    the building's box.
+
+    References
+    ----------
+    Peters, R., Dukai, B., Vitalis, S., van Liempt, J., Stoter, J., 2022. Automated 3D reconstruction of LoD2 and LoD1
+    models for all 10 million buildings of the Netherlands, section on quality. Photogrammetric Engineering & Remote
+    Sensing 88(3).
+    """
+    if not (classification == PointClass.BUILDING).any():
+        raise ValueError("No point is called building (class 6); run 'Detect buildings' first.")
+    sampling = sampling or CloudSampling.of(xyz, classification)
+    if tolerance is None:
+        tolerance = float(np.clip(_TOLERANCE_ROUGHNESS * sampling.roughness, *_TOLERANCES))
+        monitor.resolved(tolerance=tolerance)
+    faces = _faces(roofs, monitor)
+    points = _RoofPoints(xyz, classification, sampling.spacing)
+    min_points = max(5, round(min_plane_area * sampling.density))
+    buildings = _compared(faces, points, tolerance, min_points, monitor)
+    values = _values(buildings, tolerance)
+    return (
+        _face_layer(buildings, points),
+        _building_layer(buildings),
+        Report(values, _page(buildings, values, tolerance)),
+    )
+
+
+@dataclass
+class _Face:
+    """A face of a roof, as a plane through its corners: its rings, name, and the distances (m) of its points."""
+
+    rings: list
+    building: str
+    plane: np.ndarray
+    off: np.ndarray
+
+    def height(self, xy: np.ndarray) -> np.ndarray:
+        """Return the height (n,) of the plane (m)."""
+        return xy @ self.plane[:2] + self.plane[2]
+
+    @property
+    def cosine(self) -> float:
+        """The distance off the plane per difference in height."""
+        return 1 / float(np.sqrt(1 + self.plane[0] ** 2 + self.plane[1] ** 2))
+
+    def status(self, tolerance: float) -> str:
+        """Return whether its points lie on it."""
+        if not len(self.off):
+            return UNSEEN
+        return MATCHED if np.mean(np.abs(self.off) <= tolerance) >= _THERE else INVENTED
+
+
+@dataclass
+class _Building:
+    """A building: its faces, the points of planes that it lacks, each (k, 3), and its volume (m³)."""
+
+    name: str
+    faces: list[_Face]
+    missing: list[np.ndarray]
+    volume: float
+    tolerance: float
+
+    @property
+    def off(self) -> np.ndarray:
+        """Distances (m) of all its roof points."""
+        return np.concatenate([face.off for face in self.faces])
+
+    @property
+    def n_invented(self) -> int:
+        """Faces that are invented."""
+        return sum(face.status(self.tolerance) == INVENTED for face in self.faces)
+
+
+def _faces(roofs: LayerFeatures, monitor: Monitor) -> dict[str, list[_Face]]:
+    """Return the faces by their building; say how many have no heights or stand upright."""
+    names = roofs.columns.get("building", [""] * len(roofs))
+    found: dict[str, list[_Face]] = {}
+    for rings, name in zip(roofs.geometries, names):
+        corners = np.asarray(rings[0], float)
+        if corners.shape[1] != 3 or abs(signed_area(corners[:, :2])) < _UPRIGHT:
+            continue
+        middle = corners[:-1].mean(axis=0)
+        offset = corners[:-1] - middle
+        slope = np.linalg.lstsq(offset[:, :2], offset[:, 2], rcond=None)[0]
+        called = "" if name is None else str(name)
+        plane = np.array([*slope, middle[2] - slope @ middle[:2]])
+        found.setdefault(called, []).append(_Face(rings, called, plane, np.zeros(0)))
+    count = sum(map(len, found.values()))
+    if not count:
+        raise ValueError(
+            f"None of the {len(roofs)} roof faces has heights and an area seen from above; "
+            "choose the roofs of 'Reconstruct roofs', or other polygons with Z."
+        )
+    if count < len(roofs):
+        monitor.warn(f"{len(roofs) - count} of {len(roofs)} faces have no heights or no area, and are left out.")
+    return found
+
+
+class _RoofPoints:
+    """The points on roofs (n, 3) in the order of their eastings, and the lowest points of buildings and ground."""
+
+    def __init__(self, xyz: np.ndarray, classification: np.ndarray, spacing: float) -> None:
+        building = xyz[classification == PointClass.BUILDING]
+        order = np.argsort(building[:, 0], kind="stable")
+        self.spacing = spacing
+        self.xyz = building[order]
+        self.is_low = _is_low(building, max(_CELL, _CELL_SPACINGS * spacing))[order]
+        low = xyz[np.isin(classification, (PointClass.BUILDING, PointClass.GROUND))]
+        self._low = low[np.argsort(low[:, 0], kind="stable")]
+
+    def over(self, rings: list) -> np.ndarray:
+        """Return which points lie over rings."""
+        (west, south), (east, north) = rings[0][:, :2].min(axis=0), rings[0][:, :2].max(axis=0)
+        x, y = self.xyz[:, 0], self.xyz[:, 1]
+        rows = np.arange(np.searchsorted(x, west), np.searchsorted(x, east, side="right"))
+        rows = rows[(y[rows] >= south) & (y[rows] <= north)]
+        return rows[inside_rings(self.xyz[rows, :2], [ring[:, :2] for ring in rings])]
+
+    def lowest(self, low: np.ndarray, high: np.ndarray) -> float:
+        """Return the lowest height (m) in a box, NaN where there are no points."""
+        x = self._low[:, 0]
+        some = self._low[np.searchsorted(x, low[0]) : np.searchsorted(x, high[0], side="right")]
+        inside = (some[:, 1] >= low[1]) & (some[:, 1] <= high[1])
+        return float(some[inside, 2].min()) if inside.any() else np.nan
+
+
+def _is_low(xyz: np.ndarray, size: float) -> np.ndarray:
+    """Return which points (n,) have another one in their cell, or in one beside, that is clearly higher."""
+    grid = grid_over(xyz, size)
+    number = grid.number(xyz)
+    cells, inverse = np.unique(number, return_inverse=True)
+    top = np.full(len(cells), -np.inf)
+    np.maximum.at(top, inverse, xyz[:, 2])
+    highest = top[inverse]
+    for step in grid.around:
+        position, there = find_cells(cells, number + step)
+        highest = np.where(there, np.maximum(highest, top[position]), highest)
+    return highest > xyz[:, 2] + _BELOW
+
+
+def _compared(
+    faces: dict[str, list[_Face]], points: _RoofPoints, tolerance: float, min_points: int, monitor: Monitor
+) -> list[_Building]:
+    """Return the buildings with the distances of their points."""
+    buildings = []
+    for number, (name, of_one) in enumerate(faces.items()):
+        roof = []
+        for face in of_one:
+            over = points.over(face.rings)
+            here = points.xyz[over]
+            above = here[:, 2] - face.height(here[:, :2])
+            is_roof = ~points.is_low[over] | (above > -_BELOW)
+            face.off = np.clip(above[is_roof] * face.cosine, -_FARTHEST, _FARTHEST)
+            roof.append(here[is_roof])
+        off = np.concatenate([face.off for face in of_one])
+        missing = _missing(np.concatenate(roof), np.abs(off) <= tolerance, tolerance, min_points)
+        buildings.append(_Building(name, of_one, missing, _volume(of_one, points), tolerance))
+        monitor.progress((number + 1) / len(faces))
+    return buildings
+
+
+def _missing(xyz: np.ndarray, on_model: np.ndarray, tolerance: float, min_points: int) -> list[np.ndarray]:
+    """Return the points of each plane of a building of which most lie off the model."""
+    if len(xyz) < min_points:
+        return []
+    planes = find_roof_planes(xyz - xyz.mean(axis=0), tolerance, 75.0, min_points)
+    found = [planes.label == plane for plane in range(len(planes))]
+    return [xyz[rows] for rows in found if on_model[rows].mean() < _THERE]
+
+
+def _volume(faces: list[_Face], points: _RoofPoints) -> float:
+    """Return the volume (m³) of the prisms under faces."""
+    corners = np.concatenate([ring for face in faces for ring in face.rings])
+    base = points.lowest(corners[:, :2].min(axis=0), corners[:, :2].max(axis=0))
+    total = 0.0
+    for face in faces:
+        for ring in face.rings:
+            place = ring[:, :2] - ring[0, :2]
+            cross = place[:-1, 0] * place[1:, 1] - place[1:, 0] * place[:-1, 1]
+            # Triangles from the first corner; a plane's mean over each is that of its corners.
+            height = (face.height(ring[:-1, :2]) + face.height(ring[1:, :2]) + face.height(ring[:1, :2])) / 3 - base
+            total += float((0.5 * cross * height).sum())
+    return total
+
+
+def _root_mean_square(off: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(off**2))) if len(off) else np.nan
+
+
+def _high(off: np.ndarray) -> float:
+    return float(np.percentile(np.abs(off), _PERCENTILE)) if len(off) else np.nan
+
+
+def _values(buildings: list[_Building], tolerance: float) -> dict[str, float]:
+    off = np.concatenate([building.off for building in buildings])
+    each = [rms for rms in (_root_mean_square(building.off) for building in buildings) if np.isfinite(rms)]
+    return {
+        "buildings": len(buildings),
+        "points": len(off),
+        "rms": _root_mean_square(off),
+        "p95": _high(off),
+        "median_rms": float(np.median(each)) if each else np.nan,
+        "on_model": 100.0 * float(np.mean(np.abs(off) <= tolerance)) if len(off) else np.nan,
+        "all_faces": sum(len(building.faces) for building in buildings),
+        "missing": sum(len(building.missing) for building in buildings),
+        "invented": sum(building.n_invented for building in buildings),
+        "volume": sum(building.volume for building in buildings),
+    }
+
+
+def _face_layer(buildings: list[_Building], points: _RoofPoints) -> LayerFeatures:
+    """Return the faces, and the cells of missing planes at their mean height."""
+    geometries: list = []
+    rows: list[dict[str, Any]] = []
+    for building in buildings:
+        for face in building.faces:
+            geometries.append(face.rings)
+            rows.append(_distances(building.name, face.status(building.tolerance), face.off))
+        for xyz in building.missing:
+            outlines = _outlines(xyz, max(_CELL, _CELL_SPACINGS * points.spacing))
+            geometries += outlines
+            rows += [_distances(building.name, MISSING, np.zeros(0), len(xyz))] * len(outlines)
+    columns = {field.name: [row[field.name] for row in rows] for field in _FACES.fields if field.name != "id"}
+    return LayerFeatures(geometries, {"id": list(range(1, len(rows) + 1)), **columns})
+
+
+def _distances(building: str, status: str, off: np.ndarray, n_points: int = 0) -> dict[str, Any]:
+    mean = float(off.mean()) if len(off) else np.nan
+    facts = {"building": building, "status": status, "points": len(off) or n_points, "mean": mean}
+    return {**facts, "rms": _root_mean_square(off), "p95": _high(off)}
+
+
+def _outlines(xyz: np.ndarray, size: float) -> list:
+    """Return the outlines of the cells that hold points, at the mean height of these."""
+    grid = grid_over(xyz, size)
+    cells = np.unique(grid.number(xyz))
+    _, group = connected_cells(grid, cells)
+    outlines = outline_cells(grid, cells, group)
+    height = xyz[:, 2].mean()
+    return [[np.column_stack([ring, np.full(len(ring), height)]) for ring in rings] for rings in outlines]
+
+
+def _building_layer(buildings: list[_Building]) -> LayerFeatures:
+    """Return a point per building."""
+    places = [np.concatenate([face.rings[0][:-1] for face in building.faces]).mean(axis=0) for building in buildings]
+    columns = {
+        "id": list(range(1, len(buildings) + 1)),
+        "building": [building.name for building in buildings],
+        "points": [len(building.off) for building in buildings],
+        "rms": [_root_mean_square(building.off) for building in buildings],
+        "p95": [_high(building.off) for building in buildings],
+        "faces": [len(building.faces) for building in buildings],
+        "missing": [len(building.missing) for building in buildings],
+        "invented": [building.n_invented for building in buildings],
+        "volume": [building.volume for building in buildings],
+    }
+    return LayerFeatures(places, columns)
+
+
+def _page(buildings: list[_Building], values: dict[str, float], tolerance: float) -> str:
+    lead = (
+        f"{values['points']:,} roof points of {values['buildings']:,} buildings were compared with "
+        f"{values['all_faces']:,} faces."
+    )
+    distances = [
+        Row("RMS", _meters(values["rms"]), "Root mean square distance of all roof points to the faces."),
+        Row("95th percentile", _meters(values["p95"]), "95 of 100 roof points are nearer."),
+        Row("Median of buildings", _meters(values["median_rms"]), "Half of the buildings have a smaller RMS."),
+        Row("On the model", percent(values["on_model"]), f"Roof points within {tolerance:.2f} m of a face."),
+    ]
+    planes = [
+        Row("Missing planes", f"{values['missing']:,}", "Planes of the points of which most lie off the model."),
+        Row("Invented faces", f"{values['invented']:,}", "Faces that most of their points don't lie on."),
+        Row("Volume", f"{values['volume']:,.0f} m³", "Between roofs and the lowest points beside them."),
+    ]
+    off = np.concatenate([building.off for building in buildings])
+    near = off[np.abs(off) <= 4 * tolerance]
+    picture = ""
+    if len(near):
+        series = [Series("roof points", BLUE, near)]
+        picture = draw_histogram(series, "Distance (m)", "points", [Mark("mean", float(near.mean()))])
+    return build_page("Quality of the models", lead, {"Distances": distances, "Planes": planes}, picture)
+
+
+def _meters(value: float) -> str:
+    return "undefined" if np.isnan(value) else f"{value:.3f} m"
