@@ -1,0 +1,92 @@
+"""Models of buildings in QGIS: layers with heights, text files, and what is refused."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from qgis.core import Qgis, QgsProcessingException, QgsVectorLayer
+from qgis.PyQt import sip
+
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.files import write_cloud
+from lidar_buildings.provider.paths import STYLES
+from lidar_buildings.tests.provider.helpers import run, vector
+from lidar_buildings.tests.roof_shapes import SHAPES
+from lidar_buildings.tests.solid_validity import assert_valid_cityjson, assert_valid_sequence
+
+ORIGIN = (85_000.0, 446_000.0)
+
+
+@pytest.fixture
+def house(tmp_path):
+    """A gable house on level ground, as a file, and its footprint as a layer."""
+    points, ring = SHAPES["gable"].scanned(origin=ORIGIN)
+    ground = np.random.default_rng(0).uniform((-5, -5, 0), (17, 13, 0), (1500, 3)) + [*ORIGIN, 0.0]
+    classes = np.repeat([6, 2], [len(points), len(ground)]).astype(np.uint8)
+    path = tmp_path / "house.las"
+    write_cloud(create_cloud({"xyz": np.concatenate([points, ground]), "classification": classes}), path)
+    wkt = f"Polygon (({', '.join(f'{x!r} {y!r}' for x, y in ring.tolist())}))"
+    return {"INPUT": str(path), "FOOTPRINTS": vector("Polygon", [(wkt, [7, 0.0, ""])])}
+
+
+@pytest.mark.parametrize(
+    ("name", "check"), [("m.city.json", assert_valid_cityjson), ("m.jsonl", assert_valid_sequence)]
+)
+def test_layers_have_heights_and_files_are_what_their_names_say(house, context, log, out, name, check):
+    wanted = {layer: str(out / f"{layer.lower()}.gpkg") for layer in ("BUILDINGS", "ROOFS", "WALLS")}
+    files = {"CITYJSON": str(out / name), "OBJ": str(out / "m.obj")}
+    made = run("reconstructroofs", {**house, **wanted, **files}, context, log)
+    counts = {"BUILDINGS": 1, "ROOFS": 2, "WALLS": 4}
+    for output, count in counts.items():
+        layer = QgsVectorLayer(made[output], output)
+        assert layer.featureCount() == count
+        assert layer.wkbType() == Qgis.WkbType.PolygonZ
+        box = layer.extent3D()
+        assert (box.xMinimum(), box.yMinimum()) == pytest.approx(ORIGIN, abs=0.02)
+    assert QgsVectorLayer(made["ROOFS"], "").extent3D().zMaximum() == pytest.approx(7.2, abs=0.05)
+    check((out / name).read_text(encoding="utf-8"))
+    assert (out / "m.obj").read_text().count("\no ") == 1
+    assert sorted(path.name for path in out.iterdir()) == sorted(
+        ["m.obj", name, *(f"{o.lower()}.gpkg" for o in wanted)]
+    )
+
+
+def test_coordinates_in_a_file_are_those_of_the_map(house, context, log, out):
+    made = run("reconstructroofs", {**house, "BUILDINGS": "memory:", "CITYJSON": str(out / "m.json")}, context, log)
+    whole = json.loads((out / "m.json").read_text())
+    places = np.array(whole["vertices"]) * whole["transform"]["scale"] + whole["transform"]["translate"]
+    assert places.min(axis=0) == pytest.approx([*ORIGIN, 0.0], abs=0.02)
+    assert "OBJ" not in made
+
+
+def test_a_name_that_tells_no_format_is_refused(house, provider, context, out):
+    given = {**house, "BUILDINGS": "memory:", "CITYJSON": str(out / "m.gml")}
+    accepted, message = provider.algorithm("reconstructroofs").create().checkParameterValues(given, context)
+    assert not accepted
+    assert "m.gml can't be written as CityJSON: give it the extension .city.json" in message
+
+
+def test_a_run_that_fails_leaves_no_file(house, context, log, out):
+    far = vector(
+        "Polygon", [("Polygon ((85005 446001, 85005.1 446001, 85005.1 446001.1, 85005 446001))", [1, 0.0, ""])]
+    )
+    given = {**house, "FOOTPRINTS": far, "BUILDINGS": "memory:", "CITYJSON": str(out / "m.json")}
+    with pytest.raises(QgsProcessingException, match="has an area"):
+        run("reconstructroofs", given, context, log)
+    assert list(out.iterdir()) == []
+
+
+@pytest.mark.parametrize("stem", ["model_roofs", "model_walls", "model_grounds"])
+def test_styles_draw_at_their_heights_in_3d(provider, stem):
+    from qgis._3d import Qgs3D, QgsPolygon3DSymbol, QgsVectorLayer3DRenderer
+
+    Qgs3D.initialize()
+    layer = vector("PolygonZ", [])
+    message, loaded = layer.loadNamedStyle(str(STYLES / f"{stem}.qml"))
+    assert loaded, message
+    symbol = sip.cast(sip.cast(layer.renderer3D(), QgsVectorLayer3DRenderer).symbol(), QgsPolygon3DSymbol)
+    assert symbol.altitudeClamping() == Qgis.AltitudeClamping.Absolute
+    assert symbol.extrusionHeight() == 0
+    assert not symbol.dataDefinedProperties().hasActiveProperties()
