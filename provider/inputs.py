@@ -4,20 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Optional
 
+import numpy as np
 from qgis.core import (
     QgsProcessingAlgorithm,
     QgsProcessingContext,
     QgsProcessingFeedback,
     QgsProcessingParameterDefinition,
+    QgsProcessingParameterExtent,
 )
 
 from ..algorithms.cloud.dimensions import DIMENSIONS
+from ..algorithms.cloud.files import read_extent
 from ..algorithms.stage import Stage
 from .clouds import CloudParameter, CloudsParameter, cloud_path, cloud_paths
+from .crs import crs_of
 from .feedback import is_step
 
 INPUT, INPUTS, REFERENCE, OUTPUT, REPORT = "INPUT", "INPUTS", "REFERENCE", "OUTPUT", "REPORT"
+EXTENT = "EXTENT"
 
 
 def with_help(definition: QgsProcessingParameterDefinition, text: str) -> QgsProcessingParameterDefinition:
@@ -40,6 +46,33 @@ def input_paths(
     if several:
         return cloud_paths(algorithm, INPUTS, parameters, context)
     return [cloud_path(algorithm, INPUT, parameters, context)]
+
+
+def extent_parameter() -> QgsProcessingParameterDefinition:
+    """Return the parameter of the part of the cloud that is worked on."""
+    what = "Only points within are read: to try parameters on a part of the cloud first. Empty: all points."
+    return with_help(QgsProcessingParameterExtent(EXTENT, "Extent (empty = the whole cloud)", optional=True), what)
+
+
+def extent_box(
+    algorithm: QgsProcessingAlgorithm, path: Path, parameters: dict, context: QgsProcessingContext
+) -> Optional[np.ndarray]:
+    """Return the extent that a user gives, (2, 2) in the coordinates of a cloud; None where none is given.
+
+    An extent in another coordinate reference system becomes the box around it.
+
+    Raises
+    ------
+    ValueError
+        If it is no extent, or an empty one.
+    """
+    if parameters.get(EXTENT) in (None, ""):
+        return None
+    crs = crs_of(read_extent(path)[2])
+    rectangle = algorithm.parameterAsExtent(parameters, EXTENT, context, crs)
+    if rectangle.isNull() or not rectangle.isFinite():
+        raise ValueError(f"The extent {parameters[EXTENT]!r} is none; give it as xmin,xmax,ymin,ymax.")
+    return np.array([[rectangle.xMinimum(), rectangle.yMinimum()], [rectangle.xMaximum(), rectangle.yMaximum()]])
 
 
 def subject_of(clouds: Sequence[Path], feedback: QgsProcessingFeedback) -> str:

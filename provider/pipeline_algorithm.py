@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -20,7 +21,7 @@ from qgis.core import (
     QgsProcessingParameterDefinition,
 )
 
-from ..algorithms.cloud.files import check_readable, read_extent
+from ..algorithms.cloud.files import check_readable, read_cloud, read_extent, write_cloud
 from ..algorithms.help import pipeline_help
 from ..algorithms.pipeline import Output, Pipeline, Step
 from ..algorithms.stage import Cancelled
@@ -29,9 +30,20 @@ from .crs import crs_units, make_in_main_thread, renew_in_main_thread
 from .declared import DeclaredAlgorithm, on_command_line, shown_help
 from .dependencies import missing_sentence
 from .errors import as_processing_errors
-from .feedback import ChainFeedback, warn_unknown_parameters
+from .feedback import ChainFeedback, FeedbackMonitor, warn_unknown_parameters
 from .input_layers import input_layer_files, input_layer_name, refuse_elsewhere
-from .inputs import INPUT, INPUTS, OUTPUT, REPORT, input_parameter, input_paths, subject_of
+from .inputs import (
+    EXTENT,
+    INPUT,
+    INPUTS,
+    OUTPUT,
+    REPORT,
+    extent_box,
+    extent_parameter,
+    input_parameter,
+    input_paths,
+    subject_of,
+)
 from .models import model_file, pipeline_parameters, step_label
 from .outputs import all_in_place, check_targets
 from .parameters import number_outputs, tunable_values
@@ -99,6 +111,8 @@ class PipelineAlgorithm(DeclaredAlgorithm, QgsProcessingModelAlgorithm):
         for definition in self.parameterDefinitions():
             self.removeParameter(definition.name())
         for definition in mended:
+            if definition.isDestination() and self.pipeline.reads_cloud and not self.parameterDefinition(EXTENT):
+                self.addParameter(extent_parameter())
             self.addParameter(definition)
 
     def _mended(
@@ -178,6 +192,7 @@ class PipelineAlgorithm(DeclaredAlgorithm, QgsProcessingModelAlgorithm):
             check_readable(cloud, crs_units)
         if clouds:
             refuse_elsewhere(self, self.pipeline.input_layers.values(), clouds, given, context)
+            self._box = extent_box(self, clouds[0], given, context)
         return clouds
 
     def _with_defaults(self, parameters: dict) -> dict:
@@ -222,12 +237,25 @@ class PipelineAlgorithm(DeclaredAlgorithm, QgsProcessingModelAlgorithm):
         return {}
 
     def _run_steps(self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback) -> dict:
-        with _own_steps(context):
-            results = super().processAlgorithm(parameters, context, ChainFeedback(feedback))
+        with _own_steps(context), tempfile.TemporaryDirectory() as folder:
+            given = {**parameters, **self._parts(Path(folder), feedback)}
+            results = super().processAlgorithm(given, context, ChainFeedback(feedback))
         if feedback.isCanceled():
             # QGIS leaves out the steps that are left and returns what the others made.
             raise Cancelled
         return results
+
+    def _parts(self, folder: Path, feedback: QgsProcessingFeedback) -> dict:
+        """Return the inputs of the model that are parts of clouds, written to a folder; none for whole clouds."""
+        if not self._clouds or self._box is None:
+            return {}
+        parts = []
+        for number, path in enumerate(self._clouds):
+            cloud = read_cloud(path, FeedbackMonitor(feedback).part(0.0, 0.0), crs_units, self._box)
+            parts.append(str(folder / f"{number}" / f"{path.name.split('.')[0]}.las"))
+            Path(parts[-1]).parent.mkdir()
+            write_cloud(cloud, parts[-1])
+        return {INPUTS: parts} if self.pipeline.merges else {INPUT: parts[0]}
 
     def _finished(self, results: dict, parameters: dict) -> dict:
         """Return the results of the steps under the names of the composite's outputs."""

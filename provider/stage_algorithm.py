@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Optional
 
+import numpy as np
 from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsProcessingAlgorithm,
@@ -31,7 +32,18 @@ from .dependencies import missing_sentence
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, announce, warn_unknown_parameters
 from .input_layers import find_input_layer, input_layer_files, input_layer_parameter, read_input_layer, refuse_elsewhere
-from .inputs import OUTPUT, REFERENCE, REPORT, cloud_title, input_parameter, input_paths, subject_of, with_help
+from .inputs import (
+    OUTPUT,
+    REFERENCE,
+    REPORT,
+    cloud_title,
+    extent_box,
+    extent_parameter,
+    input_parameter,
+    input_paths,
+    subject_of,
+    with_help,
+)
 from .layer_outputs import UNWANTED, write_layer
 from .memory import warn_if_memory_is_short
 from .outputs import all_in_place, check_targets, file_filter, write_for_qgis
@@ -53,6 +65,7 @@ class _Job:
     inputs: list[Path] = field(default_factory=list)
     reference: Optional[Path] = None
     systems: list[QgsCoordinateReferenceSystem] = field(default_factory=list)
+    box: Optional[np.ndarray] = None
 
     @property
     def paths(self) -> list[Path]:
@@ -86,6 +99,8 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
             self.addParameter(input_layer_parameter(input_layer))
         for tunable in self.stage.tunables.values():
             self.addParameter(parameter(tunable))
+        if self.stage.reads_cloud:
+            self.addParameter(extent_parameter())
         self._add_destinations()
         self._add_numbers()
 
@@ -162,6 +177,8 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
             job.inputs = input_paths(self, self.stage.merges, parameters, context)
         if self.stage.reads_reference:
             job.reference = cloud_path(self, REFERENCE, parameters, context)
+        if job.inputs:
+            job.box = extent_box(self, job.inputs[0], parameters, context)
         read = [*files_read(job.paths), *input_layer_files(self, self.stage.input_layers, parameters, context)]
         check_targets(self.destinationParameterDefinitions(), parameters, read)
         if job.inputs:
@@ -201,9 +218,11 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         """Read clouds and layers and run the stage; return what it made, and where on Earth that lies."""
         paths = self.job.paths
         # Where memory ends while they are read, no warning comes through any more.
-        warn_if_memory_is_short(sum(map(count_points, paths)), monitor)
+        if self.job.box is None:
+            warn_if_memory_is_short(sum(map(count_points, paths)), monitor)
         share = _READ / max(1, len(paths))
-        clouds = [read_cloud(path, monitor.part(i * share, (i + 1) * share), crs_units) for i, path in enumerate(paths)]
+        parts = [monitor.part(i * share, (i + 1) * share) for i in range(len(paths))]
+        clouds = [read_cloud(path, part, crs_units, self.job.box) for path, part in zip(paths, parts)]
         reference = clouds.pop() if self.job.reference else None
         found = {wanted: find_input_layer(self, wanted, parameters, context) for wanted in self.stage.input_layers}
         given = {wanted: layer for wanted, layer in found.items() if layer is not None}

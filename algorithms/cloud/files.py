@@ -20,7 +20,7 @@ from .laz import writing_backend
 from .outputs import COPC, LAZ, VPC, check_output, kind_of, replacing
 from .point_formats import WITH_WAVEFORMS
 from .point_records import PointRecords
-from .points import check_points, open_header, read_points, write_points
+from .points import check_points, open_header, points_within, read_points, write_points
 from .units import Resolver, crs_records, has_wkt, units_of, wkt_of
 from .vpc import read_tiles, tiles_of
 
@@ -32,7 +32,10 @@ _WAVEFORMS_APART = (
 
 
 def read_cloud(
-    path: Union[str, Path], monitor: Optional[Monitor] = None, crs_units: Optional[Resolver] = None
+    path: Union[str, Path],
+    monitor: Optional[Monitor] = None,
+    crs_units: Optional[Resolver] = None,
+    box: Optional[np.ndarray] = None,
 ) -> Cloud:
     """Read a LAS, LAZ or COPC file, or all tiles of a virtual point cloud (VPC).
 
@@ -46,10 +49,14 @@ def read_cloud(
         EPSG code -> (meters per horizontal unit, meters per vertical unit, whether
         it is geographic), or None if unknown; asked when a file gives a code and no unit.
 
+    box : ndarray of shape (2, 2), optional
+        Least and greatest easting and northing, in coordinates of the file: only points within are kept, edges
+        included. Memory is needed for these.
+
     Raises
     ------
     ValueError
-        In one sentence, whatever is wrong with the file.
+        In one sentence, whatever is wrong with the file; or if there are no points in the box.
     """
     path, monitor = Path(path), monitor or Monitor()
     with _readable(path):
@@ -57,10 +64,15 @@ def read_cloud(
         header = open_header(files[0])
         units = units_of(header, crs_units)
         if len(files) == 1:
-            points = read_points(files[0], header, monitor)
+            points = (
+                read_points(files[0], header, monitor) if box is None else points_within(files[0], header, box, monitor)
+            )
             header = header.without(LASZIP, COPC_INFO, COPC_HIERARCHY)
         else:
-            header, points = read_tiles(files, monitor)
+            header, points = read_tiles(files, monitor, box)
+    if not len(points):
+        raise ValueError(f"{path.name} has no points within the extent; choose another extent.")
+    header = header if box is None else replace(header, count=len(points))
     if units.warning:
         monitor.warn(units.warning)
     return Cloud(header, points, units, files if files == [path] else [*files, path])

@@ -74,6 +74,26 @@ def read_points(path: Path, header: Header, monitor: Monitor) -> np.ndarray:
     return points
 
 
+def points_within(path: Path, header: Header, box: np.ndarray, monitor: Monitor) -> np.ndarray:
+    """Return the records that lie within a box (2, 2) in plan, in the file's order; at its edges they are within.
+
+    ``box`` holds the least and the greatest easting and northing, in the coordinates of the file.
+    """
+    found = [np.empty(0, header.layout.dtype)]
+    if (box[1] >= header.low[:2]).all() and (box[0] <= header.high[:2]).all():
+        found += [chunk[is_within(chunk, header, box)] for _, chunk in read_chunks(path, header, monitor)]
+    return np.concatenate(found)
+
+
+def is_within(records: np.ndarray, header: Header, box: np.ndarray) -> np.ndarray:
+    """Return which records (n,) lie within a box (2, 2) in plan, in the coordinates of the file."""
+    within = np.ones(len(records), bool)
+    for i, axis in enumerate("XY"):
+        place = records[axis] * header.scale[i] + header.offset[i]
+        within &= (place >= box[0, i]) & (place <= box[1, i])
+    return within
+
+
 def _reads(path: Path, header: Header, monitor: Monitor) -> Iterator[tuple[int, int, Callable]]:
     """Yield (start, stop, function that fills an array with these points), with progress between."""
     with path.open("rb") as stream:

@@ -15,7 +15,7 @@ from ..stage import Monitor
 from .header import COPC_HIERARCHY, COPC_INFO, LASZIP, WAVEFORMS, WKT_BIT, Header, Vlr
 from .outputs import COPC, LAS, LAZ, kind_of, replacing
 from .point_records import convert, merged_layout
-from .points import open_header, read_chunks
+from .points import open_header, points_within, read_chunks
 from .units import crs_identity, wkt_of
 from .wording import shown
 
@@ -166,11 +166,12 @@ def _href(tile: Path, folder: Path) -> str:
     return f"./{tile.relative_to(folder).as_posix()}" if folder in tile.parents else str(tile)
 
 
-def read_tiles(paths: list[Path], monitor: Monitor) -> tuple[Header, np.ndarray]:
+def read_tiles(paths: list[Path], monitor: Monitor, box: Optional[np.ndarray] = None) -> tuple[Header, np.ndarray]:
     """Return all tiles as one cloud, tile after tile: its header and its records.
 
     The merged cloud has the finest scale of the tiles, all their dimensions and
-    the records (VLRs) of all, the first tile's first.
+    the records (VLRs) of all, the first tile's first. With a ``box`` (2, 2) in the coordinates of the tiles it has only
+    the points within, and tiles are read only where their headers meet it.
 
     Raises
     ------
@@ -181,6 +182,8 @@ def read_tiles(paths: list[Path], monitor: Monitor) -> tuple[Header, np.ndarray]
     headers = [open_header(path) for path in paths]
     check_tiles(paths, headers)
     header = merged_header(headers, "tiles", monitor)
+    if box is not None:
+        return header, _records_within(paths, headers, header, box, monitor)
     points = np.zeros(header.count, header.layout.dtype)
     start = 0
     for path, tile in zip(paths, headers):
@@ -189,6 +192,19 @@ def read_tiles(paths: list[Path], monitor: Monitor) -> tuple[Header, np.ndarray]
             fill_merged(points[start + at : start + at + len(chunk)], chunk, tile, header)
         start += tile.count
     return header, points
+
+
+def _records_within(
+    paths: list[Path], headers: list[Header], merged: Header, box: np.ndarray, monitor: Monitor
+) -> np.ndarray:
+    """Return the records of all tiles that lie within a box, as records of the merged cloud."""
+    found = [np.empty(0, merged.layout.dtype)]
+    for done, (path, tile) in enumerate(zip(paths, headers)):
+        part = monitor.part(done / len(paths), (done + 1) / len(paths))
+        records = points_within(path, tile, box, part)
+        found.append(np.zeros(len(records), merged.layout.dtype))
+        fill_merged(found[-1], records, tile, merged)
+    return np.concatenate(found)
 
 
 def fill_merged(out: np.ndarray, records: np.ndarray, tile: Header, merged: Header) -> None:

@@ -1,0 +1,98 @@
+"""A part of a cloud instead of the whole: for stages, for composites, in whatever coordinates the extent is given."""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
+from lidar_buildings.algorithms.cloud.vpc import write_vpc
+from lidar_buildings.tests.builders import roof
+
+WEST, SOUTH = 85_000.0, 447_000.0
+EXTENT = f"{WEST + 10},{WEST + 40},{SOUTH + 5},{SOUTH + 45}"
+
+
+@pytest.fixture(scope="module")
+def tile(tmp_path_factory):
+    """A field of 100 m by 50 m with a house within the extent and one beyond it."""
+    rng = np.random.default_rng(5)
+    plan = rng.uniform(0, [100, 50], (100 * 50 * 4, 2))
+    under = ((plan > [20, 20]) & (plan < [32, 30])).all(axis=1) | ((plan > [70, 20]) & (plan < [82, 30])).all(axis=1)
+    ground = np.column_stack([plan, rng.normal(0, 0.02, len(plan))])[~under]
+    houses = [roof(rng, x, 20, 12, 10, 5.0, density=4.0) for x in (20, 70)]
+    xyz = np.concatenate([ground, *houses]) + [WEST, SOUTH, 0]
+    path = tmp_path_factory.mktemp("extent") / "tile.laz"
+    write_cloud(create_cloud({"xyz": xyz, "gps_time": np.arange(len(xyz)) * 1e-3}, "EPSG:28992"), path)
+    return path
+
+
+def inside(cloud):
+    x, y = cloud.to_map(cloud.get("xyz"))[:, :2].T
+    return (x >= WEST + 10) & (x <= WEST + 40) & (y >= SOUTH + 5) & (y <= SOUTH + 45)
+
+
+def test_a_stage_reads_the_points_within_and_keeps_their_order(provider, context, log, tile, tmp_path):
+    algorithm = provider.algorithm("classifynoisestatistical")
+    given = {"INPUT": str(tile), "EXTENT": EXTENT, "OUTPUT": str(tmp_path / "part.laz")}
+    results, succeeded = algorithm.run(given, context, log)
+    assert succeeded, log.textLog()
+    whole, part = read_cloud(tile), read_cloud(results["OUTPUT"])
+    np.testing.assert_array_equal(part.get("gps_time"), whole.get("gps_time")[inside(whole)])
+
+
+def test_a_composite_finds_the_house_within_and_no_other(provider, context, log, tile, tmp_path):
+    from qgis.core import QgsVectorLayer
+
+    algorithm = provider.algorithm("detectbuildings")
+    target = tmp_path / "footprints.gpkg"
+    given = {"INPUT": str(tile), "EXTENT": EXTENT, "OUTPUT": str(tmp_path / "part.laz"), "FOOTPRINTS": str(target)}
+    results, succeeded = algorithm.run(given, context, log)
+    assert succeeded, log.textLog()
+    assert len(read_cloud(results["OUTPUT"])) == inside(read_cloud(tile)).sum()
+    (house,) = QgsVectorLayer(str(target)).getFeatures()
+    assert house.geometry().boundingBox().xMaximum() < WEST + 40
+
+
+def test_an_extent_in_degrees_becomes_the_box_around_it(provider, context, log, tile, tmp_path):
+    from qgis.core import QgsCoordinateReferenceSystem, QgsCoordinateTransform, QgsProject, QgsRectangle
+
+    rd, wgs84 = (QgsCoordinateReferenceSystem(name) for name in ("EPSG:28992", "EPSG:4326"))
+    change = QgsCoordinateTransform(rd, wgs84, QgsProject.instance())
+    box = change.transformBoundingBox(QgsRectangle(WEST + 10, SOUTH + 5, WEST + 40, SOUTH + 45))
+    numbers = ",".join(map(repr, (box.xMinimum(), box.xMaximum(), box.yMinimum(), box.yMaximum())))
+    given = {"INPUT": str(tile), "EXTENT": f"{numbers} [EPSG:4326]", "OUTPUT": str(tmp_path / "part.laz")}
+    results, succeeded = provider.algorithm("classifynoisestatistical").run(given, context, log)
+    assert succeeded, log.textLog()
+    part = read_cloud(results["OUTPUT"])
+    assert inside(part).sum() == inside(read_cloud(tile)).sum()
+    assert len(part) < 1.1 * inside(part).sum()
+
+
+def test_tiles_of_a_virtual_point_cloud_are_read_where_they_meet_the_extent(tile, tmp_path):
+    cloud = read_cloud(tile)
+    x = cloud.to_map(cloud.get("xyz"))[:, 0]
+    for name, part in (("west", x < WEST + 30), ("east", x >= WEST + 30)):
+        write_cloud(cloud.take(np.flatnonzero(part)), tmp_path / f"{name}.las")
+    write_vpc([tmp_path / "west.las", tmp_path / "east.las"], tmp_path / "all.vpc")
+    box = np.array([[WEST + 10, SOUTH + 5], [WEST + 40, SOUTH + 45]])
+    part = read_cloud(tmp_path / "all.vpc", box=box)
+    assert sorted(part.get("gps_time")) == sorted(cloud.get("gps_time")[inside(cloud)])
+
+
+def test_an_extent_without_points_and_no_extent_are_sentences(provider, context, tile, tmp_path):
+    from qgis.core import QgsProcessingException
+
+    algorithm = provider.algorithm("classifynoisestatistical")
+    given = {"INPUT": str(tile), "OUTPUT": str(tmp_path / "part.laz")}
+    with pytest.raises(QgsProcessingException, match="tile.laz has no points within the extent"):
+        algorithm.run({**given, "EXTENT": "0,1,0,1"}, context, log_of(), {}, False)
+    accepted, why = algorithm.checkParameterValues({**given, "EXTENT": "here"}, context)
+    assert not accepted
+    assert "EXTENT" in why or "extent" in why.lower()
+    assert not (tmp_path / "part.laz").exists()
+
+
+def log_of():
+    from qgis.core import QgsProcessingFeedback
+
+    return QgsProcessingFeedback()
