@@ -109,6 +109,7 @@ def test_inputs_and_outputs_are_what_the_stage_reads_and_makes(stage, algorithm)
     destinations = [definition.name() for definition in algorithm.destinationParameterDefinitions()]
     wanted = ["OUTPUT"] * bool(stage.writes or stage.creates or stage.selects or stage.merges)
     wanted += [made.name.upper() for made in (*stage.layers, *stage.rasters)] + ["REPORT"] * bool(stage.measures)
+    wanted += [file.name.upper() for file in stage.files]
     assert destinations == wanted
     numbers = {
         output.name() for output in algorithm.outputDefinitions() if isinstance(output, QgsProcessingOutputNumber)

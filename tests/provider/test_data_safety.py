@@ -84,7 +84,7 @@ def test_a_late_cancel_leaves_the_older_results(provider, context, log, town_fil
     def cancelled(self, *args):
         raise Cancelled
 
-    monkeypatch.setattr(stage_algorithm.StageAlgorithm, "_write_layer", cancelled)
+    monkeypatch.setattr(stage_algorithm, "write_layer", cancelled)
     with pytest.raises(QgsProcessingException, match="Cancelled"):
         run("toychain", {**given, "SECOND_STEP": 2.5}, context, log)
     assert [digest(out / name) for name in ("a.laz", "f.gpkg")] == before

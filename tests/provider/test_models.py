@@ -188,7 +188,7 @@ def test_the_composite_shows_the_steps_parameters(provider):
     assert algorithm.parameterDefinition("SECOND_TIMES").defaultValue() == 3
     advanced = Qgis.ProcessingParameterFlag.Advanced
     shown = [d.name() for d in algorithm.parameterDefinitions() if not d.flags() & advanced and not d.isDestination()]
-    assert shown == ["INPUT", "SECOND_STEP", "SIGN"]
+    assert shown == ["INPUT", "SECOND_STEP", "SIGN", "EXTENT"]
     assert algorithm.parameterDefinition("SIGN").description() == "Sign"
     assert {output.name() for output in algorithm.outputDefinitions()} >= {"OUTPUT", "FOOTPRINTS", "FIRST_BASE_USED"}
     assert (algorithm.name(), algorithm.displayName(), algorithm.group()) == ("toychain", "Toy chain", "Toys")
@@ -275,7 +275,7 @@ def test_a_step_that_fails_leaves_nothing(provider, context, log, town_file, out
         assert not (out / "a.laz").exists()
         raise error("There is nothing to draw; look at the points first.")
 
-    monkeypatch.setattr(stage_algorithm.StageAlgorithm, "_write_layer", refused)
+    monkeypatch.setattr(stage_algorithm, "write_layer", refused)
     with pytest.raises(QgsProcessingException, match="nothing to draw"):
         run(
             "toychain",
