@@ -13,7 +13,7 @@ from qgis.core import QgsProcessingException, QgsVectorLayer
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.stage import Cancelled
-from lidar_buildings.provider import outputs, stage_algorithm
+from lidar_buildings.provider import layer_outputs, outputs, stage_algorithm
 
 
 def run(name, parameters, context, log):
@@ -112,14 +112,14 @@ def test_a_layer_is_replaced_when_the_new_one_is_complete(provider, context, log
     run("toyoutline", given, context, log)
     before = digest(target)
     seen = []
-    real = stage_algorithm.qgis_features
+    real = layer_outputs.qgis_features
 
     def watched(*arguments):
         for feature in real(*arguments):
             seen.append(digest(target))
             yield feature
 
-    monkeypatch.setattr(stage_algorithm, "qgis_features", watched)
+    monkeypatch.setattr(layer_outputs, "qgis_features", watched)
     run("toyoutline", {**given, "MARGIN": 5.0}, context, log)
     assert seen == [before]
     assert digest(target) != before

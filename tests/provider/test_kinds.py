@@ -26,7 +26,7 @@ from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.cloud.units import NO_CRS
 from lidar_buildings.algorithms.stage import InputLayer, Monitor, Raster, RasterSurface
-from lidar_buildings.provider import rasters, stage_algorithm
+from lidar_buildings.provider import layer_outputs, rasters, stage_algorithm
 from lidar_buildings.provider.input_layers import find_input_layer, read_input_layer
 from lidar_buildings.provider.places import place_of_cloud
 from lidar_buildings.provider.styles import layer_style
@@ -528,7 +528,7 @@ def test_a_layer_while_or_after_which_something_fails_is_removed(
         yield from itertools.islice(qgis_features(*arguments), n_written)
         raise ValueError("No more; look below.")
 
-    monkeypatch.setattr(stage_algorithm, "qgis_features", some)
+    monkeypatch.setattr(layer_outputs, "qgis_features", some)
     with pytest.raises(QgsProcessingException, match=r"^No more; look below.$"):
         run("toymake", {"OUTPUT": str(out / "a.las"), "TRUTH": str(out / name)}, context, log)
     assert list(out.iterdir()) == []
