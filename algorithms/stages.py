@@ -27,6 +27,7 @@ from .segmentation.segment_clusters import segment_clusters
 from .segmentation.segment_planes_ransac import segment_planes_ransac
 from .segmentation.segment_regions import segment_regions
 from .segmentation.segment_roofs import segment_roofs
+from .segmentation.segment_surfaces import segment_surfaces
 from .segmentation.segment_voxels import segment_voxels
 from .shapes.detect_cylinders import detect_cylinders
 from .shapes.detect_spheres import detect_spheres
@@ -62,6 +63,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     segment_regions,
     segment_roofs,
     segment_clusters,
+    segment_surfaces,
     segment_planes_ransac,
     segment_planes_hough,
     detect_cylinders,

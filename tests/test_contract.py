@@ -59,6 +59,7 @@ STAGE_IDS = {
     "segmentregions",
     "segmentroofs",
     "segmentclusters",
+    "segmentsurfaces",
     "segmentplanesransac",
     "segmentplaneshough",
     "detectcylinders",

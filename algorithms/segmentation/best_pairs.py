@@ -1,0 +1,106 @@
+"""Adjacent planes merged in rounds: each pair that is the best of both."""
+
+from __future__ import annotations
+
+from typing import Callable
+
+import numpy as np
+
+from ..stage import Monitor
+from .least_squares_planes import Planes
+
+# What it costs to merge the planes of pairs (k,), inf where they must not; costs only depend on the two planes.
+Cost = Callable[[Planes, np.ndarray, np.ndarray], np.ndarray]
+
+
+def merge_best_pairs(
+    planes: Planes, one: np.ndarray, other: np.ndarray, cost: Cost, monitor: Monitor
+) -> tuple[Planes, np.ndarray]:
+    """Merge adjacent planes, the most similar first, until none are similar enough.
+
+    Parameters
+    ----------
+    planes : Planes
+        Planes (m,).
+    one, other : ndarray of shape (k,), int
+        Pairs of planes that are adjacent.
+    cost : callable
+        Dissimilarity of the planes of pairs, inf where they are not similar enough.
+    monitor : Monitor
+        Receives progress.
+
+    Returns
+    -------
+    planes : Planes
+        What became of them.
+    group : ndarray of shape (m,), int64
+        The number of each plane there.
+
+    Notes
+    -----
+    In a round every pair is merged that both of its planes prefer to all their others. The partition is that of a queue
+    from which the most similar pair of all is taken each time, provided that no merged plane is more similar to a third
+    one than both of its parts were; of equal costs the pair with the lowest numbers is first.
+    """
+    group, first = np.arange(len(planes)), np.arange(len(planes))
+    low, high = np.minimum(one, other), np.maximum(one, other)
+    low, high = np.divmod(np.unique(low[low != high].astype(np.int64) * len(planes) + high[low != high]), len(planes))
+    price = cost(planes, low, high)
+    n_first = max(len(planes), 1)
+    while True:
+        similar = np.isfinite(price)
+        low, high, price = low[similar], high[similar], price[similar]
+        if not len(low):
+            return planes, group
+        best = _mutually_best(low, high, price, first, len(planes))
+        target = np.arange(len(planes))
+        target[high[best]] = low[best]
+        stays = target == np.arange(len(planes))
+        number = np.cumsum(stays) - 1
+        became = number[target]
+        planes = planes.merged(became, int(stays.sum()))
+        group, first = became[group], first[stays]
+        changed = np.zeros(len(planes), bool)
+        changed[became[low[best]]] = True
+        low, high, price = _adjacent(became[low], became[high], price, len(planes))
+        again = changed[low] | changed[high]
+        price[again] = cost(planes, low[again], high[again])
+        monitor.progress(1 - len(planes) / n_first)
+
+
+def _mutually_best(low, high, price, first, n: int) -> np.ndarray:
+    """Return the positions of the pairs that are the best of both planes."""
+    order = np.lexsort((np.maximum(first[low], first[high]), np.minimum(first[low], first[high]), price))
+    rank = np.empty(len(order), np.int64)
+    rank[order] = np.arange(len(order))
+    least = np.full(n, len(order))
+    np.minimum.at(least, low, rank)
+    np.minimum.at(least, high, rank)
+    return np.flatnonzero((least[low] == rank) & (least[high] == rank))
+
+
+def _adjacent(one: np.ndarray, other: np.ndarray, price: np.ndarray, n: int) -> tuple:
+    """Return each pair of two different planes once, with one of its prices."""
+    low, high = np.minimum(one, other), np.maximum(one, other)
+    apart = low != high
+    key, place = np.unique(low[apart] * n + high[apart], return_index=True)
+    return (*np.divmod(key, n), price[apart][place])
+
+
+def common_deviation(planes: Planes, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Return how far (root mean square, m) points of either of two planes lie off their common plane at most."""
+    n = len(one)
+    both = Planes(
+        *(np.concatenate([part[one], part[other]]) for part in (planes.count, planes.center, planes.covariance))
+    )
+    common = both.merged(np.tile(np.arange(n), 2), n)
+    parts = Planes(
+        *(
+            np.concatenate([a, b])
+            for a, b in zip(
+                (both.count, both.center, both.covariance), (common.count, common.center, common.covariance)
+            )
+        )
+    )
+    off = parts.deviation(np.arange(2 * n), 2 * n + np.tile(np.arange(n), 2))
+    return np.maximum(off[:n], off[n:])

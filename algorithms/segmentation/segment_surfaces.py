@@ -1,0 +1,218 @@
+"""Smooth surfaces and planes by surface growing."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Optional
+
+import numpy as np
+
+from ..geometry.components import number_large
+from ..geometry.delaunay import triangulate
+from ..geometry.groups import items
+from ..packages import spatial
+from ..params import PointDensity, SurfaceNoise
+from ..sampling.cloud_sampling import CloudSampling, without_noise
+from ..stage import Monitor, Param, stage
+from .surface_growing import Criteria, LocalPlanes, grow_planes, grow_surfaces, local_planes
+
+# Reach of a neighborhood in point spacings on surfaces: it holds 28 points, of which the nearest are taken, and crosses
+# gaps between scan lines three times as wide as points lie apart on the average.
+_RADIUS_SPACINGS = 3.0
+
+# Points of a neighborhood: nine degrees of freedom, so that the deviation of a plane is known to a quarter.
+_NEIGHBORS = 12
+
+# Roughness of a surface beyond noise, in point spacings: what it bends between its points.
+_BENDS = 0.05
+
+# Distance to a plane within which a point belongs to it (standard deviations): one point in 370 lies farther off.
+_WITHIN = 3.0
+
+# Root mean square distance of the points of a seed (standard deviations): with nine degrees of freedom 1 % of the
+# planes have more (chi-square).
+_SMOOTH = 1.55
+
+
+@stage(
+    "Segment surfaces",
+    group="Segmentation",
+    tags="surface growing,region growing,plane growing,smooth,normals,Hough,planes,segmentation",
+    writes=("segment_id",),
+)
+def segment_surfaces(
+    xyz,
+    classification,
+    *,
+    seeds: Annotated[
+        str,
+        Param(
+            "Seeds",
+            "How the plane of a neighborhood is found. Least squares is quick and finds seeds where all points around "
+            "are of one surface; robust least squares leaves outliers out; the local Hough transform finds planes "
+            "among outliers and beside edges, in 4 times the time.",
+            choices=("least squares", "robust", "hough"),
+        ),
+    ] = "least squares",
+    planarity: Annotated[
+        str,
+        Param(
+            "Planarity",
+            "Points are accepted near the plane of the surface around the nearest of its points (local), so that "
+            "smooth curved surfaces are one; near the plane of all points of the surface (global: plane growing); or "
+            "anywhere.",
+            choices=("local", "global", "none"),
+        ),
+    ] = "local",
+    smooth_normals: Annotated[
+        bool,
+        Param(
+            "Smooth normals",
+            "Points are accepted only if their normals are like that of the surface beside them.",
+        ),
+    ] = False,
+    proximity: Annotated[
+        str,
+        Param(
+            "Proximity",
+            "Points are near if they are among the nearest within the radius, or joined by an edge of the "
+            "triangulation in plan that is no longer (for clouds with one surface above each place).",
+            choices=("radius", "edges"),
+        ),
+    ] = "radius",
+    radius: Annotated[
+        Optional[float],
+        Param(
+            "Radius",
+            "Reach of the neighborhood in which planes are fitted, and of growth.",
+            unit="m",
+            low=0,
+            high=1000,
+            open_low=True,
+            automatic="3 times the point spacing on surfaces.",
+        ),
+    ] = None,
+    neighbors: Annotated[
+        int,
+        Param("Neighbors", "Nearest points within the radius that are used, the point included.", low=6, high=200),
+    ] = _NEIGHBORS,
+    tolerance: Annotated[
+        Optional[float],
+        Param(
+            "Tolerance",
+            "Distance to the plane of a surface within which points belong to it; larger joins rougher and more curved "
+            "surfaces.",
+            unit="m",
+            low=0,
+            high=100,
+            open_low=True,
+            automatic="3 standard deviations: the surface noise and 0.05 point spacings.",
+        ),
+    ] = None,
+    max_angle: Annotated[
+        float,
+        Param(
+            "Maximum angle",
+            "Largest angle between the normals of a point and of the surface, with smooth normals only.",
+            unit="°",
+            low=0,
+            high=90,
+            open_low=True,
+        ),
+    ] = 15.0,
+    min_points: Annotated[
+        int, Param("Minimum points", "Surfaces with fewer points get no id.", low=1, high=10_000_000)
+    ] = 20,
+    noise: SurfaceNoise = None,
+    density: PointDensity = None,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Grow surfaces from smooth seeds to the points beside them.
+
+    A plane is fitted to the neighborhood of each point. Where it fits well, the neighborhood is a seed surface.
+    Surfaces grow from seeds to points near them, as long as these lie on the plane of the surface and, on request,
+    have a similar normal. Roofs, terrain, curved ramps, domes and pipes become one segment each; crowns and other
+    scattered points get none. With *global* planarity each segment is a plane.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes; noise (7, 18) is left out.
+
+    Returns
+    -------
+    segment_id : ndarray of shape (n,), int32
+        Surfaces from 1, 0 is none.
+
+    Notes
+    -----
+    The paper grows one surface after the other; here all grow together in rounds, and those whose seeds hold one
+    another are one. A point that several surfaces could take joins that of its nearest point; where this does not hold
+    it, the next one is tried, also if it is of the same surface. Points that join get the plane of the surface around
+    them (least squares), as the paper asks for. The smallest square sums are told by the root mean square distance of
+    a seed, which may be 1.55 standard deviations, free of the degrees of freedom. The local Hough transform votes for
+    128 directions of planes through each point. In *global* mode planes start from the smoothest seed of each
+    neighborhood and are joined in mutually best pairs where they meet.
+
+    References
+    ----------
+    Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point clouds,
+    sections 2.2, 3.1 and 4.1. Hoover, A., et al., 1996. An experimental comparison of range image segmentation
+    algorithms. IEEE Transactions on Pattern Analysis and Machine Intelligence 18 (7), 673-689.
+    """
+    sampling = sampling or CloudSampling.of(xyz, classification)
+    density = sampling.surface_density if density is None else density
+    noise = sampling.noise if noise is None else noise
+    spacing = 1 / float(np.sqrt(density))
+    radius = _RADIUS_SPACINGS * spacing if radius is None else radius
+    tolerance = _WITHIN * float(np.hypot(noise, _BENDS * spacing)) if tolerance is None else tolerance
+    monitor.resolved(density=density, noise=noise, radius=radius, tolerance=tolerance)
+    used = np.flatnonzero(without_noise(classification))
+    points = xyz[used] - xyz[used].mean(axis=0)
+
+    tree = spatial.cKDTree(points)
+    planes = local_planes(points, tree, neighbors, radius, seeds, tolerance, monitor.part(0, 0.5))
+    if proximity == "edges":
+        planes.neighbors = _edge_neighbors(points, radius, monitor.part(0.5, 0.6))
+    is_seed = planes.deviation <= _SMOOTH / _WITHIN * tolerance
+    criteria = Criteria(
+        tolerance if planarity != "none" else None, float(np.cos(np.radians(max_angle))) if smooth_normals else None
+    )
+    surface = _grown(planes, is_seed, criteria, planarity, tolerance, monitor.part(0.6, 1))
+    segment_id = np.zeros(len(xyz), np.int32)
+    segment_id[used] = number_large(surface, min_points)
+    return segment_id
+
+
+def _grown(
+    planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria, planarity: str, tolerance: float, monitor: Monitor
+) -> np.ndarray:
+    if planarity == "global":
+        return grow_planes(planes, is_seed, criteria, _SMOOTH / _WITHIN * tolerance, monitor)
+    return grow_surfaces(planes, is_seed, criteria, monitor)
+
+
+def _edge_neighbors(points: np.ndarray, longest: float, monitor: Monitor) -> np.ndarray:
+    """Return the nodes (n, k), nearest first, that edges of the triangulation in plan join to each point.
+
+    Edges longer than ``longest`` (m) are left out; the point itself fills rows with fewer nodes.
+    """
+    n = len(points)
+    neighbors = np.repeat(np.arange(n, dtype=np.int32)[:, None], 1, axis=1)
+    if n < 3 or np.linalg.matrix_rank(points[:, :2] - points[0, :2]) < 2:
+        return neighbors
+    facets = triangulate(points[:, :2], monitor).facets.astype(np.int64)
+    ends = np.concatenate([facets[:, [0, 1]], facets[:, [1, 2]], facets[:, [2, 0]]])
+    key = np.unique(np.concatenate([ends @ [n, 1], ends @ [1, n]]))
+    one, other = np.divmod(key, n)
+    length = np.linalg.norm(points[one] - points[other], axis=1)
+    order: Any = np.lexsort((length, one))
+    order = order[length[order] <= longest]
+    one, other = one[order], other[order]
+    count = np.bincount(one, minlength=n)
+    rank = items(count)[1]
+    neighbors = np.repeat(np.arange(n, dtype=np.int32)[:, None], max(int(count.max(initial=1)), 1), axis=1)
+    neighbors[one, rank] = other
+    return neighbors

@@ -1,0 +1,449 @@
+"""Surface growing: local planes of points, seed surfaces where they are smooth, and growth from these."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Callable, Optional
+
+import numpy as np
+
+from ..geometry.groups import components
+from ..neighborhoods.covariance import nearest_offsets, smallest_eigenvectors, symmetric_eigenvalues
+from ..neighborhoods.nearest_blocks import PAIRS
+from ..packages import csgraph, sparse
+from ..stage import Monitor
+from ..threads import in_chunks
+from .best_pairs import common_deviation, merge_best_pairs
+from .least_squares_planes import Planes, planes_of
+
+# A plane and how far points lie off it take this many points.
+_LEAST_POINTS = 5
+
+# Robust planes hold at least this share of their neighborhood: with less the other side of an edge is as good a plane.
+_LEAST_SHARE = 0.5
+
+# Fits of a robust plane, each to the points near the one before.
+_REFITS = 3
+
+# Directions of the local Hough transform, even on the half sphere: 13° apart, so that a plane between two of them
+# leaves most of its points within the bins of one.
+_DIRECTIONS = 128
+
+# Points of a chunk, and for the Hough transform, whose workspace is larger.
+_CHUNK, _HOUGH_CHUNK = 20_000, 2_000
+
+# Growth by one neighborhood in each round: more than the widest gap between seeds takes.
+_MAX_ROUNDS = 1000
+
+
+@dataclass(frozen=True)
+class Criteria:
+    """When a point belongs to the surface beside it.
+
+    Attributes
+    ----------
+    tolerance : float or None
+        Largest distance to the plane of the surface, m; None leaves the criterion out.
+    cosine : float or None
+        Least cosine of the angle between the normals; None leaves the criterion out.
+    """
+
+    tolerance: Optional[float]
+    cosine: Optional[float]
+
+    def hold(self, away: np.ndarray, normal: np.ndarray, other: np.ndarray) -> np.ndarray:
+        """Return whether surfaces hold points.
+
+        Parameters
+        ----------
+        away : ndarray of shape (m, 3)
+            Points, from a point on the plane of each surface (m).
+        normal, other : ndarray of shape (m, 3)
+            Normals of the surfaces, and of the points.
+        """
+        held = np.ones(len(away), bool)
+        if self.tolerance is not None:
+            held &= np.abs(np.einsum("ij,ij->i", away, normal)) <= self.tolerance
+        if self.cosine is not None:
+            held &= np.abs(np.einsum("ij,ij->i", normal, other)) >= self.cosine
+        return held
+
+
+@dataclass
+class LocalPlanes:
+    """The plane of each point and its neighbors.
+
+    Attributes
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        The points, m.
+    offset : ndarray of shape (n, 3), float32
+        Center of the plane from its point, m.
+    normal : ndarray of shape (n, 3), float32
+        Unit normals, upward; 0 where there is no plane.
+    deviation : ndarray of shape (n,), float32
+        Root mean square distance of its points, free of the degrees of freedom of the fit, m; inf without a plane.
+    neighbors : ndarray of shape (n, k), int32
+        Points near each point, nearest first; the point itself where there are fewer.
+    """
+
+    xyz: np.ndarray
+    offset: np.ndarray
+    normal: np.ndarray
+    deviation: np.ndarray
+    neighbors: np.ndarray
+
+    def hold(self, criteria: Criteria, plane: np.ndarray, point: np.ndarray) -> np.ndarray:
+        """Return whether the planes of some points (m,) hold others (m,)."""
+        away = (self.xyz[point] - self.xyz[plane]).astype(np.float32) - self.offset[plane]
+        return criteria.hold(away, self.normal[plane], self.normal[point])
+
+    def agree(self, criteria: Criteria, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+        """Return whether the planes of points (m,) and of others (m,) hold one another's points and centers.
+
+        At an edge the planes of both sides hold points of the other side, but not where the middle of its points is.
+        """
+        apart = (self.xyz[other] - self.xyz[one]).astype(np.float32)
+        agreed = np.ones(len(one), bool)
+        for a, b, step in ((one, other, apart), (other, one, -apart)):
+            away = step - self.offset[a]
+            for offset in (0, self.offset[b]):
+                agreed &= criteria.hold(away + offset, self.normal[a], self.normal[b])
+        return agreed
+
+
+def local_planes(
+    xyz: np.ndarray, tree: Any, count: int, radius: float, method: str, tolerance: float, monitor: Monitor
+) -> LocalPlanes:
+    """Fit a plane to the neighborhood of each point.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points (m).
+    tree : scipy.spatial.cKDTree
+        Of the points.
+    count : int
+        Points of a neighborhood at most, the point itself among them.
+    radius : float
+        Reach of a neighborhood, m.
+    method : {"least squares", "robust", "hough"}
+        How planes are fitted.
+    tolerance : float
+        Distance within which a point lies on a robust plane, m.
+    monitor : Monitor
+        Receives progress.
+    """
+    n, columns = len(xyz), np.ascontiguousarray(xyz.T)
+    count = min(count, n)
+    planes = LocalPlanes(
+        xyz,
+        np.zeros((n, 3), np.float32),
+        np.zeros((n, 3), np.float32),
+        np.full(n, np.inf, np.float32),
+        np.empty((n, count - 1), np.int32),
+    )
+    inliers = {"least squares": _every, "robust": _without_outliers, "hough": _voted}[method]
+
+    def work(rows: np.ndarray) -> None:
+        neighbors, parts = nearest_offsets(columns, tree, rows, count)
+        offsets = np.stack(parts, axis=-1).astype(np.float32)
+        near = np.einsum("ijk,ijk->ij", offsets, offsets) <= radius * radius
+        planes.neighbors[rows] = np.where(near, neighbors, rows[:, None])[:, 1:]
+        chosen = inliers(offsets, near, tolerance)
+        enough = chosen.sum(axis=1) >= np.maximum(_LEAST_POINTS, _LEAST_SHARE * near.sum(axis=1))
+        _store(planes, rows[enough], *_fitted(offsets[enough], chosen[enough]))
+
+    in_chunks(work, tree.indices, _HOUGH_CHUNK if method == "hough" else _CHUNK, monitor)
+    return planes
+
+
+def _store(planes: LocalPlanes, rows: np.ndarray, center, normal, deviation) -> None:
+    defined = np.isfinite(normal).all(axis=1)
+    rows = rows[defined]
+    planes.offset[rows], planes.normal[rows] = center[defined], normal[defined]
+    planes.deviation[rows] = deviation[defined]
+
+
+def _fitted(offsets: np.ndarray, chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return center (m, 3), normal (m, 3) and deviation (m,) of the ``chosen`` (m, k) points of neighborhoods."""
+    weight = chosen.astype(np.float32)
+    count = np.maximum(weight.sum(axis=1), 1).astype(float)
+    center = np.einsum("ijk,ij->ik", offsets, weight) / count[:, None]
+    away = (offsets - center[:, None].astype(np.float32)) * weight[..., None]
+    products = np.column_stack([np.einsum("ij,ij->i", away[..., a], away[..., b]) for a, b in PAIRS]) / count[:, None]
+    eigenvalues = symmetric_eigenvalues(products)
+    free = np.maximum(count - 3, 1)
+    return center, smallest_eigenvectors(products, eigenvalues), np.sqrt(eigenvalues[:, 2] * count / free)
+
+
+def _every(offsets: np.ndarray, near: np.ndarray, tolerance: float) -> np.ndarray:
+    return near
+
+
+def _without_outliers(offsets: np.ndarray, near: np.ndarray, tolerance: float) -> np.ndarray:
+    """Return which points are no outliers of a plane by least squares, fitted again without those of the one before."""
+    chosen = near
+    for share in (0.8, 0.65, _LEAST_SHARE, _LEAST_SHARE):
+        distance = _distances(offsets, *_fitted(offsets, chosen)[:2])
+        distance[~near] = np.inf
+        rank = np.ceil(share * near.sum(axis=1)).astype(int) - 1
+        nearest = np.take_along_axis(np.sort(distance, axis=1), rank[:, None], axis=1)
+        chosen = near & (distance <= np.maximum(nearest, tolerance))
+    return near & (_distances(offsets, *_fitted(offsets, chosen)[:2]) <= tolerance)
+
+
+def _voted(offsets: np.ndarray, near: np.ndarray, tolerance: float) -> np.ndarray:
+    """Return which points lie on the plane through the point that most neighbors vote for."""
+    size = offsets.shape
+    distance = np.abs(offsets.reshape(-1, 3) @ _half_sphere().T).reshape(size[0], size[1], -1)
+    # Points in the middle of a bin count more: of several planes with all points the best one wins.
+    np.divide(distance, -2 * tolerance, out=distance)
+    distance += 1
+    np.maximum(distance, 0, out=distance)
+    distance *= near[..., None]
+    best = distance.sum(axis=1).argmax(axis=1)
+    chosen = near & (np.take_along_axis(distance, best[:, None, None], axis=2)[..., 0] > 0)
+    for _ in range(_REFITS):
+        center, normal, _ = _fitted(offsets, chosen)
+        chosen = near & (_distances(offsets, center, normal) <= tolerance)
+    return chosen
+
+
+def _half_sphere() -> np.ndarray:
+    """Return directions (d, 3), float32, even on the upper half sphere (Fibonacci's spiral)."""
+    number = np.arange(_DIRECTIONS) + 0.5
+    up = 1 - number / _DIRECTIONS
+    angle = np.pi * (1 + np.sqrt(5)) * number
+    out = np.sqrt(1 - up**2)
+    return np.column_stack([out * np.cos(angle), out * np.sin(angle), up]).astype(np.float32)
+
+
+def _distances(offsets: np.ndarray, center: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    level = np.einsum("ij,ij->i", center, normal)
+    return np.abs(np.einsum("ijk,ik->ij", offsets, np.nan_to_num(normal)) - np.nan_to_num(level)[:, None])
+
+
+def grow_surfaces(planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria, monitor: Monitor) -> np.ndarray:
+    """Grow smooth surfaces from the seeds.
+
+    Parameters
+    ----------
+    planes : LocalPlanes
+        The points; those that join a surface get the plane of its points around them.
+    is_seed : ndarray of shape (n,), bool
+        Points whose neighborhood is a seed surface.
+    criteria : Criteria
+        When a point belongs to the surface beside it.
+    monitor : Monitor
+        Receives progress.
+
+    Returns
+    -------
+    ndarray of shape (n,), int32
+        Surface of each point from 0, -1 is none.
+
+    Notes
+    -----
+    Seeds whose planes agree are one surface; a surface that is grown from one of them reaches the others. Then all
+    surfaces take the points beside them in rounds; a point that several could take joins the one of the nearest point.
+    Surfaces that meet there and agree are one.
+    """
+    surface = connected_seeds(planes, is_seed, criteria, monitor.part(0, 0.6))
+    open_ = np.flatnonzero(surface < 0)
+    for step in range(_MAX_ROUNDS):
+        monitor.progress(0.6 + 0.4 * (1 - 0.8**step))
+        parent = _nearest_that_holds(planes, open_, surface, lambda a, b: planes.hold(criteria, a, b))
+        joins = parent >= 0
+        rows, parent = open_[joins], parent[joins]
+        if not len(rows):
+            break
+        surface[rows] = surface[parent]
+        _refit(planes, rows, parent, surface)
+        is_new = np.zeros(len(surface), bool)
+        is_new[rows] = True
+        open_ = open_[~joins]
+        open_ = open_[is_new[planes.neighbors[open_]].any(axis=1)]
+    return _met(planes, surface, np.flatnonzero((surface >= 0) & ~is_seed), criteria)
+
+
+def _met(planes: LocalPlanes, surface: np.ndarray, rows: np.ndarray, criteria: Criteria) -> np.ndarray:
+    """Return the surfaces with those joined that meet at the points ``rows`` and go on into one another."""
+    n = int(surface.max(initial=-1)) + 1
+    keys = [np.empty(0, np.int64)]
+    for start in range(0, len(rows), _CHUNK):
+        some = rows[start : start + _CHUNK]
+        around = planes.neighbors[some]
+        a, column = np.nonzero((surface[around] >= 0) & (surface[around] != surface[some, None]))
+        one, other = some[a], around[a, column]
+        agreed = planes.agree(criteria, one, other)
+        keys.append(np.unique(surface[one[agreed]].astype(np.int64) * n + surface[other[agreed]]))
+    one, other = np.divmod(np.unique(np.concatenate(keys)), max(n, 1))
+    return np.append(components(one, other, n)[1], np.int32(-1))[surface].astype(np.int32)
+
+
+def connected_seeds(planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria, monitor: Monitor) -> np.ndarray:
+    """Return the surface (n,), int32, of each seed from 0, -1 of other points."""
+    n = len(is_seed)
+    there: list[np.ndarray] = [np.empty(0, np.int32)] * -(-n // _CHUNK)
+    n_links = np.zeros(n + 1, np.int64)
+
+    def work(rows: np.ndarray) -> None:
+        neighbors = planes.neighbors[rows]
+        a, column = np.nonzero(is_seed[rows, None] & is_seed[neighbors])
+        one, other = rows[a], neighbors[a, column]
+        held = planes.agree(criteria, one, other)
+        n_links[rows + 1] = np.bincount(one[held] - rows[0], minlength=len(rows))
+        there[rows[0] // _CHUNK] = other[held]
+
+    in_chunks(work, np.arange(n), _CHUNK, monitor)
+    columns = np.concatenate(there)
+    there.clear()
+    links = sparse.csr_matrix((np.ones(len(columns)), columns, np.cumsum(n_links)), (n, n))
+    component = csgraph.connected_components(links, directed=False)[1]
+    return np.where(is_seed, component, -1).astype(np.int32)
+
+
+def _nearest_that_holds(
+    planes: LocalPlanes, rows: np.ndarray, surface: np.ndarray, hold: Callable[[np.ndarray, np.ndarray], np.ndarray]
+) -> np.ndarray:
+    """Return the nearest neighbor (m,) of points ``rows`` whose surface holds them, -1 where there is none."""
+    parent = np.full(len(rows), -1, np.int32)
+    left = np.arange(len(rows))
+    for column in range(planes.neighbors.shape[1]):
+        neighbor = planes.neighbors[rows[left], column]
+        tried = np.flatnonzero(surface[neighbor] >= 0)
+        held = tried[hold(neighbor[tried], rows[left[tried]])]
+        parent[left[held]] = neighbor[held]
+        left = np.delete(left, held)
+    return parent
+
+
+def _refit(planes: LocalPlanes, rows: np.ndarray, parent: np.ndarray, surface: np.ndarray) -> None:
+    """Give points that joined a surface the plane of its points around them, that of their parent if these are few."""
+    planes.offset[rows] = planes.offset[parent] + (planes.xyz[parent] - planes.xyz[rows]).astype(np.float32)
+    planes.normal[rows] = planes.normal[parent]
+    planes.deviation[rows] = planes.deviation[parent]
+    for start in range(0, len(rows), _CHUNK):
+        some = rows[start : start + _CHUNK]
+        around = np.column_stack([some, planes.neighbors[some]])
+        same = surface[around] == surface[some, None]
+        same[:, 1:] &= around[:, 1:] != some[:, None]
+        enough = same.sum(axis=1) >= _LEAST_POINTS
+        some, around, same = some[enough], around[enough], same[enough]
+        offsets = (planes.xyz[around] - planes.xyz[some, None]).astype(np.float32)
+        _store(planes, some, *_fitted(offsets, same))
+
+
+def grow_planes(
+    planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria, most_deviation: float, monitor: Monitor
+) -> np.ndarray:
+    """Grow planes from the smoothest seeds: the plane equation is that of all points of a surface.
+
+    Parameters
+    ----------
+    planes : LocalPlanes
+        The points.
+    is_seed : ndarray of shape (n,), bool
+        Points whose neighborhood is a seed surface.
+    criteria : Criteria
+        When a point belongs to the plane beside it.
+    most_deviation : float
+        Largest root mean square distance of the points of two planes that are one, m.
+    monitor : Monitor
+        Receives progress.
+
+    Returns
+    -------
+    ndarray of shape (n,), int32
+        Plane of each point from 0, -1 is none.
+
+    Notes
+    -----
+    One seed in each neighborhood, the smoothest, grows together with all others. Planes that meet are joined in rounds
+    of mutually best pairs while the points of both deviate no more from the common plane than those of a seed.
+    """
+    rank = np.empty(len(is_seed), np.int64)
+    rank[np.lexsort((planes.deviation, ~is_seed))] = np.arange(len(rank))
+    best = is_seed & (rank <= rank[planes.neighbors].min(axis=1, initial=len(rank)))
+    surface = np.where(best, np.cumsum(best) - 1, -1).astype(np.int32)
+    if not best.any():
+        return surface
+    fitted = _first_planes(planes, surface, criteria)
+    fitted = _take_points(planes, surface, fitted, criteria, monitor.part(0, 0.4))
+
+    def cost(parts: Planes, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+        deviation = common_deviation(parts, one, other)
+        return np.where(deviation <= most_deviation, deviation, np.inf)
+
+    fitted, joined = merge_best_pairs(fitted, *_pairs(planes, surface), cost, monitor.part(0.4, 0.8))
+    surface = np.where(surface >= 0, joined[surface], -1).astype(np.int32)
+    # Planes are better known now, and hold more of the points at their edges.
+    _take_points(planes, surface, fitted, criteria, monitor.part(0.8, 1))
+    return surface
+
+
+def _first_planes(planes: LocalPlanes, surface: np.ndarray, criteria: Criteria) -> Planes:
+    """Let seeds take what their own planes hold, and return the planes of their points."""
+    rows = np.flatnonzero(surface < 0)
+    seeds = surface.copy()
+    parent = _nearest_that_holds(planes, rows, seeds, lambda a, b: planes.hold(criteria, a, b))
+    surface[rows[parent >= 0]] = seeds[parent[parent >= 0]]
+    members = np.flatnonzero(surface >= 0)
+    return planes_of(planes.xyz[members], surface[members], int(surface.max()) + 1)
+
+
+def _take_points(
+    planes: LocalPlanes, surface: np.ndarray, fitted: Planes, criteria: Criteria, monitor: Monitor
+) -> Planes:
+    """Let planes take the points beside them in rounds, and return the planes of all points then."""
+    open_ = np.flatnonzero(surface < 0)
+    for step in range(_MAX_ROUNDS):
+        monitor.progress(1 - 0.8**step)
+
+        hold = partial(_plane_holds, planes, surface, fitted, criteria)
+        parent = _nearest_that_holds(planes, open_, surface, hold)
+        rows = open_[parent >= 0]
+        if not len(rows):
+            break
+        surface[rows] = surface[parent[parent >= 0]]
+        fitted = _with_points(fitted, planes.xyz[rows], surface[rows])
+        open_ = open_[parent < 0]
+    return fitted
+
+
+def _plane_holds(
+    planes: LocalPlanes,
+    surface: np.ndarray,
+    fitted: Planes,
+    criteria: Criteria,
+    neighbor: np.ndarray,
+    point: np.ndarray,
+) -> np.ndarray:
+    """Return whether the planes of all points of the surfaces of some points (m,) hold others (m,)."""
+    plane = surface[neighbor]
+    return criteria.hold(planes.xyz[point] - fitted.center[plane], fitted.normal[plane], planes.normal[point])
+
+
+def _with_points(fitted: Planes, xyz: np.ndarray, plane: np.ndarray) -> Planes:
+    """Return planes fitted to further points, too."""
+    number, which = np.unique(plane, return_inverse=True)
+    more = planes_of(xyz, which, len(number))
+    both = Planes(
+        np.concatenate([fitted.count, more.count]),
+        np.concatenate([fitted.center, more.center]),
+        np.concatenate([fitted.covariance, more.covariance]),
+    )
+    return both.merged(np.concatenate([np.arange(len(fitted)), number]), len(fitted))
+
+
+def _pairs(planes: LocalPlanes, surface: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return pairs of surfaces with neighboring points, some of them several times."""
+    pairs = []
+    for column in planes.neighbors.T:
+        a, b = surface, surface[column]
+        apart = np.flatnonzero((a >= 0) & (b >= 0) & (a != b))
+        key = np.unique(a[apart].astype(np.int64) * 2**32 + b[apart])
+        pairs.append(key)
+    return np.divmod(np.unique(np.concatenate(pairs)), 2**32)

@@ -1,0 +1,191 @@
+"""Surface growing on a tile of two strips with roofs, a dome, a ramp and a crown, and against a literal growth."""
+
+import numpy as np
+import pytest
+from scipy import spatial
+
+from lidar_buildings.algorithms.segmentation.segment_surfaces import segment_surfaces as stage
+from lidar_buildings.algorithms.segmentation.surface_growing import Criteria, connected_seeds, local_planes
+from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.tests.builders import FAR
+from lidar_buildings.tests.monitors import Listening
+
+GROUND, WEST_ROOF, EAST_ROOF, DOME, RAMP, DECK, CROWN = range(7)
+
+
+def segment_surfaces(xyz, **tunables):
+    return stage(xyz, np.ones(len(xyz), np.uint8), **tunables)
+
+
+def surface_at(x, y):
+    """Return height (n,) and part (n,) of the surface above places: 60 m by 40 m."""
+    z, part = 0.02 * x, np.full(len(x), GROUND)
+
+    def put(inside, heights, number):
+        z[inside], part[inside] = heights[inside], number
+
+    west = (x > 5) & (x <= 10) & (y > 5) & (y < 17)
+    east = (x > 10) & (x < 15) & (y > 5) & (y < 17)
+    put(west, 4 + 0.6 * (x - 5), WEST_ROOF)
+    put(east, 4 + 0.6 * (15 - x), EAST_ROOF)
+    away = np.hypot(x - 28, y - 11)
+    put(away < 6, 3 + np.sqrt(np.maximum(8**2 - away**2, 0)) - np.sqrt(8**2 - 6**2), DOME)
+    # A ramp that turns by a half circle and rises by 4 m; its deck goes on at the top.
+    turn = np.arctan2(y - 28, x - 45)
+    radius = np.hypot(x - 45, y - 28)
+    put((radius > 6) & (radius < 10) & (y > 28), 2 + 4 * turn / np.pi + 0.02 * x, RAMP)
+    return z, part
+
+
+@pytest.fixture(scope="module")
+def tile():
+    """Two strips, of which the second lies 2 cm higher; crowns over the ground; 8 points per m² in each strip."""
+    rng = np.random.default_rng(5)
+    strips, parts = [], []
+    for lift, (west, east) in ((0.0, (0, 40)), (0.02, (20, 60))):
+        x, y = rng.uniform((west, 0), (east, 40), (8 * 40 * (east - west), 2)).T
+        z, part = surface_at(x, y)
+        strips.append(np.column_stack([x, y, z + lift + rng.normal(0, 0.015, len(x))]))
+        parts.append(part)
+    crown = rng.normal(0, 1, (900, 3))
+    crown *= rng.uniform(0.2, 1, (900, 1)) * 2.5 / np.linalg.norm(crown, axis=1, keepdims=True)
+    return np.concatenate([*strips, crown + [10, 30, 6]]), np.concatenate([*parts, np.full(900, CROWN)])
+
+
+def share(ids, part, number):
+    """Return the segment with most points of a part, its share of the part, and how much of it is of the part."""
+    segment = np.bincount(ids[(part == number) & (ids > 0)], minlength=1).argmax()
+    return segment, (ids[part == number] == segment).mean(), (part[ids == segment] == number).mean()
+
+
+@pytest.mark.parametrize("seeds", ["least squares", "robust", "hough"])
+def test_each_surface_of_the_tile_is_one_segment(tile, seeds):
+    xyz, part = tile
+    ids = segment_surfaces(xyz, seeds=seeds)
+    segments = set()
+    for number, least in ((GROUND, 0.97), (WEST_ROOF, 0.93), (EAST_ROOF, 0.93), (DOME, 0.93), (RAMP, 0.9)):
+        segment, found, correct = share(ids, part, number)
+        assert found > least, number
+        assert correct > 0.97, number
+        segments.add(segment)
+    assert len(segments) == 5
+    assert (ids[part == CROWN] > 0).mean() < 0.35
+
+
+def test_planes_part_the_dome_and_keep_the_roofs(tile):
+    xyz, part = tile
+    ids = segment_surfaces(xyz, planarity="global")
+    for number in (GROUND, WEST_ROOF, EAST_ROOF):
+        _, found, correct = share(ids, part, number)
+        assert found > 0.95
+        assert correct > 0.95
+    assert len(np.unique(ids[(part == DOME) & (ids > 0)])) >= 5
+    for number in np.unique(ids[ids > 0]):
+        points = xyz[ids == number] - xyz[ids == number].mean(axis=0)
+        assert np.linalg.svd(points, compute_uv=False)[-1] / np.sqrt(len(points)) < 0.05
+
+
+def test_smooth_normals_part_what_meets_at_an_edge_without_planarity(tile):
+    xyz, part = tile
+    roofs = np.isin(part, (WEST_ROOF, EAST_ROOF))
+    together = segment_surfaces(xyz[roofs], planarity="none", tolerance=0.06)
+    assert len(np.unique(together)) == 1
+    apart = segment_surfaces(xyz[roofs], planarity="none", smooth_normals=True, tolerance=0.06)
+    assert share(apart, part[roofs], WEST_ROOF)[0] != share(apart, part[roofs], EAST_ROOF)[0]
+    assert share(apart, part[roofs], WEST_ROOF)[1] > 0.85
+
+
+def test_edges_of_the_triangulation_end_at_walls_and_gaps(tile):
+    xyz, part = tile
+    ids = segment_surfaces(xyz[part != CROWN], proximity="edges")
+    kept = part[part != CROWN]
+    for number in (WEST_ROOF, EAST_ROOF, DOME):
+        assert share(ids, kept, number)[1] > 0.85
+        assert share(ids, kept, number)[2] > 0.95
+    gap = np.concatenate([xyz[(part == GROUND) & (xyz[:, 1] < 20)], xyz[(part == GROUND) & (xyz[:, 1] > 24)]])
+    assert (segment_surfaces(gap, proximity="edges", radius=1.0) == 1).mean() < 0.7
+
+
+def test_robust_seeds_are_found_among_outliers(rng):
+    """A floor of which every fourth point is up to half a meter off."""
+    xyz = np.column_stack([rng.uniform(0, 20, (4000, 2)), rng.normal(0, 0.01, 4000)])
+    is_off = rng.random(4000) < 1 / 4
+    xyz[is_off, 2] += rng.uniform(0.1, 0.5, is_off.sum())
+    tunables = {"tolerance": 0.04, "radius": 1.0}
+    assert (segment_surfaces(xyz, **tunables)[~is_off] == 1).mean() < 0.7
+    for seeds in ("robust", "hough"):
+        ids = segment_surfaces(xyz, seeds=seeds, **tunables)
+        assert (ids[~is_off] == 1).mean() > 0.95
+        assert (ids[is_off] == 1).mean() < 0.03
+
+
+def holds(planes, criteria, a, b):
+    """Whether the plane of a holds point and center of b, whose normal is like its own."""
+    center, normal = planes.xyz[a] + planes.offset[a], planes.normal[a]
+    away = max(abs((place - center) @ normal) for place in (planes.xyz[b], planes.xyz[b] + planes.offset[b]))
+    return away <= criteria.tolerance and abs(planes.normal[b] @ normal) >= criteria.cosine
+
+
+def literal(planes, is_seed, criteria):
+    """Grow from one seed after the other over seeds only, pair by pair."""
+    surface, number = np.full(len(is_seed), -1), 0
+    for seed in np.flatnonzero(is_seed):
+        if surface[seed] >= 0:
+            continue
+        surface[seed], stack = number, [seed]
+        while stack:
+            a = stack.pop()
+            for b in np.flatnonzero(is_seed & (surface < 0)):
+                linked = b in planes.neighbors[a] or a in planes.neighbors[b]
+                if linked and holds(planes, criteria, a, b) and holds(planes, criteria, b, a):
+                    surface[b] = number
+                    stack.append(b)
+        number += 1
+    return surface
+
+
+def test_surfaces_of_seeds_are_those_of_a_literal_growth(rng):
+    x, y = rng.uniform(0, 8, (500, 2)).T
+    xyz = np.column_stack([x, y, np.where(x < 4, 0.5 * np.sin(y), 1.0) + rng.normal(0, 0.03, 500)])
+    criteria = Criteria(0.06, np.cos(np.radians(20)))
+    planes = local_planes(xyz, spatial.cKDTree(xyz), 9, 1.2, "least squares", 0.06, Monitor())
+    is_seed = planes.deviation < 0.05
+    expected = literal(planes, is_seed, criteria)
+    surface = connected_seeds(planes, is_seed, criteria, Monitor())
+    pairs = np.unique(np.column_stack([surface[is_seed], expected[is_seed]]), axis=0)
+    assert len(pairs) == len(np.unique(pairs[:, 0])) == len(np.unique(pairs[:, 1])) >= 2
+
+
+def test_order_place_and_turns_change_nothing(tile):
+    xyz, part = tile
+    some = np.flatnonzero(xyz[:, 0] < 22)
+    xyz = xyz[some].round(3)
+    tunables = {"tolerance": 0.08, "radius": 0.9}
+    ids = segment_surfaces(xyz, **tunables)
+    order = np.random.default_rng(1).permutation(len(xyz))
+    turn = np.array([[0.6, -0.8, 0], [0.8, 0.6, 0], [0, 0, 1]])
+    for other in (
+        segment_surfaces(xyz[order], **tunables)[np.argsort(order)],
+        segment_surfaces(xyz @ turn, **tunables),
+    ):
+        pairs, count = np.unique(np.column_stack([ids, other]), axis=0, return_counts=True)
+        assert count[np.argsort(count)[-ids.max() - 1 :]].sum() > 0.995 * len(ids)
+    np.testing.assert_array_equal(segment_surfaces(xyz + FAR, **tunables) > 0, ids > 0)
+
+
+def test_noise_few_points_and_lines_give_no_segment(rng):
+    xyz = np.column_stack([rng.uniform(0, 10, (600, 2)), rng.normal(0, 0.01, 600)])
+    noise = np.full(600, 7, np.uint8)
+    noise[:300] = 1
+    assert (stage(xyz, noise)[300:] == 0).all()
+    assert not segment_surfaces(xyz[:4]).any()
+    line = np.column_stack([np.linspace(0, 50, 400), np.zeros(400), np.zeros(400)])
+    for planarity in ("local", "global"):
+        for proximity in ("radius", "edges"):
+            assert segment_surfaces(line, planarity=planarity, proximity=proximity, tolerance=0.1).shape == (400,)
+    assert not segment_surfaces(np.zeros((50, 3)), radius=1.0, tolerance=0.1, noise=0.01, density=1.0).any()
+
+
+def test_cancel_gets_through(tile):
+    with pytest.raises(Cancelled):
+        stage(tile[0], np.ones(len(tile[0]), np.uint8), monitor=Listening(stop_at=0.5))
