@@ -28,6 +28,7 @@ from .segmentation.segment_planes_ransac import segment_planes_ransac
 from .segmentation.segment_regions import segment_regions
 from .segmentation.segment_roofs import segment_roofs
 from .segmentation.segment_surfaces import segment_surfaces
+from .segmentation.segment_tin_planes import segment_tin_planes
 from .segmentation.segment_voxels import segment_voxels
 from .shapes.detect_cylinders import detect_cylinders
 from .shapes.detect_spheres import detect_spheres
@@ -64,6 +65,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     segment_roofs,
     segment_clusters,
     segment_surfaces,
+    segment_tin_planes,
     segment_planes_ransac,
     segment_planes_hough,
     detect_cylinders,

@@ -60,6 +60,7 @@ STAGE_IDS = {
     "segmentroofs",
     "segmentclusters",
     "segmentsurfaces",
+    "segmenttinplanes",
     "segmentplanesransac",
     "segmentplaneshough",
     "detectcylinders",

@@ -1,0 +1,166 @@
+"""Planes made of the triangles of a TIN, merged from the most similar pair on."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..geometry.components import number_large
+from ..geometry.delaunay import triangulate
+from ..neighborhoods.nearest_blocks import PAIRS
+from ..params import PointDensity, SurfaceNoise
+from ..sampling.cloud_sampling import CloudSampling, without_noise
+from ..stage import Param, stage
+from .best_pairs import common_deviation, merge_best_pairs
+from .least_squares_planes import Planes
+
+# Edges that are longer lie across gaps, in point spacings: of evenly spread points one edge in a thousand is longer.
+_EDGE_SPACINGS = 4.0
+
+# Distance of the two parts from their common plane (standard deviations of points): that of a triangle has the full
+# error of its three points.
+_WITHIN = 2.0
+
+# Roughness of a surface beyond noise, in point spacings.
+_BENDS = 0.05
+
+
+@stage(
+    "Segment TIN planes",
+    group="Segmentation",
+    tags="TIN,triangulation,mesh,merge,planes,roofs,region merging",
+    writes=("segment_id",),
+)
+def segment_tin_planes(
+    xyz,
+    classification,
+    *,
+    tolerance: Annotated[
+        Optional[float],
+        Param(
+            "Tolerance",
+            "Two surfaces merge if the points of either lie no farther from the common plane (root mean square).",
+            unit="m",
+            low=0,
+            high=100,
+            open_low=True,
+            automatic="2 standard deviations: the surface noise and 0.05 point spacings.",
+        ),
+    ] = None,
+    max_edge: Annotated[
+        Optional[float],
+        Param(
+            "Maximum edge",
+            "Triangles with a longer edge belong to no surface: they lie across walls and gaps.",
+            unit="m",
+            low=0,
+            high=10_000,
+            open_low=True,
+            automatic="4 point spacings.",
+        ),
+    ] = None,
+    min_area: Annotated[
+        float,
+        Param("Minimum area", "Area of the smallest surface, along the surface.", unit="m²", low=0, high=1_000_000),
+    ] = 2.0,
+    noise: SurfaceNoise = None,
+    density: PointDensity = None,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Merge the triangles of a TIN to planes, the most similar neighbors first.
+
+    Each triangle of the Delaunay triangulation in plan starts as a surface. The two adjacent surfaces that are most
+    similar merge and get a common plane, until no two are similar enough. For clouds with one surface above each
+    place, such as airborne ones.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes; noise (7, 18) is left out.
+
+    Returns
+    -------
+    segment_id : ndarray of shape (n,), int32
+        Planes from 1 in the order of their first points; 0 is none. A point has the plane with most of its triangles,
+        by area.
+
+    Notes
+    -----
+    Dissimilarity is the distance, as root mean square over the area of the triangles, of the worse of the two surfaces
+    from their common plane. The queue is worked off in rounds of mutually best pairs, see :mod:`.best_pairs`.
+    Of points at one place in plan one counts, and the others get no id.
+
+    References
+    ----------
+    Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point
+    clouds, section 3.2. Gorte, B., 2002. Segmentation of TIN-structured surface models. Joint International
+    Symposium on Geospatial Theory, Processing and Applications, Ottawa.
+    """
+    sampling = sampling or CloudSampling.of(xyz, classification)
+    density = sampling.density if density is None else density
+    noise = sampling.noise if noise is None else noise
+    spacing = 1 / float(np.sqrt(density))
+    tolerance = _WITHIN * float(np.hypot(noise, _BENDS * spacing)) if tolerance is None else tolerance
+    max_edge = _EDGE_SPACINGS * spacing if max_edge is None else max_edge
+    monitor.resolved(density=density, noise=noise, tolerance=tolerance, max_edge=max_edge)
+    used = np.flatnonzero(without_noise(classification))
+    points = xyz[used] - xyz[used].mean(axis=0)
+    segment_id = np.zeros(len(xyz), np.int32)
+    if len(used) < 3 or np.linalg.matrix_rank(points[:, :2] - points[0, :2]) < 2:
+        monitor.inform("All points lie on one line in plan, so that there are no triangles.")
+        return segment_id
+
+    mesh = triangulate(points[:, :2], monitor.part(0, 0.3))
+    planes = _triangle_planes(points, mesh.facets)
+    is_surface = (_longest_edges(points, mesh.facets) <= max_edge) & (planes.count > 0)
+    number = np.where(is_surface, np.cumsum(is_surface) - 1, -1)
+    one = np.repeat(number, 3)
+    other = np.append(number, -1)[mesh.neighbors.ravel()]
+    adjacent = (one >= 0) & (one < other)
+    planes = planes.chosen(is_surface)
+
+    def cost(parts: Planes, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+        deviation = common_deviation(parts, a, b)
+        return np.where(deviation <= tolerance, deviation, np.inf)
+
+    merged, group = merge_best_pairs(planes, one[adjacent], other[adjacent], cost, monitor.part(0.3, 0.9))
+    group[merged.count[group] < min_area] = -1
+    segment_id[used] = number_large(_of_points(mesh.facets[is_surface], group, planes.count, len(points)), 1)
+    return segment_id
+
+
+def _triangle_planes(points: np.ndarray, facets: np.ndarray) -> Planes:
+    """Return the planes of triangles; in place of numbers of points they have the area, m²."""
+    a, b, c = np.swapaxes(points[facets], 0, 1)
+    center = (a + b + c) / 3
+    area = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+    # Second moments of an even triangle: those of its corners, a twelfth instead of a third of them.
+    offsets = [corner - center for corner in (a, b, c)]
+    covariance = np.column_stack([sum(offset[:, i] * offset[:, j] for offset in offsets) / 12 for i, j in PAIRS])
+    return Planes(area, center, covariance)
+
+
+def _longest_edges(points: np.ndarray, facets: np.ndarray) -> np.ndarray:
+    corners = points[facets]
+    return np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+
+
+def _of_points(facets: np.ndarray, group: np.ndarray, area: np.ndarray, n: int) -> np.ndarray:
+    """Return for each of n points the group with the largest area around it, numbered by first points; -1 is none."""
+    inside = group >= 0
+    point, which = facets[inside].ravel().astype(np.int64), np.repeat(group[inside], 3)
+    weight = np.repeat(area[inside], 3)
+    key, place = np.unique(point * (int(group.max(initial=0)) + 1) + which, return_inverse=True)
+    total = np.bincount(place, weight)
+    point, which = np.divmod(key, int(group.max(initial=0)) + 1)
+    order = np.lexsort((which, -total, point))
+    first = order[np.unique(point[order], return_index=True)[1]]
+    of_point = np.full(n, -1, np.int64)
+    of_point[point[first]] = which[first]
+    _, start, inverse = np.unique(of_point[of_point >= 0], return_index=True, return_inverse=True)
+    of_point[of_point >= 0] = np.argsort(np.argsort(start))[inverse]
+    return of_point
