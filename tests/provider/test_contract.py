@@ -48,6 +48,8 @@ IDS = {
     "extractwallfootprints",
     "filterpoints",
     "segmentclusters",
+    "segmenttinplanes",
+    "segmentsurfaces",
     "segmentvoxels",
     "segmentplanesransac",
     "segmentregions",
