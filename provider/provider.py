@@ -9,6 +9,7 @@ from ..algorithms.pipelines import PIPELINES
 from ..algorithms.stages import STAGES
 from ..algorithms.tiling.tiled_pipelines import TILED_PIPELINES
 from . import PROVIDER_ID
+from .cut_algorithm import CutAlgorithm
 from .dependencies import missing_sentence
 from .paths import ICON
 from .pipeline_algorithm import PipelineAlgorithm
@@ -36,6 +37,7 @@ class Provider(QgsProcessingProvider):
         # A model finds its outputs by asking its children, which have to be there.
         for pipeline in PIPELINES.values() if self._with_pipelines else ():
             self.addAlgorithm(PipelineAlgorithm(pipeline))
+        self.addAlgorithm(CutAlgorithm())
         for tiled in TILED_PIPELINES.values():
             self.addAlgorithm(TilesAlgorithm(tiled))
 

@@ -5,12 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, Optional
 
-import numpy as np
 from qgis.core import (
     Qgis,
-    QgsCoordinateReferenceSystem,
-    QgsCoordinateTransform,
-    QgsPointXY,
     QgsProcessingAlgorithm,
     QgsProcessingContext,
     QgsProcessingFeedback,
@@ -25,7 +21,6 @@ from qgis.core import (
 )
 
 from ..algorithms.cloud.files import read_extent
-from ..algorithms.cloud.vpc import write_vpc
 from ..algorithms.tiling.run_in_tiles import TilesOutcome, run_in_tiles
 from ..algorithms.tiling.survey import files_of_survey
 from ..algorithms.tiling.tiled_pipelines import TiledPipeline, tiled_pipeline_help
@@ -41,7 +36,7 @@ from .layer_outputs import write_layer
 from .models import pipeline_parameters
 from .outputs import all_in_place, check_targets
 from .parameters import tunable_values
-from .places import place_of_cloud
+from .surveys import VPC, WGS84, place_of_survey, write_survey
 from .vectors import SOURCE_TYPES
 
 BLOCK_SIDE, PROCESSES, SCHEDULER, CERTIFICATES, COMPRESSED = (
@@ -51,8 +46,6 @@ BLOCK_SIDE, PROCESSES, SCHEDULER, CERTIFICATES, COMPRESSED = (
     "CERTIFICATES",
     "COMPRESSED",
 )
-VPC = "VPC"
-
 # Numbers that the algorithm returns.
 _NUMBERS = {
     "TILES": "Tiles written",
@@ -63,8 +56,6 @@ _NUMBERS = {
 
 # The progress when blocks and tiles are done; the rest is writing the layers.
 _DONE = 0.97
-
-_WGS84 = "EPSG:4326"
 
 
 class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
@@ -159,7 +150,7 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         """Find out files and values; layers may be asked only here, in the main thread."""
         with as_processing_errors():
             self._check(parameters, context)
-            self._systems = make_in_main_thread([read_extent(self.files[0])[2], _WGS84])
+            self._systems = make_in_main_thread([read_extent(self.files[0])[2], WGS84])
         return True
 
     def postProcessAlgorithm(self, context: QgsProcessingContext, feedback: QgsProcessingFeedback) -> dict:  # noqa: N802
@@ -179,7 +170,7 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
             with all_in_place(sinks, parameters, context, folder.name) as run:
                 outcome = self._run(folder, parameters, context, monitor)
                 results = self._write_layers(outcome, run.parameters, context, monitor)
-                results[VPC] = str(self._write_vpc(outcome, folder, context))
+                results[VPC] = str(write_survey(outcome.survey, outcome.tiles, folder, context))
                 results = run.final(results)
             _refuse_failures(outcome, folder)
             monitor.progress(1.0)
@@ -208,7 +199,7 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
     ) -> dict:
         """Write the layers that are wanted; return their outputs."""
         survey, results = outcome.survey, {}
-        place = place_of_cloud(survey.cloud(np.zeros(1, survey.header.layout.dtype)))
+        place = place_of_survey(survey)
         for output in self.tiled.layers:
             features = outcome.layers.get(output.name)
             layer = next(one for one in output.step.stage.layers if one.name == output.of)
@@ -216,21 +207,6 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
                 part, name = monitor.part(_DONE, _DONE), output.name.upper()
                 results.update(write_layer(self, name, layer, features, place, parameters, context, part))
         return results
-
-    def _write_vpc(self, outcome: TilesOutcome, folder: Path, context: QgsProcessingContext) -> Path:
-        """Write the virtual point cloud over the tiles; return its path."""
-        crs = place_of_cloud(outcome.survey.cloud(np.zeros(1, outcome.survey.header.layout.dtype))).crs
-        to_degrees = None
-        if crs.isValid():
-            change = QgsCoordinateTransform(crs, QgsCoordinateReferenceSystem(_WGS84), context.transformContext())
-
-            def to_degrees(coordinates: np.ndarray) -> np.ndarray:
-                there = [change.transform(QgsPointXY(*place)) for place in coordinates.tolist()]
-                return np.array([(place.x(), place.y()) for place in there])
-
-        path = folder / f"{folder.name}.vpc"
-        write_vpc(outcome.tiles, path, to_degrees)
-        return path
 
 
 def _refuse_failures(outcome: TilesOutcome, folder: Path) -> None:

@@ -19,7 +19,12 @@ import conftest  # noqa: E402, F401 - registers the checkout as the package lida
 from lidar_buildings.algorithms.help import page, pipeline_help, stage_help  # noqa: E402
 from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
-from lidar_buildings.algorithms.tiling.tiled_pipelines import TILED_PIPELINES, tiled_pipeline_help  # noqa: E402
+from lidar_buildings.algorithms.tiling.tiled_pipelines import (  # noqa: E402
+    CUT_INTO_TILES,
+    TILED_PIPELINES,
+    survey_tool_help,
+    tiled_pipeline_help,
+)
 from lidar_buildings.provider import models  # noqa: E402
 from lidar_buildings.provider.paths import HELP, MODELS  # noqa: E402
 from lidar_buildings.provider.provider import Provider  # noqa: E402
@@ -32,6 +37,7 @@ def help_pages() -> dict[str, str]:
     pages.update(
         {f"{tiled.id}.html": page(tiled.title, tiled_pipeline_help(tiled)) for tiled in TILED_PIPELINES.values()}
     )
+    pages[f"{CUT_INTO_TILES.id}.html"] = page(CUT_INTO_TILES.title, survey_tool_help(CUT_INTO_TILES))
     return pages
 
 

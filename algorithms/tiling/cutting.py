@@ -15,7 +15,7 @@ from ..cloud.vpc import fill_merged
 from ..geometry.groups import run_starts
 from ..stage import Monitor
 from .blocks import Block
-from .survey import Survey
+from .survey import Survey, check_folder
 
 # Share of the time that reading takes; the rest is writing.
 _READ = 0.5
@@ -36,7 +36,7 @@ def cut_into_tiles(
     side : float
         Side of a tile, m.
     folder : Path
-        Where the tiles go; it exists.
+        Where the tiles go; it is made where it is missing.
     stem : str
         What the names of tiles begin with; their lower left corner in meters follows.
     compressed : bool
@@ -52,8 +52,9 @@ def cut_into_tiles(
     Raises
     ------
     ValueError
-        If a file is damaged or a tile can't be written.
+        If a file is damaged, one of the files would be overwritten, or a tile can't be written.
     """
+    check_folder(folder, survey)
     kind = LAZ if compressed else LAS
     with tempfile.TemporaryDirectory(prefix=".cut-", dir=folder) as heaps:
         blocks = _sort_out(survey, side, Path(heaps), monitor.part(0.0, _READ))

@@ -17,7 +17,7 @@ from typing import Any, Callable, Optional, Union
 import numpy as np
 
 from ..cloud.files import read_cloud, write_cloud
-from ..cloud.outputs import LAS, LAZ, kind_of, locked_folder, same_file
+from ..cloud.outputs import LAS, LAZ, kind_of, locked_folder
 from ..cloud.units import Resolver
 from ..pipeline import Pipeline
 from ..sampling.cloud_sampling import CloudSampling, without_noise
@@ -25,7 +25,7 @@ from ..stage import LayerFeatures, Monitor
 from .blocks import Block, BlockResult, BlockTask, work_on_block
 from .cutting import cut_into_tiles
 from .joining import join_features, join_numbers
-from .survey import Survey, Window, open_survey
+from .survey import Survey, Window, check_folder, open_survey
 from .workers import Workers, run_all
 
 # A window has at most about this many points, so that a worker needs some 2 GB.
@@ -133,7 +133,7 @@ def run_in_tiles(
     for step, chosen in pipeline.by_step(tunables):
         step.stage.check(chosen)
     survey = open_survey(paths, crs_units, monitor)
-    _check_folder(folder, survey)
+    check_folder(folder, survey)
     with _work_folder(folder) as work:
         run = _Run(pipeline, survey, folder, work, monitor, workers, tunables, compressed, crs_units)
         return run.all(block_side, largest_file)
@@ -157,19 +157,6 @@ def can_be_tiled(pipeline: Pipeline) -> bool:
     return pipeline.reads_cloud and not any(
         stage.merges or stage.selects or stage.creates or stage.rasters or stage.files for stage in stages
     )
-
-
-def _check_folder(folder: Path, survey: Survey) -> None:
-    """Refuse a folder that has an input of the run in it, or make it where it is missing."""
-    if folder.exists() and not folder.is_dir():
-        raise ValueError(f"{folder} is a file; choose a folder for the tiles.")
-    inside = [source.path for source in survey.sources if folder.exists() and same_file(source.path.parent, folder)]
-    if inside:
-        raise ValueError(f"{inside[0].name} is in the folder {folder}, where the tiles go; choose another folder.")
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise ValueError(f"The folder {folder} can't be made ({error.strerror}); choose another one.") from error
 
 
 @contextmanager

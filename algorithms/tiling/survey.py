@@ -12,7 +12,7 @@ import numpy as np
 from ..cloud.cloud import Cloud
 from ..cloud.files import files_of
 from ..cloud.header import COPC_HIERARCHY, COPC_INFO, LASZIP, Header
-from ..cloud.outputs import kind_of
+from ..cloud.outputs import kind_of, same_file
 from ..cloud.points import check_points, open_header, read_chunks
 from ..cloud.units import Resolver, Units, units_of, wkt_of
 from ..cloud.vpc import check_tiles, fill_merged, merged_header
@@ -220,3 +220,22 @@ def _box(header: Header, units: Units) -> np.ndarray:
     # The bounds are rounded in some files: a step of the scale more misses no point.
     step = np.abs(header.scale[:2]) * units.horizontal
     return box + np.array([-step, step])
+
+
+def check_folder(folder: Path, survey: Survey) -> None:
+    """Refuse a folder that has an input of the run in it, or make it where it is missing.
+
+    Raises
+    ------
+    ValueError
+        If it is a file, has an input in it, or can't be made.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise ValueError(f"{folder} is a file; choose a folder for the tiles.")
+    inside = [source.path for source in survey.sources if folder.exists() and same_file(source.path.parent, folder)]
+    if inside:
+        raise ValueError(f"{inside[0].name} is in the folder {folder}, where the tiles go; choose another folder.")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ValueError(f"The folder {folder} can't be made ({error.strerror}); choose another one.") from error

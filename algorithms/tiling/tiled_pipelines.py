@@ -9,6 +9,9 @@ from ..pipeline import Output, Pipeline
 from ..pipelines import PIPELINES
 from .run_in_tiles import can_be_tiled
 
+# The group of the toolbox.
+_GROUP = "Surveys in tiles"
+
 _DESCRIPTION = """
 For surveys of any size: the input is a folder of tiles, a virtual point cloud, any number of files, or one file of any
 size. Each file becomes a classified tile of the same name in the output folder, with a virtual point cloud over all of
@@ -53,7 +56,7 @@ class TiledPipeline:
     @property
     def group(self) -> str:
         """The group of the toolbox."""
-        return "Surveys in tiles"
+        return _GROUP
 
     @property
     def tags(self) -> str:
@@ -73,6 +76,43 @@ class TiledPipeline:
             for output in self.pipeline.outputs
             if output.of in [layer.name for layer in output.step.stage.layers]
         ]
+
+
+@dataclass(frozen=True)
+class SurveyTool:
+    """What is done with the files of a survey and runs no stage."""
+
+    name: str
+    title: str
+    tags: str
+    summary: str
+    description: str
+    group: str = _GROUP
+
+    @property
+    def id(self) -> str:
+        """Processing id, ``cutintotiles``: frozen, saved models depend on it."""
+        return self.name.replace("_", "")
+
+
+CUT_INTO_TILES = SurveyTool(
+    name="cut_into_tiles",
+    title="Cut into tiles",
+    tags="tile,tiles,split,grid,folder,survey,large,retile",
+    summary="Cut point clouds of any size into square tiles.",
+    description=(
+        "The tiles are those of a lattice that starts at the zero of the map; each is named by its lower left corner "
+        "in meters. Every point of every file is in exactly one tile, with all its dimensions; points at a lower edge "
+        "belong to the tile, those at an upper edge to the next one. Files are read in portions, so that memory does "
+        "not grow with them; on the disk the points lie once uncompressed beside the tiles while they are made. A "
+        "virtual point cloud over all tiles is written with them."
+    ),
+)
+
+
+def survey_tool_help(tool: SurveyTool) -> str:
+    """Return what a tool does, as HTML that QGIS's help pane shows."""
+    return "\n".join([paragraphs(tool.summary), paragraphs(tool.description)])
 
 
 TILED_PIPELINES = {

@@ -16,7 +16,7 @@ from qgis.core import (
 from lidar_buildings.algorithms.help import pipeline_help
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.stages import STAGES
-from lidar_buildings.algorithms.tiling.tiled_pipelines import TILED_PIPELINES
+from lidar_buildings.algorithms.tiling.tiled_pipelines import CUT_INTO_TILES, TILED_PIPELINES
 from lidar_buildings.provider.clouds import CloudParameter, CloudsParameter
 from lidar_buildings.provider.vectors import SOURCE_TYPES
 from lidar_buildings.tests.toys import TOYS
@@ -89,7 +89,7 @@ def test_ids_are_frozen():
 
 def test_the_toolbox_has_all_and_nothing_else(provider):
     shown = {algorithm.name() for algorithm in provider.algorithms()}
-    made = (*ALL.values(), *PIPELINES.values(), *TILED_PIPELINES.values())
+    made = (*ALL.values(), *PIPELINES.values(), *TILED_PIPELINES.values(), CUT_INTO_TILES)
     assert shown == {one.id for one in made}
 
 

@@ -103,3 +103,20 @@ def test_tiles_are_not_written_over_those_that_are_read(algorithm, context, log,
     with pytest.raises(refused(), match="choose another folder"):
         algorithm.run({"INPUT": str(folder), "OUTPUT": str(folder), **QUICKLY}, context, log, {}, False)
     assert {path: path.read_bytes() for path in folder.iterdir()} == before
+
+
+def test_tiles_are_cut_with_a_virtual_point_cloud_over_them(provider, context, log, folder, tmp_path):
+    given = {"INPUT": str(folder), "SIDE": 20.0, "OUTPUT": str(tmp_path / "cut")}
+    results, succeeded = provider.algorithm("cutintotiles").run(given, context, log)
+    assert succeeded, log.textLog()
+    assert results["TILES"] == 9
+    tiles = sorted((tmp_path / "cut").glob("*.laz"))
+    assert tiles[0].name == "tile_85000_447000.laz"
+    whole, parts = read_cloud(results["VPC"]), [read_cloud(path) for path in folder.glob("*.laz")]
+    cut, uncut = (np.concatenate([one.to_map(one.get("xyz")) for one in clouds]) for clouds in ([whole], parts))
+    np.testing.assert_array_equal(cut[np.lexsort(cut.T)], uncut[np.lexsort(uncut.T)])
+    for tile in tiles:
+        xyz = read_cloud(tile)
+        assert np.ptp(xyz.to_map(xyz.get("xyz"))[:, :2], axis=0).max() < 20
+    with pytest.raises(refused(), match="choose another folder"):
+        provider.algorithm("cutintotiles").run({**given, "OUTPUT": str(folder)}, context, log, {}, False)

@@ -1,0 +1,92 @@
+"""Point clouds of any size cut into square tiles, as a Processing algorithm."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Optional
+
+from qgis.core import (
+    Qgis,
+    QgsProcessingAlgorithm,
+    QgsProcessingContext,
+    QgsProcessingFeedback,
+    QgsProcessingOutputFile,
+    QgsProcessingOutputNumber,
+    QgsProcessingParameterBoolean,
+    QgsProcessingParameterFolderDestination,
+    QgsProcessingParameterNumber,
+)
+
+from ..algorithms.cloud.files import read_extent
+from ..algorithms.tiling.cutting import cut_into_tiles
+from ..algorithms.tiling.survey import files_of_survey, open_survey
+from ..algorithms.tiling.tiled_pipelines import CUT_INTO_TILES, survey_tool_help
+from .clouds import SurveyParameter, survey_paths
+from .crs import crs_units, make_in_main_thread
+from .declared import DeclaredAlgorithm, shown_help
+from .dependencies import missing_sentence
+from .errors import as_processing_errors
+from .feedback import FeedbackMonitor, warn_unknown_parameters
+from .inputs import INPUT, OUTPUT, with_help
+from .surveys import VPC, WGS84, write_survey
+
+SIDE, COMPRESSED, TILES = "SIDE", "COMPRESSED", "TILES"
+
+
+class CutAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
+    """Files in, a folder of tiles out."""
+
+    declared = CUT_INTO_TILES
+
+    def createInstance(self) -> CutAlgorithm:  # noqa: N802 - QGIS asks for these names
+        """Return a new algorithm of the same kind."""
+        return CutAlgorithm()
+
+    def shortHelpString(self) -> str:  # noqa: N802
+        """Return the help that the dialog shows beside the parameters."""
+        return shown_help(survey_tool_help(CUT_INTO_TILES))
+
+    def initAlgorithm(self, configuration: Optional[dict] = None) -> None:  # noqa: N802
+        """Declare the survey, the size of tiles, and the folder."""
+        survey = SurveyParameter(INPUT, "Survey")
+        self.addParameter(with_help(survey, "A folder of .las and .laz files, a .vpc file, or any number of files."))
+        number = Qgis.ProcessingNumberParameterType.Double
+        side = QgsProcessingParameterNumber(SIDE, "Side of a tile (m)", number, 500.0, False, 1.0, 100_000.0)
+        self.addParameter(with_help(side, "Tiles are squares of this side."))
+        compressed = QgsProcessingParameterBoolean(COMPRESSED, "Write LAZ", True)
+        self.addParameter(with_help(compressed, "Tiles are compressed (.laz); otherwise they are .las files."))
+        folder = QgsProcessingParameterFolderDestination(OUTPUT, "Folder of the tiles")
+        self.addParameter(with_help(folder, "It is made where it is missing."))
+        self.addOutput(QgsProcessingOutputFile(VPC, "Virtual point cloud over the tiles"))
+        self.addOutput(QgsProcessingOutputNumber(TILES, "Tiles written"))
+
+    def canExecute(self) -> tuple[bool, str]:  # noqa: N802
+        """Whether all packages are there, and how to install what is missing."""
+        missing = missing_sentence()
+        return not missing, missing
+
+    def prepareAlgorithm(  # noqa: N802
+        self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ) -> bool:
+        """Find out the files; layers may be asked only here, in the main thread."""
+        with as_processing_errors():
+            self.files = files_of_survey(survey_paths(self, INPUT, parameters, context))
+            self._systems = make_in_main_thread([read_extent(self.files[0])[2], WGS84])
+        return True
+
+    def processAlgorithm(  # noqa: N802
+        self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ) -> dict:
+        """Cut; then write the virtual point cloud."""
+        warn_unknown_parameters(self, parameters, feedback)
+        folder = Path(self.parameterAsString(parameters, OUTPUT, context))
+        side = self.parameterAsDouble(parameters, SIDE, context)
+        compressed = self.parameterAsBool(parameters, COMPRESSED, context)
+        monitor = FeedbackMonitor(feedback)
+        with as_processing_errors(feedback):
+            survey = open_survey(self.files, crs_units, monitor)
+            stem = self.files[0].name.split(".")[0] if len(self.files) == 1 else "tile"
+            tiles = cut_into_tiles(survey, side, folder, stem, compressed, monitor)
+            vpc = write_survey(survey, tiles, folder, context)
+            return {OUTPUT: str(folder), VPC: str(vpc), TILES: len(tiles)}
+        return {}
