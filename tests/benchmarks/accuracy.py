@@ -4,8 +4,8 @@
 ``buildings``, ``ground`` and ``noise`` are of real clouds, ``turned`` of the same when cells fall elsewhere, ``harder``
 of the same with fewer points or more noise, ``uneven`` of the same with points on lines, in bands or in pairs,
 ``pieces`` of squares cut out of clouds, ``objects`` of real houses, trees, cars, fences and poles on simulated ground,
-``footprints`` of outlines, ``towns``, ``pits``, ``scenes``, ``villages`` and ``confidence`` of simulated scenes, whose
-truth is exact.
+``footprints`` of outlines, ``towns``, ``pits``, ``scenes``, ``villages``, ``places`` and ``confidence`` of simulated
+scenes, whose truth is exact, and ``maps`` of old maps with known differences.
 
 Each table comes as Markdown for people, as a JSON file for programs (in ``--output``), and those of real clouds as the
 Python lines that the tests hold the program to.
@@ -27,12 +27,16 @@ from lidar_buildings.algorithms.cloud.asprs import PointClass  # noqa: E402
 from lidar_buildings.algorithms.cloud.cloud import Cloud, create_cloud  # noqa: E402
 from lidar_buildings.algorithms.cloud.files import read_cloud  # noqa: E402
 from lidar_buildings.algorithms.geometry.grid import turned_in_plan  # noqa: E402
+from lidar_buildings.algorithms.geometry.polygon_overlap import as_polygons, overlaps  # noqa: E402
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.run import (
     run_pipeline,  # noqa: E402
     run_stage,  # noqa: E402
 )
+from lidar_buildings.algorithms.stage import Monitor  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
+from lidar_buildings.tests.aged_maps import aged, with_plain_corners  # noqa: E402
+from lidar_buildings.tests.benchmarks.drone_scenes import places as drone_places  # noqa: E402
 from lidar_buildings.tests.benchmarks.real_objects import CAR, FENCE, POLE, TREE, scene  # noqa: E402
 from lidar_buildings.tests.benchmarks.results import FOLDER, Table  # noqa: E402
 from lidar_buildings.tests.benchmarks.scenes import SCENES, estate, scanned  # noqa: E402
@@ -418,6 +422,51 @@ def villages() -> list[Table]:
     return [table]
 
 
+def places() -> list[Table]:
+    """Print which houses Map footprints finds in places that are hard to map from photographs."""
+    table = Table("places", "place", "houses", "found", "invented", "in others", "overlap, median, %", "of walls")
+    for name, site, arrays in drone_places():
+        made = mapped(arrays, None).layers["wall_footprints"]
+        true, found = ([building.outline] for building in site.buildings), made.geometries
+        true, found = as_polygons(list(true)), as_polygons(found)
+        house, footprint, shared = overlaps(true, found, Monitor())
+        area, own = np.array([b.area for b in site.buildings]), np.array(made.columns["area"])
+        share = shared / (area[house] + own[footprint] - shared)
+        best, used = np.zeros(len(area)), np.zeros(len(own))
+        np.maximum.at(best, house, share)
+        np.maximum.at(used, footprint, shared / own[footprint])
+        one, other, common = overlaps(found, found, Monitor())
+        nested = (one < other) & (common > 0.5 * np.minimum(own[one], own[other]))
+        counts = int((best > 0.5).sum()), int((used < 0.3).sum()), int(nested.sum())
+        table.add(name, len(area), *counts, 100 * float(np.median(best)), made.columns["source"].count("wall"))
+    return [table]
+
+
+def maps() -> list[Table]:
+    """Print what Compare corners tells of old maps made of mapped footprints, beside what was done to them."""
+    names = ("old_buildings", "found", "missed", "new", "corners", "matched", "mean_dx", "mean_dy", "mean", "deviation")
+    table = Table("maps", "points/m², noise", "of", *names, texts=2)
+    for density, noise, seed in VILLAGES:
+        arrays, _, _ = village(density=density, noise=noise, seed=seed)
+        mapped_ones = with_plain_corners(mapped(arrays, None).layers["wall_footprints"])
+        old = aged(mapped_ones, shift=(0.4, -0.25), noise=0.15, missing=3, gone=2, annexes=3, seed=seed)
+        moved = np.concatenate([moved for _, moved in old.corners.values()])
+        length = np.hypot(*moved.T)
+        known = {**old.counts, "mean_dx": moved[:, 0].mean(), "mean_dy": moved[:, 1].mean()}
+        known.update({"mean": length.mean(), "deviation": length.std()})
+        told = run_stage(
+            STAGES["compare_corners"], input_layers={"footprints": mapped_ones, "old_map": old.layer}
+        ).report.values
+        for called, values in (("done", known), ("told", told)):
+            table.add(f"{density}, {100 * noise:.0f} cm", called, *(_plain(values[name]) for name in names))
+    return [table]
+
+
+def _plain(value: float) -> Any:
+    """Return a count as it is, and a distance in centimeters."""
+    return int(value) if float(value).is_integer() else 100 * float(value)
+
+
 def confidence() -> list[Table]:
     """Print how many clusters of simulated towns are buildings, by how sure the default chain is of them."""
     table = Table("confidence", "confidence", "clusters", "are buildings, %")
@@ -451,7 +500,7 @@ def paste(name: str, values: dict[str, str]) -> None:
     print("}")
 
 
-SIMULATED = {table.__name__: table for table in (towns, pits, scenes, villages, confidence)}
+SIMULATED = {table.__name__: table for table in (towns, pits, scenes, villages, places, maps, confidence)}
 TABLES = {
     **{
         table.__name__: table

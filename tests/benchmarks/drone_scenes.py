@@ -158,6 +158,13 @@ def hamlet(seed: int = 3) -> Scene:
     return land
 
 
+def stone_roofs(village: Scene) -> dict[int, float]:
+    """Return the share of every third roof, by object id, of which nothing is found; of one roof a third."""
+    # The roof of a home is the object after its walls.
+    holes = {building.object_id + 1: 0.25 for building in village.buildings[::3]}
+    return {**holes, village.buildings[5].object_id + 1: 0.35}
+
+
 def matched(scene: Scene, density: float, matching: Matching, holes: dict[int, float], seed: int = 1) -> dict:
     """Return the cloud of a scene as dense matching gives it.
 
@@ -235,3 +242,13 @@ def _without_walls(
         away = np.abs(np.einsum("nkj,kj->nk", xyz[own, None, :2] - ring[None, :-1], normals))
         lost[own] = (rng.random(len(normals)) < share)[np.argmin(away, axis=1)]
     return lost
+
+
+def places() -> list[tuple[str, Scene, dict]]:
+    """Return the places by name: the scene and the cloud of it."""
+    town, land, slope = dense_town(), campus(), hamlet()
+    return [
+        ("dense town of flat roofs", town, matched(town, 59.0, Matching(), {})),
+        ("campus with large flat roofs", land, matched(land, 58.0, Matching(), {})),
+        ("hamlet cut into a slope", slope, matched(slope, 104.0, Matching(), stone_roofs(slope))),
+    ]

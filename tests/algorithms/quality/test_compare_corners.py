@@ -9,6 +9,7 @@ from scipy.optimize import linear_sum_assignment
 from lidar_buildings.algorithms.quality.compare_corners import FOUND, MISSED, NEW, compare_corners, typical_distance
 from lidar_buildings.algorithms.simulation.simulate_village import simulate_village
 from lidar_buildings.algorithms.stage import LayerFeatures, Monitor
+from lidar_buildings.tests.aged_maps import aged, with_plain_corners
 from lidar_buildings.tests.builders import FAR
 
 
@@ -365,3 +366,25 @@ def test_a_village_and_its_old_map(shift):
     assert new == set(map(str, footprints.columns["id"])) - known
     assert report.values["matched"] >= 0.98 * report.values["corners"]
     assert [report.values["mean_dx"], report.values["mean_dy"]] == pytest.approx([-shift] * 2, abs=0.06)
+
+
+@pytest.mark.parametrize("shift", [(0.4, -0.25), (-1.2, 0.8)])
+def test_what_was_done_to_footprints_to_make_a_map_of_them_comes_back(shift):
+    """A shift, noise, missing and vanished buildings, and wings that were added since."""
+    *_, footprints, _ = simulate_village(size=150.0, density=5.0, seed=3)
+    footprints = with_plain_corners(footprints)
+    old = aged(footprints, shift=shift, noise=0.1, missing=3, gone=2, annexes=3)
+    displacements, buildings, report = compare_corners(footprints, old.layer)
+    assert {name: report.values[name] for name in old.counts} == old.counts
+    # The wings have two corners each that were elsewhere.
+    assert old.counts["corners"] - old.counts["matched"] == 6
+    moved = np.concatenate([moved for _, moved in old.corners.values()])
+    assert [report.values["mean_dx"], report.values["mean_dy"]] == pytest.approx(moved.mean(axis=0).tolist())
+    assert report.values["mean"] == pytest.approx(np.hypot(*moved.T).mean())
+    assert report.values["deviation"] == pytest.approx(np.hypot(*moved.T).std())
+    lines = sorted(tuple(np.round([*line[0], *(line[1] - line[0])], 6)) for line in displacements.geometries)
+    known = [(*place, *way) for places, ways in old.corners.values() for place, way in zip(places, ways)]
+    np.testing.assert_allclose(lines, sorted(tuple(np.round(row, 6)) for row in known), atol=2e-6)
+    told = {row["building"]: row["status"] for row in rows(buildings) if row["status"] != NEW}
+    names = list(map(str, old.layer.columns["id"]))
+    assert told == dict(zip(names, [FOUND] * (len(names) - 2) + [MISSED] * 2))
