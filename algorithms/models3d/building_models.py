@@ -11,7 +11,7 @@ import numpy as np
 from ..geometry.groups import components
 from .roof_partition import Partition, divide_footprint, empty_partition
 from .roof_planes import RoofPlanes, find_roof_planes
-from .solids import Levels, Solid, build_solid, fault_of, turns_around
+from .solids import WALL, Levels, Solid, build_solid, fault_of, turns_around
 
 # Levels of detail, from the simplest.
 LEVELS = ("1.2", "1.3", "2.2")
@@ -117,9 +117,12 @@ def model_building(xyz: np.ndarray, rings: list, base: float, settings: Settings
         partition, why = tops[level](top)
         if partition is not None:
             solids = _solids(partition, base)
-            why = _fault(solids) or _worse(model, level, top, partition)
+            why = _fault(solids)
             if not why:
-                _enter(model, level, top, partition, solids)
+                off, label = _off_model(top, partition, solids)
+                why = _worse(model, level, top, off)
+            if not why:
+                _enter(model, level, top, partition, solids, off, label)
         if why:
             model.reason = f"{level}: {why}"
     for solids in model.solids.values():
@@ -294,23 +297,48 @@ def _height(partition: Partition, label: int, x: float, y: float, base: float) -
     return a * x + b * y + c
 
 
-def _off_model(top: _Top, partition: Partition) -> tuple[np.ndarray, np.ndarray]:
-    """Return the distance (n,), m, of the points to the planes above or below them, and which planes those are."""
+def _off_model(top: _Top, partition: Partition, solids: list[Solid]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the distance (n,), m, of the points to the model, and the planes above or below them.
+
+    The distance is that to the plane or to a wall, whichever is less; NaN beside the model.
+    """
     label = np.full(len(top.xyz), -1)
     for cell in np.flatnonzero(partition.label >= 0):
         label[partition.cells.members[cell]] = partition.label[cell]
     a, b, c = partition.coefficients[label].T
     off = np.abs(top.xyz[:, 2] - a * top.xyz[:, 0] - b * top.xyz[:, 1] - c) / np.sqrt(1 + a**2 + b**2)
+    far = np.flatnonzero((label >= 0) & (off > top.settings.tolerance))
+    if len(far):
+        off[far] = np.minimum(off[far], _from_walls(top.xyz[far], solids))
     return np.where(label >= 0, off, np.nan), label
+
+
+def _from_walls(xyz: np.ndarray, solids: list[Solid]) -> np.ndarray:
+    """Return the distance (n,), m, of points to the nearest wall, each as the rectangle around it."""
+    nearest = np.full(len(xyz), np.inf)
+    for solid in solids:
+        for face in np.flatnonzero([kind == WALL for kind in solid.kinds]):
+            corners = solid.vertices[solid.faces[face][0]]
+            away = corners[:, :2] - corners[0, :2]
+            start = corners[0, :2]
+            along = away[np.argmax((away**2).sum(axis=1))]
+            length = max(float(np.hypot(*along)), 1e-9)
+            along = along / length
+            place = (xyz[:, :2] - start) @ along
+            low, high = (away @ along).min(), (away @ along).max()
+            beside = place - np.clip(place, low, high)
+            across = (xyz[:, 0] - start[0]) * along[1] - (xyz[:, 1] - start[1]) * along[0]
+            over = xyz[:, 2] - np.clip(xyz[:, 2], corners[:, 2].min(), corners[:, 2].max())
+            nearest = np.minimum(nearest, beside**2 + across**2 + over**2)
+    return np.sqrt(nearest)
 
 
 def _root_mean_square(off: np.ndarray) -> float:
     return float(np.sqrt(np.mean(np.minimum(off, _FARTHEST) ** 2))) if len(off) else np.nan
 
 
-def _worse(model: BuildingModel, level: str, top: _Top, partition: Partition) -> str:
+def _worse(model: BuildingModel, level: str, top: _Top, off: np.ndarray) -> str:
     """Return why the next level is no improvement, "" where it is one."""
-    off, _ = _off_model(top, partition)
     off = off[top.is_roof & np.isfinite(off)]
     if not len(off):
         return "no points lie over it"
@@ -322,9 +350,16 @@ def _worse(model: BuildingModel, level: str, top: _Top, partition: Partition) ->
     )
 
 
-def _enter(model: BuildingModel, level: str, top: _Top, partition: Partition, solids: list[Solid]) -> None:
+def _enter(
+    model: BuildingModel,
+    level: str,
+    top: _Top,
+    partition: Partition,
+    solids: list[Solid],
+    off: np.ndarray,
+    label: np.ndarray,
+) -> None:
     """Put a level into the model as its best one."""
-    off, label = _off_model(top, partition)
     over = np.isfinite(off)
     counted = top.is_roof & over
     model.level, model.solids[level] = level, solids
