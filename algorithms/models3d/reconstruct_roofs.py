@@ -51,6 +51,9 @@ _LEAST_POINTS = 4
 # The ground of a building is this percentile of the ground points nearest to its outline, taken every so many meters.
 _GROUND_PERCENTILE, _GROUND_STEP = 5.0, 2.0
 
+# Vertices of footprints nearer to each other than this (m) are one.
+_CLOSE = 0.01
+
 # Rings with less area (m²) are no footprints.
 _NO_AREA = 0.5
 
@@ -228,7 +231,7 @@ def _outlines(footprints: LayerFeatures, monitor: Monitor) -> list[_Outline]:
     """Return the footprints that have an area; say how many don't."""
     outlines = []
     for rings, name in zip(footprints.geometries, feature_names(footprints)):
-        plan = [np.asarray(ring, float)[:, :2] for ring in rings]
+        plan = [_cleaned(np.asarray(ring, float)[:, :2]) for ring in rings]
         sound = [ring for ring in plan if len(ring) > 3 and np.isfinite(ring).all() and abs(signed_area(ring)) > 1e-6]
         if sound and sound[0] is plan[0] and abs(signed_area(plan[0])) >= _NO_AREA:
             outlines.append(_Outline(name, sound))
@@ -241,6 +244,15 @@ def _outlines(footprints: LayerFeatures, monitor: Monitor) -> list[_Outline]:
             f"{len(footprints) - len(outlines)} of {len(footprints)} footprints have no area and are left out."
         )
     return outlines
+
+
+def _cleaned(ring: np.ndarray) -> np.ndarray:
+    """Return a closed ring without the vertices that follow another one too closely."""
+    kept = [ring[0]]
+    for place in ring[1:-1]:
+        if np.hypot(*(place - kept[-1])) >= _CLOSE and np.hypot(*(place - ring[0])) >= _CLOSE:
+            kept.append(place)
+    return np.array([*kept, kept[0]])
 
 
 def _modelled(
