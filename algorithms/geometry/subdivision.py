@@ -10,6 +10,9 @@ SNAP = 0.02
 # A piece of a line that reaches less far into a cell than this many times the snapping distance does not cut it.
 _LEAST_REACH = 2.5
 
+# Cuts are no shorter than this (m): they would leave the tip of a sharp corner with an edge that is none.
+_SHORTEST = 0.01
+
 OUTSIDE = -1
 
 
@@ -95,7 +98,9 @@ class Subdivision:
             share = 0.0 if i == j else across[i] / (across[i] - across[j])
             along.append(ux * (xa + share * (xb - xa) - x0) + uy * (ya + share * (yb - ya) - y0))
         first, last = min(along), max(along)
-        if min(last, length) - max(first, 0.0) < min(_LEAST_REACH * snap, 0.5 * (last - first)):
+        if last - first < _SHORTEST or min(last, length) - max(first, 0.0) < min(
+            _LEAST_REACH * snap, 0.5 * (last - first)
+        ):
             return
         # A new vertex moves the others along the loop.
         found = [(loop[i], loop[j], across[i], across[j]) for i, j in crossings]
