@@ -10,9 +10,6 @@ SNAP = 0.02
 # A piece of a line that reaches less far into a cell than this many times the snapping distance does not cut it.
 _LEAST_REACH = 2.5
 
-# Cuts are no shorter than this (m): they would leave the tip of a sharp corner with an edge that is none.
-_SHORTEST = 0.01
-
 OUTSIDE = -1
 
 
@@ -66,7 +63,8 @@ class Subdivision:
     def cut(self, start: np.ndarray, end: np.ndarray, snap: float = SNAP) -> None:
         """Cut all open cells that the piece of a line from ``start`` to ``end`` (m) passes through.
 
-        A cell is cut from side to side. Vertices at most ``snap`` (m) off the line become vertices of the cut.
+        A cell is cut from side to side. Vertices at most ``snap`` (m) off the line become vertices of the cut; the tip
+        of a sharp corner, where the cut would be shorter than half of that, stays.
         """
         (x0, y0), (x1, y1) = np.asarray(start, float).tolist(), np.asarray(end, float).tolist()
         length = float(np.hypot(x1 - x0, y1 - y0))
@@ -98,7 +96,7 @@ class Subdivision:
             share = 0.0 if i == j else across[i] / (across[i] - across[j])
             along.append(ux * (xa + share * (xb - xa) - x0) + uy * (ya + share * (yb - ya) - y0))
         first, last = min(along), max(along)
-        if last - first < _SHORTEST or min(last, length) - max(first, 0.0) < min(
+        if last - first < 0.5 * snap or min(last, length) - max(first, 0.0) < min(
             _LEAST_REACH * snap, 0.5 * (last - first)
         ):
             return
@@ -153,6 +151,12 @@ class Subdivision:
     def _box(self, loop: list[int]) -> tuple[float, float, float, float]:
         xs, ys = zip(*(self.vertices[v] for v in loop))
         return min(xs), min(ys), max(xs), max(ys)
+
+    def touch_rectangle(self) -> np.ndarray:
+        """Return which cells (cells,) touch the rectangle around all."""
+        boxes = np.array(self._boxes)
+        low, high = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
+        return (boxes[:, :2] == low).any(axis=1) | (boxes[:, 2:] == high).any(axis=1)
 
     def areas(self) -> np.ndarray:
         """Return the areas (cells,), m²."""

@@ -80,7 +80,7 @@ def empty_partition(rings: list, xy: np.ndarray) -> tuple[Subdivision, np.ndarra
     length = np.hypot(*(pieces[:, 1] - pieces[:, 0]).T)
     for start, end in pieces[np.argsort(-length, kind="stable")]:
         cells.cut(start, end, _SNAP_OUTLINE)
-    inside = inside_rings(cells.centers(), rings)
+    inside = inside_rings(cells.centers(), rings) & ~cells.touch_rectangle()
     cells.close(~inside)
     return cells, inside
 
@@ -106,7 +106,7 @@ def divide_footprint(
     cells, _ = empty_partition(rings, xyz[:, :2])
     for piece in find_roof_lines(xyz, planes, rings, spacing):
         cells.cut(piece.start, piece.end, SNAP)
-    inside = inside_rings(cells.centers(), rings)
+    inside = inside_rings(cells.centers(), rings) & ~cells.touch_rectangle()
     used = np.flatnonzero(inside)
     cost = np.zeros((len(cells), len(planes)))
     cost[used] = _costs(xyz, planes, rings, cells, used, spacing, tolerance) + _forbidden(
