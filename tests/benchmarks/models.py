@@ -1,0 +1,164 @@
+#!/usr/bin/env python3
+"""Print how good models of buildings are: ``models.py [table …]``, all by default.
+
+``shapes`` are simulated roofs of twelve kinds, whose ridges, eaves and corners are known; ``real`` the models of
+*Model buildings* on real clouds, and ``map`` those on the base map of Delft. Each table comes as Markdown for people and
+as a JSON file for programs (in ``--output``). Solids are held to the rules of ISO 19107 by the validator of the tests.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+import numpy as np  # noqa: E402
+
+import conftest  # noqa: E402, F401 - registers the checkout as the package lidar_buildings
+from lidar_buildings.algorithms.models3d.reconstruct_roofs import reconstruct_roofs  # noqa: E402
+from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling  # noqa: E402
+from lidar_buildings.algorithms.stage import LayerFeatures, MapFrame, StageResults  # noqa: E402
+from lidar_buildings.tests.benchmarks.results import FOLDER, Table  # noqa: E402
+from lidar_buildings.tests.real.clouds import DATA, DELFT, detected  # noqa: E402
+from lidar_buildings.tests.roof_shapes import SHAPES, RoofShape, moved  # noqa: E402
+from lidar_buildings.tests.solid_validity import assert_valid_solid, shells_of  # noqa: E402
+
+DENSITIES, SEEDS, NOISE = (4, 8, 12, 20, 30), range(6), 0.03
+CLOUDS = (DELFT, "buildings/ahn-amsterdam-1", "buildings/ign-stbarth")
+MAP = DATA / "footprints" / "delft-bgt.gpkg"
+
+
+def shapes() -> list[Table]:
+    """Print the largest errors of ridges, eaves and corners (m) of six scans each, turned by 17° from one to the next."""
+    kinds = ("ridge, m", "eave, m", "corners, m", "mean of corners, m")
+    table = Table("shapes", "roof", "points per m²", "at level 2.2 of 6", "type right of 6", *kinds)
+    for name, shape in SHAPES.items():
+        for density in DENSITIES:
+            found = [_errors(shape, density, seed) for seed in SEEDS]
+            level, kind, ridge, eave, corners = (list(column) for column in zip(*found))
+            figures = max(ridge), max(eave), max(map(max, corners)), float(np.mean(np.concatenate(corners)))
+            table.add(name, density, sum(level), sum(kind), *figures, digits=3)
+    return [table]
+
+
+def _errors(shape: RoofShape, density: float, seed: int) -> tuple[bool, bool, float, float, np.ndarray]:
+    """Return whether level and type are right, and how far ridge, eave and each corner are off (m)."""
+    points, ring = shape.scanned(density, NOISE, seed, turn=17.0 * seed)
+    ground = np.random.default_rng(seed).uniform((-15, -15, 0), (25, 25, 0), (1500, 3))
+    classes = np.repeat([6, 2], [len(points), len(ground)]).astype(np.uint8)
+    features = LayerFeatures([[ring]], {"id": [1]})
+    made = reconstruct_roofs.stage.unpack(reconstruct_roofs(np.concatenate([points, ground]), classes, features))
+    facts = {key: values[0] for key, values in made.layers["buildings"].columns.items()}
+    ridge = abs(facts["ground"] + facts["ridge_height"] - shape.ridge)
+    eave = abs(facts["ground"] + facts["eave_height"] - shape.eave)
+    faces = (*made.layers["roofs"].geometries, *made.layers["walls"].geometries)
+    vertices = np.concatenate([face_ring for rings in faces for face_ring in rings])
+    true = np.column_stack([moved(shape.corners, 17.0 * seed, (0, 0)), shape.corners[:, 2]])
+    corners = np.sqrt(((true[:, None] - vertices[None]) ** 2).sum(axis=2)).min(axis=1)
+    return facts["level"] == "2.2", facts["roof_type"] == shape.kind, ridge, eave, corners
+
+
+def real() -> list[Table]:
+    """Print the models on the footprints that the chain finds."""
+    table = _table("real_models", "cloud")
+    for name in CLOUDS:
+        found = detected(name)
+        _add(table, name.split("/")[1], found.cloud.get("xyz"), found.classification, found.layers["footprints"])
+    return [table]
+
+
+def on_map() -> list[Table]:
+    """Print the models on the base map of Delft."""
+    from osgeo import ogr
+
+    found = detected(DELFT)
+    table = _table("models_on_the_map", "footprints")
+    polygons = []
+    for feature in ogr.Open(str(MAP)).GetLayer(0):
+        geometry = feature.GetGeometryRef()
+        parts = [geometry] if geometry.GetGeometryName() == "POLYGON" else list(geometry)
+        rings = [[np.array(ring.GetPoints())[:, :2] - found.cloud.origin[:2] for ring in part] for part in parts]
+        polygons += rings
+    features = LayerFeatures(polygons, {"id": list(range(len(polygons)))})
+    _add(table, "delft-bgt", found.cloud.get("xyz"), found.classification, features)
+    return [table]
+
+
+def _table(name: str, first: str) -> Table:
+    levels = [f"at level {level}" for level in ("2.2", "1.3", "1.2")]
+    figures = ("median rms, m", "worst tenth from, m", "explained, %", "solids", "valid", "per minute and core")
+    return Table(name, first, "footprints", *levels, "worse than 1.3", *figures)
+
+
+def _add(table: Table, name: str, xyz: np.ndarray, classes: np.ndarray, footprints: LayerFeatures) -> None:
+    """Add the row of a cloud: the models are made once for all levels."""
+    sampling = CloudSampling.of(xyz, classes)
+    _ = sampling.roughness
+    start = time.process_time()
+    made = reconstruct_roofs.stage.unpack(reconstruct_roofs(xyz, classes, footprints, sampling=sampling))
+    seconds = time.process_time() - start
+    columns = made.layers["buildings"].columns
+    level = Counter(columns["level"])
+    solids, valid = _valid(made)
+    rms = np.array(columns["rms"])
+    table.add(
+        name,
+        len(footprints),
+        *(level[one] for one in ("2.2", "1.3", "1.2")),
+        sum("farther from the points" in reason for reason in columns["reason"]),
+        float(np.median(rms)),
+        float(np.percentile(rms, 90)),
+        100 * float(np.mean(columns["explained"])),
+        solids,
+        valid,
+        60 * len(rms) / seconds,
+        digits=3,
+    )
+
+
+def _valid(made: StageResults) -> tuple[int, int]:
+    """Return how many solids there are of all levels, and how many are valid, as CityJSON has them."""
+    whole: dict[str, Any] = json.loads("".join(made.files["cityjson"].pieces("CityJSON", MapFrame(np.asarray))))
+    places = np.array(whole["vertices"]) * whole["transform"]["scale"]
+    shells = [
+        shell
+        for thing in whole["CityObjects"].values()
+        for geometry in thing["geometry"]
+        for shell, _ in shells_of(geometry)
+    ]
+    return len(shells), sum(_is_valid(places, shell) for shell in shells)
+
+
+def _is_valid(places: np.ndarray, shell: list) -> bool:
+    try:
+        assert_valid_solid(places, shell)
+    except (AssertionError, KeyError):
+        return False
+    return True
+
+
+TABLES = {"shapes": shapes, "real": real, "map": on_map}
+
+
+def main() -> None:
+    """Print the tables that are asked for."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tables", nargs="*", metavar="table", help=", ".join(TABLES))
+    parser.add_argument("--output", type=Path, default=FOLDER, help="folder of the JSON files (benchmarks)")
+    chosen = parser.parse_args()
+    wanted = chosen.tables or list(TABLES)
+    if set(wanted) - set(TABLES):
+        parser.error(f"there is no table {(set(wanted) - set(TABLES)).pop()!r}; there are {', '.join(TABLES)}")
+    for name in wanted:
+        print(f"\n## {name}")
+        for table in TABLES[name]():
+            print(f"\n{table.write(chosen.output)}")
+
+
+if __name__ == "__main__":
+    main()
