@@ -12,6 +12,7 @@ from .facades.extract_openings import extract_openings
 from .features.classify_dimensionality import classify_dimensionality
 from .features.compute_features import compute_features
 from .footprints.extract_footprints import extract_footprints
+from .models3d.export_for_roofer import export_for_roofer
 from .models3d.reconstruct_roofs import reconstruct_roofs
 from .preparation.classify_noise_histogram import classify_noise_histogram
 from .preparation.classify_noise_histogram_2019 import classify_noise_histogram_2019
@@ -81,6 +82,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     extract_facades,
     extract_openings,
     reconstruct_roofs,
+    export_for_roofer,
     assess_buildings,
     assess_ground,
     assess_models,

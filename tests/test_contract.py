@@ -75,6 +75,7 @@ STAGE_IDS = {
     "classifywalls",
     "extractwallfootprints",
     "reconstructroofs",
+    "exportforroofer",
     "assessbuildings",
     "assessground",
     "assessmodels",
@@ -90,7 +91,19 @@ PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", 
 
 CLASSIFYING = {"classify", "complete"}
 VERBS = CLASSIFYING | {"segment", "cluster", "compute", "extract", "regularize", "simplify", "assess", "simulate"}
-VERBS |= {"detect", "filter", "downsample", "merge", "rasterize", "map", "compare", "interpret", "reconstruct", "model"}
+VERBS |= {
+    "detect",
+    "filter",
+    "downsample",
+    "merge",
+    "rasterize",
+    "map",
+    "compare",
+    "interpret",
+    "reconstruct",
+    "model",
+    "export",
+}
 # Words that keep their capitals inside a title or label.
 NAMES = {"Gauss", "Delaunay", "Shannon", "Hough"}
 # Shares (0 to 1), multiples of what the data show, and limits of whatever dimension is named.

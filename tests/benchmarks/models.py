@@ -2,8 +2,8 @@
 """Print how good models of buildings are: ``models.py [table …]``, all by default.
 
 ``shapes`` are simulated roofs of twelve kinds, whose ridges, eaves and corners are known; ``real`` the models of
-*Model buildings* on real clouds, and ``map`` those on the base map of Delft. Each table comes as Markdown for people and
-as a JSON file for programs (in ``--output``). Solids are held to the rules of ISO 19107 by the validator of the tests.
+*Model buildings* on real clouds, and ``map`` those on the base map of Delft. Each table comes as Markdown for people
+and as a JSON file for programs (in ``--output``). Solids are held to the rules of ISO 19107 by the tests.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ MAP = DATA / "footprints" / "delft-bgt.gpkg"
 
 
 def shapes() -> list[Table]:
-    """Print the largest errors of ridges, eaves and corners (m) of six scans each, turned by 17° from one to the next."""
+    """Print the largest errors of ridges, eaves and corners (m) of six scans each, each turned by 17° more."""
     kinds = ("ridge, m", "eave, m", "corners, m", "mean of corners, m")
     table = Table("shapes", "roof", "points per m²", "at level 2.2 of 6", "type right of 6", *kinds)
     for name, shape in SHAPES.items():

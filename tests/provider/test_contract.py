@@ -55,6 +55,7 @@ IDS = {
     "segmentregions",
     "segmentroofs",
     "reconstructroofs",
+    "exportforroofer",
     "simulatetown",
     "simulateflight",
     "simulatevillage",

@@ -1,0 +1,122 @@
+"""Points and footprints as the program roofer reads them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import Annotated
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from ..geometry.rings import signed_area
+from ..stage import Field, InputLayer, Layer, LayerFeatures, Param, feature_names, stage
+from .cityjson import unique_names
+from .roof_partition import inside_rings
+
+# Rings with less area (m²) are no footprints.
+_NO_AREA = 0.5
+
+
+@stage(
+    "Export for roofer",
+    group="Models in three dimensions",
+    tags="3D,roofer,3DBAG,LoD2,LoD1.2,LoD1.3,export,CityJSONSeq,roofprint",
+    selects=True,
+    input_layers=(InputLayer("footprints", "Footprints", "Polygon", "Outlines of the buildings that are modelled."),),
+    layers=(
+        Layer(
+            "roofprints",
+            "Roofprints",
+            "Polygon",
+            (
+                Field(
+                    "identificatie", str, "name of the building: the attribute id or fid of its footprint, once each"
+                ),
+                Field("points", int, "points of class 6 over it"),
+            ),
+        ),
+    ),
+)
+def export_for_roofer(
+    xyz,
+    classification,
+    footprints,
+    *,
+    margin: Annotated[
+        float,
+        Param(
+            "Margin",
+            "Points up to this distance from the box of a footprint are kept, so that its ground is among them.",
+            unit="m",
+            low=0,
+            high=1000,
+        ),
+    ] = 10.0,
+    monitor=None,
+):
+    """Write the points of buildings and ground around footprints, and the footprints, as the program roofer reads them.
+
+    roofer takes a LAS or LAZ file with the classes 2 (ground) and 6 (building), and one polygon for each building with
+    an attribute that names it: ``roofer --id-attribute identificatie cloud.laz roofprints.gpkg folder``. It writes
+    CityJSONSeq.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Coordinates (m).
+    classification : ndarray of shape (n,)
+        Classes; points of 2 and 6 are kept.
+    footprints : LayerFeatures
+        Outlines of the buildings.
+
+    Returns
+    -------
+    selected : ndarray of shape (m,), int64
+        The points that are kept, in their order.
+    roofprints : LayerFeatures
+        The footprints in plan, each with a name of its own; those without an area are left out.
+
+    Raises
+    ------
+    ValueError
+        If no point is called building, or none ground, or no footprint has an area.
+
+    Notes
+    -----
+    roofer 1.0 reads the classes 2 and 6 unless its configuration names others, and parts of buildings as buildings of
+    their own. Its attribute for names is called as in the 3DBAG.
+
+    References
+    ----------
+    Peters, R., Dukai, B., Vitalis, S., van Liempt, J., Stoter, J., 2022. Automated 3D reconstruction of LoD2 and LoD1
+    models for all 10 million buildings of the Netherlands. Photogrammetric Engineering & Remote Sensing 88(3).
+    """
+    counts = Counter({code: int((classification == code).sum()) for code in (PointClass.BUILDING, PointClass.GROUND)})
+    if not counts[PointClass.BUILDING]:
+        raise ValueError("No point is called building (class 6); run 'Detect buildings' first.")
+    if not counts[PointClass.GROUND]:
+        raise ValueError("No point is called ground (class 2); run 'Classify ground points (TIN)' first.")
+    plan = [[np.asarray(ring, float)[:, :2] for ring in rings] for rings in footprints.geometries]
+    sound = [i for i, rings in enumerate(plan) if len(rings[0]) > 3 and abs(signed_area(rings[0])) >= _NO_AREA]
+    if not sound:
+        raise ValueError(
+            f"None of the {len(plan)} footprints has an area of {_NO_AREA} m² or more; choose another layer."
+        )
+    if len(sound) < len(plan):
+        monitor.warn(f"{len(plan) - len(sound)} of {len(plan)} footprints have no area and are left out.")
+
+    order = np.argsort(xyz[:, 0], kind="stable")
+    easting, is_near = xyz[order, 0], np.zeros(len(xyz), bool)
+    wanted = np.isin(classification, (PointClass.GROUND, PointClass.BUILDING))
+    points = []
+    for number, i in enumerate(sound):
+        low, high = plan[i][0].min(axis=0) - margin, plan[i][0].max(axis=0) + margin
+        rows = order[np.searchsorted(easting, low[0]) : np.searchsorted(easting, high[0], side="right")]
+        rows = rows[(xyz[rows, 1] >= low[1]) & (xyz[rows, 1] <= high[1])]
+        is_near[rows] = True
+        building = rows[classification[rows] == PointClass.BUILDING]
+        points.append(int(inside_rings(xyz[building, :2], plan[i]).sum()))
+        monitor.progress((number + 1) / len(sound))
+    names = feature_names(footprints)
+    columns = {"identificatie": unique_names([names[i] for i in sound]), "points": points}
+    return np.flatnonzero(is_near & wanted), LayerFeatures([plan[i] for i in sound], columns)
