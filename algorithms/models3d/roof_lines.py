@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..geometry.delaunay import triangulate
+from ..geometry.groups import split_groups
 from .roof_planes import RoofPlanes
 
 # Points of two planes are beside each other where a triangle joins them whose side is at most this long (spacings, m).
@@ -29,6 +30,9 @@ _BEYOND_SPACINGS, _BEYOND = 2.0, 0.5
 
 # Lines that turn by less than this (rad) and lie no farther apart (m) are the same.
 _SAME_TURN, _SAME_OFFSET = 0.04, 0.10
+
+# Points no farther than this from a step (m, spacings) tell where it is.
+_NEAR, _NEAR_SPACINGS = 0.6, 2.0
 
 # Main directions are preferred by this share of the contacts.
 _PREFERENCE = 1.15
@@ -67,12 +71,15 @@ def find_roof_lines(xyz: np.ndarray, planes: RoofPlanes, rings: list, spacing: f
         return []
     one, other, middle = _contacts(xyz[member, :2], planes.label[member], spacing)
     main = main_directions(rings)
+    points = split_groups(planes.label, len(planes))
+    points = [xyz[rows, :2] for rows in points]
     meeting, stepping = [], []
     order = np.lexsort((other, one))
     one, other, middle = one[order], other[order], middle[order]
     starts = np.flatnonzero(np.r_[True, (one[1:] != one[:-1]) | (other[1:] != other[:-1])]) if len(one) else []
     for begin, end in zip(starts, [*starts[1:], len(one)]):
-        border = _Border(planes, int(one[begin]), int(other[begin]), middle[begin:end], spacing)
+        pair = int(one[begin]), int(other[begin])
+        border = _Border(planes, pair, middle[begin:end], [points[plane] for plane in pair], spacing)
         meeting += border.intersection()
         stepping += border.steps(main)
     return _without_doubles(sorted(meeting, key=lambda p: -p.weight) + sorted(stepping, key=lambda p: -p.weight))
@@ -114,9 +121,13 @@ def _contacts(xy: np.ndarray, label: np.ndarray, spacing: float) -> tuple[np.nda
 
 
 class _Border:
-    """Where two planes are beside each other: places (m, 2) between their points."""
+    """Where two planes are beside each other: places (m, 2) between their points, and the points of both (k, 2)."""
 
-    def __init__(self, planes: RoofPlanes, one: int, other: int, places: np.ndarray, spacing: float) -> None:
+    def __init__(
+        self, planes: RoofPlanes, pair: tuple[int, int], places: np.ndarray, points: list[np.ndarray], spacing: float
+    ) -> None:
+        one, other = pair
+        self.points = points
         self.difference = planes.coefficients[one] - planes.coefficients[other]
         self.slopes = planes.coefficients[[one, other], :2]
         self.places, self.spacing = places, spacing
@@ -153,10 +164,30 @@ class _Border:
             if on_best is None or on_best[2].sum() < _LEAST_CONTACTS:
                 break
             direction, normal, chosen = on_best
-            place = normal * float(np.median(left[chosen] @ normal))
+            place = normal * self._between(normal, direction, left[chosen])
             found.append(self._piece(place, direction, left[chosen]))
             left = left[~chosen]
         return found
+
+    def _between(self, normal: np.ndarray, direction: np.ndarray, contacts: np.ndarray) -> float:
+        """Return the offset (m) of the line that parts the points of both planes along contacts best."""
+        middle = float(np.median(contacts @ normal))
+        low, high = (contacts @ direction).min(), (contacts @ direction).max()
+        near = max(_NEAR, _NEAR_SPACINGS * self.spacing)
+        offsets = []
+        for xy in self.points:
+            along, offset = xy @ direction, xy @ normal
+            offsets.append(offset[(along >= low) & (along <= high) & (np.abs(offset - middle) <= near)])
+        if not all(map(len, offsets)):
+            return middle
+        if np.median(offsets[0]) > np.median(offsets[1]):
+            offsets.reverse()
+        every = np.sort(np.concatenate(offsets))
+        cuts = np.concatenate([[every[0]], (every[1:] + every[:-1]) / 2, [every[-1]]])
+        beyond = len(offsets[0]) - np.searchsorted(np.sort(offsets[0]), cuts)
+        wrong = beyond + np.searchsorted(np.sort(offsets[1]), cuts)
+        best = np.flatnonzero(wrong == wrong.min())
+        return float(cuts[best[np.argmin(np.abs(cuts[best] - middle))]])
 
     def _directions(self, main: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return directions (k, 2) that steps may have, and how much they are preferred (k,)."""
