@@ -28,6 +28,7 @@ from .segmentation.segment_clusters import segment_clusters
 from .segmentation.segment_planes_ransac import segment_planes_ransac
 from .segmentation.segment_regions import segment_regions
 from .segmentation.segment_roofs import segment_roofs
+from .segmentation.segment_scan_lines import segment_scan_lines
 from .segmentation.segment_surfaces import segment_surfaces
 from .segmentation.segment_tin_planes import segment_tin_planes
 from .segmentation.segment_voxels import segment_voxels
@@ -66,6 +67,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     segment_roofs,
     segment_clusters,
     segment_surfaces,
+    segment_scan_lines,
     segment_tin_planes,
     segment_planes_ransac,
     segment_planes_hough,

@@ -60,6 +60,7 @@ STAGE_IDS = {
     "segmentroofs",
     "segmentclusters",
     "segmentsurfaces",
+    "segmentscanlines",
     "segmenttinplanes",
     "segmentplanesransac",
     "segmentplaneshough",

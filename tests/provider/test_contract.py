@@ -48,6 +48,7 @@ IDS = {
     "extractwallfootprints",
     "filterpoints",
     "segmentclusters",
+    "segmentscanlines",
     "segmenttinplanes",
     "segmentsurfaces",
     "segmentvoxels",

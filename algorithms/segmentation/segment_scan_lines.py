@@ -1,0 +1,152 @@
+"""Segments made of the pieces of artificial scan lines in several directions."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..geometry.boxes import by_first_point
+from ..geometry.components import number_large
+from ..params import PointDensity, SurfaceNoise
+from ..sampling.cloud_sampling import CloudSampling, without_noise
+from ..stage import Param, stage
+from .scan_line_pieces import NearPoints, merged_pieces, pieces
+
+# Width of a line in point spacings: with more, lines mix what lies side by side; with less, neighbors on a line lie
+# farther apart than the cloud's points do.
+_WIDTH_SPACINGS = 3.0
+
+# Distance in point spacings within which points of a line belong together: the gaps between scan lines that are
+# recorded three times as densely along as across.
+_DISTANCE_SPACINGS = 9.0
+
+# Difference in height that is noise (standard deviations).
+_NOISE_STEP = 4.0
+
+
+@stage(
+    "Segment scan lines",
+    group="Segmentation",
+    tags="scan line,profile,slices,split and merge,region growing,segmentation,Sithole,Vosselman",
+    writes=("segment_id",),
+)
+def segment_scan_lines(
+    xyz,
+    classification,
+    *,
+    directions: Annotated[
+        int, Param("Directions", "Directions of artificial scan lines, evenly spread.", low=2, high=16)
+    ] = 4,
+    line_width: Annotated[
+        Optional[float],
+        Param(
+            "Line width",
+            "Width of an artificial scan line.",
+            unit="m",
+            low=0,
+            high=1000,
+            open_low=True,
+            automatic="3 times the point spacing.",
+        ),
+    ] = None,
+    distance: Annotated[
+        Optional[float],
+        Param(
+            "Distance",
+            "Points of a line that are closer in space may belong together; larger passes over wider obstacles.",
+            unit="m",
+            low=0,
+            high=1000,
+            open_low=True,
+            automatic="9 times the point spacing.",
+        ),
+    ] = None,
+    max_slope: Annotated[
+        float,
+        Param(
+            "Maximum slope",
+            "Points of a line belong together if the line between them is no steeper; 90 leaves the criterion out.",
+            unit="°",
+            low=0,
+            high=90,
+        ),
+    ] = 30.0,
+    max_step: Annotated[
+        Optional[float],
+        Param(
+            "Height step",
+            "Points of a line also belong together if their heights differ by no more than this.",
+            unit="m",
+            low=0,
+            high=100,
+            automatic="4 standard deviations of the surface noise.",
+        ),
+    ] = None,
+    min_piece: Annotated[
+        int, Param("Minimum points of a piece", "Pieces of a line with fewer points join nothing.", low=2, high=10_000)
+    ] = 5,
+    min_points: Annotated[
+        int, Param("Minimum points", "Segments with fewer points get no id.", low=1, high=10_000_000)
+    ] = 20,
+    noise: SurfaceNoise = None,
+    density: PointDensity = None,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Cut the cloud into artificial scan lines of several directions, group their points, and merge the groups.
+
+    The cloud is split into thin parallel slices. Points of a slice that are near each other in space and not
+    steeply above one another make a piece, also across points that lie off it. This is repeated for slices in other
+    directions, and pieces that share points are merged. Bridges and ramps, which join the terrain at some side, become
+    part of its segment; roofs, which join it nowhere, do not.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes; noise (7, 18) is left out.
+
+    Returns
+    -------
+    segment_id : ndarray of shape (n,), int32
+        Segments from 1 in the order of their first points; 0 is none.
+
+    Notes
+    -----
+    Each point is compared with the 8 that follow it on its line. Lines start at the lowest coordinate across them.
+    True scan lines (Jiang & Bunke 1994) are not reconstructed.
+
+    References
+    ----------
+    Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point
+    clouds, section 2.1. Sithole, G., Vosselman, G., 2003. Automatic structure detection in a point cloud of an urban
+    landscape. URBAN 2003, Berlin, 67-71.
+    """
+    sampling = sampling or CloudSampling.of(xyz, classification)
+    density = sampling.density if density is None else density
+    noise = sampling.noise if noise is None else noise
+    spacing = 1 / float(np.sqrt(density))
+    line_width = _WIDTH_SPACINGS * spacing if line_width is None else line_width
+    distance = _DISTANCE_SPACINGS * spacing if distance is None else distance
+    max_step = _NOISE_STEP * noise if max_step is None else max_step
+    monitor.resolved(density=density, noise=noise, line_width=line_width, distance=distance, max_step=max_step)
+    used = np.flatnonzero(without_noise(classification))
+    points = xyz[used] - xyz[used].min(axis=0)
+    slope = np.inf if max_slope == 90 else float(np.tan(np.radians(max_slope)))
+    near = NearPoints(distance, slope, max_step)
+
+    piece_sets = []
+    for number in range(directions):
+        piece_sets.append(pieces(points, 180 * number / directions, line_width, near, min_piece))
+        monitor.progress(0.9 * (number + 1) / directions)
+    segment = merged_pieces(piece_sets)
+    inside = segment >= 0
+    ordered = np.full(len(used), -1, np.int64)
+    if inside.any():
+        ordered[inside] = by_first_point(segment[inside])
+    segment_id = np.zeros(len(xyz), np.int32)
+    segment_id[used] = number_large(ordered, min_points)
+    monitor.progress(1.0)
+    return segment_id
