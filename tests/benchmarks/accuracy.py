@@ -28,6 +28,7 @@ from lidar_buildings.algorithms.cloud.cloud import Cloud, create_cloud  # noqa: 
 from lidar_buildings.algorithms.cloud.files import read_cloud  # noqa: E402
 from lidar_buildings.algorithms.geometry.grid import turned_in_plan  # noqa: E402
 from lidar_buildings.algorithms.geometry.polygon_overlap import as_polygons, overlaps  # noqa: E402
+from lidar_buildings.algorithms.geometry.rings import signed_area  # noqa: E402
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.run import (
     run_pipeline,  # noqa: E402
@@ -435,8 +436,11 @@ def places() -> list[Table]:
         best, used = np.zeros(len(area)), np.zeros(len(own))
         np.maximum.at(best, house, share)
         np.maximum.at(used, footprint, shared / own[footprint])
-        one, other, common = overlaps(found, found, Monitor())
-        nested = (one < other) & (common > 0.5 * np.minimum(own[one], own[other]))
+        # What lies in a hole of another footprint counts, too.
+        whole = as_polygons([rings[:1] for rings in made.geometries])
+        one, other, common = overlaps(whole, whole, Monitor())
+        full = np.array([signed_area(rings[0]) for rings in made.geometries])
+        nested = (one < other) & (common > 0.5 * np.minimum(full[one], full[other]))
         counts = int((best > 0.5).sum()), int((used < 0.3).sum()), int(nested.sum())
         table.add(name, len(area), *counts, 100 * float(np.median(best)), made.columns["source"].count("wall"))
     return [table]
