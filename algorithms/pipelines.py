@@ -161,6 +161,32 @@ _PIPELINES = (
         shown=("min_area", "voxels_voxel_size", "ground_max_building_size", "split_height", "footprints_min_seen"),
         kept=("noise", "voxels", "ground", "height", "planes", "roofs"),
     ),
+    Pipeline(
+        name="model_facades",
+        title="Model facades",
+        group="Models",
+        tags="facade,wall,window,door,street,mobile mapping,terrestrial,vehicle,3D,Peng",
+        summary="Turn a street or terrestrial scan into facades with windows and doors, as polygons in space.",
+        description=(
+            "Vertical planes are found among the points, each gets a boundary in its plane, and neighbors a common border "
+            "on the intersection line of their planes. What lies behind a wall and is enclosed by it is a window or "
+            "a door: a hole of the facade, and a feature with its size and position. Nothing has to be set; ground and "
+            "noise are left out where they are classified."
+        ),
+        references=(
+            "Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on "
+            "vehicle LIDAR. EURASIP Journal on Image and Video Processing 2018:121."
+        ),
+        steps=(
+            Step("planes", "extract_facades"),
+            Step("openings", "extract_openings"),
+        ),
+        shared={
+            name: ("planes", "openings")
+            for name in ("max_tilt", "max_gap", "edge_factor", "corner_distance", "boundary", "complete")
+        },
+        shown=("planes_min_area", "planes_min_height", "openings_min_size", "boundary", "complete"),
+    ),
 )
 
 PIPELINES = {pipeline.name: pipeline for pipeline in _PIPELINES}

@@ -9,6 +9,8 @@ from .buildings.classify_buildings_2019 import classify_buildings_2019
 from .buildings.complete_buildings import complete_buildings
 from .facades.extract_facades import extract_facades
 from .facades.extract_openings import extract_openings
+from .facades.reconstruct_gables import reconstruct_gables
+from .facades.segment_facade_lines import segment_facade_lines
 from .features.classify_dimensionality import classify_dimensionality
 from .features.compute_features import compute_features
 from .footprints.extract_footprints import extract_footprints
@@ -81,8 +83,10 @@ _FUNCTIONS: tuple[Any, ...] = (
     classify_roofs,
     classify_walls,
     extract_wall_footprints,
+    segment_facade_lines,
     extract_facades,
     extract_openings,
+    reconstruct_gables,
     reconstruct_roofs,
     export_for_roofer,
     assess_buildings,

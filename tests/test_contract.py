@@ -87,8 +87,11 @@ STAGE_IDS = {
     "extractfacades",
     "simulatestreet",
     "extractopenings",
+    "segmentfacadelines",
+    "reconstructgables",
 }
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints", "modelbuildings"}
+PIPELINE_IDS |= {"modelfacades"}
 
 CLASSIFYING = {"classify", "complete"}
 VERBS = CLASSIFYING | {"segment", "cluster", "compute", "extract", "regularize", "simplify", "assess", "simulate"}
@@ -144,6 +147,7 @@ QUICK: dict[str, dict[str, Any]] = {
     "simulate_town": {"size": 80.0},
     "simulate_flight": {"duration": 20.0, "line_rate": 4.0},
     "simulate_village": {"size": 90.0, "density": 5.0},
+    "segment_facade_lines": {"tolerance": 1.0},
     "simulate_street": {"length": 12.0, "line_rate": 10.0, "angular_step": 2.0},
 }
 
@@ -202,7 +206,7 @@ def scanned(
 
 @lru_cache(maxsize=1)
 def scene() -> dict[str, np.ndarray]:
-    """Two flat-roofed houses, a crown, a wall, a tank and two stray points on a slope of 40 m by 40 m, 6 per m²."""
+    """A flat roof, a gable, a crown, a wall, a tank and two stray points on a slope of 40 m by 40 m, 6 per m²."""
     rng = np.random.default_rng(42)
     ground = scanned(rng, 0, 0, 40, 40, 6)
     houses = [scanned(rng, 5, 5, 12, 8, 6), scanned(rng, 22, 20, 9, 14, 6)]
@@ -219,6 +223,8 @@ def scene() -> dict[str, np.ndarray]:
     height[sum(sizes[:4]) : sum(sizes[:5])] = 60.0, -25.0
     height[sum(sizes[:5]) : sum(sizes[:6])] = wall_height
     height[sum(sizes[:6]) :] = tank_height
+    is_gable = np.repeat(np.arange(len(sizes)) == 2, sizes)
+    height[is_gable] = 6.75 - 0.5 * np.abs(xy[is_gable, 0] - 26.5)
     z = np.round((0.05 * xy[:, 0] + height + rng.normal(0, 0.02, len(xy))) * 1024) / 1024
     kind = np.repeat([0, 1, 2, 3, 4, 5, 6], sizes)
     classes = [
@@ -235,6 +241,7 @@ def scene() -> dict[str, np.ndarray]:
     cluster_id = np.array([0, 1, 2, 3, 0, 0, 0])[kind]
     segment_id = np.array([0, 1, 2, 3, 0, 4, 5])[kind]
     segment_id[np.flatnonzero(kind == 5)[is_pane]] = 0
+    segment_id[is_gable & (xy[:, 0] > 26.5)] = 6
     return {
         "xyz": np.column_stack([xy, z]),
         "classification": np.array(classes, np.uint8)[kind],

@@ -67,9 +67,12 @@ IDS = {
     "simulateplant",
     "simulatestreet",
     "extractopenings",
+    "segmentfacadelines",
+    "reconstructgables",
 }
 TILED_IDS = {"detectbuildingsintiles", "detectbuildings2019intiles"}
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints", "modelbuildings"}
+PIPELINE_IDS |= {"modelfacades"}
 ALL = {**STAGES, **TOYS}
 
 

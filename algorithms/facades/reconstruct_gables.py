@@ -1,0 +1,277 @@
+"""Gable houses of ten vertices and fifteen parameters, from two roof planes, the eaves and the ground."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from ..geometry.groups import members
+from ..packages import spatial
+from ..segmentation.least_squares_planes import Planes, planes_of
+from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
+
+# A roof plane of a gable is this steep at least (°), and its ridge level within this angle (°).
+_LEAST_SLOPE, _LEVEL = 8.0, 6.0
+
+# Both planes of a gable rise toward each other within this angle (°).
+_OPPOSITE = 15.0
+
+# Edges of a roof are told from the quantile of its points that leaves this share out, so that stray points do not move
+# them; evenly spread points leave the same share of the width beyond.
+_EDGE = 0.02
+
+# Ground of a house is looked for this far around it (m).
+_AROUND = 10.0
+
+# The faces of a house by their vertices, from 1 as in the paper, counterclockwise seen from outside.
+FACES = {
+    "roof": ((3, 4, 2, 1), (5, 6, 1, 2)),
+    "wall": ((7, 8, 4, 3), (8, 9, 5, 2, 4), (9, 10, 6, 5), (10, 7, 3, 1, 6)),
+    "ground": ((10, 9, 8, 7),),
+}
+
+GABLE_FIELDS = (
+    Field("id", int, "Number of the house, from 1"),
+    Field("face", int, "Number of the face of the house, from 1"),
+    Field("kind", str, "roof, wall or ground"),
+    Field("area", float, "Area of the face", "m²"),
+    Field("slope", float, "Slope of the face", "°"),
+    *(Field(f"{axis}{k}", float, f"Parameter: {axis} of vertex {k}", "m") for k in range(1, 7) for axis in "xy"),
+    Field("z1", float, "Parameter: elevation of the ridge", "m"),
+    Field("z3", float, "Parameter: elevation of the eaves", "m"),
+    Field("z7", float, "Parameter: elevation of the ground", "m"),
+    Field("rms", float, "Root mean square distance of the roof's points from its two planes", "m"),
+)
+
+
+@stage(
+    "Reconstruct gables",
+    group="Facades",
+    tags="gable,roof,ridge,eave,house,building,3D,LoD2,reconstruction,Peng",
+    layers=(Layer("gables", "Gable houses", "Polygon", GABLE_FIELDS, style="facades"),),
+)
+def reconstruct_gables(
+    xyz,
+    classification,
+    segment_id,
+    *,
+    min_area: Annotated[
+        float,
+        Param("Minimum plane area", "Area of the smallest roof plane of a gable.", unit="m²", low=0.5, high=10_000),
+    ] = 4.0,
+    max_gap: Annotated[
+        float,
+        Param(
+            "Largest gap at the ridge",
+            "Points of both roof planes come this near to each other.",
+            unit="m",
+            low=0,
+            high=10,
+            open_low=True,
+        ),
+    ] = 1.5,
+    monitor=None,
+):
+    """Reconstruct gable houses: ten vertices from two roof planes, the height of the eaves and that of the ground.
+
+    Two roof planes that rise toward each other are a gable. Their intersection line, made level, is the ridge; the
+    outer edges of their points are the eaves, which get one height; walls are upright below the edges of the
+    roof, down to the ground around.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes: ground (2) gives the elevation of the ground; without any, the lowest points around do.
+    segment_id : ndarray of shape (n,), int32
+        Roof planes from 1, as "Segment planes (RANSAC)" or "Segment roofs" finds them; 0 is none.
+
+    Returns
+    -------
+    gables : LayerFeatures
+        Seven polygons with Z for each house (two of the roof, four walls, one on the ground), counterclockwise seen
+        from outside, with the fifteen parameters of the house.
+
+    Notes
+    -----
+    Vertices are numbered as in the paper's figure 8: 1 and 2 are the ends of the ridge, 3 to 6 those of the eaves,
+    7 to 10 lie below these on the ground. The fifteen parameters are x and y of 1 to 6, z1, z3 and z7. The paper offers
+    two ways to a level ridge; here the ridge is the intersection line, turned level at its middle. Both eaves get the
+    mean of their elevations and stay in their planes, so that all faces are planar; walls below them are upright, and
+    gable walls are square to the ridge. A plane is used for the neighbor that it shares the longest ridge with.
+
+    References
+    ----------
+    Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on vehicle
+    LIDAR. EURASIP Journal on Image and Video Processing 2018:121, section 3.4.
+    """
+    groups = list(members(segment_id).values())
+    houses = []
+    if groups:
+        start = xyz.min(axis=0)
+        label = np.repeat(np.arange(len(groups)), [len(points) for points in groups])
+        planes = planes_of(xyz[np.concatenate(groups)] - start, label, len(groups))
+        pairs = _gables(xyz - start, groups, planes, min_area, max_gap, monitor.part(0, 0.7))
+        ground = _Ground(xyz - start, classification)
+        for done, (a, b) in enumerate(pairs, start=1):
+            house = _house(xyz - start, groups, planes, a, b, ground)
+            if house is not None:
+                houses.append(house.moved(start))
+            monitor.progress(0.7 + 0.3 * done / len(pairs))
+    monitor.progress(1.0)
+    if not houses:
+        monitor.warn(
+            "No two roof planes rise toward each other to a level ridge, so there is no gable; run "
+            "'Segment planes (RANSAC)' first, with a smaller minimum plane area if roofs are small."
+        )
+    return _features(houses)
+
+
+@dataclass(frozen=True)
+class House:
+    """Ten vertices (10, 3), m, in the order of the paper, and the rms (m) of the points of the roof."""
+
+    vertices: np.ndarray
+    rms: float
+
+    def moved(self, shift: np.ndarray) -> House:
+        """Return the house moved by a vector (3,), m."""
+        return House(self.vertices + shift, self.rms)
+
+
+class _Ground:
+    """Elevation of the ground around houses."""
+
+    def __init__(self, xyz: np.ndarray, classification: np.ndarray) -> None:
+        is_ground = classification == PointClass.GROUND
+        self.points = xyz[is_ground] if is_ground.any() else xyz
+        self.quantile = 0.5 if is_ground.any() else 0.01
+        self.tree = spatial.cKDTree(self.points[:, :2])
+
+    def near(self, corners: np.ndarray) -> Optional[float]:
+        """Return the elevation (m) around corners (m, 2); that of the lower half, where the house stands on a slope."""
+        near = np.unique(np.concatenate(self.tree.query_ball_point(corners, 2.0)).astype(np.int64))
+        if not len(near):
+            near = np.array(self.tree.query_ball_point(corners.mean(axis=0), _AROUND + np.ptp(corners)), int)
+        return float(np.quantile(self.points[near, 2], self.quantile)) if len(near) else None
+
+
+def _gables(
+    xyz: np.ndarray, groups: list[np.ndarray], planes: Planes, min_area: float, max_gap: float, monitor: Monitor
+) -> list[tuple[int, int]]:
+    """Return pairs of planes that are gables, each plane once, the ones with the longest ridge first."""
+    normal, area = planes.normal, planes.area
+    steep = np.degrees(np.arccos(np.clip(normal[:, 2], 0, 1)))
+    good = np.flatnonzero((steep >= _LEAST_SLOPE) & (steep <= 80.0) & (area >= min_area))
+    trees = {int(k): spatial.cKDTree(xyz[groups[k]]) for k in good}
+    found = []
+    for done, a in enumerate(good):
+        monitor.progress(done / len(good))
+        for b in good[done + 1 :]:
+            if not _are_opposite(planes, a, b):
+                continue
+            reach = np.sqrt(planes.eigenvalues[[a, b], 0].sum()) * 4 + max_gap
+            if np.linalg.norm(planes.center[a] - planes.center[b]) > reach:
+                continue
+            near = trees[int(a)].query(xyz[groups[b]], distance_upper_bound=max_gap)[0] <= max_gap
+            if not near.any():
+                continue
+            direction = _ridge(planes, a, b)[1]
+            found.append((float(np.ptp(xyz[groups[b]][near] @ direction)), int(a), int(b)))
+    used: set[int] = set()
+    pairs = []
+    for _, a, b in sorted(found, reverse=True):
+        if not {a, b} & used:
+            used |= {a, b}
+            pairs.append((a, b))
+    return pairs
+
+
+def _are_opposite(planes: Planes, a: int, b: int) -> bool:
+    """Return whether two planes rise toward each other, to a ridge that is nearly level."""
+    one, other = planes.normal[a], planes.normal[b]
+    downhill = [plane[:2] / np.hypot(*plane[:2]) for plane in (one, other)]
+    if downhill[0] @ downhill[1] > -np.cos(np.radians(_OPPOSITE)):
+        return False
+    ridge = np.cross(one, other)
+    if abs(ridge[2]) > np.sin(np.radians(_LEVEL)) * np.linalg.norm(ridge):
+        return False
+    # Downhill leads away from the other plane; otherwise it is a valley.
+    apart = planes.center[a, :2] - planes.center[b, :2]
+    return bool(downhill[0] @ apart > 0 and downhill[1] @ -apart > 0)
+
+
+def _ridge(planes: Planes, a: int, b: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return a point (3,), m, of the ridge, and its level unit direction (3,)."""
+    one, other = planes.normal[a], planes.normal[b]
+    direction = np.cross(one, other)
+    direction /= np.linalg.norm(direction)
+    middle = (planes.center[a] + planes.center[b]) / 2
+    offsets = [one @ (planes.center[a] - middle), other @ (planes.center[b] - middle), 0.0]
+    point = middle + np.linalg.solve(np.array([one, other, direction]), offsets)
+    level = np.array([direction[0], direction[1], 0.0])
+    return point, level / np.linalg.norm(level)
+
+
+def _house(
+    xyz: np.ndarray, groups: list[np.ndarray], planes: Planes, a: int, b: int, ground: _Ground
+) -> Optional[House]:
+    """Return the house under two roof planes, None without ground below its eaves."""
+    point, along = _ridge(planes, a, b)
+    across = np.array([-along[1], along[0], 0.0])
+    # Plane a lies to the right of the ridge.
+    if (planes.center[a] - point) @ across > 0:
+        across, along = -across, -along
+    places = [np.column_stack([(xyz[groups[k]] - point) @ way for way in (along, across)]) for k in (a, b)]
+    every = np.concatenate(places)
+    west, east = _ends(every[:, 0])
+    falls = [-_fall(planes.normal[k], across) for k in (a, b)]
+    right, left = _ends(places[0][:, 1])[0], _ends(places[1][:, 1])[1]
+    # One height for both eaves; each moves along its plane to it.
+    drop = (abs(right * falls[0]) + abs(left * falls[1])) / 2
+    right, left = -drop / abs(falls[0]), drop / abs(falls[1])
+    flat = [(west, 0), (east, 0), (west, right), (east, right), (east, left), (west, left)]
+    plan = np.array([point + u * along + v * across for u, v in flat])
+    plan[2:, 2] = point[2] - drop
+    base = ground.near(plan[2:, :2])
+    if base is None or base >= point[2] - drop:
+        return None
+    feet = plan[2:].copy()
+    feet[:, 2] = base
+    rms = np.sqrt(np.average(planes.eigenvalues[[a, b], 2], weights=planes.count[[a, b]]))
+    return House(np.concatenate([plan, feet]), float(rms))
+
+
+def _ends(positions: np.ndarray) -> tuple[float, float]:
+    """Return least and greatest position (m) of the even spread that positions (n,) were drawn from."""
+    low, high = np.quantile(positions, [_EDGE, 1 - _EDGE])
+    beyond = (high - low) * _EDGE / (1 - 2 * _EDGE)
+    return float(low - beyond), float(high + beyond)
+
+
+def _fall(normal: np.ndarray, across: np.ndarray) -> float:
+    """Return the rise (m per m) of a plane in a level direction."""
+    return float(-(normal @ across) / normal[2])
+
+
+def _features(houses: list[House]) -> LayerFeatures:
+    columns: dict[str, list] = {field.name: [] for field in GABLE_FIELDS}
+    geometries = []
+    for number, house in enumerate(houses, start=1):
+        own = house.vertices
+        faces = [(kind, face) for kind, all_faces in FACES.items() for face in all_faces]
+        for k, (kind, face) in enumerate(faces, start=1):
+            ring = own[[vertex - 1 for vertex in (*face, face[0])]]
+            normal = np.cross(ring[:-1] - ring[0], ring[1:] - ring[0]).sum(axis=0)
+            size = float(np.linalg.norm(normal))
+            slope = float(np.degrees(np.arccos(np.clip(abs(normal[2]) / size, 0, 1))))
+            geometries.append([ring])
+            values: tuple = (number, k, kind, size / 2, slope, *own[:6, :2].ravel().tolist())
+            values += (float(own[0, 2]), float(own[2, 2]), float(own[6, 2]), house.rms)
+            for name, value in zip(columns, values):
+                columns[name].append(value)
+    return LayerFeatures(geometries, columns)

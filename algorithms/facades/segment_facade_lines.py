@@ -1,0 +1,313 @@
+"""Line segments of a vehicle's scan lines: ground, facades and other objects."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..geometry.groups import run_starts
+from ..geometry.polylines import simplify
+from ..neighborhoods.covariance import full_matrices
+from ..segmentation.least_squares_planes import planes_of
+from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
+
+# Two neighbors of a line this far apart (median steps of the line; m at least) are of two segments.
+_GAP_STEPS, _LEAST_GAP = 8.0, 0.3
+
+# Pauses this many times as long as the median one between two points may be the sky at the end of a turn.
+_PAUSE = 20.0
+
+# A pause of this share of a turn is the sky: 45°.
+_SKY = 1 / 8
+
+# A line goes on beyond a turn by this share at most, where no sky is seen.
+_BEYOND = 0.1
+
+# Slope (°) up to which a segment is level enough for ground, and from which it is upright enough for a facade.
+_LEVEL, _UPRIGHT = 20.0, 70.0
+
+# Length (m) from which a steep segment may be of a facade.
+_LEAST_FACADE = 0.5
+
+KINDS = ("other", "ground", "facade")
+_OTHER, _GROUND, _FACADE = range(3)
+
+
+LINE_FIELDS = (
+    Field("id", int, "SegmentID of its points"),
+    Field("line", int, "Number of the scan line, from 1, by scanner and time"),
+    Field("kind", str, "ground, facade or other"),
+    Field("slope", float, "Angle of the line through its points to the horizontal", "°"),
+    Field("x", float, "Mean of the eastings of its first and last point, from the cloud's origin", "m"),
+    Field("y", float, "Mean of the northings of its first and last point, from the cloud's origin", "m"),
+    Field("z", float, "Mean of the elevations of its first and last point", "m"),
+    Field("height", float, "That elevation over the lowest of its line", "m"),
+    Field("distance", float, "Distance of its middle from the scanner in plan", "m"),
+    Field("length", float, "Distance between its first and last point", "m"),
+    Field("points", int, "Its points"),
+)
+
+
+@stage(
+    "Segment facade lines",
+    group="Facades",
+    tags="scan line,vehicle,mobile mapping,facade,ground,street,segmentation,Peng",
+    writes=("segment_id",),
+    layers=(Layer("lines", "Line segments", "LineString", LINE_FIELDS),),
+)
+def segment_facade_lines(
+    xyz,
+    gps_time,
+    point_source_id=None,
+    *,
+    line_duration: Annotated[
+        Optional[float],
+        Param(
+            "Line duration",
+            "Time of one turn of the scanner's mirror.",
+            unit="s",
+            low=0,
+            high=60,
+            open_low=True,
+            automatic="the median time between two views of the sky, which give no points.",
+        ),
+    ] = None,
+    tolerance: Annotated[
+        float,
+        Param(
+            "Tolerance",
+            "Distance within which points lie on a line segment: a few standard deviations of the noise and of the "
+            "relief of walls.",
+            unit="m",
+            low=0,
+            high=1,
+            open_low=True,
+        ),
+    ] = 0.05,
+    max_ground_height: Annotated[
+        float,
+        Param(
+            "Maximum ground height",
+            "Level segments at most this high over the lowest one of their line are ground (d0).",
+            unit="m",
+            low=0,
+            high=10,
+        ),
+    ] = 0.5,
+    facade_distance: Annotated[
+        float,
+        Param(
+            "Facade distance",
+            "Steep segments at most this much nearer to the scanner than the farthest one on their side of the line "
+            "are of the facade (h0).",
+            unit="m",
+            low=0,
+            high=50,
+        ),
+    ] = 1.5,
+    min_points: Annotated[
+        int,
+        Param("Minimum points", "Points of the shortest segment; shorter ones are stray points.", low=3, high=1000),
+    ] = 5,
+    monitor=None,
+):
+    """Divide a vehicle's scan lines into straight segments and tell those of ground, facades and other objects.
+
+    Each line is split where it bends or leaves a gap. A segment gets its slope, the mean of its ends, its height over
+    the lowest one of its line and its distance from the scanner. Level and low ones are ground; steep ones that are
+    the farthest on their side are of the facade; all others are of cars, trees, people and signs.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    gps_time : ndarray of shape (n,), float64
+        Time of each pulse, s.
+    point_source_id : ndarray of shape (n,), uint16, optional
+        Scanner of each point; the lines of each are taken for themselves. Without it all are of one.
+
+    Returns
+    -------
+    segment_id : ndarray of shape (n,), int32
+        Segments from 1, by scanner, line and time; 0 for stray points.
+    lines : LayerFeatures
+        A line with Z from the first to the last point of each segment, with the fields above.
+
+    Raises
+    ------
+    ValueError
+        If all points have the same time.
+
+    Notes
+    -----
+    The paper tells ground by Z' - min(Z') < d0 and facades by |Y' - max(Y')| < h0, with Y' across the way of the
+    vehicle; here Y' is the distance from the scanner in plan, on each of its two sides. A file doesn't tell where the
+    scanner was: it is taken to be over the point in the middle of the time of its line, which begins and ends with
+    the sky. Lines end where no point comes for an eighth of a turn. They are split at gaps, and at their farthest point
+    until all points are within the tolerance (Douglas and Peucker), which the paper leaves open.
+
+    References
+    ----------
+    Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on vehicle
+    LIDAR. EURASIP Journal on Image and Video Processing 2018:121, section 3.4.
+    """
+    if np.ptp(gps_time) == 0:
+        raise ValueError(
+            "All points have the same GPS time, so scan lines can't be told apart; use a cloud with the times of its "
+            "pulses, as the scanner recorded it."
+        )
+    source = np.zeros(len(xyz), np.int64) if point_source_id is None else point_source_id.astype(np.int64)
+    # Points with one time keep the order of their coordinates, whatever that of the file.
+    order = np.lexsort((*xyz.T, gps_time, source))
+    duration = _period(gps_time[order], source[order]) if line_duration is None else line_duration
+    monitor.resolved(line_duration=duration)
+    line = _lines(gps_time[order], source[order], duration)
+    piece = _pieces(xyz[order], line, tolerance, monitor.part(0, 0.8))
+    limits = (max_ground_height, facade_distance)
+    segment_id, features = _described(xyz, order, line, piece, limits, min_points)
+    monitor.progress(1.0)
+    if not features.geometries:
+        monitor.warn("No scan line has a straight segment; lower the minimum points or raise the tolerance.")
+    return segment_id, features
+
+
+def _period(gps_time: np.ndarray, source: np.ndarray) -> float:
+    """Return the time (s) of one turn, from times (n,) in order by scanner: that between views of the sky."""
+    step = np.diff(gps_time)
+    step = step[(np.diff(source) == 0) & (step > 0)]
+    if not len(step):
+        return float(np.ptp(gps_time))
+    pause = _PAUSE * float(np.median(step))
+    found: list[np.ndarray] = []
+    for number in np.unique(source):
+        time = gps_time[source == number]
+        ends = time[1:][np.diff(time) > pause]
+        found.append(np.diff(ends))
+    turns = np.concatenate(found)
+    return float(np.median(turns)) if len(turns) else float(np.ptp(gps_time))
+
+
+def _lines(gps_time: np.ndarray, source: np.ndarray, duration: float) -> np.ndarray:
+    """Return the line (n,) from 0 of points in order: a new one after the sky, or when a turn is over."""
+    is_start = np.ones(len(gps_time), bool)
+    is_start[1:] = (np.diff(gps_time) > _SKY * duration) | (np.diff(source) != 0)
+    run = np.cumsum(is_start) - 1
+    since = gps_time - gps_time[is_start][run]
+    turn = np.floor(since / duration - _BEYOND * (since > duration)).astype(np.int64)
+    is_start[1:] |= np.diff(turn) > 0
+    return np.cumsum(is_start) - 1
+
+
+def _pieces(xyz: np.ndarray, line: np.ndarray, tolerance: float, monitor: Monitor) -> np.ndarray:
+    """Return the straight piece (n,) from 0 of points in the order of their lines."""
+    starts = np.append(run_starts(line), len(line))
+    is_start = np.zeros(len(line), bool)
+    for done, (first, last) in enumerate(zip(starts[:-1], starts[1:])):
+        is_start[first + _splits(xyz[first:last], tolerance)] = True
+        if done % 100 == 0:
+            monitor.progress(done / len(starts))
+    return np.cumsum(is_start) - 1
+
+
+def _splits(xyz: np.ndarray, tolerance: float) -> np.ndarray:
+    """Return the first points of the straight pieces of one line, in the plane that the scanner turns in."""
+    places = np.column_stack([_across(xyz), xyz[:, 2]])
+    step = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    gap = max(_GAP_STEPS * float(np.median(step)), _LEAST_GAP) if len(step) else _LEAST_GAP
+    ends = np.concatenate([[0], np.flatnonzero(step > gap) + 1, [len(xyz)]])
+    found = []
+    for first, last in zip(ends[:-1], ends[1:]):
+        bends = simplify(places[first:last], tolerance, is_closed=False) if last - first > 2 else np.zeros(1, int)
+        # The last vertex is the end of the last piece.
+        found.append(first + (bends[:-1] if len(bends) > 1 else bends))
+    return np.concatenate(found)
+
+
+def _across(xyz: np.ndarray) -> np.ndarray:
+    """Return positions (n,) along the direction in plan in which a line extends most (m)."""
+    offset = xyz[:, :2] - xyz[:, :2].mean(axis=0)
+    direction = np.linalg.eigh(offset.T @ offset)[1][:, 1]
+    return offset @ direction
+
+
+def _described(
+    xyz: np.ndarray,
+    order: np.ndarray,
+    line: np.ndarray,
+    piece: np.ndarray,
+    limits: tuple[float, float],
+    min_points: int,
+) -> tuple[np.ndarray, LayerFeatures]:
+    """Return the segment (n,) of each point, and the segments with their attributes."""
+    count = np.bincount(piece)
+    first = run_starts(piece)
+    last = first + count - 1
+    kept = np.flatnonzero(count >= min_points)
+    number = np.zeros(len(count), np.int32)
+    number[kept] = np.arange(1, len(kept) + 1)
+    segment_id = np.zeros(len(xyz), np.int32)
+    segment_id[order] = number[piece]
+    start, end = xyz[order[first[kept]]], xyz[order[last[kept]]]
+    middle, of_line = (start + end) / 2, line[first[kept]]
+    slope = _slopes(xyz[order], piece, kept)
+    side, distance = _from_scanner(xyz[order], line, middle, of_line)
+    height = middle[:, 2] - _extreme(np.minimum, middle[:, 2], of_line)[of_line]
+    length = np.linalg.norm(end - start, axis=1)
+    kind = _kinds(slope, height, distance, length, 2 * of_line + side, limits)
+    columns = {
+        "id": np.arange(1, len(kept) + 1),
+        "line": of_line + 1,
+        "kind": [KINDS[k] for k in kind],
+        "slope": slope,
+        **dict(zip("xyz", middle.T)),
+        "height": height,
+        "distance": distance,
+        "length": length,
+        "points": count[kept],
+    }
+    return segment_id, LayerFeatures(list(np.stack([start, end], axis=1)), columns)
+
+
+def _extreme(choose: np.ufunc, values: np.ndarray, group: np.ndarray) -> np.ndarray:
+    """Return the least or greatest of the values (m,) of each group."""
+    result = np.full(int(group.max(initial=-1)) + 1, np.inf if choose is np.minimum else -np.inf)
+    choose.at(result, group, values)
+    return result
+
+
+def _slopes(xyz: np.ndarray, piece: np.ndarray, kept: np.ndarray) -> np.ndarray:
+    """Return the angle (°) to the horizontal of the line of least squares through the points of each piece."""
+    planes = planes_of(xyz - xyz.mean(axis=0), piece, int(piece.max()) + 1).chosen(kept)
+    values, vectors = np.linalg.eigh(full_matrices(planes.covariance))
+    return np.degrees(np.arcsin(np.clip(np.abs(vectors[:, 2, 2]), 0, 1)))
+
+
+def _from_scanner(
+    xyz: np.ndarray, line: np.ndarray, middle: np.ndarray, of_line: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the side, 0 or 1, of the scanner that segments are on, and their distance from it in plan (m)."""
+    starts = run_starts(line)
+    ends = np.append(starts[1:], len(line)) - 1
+    below = xyz[(starts + ends) // 2, :2]
+    away = middle[:, :2] - below[of_line]
+    # Any direction across the way tells the sides of one line apart: that to its first point.
+    first = xyz[starts, :2] - below
+    return (np.einsum("ij,ij->i", away, first[of_line]) < 0).astype(np.int64), np.hypot(*away.T)
+
+
+def _kinds(
+    slope: np.ndarray,
+    height: np.ndarray,
+    distance: np.ndarray,
+    length: np.ndarray,
+    side: np.ndarray,
+    limits: tuple[float, float],
+) -> np.ndarray:
+    """Return what segments (m,) are of; ``limits`` are greatest height of ground and distance of facades (m)."""
+    kind = np.full(len(slope), _OTHER)
+    kind[(slope <= _LEVEL) & (height <= limits[0])] = _GROUND
+    steep = np.flatnonzero((slope >= _UPRIGHT) & (length >= _LEAST_FACADE))
+    farthest = _extreme(np.maximum, distance[steep], side[steep])
+    kind[steep[distance[steep] >= farthest[side[steep]] - limits[1]]] = _FACADE
+    return kind
