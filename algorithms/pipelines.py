@@ -168,10 +168,10 @@ _PIPELINES = (
         tags="facade,wall,window,door,street,mobile mapping,terrestrial,vehicle,3D,Peng",
         summary="Turn a street or terrestrial scan into facades with windows and doors, as polygons in space.",
         description=(
-            "Vertical planes are found among the points, each gets a boundary in its plane, and neighbors a common border "
-            "on the intersection line of their planes. What lies behind a wall and is enclosed by it is a window or "
-            "a door: a hole of the facade, and a feature with its size and position. Nothing has to be set; ground and "
-            "noise are left out where they are classified."
+            "Vertical planes are found among the points. Each gets a boundary in its plane, and neighbors a common "
+            "border on the intersection line of their planes. What lies behind a wall and is enclosed by it is a "
+            "window or a door: a hole of the facade, and a feature with its size and position. Nothing has to be set; "
+            "ground and noise are left out where they are classified."
         ),
         references=(
             "Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on "
