@@ -1,0 +1,174 @@
+#!/usr/bin/env python3
+"""Print how good facades and their openings are: ``facades.py [table …]``, all by default.
+
+``streets`` are simulated streets, scanned from a vehicle, whose corners and openings are known, ``lines`` the scan
+lines of such; ``fronts`` are terrestrial scans of shop fronts with the true element of each point.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+import numpy as np  # noqa: E402
+
+import conftest  # noqa: E402, F401 - registers the checkout as the package lidar_buildings
+from lidar_buildings.algorithms.facades.extract_facades import extract_facades  # noqa: E402
+from lidar_buildings.algorithms.facades.extract_openings import extract_openings  # noqa: E402
+from lidar_buildings.algorithms.facades.segment_facade_lines import segment_facade_lines  # noqa: E402
+from lidar_buildings.algorithms.packages import spatial  # noqa: E402
+from lidar_buildings.algorithms.simulation.simulate_street import simulate_street  # noqa: E402
+from lidar_buildings.tests.benchmarks.results import FOLDER, Table  # noqa: E402
+from lidar_buildings.tests.real.fronts import FOUND, FRONTS, box_on, frame_on, front_figures, union_share  # noqa: E402
+
+# Seeds of streets, whether things stand before the fronts, and their length (m).
+STREETS = [(seed, clutter) for clutter in (False, True) for seed in (1, 2)]
+LENGTH = 40.0
+
+# A corner was seen if so many points of its facade lie within this distance (m).
+SEEN, NEAR = 10, 0.3
+
+# Points of an opening that was seen.
+LEAST = 100
+
+
+def streets() -> list[Table]:
+    """Print how far corners and openings of simulated streets are off, and how many are invented."""
+    table = Table(
+        "facade_streets",
+        "street",
+        "million points",
+        "facades",
+        "found",
+        "invented",
+        "corners seen: mean off, cm",
+        "median off, cm",
+        "within 5 cm, %",
+        "windows seen",
+        "found, %",
+        "invented, %",
+        "edges off, median, cm",
+        "s",
+    )
+    for seed, clutter in STREETS:
+        *arrays, facades, openings, corners = simulate_street(length=LENGTH, clutter=clutter, seed=seed)
+        points = dict(zip(simulate_street.stage.creates, arrays))
+        xyz, true = points["xyz"], points["segment_id"]
+        start = time.perf_counter()
+        segment_id, found = extract_facades(xyz, np.zeros(len(xyz), np.uint8))
+        _, holes = extract_openings(xyz, segment_id)
+        seconds = time.perf_counter() - start
+        owner = [np.bincount(true[segment_id == k], minlength=len(facades) + 1) for k in found.columns["id"]]
+        is_right = [(count[1:].max() > 0.5 * count.sum()) for count in owner]
+        reached = {int(count[1:].argmax()) for count, right in zip(owner, is_right) if right}
+        off = _corner_distances(xyz, true, corners, found)
+        seen, matched, invented, edges = _openings(points, facades, openings, holes)
+        table.add(
+            f"{seed}{', with clutter' if clutter else ''}",
+            len(xyz) / 1e6,
+            int((np.bincount(true, minlength=len(facades) + 1)[1:] > 1000).sum()),
+            len(reached),
+            int(len(found) - np.sum(is_right)),
+            100 * off.mean(),
+            100 * np.median(off),
+            100 * np.mean(off < 0.05),
+            seen,
+            100 * matched / seen,
+            100 * invented / max(len(holes), 1),
+            100 * float(np.median(edges)) if len(edges) else None,
+            seconds,
+        )
+    return [table]
+
+
+def _corner_distances(xyz: np.ndarray, true: np.ndarray, corners, found) -> np.ndarray:
+    """Return how far (m) each corner that was seen is from the nearest one found."""
+    made = np.concatenate([ring[:-1] for (ring,) in found.geometries])
+    distances = []
+    for number in np.unique(corners.columns["facade"]):
+        own = np.array([c for c, facade in zip(corners.geometries, corners.columns["facade"]) if facade == number])
+        points = xyz[true == number]
+        if not len(points):
+            continue
+        near = spatial.cKDTree(points).query_ball_point(own, NEAR, return_length=True)
+        distances.append(np.linalg.norm(own[near >= SEEN][:, None] - made, axis=2).min(axis=1))
+    return np.concatenate(distances)
+
+
+def _openings(points: dict, facades, openings, holes) -> tuple[int, int, int, np.ndarray]:
+    """Return openings seen, found and invented, and how far (m) the edges of those found are off."""
+    count = np.bincount(points["cluster_id"], minlength=len(openings) + 1)[1:]
+    seen, used, edges = 0, set(), []
+    matched = 0
+    for i, (ring,) in enumerate(openings.geometries):
+        own = facades.geometries[openings.columns["facade"][i] - 1][0]
+        frame = frame_on(own)
+        boxes = np.array([box_on(frame, hole) for (hole,) in holes.geometries]).reshape(-1, 4)
+        near = [abs(frame.local(hole)[:, 2]).max() < 0.3 for (hole,) in holes.geometries]
+        box = box_on(frame, ring)
+        share = np.array([union_share(box, other) if is_near else 0.0 for other, is_near in zip(boxes, near)])
+        best = int(np.argmax(share)) if len(share) else -1
+        used |= set(np.flatnonzero(share > 0.1).tolist())
+        if count[i] < LEAST:
+            continue
+        seen += 1
+        if best >= 0 and share[best] >= FOUND:
+            matched += 1
+            edges += np.abs(boxes[best] - box).tolist()
+    return seen, matched, len(holes) - len(used), np.array(edges)
+
+
+def fronts() -> list[Table]:
+    """Print windows and doors of scanned shop fronts that are found, and how far their edges are off."""
+    columns = ("true", "found", "kind right", "invented", "edges off, median, cm", "90th percentile, cm")
+    table = Table("facade_fronts", "front", "element", *columns, texts=2)
+    for name in FRONTS:
+        rows, invented = front_figures(name)
+        for kind, count, found, right, edges in rows:
+            quantiles = 100 * np.quantile(edges, [0.5, 0.9])
+            table.add(name.split("/")[1], kind, count, found, right, invented, *quantiles)
+    return [table]
+
+
+def lines() -> list[Table]:
+    """Print how the segments of scan lines of simulated streets are sorted, in percent of their points."""
+    rates = [f"{name}: {rate}" for name in ("ground", "facade") for rate in ("compl.", "corr.")]
+    table = Table("facade_lines", "street", "points", *rates, "s")
+    for seed in (1, 2):
+        *arrays, _, _, _ = simulate_street(length=LENGTH, line_rate=40.0, seed=seed)
+        points = dict(zip(simulate_street.stage.creates, arrays))
+        start = time.perf_counter()
+        number, found = segment_facade_lines(points["xyz"], points["gps_time"], points["point_source_id"])
+        seconds = time.perf_counter() - start
+        kind = np.array(["none", *found.columns["kind"]])[number]
+        figures = []
+        for name, code in (("ground", 2), ("facade", 6)):
+            chosen, true = kind == name, points["classification"] == code
+            figures += [100 * np.mean(chosen[true]), 100 * np.mean(true[chosen])]
+        table.add(str(seed), len(number), *figures, seconds)
+    return [table]
+
+
+TABLES = {table.__name__: table for table in (streets, fronts, lines)}
+
+
+def main() -> None:
+    """Print the tables that are asked for."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tables", nargs="*", metavar="table", help=", ".join(TABLES))
+    parser.add_argument("--output", type=Path, default=FOLDER, help="folder of the JSON files (benchmarks)")
+    chosen = parser.parse_args()
+    wanted = chosen.tables or list(TABLES)
+    if set(wanted) - set(TABLES):
+        parser.error(f"there is no table {(set(wanted) - set(TABLES)).pop()!r}; there are {', '.join(TABLES)}")
+    for name in wanted:
+        print(f"\n## {name}")
+        for table in TABLES[name]():
+            print(f"\n{table.write(chosen.output)}")
+
+
+if __name__ == "__main__":
+    main()
