@@ -55,6 +55,8 @@ FACADE_FIELDS = (
     tags="facade,wall,street,mobile mapping,terrestrial,TIN,convex hull,boundary,polygon,3D,Peng",
     writes=("segment_id",),
     layers=(Layer("facades", "Facades", "Polygon", FACADE_FIELDS, style="facades"),),
+    # A facade is as long as it is: its plane and boundary depend on all of its points.
+    reach=np.inf,
 )
 def extract_facades(
     xyz,

@@ -56,6 +56,8 @@ OPENING_FIELDS = (
         Layer("facades", "Facades with openings", "Polygon", FACADE_FIELDS, style="facades"),
         Layer("openings", "Windows and doors", "Polygon", OPENING_FIELDS, style="openings"),
     ),
+    # A facade is as long as it is: its plane and boundary depend on all of its points.
+    reach=np.inf,
 )
 def extract_openings(
     xyz,

@@ -152,10 +152,14 @@ def check_can_be_tiled(pipeline: Pipeline) -> None:
 
 
 def can_be_tiled(pipeline: Pipeline) -> bool:
-    """Whether a composite can be run in tiles: every step keeps the points of the one cloud that it is given."""
+    """Whether a composite can be run in tiles: every step keeps the points of the one cloud that it is given.
+
+    A step of infinite reach is decided by the whole cloud.
+    """
     stages = [step.stage for step in pipeline.steps]
     return pipeline.reads_cloud and not any(
-        stage.merges or stage.selects or stage.creates or stage.rasters or stage.files for stage in stages
+        stage.merges or stage.selects or stage.creates or stage.rasters or stage.files or stage.reach == np.inf
+        for stage in stages
     )
 
 
