@@ -26,6 +26,7 @@ from .quality.assess_buildings import assess_buildings
 from .quality.assess_ground import assess_ground
 from .quality.assess_models import assess_models
 from .quality.compare_corners import compare_corners
+from .segmentation.classify_ground_segments import classify_ground_segments
 from .segmentation.segment_clusters import segment_clusters
 from .segmentation.segment_planes_ransac import segment_planes_ransac
 from .segmentation.segment_regions import segment_regions
@@ -70,6 +71,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     segment_clusters,
     segment_surfaces,
     segment_scan_lines,
+    classify_ground_segments,
     segment_tin_planes,
     segment_planes_ransac,
     segment_planes_hough,

@@ -61,6 +61,7 @@ STAGE_IDS = {
     "segmentclusters",
     "segmentsurfaces",
     "segmentscanlines",
+    "classifygroundsegments",
     "segmenttinplanes",
     "segmentplanesransac",
     "segmentplaneshough",

@@ -48,6 +48,7 @@ IDS = {
     "extractwallfootprints",
     "filterpoints",
     "segmentclusters",
+    "classifygroundsegments",
     "segmentscanlines",
     "segmenttinplanes",
     "segmentsurfaces",

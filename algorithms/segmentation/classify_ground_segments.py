@@ -1,0 +1,169 @@
+"""Bare earth and bridges, from the segments of a cloud."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from ..geometry.grid import distinct, find_cells, grid_over
+from ..params import PointDensity, SurfaceNoise
+from ..sampling.cloud_sampling import CloudSampling, without_noise
+from ..stage import Param, stage
+from .bridge_decks import Decks
+from .scan_line_pieces import NearPoints
+
+# Side of a cell, and half of the distance within which points are beside one another, in point spacings, and at least
+# (m).
+_CELL_SPACINGS, _LEAST_CELL = 3.0, 1.0
+
+# A segment is an object if it is raised along at least this share of its border, that of the cloud included.
+_RAISED_BORDER = 0.5
+
+# Points of the bare earth lie this high over the lowest of their cell at most: on a slope of so many degrees, and
+# noise.
+_SLOPE, _NOISE_STEP = 30.0, 4.0
+
+
+@stage(
+    "Classify ground segments",
+    group="Terrain",
+    tags="ground,bare earth,DTM,bridge,fly-over,bridge deck,segments,filter,Sithole,Vosselman",
+    writes=("classification",),
+)
+def classify_ground_segments(
+    xyz,
+    classification,
+    segment_id,
+    *,
+    min_height: Annotated[
+        float,
+        Param(
+            "Minimum height",
+            "Height above what lies beside them from which segments are objects, and parts of the bare earth bridges.",
+            unit="m",
+            low=0.1,
+            high=100,
+        ),
+    ] = 1.0,
+    max_width: Annotated[
+        float, Param("Maximum bridge width", "Width of the widest bridge.", unit="m", low=1, high=1000)
+    ] = 40.0,
+    min_bridge_area: Annotated[
+        float, Param("Minimum bridge area", "Area of the smallest bridge.", unit="m²", low=1, high=100_000)
+    ] = 20.0,
+    min_area: Annotated[
+        float,
+        Param("Minimum ground area", "Area of the smallest segment of the bare earth.", unit="m²", low=1, high=100_000),
+    ] = 10.0,
+    max_object_area: Annotated[
+        float,
+        Param(
+            "Maximum object area",
+            "Area of the largest object: larger segments are bare earth, also where they are raised along their "
+            "border, as islands and quarters between canals are.",
+            unit="m²",
+            low=1,
+            high=10_000_000,
+        ),
+    ] = 50_000.0,
+    noise: SurfaceNoise = None,
+    density: PointDensity = None,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Tell bare earth from objects by how segments end, then bridges from bare earth.
+
+    Segments that are higher than what lies around them are objects, the others bare earth; bridges and fly-overs,
+    which go on into the terrain at their ends, belong to its segments. On lines in eight directions a bridge is raised
+    on both sides. Such parts become bridge deck (17) if they are opaque and smooth, large enough, and joined to the
+    terrain at both ends. Run 'Segment scan lines' first.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes; noise (7, 18) and water (9) stay, earlier ground (2) and bridge deck (17) are forgotten.
+    segment_id : ndarray of shape (n,), int32
+        Segments, 0 is none.
+
+    Returns
+    -------
+    classification : ndarray of shape (n,), uint8
+        Ground (2), bridge deck (17); other points keep their class, or are unclassified (1).
+
+    Notes
+    -----
+    Decks are looked for among all points of the bare earth, as the paper does, in eight directions instead of four.
+    That beams do not pass through them, and that both ends are joined, is asked for in addition: crowns that hang over
+    the terrain are raised, too. Of the bare earth only the points near the lowest of their cell are ground.
+
+    References
+    ----------
+    Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point
+    clouds, section 5.3. Sithole, G., Vosselman, G., 2003. Automatic structure detection in a point cloud of an urban
+    landscape. URBAN 2003, Berlin, 67-71.
+    """
+    sampling = sampling or CloudSampling.of(xyz, classification)
+    density = sampling.density if density is None else density
+    noise = sampling.noise if noise is None else noise
+    monitor.resolved(density=density, noise=noise)
+    spacing = 1 / float(np.sqrt(density))
+    cell = max(_LEAST_CELL, _CELL_SPACINGS * spacing)
+    used = np.flatnonzero(without_noise(classification))
+    points, segment = xyz[used] - xyz[used].min(axis=0), segment_id[used]
+
+    is_earth = _bare_earth(points, segment, cell, min_height, min_area, max_object_area)
+    monitor.progress(0.2)
+    near = NearPoints(_CELL_SPACINGS**2 * spacing, float(np.tan(np.radians(_SLOPE))), _NOISE_STEP * noise)
+    decks = Decks(min_height, max_width, min_bridge_area, 2 * cell, _CELL_SPACINGS * spacing)
+    is_deck = decks.find(points, is_earth, near, monitor.part(0.2, 0.9))
+    is_ground = is_earth & ~is_deck
+    is_ground[is_ground] = _is_low(points[is_ground], cell / 2, _NOISE_STEP * noise)
+
+    classes = classification.astype(np.uint8)
+    classes[np.isin(classes, (PointClass.GROUND, PointClass.BRIDGE_DECK))] = PointClass.UNCLASSIFIED
+    changes = classes[used] != PointClass.WATER
+    classes[used[is_ground & changes]] = PointClass.GROUND
+    classes[used[is_deck & changes]] = PointClass.BRIDGE_DECK
+    monitor.progress(1.0)
+    return classes
+
+
+def _bare_earth(
+    points: np.ndarray, segment: np.ndarray, cell: float, min_height: float, min_area: float, max_object_area: float
+) -> np.ndarray:
+    """Return which points (n,) are of segments that are large enough and not raised along most of their border."""
+    grid = grid_over(points, cell)
+    room = grid.rows * grid.columns
+    cells, which = distinct(grid.number(points))
+    low = np.full(len(cells), np.inf)
+    np.minimum.at(low, which, points[:, 2])
+    member = np.flatnonzero(segment > 0)
+    own, place = distinct(segment[member].astype(np.int64) * room + grid.number(points[member]))
+    level = np.bincount(place, points[member, 2]) / np.bincount(place)
+    number = own // room
+    border, raised = np.zeros(len(own), bool), np.zeros(len(own), bool)
+    for step in grid.around:
+        beside, known = find_cells(cells, own % room + step)
+        outside = ~find_cells(own, own + step)[1]
+        border |= outside
+        raised |= outside & known & (low[beside] <= level - min_height)
+    n = int(segment.max(initial=0)) + 1
+    n_border = np.bincount(number, border, n)
+    area = np.bincount(number, minlength=n) * cell**2
+    is_object = np.bincount(number, raised, n) >= _RAISED_BORDER * np.maximum(n_border, 1)
+    is_object &= area <= max_object_area
+    is_large = area >= min_area
+    return (~is_object & is_large)[segment] & (segment > 0)
+
+
+def _is_low(points: np.ndarray, cell: float, step: float) -> np.ndarray:
+    """Return which points (n,) are no higher over the lowest of their cell than terrain rises in it."""
+    which = distinct(grid_over(points, cell).number(points))[1] if len(points) else np.zeros(0, int)
+    low = np.full(int(which.max(initial=-1)) + 1, np.inf)
+    np.minimum.at(low, which, points[:, 2])
+    rises = float(np.tan(np.radians(_SLOPE))) * np.sqrt(2) * cell
+    return points[:, 2] <= low[which] + rises + step
