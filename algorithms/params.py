@@ -36,6 +36,17 @@ MinBuildingArea = Annotated[
     Param("Minimum building area", "Area of the smallest building to be found.", unit="m²", low=0.1, high=10_000),
 ]
 
+PointSource = Annotated[
+    str,
+    Param(
+        "Source of the points",
+        "Matched images show one closed surface, crowns included: there, roofs are told from crowns by planarity over "
+        "meters and by color, and low buildings are looked for. 'automatic' takes a cloud for matched images that has "
+        "no second returns, at least 8 points per m² and no points beneath crowns.",
+        choices=("automatic", "laser scanner", "matched images"),
+    ),
+]
+
 MinFrequency = Annotated[
     int,
     Param(

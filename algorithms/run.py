@@ -95,7 +95,8 @@ def run_stage(
 def sampling_of(cloud: Cloud) -> CloudSampling:
     """Return how those points of a cloud were sampled that are now neither withheld nor noise."""
     counted = _counted(cloud)
-    return CloudSampling(lambda: cloud.get("xyz")[counted])
+    several = cloud.has("number_of_returns") and int(cloud.get("number_of_returns").max(initial=0)) > 1
+    return CloudSampling(lambda: cloud.get("xyz")[counted], single_returns=not several)
 
 
 def _counted(cloud: Cloud) -> np.ndarray:

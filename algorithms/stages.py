@@ -38,6 +38,7 @@ from .segmentation.segment_voxels import segment_voxels
 from .shapes.detect_cylinders import detect_cylinders
 from .shapes.detect_spheres import detect_spheres
 from .shapes.segment_planes_hough import segment_planes_hough
+from .simulation.simulate_drone_site import simulate_drone_site
 from .simulation.simulate_flight import simulate_flight
 from .simulation.simulate_plant import simulate_plant
 from .simulation.simulate_street import simulate_street
@@ -100,6 +101,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     simulate_plant,
     simulate_village,
     simulate_street,
+    simulate_drone_site,
 )
 
 STAGES = {function.stage.name: function.stage for function in _FUNCTIONS}

@@ -85,6 +85,7 @@ STAGE_IDS = {
     "simulatetown",
     "simulateflight",
     "simulatevillage",
+    "simulatedronesite",
     "extractfacades",
     "simulatestreet",
     "extractopenings",
@@ -127,11 +128,12 @@ WITHOUT_UNIT = {
     "min_overlap",
     "min_seen",
     "overlap",
+    "walls",
 }
 # Sort points into kinds of their own, which are no classes of ASPRS.
 OWN_CLASSES = {"classify_dimensionality"}
 # Our own, after no publication.
-WITHOUT_REFERENCES = {"simulate_plant", "simulate_town", "simulate_village", "simulate_street"}
+WITHOUT_REFERENCES = {"simulate_plant", "simulate_town", "simulate_village", "simulate_street", "simulate_drone_site"}
 # Automatic tunables that matter only beside another setting.
 USED_WITH: dict[tuple[str, str], dict[str, Any]] = {
     ("compute_features", "radius"): {"neighborhood": "radius"},
@@ -150,6 +152,7 @@ QUICK: dict[str, dict[str, Any]] = {
     "simulate_village": {"size": 90.0, "density": 5.0},
     "segment_facade_lines": {"tolerance": 1.0},
     "simulate_street": {"length": 12.0, "line_rate": 10.0, "angular_step": 2.0},
+    "simulate_drone_site": {"size": 60.0, "density": 5.0},
 }
 
 # As they are when tests are collected: tests of the provider add toys of their own while they run.
@@ -261,6 +264,12 @@ def scene() -> dict[str, np.ndarray]:
         "cluster_entropy": np.array([np.nan, 0.3, 0.3, 0.9, np.nan, np.nan, np.nan], np.float32)[kind],
         "confidence": np.array([np.nan, 0.9, 0.9, 0.1, np.nan, np.nan, np.nan], np.float32)[kind],
         "reason": np.array([0, 2, 2, 11, 0, 0, 0], np.uint8)[kind],
+        "cluster_entropy": np.array([np.nan, 0.3, 0.3, 0.9, np.nan, np.nan], np.float32)[kind],
+        "confidence": np.array([np.nan, 0.9, 0.9, 0.1, np.nan, np.nan], np.float32)[kind],
+        "reason": np.array([0, 2, 2, 11, 0, 0], np.uint8)[kind],
+        "red": np.array([110, 150, 90, 60, 0, 200], np.uint16)[kind] * 256,
+        "green": np.array([120, 80, 90, 100, 0, 190], np.uint16)[kind] * 256,
+        "blue": np.array([90, 60, 95, 40, 0, 180], np.uint16)[kind] * 256,
     }
 
 

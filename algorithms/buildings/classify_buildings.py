@@ -9,7 +9,7 @@ import numpy as np
 
 from ..neighborhoods.covariance import Nearest
 from ..neighborhoods.wide_in_plan import Wide
-from ..params import MinBuildingArea, PointDensity, nearest_points
+from ..params import MinBuildingArea, PointDensity, PointSource, nearest_points
 from ..sampling.cloud_sampling import CloudSampling
 from ..sampling.surface_noise import plane_roughness
 from ..stage import Param, stage
@@ -18,6 +18,7 @@ from .cluster_entropies import cluster_entropies
 from .cluster_evidence import ClusterEvidence, with_penetration, with_surroundings
 from .cluster_report import MEASURES, Clusters, build_report
 from .entropy_split import held_means, reference_entropies
+from .surface_evidence import decide_in_images, green_clusters
 
 # Points that an entropy needs, as a multiple of those that show a plane: three shares come from it, not one direction.
 _POINTS_PER_PLANE = 1.5
@@ -45,6 +46,10 @@ def classify_buildings(
     return_number=None,
     number_of_returns=None,
     reason=None,
+    segment_id=None,
+    red=None,
+    green=None,
+    blue=None,
     *,
     min_area: MinBuildingArea = 4.0,
     n_neighbors: Annotated[
@@ -73,6 +78,7 @@ def classify_buildings(
         ),
     ] = 0.4,
     density: PointDensity = None,
+    source: PointSource = "automatic",
     sampling: Optional[CloudSampling] = None,
     monitor=None,
 ):
@@ -94,6 +100,10 @@ def classify_buildings(
         Used for penetration where given.
     reason : ndarray of shape (n,), uint8, optional
         Reasons that the segmentation gave to points outside clusters, which they keep.
+    segment_id : ndarray of shape (n,), int32, optional
+        Roof surfaces, 0 is none; in matched images they are held against crowns, by entropy where they are missing.
+    red, green, blue : ndarray of shape (n,), uint16, optional
+        Color, used in matched images where given.
 
     Returns
     -------
@@ -132,6 +142,11 @@ def classify_buildings(
     clusters with too few building points around them are refused. The reverse holds for balconies and terraces, which
     the beam seems to penetrate: those of the minimum area are buildings if half of the points around belong to others.
 
+    In clouds of matched images, crowns are as closed as roofs, and penetration tells nothing. There, roof surfaces are
+    buildings, planar over a meter, if the minimum share of what stands around them are such surfaces; small ones that
+    are as green as plants are none. What is green is set by the scene: the threshold that parts the normalized excess
+    green of all its points in two kinds best, if these are apart by 0.1 or more. Shadow hardly changes it.
+
     Confidence above 0.5 grows with the size of the cluster, to half at twice the points of the smallest building, as
     small objects such as cars can look like a roof by chance. This changes no decision.
 
@@ -162,7 +177,14 @@ def classify_buildings(
     through = evidence.penetration()
     monitor.progress(0.94)
     decided = by_entropy
-    if split.separates:
+    if sampling.is_closed_surface(source):
+        is_surface = (
+            entropies.share_of(segment_id > 0) if segment_id is not None else by_entropy.is_building.astype(float)
+        )
+        is_green, green_from = green_clusters((red, green, blue), group, len(numbers))
+        monitor.resolved(matched_images=True, plant_greenness=green_from)
+        decided = decide_in_images(is_surface, is_green, evidence, min_share_around)
+    elif split.separates:
         decided = with_penetration(by_entropy, through, max_penetration, evidence)
         monitor.progress(0.98)
         decided = with_surroundings(decided, by_entropy, min_share_around, evidence)

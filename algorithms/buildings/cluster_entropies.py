@@ -43,6 +43,10 @@ class ClusterEntropies:
         group[self.rows] = self.position
         return group
 
+    def share_of(self, mask: np.ndarray) -> np.ndarray:
+        """Return the share (m,) of each cluster's points that a mask (n_points,) has."""
+        return np.bincount(self.position, mask[self.rows], len(self.ids)) / self.sizes
+
 
 def cluster_entropies(
     xyz: np.ndarray, cluster_id: np.ndarray, around: Union[Nearest, Wide], monitor: Monitor

@@ -11,9 +11,11 @@ from ..cloud.asprs import NOISE, PointClass
 from ..cloud.reasons import Reason
 from ..geometry.grid import refuse_sparse
 from ..packages import ndimage
-from ..params import MinBuildingArea, PointDensity
+from ..params import MinBuildingArea, PointDensity, PointSource
 from ..sampling.cloud_sampling import CloudSampling
+from ..segmentation.top_surface import TopSurface
 from ..stage import Param, stage
+from .roof_extent import RoofExtent, without_vehicles
 
 # Cells hold at least a point where the roof was seen: this many point spacings, and no less than half a meter.
 _CELL_SPACINGS, _LEAST_CELL = 1.2, 0.5
@@ -118,6 +120,7 @@ def complete_buildings(
         ),
     ] = 0.6,
     density: PointDensity = None,
+    source: PointSource = "automatic",
     sampling: Optional[CloudSampling] = None,
     monitor=None,
 ):
@@ -181,19 +184,32 @@ def complete_buildings(
     if not is_roof.any():
         return result.astype(np.uint8), np.zeros(len(xyz), np.int32), confidence, reason
 
-    cell_size = max(_LEAST_CELL, _CELL_SPACINGS * spacing)
-    refuse_sparse(xyz, cell_size)
-    cell = _cells(xyz, cell_size, margin=gap)
     is_noise = np.isin(classification, NOISE)
     raised = (height_above_ground >= _WALL_FOOT) & ~is_noise
-    # Multipath through a skylight is no ground that shows in it.
-    covered = _covered(cell, is_roof, ~raised & ~is_noise, gap, cell_size)
+    in_images = sampling.is_closed_surface(source)
+    if in_images:
+        surface = TopSurface(xyz, height_above_ground, ~is_noise, density)
+        cell, cell_size = surface.cell, surface.size
+        extent = RoofExtent(surface, _cells_with(cell, is_roof, surface.height.shape))
+        covered = extent.covered(min_width)
+    else:
+        cell_size = max(_LEAST_CELL, _CELL_SPACINGS * spacing)
+        refuse_sparse(xyz, cell_size)
+        cell = _cells(xyz, cell_size, margin=gap)
+        # Multipath through a skylight is no ground that shows in it.
+        covered = _covered(cell, is_roof, ~raised & ~is_noise, gap, cell_size)
     monitor.progress(0.3)
     building, refused = _numbered(covered, min_area, min_width, cell_size)
+    if in_images:
+        building, refused = without_vehicles(extent, building, refused)
+        building = _numbers(np.bincount(building.ravel()) > 0)[building]
     top = _roof_top(cell, xyz[:, 2], is_roof, covered)
-    if segment_id is not None:
+    if segment_id is not None and not in_images:
         at_roof = raised & (np.abs(xyz[:, 2] - top[cell]) <= _AT_ROOF)
         building, refused = _mostly_roof(building, refused, cell, at_roof, is_roof & (segment_id > 0), min_roof_share)
+    if in_images:
+        # Nothing is seen beneath a roof but its own walls, down to their feet.
+        raised |= (building[cell] > 0) & ~is_noise
     columns = _Columns(building, top, cell_size)
     monitor.progress(0.6)
 
@@ -323,10 +339,7 @@ def _covered(
     row, column = cell
     margin = int(np.ceil(gap / cell_size)) + 2
     shape = (row.max() + margin, column.max() + margin)
-    roof = np.zeros(shape, bool)
-    roof[row[is_roof], column[is_roof]] = True
-    open_ground = np.zeros(shape, bool)
-    open_ground[row[is_low], column[is_low]] = True
+    roof, open_ground = (_cells_with(cell, points, shape) for points in (is_roof, is_low))
     closed = roof
     reach = round(gap / 2 / cell_size)
     if reach:
@@ -335,6 +348,14 @@ def _covered(
     # A hole as narrow as the gap may be closed too; a courtyard may not.
     small = _small(holes, max(1.0, (gap / cell_size) ** 2))
     return roof | ((closed | small) & ~open_ground)
+
+
+def _cells_with(cell: tuple[np.ndarray, np.ndarray], points: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
+    """Return which cells of a raster hold one of the chosen points (n,)."""
+    row, column = cell
+    cells = np.zeros(shape, bool)
+    cells[row[points], column[points]] = True
+    return cells
 
 
 def _small(mask: np.ndarray, most: float) -> np.ndarray:

@@ -15,6 +15,7 @@ class Reason(IntEnum):
     ATTACHED = 4
     BESIDE = 5
     LARGE_PLANE = 6
+    SURFACE = 7
     ROUGH = 11
     PENETRATED = 12
     INTO_GROUND = 13
@@ -23,6 +24,8 @@ class Reason(IntEnum):
     TOO_LOW = 16
     MOSTLY_OTHER = 17
     AMID_OTHERS = 18
+    GREEN = 19
+    VEHICLE = 20
     ALIKE = 21
     WITHOUT_ENTROPY = 22
 
@@ -38,7 +41,7 @@ class Reason(IntEnum):
 
 
 _FOR_BUILDING = frozenset(
-    {Reason.PLANE, Reason.SOLID_PLANE, Reason.SOLID, Reason.ATTACHED, Reason.BESIDE, Reason.LARGE_PLANE}
+    {Reason.PLANE, Reason.SOLID_PLANE, Reason.SOLID, Reason.ATTACHED, Reason.BESIDE, Reason.LARGE_PLANE, Reason.SURFACE}
 )
 
 _TEXTS = {
@@ -51,6 +54,7 @@ _TEXTS = {
     "are no evidence of vegetation.",
     Reason.LARGE_PLANE: "Building: a plane too large for a tree crown, although part of the beam passes, as through "
     "glass.",
+    Reason.SURFACE: "Building: planar over meters, like what surrounds it (matched images).",
     Reason.ROUGH: "Not a building: high entropy, typical of tree crowns.",
     Reason.PENETRATED: "Not a building: low entropy, but the laser beam penetrates it.",
     Reason.INTO_GROUND: "Not a building: the surface continues into the ground.",
@@ -59,6 +63,8 @@ _TEXTS = {
     Reason.TOO_LOW: "Not a building: too close to the ground to belong to the roof at its location.",
     Reason.MOSTLY_OTHER: "Not a building: too few of the points at roof height lie on surfaces, as in tree crowns.",
     Reason.AMID_OTHERS: "Not a building: surrounded mostly by non-building points, like smooth spots of tree crowns.",
+    Reason.GREEN: "Not a building: as green as the vegetation of the scene (matched images).",
+    Reason.VEHICLE: "Not a building: as wide, long and high as a car, a van or a caravan (matched images).",
     Reason.ALIKE: "Undecided: all clusters have the same entropy.",
     Reason.WITHOUT_ENTROPY: "Undecided: the points have no extent, so their entropy is undefined.",
 }

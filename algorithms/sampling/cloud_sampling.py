@@ -11,6 +11,7 @@ from ..cloud.asprs import NOISE
 from ..geometry.grid import plan_box
 from ..neighborhoods.covariance import Nearest
 from ..neighborhoods.wide_in_plan import Wide
+from .closed_surface import seen_through_share
 from .density import effective_density, point_density
 from .height_resolution import height_resolution, rounding_deviation
 from .surface_noise import SurfaceSample, plane_roughness
@@ -23,7 +24,12 @@ _MEASURES = {
     "noise": ("surface noise", "m"),
     "scan_noise": ("noise of the scan", "m"),
     "height_resolution": ("height resolution", "m"),
+    "seen_through": ("share seen through", ""),
 }
+
+# A cloud without second returns is one closed surface when no more than this share of it is seen through, and it is so
+# dense (points/m²) that ten points share a cell in which that is measured. Between the two kinds of clouds, see there.
+_MOST_SEEN_THROUGH, _LEAST_DENSITY = 0.02, 8.0
 
 
 # Files keep coordinates to a millimeter: rounding to it leaves this deviation (m).
@@ -41,6 +47,8 @@ class CloudSampling:
     ----------
     points : callable
         Returns the coordinates (n, 3), m, n >= 1, of the points that it is measured on.
+    single_returns : bool
+        Whether no pulse is known to have more than one return. Clouds matched from images never have.
 
     Examples
     --------
@@ -50,8 +58,9 @@ class CloudSampling:
     (1.0, 0.01)
     """
 
-    def __init__(self, points: Callable[[], np.ndarray]) -> None:
+    def __init__(self, points: Callable[[], np.ndarray], single_returns: bool = False) -> None:
         self._points = points
+        self.single_returns = single_returns
 
     @classmethod
     def of(cls, xyz: np.ndarray, classification: Optional[np.ndarray] = None) -> CloudSampling:
@@ -107,6 +116,17 @@ class CloudSampling:
         """Standard deviation below which no roughness can be measured, m."""
         return height_resolution(self._points()[:, 2])
 
+    @cached_property
+    def seen_through(self) -> float:
+        """Share of the area in which points lie far beneath others, see :func:`.closed_surface.seen_through_share`."""
+        return seen_through_share(self._points(), self.spacing)
+
+    def is_closed_surface(self, source: str = "automatic") -> bool:
+        """Whether the cloud holds one surface seen from above, from matched images: measured, or by its source."""
+        if source != "automatic":
+            return source == "matched images"
+        return self.single_returns and self.density >= _LEAST_DENSITY and self.seen_through <= _MOST_SEEN_THROUGH
+
     def neighborhood(self, density: float, deviation: float) -> Union[Nearest, Wide]:
         """Return which points show the plane of a surface, see :meth:`.surface_noise.SurfaceSample.neighborhood`."""
         return self._surfaces.neighborhood(density, deviation)
@@ -125,12 +145,12 @@ class CloudSampling:
     def __str__(self) -> str:
         """Return what was measured so far, as the log shows it."""
         labeled = ((*_MEASURES[name], value) for name, value in self.measured.items())
-        return ", ".join(f"{label} {value:.4g} {unit}" for label, unit, value in labeled)
+        return ", ".join(f"{label} {value:.4g} {unit}".rstrip() for label, unit, value in labeled)
 
     def __getstate__(self) -> dict[str, Any]:
         """Return all measures, for another process: the points stay where they are."""
         measures = {name: getattr(self, name) for name in (*_MEASURES, "_surfaces")}
-        return {**measures, "_points": None}
+        return {**measures, "single_returns": self.single_returns, "_points": None}
 
 
 def without_noise(classification: np.ndarray) -> np.ndarray:

@@ -11,16 +11,33 @@ import numpy as np
 from ..cloud.asprs import NOISE
 from ..cloud.reasons import Reason
 from ..geometry.components import connect, number_large
-from ..params import PointDensity, SurfaceNoise
+from ..neighborhoods.covariance import Nearest
+from ..params import PointDensity, PointSource, SurfaceNoise
 from ..sampling.cloud_sampling import CloudSampling
 from ..sampling.surface_noise import plane_roughness
-from ..stage import Param, stage
+from ..stage import Monitor, Param, stage
 from .cluster_measures import plan_areas, share_joined
 from .decks_and_ramps import part_decks
 from .planar_patches import segment_patches
+from .top_surface import TopSurface, highest_of_cells
 
 # Points lower than this stand on the ground (kerbs, cars' bonnets, low plants), m.
 _RAISED = 1.5
+
+# Mean height (m) of the lowest roof, in laser clouds and in matched images. In these, sheds and carports of 2 m have
+# rounded edges, and the mean over their surface is lower; cars are told from them by their shape.
+_LOWEST, _LOWEST_IN_IMAGES = 2.0, 1.2
+
+# In matched images, what stands lower than this (m) is no part of a cluster: as low as the lowest roof's edge.
+_RAISED_IN_IMAGES = 1.0
+
+# In matched images planes are laid through what lies within this (m), a meter across: crowns are smooth over less. And
+# they hold points within this deviation (m) at least, since errors of matching are shared by neighbors, which the
+# measured noise doesn't show. One point per cell of this side (m) is enough for that, and bounds time and memory.
+_REACH_IN_IMAGES, _OFF_PLANE_IN_IMAGES, _CELL_IN_IMAGES = 0.6, 0.05, 0.15
+
+# Points of a neighborhood in matched images, where so few lie within its reach.
+_FEWEST_IN_IMAGES = 12
 
 # A surface of which more than this share lies lower than this (m) goes on into the ground: a bridge, a ramp, a slope.
 _LOW_SHARE, _LOW = 0.1, 0.5
@@ -62,15 +79,16 @@ def segment_roofs(
     height_above_ground,
     *,
     min_height: Annotated[
-        float,
+        Optional[float],
         Param(
             "Minimum height",
             "Mean height above ground of the lowest roof and of other clusters.",
             unit="m",
             low=0,
             high=100,
+            automatic="2 m; 1.2 m in clouds of matched images, where edges are rounded.",
         ),
-    ] = 2.0,
+    ] = None,
     min_area: Annotated[
         float,
         Param(
@@ -90,6 +108,7 @@ def segment_roofs(
     ] = 75.0,
     noise: SurfaceNoise = None,
     density: PointDensity = None,
+    source: PointSource = "automatic",
     sampling: Optional[CloudSampling] = None,
     monitor=None,
 ):
@@ -125,6 +144,9 @@ def segment_roofs(
     a point lies on it, 2.3 times the roughness of roofs (more with less than 10 points/m²). This is the "more robust
     segmentation" that the paper names as future work.
 
+    In clouds of matched images, walls and what else lies below the surface seen from above are left out, and planes
+    are laid through all points within 0.6 m: crowns are closed surfaces there, and smooth over less than that.
+
     References
     ----------
     Santos, R. C. dos, Pessoa, G. G., Carrilho, A. C., Galo, M., 2019. Building detection from LiDAR data using
@@ -133,13 +155,24 @@ def segment_roofs(
     sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.effective_density if density is None else density
     noise = sampling.noise if noise is None else noise
-    monitor.resolved(density=density, noise=noise)
+    in_images = sampling.is_closed_surface(source)
+    if min_height is None:
+        min_height = _LOWEST_IN_IMAGES if in_images else _LOWEST
+    monitor.resolved(density=density, noise=noise, min_height=min_height, matched_images=in_images)
     off_plane = _off_plane_deviation(noise, density)
-    around = sampling.neighborhood(density, off_plane)
-    used = np.flatnonzero(~np.isin(classification, NOISE))
+    is_used = ~np.isin(classification, NOISE)
+    if in_images:
+        is_used &= TopSurface(xyz, height_above_ground, is_used, density).on_top(xyz)
+    used = np.flatnonzero(is_used)
 
     patch, roughness = np.full(len(xyz), -1, np.int32), np.zeros(len(xyz), np.float32)
-    patch[used], roughness[used] = segment_patches(xyz[used], around, off_plane, max_slope, monitor.part(0, 0.75))
+    if in_images:
+        patch[used], roughness[used] = _patches_of_images(
+            xyz[used], density, off_plane, max_slope, monitor.part(0, 0.75)
+        )
+    else:
+        around = sampling.neighborhood(density, off_plane)
+        patch[used], roughness[used] = segment_patches(xyz[used], around, off_plane, max_slope, monitor.part(0, 0.75))
     patches = _Patches(xyz, patch, height_above_ground, density).with_decks(min_height, min_area)
     patch, is_terrain = patches.number, patches.is_terrain
     monitor.progress(0.8)
@@ -149,7 +182,7 @@ def segment_roofs(
     segment_id = _renumbered(patch, is_roof)
     monitor.progress(0.85)
 
-    raised = height_above_ground >= min(_RAISED, min_height)
+    raised = height_above_ground >= min(_RAISED_IN_IMAGES if in_images else _RAISED, min_height)
     # Points of no patch, -1, find the last entry.
     goes_on = np.append(is_terrain, False)[patch]
     is_other = raised & (segment_id == 0) & ~goes_on
@@ -160,6 +193,22 @@ def segment_roofs(
     cluster_id = segment_id.copy()
     cluster_id[others] = np.where(ids > 0, ids + segment_id.max(initial=0), 0)
     return segment_id, cluster_id, np.where(raised & goes_on, np.uint8(Reason.INTO_GROUND), np.uint8(0))
+
+
+def _patches_of_images(
+    xyz: np.ndarray, density: float, off_plane: float, max_slope: float, monitor: Monitor
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return what :func:`.segment_patches` does, for the surface (n, 3) that matched images show."""
+    if not len(xyz):
+        return np.zeros(0, np.int32), np.zeros(0, np.float32)
+    highest, under = highest_of_cells(xyz, _CELL_IN_IMAGES)
+    thinned = xyz[highest]
+    # Of cells that hold points at random, with the density's number on the average, these have one.
+    kept = -np.expm1(-density * _CELL_IN_IMAGES**2) / _CELL_IN_IMAGES**2
+    count = max(_FEWEST_IN_IMAGES, round(np.pi * _REACH_IN_IMAGES**2 * kept))
+    deviation = max(off_plane, _OFF_PLANE_IN_IMAGES)
+    patch, roughness = segment_patches(thinned, Nearest(count), deviation, max_slope, monitor)
+    return patch[under], roughness[under]
 
 
 def _off_plane_deviation(noise: float, density: float) -> float:

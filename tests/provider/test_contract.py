@@ -61,6 +61,7 @@ IDS = {
     "simulatetown",
     "simulateflight",
     "simulatevillage",
+    "simulatedronesite",
     "extractfacades",
     "segmentplaneshough",
     "detectcylinders",

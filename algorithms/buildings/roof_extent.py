@@ -1,0 +1,124 @@
+"""Where roofs end in clouds of matched images, whose edges are rounded, and what is of the size of vehicles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..cloud.reasons import Reason
+from ..packages import ndimage
+from ..segmentation.top_surface import TopSurface
+
+# Gaps between roof surfaces (ridges, dormers, chimneys) are closed over this (m) where the surface stays above the
+# ground by this (m).
+_GAP, _RAISED = 1.5, 1.0
+
+# Matching rounds edges: a roof surface ends up to this far (m) before the roof. A step that is smeared evenly to both
+# sides has half its height where the edge is.
+_ROUNDED, _HALF = 0.7, 0.5
+
+# What rises above the roof by more than this (m) is no edge of it but a crown or a higher wall.
+_ABOVE = 1.0
+
+# Widths, lengths and heights (m) of vans, buses apart, and of cars; smeared edges included. Heights above ground.
+_VAN_WIDTH, _VAN_LENGTH, _VAN_HEIGHT = (1.4, 2.6), (4.3, 7.5), 3.0
+_CAR_LENGTH, _CAR_HEIGHT = (3.2, 5.4), 1.75
+
+# Share of its rectangle that a vehicle fills.
+_FILLED = 0.65
+
+# Directions that the smallest rectangle around an object is looked for in.
+_DIRECTIONS = np.radians(np.arange(0.0, 90.0, 5.0))
+
+_EIGHT = np.ones((3, 3), bool)
+
+
+@dataclass(frozen=True)
+class RoofExtent:
+    """Roofs in the cells of a surface, up to their edges.
+
+    Parameters
+    ----------
+    surface : TopSurface
+        The surface seen from above.
+    is_roof : ndarray of shape (rows, columns), bool
+        Cells with points of roofs that are buildings.
+    """
+
+    surface: TopSurface
+    is_roof: np.ndarray
+
+    def covered(self, min_width: float) -> np.ndarray:
+        """Return the cells (rows, columns) that roofs cover, without what is narrower than ``min_width`` (m)."""
+        raised = self.surface.height >= _RAISED
+        closed = self.is_roof | (ndimage.binary_closing(self.is_roof, self._disk(_GAP / 2)) & raised)
+        closed |= self._small_holes(closed) & raised
+        wide = ndimage.binary_opening(closed, self._disk(min_width / 2))
+        # Opening rounds the corners off, too: they come back.
+        wide = ndimage.binary_dilation(wide, _EIGHT, 2, mask=closed) if wide.any() else wide
+        return self._to_edges(wide)
+
+    def _to_edges(self, core: np.ndarray) -> np.ndarray:
+        """Return roofs with what lies beside them within reach and has at least half of their height."""
+        if not core.any():
+            return core
+        nearest = ndimage.distance_transform_edt(~core, return_distances=False, return_indices=True)
+        height, elevation = self.surface.height[tuple(nearest)], self.surface.elevation[tuple(nearest)]
+        is_edge = (self.surface.height >= _HALF * height) & (self.surface.elevation <= elevation + _ABOVE)
+        steps = max(1, round(_ROUNDED / self.surface.size))
+        cross = ndimage.generate_binary_structure(2, 1)
+        grown = ndimage.binary_dilation(core, cross, steps, mask=core | is_edge)
+        # Smeared walls, fences and branches that reach out are thinner than what they hang on.
+        return core | ndimage.binary_opening(grown, _EIGHT)
+
+    def vehicles(self, region: np.ndarray, count: int) -> np.ndarray:
+        """Return which regions (count + 1,) of labeled cells are of the size of a car or van."""
+        found = np.zeros(count + 1, bool)
+        for number, where in enumerate(ndimage.find_objects(region, count), start=1):
+            extent = [(part.stop - part.start) * self.surface.size for part in where]
+            if max(extent) <= np.hypot(_VAN_WIDTH[1], _VAN_LENGTH[1]):
+                inside = region[where] == number
+                found[number] = self._is_vehicle(inside, self.surface.height[where][inside])
+        return found
+
+    def _is_vehicle(self, inside: np.ndarray, height: np.ndarray) -> bool:
+        width, length, filled = smallest_rectangle(inside, self.surface.size)
+        top = float(np.percentile(height, 90))
+        is_van = _between(length, _VAN_LENGTH) and top <= _VAN_HEIGHT
+        is_car = _between(length, _CAR_LENGTH) and top <= _CAR_HEIGHT
+        return _between(width, _VAN_WIDTH) and filled >= _FILLED and (is_van or is_car)
+
+    def _small_holes(self, closed: np.ndarray) -> np.ndarray:
+        holes, count = ndimage.label(ndimage.binary_fill_holes(closed) & ~closed)
+        size = np.bincount(holes.ravel(), minlength=count + 1)
+        size[0] = 0
+        return (holes > 0) & (size * self.surface.size**2 <= _GAP**2)[holes]
+
+    def _disk(self, radius: float) -> np.ndarray:
+        """Return a disk of ``radius`` (m) as cells."""
+        reach = max(1, round(radius / self.surface.size))
+        row, column = np.mgrid[-reach : reach + 1, -reach : reach + 1]
+        return row**2 + column**2 <= reach**2 + 0.5 * reach
+
+
+def smallest_rectangle(inside: np.ndarray, size: float) -> tuple[float, float, float]:
+    """Return width and length (m) of the smallest rectangle around cells of ``size`` (m), and how much they fill."""
+    places = np.argwhere(inside) * size
+    along = np.column_stack([np.cos(_DIRECTIONS), np.sin(_DIRECTIONS)])
+    across = np.column_stack([-np.sin(_DIRECTIONS), np.cos(_DIRECTIONS)])
+    sides = np.array([np.ptp(places @ axis.T, axis=0) + size for axis in (along, across)])
+    best = int(np.argmin(sides[0] * sides[1]))
+    width, length = np.sort(sides[:, best]).tolist()
+    return width, length, float(inside.sum() * size**2 / (width * length))
+
+
+def _between(value: float, bounds: tuple[float, float]) -> bool:
+    return bounds[0] <= value <= bounds[1]
+
+
+def without_vehicles(extent: RoofExtent, building: np.ndarray, refused: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return numbered regions (rows, columns) without vehicles, and why cells are refused."""
+    is_vehicle = extent.vehicles(building, int(building.max(initial=0)))
+    gone = is_vehicle[building]
+    return np.where(gone, 0, building), np.where(gone, np.uint8(Reason.VEHICLE), refused)

@@ -1,0 +1,76 @@
+"""The surface that is seen from above, in cells: how high it is, and which points are of it and not of walls below."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..geometry.grid import grid_over, refuse_sparse
+from ..packages import ndimage
+
+# Cells hold a point nearly everywhere: this many point spacings, and no less than a quarter of a meter.
+_CELL_SPACINGS, _LEAST_CELL = 1.2, 0.25
+
+# Empty cells no farther than this many cells from others take the height of the nearest one.
+_FILLED = 2.0
+
+# A point is of the surface when it lies no deeper than this below the highest one of its cell (m), and what a slope of
+# 45° falls within the cell.
+_DEPTH = 0.2
+
+
+class TopSurface:
+    """The highest point of each cell.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points (m), n >= 1.
+    height : ndarray of shape (n,)
+        Height above ground of each, m.
+    counted : ndarray of shape (n,), bool
+        Which of them are looked at: those that are no noise.
+    density : float
+        Points per square meter.
+
+    Attributes
+    ----------
+    size : float
+        Side of a cell, m.
+    cell : tuple of two ndarrays of shape (n,), int64
+        Row and column of each point's cell; around the cloud there is an empty border.
+    height, elevation : ndarray of shape (rows, columns)
+        Of the highest point, m; height 0 and elevation -inf in larger gaps.
+    """
+
+    def __init__(self, xyz: np.ndarray, height: np.ndarray, counted: np.ndarray, density: float) -> None:
+        self.size = max(_LEAST_CELL, _CELL_SPACINGS / float(np.sqrt(density)))
+        refuse_sparse(xyz, self.size)
+        margin = 4
+        low = xyz[:, :2].min(axis=0) - margin * self.size
+        column, row = np.floor((xyz[:, :2] - low) / self.size).astype(np.int64).T
+        self.cell = row, column
+        shape = (int(row.max()) + margin + 1, int(column.max()) + margin + 1)
+        self.elevation, self.height = np.full((2, *shape), -np.inf)
+        np.maximum.at(self.elevation, (row[counted], column[counted]), xyz[counted, 2])
+        np.maximum.at(self.height, (row[counted], column[counted]), height[counted])
+        distance, nearest = ndimage.distance_transform_edt(~np.isfinite(self.elevation), return_indices=True)
+        is_near = distance <= _FILLED
+        self.elevation = np.where(is_near, self.elevation[tuple(nearest)], -np.inf)
+        self.height = np.where(is_near, self.height[tuple(nearest)], 0.0)
+
+    def on_top(self, xyz: np.ndarray) -> np.ndarray:
+        """Return which of the points (n,) are of the surface."""
+        return xyz[:, 2] >= self.elevation[self.cell] - (_DEPTH + self.size)
+
+
+def highest_of_cells(xyz: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the highest point (m,) of each occupied cell of ``size`` (m), and which of these each point (n,) is under.
+
+    Of points equally high the one farthest to the east counts, so that their order in the file does not matter.
+    """
+    number = grid_over(xyz, size).number(xyz)
+    order = np.lexsort((xyz[:, 1], xyz[:, 0], xyz[:, 2], number))
+    is_last = np.append(number[order][1:] != number[order][:-1], True)
+    under = np.empty(len(xyz), np.int64)
+    under[order] = np.concatenate([[0], np.cumsum(is_last)[:-1]])
+    return order[is_last], under

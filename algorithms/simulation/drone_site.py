@@ -1,0 +1,139 @@
+"""A made-up site for a drone: houses cut into slopes, sheds, vans, and large flat roofs with parapets."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from .scene import Scene
+from .solids import Rect, Solid, flat
+from .town_houses import Site
+from .town_layout import build_town, park_car
+
+# Halls (m): lengths and widths between these, heights of their roofs, and of the parapets on them.
+_HALL_SIZES = (10.0, 100.0)
+_HALL_HEIGHTS = (3.0, 9.0)
+_PARAPET_HEIGHT, _PARAPET_WIDTH = 0.6, 0.35
+
+# Blocks: so many flat roofs touch, each a little higher or lower than the next (m).
+_BLOCK_ROOFS, _BLOCK_DEPTH, _BLOCK_STEP = 4, 12.0, 0.8
+
+# Vans (m).
+_VAN = (5.4, 2.0)
+_VAN_HEIGHT = (1.9, 2.6)
+
+# Places that are tried for each thing before it is left out, and the room it keeps to buildings (m).
+_TRIES, _ROOM = 60, 3.0
+
+
+def build_site(
+    *,
+    size: float,
+    slope: float,
+    terrace_height: float,
+    buildings: float,
+    trees: float,
+    halls: int,
+    seed: int,
+) -> Scene:
+    """Make up a site. The tunables are those of :func:`.simulate_drone_site.simulate_drone_site`."""
+    scene = build_town(
+        size=size,
+        slope=slope,
+        relief=2.0,
+        terrace_height=terrace_height,
+        buildings=buildings,
+        trees=trees,
+        forest=0.0,
+        river=False,
+        seed=seed,
+    )
+    # A camera doesn't see wires.
+    scene.wires.clear()
+    rng = np.random.default_rng([seed, 5])
+    for k in range(halls):
+        _add_hall(scene, k, rng)
+    if buildings and halls:
+        _add_block(scene, rng)
+    for _ in range(round(8 * size**2 / 1e4)):
+        _add_van(scene, rng)
+    return scene
+
+
+def _free_place(scene: Scene, long: float, wide: float, rng: np.random.Generator) -> Rect | None:
+    """Return a free rectangle of these sides (m) anywhere on the site, None where none was found."""
+    reach = np.hypot(long, wide) / 2 + 1.0
+    if 2 * reach >= scene.size:
+        return None
+    for _ in range(_TRIES):
+        x, y = rng.uniform(reach, scene.size - reach, 2)
+        rect = Rect(float(x), float(y), long, wide, scene.relief.angle + float(rng.choice([0.0, np.pi / 2])))
+        across, along = (np.linspace(-0.5, 0.5, max(2, int(side / 2))) * side for side in (wide, long))
+        grid = np.stack(np.meshgrid(along, across), axis=-1).reshape(-1, 2)
+        if not scene.buildings or not scene.near_building(np.column_stack(rect.at(*grid.T)), _ROOM).any():
+            return rect
+    return None
+
+
+def _clear(scene: Scene, rect: Rect) -> None:
+    """Take away what grows or parks where a building is put."""
+    kept = [row for row in scene.crowns.rows if not rect.contains(row[0], row[1], row[3] + 0.5)]
+    scene.crowns.rows[:] = kept
+    scene.solids[:] = [
+        solid
+        for solid in scene.solids
+        if solid.classification == PointClass.BUILDING or not rect.contains(solid.rect.x, solid.rect.y, 2.5)
+    ]
+
+
+def _add_hall(scene: Scene, k: int, rng: np.random.Generator) -> None:
+    """Put a flat roof with a parapet, the k-th of sides spread evenly from the least to the greatest."""
+    least, most = _HALL_SIZES
+    long = min(least * (most / least) ** float(np.mod(0.35 + 0.382 * k, 1.0)), 0.6 * scene.size)
+    rect = _free_place(scene, long, long * rng.uniform(0.5, 0.8), rng)
+    if rect is None:
+        return
+    _clear(scene, rect)
+    height = rng.uniform(*_HALL_HEIGHTS)
+    site = Site(scene, rect, height)
+    top = site.floor + height
+    solids = [site.solid(rect, flat(rect, top)), *_parapets(site, rect, top)]
+    scene.add_building("hall", rect.corners(), solids)
+
+
+def _parapets(site: Site, rect: Rect, top: float) -> list[Solid]:
+    sides: list[tuple[float, float, float, float]] = [(side, 0.0, _PARAPET_WIDTH, rect.width) for side in (-1, 1)]
+    sides += [(0.0, side, rect.length, _PARAPET_WIDTH) for side in (-1, 1)]
+    parts = [
+        rect.part(along * (rect.length - _PARAPET_WIDTH) / 2, across * (rect.width - _PARAPET_WIDTH) / 2, long, wide)
+        for along, across, long, wide in sides
+    ]
+    return [site.solid(part, flat(part, top + _PARAPET_HEIGHT)) for part in parts]
+
+
+def _add_block(scene: Scene, rng: np.random.Generator) -> None:
+    """Put a block of touching flat roofs."""
+    wide = rng.uniform(7.0, 11.0)
+    rect = _free_place(scene, _BLOCK_ROOFS * wide, _BLOCK_DEPTH, rng)
+    if rect is None:
+        return
+    _clear(scene, rect)
+    height = rng.uniform(5.0, 9.0)
+    for k in range(_BLOCK_ROOFS):
+        part = rect.part((k - (_BLOCK_ROOFS - 1) / 2) * wide, 0.0, wide, _BLOCK_DEPTH)
+        site = Site(scene, part, height)
+        top = site.floor + height + _BLOCK_STEP * float(rng.uniform(-1.0, 1.0))
+        scene.add_building("flat", part.corners(), [site.solid(part, flat(part, top))])
+
+
+def _add_van(scene: Scene, rng: np.random.Generator) -> None:
+    """Park a van or a car where there is room."""
+    rect = _free_place(scene, *_VAN, rng)
+    if rect is None:
+        return
+    if rng.random() < 0.5:
+        park_car(scene, rect.part(0.0, 0.0, 4.3, 1.8))
+        return
+    ground = float(scene.relief.ground(rect.x, rect.y))
+    top = flat(rect, ground + rng.uniform(*_VAN_HEIGHT))
+    scene.solids.append(Solid(rect, top, ground - 1.0, PointClass.UNCLASSIFIED, scene.new_id()))

@@ -1,0 +1,117 @@
+"""A scene as a camera sees it from above: the height, the class and the object of fine cells."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from ..packages import ndimage
+from .beams import vegetation_class
+from .scene import Scene
+from .solids import Solid
+
+# Side of a cell, m: finer than the points of a drone's cloud lie apart.
+CELL = 0.1
+
+# Lumps of crowns: how wide they are and how far they stand out (m).
+_LUMPS = ((1.2, 0.35), (0.5, 0.15))
+
+
+@dataclass
+class HeightField:
+    """The highest surface of each cell.
+
+    Attributes
+    ----------
+    ground, top : ndarray of shape (rows, columns)
+        Elevation of the ground and of what is seen, m.
+    classification, object_id : ndarray of shape (rows, columns)
+        What it is.
+    """
+
+    ground: np.ndarray
+    top: np.ndarray
+    classification: np.ndarray
+    object_id: np.ndarray
+
+    def at(self, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return row and column of the cells of places (n, 2), m."""
+        column, row = np.floor(xy / CELL).astype(np.int64).T
+        return np.clip(row, 0, self.top.shape[0] - 1), np.clip(column, 0, self.top.shape[1] - 1)
+
+    def beside(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return row and column (rows, columns) of the nearest cell that is not ground."""
+        is_ground = self.classification == PointClass.GROUND
+        if is_ground.all():
+            row, column = np.indices(is_ground.shape)
+        else:
+            row, column = ndimage.distance_transform_edt(is_ground, return_distances=False, return_indices=True)
+        return row, column
+
+
+def see_from_above(scene: Scene, rng: np.random.Generator) -> HeightField:
+    """Return the surface of a scene, crowns as closed lumpy bodies."""
+    n = round(scene.size / CELL)
+    middle = (np.arange(n) + 0.5) * CELL
+    x, y = np.meshgrid(middle, middle)
+    ground = scene.relief.ground(x, y)
+    field = HeightField(
+        ground, ground.copy(), np.full(x.shape, PointClass.GROUND, np.uint8), np.zeros(x.shape, np.int32)
+    )
+    lumps = sum(height * smooth_noise(x.shape, width, rng) for width, height in _LUMPS)
+    for crown in scene.crowns.array:
+        _add_crown(field, crown, lumps)
+    for solid in scene.solids:
+        _add_solid(field, solid)
+    return field
+
+
+def smooth_noise(shape: tuple[int, int], wavelength: float, rng: np.random.Generator) -> np.ndarray:
+    """Return a random field (rows, columns) of standard deviation 1 whose waves are about so long (m)."""
+    sigma = wavelength / CELL / 4
+    # Coarse cells, drawn out: as smooth, and quick for long waves.
+    step = max(1, int(sigma))
+    coarse = rng.standard_normal((shape[0] // step + 8, shape[1] // step + 8))
+    smooth = ndimage.gaussian_filter(coarse, sigma / step)
+    smooth /= smooth.std()
+    rows, columns = (np.arange(k) / step + 3.0 for k in shape)
+    return ndimage.map_coordinates(smooth, np.meshgrid(rows, columns, indexing="ij"), order=1)
+
+
+def _window(
+    field: HeightField, low: np.ndarray, high: np.ndarray
+) -> tuple[tuple[slice, slice], np.ndarray, np.ndarray]:
+    """Return the cells between two places (m), and the easting and northing of their middles."""
+    shape = field.top.shape
+    first = np.clip(np.floor(low / CELL).astype(int), 0, [shape[1], shape[0]])
+    last = np.clip(np.ceil(high / CELL).astype(int), 0, [shape[1], shape[0]])
+    x, y = np.meshgrid(*((np.arange(a, b) + 0.5) * CELL for a, b in zip(first, last)))
+    return (slice(first[1], last[1]), slice(first[0], last[0])), x, y
+
+
+def _put(field: HeightField, where: tuple, higher: np.ndarray, z: np.ndarray, classes, number: int) -> None:
+    field.top[where][higher] = z[higher]
+    field.classification[where][higher] = np.broadcast_to(classes, higher.shape)[higher]
+    field.object_id[where][higher] = number
+
+
+def _add_solid(field: HeightField, solid: Solid) -> None:
+    corners = solid.rect.corners()
+    where, x, y = _window(field, corners.min(axis=0), corners.max(axis=0))
+    z = solid.top(x, y)
+    higher = solid.rect.contains(x, y) & (z > field.top[where])
+    _put(field, where, higher, z, solid.classification, solid.object_id)
+
+
+def _add_crown(field: HeightField, crown: np.ndarray, lumps: np.ndarray) -> None:
+    x0, y0, z0, radius, half, _, number = crown
+    reach = 1.2 * radius
+    where, x, y = _window(field, np.array([x0 - reach, y0 - reach]), np.array([x0 + reach, y0 + reach]))
+    # Lumps are as large as the crown bears.
+    lump = lumps[where] * min(1.0, radius / 1.5)
+    inside = 1 - np.hypot(x - x0, y - y0) ** 2 / (radius + 0.4 * lump) ** 2
+    z = z0 + half * np.sqrt(np.maximum(inside, 0.0)) + lump
+    higher = (inside > 0) & (z > field.top[where])
+    _put(field, where, higher, z, vegetation_class(z - field.ground[where]), int(number))

@@ -1,0 +1,217 @@
+"""What dense matching of a drone's images makes of a surface: rounded edges, waves, holes, spikes, and colors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from statistics import NormalDist
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from ..packages import ndimage
+from .height_field import CELL, HeightField, smooth_noise
+
+# Waves of matching (m): their length, and their share of the whole; the whole is a tunable.
+_WAVES = ((1.5, 0.4), (4.0, 0.6), (9.0, 0.7))
+
+# Edges are rounded more and less over so many meters.
+_ROUNDING_CHANGES = 8.0
+
+# A window of matching follows a crown less than a roof: its leaves move and differ from view to view (m).
+_LEAF_NOISE = 0.12
+
+# The sun: its azimuth from east, counterclockwise, and its elevation (rad), and how far shadows are looked for (m).
+_SUN, _SHADOW_REACH = (np.radians(130.0), np.radians(38.0)), 25.0
+
+# Light of the sky alone, as a share of sunlight, with the blue of it.
+_SHADE = np.array([0.38, 0.42, 0.5])
+
+# Brightness (red, green, blue, of 255) of materials. Roofs and cars come in several, one each, bright and dark.
+_ASPHALT, _GRASS, _SOIL = (128, 126, 122), (104, 124, 62), (150, 128, 100)
+_LEAVES = np.array([(62, 92, 40), (84, 110, 50), (92, 98, 44), (120, 74, 60)])
+_ROOFS = np.array([(150, 76, 56), (112, 66, 56), (96, 97, 102), (132, 110, 92), (222, 222, 218), (60, 60, 64)])
+_CARS = np.array([(236, 236, 236), (40, 42, 46), (160, 30, 34), (70, 90, 150), (170, 172, 176)])
+
+# Matching fails on this part of what is darker or brighter than these (of 255), of cars, which mirror, and
+# of everything else.
+_DARK, _BRIGHT, _FAILS, _FAILS_ON_CARS, _FAILS_ELSEWHERE = 32.0, 205.0, 0.35, 0.35, 0.005
+
+# Where it fails it finds nothing, or, on this share of the cells, spikes of this deviation (m).
+_SPIKES, _SPIKE = 0.15, 0.5
+
+
+@dataclass(frozen=True)
+class Matched:
+    """The surface that matching makes: elevations and colors (0 to 255), and where there is nothing."""
+
+    top: np.ndarray
+    colors: np.ndarray
+    is_hole: np.ndarray
+
+
+def match(field: HeightField, rounding: float, waves: float, rng: np.random.Generator) -> Matched:
+    """Return what matching makes of a surface.
+
+    Parameters
+    ----------
+    field : HeightField
+        The surface.
+    rounding : float
+        Distance (m) over which edges are rounded, on the average; from half to one and a half times this.
+    waves : float
+        Standard deviation (m) of the errors that neighboring points share.
+    rng : Generator
+        Random numbers.
+    """
+    shape = field.top.shape
+    colors = _lit(field, _materials(field, rng), rng)
+    top = _rounded(field.top, rounding, rng)
+    shared = sum(share * smooth_noise(shape, length, rng) for length, share in _WAVES)
+    # Where there is little texture, matching wanders more.
+    top = top + waves * shared / np.sqrt(sum(share**2 for _, share in _WAVES)) * _by_texture(field)
+    is_leaf = _is_vegetation(field.classification)
+    top += is_leaf * _LEAF_NOISE * smooth_noise(shape, 0.8, rng)
+    fails = _fails(field, colors, rng)
+    spike = fails & (smooth_noise(shape, 0.6, rng) > 1.0)
+    top = np.where(spike, top + _SPIKE * smooth_noise(shape, 0.5, rng), top)
+    return Matched(top, colors, fails & ~spike)
+
+
+def _fails(field: HeightField, colors: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Return the cells in which matching fails: patches of about a meter."""
+    brightness = colors.mean(axis=2)
+    is_difficult = (brightness < _DARK) | (brightness > _BRIGHT)
+    is_car = field.classification == PointClass.UNCLASSIFIED
+    patches = smooth_noise(field.top.shape, 1.2, rng)
+    chances = ((~is_difficult, _FAILS_ELSEWHERE), (is_difficult, _FAILS), (is_car, _FAILS_ON_CARS))
+    return np.any([of & (patches < NormalDist().inv_cdf(chance)) for of, chance in chances], axis=0)
+
+
+def _rounded(top: np.ndarray, rounding: float, rng: np.random.Generator) -> np.ndarray:
+    """Return the surface with edges rounded, in places more and in others less."""
+    if not rounding:
+        return top
+    # A step smeared by a normal distribution rises by most of its height over 2.5 deviations.
+    sigma = rounding / 2.5 / CELL
+    sharp, soft = (ndimage.gaussian_filter(top, factor * sigma) for factor in (0.5, 1.5))
+    share = np.clip(0.5 + 0.35 * smooth_noise(top.shape, _ROUNDING_CHANGES, rng), 0.0, 1.0)
+    return sharp * (1 - share) + soft * share
+
+
+def _by_texture(field: HeightField) -> np.ndarray:
+    """Return the factor on waves: roofs and asphalt have little texture, plants much."""
+    return np.where(field.classification == PointClass.BUILDING, 1.2, 0.8)
+
+
+def _is_vegetation(classification: np.ndarray) -> np.ndarray:
+    return (classification >= PointClass.LOW_VEGETATION) & (classification <= PointClass.HIGH_VEGETATION)
+
+
+def _materials(field: HeightField, rng: np.random.Generator) -> np.ndarray:
+    """Return the color (rows, columns, 3) of each cell in even light."""
+    shape, number = field.top.shape, field.object_id
+    grass, soil = smooth_noise(shape, 25.0, rng), smooth_noise(shape, 12.0, rng)
+    ground = np.where((grass > 0.1)[..., None], _GRASS, np.where((soil > 0.8)[..., None], _SOIL, _ASPHALT))
+    colors = ground.astype(np.float32)
+    for chosen, palette in (
+        (_is_vegetation(field.classification), _LEAVES),
+        (field.classification == PointClass.BUILDING, _ROOFS),
+        (field.classification == PointClass.UNCLASSIFIED, _CARS),
+    ):
+        colors[chosen] = palette[(number[chosen] * 7919 % 104729) % len(palette)]
+    texture = 1 + 0.08 * smooth_noise(shape, 0.4, rng) + 0.06 * smooth_noise(shape, 3.0, rng)
+    return colors * texture[..., None]
+
+
+def _lit(field: HeightField, colors: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Return colors in the light of a low sun: slopes by their angle to it, shadows in the light of the sky."""
+    azimuth, elevation = _SUN
+    sun = np.array([np.cos(azimuth) * np.cos(elevation), np.sin(azimuth) * np.cos(elevation), np.sin(elevation)])
+    north, east = np.gradient(field.top, CELL)
+    steep = np.sqrt(1 + east**2 + north**2)
+    facing = np.clip((sun[2] - sun[0] * east - sun[1] * north) / steep, 0.0, 1.0)
+    direct = facing * ~_shadowed(field.top, azimuth, elevation)
+    light = _SHADE + direct[..., None] * (1.15 - _SHADE)
+    noise = 1 + 0.03 * rng.standard_normal(field.top.shape)
+    return np.clip(colors * light * noise[..., None], 0.0, 255.0)
+
+
+def _shadowed(top: np.ndarray, azimuth: float, elevation: float) -> np.ndarray:
+    """Return which cells lie in the shadow of others toward the sun."""
+    shadowed = np.zeros(top.shape, bool)
+    for away in np.arange(0.2, _SHADOW_REACH, 0.2):
+        rows, columns = (round(away / CELL * part) for part in (np.sin(azimuth), np.cos(azimuth)))
+        shadowed |= _moved(top, rows, columns) > top + away * np.tan(elevation) + 0.05
+    return shadowed
+
+
+def _moved(values: np.ndarray, rows: int, columns: int) -> np.ndarray:
+    """Return the values so many rows and columns farther, those of the edge beyond it."""
+    row = np.clip(np.arange(values.shape[0]) + rows, 0, values.shape[0] - 1)
+    column = np.clip(np.arange(values.shape[1]) + columns, 0, values.shape[1] - 1)
+    return values[np.ix_(row, column)]
+
+
+def sample(
+    field: HeightField, matched: Matched, density: float, walls: float, noise: float, rng: np.random.Generator
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return points of a matched surface.
+
+    Parameters
+    ----------
+    field, matched
+        The surface and what matching makes of it.
+    density : float
+        Points per square meter, seen from above.
+    walls : float
+        Share of the density that steep faces have for their area.
+    noise : float
+        Standard deviation of each point by itself, m.
+    rng : Generator
+        Random numbers.
+
+    Returns
+    -------
+    xyz : ndarray of shape (n, 3)
+        Points (m).
+    row, column : ndarray of shape (n,)
+        The cell that each is of.
+    """
+    rows, columns = field.top.shape
+    count = round(density * rows * columns * CELL**2)
+    xy = rng.uniform(0.0, [columns * CELL, rows * CELL], (count, 2))
+    row, column = field.at(xy)
+    kept = ~matched.is_hole[row, column]
+    z = _height_at(matched.top, xy)
+    faces = _faces(matched, density * walls, rng)
+    xyz = np.concatenate([np.column_stack([xy, z])[kept], faces])
+    xyz += noise * rng.standard_normal(xyz.shape)
+    inside = ((xyz[:, :2] >= 0) & (xyz[:, :2] < [columns * CELL, rows * CELL])).all(axis=1)
+    xyz = xyz[inside]
+    return xyz, *field.at(xyz[:, :2])
+
+
+def _height_at(top: np.ndarray, xy: np.ndarray) -> np.ndarray:
+    """Return the elevation at places (n, 2), m, between the middles of cells."""
+    return ndimage.map_coordinates(top, (xy / CELL - 0.5).T[::-1], order=1, mode="nearest")
+
+
+def _faces(matched: Matched, density: float, rng: np.random.Generator) -> np.ndarray:
+    """Return points (n, 3) on steep faces between a cell and the next, as many as their area has; smeared walls."""
+    parts = []
+    for axis in (0, 1):
+        low, high = matched.top, np.roll(matched.top, -1, axis=axis)
+        drop = np.abs(high - low)
+        # Seen from above, gentle slopes have their points already; walls are often missing over meters.
+        drop = np.where((drop > CELL) & ~matched.is_hole, drop - CELL, 0.0)
+        seen = smooth_noise(drop.shape, 6.0, rng) > -0.3
+        count = rng.poisson(drop * seen * CELL * density)
+        row, column = np.nonzero(count)
+        times = count[row, column]
+        row, column = np.repeat(row, times), np.repeat(column, times)
+        share = rng.random(len(row))
+        z = low[row, column] * (1 - share) + high[row, column] * share
+        place = np.column_stack([column, row]) + rng.random((len(row), 2))
+        place[:, 1 - axis] = np.column_stack([column, row])[:, 1 - axis] + 0.5 + share
+        parts.append(np.column_stack([place * CELL, z]))
+    return np.concatenate(parts)

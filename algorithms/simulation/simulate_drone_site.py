@@ -1,0 +1,175 @@
+"""A site photographed by a drone and matched as real images are: closed crowns, rounded edges, waves, holes, color."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from ..params import Seed
+from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
+from .drone_site import build_site
+from .height_field import HeightField, see_from_above
+from .image_matching import match, sample
+from .scene import Building
+
+# So many points (about 200 bytes each while they are made) still fit into the memory of an office computer.
+_MAX_POINTS = 3e7
+
+# Points so far above the ground (m) where there is only ground are of the object beside, smeared; plants and cars whose
+# points lie lower than this (m) are ground there.
+_SMEARED, _GROUND = 0.3, 0.1
+
+_FIELDS = (
+    Field("id", int, "object id of the building, as SegmentID of its points"),
+    Field("kind", str, "gable, hip, flat, L, row, shed or hall"),
+    Field("area", float, "area inside the walls", "m²"),
+)
+
+
+@stage(
+    "Simulate drone site",
+    group="Simulation",
+    tags="synthetic,drone,UAV,photogrammetry,dense matching,color,shadow,demo,example,test,truth,teaching",
+    creates=(
+        "xyz",
+        "classification",
+        "return_number",
+        "number_of_returns",
+        "red",
+        "green",
+        "blue",
+        "segment_id",
+    ),
+    layers=(Layer("footprints", "True footprints", "Polygon", _FIELDS),),
+)
+def simulate_drone_site(
+    *,
+    size: Annotated[
+        float, Param("Size", "Side of the site, a square from (0, 0).", unit="m", low=40, high=400)
+    ] = 150.0,
+    density: Annotated[
+        float,
+        Param("Point density", "Points on open ground, seen from above.", unit="points/m²", low=5, high=400),
+    ] = 40.0,
+    slope: Annotated[float, Param("Slope", "Slope of the ground on the whole.", unit="°", low=0, high=20)] = 4.0,
+    terrace_height: Annotated[
+        float, Param("Height of terraces", "Rise of steps in the slope.", unit="m", low=0, high=3)
+    ] = 1.5,
+    buildings: Annotated[
+        float, Param("Buildings", "Houses on a hectare of streets and plots.", unit="per ha", low=0, high=34)
+    ] = 16.0,
+    trees: Annotated[float, Param("Trees", "Trees in gardens.", unit="per ha", low=0, high=200)] = 30.0,
+    halls: Annotated[
+        int,
+        Param("Flat halls", "Flat roofs with parapets, 10 to 100 m long, where there is room.", low=0, high=20),
+    ] = 2,
+    rounding: Annotated[
+        float,
+        Param("Rounding of edges", "Distance over which eaves and ridges are rounded.", unit="m", low=0, high=2),
+    ] = 0.5,
+    waves: Annotated[
+        float,
+        Param("Waves", "Standard deviation of errors that neighboring points share.", unit="m", low=0, high=0.3),
+    ] = 0.02,
+    walls: Annotated[
+        float,
+        Param("Share of walls", "Density of points on walls, as a share of that on open ground.", low=0, high=1),
+    ] = 0.6,
+    noise: Annotated[
+        float, Param("Noise", "Standard deviation of each point in every direction.", unit="m", low=0, high=0.2)
+    ] = 0.01,
+    seed: Seed = 1,
+    monitor: Optional[Monitor] = None,
+):
+    """Photograph a made-up site with a drone, match the images with all their errors, and keep the truth.
+
+    Houses cut into slopes and terraces, sheds, rows, blocks of flat roofs, halls with parapets, cars and vans, trees,
+    hedges and bushes. Crowns are closed lumpy surfaces, edges rounded, walls smeared or missing, surfaces wavy; dark,
+    bright and shiny ones have holes and spikes. Every material has its color, in light and in shadow.
+
+    Returns
+    -------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates (m).
+    classification : ndarray of shape (n,), uint8
+        The truth: 2 ground; 3, 4, 5 vegetation under 0.5 m, under 2 m and higher; 6 buildings; 1 cars and the rest.
+    return_number, number_of_returns : ndarray of shape (n,), uint8
+        All 1.
+    red, green, blue : ndarray of shape (n,), uint16
+        Colors.
+    segment_id : ndarray of shape (n,), int32
+        Number of the object, the same for all points of a building; 0 for ground.
+    footprints : LayerFeatures
+        The walls of every building.
+
+    Raises
+    ------
+    ValueError
+        If there would be more than 30 million points.
+
+    Notes
+    -----
+    The scene is a surface of cells of 0.1 m, and so are the errors: matching turns it into a smoother surface with
+    errors that neighbors share, on which points are drawn. Steps are smeared by normal distributions whose width
+    changes over the site from half to one and a half times the mean. Points that are smeared beyond the edge of an
+    object, 0.3 m above the ground or more, are of the object.
+
+    Not simulated: what lies under eaves, crowns and bridges, double surfaces, seams between blocks of images.
+
+    Examples
+    --------
+    >>> from lidar_buildings.algorithms.simulation.simulate_drone_site import simulate_drone_site
+    >>> xyz, classification, *_, footprints = simulate_drone_site(size=60.0, density=8.0, halls=0)
+    >>> bool((classification == 6).any()), len(footprints) > 0
+    (True, True)
+    """
+    monitor = monitor or Monitor()
+    if density * size**2 > _MAX_POINTS:
+        raise ValueError(
+            f"A site of {size:g} m with {density:g} points per m² has {density * size**2 / 1e6:.0f} million points, "
+            f"more than {_MAX_POINTS / 1e6:.0f} million; lower size or density."
+        )
+    scene = build_site(
+        size=size, slope=slope, terrace_height=terrace_height, buildings=buildings, trees=trees, halls=halls, seed=seed
+    )
+    rng = np.random.default_rng([seed, 6])
+    monitor.progress(0.1)
+    field = see_from_above(scene, rng)
+    monitor.progress(0.4)
+    matched = match(field, rounding, waves, rng)
+    monitor.progress(0.8)
+    xyz, row, column = sample(field, matched, density, walls, noise, rng)
+    colors = (matched.colors[row, column] * 257).astype(np.uint16)
+    classes, objects = _truth(field, xyz, row, column)
+    ones = np.ones(len(xyz), np.uint8)
+    monitor.progress(1.0)
+    return xyz, classes, ones, ones.copy(), *colors.T.copy(), objects, _footprints(scene.buildings)
+
+
+def _truth(field: HeightField, xyz: np.ndarray, row: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return class and object (n,) of points: what is smeared beyond the edge of an object is of the object."""
+    above = xyz[:, 2] - field.ground[row, column]
+    is_smeared = (field.classification[row, column] == PointClass.GROUND) & (above > _SMEARED)
+    row_beside, column_beside = field.beside()
+    cell = (
+        np.where(is_smeared, row_beside[row, column], row),
+        np.where(is_smeared, column_beside[row, column], column),
+    )
+    classes, objects = field.classification[cell], field.object_id[cell]
+    # Ground that is drawn under the edge of a crown.
+    is_ground = (classes != PointClass.BUILDING) & (above < _GROUND)
+    return np.where(is_ground, PointClass.GROUND, classes).astype(np.uint8), np.where(is_ground, 0, objects)
+
+
+def _footprints(buildings: list[Building]) -> LayerFeatures:
+    """Return the outlines of the walls."""
+    return LayerFeatures(
+        [[building.outline] for building in buildings],
+        {
+            "id": [building.object_id for building in buildings],
+            "kind": [building.kind for building in buildings],
+            "area": [building.area for building in buildings],
+        },
+    )

@@ -1,0 +1,46 @@
+"""Greenness tells plants from materials in any light, and stays silent where there are no two kinds."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from lidar_buildings.algorithms.features.greenness import greenness, plant_greenness
+
+GRASS, ASPHALT = np.array([90.0, 130.0, 60.0]), np.array([128.0, 126.0, 122.0])
+
+
+def mixed(rng, share, count=4000):
+    """Colors (count, 3) of which a share is grass, the rest asphalt, in light of 30 to 100 %; and which are grass."""
+    is_grass = rng.random(count) < share
+    colors = np.where(is_grass[:, None], GRASS, ASPHALT) * rng.uniform(0.3, 1.0, (count, 1))
+    return colors * (1 + 0.05 * rng.standard_normal(colors.shape)), is_grass
+
+
+def test_shadow_changes_nothing():
+    lit, shaded = (greenness(*(part * GRASS[:, None])) for part in (1.0, 0.3))
+    np.testing.assert_allclose(lit, shaded)
+    np.testing.assert_allclose(lit, (260 - 150) / 280)
+
+
+def test_black_points_have_none():
+    assert np.isnan(greenness(np.array([0, 200, 200]), np.array([1, 200, 200]), np.array([0, 200, 200]))[0])
+
+
+def test_threshold_parts_plants_from_materials():
+    for share in (0.2, 0.5, 0.8):
+        colors, is_grass = mixed(np.random.default_rng(1), share)
+        values = greenness(*colors.T)
+        assert np.mean((values > plant_greenness(values)) == is_grass) > 0.99
+
+
+def test_red_roofs_are_no_third_kind():
+    colors, is_grass = mixed(np.random.default_rng(3), 0.3)
+    values = np.concatenate([greenness(*colors.T), np.full(4000, -0.15)])
+    assert np.mean((values > plant_greenness(values)) == np.append(is_grass, np.zeros(4000, bool))) > 0.99
+
+
+def test_scenes_of_one_kind_have_no_threshold():
+    for share in (0.0, 1.0):
+        colors, _ = mixed(np.random.default_rng(2), share)
+        assert plant_greenness(greenness(*colors.T)) is None
+    assert plant_greenness(np.full(5, np.nan)) is None

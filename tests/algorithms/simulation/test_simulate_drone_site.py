@@ -1,0 +1,96 @@
+"""The simulated site is what it says: truth on the right surfaces, and errors of the size that was asked for."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.cloud.asprs import PointClass
+from lidar_buildings.algorithms.features.greenness import greenness, plant_greenness
+from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling
+from lidar_buildings.algorithms.simulation.drone_site import build_site
+from lidar_buildings.algorithms.simulation.simulate_drone_site import simulate_drone_site
+from lidar_buildings.tests.builders import VEGETATION, is_inside
+
+NAMES = (*simulate_drone_site.stage.creates, "footprints")
+SMALL = {"size": 44.0, "density": 12.0, "halls": 1, "seed": 3}
+
+
+@cache
+def site(**tunables) -> dict:
+    return dict(zip(NAMES, simulate_drone_site(**{**SMALL, **tunables})))
+
+
+def scene():
+    return build_site(size=44.0, slope=4.0, terrace_height=1.5, buildings=16.0, trees=30.0, halls=1, seed=3)
+
+
+@pytest.fixture
+def exact():
+    return site(rounding=0.0, waves=0.0, noise=0.0, walls=0.0)
+
+
+def test_points_of_a_building_lie_over_its_walls(exact):
+    footprints = exact["footprints"]
+    for rings, number in zip(footprints.geometries, footprints.columns["id"]):
+        mine = exact["xyz"][exact["segment_id"] == number]
+        # Cells at an edge reach half over it.
+        assert is_inside(mine[:, :2], rings).mean() > 0.95
+
+
+def test_points_lie_on_the_ground_and_on_roofs(exact):
+    xyz, made = exact["xyz"], scene()
+    on_ground = xyz[exact["classification"] == PointClass.GROUND]
+    off = on_ground[:, 2] - made.relief.ground(*on_ground[:, :2].T)
+    assert np.median(np.abs(off)) < 0.01
+    for building in made.buildings:
+        mine = xyz[exact["segment_id"] == building.object_id]
+        assert np.nanmedian(np.abs(mine[:, 2] - building.roof(*mine[:, :2].T))) < 0.05
+
+
+def test_waves_are_as_high_as_asked_and_shared_by_neighbors(exact):
+    wavy = site(rounding=0.0, waves=0.05, noise=0.0, walls=0.0)
+    xyz = wavy["xyz"][wavy["classification"] == PointClass.GROUND]
+    off = xyz[:, 2] - scene().relief.ground(*xyz[:, :2].T)
+    off = off[np.abs(off) < 0.3]
+    assert 0.025 < off.std() < 0.06
+
+
+def test_rounding_lowers_the_edges_of_roofs(exact):
+    def low(made):
+        found = 0
+        for building in scene().buildings:
+            mine = made["xyz"][made["segment_id"] == building.object_id]
+            found += (mine[:, 2] < building.roof(*mine[:, :2].T) - 0.3).sum()
+        return found
+
+    assert low(site(rounding=0.8, waves=0.0, noise=0.0, walls=0.0)) > 3 * low(exact) + 20
+
+
+def test_it_is_one_closed_surface_crowns_included():
+    made = site(density=30.0)
+    sampling = CloudSampling(lambda: made["xyz"], single_returns=True)
+    assert np.isin(made["classification"], VEGETATION).any()
+    assert sampling.is_closed_surface()
+
+
+def test_plants_are_greener_than_materials_in_light_and_shadow():
+    made = site(density=30.0)
+    values = greenness(*(made[color] for color in ("red", "green", "blue")))
+    least = plant_greenness(values)
+    is_roof = made["classification"] == PointClass.BUILDING
+    assert least is not None
+    assert np.mean(values[is_roof] > least) < 0.02
+
+
+def test_same_seed_gives_the_same_site_and_others_another():
+    for name, values in dict(zip(NAMES[:-1], simulate_drone_site(**SMALL))).items():
+        np.testing.assert_array_equal(site()[name], values)
+    assert len(site(seed=4)["xyz"]) != len(site()["xyz"])
+
+
+def test_too_many_points_are_refused():
+    with pytest.raises(ValueError, match="million points"):
+        simulate_drone_site(size=400.0, density=400.0)
