@@ -48,7 +48,7 @@ def plant_greenness(values: np.ndarray) -> Optional[float]:
     Returns
     -------
     float or None
-        The threshold with the largest variance between the two kinds.
+        The middle between the means of the two kinds that the threshold with the largest variance between them makes.
 
     References
     ----------
@@ -70,5 +70,6 @@ def plant_greenness(values: np.ndarray) -> Optional[float]:
     variance = float(share @ (middle - mean) ** 2)
     if variance == 0 or between[best] < _LEAST_BETWEEN * variance:
         return None
-    gap = (mean - mass[best]) / (1 - below[best]) - mass[best] / below[best]
-    return float(edges[best + 1]) if gap >= _LEAST_GAP else None
+    low, high = mass[best] / below[best], (mean - mass[best]) / (1 - below[best])
+    # In the middle between the kinds: where nothing lies between them, all thresholds there have the same variance.
+    return float(low + high) / 2 if high - low >= _LEAST_GAP else None
