@@ -141,6 +141,7 @@ def simulate_drone_site(
     matched = match(field, rounding, waves, rng)
     monitor.progress(0.8)
     xyz, row, column = sample(field, matched, density, walls, noise, rng)
+    row, column = _cells_of_objects(field, xyz, row, column)
     colors = (matched.colors[row, column] * 257).astype(np.uint16)
     classes, objects = _truth(field, xyz, row, column)
     ones = np.ones(len(xyz), np.uint8)
@@ -148,17 +149,23 @@ def simulate_drone_site(
     return xyz, classes, ones, ones.copy(), *colors.T.copy(), objects, _footprints(scene.buildings)
 
 
-def _truth(field: HeightField, xyz: np.ndarray, row: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return class and object (n,) of points: what is smeared beyond the edge of an object is of the object."""
-    above = xyz[:, 2] - field.ground[row, column]
-    is_smeared = (field.classification[row, column] == PointClass.GROUND) & (above > _SMEARED)
+def _cells_of_objects(
+    field: HeightField, xyz: np.ndarray, row: np.ndarray, column: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the cells (n,) that points are of: what is smeared beyond the edge of an object is of the object."""
+    is_ground = field.classification[row, column] == PointClass.GROUND
+    is_smeared = is_ground & (xyz[:, 2] > field.ground[row, column] + _SMEARED)
     row_beside, column_beside = field.beside()
-    cell = (
+    return (
         np.where(is_smeared, row_beside[row, column], row),
         np.where(is_smeared, column_beside[row, column], column),
     )
-    classes, objects = field.classification[cell], field.object_id[cell]
-    # Ground that is drawn under the edge of a crown.
+
+
+def _truth(field: HeightField, xyz: np.ndarray, row: np.ndarray, column: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return class and object (n,) of points of cells; ground is drawn under the edges of crowns."""
+    classes, objects = field.classification[row, column], field.object_id[row, column]
+    above = xyz[:, 2] - field.ground[row, column]
     is_ground = (classes != PointClass.BUILDING) & (above < _GROUND)
     return np.where(is_ground, PointClass.GROUND, classes).astype(np.uint8), np.where(is_ground, 0, objects)
 
