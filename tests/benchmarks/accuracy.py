@@ -6,6 +6,7 @@ of the same with fewer points or more noise, ``uneven`` of the same with points 
 ``pieces`` of squares cut out of clouds, ``objects`` of real houses, trees, cars, fences and poles on simulated ground,
 ``footprints`` of outlines, ``towns``, ``pits``, ``scenes``, ``villages``, ``places`` and ``confidence`` of simulated
 scenes, whose truth is exact, and ``maps`` of old maps with known differences.
+``photos`` are real clouds of matched images, ``drone`` simulated ones, ``likeness`` compares the two.
 
 Each table comes as Markdown for people, as a JSON file for programs (in ``--output``), and those of real clouds as the
 Python lines that the tests hold the program to.
@@ -38,6 +39,7 @@ from lidar_buildings.algorithms.stage import Monitor  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 from lidar_buildings.tests.aged_maps import aged, with_plain_corners  # noqa: E402
 from lidar_buildings.tests.benchmarks.drone_scenes import places as drone_places  # noqa: E402
+from lidar_buildings.tests.benchmarks.drone import drone, likeness, photos  # noqa: E402
 from lidar_buildings.tests.benchmarks.real_objects import CAR, FENCE, POLE, TREE, scene  # noqa: E402
 from lidar_buildings.tests.benchmarks.results import FOLDER, Table  # noqa: E402
 from lidar_buildings.tests.benchmarks.scenes import SCENES, estate, scanned  # noqa: E402
@@ -504,11 +506,11 @@ def paste(name: str, values: dict[str, str]) -> None:
     print("}")
 
 
-SIMULATED = {table.__name__: table for table in (towns, pits, scenes, villages, places, maps, confidence)}
+SIMULATED = {table.__name__: table for table in (towns, pits, scenes, villages, places, maps, confidence, drone)}
 TABLES = {
     **{
         table.__name__: table
-        for table in (buildings, turned, harder, uneven, pieces, objects, footprints, ground, noise)
+        for table in (buildings, turned, harder, uneven, pieces, objects, footprints, ground, noise, photos, likeness)
     },
     **SIMULATED,
 }

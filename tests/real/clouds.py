@@ -38,6 +38,9 @@ WITH_BUILDINGS = (
 )
 WITHOUT_BUILDINGS = ("buildings/ign-forest-none", "buildings/ign-bridge-none")
 
+# Clouds matched from a drone's images: no returns, closed crowns.
+WITH_IMAGES = ("photo/uk-photo-100", "photo/brighton-beach")
+
 # Samples of the filter test of ISPRS WG III/3, and a town.
 GROUND_SAMPLES = tuple(f"ground/samp{number}" for number in (11, 12, 22, 31, 41, 52, 53, 61))
 GROUND_IN_TOWN = (DELFT,)

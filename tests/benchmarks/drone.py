@@ -1,0 +1,135 @@
+"""Clouds of matched images, real and simulated: what the default chain finds, and how alike the two kinds are."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from scipy import ndimage
+
+from lidar_buildings.algorithms.cloud.asprs import PointClass
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.simulation.simulate_drone_site import simulate_drone_site
+from lidar_buildings.tests.real.clouds import WITH_IMAGES, detected, run_on, score, score_against, truth
+
+from .results import Table
+
+# Simulated sites: what is not as by default.
+SITES: dict[str, dict[str, Any]] = {
+    "as by default": {"size": 110.0},
+    "another": {"size": 110.0, "seed": 2},
+    "steep, terraces of 2.5 m": {"size": 110.0, "seed": 3, "slope": 12.0, "terrace_height": 2.5},
+    "wavy, 20 points per m²": {"size": 110.0, "seed": 4, "waves": 0.05, "density": 20.0, "rounding": 0.8},
+    "halls of up to 66 m": {"size": 110.0, "seed": 5, "halls": 8, "buildings": 4.0},
+}
+
+# Side of the cells that area is counted in (m), and of windows in which roughness is measured (m).
+_CELL, _WINDOWS = 0.5, (0.5, 1.0, 2.0, 4.0)
+
+
+def photos() -> list[Table]:
+    """Print how well the default chain does on real clouds of matched images."""
+    rates = ("completeness", "correctness", "F")
+    table = Table("photos", "cloud", *rates, "cells: F", "objects: compl.", "largest false, m²", "s", texts=1)
+    for name in WITH_IMAGES:
+        result = detected(name)
+        found = score("buildings", name, result)
+        points, cells = found["points"], found["cells"]["F"]
+        largest = largest_false(result.cloud.get("xyz"), result.classification, truth(name))
+        figures = [points[rate] for rate in rates]
+        table.add(name.split("/")[1], *figures, cells, found["objects"]["completeness"], largest, result.seconds)
+    return [table]
+
+
+def drone() -> list[Table]:
+    """Print how well the default chain and its ground do on simulated clouds of matched images."""
+    rates = ("completeness", "correctness", "F")
+    columns = (
+        *rates,
+        "buildings",
+        "found",
+        "plants called building, m²/ha",
+        "roofs called ground, %",
+        "ground lost, %",
+    )
+    table = Table("drone", "site", *columns, texts=1)
+    for name, tunables in SITES.items():
+        table.add(name, *_figures(simulated(**tunables), tunables["size"]))
+    return [table]
+
+
+def simulated(**tunables: Any) -> dict[str, Any]:
+    """Return the dimensions of a simulated site, and its footprints."""
+    return dict(zip((*simulate_drone_site.stage.creates, "footprints"), simulate_drone_site(**tunables)))
+
+
+def _figures(site: dict[str, Any], size: float) -> list[float]:
+    true, xyz, number = site["classification"], site["xyz"], site["segment_id"]
+    given = {name: site[name] for name in ("xyz", "return_number", "number_of_returns", "red", "green", "blue")}
+    result = run_on(create_cloud(given))
+    called, is_roof = result.classification, true == PointClass.BUILDING
+    points = score_against(true, "buildings", result)["points"]
+    share = np.bincount(number[is_roof], called[is_roof] == PointClass.BUILDING) / np.maximum(
+        np.bincount(number[is_roof]), 1
+    )
+    ids = np.unique(number[is_roof])
+    is_plant = np.isin(true, (PointClass.LOW_VEGETATION, PointClass.MEDIUM_VEGETATION, PointClass.HIGH_VEGETATION))
+    plants = is_plant & (called == PointClass.BUILDING)
+    area = len(np.unique(np.floor(xyz[plants, :2] / _CELL), axis=0)) * _CELL**2
+    is_ground = true == PointClass.GROUND
+    return [
+        *(points[rate] for rate in ("completeness", "correctness", "F")),
+        len(ids),
+        int((share[ids] >= 0.5).sum()),
+        area / (size**2 / 1e4),
+        100 * float(np.mean(called[is_roof] == PointClass.GROUND)),
+        100 * float(np.mean(called[is_ground] != PointClass.GROUND)),
+    ]
+
+
+def likeness() -> list[Table]:
+    """Print how rough roofs, plants and the rest are over some distances, in real and simulated clouds (m)."""
+    table = Table("likeness", "cloud", "surface", *(f"{window:g} m" for window in _WINDOWS), texts=2)
+    clouds = {name.split("/")[1]: (detected(name).cloud.get("xyz"), truth(name)) for name in WITH_IMAGES}
+    site = simulated(size=110.0, density=24.0)
+    # Plants have no class of their own in the real truth.
+    plants = np.isin(site["classification"], (3, 4, 5))
+    clouds["simulated"] = site["xyz"], np.where(plants, PointClass.UNCLASSIFIED, site["classification"])
+    for name, (xyz, true) in clouds.items():
+        for surface, chosen in (
+            ("roofs", true == PointClass.BUILDING),
+            ("everything else", true != PointClass.BUILDING),
+        ):
+            table.add(name, surface, *(median_roughness(xyz[chosen], window) for window in _WINDOWS), digits=3)
+    return [table]
+
+
+def median_roughness(xyz: np.ndarray, window: float) -> float:
+    """Return the median over windows (m) of the deviation (m) of the highest points from the plane of best fit."""
+    cell = np.floor(xyz[:, :2] / 0.25).astype(np.int64)
+    order = np.lexsort((xyz[:, 2], *cell.T))
+    is_top = np.append((np.diff(cell[order], axis=0) != 0).any(axis=1), True)
+    top = xyz[order[is_top]] - xyz.mean(axis=0)
+    _, which, count = np.unique(np.floor(top[:, :2] / window), axis=0, return_inverse=True, return_counts=True)
+    mean = np.column_stack([np.bincount(which, top[:, i]) / count for i in range(3)])
+    off = top - mean[which]
+    covariance = np.empty((len(count), 3, 3))
+    for i in range(3):
+        for j in range(3):
+            covariance[:, i, j] = np.bincount(which, off[:, i] * off[:, j]) / count
+    deviation = np.sqrt(np.maximum(np.linalg.eigvalsh(covariance)[:, 0], 0.0))
+    # Of windows that are full, but for a few cells.
+    return float(np.median(deviation[count >= 0.7 * (window / 0.25) ** 2]))
+
+
+def largest_false(xyz: np.ndarray, called: np.ndarray, true: np.ndarray) -> float:
+    """Return the area (m²) of the largest object that is called building and touches no true one."""
+    column, row = np.floor((xyz[:, :2] - xyz[:, :2].min(axis=0)) / _CELL).astype(np.int64).T
+    made, right = np.zeros((2, row.max() + 1, column.max() + 1), bool)
+    for cells, classes in ((made, called), (right, true)):
+        chosen = classes == PointClass.BUILDING
+        cells[row[chosen], column[chosen]] = True
+    label, count = ndimage.label(made, np.ones((3, 3)))
+    numbers = np.arange(1, count + 1)
+    area, touched = (ndimage.sum_labels(of, label, numbers) for of in (made, right))
+    return float(np.max(np.where(touched > 0, 0.0, area), initial=0.0)) * _CELL**2

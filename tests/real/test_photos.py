@@ -1,0 +1,60 @@
+"""Buildings in real clouds matched from a drone's images, found with nothing set, against figures reached before.
+
+The figures are those of ``python tests/benchmarks/accuracy.py photos``. A better result is written down, a worse one
+explained.
+"""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.cloud.asprs import PointClass
+from lidar_buildings.algorithms.cloud.files import read_cloud
+from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.run import run_pipeline, sampling_of
+from lidar_buildings.tests.benchmarks.drone import largest_false
+from lidar_buildings.tests.real.clouds import (
+    WITH_BUILDINGS,
+    WITH_IMAGES,
+    WITHOUT_BUILDINGS,
+    detected,
+    path_of,
+    score,
+    truth,
+)
+
+# F-score per point (%).
+REACHED = {"photo/uk-photo-100": 93.3, "photo/brighton-beach": 93.0}
+
+# What other versions of numpy and scipy may change (%).
+MARGIN = 0.7
+
+# Largest object (m²) that may be called building where there is none, of a beach with cars and bushes.
+BEACH, MOST_FALSE = "photo/brighton-beach", 10.0
+
+TOWN = "photo/uk-photo-100"
+
+
+@pytest.mark.parametrize("name", REACHED)
+def test_buildings_are_found_as_well_as_before(name):
+    assert score("buildings", name, detected(name))["points"]["F"] >= REACHED[name] - MARGIN
+
+
+def test_nothing_large_is_invented_on_the_beach():
+    result = detected(BEACH)
+    assert largest_false(result.cloud.get("xyz"), result.classification, truth(BEACH)) <= MOST_FALSE
+
+
+def test_matched_images_are_told_from_laser_scanners():
+    assert all(sampling_of(read_cloud(path_of(name))).is_closed_surface() for name in WITH_IMAGES)
+    for name in (*WITH_BUILDINGS, *WITHOUT_BUILDINGS):
+        assert not sampling_of(read_cloud(path_of(name))).is_closed_surface()
+
+
+def test_buildings_are_found_without_color():
+    cloud = read_cloud(path_of(TOWN))
+    for name in ("red", "green", "blue"):
+        cloud.set(name, np.full(len(cloud), 30_000, np.uint16))
+    run_pipeline(PIPELINES["detect_buildings"], cloud)
+    called, true = cloud.get("classification") == PointClass.BUILDING, truth(TOWN) == PointClass.BUILDING
+    hit = (called & true).sum()
+    assert 2 * hit / (called.sum() + true.sum()) > 0.88
