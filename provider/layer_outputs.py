@@ -5,6 +5,7 @@ from __future__ import annotations
 from qgis.core import QgsFeatureSink, QgsProcessingAlgorithm, QgsProcessingContext, QgsProcessingException
 
 from ..algorithms.stage import Layer, LayerFeatures, Monitor
+from .outputs import through_memory
 from .places import Place
 from .styles import layer_style, show_on_load
 from .vectors import fields_of, qgis_features, wkb_type
@@ -32,17 +33,35 @@ def write_layer(
 
     Raises
     ------
-    QgsProcessingException
+    ValueError, QgsProcessingException
         If it can't be written.
     """
     if parameters.get(name) in UNWANTED:
         return {}
+    monitor.resolved(**{layer.name: len(features)})
+    with through_memory(parameters, name, context) as (redirected, final):
+        target = _fill_sink(algorithm, name, layer, features, place, redirected, context, monitor)
+    target = final(target)
+    show_on_load(context, target, layer.geometry, layer_style(layer), layer.fields)
+    return {name: target}
+
+
+def _fill_sink(
+    algorithm: QgsProcessingAlgorithm,
+    name: str,
+    layer: Layer,
+    features: LayerFeatures,
+    place: Place,
+    parameters: dict,
+    context: QgsProcessingContext,
+    monitor: Monitor,
+) -> str:
+    """Write the features of a layer where the parameter ``name`` says; return where that is."""
     sink, target = algorithm.parameterAsSink(
         parameters, name, context, fields_of(layer), wkb_type(layer, features), place.crs
     )
     if sink is None:
         raise QgsProcessingException(algorithm.invalidSinkError(parameters, name))
-    monitor.resolved(**{layer.name: len(features)})
     try:
         for row, feature in enumerate(qgis_features(layer, features, place.to_map)):
             if row % _BETWEEN_CHECKS == 0:
@@ -52,10 +71,9 @@ def write_layer(
         if not sink.flushBuffer():
             raise QgsProcessingException(_unwritten(layer, target, sink))
     finally:
-        # The file is closed with the sink: complete for the next step of a model, or free to be removed.
+        # The file is closed with the sink, and complete.
         del sink
-    show_on_load(context, target, layer.geometry, layer_style(layer), layer.fields)
-    return {name: target}
+    return target
 
 
 def _unwritten(layer: Layer, target: str, sink: QgsFeatureSink) -> str:

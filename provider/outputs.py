@@ -8,7 +8,7 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Optional
+from typing import Any, Callable, Optional
 
 from qgis.core import (
     QgsProcessing,
@@ -35,6 +35,7 @@ from ..algorithms.cloud.outputs import (
 )
 from ..algorithms.stage import Monitor, TextFile
 from .clouds import reads_las
+from .memory_files import copy_folder, memory_folder
 from .rasters import check_raster
 from .styles import load_from, name_after
 from .vectors import check_layer
@@ -267,6 +268,48 @@ def _redirected(value: Any, path: str) -> Any:
     redirected = QgsProcessingOutputLayerDefinition(value)
     redirected.sink = QgsProperty.fromValue(path)
     return redirected
+
+
+@contextmanager
+def through_memory(
+    parameters: dict, name: str, context: QgsProcessingContext
+) -> Iterator[tuple[dict, Callable[[str], str]]]:
+    """Let a layer that is to be a file be made in memory, and write the file when the block ends well.
+
+    Parameters
+    ----------
+    parameters : dict
+        Of the run.
+    name : str
+        The layer's parameter. Layers in memory and tables of databases are made where they are to be.
+    context : QgsProcessingContext
+        Of the run; what it is to load is named by the file.
+
+    Yields
+    ------
+    tuple of dict and callable
+        Parameters for the block, and what turns a path in memory into that of the file.
+
+    Raises
+    ------
+    ValueError
+        If the file can't be written.
+    """
+    path = target_path(parameters[name])
+    if path is None:
+        yield parameters, str
+        return
+    with memory_folder() as folder:
+
+        def final(text: Any) -> Any:
+            return text.replace(folder, str(path.parent)) if isinstance(text, str) else text
+
+        try:
+            yield {**parameters, name: _redirected(parameters[name], f"{folder}/{path.name}")}, final
+        except QgsProcessingException as error:
+            raise QgsProcessingException(final(str(error))) from error
+        copy_folder(folder, path)
+    load_from(context, final)
 
 
 def write_for_qgis(cloud: Cloud, target: str, context: QgsProcessingContext, monitor: Monitor) -> str:

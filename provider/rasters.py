@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import BinaryIO
 
 import numpy as np
 from osgeo import gdal
@@ -14,11 +12,11 @@ from qgis.core import QgsCoordinateReferenceSystem
 
 from ..algorithms.cloud.outputs import replacing
 from ..algorithms.stage import Cancelled, Monitor, Raster, RasterSurface
+from .memory_files import copy_file, memory_folder
 from .places import Place
 
 EXTENSIONS = ("tif", "tiff")
 NO_DATA = -9999.0
-_PIECE = 2**24
 _OPTIONS = (
     "COMPRESS=DEFLATE",
     "PREDICTOR=FLOATING_POINT",
@@ -56,10 +54,9 @@ def write_raster(raster: Raster, surface: RasterSurface, place: Place, path: Pat
         If GDAL can't make it, or it can't be written.
     """
     check_raster(path)
-    # In memory first: on a disk that fills up GDAL fails where it can't tell, when it closes the file.
-    made = f"/vsimem/{uuid.uuid4().hex}.tif"
     progress = _Progress(monitor)
-    try:
+    with memory_folder() as folder:
+        made = f"{folder}/{path.name}"
         with _errors(path, progress):
             image = _in_memory(raster, surface, place)
             written = gdal.GetDriverByName("COG").CreateCopy(made, image, 0, list(_OPTIONS), progress)
@@ -68,20 +65,7 @@ def write_raster(raster: Raster, surface: RasterSurface, place: Place, path: Pat
             # Complete when it is closed.
             del written
         with replacing(path) as stream:
-            _copy(made, stream)
-    finally:
-        if gdal.VSIStatL(made) is not None:
-            gdal.Unlink(made)
-
-
-def _copy(made: str, stream: BinaryIO) -> None:
-    """Copy a file of GDAL's into a stream, piece by piece."""
-    file = gdal.VSIFOpenL(made, "rb")
-    try:
-        while piece := gdal.VSIFReadL(1, _PIECE, file):
-            stream.write(piece)
-    finally:
-        gdal.VSIFCloseL(file)
+            copy_file(made, stream)
 
 
 class _Progress:

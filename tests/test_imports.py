@@ -76,7 +76,7 @@ def sources(*folders: str) -> list[str]:
 CORE = sources("algorithms")
 PLUGIN = ["__init__.py", *CORE, *sources("provider")]
 TESTS = sources("tests")
-OTHER_TESTS = ("tests/provider/", "tests/qgis/", "tests/real/", "tests/benchmarks/")
+OTHER_TESTS = ("tests/provider/", "tests/qgis/", "tests/real/", "tests/benchmarks/", "tests/attacks/")
 TESTS_OF_CORE = [path for path in TESTS if not path.startswith(OTHER_TESTS)]
 
 

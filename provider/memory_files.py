@@ -1,0 +1,58 @@
+"""Files that GDAL makes in memory before they are written to a disk.
+
+On a disk that fills up GDAL fails where it can't tell: when it closes a file. What is written of memory here fails with
+the reason of the system, or is complete.
+"""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import BinaryIO
+
+from osgeo import gdal
+
+from ..algorithms.cloud.outputs import os_errors_as_messages
+
+_PIECE = 2**24
+
+
+@contextmanager
+def memory_folder() -> Iterator[str]:
+    """Give the path of an empty folder in GDAL's memory, which is removed when the block ends."""
+    folder = f"/vsimem/{uuid.uuid4().hex}"
+    gdal.Mkdir(folder, 0o755)
+    try:
+        yield folder
+    finally:
+        gdal.RmdirRecursive(folder)
+
+
+def copy_file(made: str, stream: BinaryIO) -> None:
+    """Copy a file of GDAL's into a stream, piece by piece."""
+    file = gdal.VSIFOpenL(made, "rb")
+    try:
+        while piece := gdal.VSIFReadL(1, _PIECE, file):
+            stream.write(piece)
+    finally:
+        gdal.VSIFCloseL(file)
+
+
+def copy_folder(made: str, target: Path) -> None:
+    """Copy everything in a folder of GDAL's beside ``target``, which is one of the files.
+
+    Raises
+    ------
+    ValueError
+        If a file can't be written.
+    """
+    with os_errors_as_messages(target):
+        for name in gdal.ReadDirRecursive(made) or ():
+            path = target.parent / name
+            if name.endswith("/"):
+                path.mkdir(exist_ok=True)
+                continue
+            with path.open("wb") as stream:
+                copy_file(f"{made}/{name}", stream)
