@@ -69,6 +69,8 @@ def read_cloud(
             )
             header = header.without(LASZIP, COPC_INFO, COPC_HIERARCHY)
         else:
+            for file in files[1:]:
+                units_of(open_header(file), crs_units)
             header, points = read_tiles(files, monitor, box)
     if not len(points):
         raise ValueError(f"{path.name} has no points within the extent; choose another extent.")

@@ -24,10 +24,18 @@ _VARIABLE_CHUNKS = 2**32 - 1
 _CHUNK_SIZE_AT, _ITEMS_AT = 12, 34
 # Type, size in bytes and version of an item of the record; the position and the head of the chunk table.
 _ITEM, _TABLE_POSITION, _TABLE_START = struct.Struct("<HHH"), struct.Struct("<q"), struct.Struct("<II")
-# Items of version 3 and 4 are stored in layers: so many for each type, and one for each byte of extra bytes (type 14).
-_LAYERED = 3
+# Points of formats 6 to 10 are stored in layers: so many for each type, and one for each byte of extra bytes (type 14).
 _READ_AT_ONCE = 2**20
 _LAYERS = {10: 9, 11: 1, 12: 2, 13: 1}
+_LAYERED_VERSIONS, _PLAIN_VERSIONS = (3, 4), (1, 2)
+# Types of the items of each point format, and of extra bytes behind those of formats 0 to 5 and 6 to 10.
+_TYPES = {
+    0: (6,), 1: (6, 7), 2: (6, 8), 3: (6, 7, 8), 4: (6, 7, 9), 5: (6, 7, 8, 9),
+    6: (10,), 7: (10, 11), 8: (10, 12), 9: (10, 13), 10: (10, 12, 13),
+}  # fmt: skip
+_EXTRA_TYPES = 0, 14
+_FIRST_LAYERED_FORMAT = 6
+_SIZES = {6: 20, 7: 8, 8: 6, 9: 29, 10: 30, 11: 6, 12: 8, 13: 29}
 
 
 @dataclass
@@ -49,6 +57,10 @@ class _Laz:
         size, expected = sum(item[1] for item in _items(found.data)), self.header.layout.dtype.itemsize
         if size != expected:
             raise truncated(self.path, f"its LASzip record tells of points of {size} bytes, its header of {expected}")
+        if not _fit(_items(found.data), self.header.layout.point_format, expected):
+            raise truncated(
+                self.path, f"its LASzip record does not tell of point format {self.header.layout.point_format}"
+            )
         return found.data
 
     def table_at(self) -> int:
@@ -87,13 +99,13 @@ class _Laz:
             raise truncated(self.path, f"its chunks of {sum(sizes)} bytes can't stand in {room} bytes")
         if _chunk_size(record) == _VARIABLE_CHUNKS and sum(points) != self.header.count:
             raise truncated(self.path, f"it promises {self.header.count} points, but its chunks hold {sum(points)}")
-        if _items(record)[0][2] >= _LAYERED:
+        if self.header.layout.point_format >= _FIRST_LAYERED_FORMAT:
             n_layers = sum(_LAYERS.get(kind, size) for kind, size, _ in _items(record))
             self._check_layers(np.array(sizes), n_layers)
 
-    def check_pointwise(self, record: bytes) -> None:
+    def check_pointwise(self) -> None:
         """Refuse layers in points that are compressed in one go: laszip ends the process on them."""
-        if _items(record)[0][2] >= _LAYERED or _items(record)[0][0] in _LAYERS:
+        if self.header.layout.point_format >= _FIRST_LAYERED_FORMAT:
             raise truncated(self.path, "its LASzip record tells of points without chunks that are stored in layers")
 
     def _check_layers(self, sizes: np.ndarray, n_layers: int) -> None:
@@ -167,6 +179,16 @@ def _items(record: bytes) -> list[tuple]:
     return [_ITEM.unpack_from(record, _ITEMS_AT + i * _ITEM.size) for i in range(n_items)]
 
 
+def _fit(items: list[tuple], point_format: int, size: int) -> bool:
+    """Whether items are those of records of ``size`` bytes of a point format: lazrs takes memory for any others."""
+    is_old = point_format < _FIRST_LAYERED_FORMAT
+    types = list(_TYPES[point_format])
+    extra = size - sum(_SIZES[kind] for kind in types)
+    expected = [(kind, _SIZES[kind]) for kind in types] + ([(_EXTRA_TYPES[not is_old], extra)] if extra else [])
+    versions = _PLAIN_VERSIONS if is_old else _LAYERED_VERSIONS
+    return [item[:2] for item in items] == expected and all(version in versions for _, _, version in items)
+
+
 def open_laz(path: Path, header: Header, stream: BinaryIO) -> Callable[[np.ndarray], Any]:
     """Return a function that fills bytes with the points of a LAZ or COPC file that come next, in the file's order.
 
@@ -179,7 +201,7 @@ def open_laz(path: Path, header: Header, stream: BinaryIO) -> Callable[[np.ndarr
     record = laz.record()
     backend, stream_at = _backend(_LAZRS, _LASZIP), header.points_at
     if record[0] == _POINTWISE:
-        laz.check_pointwise(record)
+        laz.check_pointwise()
         if has_backend(_LAZRS_IN_TURN):
             record = struct.pack("<H", _CHUNKED) + record[2:]
             backend, stream_at = need_laspy().LazBackend[_LAZRS_IN_TURN], 0

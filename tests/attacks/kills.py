@@ -56,7 +56,7 @@ KINDS = {
     "layer": Kind("extractfootprints", {"FOOTPRINTS": "a.gpkg"}, {"MIN_AREA": 10.0}, {"MIN_AREA": 100.0}),
     "page": Kind("assessground", {"REPORT": "a.html"}, {"IGNORED_CLASSES": "7"}, {"IGNORED_CLASSES": "7, 6"}),
     "cloud and layer": Kind(
-        "segmentvoxels", {"OUTPUT": "a.laz", "VOXELS": "a.gpkg"}, {"VOXEL_SIZE": 5.0}, {"VOXEL_SIZE": 3.0}
+        "segmentvoxels", {"OUTPUT": "a.laz", "VOXELS": "a.gpkg"}, {"VOXEL_SIZE": 0.7}, {"VOXEL_SIZE": 1.0}
     ),
 }
 
@@ -185,7 +185,7 @@ def kill(
     _complete(kind, kind.older, cloud, folder)
     older = look()
     if set(newer) & set(older):
-        raise RuntimeError(f"The runs of {kind.algorithm} can't be told apart.")
+        raise RuntimeError(f"The runs of {kind.algorithm} can't be told apart: {older}, {newer}")
     killed = 0
     while killed < kills:
         process = _run(kind, kind.newer, cloud, folder)

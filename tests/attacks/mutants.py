@@ -304,7 +304,8 @@ def _wkt(rng: np.random.Generator) -> Mutant:
     """WKT with words that are missing, doubled, exchanged, nested or no numbers."""
     text = (WKT, WKT2)[rng.integers(2)]
     for _ in range(rng.integers(1, _MOST_CHANGES + 1)):
-        text = _WKT_DAMAGES[rng.integers(len(_WKT_DAMAGES))](rng, text)[:_LONGEST_WKT]
+        if len(text) < _LONG_WKT:
+            text = _WKT_DAMAGES[rng.integers(len(_WKT_DAMAGES))](rng, text)[:_LONGEST_WKT]
     raw = text.encode("utf-8", "replace") + b"\0" * int(rng.integers(3))
     if rng.random() < 0.1:
         raw = _flips(rng, raw or b"\0", raw)
@@ -312,7 +313,8 @@ def _wkt(rng: np.random.Generator) -> Mutant:
     return _las_with(rng, ((user, 2112, raw),), encoding=int(rng.choice((0, 16, 17))))
 
 
-_LONGEST_WKT = 3_000_000
+# Texts longer than the first are not damaged further, and none is longer than the second.
+_LONG_WKT, _LONGEST_WKT = 20_000, 3_000_000
 
 
 def _at(rng: np.random.Generator, text: str) -> int:
@@ -399,7 +401,7 @@ _HREFS = (
 _ODD_VALUES: tuple[Callable[[], Any], ...] = (
     lambda: None, lambda: True, lambda: 0, lambda: -1, lambda: 10**400, lambda: float("nan"), lambda: float("inf"),
     lambda: "", lambda: "\0", lambda: "\ud800", lambda: "a" * 100_000, list, dict, lambda: [[]], lambda: {"": {}},
-    lambda: _deep(100), lambda: _deep(900), lambda: [None] * 1000, lambda: {str(i): i for i in range(1000)},
+    lambda: _deep(20), lambda: _deep(300), lambda: [None] * 1000, lambda: {str(i): i for i in range(1000)},
 )  # fmt: skip
 
 

@@ -172,16 +172,9 @@ def test_damage_in_the_chunk_table_and_the_heads_of_chunks(laz):
 def test_points_without_chunks_that_tell_of_layers(laz):
     """Laszip ended the process with a segmentation fault."""
     raw, path = laz
-    for hostile in (
-        patched(raw, record_at(raw), "<H", 1),
-        patched(raw, record_at(raw), "<HHBBHII", 1, 0, 2, 2, 0, 0, 0),
-    ):
-        if raw[104] & 63 >= 6:
-            assert_refused(path, "without chunks that are stored in layers", hostile)
-            types = patched(hostile, record_at(raw) + 38, "<H", 2)
-            assert_refused(path, "without chunks that are stored in layers", types)
-        else:
-            assert_refused(path, "can't be decompressed", patched(hostile, record_at(raw) + 34, "<H", 300))
+    if raw[104] & 63 < 6:
+        pytest.skip("points of old formats are not stored in layers")
+    assert_refused(path, "without chunks that are stored in layers", patched(raw, record_at(raw), "<H", 1))
 
 
 def test_waveforms_where_the_header_says_but_none_are(make_las, tmp_path):
@@ -194,6 +187,15 @@ def test_waveforms_where_the_header_says_but_none_are(make_las, tmp_path):
         write_cloud(cloud, tmp_path / name)
         again = read_cloud(tmp_path / name)
         assert [record.key for record in again.header.evlrs] == [(b"someone", 7), (b"LASF_Spec", 2047)]
+
+
+def test_points_of_other_kinds_in_the_laszip_record(laz):
+    """Of points that were taken for colors lazrs read the sizes of layers at a wrong place, and made room for 3 GB."""
+    raw, path = laz
+    first = record_at(raw) + 34
+    hostile = [patched(raw, first, "<H", kind) for kind in (0, 7, 11, 12, 13, 14, 300)]
+    hostile += [patched(raw, first + 4, "<H", version) for version in (0, 5, 1 if raw[104] & 63 >= 6 else 3)]
+    assert_refused(path, "its LASzip record does not tell of point format", *hostile)
 
 
 @pytest.mark.parametrize("point_format", [0, 1, 3])
@@ -227,6 +229,15 @@ def test_a_unit_that_is_no_length(make_las, unit):
     if np.isfinite(unit):
         with pytest.raises(ValueError, match="which is damaged"):
             read_cloud(make_las(vlrs=(vlr("LASF_Projection", 2112, f'PROJCS["a",UNIT["b",{unit!r}]]\0'.encode()),)))
+
+
+def test_every_tile_is_held_to_its_units(make_las, tmp_path):
+    """One in degrees was refused before a run, but read in it."""
+    code = 'AUTHORITY["EPSG","28992"]'
+    for name, wkt in (("one.las", f'PROJCS["a",UNIT["metre",1],{code}]'), ("two.las", f'GEOGCS["a",{code}]')):
+        make_las(name, vlrs=(vlr("LASF_Projection", 2112, wkt.encode() + b"\0"),))
+    with pytest.raises(ValueError, match="The coordinates are degrees"):
+        read_cloud(vpc(tmp_path, "one.las", "two.las"))
 
 
 def test_axes_of_different_units(make_las):
