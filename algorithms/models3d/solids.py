@@ -19,6 +19,9 @@ _SAME_HEIGHT = 0.016
 # Faces are plane to this (m); vertices lie no closer together than that (m).
 PLANAR, _APART = 0.01, 0.002
 
+# Decimals of positions (m), as files have them.
+_DECIMALS = 3
+
 # A vertex with two edges that is off the line of their other ends by less than this (m), in plan by a tenth of it, is
 # superfluous: heights that became one have moved by as much.
 _SUPERFLUOUS = 0.005
@@ -385,7 +388,8 @@ def _compact(positions: np.ndarray, faces: list[tuple[str, int, list[Ring]]]) ->
     straight = _straight(positions, beside)
     kept = sorted(set(beside) - straight)
     number = {old: new for new, old in enumerate(kept)}
-    solid = Solid(positions[kept])
+    # What is checked is what files hold, which is rounded.
+    solid = Solid(np.round(positions[kept], _DECIMALS))
     for kind, plane, rings in faces:
         solid.faces.append([[number[v] for v in ring if v in number] for ring in rings])
         solid.kinds.append(kind)
@@ -443,4 +447,24 @@ def fault_of(solid: Solid) -> str:
         off = (corners - corners.mean(axis=0)) @ (normal / area)
         if np.abs(off).max() > PLANAR:
             return "a face is not plane"
+        if _crosses_itself(solid.vertices, rings, normal / area):
+            return "edges of a face cross"
     return ""
+
+
+def _crosses_itself(vertices: np.ndarray, rings: list[Ring], normal: np.ndarray) -> bool:
+    """Return whether edges of a face that have no vertex in common cross, seen along its normal."""
+    edge = np.array([pair for ring in rings for pair in zip(ring, [*ring[1:], ring[0]])])
+    axis = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
+    plan = (vertices - vertices[edge[0, 0]]) @ np.column_stack([axis, np.cross(normal, axis)])
+    start, end = plan[edge[:, 0]], plan[edge[:, 1]]
+    step = end - start
+
+    def side(places: np.ndarray) -> np.ndarray:
+        """Return on which side of each edge (k, 1) each place (k,) is, as an area."""
+        offset = places[None] - start[:, None]
+        return step[:, None, 0] * offset[..., 1] - step[:, None, 1] * offset[..., 0]
+
+    parts = side(start) * side(end) < 0
+    apart = (edge[:, None, :, None] != edge[None, :, None, :]).all(axis=(2, 3))
+    return bool((parts & parts.T & apart).any())

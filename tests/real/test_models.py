@@ -1,0 +1,43 @@
+"""Models of Delft's houses on their base map: valid, near the points, and hardly any below level 2.2."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from osgeo import ogr
+
+from lidar_buildings.algorithms.cloud.files import read_cloud
+from lidar_buildings.algorithms.models3d.reconstruct_roofs import reconstruct_roofs
+from lidar_buildings.algorithms.stage import LayerFeatures, MapFrame
+from lidar_buildings.tests.real.clouds import DATA, DELFT, path_of, truth
+from lidar_buildings.tests.solid_validity import assert_valid_cityjson
+
+MAP = DATA / "footprints" / "delft-bgt.gpkg"
+
+# Every so many polygons of the map are modelled.
+_STEP = 4
+
+
+@pytest.fixture(scope="module")
+def models():
+    """What is made of the points with their true classes."""
+    cloud = read_cloud(path_of(DELFT))
+    polygons = []
+    source = ogr.Open(str(MAP))
+    for feature in source.GetLayer(0):
+        geometry = feature.GetGeometryRef()
+        for part in [geometry] if geometry.GetGeometryName() == "POLYGON" else geometry:
+            polygons.append([np.array(ring.GetPoints())[:, :2] - cloud.origin[:2] for ring in part])
+    features = LayerFeatures(polygons[::_STEP], {"id": list(range(len(polygons[::_STEP])))})
+    return reconstruct_roofs.stage.unpack(reconstruct_roofs(cloud.get("xyz"), truth(DELFT), features))
+
+
+def test_solids_are_valid(models):
+    text = "".join(models.files["cityjson"].pieces("CityJSON", MapFrame(np.asarray)))
+    assert len(assert_valid_cityjson(text)["CityObjects"]) >= 30
+
+
+def test_roofs_are_near_their_points_and_at_the_level_wanted(models):
+    facts = models.layers["buildings"].columns
+    assert np.mean(np.array(facts["level"]) == "2.2") >= 0.95
+    assert np.median(facts["rms"]) <= 0.08
