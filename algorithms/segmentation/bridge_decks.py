@@ -57,8 +57,10 @@ class Decks:
     reach: float
     line_width: float
 
-    def find(self, xyz: np.ndarray, is_earth: np.ndarray, near: NearPoints, monitor: Monitor) -> np.ndarray:
-        """Return which points (n,) of the bare earth ``is_earth`` (n,) are of bridge decks."""
+    def find(
+        self, xyz: np.ndarray, is_earth: np.ndarray, is_terrain: np.ndarray, near: NearPoints, monitor: Monitor
+    ) -> np.ndarray:
+        """Return which points (n,) of the bare earth ``is_earth`` (n,) are decks that lead to ``is_terrain`` (n,)."""
         votes = np.zeros(len(xyz), np.int8)
         for number in range(_DIRECTIONS):
             votes += self._raised(xyz, is_earth, near, 180 * number / _DIRECTIONS)
@@ -69,11 +71,12 @@ class Decks:
             return is_deck
         part = connect(xyz[candidates], self.reach, _SAME_LEVEL, monitor.part(0.8, 0.9))
         others = np.flatnonzero(is_earth & (votes < _LEAST_DIRECTIONS))
-        beside = connect(xyz[others], self.reach, _SAME_LEVEL, monitor.part(0.9, 1))
+        terrain = np.flatnonzero(is_terrain & (votes < _LEAST_DIRECTIONS))
+        beside = connect(xyz[terrain], self.reach, _SAME_LEVEL, monitor.part(0.9, 1))
         size = np.bincount(beside, minlength=1)[beside]
         for rows in self._large(xyz, candidates, part):
             # The tip of a pier is no terrain that it leads to.
-            if self._is_joined(xyz[rows], xyz[others[size >= _LEAST_TERRAIN * len(rows)]]):
+            if self._is_joined(xyz[rows], xyz[terrain[size >= _LEAST_TERRAIN * len(rows)]]):
                 is_deck[self._with_edges(xyz, rows, others)] = True
                 is_deck[self._with_corners(xyz, rows, others[votes[others] > 0])] = True
         return is_deck

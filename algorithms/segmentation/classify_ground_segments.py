@@ -78,14 +78,15 @@ def classify_ground_segments(
     Segments that are higher than what lies around them are objects, the others bare earth; bridges and fly-overs,
     which go on into the terrain at their ends, belong to its segments. On lines in eight directions a bridge is raised
     on both sides. Such parts become bridge deck (17) if they are opaque and smooth, large enough, and joined to the
-    terrain at both ends. Run 'Segment scan lines' first.
+    terrain at both ends. Run 'Segment scan lines' first, and in towns and forests 'Classify ground points (TIN)', too.
 
     Parameters
     ----------
     xyz : ndarray of shape (n, 3), float64
         Coordinates, m.
     classification : ndarray of shape (n,), uint8
-        ASPRS classes; noise (7, 18) and water (9) stay, earlier ground (2) and bridge deck (17) are forgotten.
+        ASPRS classes; noise (7, 18) and water (9) stay, earlier bridge deck (17) is forgotten. Where there
+        is ground (2), it stays but for decks, and bridges must lead to it.
     segment_id : ndarray of shape (n,), int32
         Segments, 0 is none.
 
@@ -98,7 +99,9 @@ def classify_ground_segments(
     -----
     Decks are looked for among all points of the bare earth, as the paper does, in eight directions instead of four.
     That beams do not pass through them, and that both ends are joined, is asked for in addition: crowns that hang over
-    the terrain are raised, too. Of the bare earth only the points near the lowest of their cell are ground.
+    the terrain are raised, too. Of the bare earth only the points near the lowest of their cell are ground. In towns
+    and forests roofs and crowns hang together with the terrain by pieces of walls and leaves: there a ground filter is
+    due before; what it called ground is then the terrain.
 
     References
     ----------
@@ -119,9 +122,13 @@ def classify_ground_segments(
     monitor.progress(0.2)
     near = NearPoints(_CELL_SPACINGS**2 * spacing, float(np.tan(np.radians(_SLOPE))), _NOISE_STEP * noise)
     decks = Decks(min_height, max_width, min_bridge_area, 2 * cell, _CELL_SPACINGS * spacing)
-    is_deck = decks.find(points, is_earth, near, monitor.part(0.2, 0.9))
-    is_ground = is_earth & ~is_deck
-    is_ground[is_ground] = _is_low(points[is_ground], cell / 2, _NOISE_STEP * noise)
+    is_terrain = classification[used] == PointClass.GROUND
+    if not is_terrain.any():
+        is_terrain = is_earth.copy()
+        is_terrain[is_earth] = _is_low(points[is_earth], cell / 2, _NOISE_STEP * noise)
+        monitor.inform("The cloud has no ground points (class 2); the segments alone tell what is bare earth.")
+    is_deck = decks.find(points, is_earth, is_terrain, near, monitor.part(0.2, 0.9))
+    is_ground = is_terrain & ~is_deck
 
     classes = classification.astype(np.uint8)
     classes[np.isin(classes, (PointClass.GROUND, PointClass.BRIDGE_DECK))] = PointClass.UNCLASSIFIED

@@ -76,10 +76,11 @@ def test_limits_of_height_width_and_area():
     assert not (classified(xyz, min_area=50_000.0) == 2).any()
 
 
-def test_noise_and_water_stay_and_earlier_ground_is_forgotten():
+def test_noise_and_water_stay_and_earlier_decks_are_forgotten():
     xyz, part = valley()
-    classes = np.full(len(xyz), 2, np.uint8)
+    classes = np.ones(len(xyz), np.uint8)
     classes[part == WATER] = 9
+    classes[part == ROOF] = 17
     classes[:50] = 18
     made = classify_ground_segments(xyz, classes, segment_scan_lines(xyz, classes))
     assert (made[:50] == 18).all()
@@ -88,10 +89,22 @@ def test_noise_and_water_stay_and_earlier_ground_is_forgotten():
     assert f_score(made == 17, part == DECK) > 0.9
 
 
-def test_no_segments_no_ground():
+def test_ground_of_a_filter_stays_and_bridges_lead_to_it():
+    xyz, part = valley()
+    ids = segment_scan_lines(xyz, np.ones(len(xyz), np.uint8))
+    classes = np.where((part == EARTH) | (part == WATER), 2, 1).astype(np.uint8)
+    made = classify_ground_segments(xyz, classes, ids)
+    assert f_score(made == 17, part == DECK) > 0.9
+    assert (made[part == EARTH] == 2).mean() > 0.98
+    only_water = np.where(part == WATER, 2, 1).astype(np.uint8)
+    np.testing.assert_array_equal(classify_ground_segments(xyz, only_water, ids), only_water)
+
+
+def test_no_segments_no_bridges():
     xyz = np.random.default_rng(0).uniform(0, 20, (300, 3))
-    made = classify_ground_segments(xyz, np.full(300, 2, np.uint8), np.zeros(300, np.int32))
-    assert (made == 1).all()
+    for number in (1, 2):
+        classes = np.full(300, number, np.uint8)
+        np.testing.assert_array_equal(classify_ground_segments(xyz, classes, np.zeros(300, np.int32)), classes)
 
 
 def test_order_and_place_change_nothing():
