@@ -143,8 +143,8 @@ def classify_buildings(
     the beam seems to penetrate: those of the minimum area are buildings if half of the points around belong to others.
 
     In clouds of matched images, crowns are as closed as roofs, and penetration tells nothing. There, roof surfaces are
-    buildings, planar over a meter, if the minimum share of what stands around them are such surfaces; domes and small
-    ones that are as green as plants are none. What is green is set by the scene: the threshold that parts the
+    buildings, planar over a meter, if the minimum share of what stands around them are such surfaces; small ones
+    that are as green as plants are none. What is green is set by the scene: the threshold that parts the
     normalized excess green of all its points in two kinds best, if these are apart by 0.1 or more. Shadow hardly
     changes it.
 
