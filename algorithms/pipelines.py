@@ -186,6 +186,29 @@ _PIPELINES = (
             for name in ("max_tilt", "max_gap", "edge_factor", "corner_distance", "boundary", "complete")
         },
         shown=("planes_min_area", "planes_min_height", "openings_min_size", "boundary", "complete"),
+        name="model_industry",
+        title="Model industry",
+        group="Models",
+        tags="industry,plant,pipe,tank,vessel,cylinder,sphere,plane,as-built,terrestrial,laser scanner,Vosselman",
+        summary="Model pipes, tanks, spheres and planes of a scanned plant: axes, centers and polygons with heights.",
+        description=(
+            "Cylinders first, since a strip of a tank would pass for a plane; then spheres and planes among the points "
+            "that have no shape yet. Each step looks in windows that suit its radii and bins. In the published "
+            "chain the points of one smooth surface are searched together: segment the cloud first and set 'Search in' "
+            "to each segment for that."
+        ),
+        references=(
+            "Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner "
+            "point clouds. International Archives of Photogrammetry, Remote Sensing and Spatial Information Sciences "
+            "46 (8/W2), 33-38."
+        ),
+        steps=(
+            Step("cylinders", "detect_cylinders"),
+            Step("spheres", "detect_spheres", {"search_in": "points without a shape"}),
+            Step("planes", "segment_planes_hough", {"method": "normals", "search_in": "points without a shape"}),
+        ),
+        shared={"min_radius": ("cylinders", "spheres"), "max_radius": ("cylinders", "spheres")},
+        shown=("min_radius", "max_radius", "cylinders_min_seen", "planes_min_area"),
     ),
 )
 

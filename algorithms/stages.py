@@ -25,6 +25,7 @@ from .preparation.merge_clouds import merge_clouds
 from .quality.assess_buildings import assess_buildings
 from .quality.assess_ground import assess_ground
 from .quality.assess_models import assess_models
+from .quality.assess_segments import assess_segments
 from .quality.compare_corners import compare_corners
 from .segmentation.classify_ground_segments import classify_ground_segments
 from .segmentation.segment_clusters import segment_clusters
@@ -95,6 +96,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     assess_buildings,
     assess_ground,
     assess_models,
+    assess_segments,
     compare_corners,
     simulate_town,
     simulate_flight,

@@ -66,6 +66,7 @@ STAGE_IDS = {
     "segmentplanesransac",
     "segmentplaneshough",
     "detectcylinders",
+    "assesssegments",
     "detectspheres",
     "simulateplant",
     "segmentvoxels",
@@ -94,6 +95,14 @@ STAGE_IDS = {
 }
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints", "modelbuildings"}
 PIPELINE_IDS |= {"modelfacades"}
+PIPELINE_IDS = {
+    "detectbuildings",
+    "detectbuildings2019",
+    "interpretstructure",
+    "mapfootprints",
+    "modelindustry",
+    "modelbuildings",
+}
 
 CLASSIFYING = {"classify", "complete"}
 VERBS = CLASSIFYING | {"segment", "cluster", "compute", "extract", "regularize", "simplify", "assess", "simulate"}

@@ -65,6 +65,7 @@ IDS = {
     "extractfacades",
     "segmentplaneshough",
     "detectcylinders",
+    "assesssegments",
     "detectspheres",
     "simulateplant",
     "simulatestreet",
@@ -75,6 +76,14 @@ IDS = {
 TILED_IDS = {"detectbuildingsintiles", "detectbuildings2019intiles"}
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints", "modelbuildings"}
 PIPELINE_IDS |= {"modelfacades"}
+PIPELINE_IDS = {
+    "detectbuildings",
+    "detectbuildings2019",
+    "interpretstructure",
+    "mapfootprints",
+    "modelindustry",
+    "modelbuildings",
+}
 ALL = {**STAGES, **TOYS}
 
 
