@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Optional
 
 import numpy as np
@@ -30,6 +31,8 @@ _FIELDS = (
     group="Shapes",
     tags="cylinder,pipe,tank,column,pole,Hough,Gaussian sphere,industry,as-built",
     writes=("segment_id", "shape"),
+    # Shapes go on as far as they like: a part of a cloud does not tell where one ends.
+    reach=math.inf,
     layers=(Layer("axes", "Axes of cylinders", "LineString", _FIELDS),),
 )
 def detect_cylinders(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Optional
 
 import numpy as np
@@ -31,6 +32,8 @@ _FIELDS = (
     group="Shapes",
     tags="sphere,ball,vessel,dome,target,Hough,industry,as-built",
     writes=("segment_id", "shape"),
+    # Shapes go on as far as they like: a part of a cloud does not tell where one ends.
+    reach=math.inf,
     layers=(Layer("centers", "Centers of spheres", "Point", _FIELDS),),
 )
 def detect_spheres(

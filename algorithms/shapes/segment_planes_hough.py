@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Optional
 
 import numpy as np
@@ -43,6 +44,8 @@ _MOST_ANGLE = 10.0
     group="Shapes",
     tags="plane,Hough,Gaussian sphere,normal,roof,wall,facade,planar,segmentation,parameter space",
     writes=("segment_id", "shape"),
+    # Shapes go on as far as they like: a part of a cloud does not tell where one ends.
+    reach=math.inf,
     layers=(Layer("planes", "Planes", "Polygon", PLANE_FIELDS),),
 )
 def segment_planes_hough(

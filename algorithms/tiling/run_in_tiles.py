@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import pickle
 import shutil
 import time
@@ -159,6 +160,10 @@ def can_be_tiled(pipeline: Pipeline) -> bool:
     stages = [step.stage for step in pipeline.steps]
     return pipeline.reads_cloud and not any(
         stage.merges or stage.selects or stage.creates or stage.rasters or stage.files or stage.reach == np.inf
+    """Whether a composite can be run in tiles: every step keeps the points of its one cloud, and reaches not endlessly."""
+    stages = [step.stage for step in pipeline.steps]
+    return pipeline.reads_cloud and not any(
+        stage.merges or stage.selects or stage.creates or stage.rasters or stage.files or stage.reach == math.inf
         for stage in stages
     )
 
