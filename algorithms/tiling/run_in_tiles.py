@@ -161,6 +161,7 @@ def can_be_tiled(pipeline: Pipeline) -> bool:
     return pipeline.reads_cloud and not any(
         stage.merges or stage.selects or stage.creates or stage.rasters or stage.files or stage.reach == np.inf
     """Whether a composite can be run in tiles: every step keeps the points of its one cloud, and reaches not endlessly."""
+    """Whether a composite can be run in tiles: every step keeps the points of its one cloud and has a reach."""
     stages = [step.stage for step in pipeline.steps]
     return pipeline.reads_cloud and not any(
         stage.merges or stage.selects or stage.creates or stage.rasters or stage.files or stage.reach == math.inf
