@@ -39,11 +39,13 @@ from .segmentation.segment_voxels import segment_voxels
 from .shapes.detect_cylinders import detect_cylinders
 from .shapes.detect_spheres import detect_spheres
 from .shapes.segment_planes_hough import segment_planes_hough
+from .shapes.segment_tree import segment_tree
 from .simulation.simulate_drone_site import simulate_drone_site
 from .simulation.simulate_flight import simulate_flight
 from .simulation.simulate_plant import simulate_plant
 from .simulation.simulate_street import simulate_street
 from .simulation.simulate_town import simulate_town
+from .simulation.simulate_tree import simulate_tree
 from .simulation.simulate_village import simulate_village
 from .terrain.classify_ground_cloth import classify_ground_cloth
 from .terrain.classify_ground_tin import classify_ground_tin
@@ -79,6 +81,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     segment_planes_hough,
     detect_cylinders,
     detect_spheres,
+    segment_tree,
     segment_voxels,
     classify_buildings,
     classify_buildings_2019,
@@ -101,6 +104,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     simulate_town,
     simulate_flight,
     simulate_plant,
+    simulate_tree,
     simulate_village,
     simulate_street,
     simulate_drone_site,

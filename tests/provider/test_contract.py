@@ -65,6 +65,8 @@ IDS = {
     "extractfacades",
     "segmentplaneshough",
     "detectcylinders",
+    "segmenttree",
+    "simulatetree",
     "assesssegments",
     "detectspheres",
     "simulateplant",

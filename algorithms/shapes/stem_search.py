@@ -1,0 +1,83 @@
+"""Stems: what is round and upright at breast height."""
+
+from __future__ import annotations
+
+from typing import Optional
+
+import numpy as np
+
+from ..geometry.components import connect
+from ..stage import Monitor
+from .cylinder_fits import Cylinder, fit_cylinder
+
+# Height at which stems are measured (m above the ground), and half the height of the slice around it.
+BREAST, _HALF_SLICE = 1.3, 0.3
+
+# Points at most this far apart (m) in the slice are of one stem.
+_APART = 0.15
+
+# Points of the thinnest stem, and the share of the slice that it crosses.
+_LEAST_POINTS, _CROSSED = 12, 0.7
+
+# Radii of stems (m), and largest median distance of the points from the cylinder: of the radius, and m.
+_RADII, _ROUGH, _ROUGHNESS = (0.015, 1.0), 0.2, 0.01
+
+# Side (m) of the cells in which the ground lies as low as their lowest point, or that of the cells around.
+_GROUND_CELL = 1.0
+
+
+def ground_level(xyz: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Return the height (m) of the lowest of points (n, 3) in the cell of each place (m, 2) and the cells around it."""
+    low = xyz[:, :2].min(axis=0)
+    cells = np.floor((xyz[:, :2] - low) / _GROUND_CELL).astype(np.int64) + 1
+    wide = cells.max(axis=0) + 2
+    lowest = np.full(wide, np.inf)
+    np.minimum.at(lowest, tuple(cells.T), xyz[:, 2])
+    around = np.full(wide, np.inf)
+    for i in (-1, 0, 1):
+        for j in (-1, 0, 1):
+            around = np.minimum(around, np.roll(lowest, (i, j), axis=(0, 1)))
+    at = np.clip(np.floor((places - low) / _GROUND_CELL).astype(np.int64) + 1, 0, wide - 1)
+    level = around[tuple(at.T)]
+    return np.where(np.isfinite(level), level, xyz[:, 2].min())
+
+
+def find_stems(xyz: np.ndarray, level: np.ndarray) -> list[tuple[Cylinder, float]]:
+    """Return the stems at breast height as cylinders, and the height (m) of the ground below each.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Points of trees (m).
+    level : ndarray of shape (n,)
+        Height of the ground below each (m).
+    """
+    inside = np.flatnonzero(np.abs(xyz[:, 2] - level - BREAST) <= _HALF_SLICE)
+    if not len(inside):
+        return []
+    cluster = connect(xyz[inside], _APART, _APART, Monitor())
+    found = []
+    for number in range(int(cluster.max()) + 1):
+        rows = inside[cluster == number]
+        stem = _stem(xyz[rows]) if len(rows) >= _LEAST_POINTS else None
+        if stem is not None:
+            found.append((stem, float(np.median(level[rows]))))
+    return found
+
+
+def _stem(xyz: np.ndarray) -> Optional[Cylinder]:
+    """Return the upright cylinder of the points of a slice, None where they are no stem."""
+    if np.ptp(xyz[:, 2]) < _CROSSED * 2 * _HALF_SLICE:
+        return None
+    middle = xyz.mean(axis=0)
+    radius = float(np.median(np.linalg.norm(xyz[:, :2] - middle[:2], axis=1)))
+    stem = Cylinder(middle, np.array([0.0, 0.0, 1.0]), max(radius, 1e-3))
+    for _ in range(3):
+        off = np.abs(stem.local(xyz)[1] - stem.radius)
+        near = off <= max(2.5 * float(np.median(off)), 1e-4)
+        if near.sum() < _LEAST_POINTS:
+            return None
+        stem = fit_cylinder(xyz[near], stem)
+    off = float(np.median(np.abs(stem.local(xyz)[1] - stem.radius)))
+    is_stem = _RADII[0] <= stem.radius <= _RADII[1] and abs(stem.axis[2]) > 0.8
+    return stem if is_stem and off <= max(_ROUGH * stem.radius, _ROUGHNESS) else None

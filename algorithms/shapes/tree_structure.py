@@ -1,0 +1,222 @@
+"""The structure of trees: shortest paths from the roots, slices across them, branches by length and order."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..geometry.groups import components
+from ..geometry.sparse_voxels import close_voxels, locate_voxels, neighbor_pairs, voxelize
+from ..packages import csgraph, sparse, spatial
+from ..stage import Monitor
+
+# A step over a gap costs so many times its length, so that paths keep to the wood where there is some.
+_GAP_PRICE = 3.0
+
+# Thickness of a slice (voxels): thinner ones have no place of their own, thicker ones hold two forks.
+_SLICE = 3.0
+
+# The lowest part of a stem, in which its root is looked for, reaches so high above the breast (m).
+_SAME_STEM = 0.5
+
+# A branch leads from its base to its tip without too many turns: its chord over its length. Paths through leaves and
+# grass turn.
+_LEAST_STRAIGHT = 0.6
+
+# Rounds in which a line is smoothed: its steps are those of voxels.
+_SMOOTHINGS = 4
+
+# Branches leave their stem at least so high over its root (m): what is lower is grass.
+_CLEAR = 0.5
+
+
+@dataclass(frozen=True)
+class Voxels:
+    """Closed voxels of a cloud and the steps between them.
+
+    Attributes
+    ----------
+    places : ndarray of shape (m, 3)
+        Centers of the voxels (m).
+    of_point : ndarray of shape (n,)
+        The voxel of each point, -1 where there is none.
+    one, other : ndarray of shape (k,)
+        The voxels at both ends of each step.
+    length : ndarray of shape (k,)
+        Lengths of the steps (m), gaps at their price.
+    """
+
+    places: np.ndarray
+    of_point: np.ndarray
+    one: np.ndarray
+    other: np.ndarray
+    length: np.ndarray
+
+
+@dataclass(frozen=True)
+class Slices:
+    """Slices across stems and branches: connected voxels about as far from the root.
+
+    Attributes
+    ----------
+    places : ndarray of shape (s, 3)
+        Means of their voxels (m).
+    parent : ndarray of shape (s,)
+        The slice on the way to the root, before it in the order; -1 for roots.
+    tree : ndarray of shape (s,)
+        Which root they belong to.
+    of_voxel : ndarray of shape (m,)
+        Slice of each voxel, -1 where no root reaches it.
+    """
+
+    places: np.ndarray
+    parent: np.ndarray
+    tree: np.ndarray
+    of_voxel: np.ndarray
+
+
+@dataclass(frozen=True)
+class Branch:
+    """A branch: its slices (k,) from its base on its parent to its tip, the number of its tree, and its order."""
+
+    slices: np.ndarray
+    tree: int
+    order: int
+
+
+def voxels_of(xyz: np.ndarray, voxel_size: float, min_count: int, max_gap: float) -> Voxels:
+    """Return the closed voxels of points (n, 3), their pieces linked over gaps up to ``max_gap`` (m).
+
+    Voxels with fewer points than ``min_count`` are empty; points there have the voxel -1, unless closing fills it.
+    """
+    occupied, voxel, count = voxelize(xyz, voxel_size)
+    cells = close_voxels(occupied[count >= min_count], 26, 1)
+    places = (cells + 0.5) * voxel_size
+    one, other, axes = neighbor_pairs(cells, 26)
+    piece = components(one, other, len(places))[1]
+    gaps = _gaps(places, piece, max_gap)
+    gap = np.linalg.norm(places[gaps[:, 0]] - places[gaps[:, 1]], axis=1)
+    return Voxels(
+        places,
+        locate_voxels(cells, occupied)[voxel],
+        np.concatenate([one, gaps[:, 0]]),
+        np.concatenate([other, gaps[:, 1]]),
+        np.concatenate([voxel_size * np.sqrt(axes), _GAP_PRICE * gap]),
+    )
+
+
+def _gaps(places: np.ndarray, piece: np.ndarray, max_gap: float) -> np.ndarray:
+    """Return the shortest pair (k, 2) of voxels between any two pieces at most ``max_gap`` (m) apart."""
+    if not len(piece):
+        return np.zeros((0, 2), np.int64)
+    size = np.bincount(piece)
+    largest = int(np.argmax(size))
+    tree = spatial.cKDTree(places)
+    small = np.flatnonzero(piece != largest)
+    near = tree.query_ball_point(places[small], max_gap, workers=-1)
+    counts = np.array([len(one) for one in near], np.int64)
+    if not counts.sum():
+        return np.zeros((0, 2), np.int64)
+    pairs = np.column_stack([np.repeat(small, counts), np.concatenate([np.array(one, np.int64) for one in near])])
+    ends = np.sort(piece[pairs], axis=1)
+    pairs, ends = pairs[ends[:, 0] != ends[:, 1]], ends[ends[:, 0] != ends[:, 1]]
+    distance = np.linalg.norm(places[pairs[:, 0]] - places[pairs[:, 1]], axis=1)
+    order = np.lexsort((pairs[:, 1], pairs[:, 0], distance, ends[:, 1], ends[:, 0]))
+    first = np.unique(ends[order], axis=0, return_index=True)[1]
+    return pairs[order[first]]
+
+
+def roots_of(voxels: Voxels, stems: np.ndarray) -> np.ndarray:
+    """Return the lowest voxel of each of the stems at places (s, 3) of their axes at breast height (m)."""
+    roots = []
+    for stem in stems:
+        reach = np.linalg.norm(voxels.places[:, :2] - stem[:2], axis=1)
+        near = np.flatnonzero((reach <= _SAME_STEM) & (voxels.places[:, 2] <= stem[2] + _SAME_STEM))
+        if len(near):
+            # Of those as low the one in the middle.
+            roots.append(near[np.lexsort((reach[near], voxels.places[near, 2]))[0]])
+    return np.unique(np.array(roots, np.int64))
+
+
+def slices_of(voxels: Voxels, roots: np.ndarray, voxel_size: float) -> Slices:
+    """Return the slices of the trees over some roots (t,), those near the roots first.
+
+    A scanned stem is a hollow tube. Thinned, it would be a net; levels of equal length of the path cut across it.
+    """
+    n = len(voxels.places)
+    graph = sparse.coo_matrix((voxels.length, (voxels.one, voxels.other)), (n, n)).tocsr()
+    distance, before, source = csgraph.dijkstra(
+        graph, directed=False, indices=roots, return_predecessors=True, min_only=True
+    )
+    reached = np.isfinite(distance)
+    level = np.where(reached, distance / (_SLICE * voxel_size), -1).astype(np.int64)
+    same = reached[voxels.one] & (level[voxels.one] == level[voxels.other])
+    same &= source[voxels.one] == source[voxels.other]
+    group = components(voxels.one[same], voxels.other[same], n)[1]
+    order = np.lexsort((np.arange(n), distance))
+    order = order[reached[order]]
+    # The voxel of each slice that is nearest to the root.
+    numbers, first = np.unique(group[order], return_index=True)
+    rank = np.argsort(first)
+    nearest = order[first[rank]]
+    of_group = np.full(int(group.max()) + 1, -1)
+    of_group[numbers[rank]] = np.arange(len(rank))
+    of_voxel = np.where(reached, of_group[group], -1)
+    count = np.bincount(of_voxel[reached], minlength=len(rank))
+    places = np.column_stack(
+        [np.bincount(of_voxel[reached], column[reached], len(rank)) / count for column in voxels.places.T]
+    )
+    parent = np.where(before[nearest] >= 0, of_voxel[np.maximum(before[nearest], 0)], -1)
+    return Slices(places, parent, np.searchsorted(roots, source[nearest]), of_voxel)
+
+
+def branches_of(slices: Slices, min_length: float, monitor: Monitor) -> tuple[list[Branch], np.ndarray]:
+    """Return the branches, each after its parent, and the branch (s,) of each slice, -1 for twigs and leaves.
+
+    At a fork the branch goes on where the way to the farthest tip is longest; the others are branches of the next
+    order. Branches shorter than ``min_length`` (m), and crooked ones, are left out with all that grows on them.
+    """
+    places, parent = slices.places, slices.parent
+    step = np.where(parent >= 0, np.linalg.norm(places - places[parent], axis=1), 0.0)
+    n = len(places)
+    beyond, heir = np.zeros(n), np.full(n, -1)
+    for one in range(n - 1, -1, -1):
+        above = parent[one]
+        if above >= 0 and (heir[above] < 0 or beyond[one] + step[one] > beyond[above]):
+            beyond[above], heir[above] = beyond[one] + step[one], one
+    monitor.progress(0.5)
+    branch, order, foot = np.full(n, -1), np.zeros(n, np.int64), places[parent < 0]
+    branches: list[Branch] = []
+    for first in range(n):
+        base = int(parent[first])
+        if base >= 0 and (heir[base] == first or branch[base] < 0):
+            continue
+        line = [first]
+        while heir[line[-1]] >= 0:
+            line.append(int(heir[line[-1]]))
+        if base >= 0:
+            low = places[base, 2] < foot[slices.tree[first], 2] + _CLEAR if len(foot) > slices.tree[first] else False
+            length = beyond[first] + step[first]
+            if low or length < min_length or not _is_straight(places[[base, *line]]):
+                continue
+            order[line] = order[base] + 1
+        branch[line] = len(branches)
+        whole = line if base < 0 else [base, *line]
+        branches.append(Branch(np.array(whole), int(slices.tree[first]), int(order[first])))
+    return branches, branch
+
+
+def smooth(line: np.ndarray) -> np.ndarray:
+    """Return a line (k, 3) without the steps of its voxels: each inner vertex the mean of it and its neighbors."""
+    line = line.copy()
+    for _ in range(_SMOOTHINGS):
+        line[1:-1] = (line[:-2] + 2 * line[1:-1] + line[2:]) / 4
+    return line
+
+
+def _is_straight(line: np.ndarray) -> bool:
+    """Return whether a line (k, 3) is no path through leaves."""
+    line = smooth(line)
+    length = np.linalg.norm(np.diff(line, axis=0), axis=1).sum()
+    return bool(np.linalg.norm(line[-1] - line[0]) >= _LEAST_STRAIGHT * length)

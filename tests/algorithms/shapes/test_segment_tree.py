@@ -1,0 +1,109 @@
+"""Trees whose stems and branches are known."""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.shapes.segment_tree import segment_tree
+from lidar_buildings.algorithms.simulation.simulate_tree import simulate_tree
+from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.tests.builders import EXACT_FAR
+
+SMALL = {"height": 9.0, "dbh": 0.2, "n_branches": 8, "density": 3000.0}
+
+
+@pytest.fixture(scope="module")
+def tree():
+    return simulate_tree(**SMALL)
+
+
+@pytest.fixture(scope="module")
+def found(tree):
+    return segment_tree(tree[0], tree[1])
+
+
+def right_length(found, truth, true_branches):
+    """Return the share of the length of branches over 3 cm whose points are in a segment that is mostly theirs."""
+    total = right = 0.0
+    for number, length, radius in zip(*(true_branches.columns[name] for name in ("id", "length", "radius"))):
+        if radius < 0.015:
+            continue
+        total += length
+        own = np.bincount(found[truth == number], minlength=2)
+        own[0] = 0
+        best = int(own.argmax())
+        of_best = np.bincount(truth[found == best])
+        of_best[0] = 0
+        if own[best] and of_best.argmax() == number:
+            right += length * own[best] / (truth == number).sum()
+    return right / total
+
+
+def test_the_stem_is_found_with_its_diameter_and_length(found):
+    columns = found[1].columns
+    assert columns["branch_order"].count(0) == 1
+    assert columns["dbh"][0] == pytest.approx(0.2, abs=0.01)
+    assert columns["length"][0] == pytest.approx(9.0, rel=0.04)
+    # A cone from the base, a little thicker than at the breast, to 0.35 of it.
+    assert columns["volume"][0] == pytest.approx(np.pi / 3 * 9 * 0.11**2 * (1 + 0.35 + 0.35**2), rel=0.15)
+    assert np.isnan(columns["dbh"][1:]).all()
+
+
+def test_branches_are_found_and_leaves_are_none(tree, found):
+    xyz, classification, truth, branches = tree
+    ids = found[0]
+    assert right_length(ids, truth, branches) > 0.75
+    leaves = (truth == 0) & (classification != 2)
+    assert (ids[leaves] > 0).mean() < 0.1
+    assert not ids[classification == 2].any()
+
+
+def test_points_of_the_layer_lie_in_the_wood(tree, found):
+    xyz, _, truth, branches = tree
+    stem = found[1].geometries[0]
+    line = branches.geometries[0]
+    inside = stem[(stem[:, 2] > 0.5) & (stem[:, 2] < 8.0)]
+    at = np.array([np.interp(inside[:, 2], line[:, 2], line[:, k]) for k in (0, 1)]).T
+    assert np.linalg.norm(inside[:, :2] - at, axis=1).max() < 0.11
+
+
+def test_stems_of_several_trees_are_found_by_themselves(tree):
+    """Trees 4 m apart, whose crowns touch: each branch belongs to the tree over whose root it stands."""
+    xyz, classification, truth, _ = tree
+    both = np.concatenate([xyz, xyz + [4.0, 0.5, 0]])
+    ids, layer = segment_tree(both, np.concatenate([classification, classification]))
+    stems = [line for line, order in zip(layer.geometries, layer.columns["branch_order"]) if order == 0]
+    assert sorted(round(line[0, 0] / 4) for line in stems) == [0, 1]
+    assert sorted(set(layer.columns["tree"])) == [1, 2]
+    numbers = ids[: len(xyz)][truth == 1], ids[len(xyz) :][truth == 1]
+    assert all((np.bincount(own)[1:].max() / len(own)) > 0.85 for own in numbers)
+
+
+def test_a_cloud_without_stems_says_so(rng):
+    monitor = Monitor()
+    ids, layer = segment_tree(rng.uniform(0, [10, 10, 0.2], (3000, 3)), np.ones(3000, np.uint8), monitor=monitor)
+    assert not ids.any()
+    assert len(layer) == 0
+    assert monitor.warnings == ["No stem was found at a height of 1.3 m; no point has a SegmentID."]
+    with pytest.raises(ValueError, match="All points lie on one line"):
+        segment_tree(np.column_stack([np.arange(50.0)] * 3), np.ones(50, np.uint8))
+
+
+def test_place_and_order_do_not_matter(rng):
+    xyz, classification, *_ = simulate_tree(height=5.0, dbh=0.12, n_branches=3, density=1500.0)
+    xyz = np.round(xyz * 1024) / 1024
+    expected = segment_tree(xyz, classification)[0]
+    np.testing.assert_array_equal(segment_tree(xyz + EXACT_FAR, classification)[0], expected)
+    order = rng.permutation(len(xyz))
+    np.testing.assert_array_equal(segment_tree(xyz[order], classification[order])[0], expected[order])
+
+
+def test_wood_of_the_simulation_lies_on_its_limbs():
+    xyz, _, truth, branches = simulate_tree(**SMALL, noise=0.0)
+    for number, line, radius in zip(branches.columns["id"], branches.geometries, branches.columns["radius"]):
+        own = xyz[truth == number]
+        near = np.full(len(own), np.inf)
+        for start, end in zip(line[:-1], line[1:]):
+            share = np.clip((own - start) @ (end - start) / ((end - start) @ (end - start)), 0, 1)
+            near = np.minimum(near, np.linalg.norm(own - start - share[:, None] * (end - start), axis=1))
+        assert near.max() <= radius * 1.001
+        assert near.min() >= 0.3 * radius
