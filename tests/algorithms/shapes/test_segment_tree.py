@@ -95,15 +95,3 @@ def test_place_and_order_do_not_matter(rng):
     np.testing.assert_array_equal(segment_tree(xyz + EXACT_FAR, classification)[0], expected)
     order = rng.permutation(len(xyz))
     np.testing.assert_array_equal(segment_tree(xyz[order], classification[order])[0], expected[order])
-
-
-def test_wood_of_the_simulation_lies_on_its_limbs():
-    xyz, _, truth, branches = simulate_tree(**SMALL, noise=0.0)
-    for number, line, radius in zip(branches.columns["id"], branches.geometries, branches.columns["radius"]):
-        own = xyz[truth == number]
-        near = np.full(len(own), np.inf)
-        for start, end in zip(line[:-1], line[1:]):
-            share = np.clip((own - start) @ (end - start) / ((end - start) @ (end - start)), 0, 1)
-            near = np.minimum(near, np.linalg.norm(own - start - share[:, None] * (end - start), axis=1))
-        assert near.max() <= radius * 1.001
-        assert near.min() >= 0.3 * radius
