@@ -186,6 +186,8 @@ _PIPELINES = (
             for name in ("max_tilt", "max_gap", "edge_factor", "corner_distance", "boundary", "complete")
         },
         shown=("planes_min_area", "planes_min_height", "openings_min_size", "boundary", "complete"),
+    ),
+    Pipeline(
         name="model_industry",
         title="Model industry",
         group="Models",

@@ -96,15 +96,7 @@ STAGE_IDS = {
     "reconstructgables",
 }
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints", "modelbuildings"}
-PIPELINE_IDS |= {"modelfacades"}
-PIPELINE_IDS = {
-    "detectbuildings",
-    "detectbuildings2019",
-    "interpretstructure",
-    "mapfootprints",
-    "modelindustry",
-    "modelbuildings",
-}
+PIPELINE_IDS |= {"modelfacades", "modelindustry"}
 
 CLASSIFYING = {"classify", "complete"}
 VERBS = CLASSIFYING | {"segment", "cluster", "compute", "extract", "regularize", "simplify", "assess", "simulate"}
@@ -146,7 +138,7 @@ WITHOUT_UNIT = {
 OWN_CLASSES = {"classify_dimensionality"}
 # Our own, after no publication.
 WITHOUT_REFERENCES = {"simulate_plant", "simulate_town", "simulate_village", "simulate_street", "simulate_drone_site"}
-WITHOUT_REFERENCES = {"simulate_tree", "simulate_plant", "simulate_town", "simulate_village", "simulate_street"}
+WITHOUT_REFERENCES |= {"simulate_tree"}
 # Stems are scanned from the ground, and finer than the scene is.
 WITHOUT_FEATURES = {"segment_tree"}
 # Automatic tunables that matter only beside another setting.

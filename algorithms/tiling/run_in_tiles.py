@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
 import pickle
 import shutil
 import time
@@ -160,11 +159,6 @@ def can_be_tiled(pipeline: Pipeline) -> bool:
     stages = [step.stage for step in pipeline.steps]
     return pipeline.reads_cloud and not any(
         stage.merges or stage.selects or stage.creates or stage.rasters or stage.files or stage.reach == np.inf
-    """Whether a composite can be run in tiles: every step keeps the points of its one cloud, and reaches not endlessly."""
-    """Whether a composite can be run in tiles: every step keeps the points of its one cloud and has a reach."""
-    stages = [step.stage for step in pipeline.steps]
-    return pipeline.reads_cloud and not any(
-        stage.merges or stage.selects or stage.creates or stage.rasters or stage.files or stage.reach == math.inf
         for stage in stages
     )
 

@@ -77,15 +77,7 @@ IDS = {
 }
 TILED_IDS = {"detectbuildingsintiles", "detectbuildings2019intiles"}
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints", "modelbuildings"}
-PIPELINE_IDS |= {"modelfacades"}
-PIPELINE_IDS = {
-    "detectbuildings",
-    "detectbuildings2019",
-    "interpretstructure",
-    "mapfootprints",
-    "modelindustry",
-    "modelbuildings",
-}
+PIPELINE_IDS |= {"modelfacades", "modelindustry"}
 ALL = {**STAGES, **TOYS}
 
 
