@@ -267,6 +267,7 @@ def scene() -> dict[str, np.ndarray]:
         "segment_id": segment_id.astype(np.int32),
         "shape": np.zeros(len(xy), np.uint8),
         "wall_of": np.zeros(len(xy), np.int32),
+        "voxel_count": np.ones(len(xy), np.uint32),
         "entropy": entropy.astype(np.float32),
         **{name: rng.random(len(xy)).astype(np.float32) for name in ("linearity", "planarity", "scattering")},
         "cluster_entropy": np.array([np.nan, 0.3, 0.3, 0.9, np.nan, np.nan, np.nan], np.float32)[kind],

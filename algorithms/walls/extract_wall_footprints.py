@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Annotated, Optional
 
@@ -17,10 +17,14 @@ from ..params import MinBuildingArea, Seed
 from ..sampling.cloud_sampling import CloudSampling
 from ..sampling.density import point_spacing
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
+from .candidate_corners import ROOF_OUTLINE, TOO_SMALL, CandidateCorners, candidate_corners
+from .lanes import find_lane
 from .surroundings import Surroundings, without_nested
+from .wall_lines import WallLine
 from .wall_outline import Limits, WallEdge, WallOutline, closed, outline_roof, outline_walls, share_seen
+from .wall_report import MEASURES, WALL, point_counts, wall_report
 
-WALL, ROOF = "wall", "roof"
+ROOF = "roof"
 
 # Distance in plan within which points lie on a wall (times the roughness).
 _ON_WALL = 3.09
@@ -63,6 +67,21 @@ _EDGE_FIELDS = (
     Field("precision", float, "standard deviation of its place across, from its points", "m"),
 )
 
+_CORNER_FIELDS = (
+    Field("id", int, "number of the candidate, from 1"),
+    Field("cluster_id", int, "building that it belongs to"),
+    Field(
+        "outcome",
+        str,
+        "corner: of the footprint; on an edge: the footprint runs straight on; off the outline: both walls have edges "
+        "elsewhere; wall not used: one of them has none; outline of the roof: too few walls were seen; too small: the "
+        "footprint would be",
+    ),
+    Field("walls_seen", int, "how many of the two walls that meet in it have wall points, 0 to 2"),
+    Field("angle", float, "angle between the two walls, 0 to 90", "°"),
+    Field("gap", float, "distance to the nearest point on each of the walls, the larger of the two", "m"),
+)
+
 
 @stage(
     "Extract wall footprints",
@@ -71,13 +90,17 @@ _EDGE_FIELDS = (
     layers=(
         Layer("wall_footprints", "Wall footprints", "Polygon", _FIELDS),
         Layer("wall_edges", "Wall edges", "LineString", _EDGE_FIELDS),
+        Layer("candidate_corners", "Candidate corners", "Point", _CORNER_FIELDS),
     ),
+    measures=MEASURES,
 )
 def extract_wall_footprints(
     xyz,
     cluster_id,
     wall_of=None,
     height_above_ground=None,
+    classification=None,
+    voxel_count=None,
     *,
     min_area: MinBuildingArea = 6.0,
     min_length: Annotated[
@@ -136,6 +159,10 @@ def extract_wall_footprints(
         Building of each wall point from 1; 0 is none. Without it, footprints are outlines of roofs.
     height_above_ground : ndarray of shape (n,), float32, optional
         Heights, m, for the attributes only.
+    classification : ndarray of shape (n,), uint8, optional
+        ASPRS classes, for the report only.
+    voxel_count : ndarray of shape (n,), uint32, optional
+        Points that each point was made of, for the report only.
 
     Returns
     -------
@@ -143,6 +170,11 @@ def extract_wall_footprints(
         One polygon per building, by cluster number. ``source`` says whether it is of walls or of the roof.
     wall_edges : LayerFeatures
         The edges of all footprints with what was seen of them.
+    candidate_corners : LayerFeatures
+        The intersections of all pairs of a building's lines within 2 m of the box around its roof, and what became
+        of each.
+    report : Report
+        Points of each kind, footprints and corners, and a page that shows them.
 
     Raises
     ------
@@ -163,6 +195,11 @@ def extract_wall_footprints(
     roof begins are party walls: they lie under the edge of the roof, and are not counted in the share of walls seen.
     Parts of a roof inside of others are left out.
 
+    Houses whose roofs nearly touch are one building by the distance between roofs. They are outlined one by one where
+    two walls face each other across the whole building, no farther apart than two overhangs of the largest kind, at
+    least half of each was seen, and the smallest building or more lies behind both. The line halfway between the walls
+    parts the roof. Passages under one roof are parted in the same way.
+
     What lies deeper under a roof than it juts out over the other walls counts as inside: loggias, porches. Sides
     without wall points lie as far inside the edge of the roof as the other walls in the median; ``quality`` 0 marks
     them. The result depends on the seed, and not on the order of points.
@@ -176,6 +213,7 @@ def extract_wall_footprints(
     """
     footprints = LayerFeatures([], {field.name: [] for field in _FIELDS})
     edges = LayerFeatures([], {field.name: [] for field in _EDGE_FIELDS})
+    corners = LayerFeatures([], {field.name: [] for field in _CORNER_FIELDS})
     sampling = sampling or CloudSampling.of(xyz)
     buildings = _buildings(xyz, cluster_id, wall_of, sampling)
     if tolerance is None:
@@ -184,17 +222,37 @@ def extract_wall_footprints(
     limits = Limits(tolerance, min_length, max_overhang)
     for done, building in enumerate(buildings):
         part = monitor.part(done / len(buildings), (done + 1) / len(buildings))
-        outline = building.walls_outline(limits, seed, part)
-        if outline is not None and building.seen_of(outline) < min_seen:
-            outline = None
-        parts = _parts(outline.rings) if outline is not None else building.roof_outlines(limits, part)
-        for rings in parts:
-            if sum(signed_area(closed(ring)) for ring in rings) >= min_area:
-                _add(footprints, edges, rings, building, outline, height_above_ground)
+        for house, outline in _houses(building, limits, min_area, seed, part):
+            used = outline if outline is not None and house.seen_of(outline) >= min_seen else None
+            parts = _parts(used.rings) if used is not None else house.roof_outlines(limits, part)
+            large = [rings for rings in parts if sum(signed_area(closed(ring)) for ring in rings) >= min_area]
+            for rings in large:
+                _add(footprints, edges, rings, house, used, height_above_ground)
+            if outline is not None:
+                rejected = ROOF_OUTLINE if used is None else "" if large else TOO_SMALL
+                kept = replace(outline, rings=[ring for rings in large for ring in rings])
+                _add_corners(corners, candidate_corners(kept, rejected), house)
         part.progress(1.0)
     monitor.progress(1.0)
     _tell_unseen(footprints, monitor)
-    return footprints, edges
+    counts = point_counts(cluster_id, wall_of, classification, voxel_count)
+    return footprints, edges, corners, wall_report(counts, footprints.columns["source"], corners.columns["outcome"])
+
+
+def _houses(
+    building: _Building, limits: Limits, min_area: float, seed: int, monitor: Monitor
+) -> list[tuple[_Building, Optional[WallOutline]]]:
+    """Return the houses that a building is made of, with their outlines; mostly the one that it is."""
+    outline = building.walls_outline(limits, seed, monitor)
+    lane = None if outline is None else find_lane(outline, limits, min_area)
+    if lane is not None:
+        parts = building.parted(lane)
+        # The progress has counted the outline of the whole.
+        rest = monitor.part(1.0, 1.0)
+        houses = [house for part in parts for house in _houses(part, limits, min_area, seed, rest)]
+        if all(own is not None for _, own in houses):
+            return houses
+    return [(building, outline)]
 
 
 def _tell_unseen(footprints: LayerFeatures, monitor: Monitor) -> None:
@@ -246,6 +304,20 @@ class _Building:
         """Points of the roof (n, 2), and others where nothing was seen in gaps of it."""
         gaps = self.surroundings.gaps(self.roof_xyz, self.roof_spacing) - self.origin
         return np.concatenate([self.roof, gaps])
+
+    def parted(self, line: WallLine) -> list[_Building]:
+        """Return the parts left and right of a line."""
+        roof, walls, rows = (line.across(xy) > 0 for xy in (self.roof, self.walls, self.roof_xyz[:, :2] - self.origin))
+        return [
+            replace(
+                self,
+                roof=self.roof[roof == side],
+                walls=self.walls[walls == side],
+                roof_rows=self.roof_rows[rows == side],
+                roof_xyz=self.roof_xyz[rows == side],
+            )
+            for side in (True, False)
+        ]
 
     def is_party(self, sides: np.ndarray) -> np.ndarray:
         """Return beside which sides (k, 2, 2) of the roof another roof begins."""
@@ -370,6 +442,22 @@ def _add_edges(edges: LayerFeatures, ring: list[WallEdge], footprint: int, first
         }
         for name, value in described.items():
             edges.columns[name].append(value)
+
+
+def _add_corners(layer: LayerFeatures, corners: CandidateCorners, building: _Building) -> None:
+    """Append the candidate corners of a building."""
+    first = len(layer) + 1
+    layer.geometries.extend(corners.place + building.origin)
+    described = {
+        "id": range(first, first + len(corners.outcome)),
+        "cluster_id": [building.number] * len(corners.outcome),
+        "outcome": corners.outcome,
+        "walls_seen": corners.n_seen.tolist(),
+        "angle": corners.angle.tolist(),
+        "gap": corners.gap.tolist(),
+    }
+    for name, values in described.items():
+        layer.columns[name].extend(values)
 
 
 def _inner_angle(before: WallEdge, edge: WallEdge) -> float:

@@ -96,10 +96,28 @@ class WallEdge:
 
 @dataclass(frozen=True)
 class WallOutline:
-    """Rings of edges, exterior first, and the overhang of the roof (m)."""
+    """The outline of one building's walls.
+
+    Attributes
+    ----------
+    rings : list of list of WallEdge
+        Edges in order, exteriors first.
+    overhang : float
+        Overhang of the roof, m.
+    lines : list of WallLine
+        All lines that the outline could have been made of.
+    scale : Scale
+        Tolerance and bins of this building's walls.
+    low, high : ndarray of shape (2,)
+        Corners of the rectangle that holds the roof and the room around it, m.
+    """
 
     rings: list[list[WallEdge]]
     overhang: float
+    lines: list[WallLine]
+    scale: Scale
+    low: np.ndarray
+    high: np.ndarray
 
     @property
     def seen(self) -> float:
@@ -198,7 +216,7 @@ def outline_walls(
     case = _Case(cover, scale, limits, overhang)
     cells = _Cells(lines, near, case, monitor.part(0.3, 0.4))
     rings = cells.rings(_Simplification(cells).run(monitor.part(0.4, 1.0)))
-    return WallOutline(rings, overhang) if rings else None
+    return WallOutline(rings, overhang, lines, scale, cover.low, cover.high) if rings else None
 
 
 def outline_roof(roof: np.ndarray, traced: list, spacing: float, limits: Limits, monitor: Monitor) -> list:

@@ -76,7 +76,7 @@ def errors(found, true):
 @pytest.mark.parametrize("turn", [0.0, 0.6])
 def test_corners_are_where_walls_meet(rng, shape, per_meter, noise, turn):
     arrays, true = building(rng, shape, per_meter=per_meter, noise=noise, turn=turn)
-    footprints, edges = extract_wall_footprints(**arrays)
+    footprints, edges = extract_wall_footprints(**arrays)[:2]
     assert len(footprints) == 1
     assert_valid(footprints.geometries[0])
     assert len(footprints.geometries[0][0]) - 1 == len(true)
@@ -121,9 +121,9 @@ def test_what_a_line_changes_is_looked_for_only_near_it(rng, monkeypatch):
     bays = [(start + x, y) for start in range(36, -1, -6) for x, y in ((3, 7), (3, 9.5), (0, 9.5), (0, 7))]
     ring = ((0, 0), (39, 0), *bays[1:-1])
     arrays, true = building(rng, ring, per_meter=8, noise=0.04, missing=(3, 9, 17))
-    near, _ = extract_wall_footprints(**arrays)
+    near, _ = extract_wall_footprints(**arrays)[:2]
     monkeypatch.setattr(wall_outline, "_NEARBY", 1e3)
-    everywhere, _ = extract_wall_footprints(**arrays)
+    everywhere, _ = extract_wall_footprints(**arrays)[:2]
     assert len(near.geometries[0][0]) - 1 == len(true) == 28
     np.testing.assert_array_equal(near.geometries[0][0], everywhere.geometries[0][0])
 
@@ -156,7 +156,7 @@ def test_right_angles_are_right_and_others_are_kept(rng):
 
 def test_an_unseen_wall_is_told_from_the_roof_and_says_so(rng):
     arrays, true = building(rng, "rectangle", missing=(2,))
-    footprints, edges = extract_wall_footprints(**arrays)
+    footprints, edges = extract_wall_footprints(**arrays)[:2]
     assert errors(footprints, true).max() < 0.2
     assert footprints.columns["edges_seen"] == [3]
     assert footprints.columns["worst_quality"] == [0.0]
@@ -171,7 +171,7 @@ def test_an_unseen_wall_is_told_from_the_roof_and_says_so(rng):
 def test_a_footprint_that_rests_on_one_wall_is_told(rng):
     monitor = Monitor()
     arrays, _ = building(rng, "rectangle", missing=(1, 2, 3))
-    footprints, _ = extract_wall_footprints(**arrays, min_seen=0.1, monitor=monitor)
+    footprints, _ = extract_wall_footprints(**arrays, min_seen=0.1, monitor=monitor)[:2]
     assert footprints.columns["source"] == ["wall"]
     assert monitor.warnings == [
         "Of 1 of 1 footprints less than half of the walls was seen; where the others are (edges of quality 0) is "
@@ -187,7 +187,7 @@ def test_edges_tell_how_precise_they_are(rng):
     offsets, told = [], []
     for _ in range(30):
         arrays, _ = building(rng, "rectangle", per_meter=8, noise=0.05)
-        _, edges = extract_wall_footprints(**arrays)
+        _, edges = extract_wall_footprints(**arrays)[:2]
         south = int(np.argmin([line[:, 1].mean() for line in edges.geometries]))
         offsets.append(edges.geometries[south][:, 1].mean())
         told.append(edges.columns["precision"][south])
@@ -199,7 +199,7 @@ def test_edges_tell_how_precise_they_are(rng):
 def test_without_walls_or_with_one_the_outline_is_the_roofs(rng, missing):
     arrays, true = building(rng, "rectangle", missing=missing)
     monitor = Monitor()
-    footprints, edges = extract_wall_footprints(**arrays, min_seen=0.3, monitor=monitor)
+    footprints, edges = extract_wall_footprints(**arrays, min_seen=0.3, monitor=monitor)[:2]
     assert_valid(footprints.geometries[0])
     assert footprints.columns["source"] == ["roof"]
     assert footprints.columns["edges_seen"] == [0]
@@ -212,7 +212,7 @@ def test_without_walls_or_with_one_the_outline_is_the_roofs(rng, missing):
 def test_without_the_dimension_footprints_are_roofs(rng):
     arrays, _ = building(rng, "L")
     del arrays["wall_of"]
-    footprints, _ = extract_wall_footprints(**arrays)
+    footprints, _ = extract_wall_footprints(**arrays)[:2]
     assert footprints.columns["source"] == ["roof"]
 
 
@@ -226,21 +226,21 @@ def test_bushes_and_a_car_before_walls_change_nothing(rng):
         "cluster_id": np.append(arrays["cluster_id"], np.zeros(len(more), int)),
         "wall_of": np.append(arrays["wall_of"], np.ones(len(more), int)),
     }
-    footprints, _ = extract_wall_footprints(**arrays)
+    footprints, _ = extract_wall_footprints(**arrays)[:2]
     assert len(footprints.geometries[0][0]) == 5
     assert errors(footprints, true).max() < 0.1
 
 
 def test_the_order_of_points_and_the_place_change_nothing(rng):
     arrays, _ = building(rng, "bend")
-    expected, lines = extract_wall_footprints(**arrays)
+    expected, lines = extract_wall_footprints(**arrays)[:2]
     order = rng.permutation(len(arrays["xyz"]))
     for changed in (
         {name: values[order] for name, values in arrays.items()},
         {**arrays, "xyz": arrays["xyz"] + [2.0**19, 2.0**22, 64.0]},
     ):
         shift = changed["xyz"].min(axis=0)[:2] - arrays["xyz"].min(axis=0)[:2]
-        made, edges = extract_wall_footprints(**changed)
+        made, edges = extract_wall_footprints(**changed)[:2]
         np.testing.assert_allclose(made.geometries[0][0] - shift, expected.geometries[0][0], atol=1e-6)
         np.testing.assert_allclose(edges.columns["quality"], lines.columns["quality"])
 
@@ -261,7 +261,7 @@ def test_buildings_keep_their_numbers_and_small_ones_are_left_out(rng):
         "cluster_id": np.concatenate([7 * small["cluster_id"], 3 * big["cluster_id"]]),
         "wall_of": np.concatenate([7 * small["wall_of"], 3 * big["wall_of"]]),
     }
-    footprints, edges = extract_wall_footprints(**arrays)
+    footprints, edges = extract_wall_footprints(**arrays)[:2]
     assert footprints.columns["cluster_id"] == [3, 7]
     assert footprints.columns["id"] == [1, 2]
     assert edges.columns["footprint"] == [1] * 4 + [2] * 4
@@ -296,7 +296,7 @@ def test_a_recess_under_the_roof_is_inside(rng):
 )
 def test_roofs_without_area_give_no_footprint(roof):
     roof = np.asarray(roof)
-    footprints, edges = extract_wall_footprints(roof, np.ones(len(roof), int), np.zeros(len(roof), int))
+    footprints, edges = extract_wall_footprints(roof, np.ones(len(roof), int), np.zeros(len(roof), int))[:2]
     assert len(footprints) == len(edges) == 0
 
 
@@ -316,7 +316,7 @@ def test_a_long_row_across_the_grid_is_no_mistake(rng):
     """Its box is nearly empty, and was refused as if a point lay far off."""
     row = ((0, 0), (1150, 0), (1150, 10), (0, 10))
     arrays, corners = building(rng, row, per_meter=1, turn=np.pi / 4, density=2)
-    footprints, _ = extract_wall_footprints(**arrays)
+    footprints, _ = extract_wall_footprints(**arrays)[:2]
     assert footprints.columns["source"] == ["wall"]
     ring = footprints.geometries[0][0][:-1]
     assert np.hypot(*(corners[:, None] - ring).transpose(2, 0, 1)).min(axis=1).max() < 0.5
@@ -327,7 +327,7 @@ def test_the_outline_of_one_building_tells_how_far_it_is_and_can_be_stopped(rng)
     teeth = [(x + dx, 8 + dy) for x in (24, 12, 0) for dx, dy in ((12, 6), (6, 6), (6, 0), (0, 0))]
     arrays, _ = building(rng, ((0, 0), (36, 0), *teeth), per_meter=8, density=10)
     monitor = Listening()
-    footprints, _ = extract_wall_footprints(**arrays, monitor=monitor)
+    footprints, _ = extract_wall_footprints(**arrays, monitor=monitor)[:2]
     assert footprints.columns["edges"] == [14]
     assert monitor.heard == sorted(monitor.heard)
     assert 0 < monitor.heard[0] < 0.1
@@ -341,6 +341,92 @@ def test_the_outline_of_one_building_tells_how_far_it_is_and_can_be_stopped(rng)
 
 def test_walls_without_roofs_give_no_footprint(rng):
     arrays, _ = building(rng, "rectangle")
-    footprints, edges = extract_wall_footprints(arrays["xyz"], np.zeros(len(arrays["xyz"]), int), arrays["wall_of"])
+    footprints, edges = extract_wall_footprints(arrays["xyz"], np.zeros(len(arrays["xyz"]), int), arrays["wall_of"])[:2]
     assert len(footprints) == len(edges) == 0
     assert set(footprints.columns) == {field.name for field in extract_wall_footprints.stage.layers[0].fields}
+
+
+def two_houses(rng, apart, **options):
+    """Return two houses of 8 m by 6 m, their walls ``apart`` (m) in one cluster, and the true corners of both."""
+    (west, ring), (east, _) = (building(rng, ((0, 0), (8, 0), (8, 6), (0, 6)), **options) for _ in range(2))
+    shift = np.array([8 + apart, 0.0, 0.0])
+    arrays = {name: np.concatenate([west[name], east[name] + (shift if name == "xyz" else 0)]) for name in west}
+    return arrays, [ring, ring + shift[:2]]
+
+
+@pytest.mark.parametrize("noise", [0.02, 0.05])
+def test_two_houses_with_a_lane_between_stay_two(rng, noise):
+    """Eaves of 0.5 m left 0.3 m between the roofs: they were one footprint of 103.8 m², with the lane filled."""
+    arrays, true = two_houses(rng, 1.3, noise=noise)
+    footprints, edges, corners, report = extract_wall_footprints(**arrays)
+    assert len(footprints) == 2
+    assert footprints.columns["area"] == pytest.approx([48, 48], rel=0.03)
+    for ring in true:
+        distance = [
+            np.hypot(*(ring[:, None] - rings[0][:-1]).transpose(2, 0, 1)).min(axis=1).max()
+            for rings in footprints.geometries
+        ]
+        assert min(distance) < 0.1
+    assert footprints.columns["cluster_id"] == [1, 1]
+    assert edges.columns["edge"] == [1, 2, 3, 4] * 2
+    assert report.values["kept_corners"] == corners.columns["outcome"].count("corner") == 8
+
+
+@pytest.mark.parametrize("missing", [(1,), (1, 3)])
+def test_without_both_walls_of_the_lane_nothing_is_parted(rng, missing):
+    arrays, _ = two_houses(rng, 1.3, missing=missing)
+    assert len(extract_wall_footprints(**arrays)[0]) == 1
+
+
+def test_an_arcade_is_no_lane(rng):
+    """A colonnade along the front has no house behind it, whatever wall is seen in it."""
+    arrays, _ = building(rng, "rectangle", per_meter=12)
+    inner = np.column_stack([rng.uniform(0, 10, 120), rng.normal(1.5, 0.02, 120), rng.uniform(0.4, 2.4, 120)])
+    arrays["xyz"] = np.concatenate([arrays["xyz"], inner])
+    arrays["cluster_id"] = np.append(arrays["cluster_id"], np.zeros(120, int))
+    arrays["wall_of"] = np.append(arrays["wall_of"], np.ones(120, int))
+    assert len(extract_wall_footprints(**arrays)[0]) == 1
+
+
+def test_candidate_corners_are_the_intersections_of_all_lines(rng):
+    """An L has six walls in two directions: three by three lines meet, six of them in its corners."""
+    arrays, true = building(rng, "L", per_meter=20)
+    _, _, corners, report = extract_wall_footprints(**arrays)
+    outcome = np.array(corners.columns["outcome"])
+    place = np.array(corners.geometries)
+    kept = place[outcome == "corner"]
+    assert len(kept) == 6
+    assert np.hypot(*(true[:, None] - kept).transpose(2, 0, 1)).min(axis=1).max() < 0.1
+    # Where the sides of the notch go on through the building they meet the other walls on edges.
+    for meeting, is_called in (((7, 0), "on an edge"), ((12, 6), "on an edge"), ((0, 10), "off the outline")):
+        nearest = np.argmin(np.hypot(*(place - meeting).T))
+        assert np.hypot(*(place[nearest] - meeting)) < 0.1
+        assert outcome[nearest] == is_called
+    seen = np.array(corners.columns["walls_seen"]) == 2
+    assert np.array(corners.columns["angle"])[seen] == pytest.approx(90, abs=0.1)
+    at_corners = outcome == "corner"
+    assert (np.array(corners.columns["gap"])[at_corners] < 0.5).all()
+    assert np.array(corners.columns["gap"])[np.argmin(np.hypot(*(place - (0, 10)).T))] == pytest.approx(7, abs=0.5)
+    assert report.values["candidates"] == len(corners)
+
+
+def test_candidate_corners_tell_why_a_footprint_has_none(rng):
+    arrays, _ = building(rng, "L", missing=(1,))
+    assert set(extract_wall_footprints(**arrays, min_seen=0.95)[2].columns["outcome"]) == {"outline of the roof"}
+    assert set(extract_wall_footprints(**arrays, min_area=500.0)[2].columns["outcome"]) == {"too small"}
+
+
+def test_the_report_counts_points_at_each_step(rng):
+    arrays, _ = building(rng, "rectangle")
+    n, n_walls = len(arrays["xyz"]), int(arrays["wall_of"].sum())
+    classes = np.full(n, 6, np.uint8)
+    classes[:7], classes[7:10] = 2, 18
+    report = extract_wall_footprints(**arrays, classification=classes, voxel_count=np.full(n, 3, np.uint32))[3]
+    counts = [3 * n, n, n - 10, n - n_walls, n_walls]
+    names = ("original_points", "points", "points_above_ground", "roof_points", "wall_points")
+    assert [report.values[name] for name in names] == counts
+    assert all(f"{count:,}" in report.html for count in counts)
+    assert (report.values["all_outlines"], report.values["wall_outlines"]) == (1, 1)
+    unknown = extract_wall_footprints(**arrays)[3]
+    assert np.isnan([unknown.values["original_points"], unknown.values["points_above_ground"]]).all()
+    assert "unknown" in unknown.html

@@ -24,7 +24,7 @@ def place(rng, holes=(), courts=(), other=None):
 
 
 def footprint(xyz, cluster_id):
-    found, _ = extract_wall_footprints(xyz, cluster_id)
+    found = extract_wall_footprints(xyz, cluster_id)[0]
     assert found.columns["source"] == ["roof"] * len(found)
     return found
 

@@ -1,0 +1,114 @@
+"""Lanes between houses whose roofs nearly touch: where two seen walls face each other, the houses are two."""
+
+from __future__ import annotations
+
+from itertools import combinations
+from typing import Optional
+
+import numpy as np
+
+from ..geometry.rings import signed_area
+from .wall_lines import WallLine
+from .wall_outline import Limits, WallOutline, closed
+
+# Walls along a lane are parallel within this angle (cosine): that by which walls of one building are.
+_PARALLEL = np.cos(np.deg2rad(8.0))
+
+# The narrowest lane (m): less is a wall that is seen from both sides, or twice.
+_NARROWEST = 0.3
+
+# Of both walls at least this share along the lane has points, the same that tells seen edges of footprints.
+_SEEN = 0.5
+
+
+def find_lane(outline: WallOutline, limits: Limits, min_area: float) -> Optional[WallLine]:
+    """Return the middle of the widest lane across an outline, None without any.
+
+    Parameters
+    ----------
+    outline : WallOutline
+        Outline of what was taken for one building.
+    limits : Limits
+        What walls may be like; roofs that meet over a lane jut out over it from both sides.
+    min_area : float
+        Smallest house, m²: so much of the outline lies behind each of the two walls.
+
+    Returns
+    -------
+    WallLine
+        A line without points along which the outline falls into two houses.
+    """
+    seen = [line for line in outline.lines if line.is_seen]
+    rings = [closed(ring) for ring in outline.rings]
+    widest, middle = _NARROWEST, None
+    for one, other in combinations(seen, 2):
+        lane = _between(one, other)
+        if lane is None:
+            continue
+        width = abs(float(one.across(other.point[None])[0]))
+        if widest <= width <= 2 * limits.max_overhang and _is_lane(lane, (one, other), rings, outline, min_area):
+            widest, middle = width, lane
+    return middle
+
+
+def _between(one: WallLine, other: WallLine) -> Optional[WallLine]:
+    """Return the line halfway between two that are nearly parallel, None where they are not."""
+    sign = np.sign(one.direction @ other.direction)
+    if abs(one.direction @ other.direction) < _PARALLEL:
+        return None
+    direction = one.direction + sign * other.direction
+    # Where lines are not quite parallel, what lies halfway is told opposite the middle of the second one's points.
+    foot = one.point + ((other.point - one.point) @ one.direction) * one.direction
+    nothing = np.zeros(0)
+    return WallLine((foot + other.point) / 2, direction / np.hypot(*direction), nothing.astype(int), nothing, np.nan)
+
+
+def _is_lane(
+    lane: WallLine,
+    walls: tuple[WallLine, WallLine],
+    rings: list[np.ndarray],
+    outline: WallOutline,
+    min_area: float,
+) -> bool:
+    """Return whether walls on both sides are seen wherever a line crosses the outline, with houses behind both."""
+    chords = _chords(lane, rings)
+    if not len(chords):
+        return False
+    for wall in walls:
+        places = lane.point + chords[..., None] * lane.direction
+        along = np.sort((places - wall.point) @ wall.direction, axis=1)
+        length = np.diff(along, axis=1)[:, 0]
+        covered = [outline.scale.covered(wall.along, low, high) if high > low else 0.0 for low, high in along]
+        side = float(np.sign(lane.across(wall.point[None])[0]))
+        if length @ covered < _SEEN * length.sum() or _area_beyond(wall, lane, side, rings) < min_area:
+            return False
+    return True
+
+
+def _chords(line: WallLine, rings: list[np.ndarray]) -> np.ndarray:
+    """Return where a line runs inside rings (k, 2): from and to, m along its direction."""
+    crossings = []
+    for ring in rings:
+        across, along = line.across(ring), (ring - line.point) @ line.direction
+        cut = np.flatnonzero((across[:-1] > 0) != (across[1:] > 0))
+        share = across[cut] / (across[cut] - across[cut + 1])
+        crossings.append(along[cut] + share * (along[cut + 1] - along[cut]))
+    return np.sort(np.concatenate(crossings)).reshape(-1, 2)
+
+
+def _area_beyond(wall: WallLine, lane: WallLine, side: float, rings: list[np.ndarray]) -> float:
+    """Return how much (m²) of rings lies behind a wall, seen from the lane; ``side`` is that of the wall."""
+    normal = side * lane.normal
+    return sum(signed_area(_clipped(ring, wall.point, normal)) for ring in rings)
+
+
+def _clipped(ring: np.ndarray, point: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """Return the part of a closed ring on the side of a line that its normal points to, closed; Sutherland-Hodgman."""
+    depth = (ring - point) @ normal
+    kept = []
+    for a, b, depth_a, depth_b in zip(ring, ring[1:], depth, depth[1:]):
+        if depth_a >= 0:
+            kept.append(a)
+        if (depth_a >= 0) != (depth_b >= 0):
+            kept.append(a + depth_a / (depth_a - depth_b) * (b - a))
+    return np.array([*kept, kept[0]]) if kept else np.zeros((1, 2))

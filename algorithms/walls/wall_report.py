@@ -1,0 +1,108 @@
+"""How many points are left at each step from a cloud to its walls, and how many footprints and corners they gave."""
+
+from __future__ import annotations
+
+import math
+from typing import Optional
+
+import numpy as np
+
+from ..cloud.asprs import NOISE, PointClass
+from ..report.page import Row, build_page
+from ..stage import Measure, Report
+from .candidate_corners import CORNER
+
+# Source of a footprint that is an outline of walls.
+WALL = "wall"
+
+MEASURES = (
+    Measure("original_points", "Points before thinning"),
+    Measure("points", "Points"),
+    Measure("points_above_ground", "Points above ground"),
+    Measure("roof_points", "Points of roofs"),
+    Measure("wall_points", "Points of walls"),
+    Measure("all_outlines", "Footprints"),
+    Measure("wall_outlines", "Footprints that are outlines of walls"),
+    Measure("candidates", "Candidate corners"),
+    Measure("kept_corners", "Candidate corners that are corners of footprints"),
+)
+
+_MEANINGS = {
+    "original_points": "Of which the points of the cloud were made.",
+    "points": "In the cloud that footprints were made of.",
+    "points_above_ground": "Neither ground nor noise.",
+    "roof_points": "In a building.",
+    "wall_points": "Below the roof of a building.",
+    "all_outlines": "Of buildings that are large enough.",
+    "wall_outlines": "The others are outlines of roofs.",
+    "candidates": "Intersections of two walls of a building, seen or told from its roof.",
+    "kept_corners": "The others lie on edges, off the outline, or on walls that no footprint has.",
+}
+
+
+def point_counts(
+    cluster_id: np.ndarray,
+    wall_of: Optional[np.ndarray],
+    classification: Optional[np.ndarray],
+    voxel_count: Optional[np.ndarray],
+) -> dict[str, float]:
+    """Return the number of points of each kind, NaN where the cloud doesn't tell.
+
+    Parameters
+    ----------
+    cluster_id : ndarray of shape (n,)
+        Building of each roof point, 0 is none.
+    wall_of : ndarray of shape (n,), optional
+        Building of each wall point, 0 is none.
+    classification : ndarray of shape (n,), optional
+        ASPRS classes.
+    voxel_count : ndarray of shape (n,), optional
+        Points that each point was made of.
+    """
+    nan = math.nan
+    below = (PointClass.GROUND, *NOISE)
+    return {
+        "original_points": nan if voxel_count is None else int(voxel_count.sum(dtype=np.int64)),
+        "points": len(cluster_id),
+        "points_above_ground": nan if classification is None else int((~np.isin(classification, below)).sum()),
+        "roof_points": int((cluster_id > 0).sum()),
+        "wall_points": 0 if wall_of is None else int((wall_of > 0).sum()),
+    }
+
+
+def wall_report(counts: dict[str, float], sources: list[str], outcomes: list[str]) -> Report:
+    """Return the report of a run.
+
+    Parameters
+    ----------
+    counts : dict of str to float
+        Points, as :func:`point_counts` returns them.
+    sources : list of str
+        What each footprint is the outline of.
+    outcomes : list of str
+        What became of each candidate corner.
+    """
+    values = {
+        **counts,
+        "all_outlines": len(sources),
+        "wall_outlines": sources.count(WALL),
+        "candidates": len(outcomes),
+        "kept_corners": outcomes.count(CORNER),
+    }
+    whole = counts["points"] if math.isnan(counts["original_points"]) else counts["original_points"]
+    rows = {measure.name: _row(measure, values[measure.name], whole) for measure in MEASURES}
+    points = [row for name, row in rows.items() if name in counts]
+    made = [row for name, row in rows.items() if name not in counts]
+    lead = (
+        f"{values['wall_outlines']:,} of {values['all_outlines']:,} footprints are outlines of walls; "
+        f"{values['kept_corners']:,} of {values['candidates']:,} candidate corners are corners of them."
+    )
+    return Report(values, build_page("From points to walls", lead, {"Points": points, "Footprints": made}, ""))
+
+
+def _row(measure: Measure, value: float, whole: float) -> Row:
+    """Return the row of a number; points are told as a share of the ``whole`` cloud, too."""
+    if math.isnan(value):
+        return Row(measure.title, "unknown", "The cloud doesn't tell.")
+    share = f" {value / whole:.1%} of all points." if "points" in measure.name and whole else ""
+    return Row(measure.title, f"{value:,}", _MEANINGS[measure.name] + share)
