@@ -136,13 +136,17 @@ class Pipeline:
 
     @property
     def outputs(self) -> tuple[Output, ...]:
-        """All outputs in the order of steps; where two would have one name, the step's name is put before it."""
+        """All outputs in the order of steps; of two of one name the step's name is put before.
+
+        The last cloud and the last report keep their plain names.
+        """
         makers = [step for step in self.steps if step.stage.makes_cloud]
         found = [(step, of) for step in self.steps for of in _made(step)]
         names = [of for _, of in found]
         outputs = []
         for step, of in found:
-            is_single = step is makers[-1] if of == CLOUD else names.count(of) == 1
+            last = {CLOUD: makers, REPORT: [one for one, made in found if made == REPORT]}.get(of)
+            is_single = step is last[-1] if last else names.count(of) == 1
             if is_single or of != CLOUD or step.name in self.kept:
                 outputs.append(Output(of if is_single else f"{step.name}_{of}", step, of))
         return tuple(outputs)
