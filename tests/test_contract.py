@@ -254,6 +254,9 @@ def scene() -> dict[str, np.ndarray]:
     segment_id = np.array([0, 1, 2, 3, 0, 4, 5])[kind]
     segment_id[np.flatnonzero(kind == 5)[is_pane]] = 0
     segment_id[is_gable & (xy[:, 0] > 26.5)] = 6
+    # The edges of the flat roof stand for its walls.
+    to_edge = np.minimum(xy - (5, 5), (17, 13) - xy).min(axis=1)
+    is_wall = (kind == 1) & (to_edge < 0.4)
     return {
         "xyz": np.column_stack([xy, z]),
         "classification": np.array(classes, np.uint8)[kind],
@@ -266,7 +269,7 @@ def scene() -> dict[str, np.ndarray]:
         "cluster_id": cluster_id.astype(np.int32),
         "segment_id": segment_id.astype(np.int32),
         "shape": np.zeros(len(xy), np.uint8),
-        "wall_of": np.zeros(len(xy), np.int32),
+        "wall_of": is_wall.astype(np.int32),
         "voxel_count": np.ones(len(xy), np.uint32),
         "entropy": entropy.astype(np.float32),
         **{name: rng.random(len(xy)).astype(np.float32) for name in ("linearity", "planarity", "scattering")},
