@@ -449,9 +449,10 @@ def test_a_call_can_be_copied_as_python(provider, context, mapping, out):
 def test_the_dialog_begins_with_what_the_composite_is_for(provider):
     algorithm = provider.algorithm("mapfootprints").create()
     made = [d.name() for d in algorithm.destinationParameterDefinitions()]
-    assert made[:5] == ["OUTPUT", "WALL_FOOTPRINTS", "WALL_EDGES", "DISPLACEMENTS", "BUILDINGS"]
-    assert made[5:9] == ["REPORT", "DTM", "DSM", "NDSM"]
-    assert all(name.endswith("_OUTPUT") for name in made[9:])
+    layers = ["WALL_FOOTPRINTS", "WALL_EDGES", "CANDIDATE_CORNERS", "DISPLACEMENTS", "BUILDINGS"]
+    assert made[:6] == ["OUTPUT", *layers]
+    assert made[6:11] == ["FOOTPRINTS_REPORT", "REPORT", "DTM", "DSM", "NDSM"]
+    assert all(name.endswith("_OUTPUT") for name in made[11:])
 
 
 def test_help_of_a_composite_tells_layers_and_what_is_kept():
