@@ -7,6 +7,12 @@ from pathlib import Path
 from lidar_buildings.algorithms.help import as_text, inline, page, paragraphs, pipeline_help, stage_help, tunable_help
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.stages import STAGES
+from lidar_buildings.algorithms.tiling.tiled_pipelines import (
+    CUT_INTO_TILES,
+    TILED_PIPELINES,
+    survey_tool_help,
+    tiled_pipeline_help,
+)
 from lidar_buildings.tests.toys import TOYS
 
 HELP = Path(__file__).resolve().parents[2] / "resources" / "help"
@@ -15,6 +21,8 @@ HELP = Path(__file__).resolve().parents[2] / "resources" / "help"
 def test_pages_are_what_the_stages_say():
     real = {f"{stage.id}.html": page(stage.title, stage_help(stage)) for n, stage in STAGES.items() if n not in TOYS}
     real |= {f"{p.id}.html": page(p.title, pipeline_help(p)) for p in PIPELINES.values() if p.group != "Toys"}
+    real |= {f"{tiled.id}.html": page(tiled.title, tiled_pipeline_help(tiled)) for tiled in TILED_PIPELINES.values()}
+    real[f"{CUT_INTO_TILES.id}.html"] = page(CUT_INTO_TILES.title, survey_tool_help(CUT_INTO_TILES))
     shipped = {path.name: path.read_text(encoding="utf-8") for path in HELP.glob("*.html")}
     assert shipped == real, "run make resources"
 

@@ -111,7 +111,7 @@ def test_gable_walls_keep_their_slopes(rng):
     missed, invented = corner_errors(facades.geometries, [[0, 0, 0], [8, 0, 0], [8, 0, 4], [4, 0, 8], [0, 0, 4]])
     assert missed.mean() < 0.06
     assert invented.max() < 0.2
-    # Area of the pentagon, 48 m², by shapely's Polygon.area of its corners.
+    # Area of the pentagon, 48 m²: the rectangle below the eaves and the triangle above them.
     assert facades.columns["area"] == pytest.approx([48.0], rel=0.01)
 
 
