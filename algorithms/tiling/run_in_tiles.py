@@ -205,7 +205,8 @@ class _Run:
         halo = self.pipeline.reach(self.tunables)
         sampling = self._sampling(given, self.monitor.part(0.0, _CUT))
         side = block_side or _side(sampling.density, halo)
-        self.monitor.resolved(sampling=sampling, block_side=side, halo=halo)
+        self.monitor.resolved(sampling=sampling)
+        self.monitor.inform(f"Blocks of {side:g} m, each worked on with {halo:g} m around it.")
         self._cut_large_files(side, largest_file)
         outcome = TilesOutcome(self.survey, [], sampling=sampling, points=len(self.survey))
         with self.workers.open() as executor:
