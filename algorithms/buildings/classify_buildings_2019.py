@@ -7,15 +7,17 @@ from typing import Annotated, Optional
 from ..neighborhoods.covariance import Nearest
 from ..params import MinBuildingArea, PointDensity, nearest_points
 from ..sampling.cloud_sampling import CloudSampling
-from ..stage import stage
+from ..stage import Param, stage
 from .cluster_decisions import decide_by_entropy, no_clusters, written_to_points
 from .cluster_entropies import cluster_entropies
 from .cluster_report import MEASURES, Clusters, build_report
-from .entropy_split import two_means
+from .entropy_split import k_means, two_means
 
 # A covariance of full rank takes more than three points; three are the fewest that have eigenvalues to compare.
 _MIN_NEIGHBORS = 3
 
+
+_SPLITS = {"exact": two_means, "k-means": k_means}
 
 # Neighborhoods of 4 m², in sparse clouds more (m).
 _REACH = 5.0
@@ -39,6 +41,15 @@ def classify_buildings_2019(
     n_neighbors: Annotated[
         Optional[int], nearest_points("the points of the minimum building area (Ar_min d), at least 3.")
     ] = None,
+    two_classes: Annotated[
+        str,
+        Param(
+            "Two classes",
+            "How the mean entropies are separated: 'exact' tries every gap between them; 'k-means' is scikit-learn's, "
+            "from ten random starts.",
+            choices=("exact", "k-means"),
+        ),
+    ] = "exact",
     density: PointDensity = None,
     sampling: Optional[CloudSampling] = None,
     monitor=None,
@@ -81,9 +92,8 @@ def classify_buildings_2019(
     Neighbors are clustered points, and points equally far away at rank N share its weight, so that the order of the
     points decides nothing. The two means are the optimum that K-means approaches: in one dimension sorting finds it.
 
-    A single cluster, or clusters of
-    one entropy, leave nothing to separate: none is called a building then, and the log says so. Clusters of one kind
-    only are split in two nevertheless; 'Classify buildings' is not misled by that.
+    A single cluster, or clusters of one entropy, leave nothing to separate: none is called a building then, and the
+    log says so. Clusters of one kind only are split in two nevertheless; 'Classify buildings' is not misled by that.
 
     The paper has no confidence. Above 0.5 it grows with the size of the cluster, to half at twice the points of the
     smallest building, as small objects such as cars can look like a roof by chance. This changes no decision.
@@ -101,7 +111,7 @@ def classify_buildings_2019(
     if not (cluster_id > 0).any():
         return no_clusters(classification, reason, monitor)
     entropies = cluster_entropies(xyz, cluster_id, Nearest(n_neighbors), monitor.part(0, 0.95))
-    split = two_means(entropies.means, monitor)
+    split = _SPLITS[two_classes](entropies.means, monitor)
     monitor.resolved(building_entropy=split.building, other_entropy=split.other)
     decided = decide_by_entropy(entropies.means, split)
     report = build_report(Clusters(entropies.means, decided.reasons, split))

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Optional
 
 import numpy as np
 
 from ..neighborhoods.covariance import shannon_entropy_lps, symmetric_eigenvalues
+from ..packages import cluster
 from ..stage import Monitor
 
 # Mean entropies closer together than this count as equal: entropy is 0 to 1.1, and clusters differ by 0.01 and more.
@@ -14,6 +16,9 @@ _SAME_ENTROPY = 1e-3
 
 # Weight of a reference entropy, in clusters: a handful of clusters can't move it, thousands can (chosen, not fitted).
 _REFERENCE_WEIGHT = 100
+
+# Random starts of K-means, of which the best counts: scikit-learn's own default of many years.
+_STARTS = 10
 
 # Limit of the rounds of two means; in one dimension they settle in a few.
 _MAX_ROUNDS = 100
@@ -56,17 +61,36 @@ def two_means(means: np.ndarray, monitor: Monitor) -> Split:
     every gap between the sorted values finds the optimum.
     """
     known = np.sort(means[np.isfinite(means)])
-    if len(known) < 2 or np.ptp(known) < _SAME_ENTROPY:
-        one = "is only one cluster" if len(known) < 2 else "are only clusters of the same entropy"
-        monitor.warn(f"There {one}: nothing to separate, so nothing was called a building.")
-        same = float(known.mean()) if len(known) else np.nan
-        return Split(same, same)
+    alike = _alike(known, monitor)
+    if alike is not None:
+        return alike
     n_low = np.flatnonzero(np.diff(known) > 0) + 1
     low = np.cumsum(known)[n_low - 1] / n_low
     high = (known.sum() - n_low * low) / (len(known) - n_low)
     # The sum of squares between the classes is greatest where that within them is least.
     best = np.argmax(n_low * (len(known) - n_low) * (high - low) ** 2)
     return Split(float(low[best]), float(high[best]))
+
+
+def k_means(means: np.ndarray, monitor: Monitor) -> Split:
+    """Separate the clusters' mean entropies (m,) by scikit-learn's K-means with two classes, from ten random starts."""
+    known = np.sort(means[np.isfinite(means)])
+    alike = _alike(known, monitor)
+    if alike is not None:
+        return alike
+    found = cluster.KMeans(n_clusters=2, n_init=_STARTS, random_state=0).fit(known[:, None])
+    building, other = np.sort(found.cluster_centers_.ravel())
+    return Split(float(building), float(other))
+
+
+def _alike(known: np.ndarray, monitor: Monitor) -> Optional[Split]:
+    """Return the split of ascending mean entropies that can't be separated, and say so; None where they can."""
+    if len(known) >= 2 and np.ptp(known) >= _SAME_ENTROPY:
+        return None
+    one = "is only one cluster" if len(known) < 2 else "are only clusters of the same entropy"
+    monitor.warn(f"There {one}: nothing to separate, so nothing was called a building.")
+    same = float(known.mean()) if len(known) else np.nan
+    return Split(same, same)
 
 
 def held_means(means: np.ndarray, plane: float, volume: float, monitor: Monitor) -> Split:

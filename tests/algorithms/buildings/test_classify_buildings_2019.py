@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from lidar_buildings.algorithms.buildings.classify_buildings_2019 import classify_buildings_2019
-from lidar_buildings.algorithms.buildings.entropy_split import reference_entropies
+from lidar_buildings.algorithms.buildings.entropy_split import k_means, reference_entropies, two_means
 from lidar_buildings.algorithms.cloud.reasons import Reason
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.tests.algorithms.buildings.parts import clusters, ones, reasons_of
@@ -257,3 +257,27 @@ def test_cancel_gets_through(garden):
     xyz, cluster_id = garden
     with pytest.raises(Cancelled):
         classify_buildings_2019(xyz, ones(xyz), cluster_id, monitor=Listening(0.0))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_k_means_finds_the_exact_split(seed):
+    """Of scikit-learn, on groups of other sizes and overlaps; it may end beside the optimum, but not here."""
+    random = np.random.default_rng(seed)
+    means = np.concatenate([random.normal(0.6, 0.05, 30 + 20 * seed), random.normal(0.9, 0.04, 60), [np.nan]])
+    exact, found = two_means(means, Monitor()), k_means(means, Monitor())
+    assert (found.building, found.other) == pytest.approx((exact.building, exact.other), abs=1e-9)
+
+
+def test_two_classes_by_k_means_are_those_by_sorting(garden):
+    xyz, cluster_id = garden
+    given = {"n_neighbors": 24, "density": 6.0}
+    exact = classify_buildings_2019(xyz, ones(xyz), cluster_id, **given)
+    found = classify_buildings_2019(xyz, ones(xyz), cluster_id, two_classes="k-means", **given)
+    np.testing.assert_array_equal(found[0], exact[0])
+    assert (found[0] == 6).any()
+
+
+def test_k_means_of_a_single_cluster_calls_nothing_a_building():
+    monitor = Monitor()
+    assert not k_means(np.array([0.7, np.nan]), monitor).separates
+    assert monitor.warnings == ["There is only one cluster: nothing to separate, so nothing was called a building."]
