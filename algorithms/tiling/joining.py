@@ -24,7 +24,7 @@ def join_numbers(results: list[BlockResult]) -> list[dict[str, np.ndarray]]:
 
     A segment of one block and a segment of another are one if a record just outside the first block has the number of
     the first there and of the second in its own block. Numbers go from 1 without gaps, in the order of the blocks;
-    0 stays 0.
+    0 stays 0, and a number that no point of any block has becomes 0.
     """
     joined: list[dict[str, np.ndarray]] = [{} for _ in results]
     for name in NUMBERED:
@@ -42,9 +42,10 @@ def join_numbers(results: list[BlockResult]) -> list[dict[str, np.ndarray]]:
 
 
 def _largest(result: BlockResult, name: str) -> int:
-    """Return the largest number that a block gave, in it and just outside."""
+    """Return the largest number that a block gave: in it, just outside, or to a feature whose box reaches into it."""
     parts = [result.used.get(name, np.zeros(0, np.int64))]
     parts += [rows[:, 2] for rows in (result.inside.get(name), result.beside.get(name)) if rows is not None]
+    parts += [np.asarray(layer.columns[name], np.int64) for layer in result.layers.values() if name in layer.columns]
     return int(max(part.max(initial=0) for part in parts))
 
 
