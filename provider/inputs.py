@@ -64,14 +64,14 @@ def extent_box(
     Raises
     ------
     ValueError
-        If it is no extent, or an empty one.
+        If the text is not an extent.
     """
     if parameters.get(EXTENT) in (None, ""):
         return None
     crs = crs_of(read_extent(path)[2])
     rectangle = algorithm.parameterAsExtent(parameters, EXTENT, context, crs)
     if rectangle.isNull() or not rectangle.isFinite():
-        raise ValueError(f"The extent {parameters[EXTENT]!r} is none; give it as xmin,xmax,ymin,ymax.")
+        raise ValueError(f"{parameters[EXTENT]!r} is not an extent; give it as xmin,xmax,ymin,ymax.")
     return np.array([[rectangle.xMinimum(), rectangle.yMinimum()], [rectangle.xMaximum(), rectangle.yMaximum()]])
 
 

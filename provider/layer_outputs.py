@@ -13,8 +13,8 @@ from .vectors import fields_of, qgis_features, wkb_type
 # What an optional output is that nobody asks for: left out, or written without a value on the command line.
 UNWANTED = (None, "")
 
-# Features that are written between two looks at whether to stop.
-_BETWEEN_CHECKS = 1000
+# Features, or pieces of a text, that are written between two looks at whether to stop.
+BETWEEN_CHECKS = 1000
 
 
 def write_layer(
@@ -64,7 +64,7 @@ def _fill_sink(
         raise QgsProcessingException(algorithm.invalidSinkError(parameters, name))
     try:
         for row, feature in enumerate(qgis_features(layer, features, place.to_map)):
-            if row % _BETWEEN_CHECKS == 0:
+            if row % BETWEEN_CHECKS == 0:
                 monitor.progress(1.0)
             if not sink.addFeature(feature, QgsFeatureSink.Flag.FastInsert):
                 raise QgsProcessingException(_unwritten(layer, target, sink))

@@ -44,7 +44,7 @@ from .inputs import (
     subject_of,
     with_help,
 )
-from .layer_outputs import UNWANTED, write_layer
+from .layer_outputs import BETWEEN_CHECKS, UNWANTED, write_layer
 from .memory import warn_if_memory_is_short
 from .outputs import all_in_place, check_targets, file_filter, write_for_qgis
 from .parameters import automatic_numbers, number_outputs, parameter, tunable_values, used_name
@@ -207,7 +207,8 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
                 surface = outcome.rasters[raster.name]
                 results.update(self._write_raster(raster, surface, place, run.parameters, context, monitor))
             for file in self.stage.files:
-                results.update(self._write_text(file, outcome.files[file.name], place, run.parameters, context))
+                content = outcome.files[file.name]
+                results.update(self._write_text(file, content, place, run.parameters, context, monitor))
             if outcome.report is not None:
                 results.update(self._write_report(outcome.report.html, run.parameters, context))
             monitor.progress(1.0)
@@ -218,8 +219,7 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         """Read clouds and layers and run the stage; return what it made, and where on Earth that lies."""
         paths = self.job.paths
         # Where memory ends while they are read, no warning comes through any more.
-        if self.job.box is None:
-            warn_if_memory_is_short(sum(map(count_points, paths)), monitor)
+        warn_if_memory_is_short(sum(count_points(path, self.job.box) for path in paths), monitor)
         share = _READ / max(1, len(paths))
         parts = [monitor.part(i * share, (i + 1) * share) for i in range(len(paths))]
         clouds = [read_cloud(path, part, crs_units, self.job.box) for path, part in zip(paths, parts)]
@@ -273,7 +273,13 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         return {name: target}
 
     def _write_text(
-        self, file: TextFile, content: FileContent, place: Place, parameters: dict, context: QgsProcessingContext
+        self,
+        file: TextFile,
+        content: FileContent,
+        place: Place,
+        parameters: dict,
+        context: QgsProcessingContext,
+        monitor: Monitor,
     ) -> dict:
         """Write a text file, if it is wanted; return its output."""
         name = file.name.upper()
@@ -282,7 +288,9 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
             return {}
         frame = MapFrame(place.to_map, place.crs.authid())
         with replacing(Path(target)) as stream:
-            for piece in content.pieces(file.format_of(target), frame):
+            for number, piece in enumerate(content.pieces(file.format_of(target), frame)):
+                if number % BETWEEN_CHECKS == 0:
+                    monitor.progress(_WRITTEN)
                 stream.write(piece.encode())
         return {name: target}
 

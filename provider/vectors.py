@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, Callable
+from typing import Any, Callable, Union
 
 import numpy as np
 from qgis.core import (
@@ -21,7 +21,7 @@ from qgis.core import (
 )
 from qgis.PyQt.QtCore import QMetaType
 
-from ..algorithms.stage import Layer, LayerFeatures
+from ..algorithms.stage import Field, Layer, LayerFeatures
 
 _TYPES = {int: QMetaType.Type.Int, float: QMetaType.Type.Double, str: QMetaType.Type.QString}
 _WKB = {"Polygon": Qgis.WkbType.Polygon, "LineString": Qgis.WkbType.LineString, "Point": Qgis.WkbType.Point}
@@ -73,12 +73,24 @@ def qgis_features(
     """
     fields = fields_of(layer)
     make = _GEOMETRIES[layer.geometry]
-    columns = [features.columns[declared.name] for declared in layer.fields]
+    columns = [_column(declared, features, to_map) for declared in layer.fields]
     for row, geometry in enumerate(features.geometries):
         feature = QgsFeature(fields)
         feature.setGeometry(QgsGeometry(make(geometry, to_map)))
         feature.setAttributes([plain(column[row]) for column in columns])
         yield feature
+
+
+def _column(
+    declared: Field, features: LayerFeatures, to_map: Callable[[np.ndarray], np.ndarray]
+) -> Union[list, np.ndarray]:
+    """Return the values of a field, positions in the coordinates of the cloud's CRS."""
+    column = features.columns[declared.name]
+    if declared.axis is None:
+        return column
+    places = np.zeros((len(column), 2))
+    places[:, declared.axis] = column
+    return to_map(places)[:, declared.axis]
 
 
 def plain(value: Any) -> Any:

@@ -111,15 +111,29 @@ def read_extent(path: Union[str, Path]) -> tuple[np.ndarray, np.ndarray, str]:
     return np.min(low, axis=0), np.max(high, axis=0), wkt_of(headers[0])
 
 
-def count_points(path: Union[str, Path]) -> int:
+def count_points(path: Union[str, Path], box: Optional[np.ndarray] = None) -> int:
     """Return the number of points of a file or of all its tiles, as the headers tell it.
+
+    In a ``box`` (2, 2), coordinates of the file, it is that of points spread evenly over each tile.
 
     Raises
     ------
     ValueError
         In one sentence, what is wrong with the file or with a tile of it.
     """
-    return sum(header.count for header in _headers(Path(path)))
+    return round(sum(header.count * _share_in(header, box) for header in _headers(Path(path))))
+
+
+def _share_in(header: Header, box: Optional[np.ndarray]) -> float:
+    """Return which share of the extent of a file a box holds, all without a box."""
+    if box is None:
+        return 1.0
+    low, high = np.asarray(header.low)[:2], np.asarray(header.high)[:2]
+    inside = np.minimum(high, box[1]) - np.maximum(low, box[0])
+    if (inside < 0).any():
+        return 0.0
+    # A file without width on an axis lies within the box on it.
+    return float(np.prod(np.divide(inside, high - low, out=np.ones(2), where=high > low)))
 
 
 def _headers(path: Path) -> list[Header]:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import combinations
 from typing import Optional
 
 import numpy as np
 
 from ..geometry.line_segments import is_valid
+from ..stage import Monitor
 from .facade_frame import Frame
 from .facade_outline import ring_of_lines
 from .facade_surfaces import Facade
@@ -24,7 +24,7 @@ _ALONG = np.cos(np.radians(20.0))
 _LEAST_COMMON = 0.3
 
 
-def with_common_borders(facades: Sequence[Facade], reach: float) -> list[Facade]:
+def with_common_borders(facades: Sequence[Facade], reach: float, monitor: Monitor) -> list[Facade]:
     """Return facades whose neighboring edges lie on the intersection lines of their planes.
 
     Parameters
@@ -33,13 +33,12 @@ def with_common_borders(facades: Sequence[Facade], reach: float) -> list[Facade]
         With boundaries of their own.
     reach : float
         Edges farther from the line than this (m) stay where they are.
+    monitor : Monitor
+        Is told the progress.
     """
     lines: list[dict[int, tuple]] = [{} for _ in facades]
     neighbors: list[set[int]] = [set() for _ in facades]
-    boxes = [_box(facade, reach) for facade in facades]
-    for i, j in combinations(range(len(facades)), 2):
-        if (boxes[i][0] > boxes[j][1]).any() or (boxes[j][0] > boxes[i][1]).any():
-            continue
+    for i, j in _near_pairs(facades, reach, monitor):
         line = intersection_line(facades[i].frame, facades[j].frame)
         if line is None:
             continue
@@ -71,6 +70,17 @@ def intersection_line(one: Frame, other: Frame) -> Optional[tuple[np.ndarray, np
     offsets = [plane.normal @ (plane.origin - middle) for plane in (one, other)]
     point = middle + np.linalg.solve(np.array([one.normal, other.normal, direction]), [*offsets, 0.0])
     return point, direction
+
+
+def _near_pairs(facades: Sequence[Facade], reach: float, monitor: Monitor) -> Iterator[tuple[int, int]]:
+    """Yield the pairs of facades whose boxes, with a margin ``reach`` (m) around each, overlap."""
+    boxes = np.array([_box(facade, reach) for facade in facades]).reshape(-1, 2, 3)
+    low, high = boxes[:, 0], boxes[:, 1]
+    for i in range(len(facades)):
+        monitor.progress(i / len(facades))
+        overlap = ((low[i] <= high[i + 1 :]) & (low[i + 1 :] <= high[i])).all(axis=1)
+        for j in np.flatnonzero(overlap):
+            yield i, i + 1 + int(j)
 
 
 def _box(facade: Facade, margin: float) -> tuple[np.ndarray, np.ndarray]:

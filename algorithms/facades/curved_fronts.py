@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from itertools import combinations
 from typing import Optional
 
 import numpy as np
 
 from ..geometry.grid import distinct, grid_over
 from ..geometry.groups import components
+from ..packages import sparse
 from ..segmentation.least_squares_planes import planes_of
 
 # Planes that meet at an angle between these (sines: 3° and 40°) may be strips of one curved front.
@@ -56,20 +56,12 @@ def _fronts(xyz: np.ndarray, wall: np.ndarray, count: int) -> list[np.ndarray]:
     cells, cell = distinct(grid.number(xyz[rows]))
     pairs = distinct(cell.astype(np.int64) * count + wall[rows] - 1)[0]
     of_cell, of_wall = np.divmod(pairs, count)
-    seen = [set(part.tolist()) for part in np.split(of_cell[np.argsort(of_wall, kind="stable")], _ends(of_wall, count))]
-    one, other = [], []
-    for a, b in combinations(range(count), 2):
-        sine = np.linalg.norm(np.cross(normal[a], normal[b]))
-        if _LEAST_SINE <= sine <= _MOST_SINE and len(seen[a] & seen[b]) >= _TOUCHES:
-            one.append(a)
-            other.append(b)
-    _, group = components(np.array(one, int), np.array(other, int), count)
-    fronts = [np.flatnonzero(group == number) + 1 for number in np.unique(group)]
-    return [front for front in fronts if len(front) > 1]
-
-
-def _ends(of_wall: np.ndarray, count: int) -> np.ndarray:
-    return np.cumsum(np.bincount(of_wall, minlength=count))[:-1]
+    holds = sparse.csr_matrix((np.ones(len(pairs), np.int64), (of_wall, of_cell)), shape=(count, len(cells)))
+    shared = sparse.triu(holds @ holds.T, k=1).tocoo()
+    sine = np.linalg.norm(np.cross(normal[shared.row], normal[shared.col]), axis=1)
+    touch = (shared.data >= _TOUCHES) & (sine >= _LEAST_SINE) & (sine <= _MOST_SINE)
+    _, group = components(shared.row[touch], shared.col[touch], count)
+    return [np.flatnonzero(group == number) + 1 for number in np.flatnonzero(np.bincount(group) > 1)]
 
 
 def _strips(xyz: np.ndarray, label: np.ndarray, count: int, tolerance: float) -> np.ndarray:

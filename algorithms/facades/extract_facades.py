@@ -156,7 +156,7 @@ def extract_facades(
     edge_factor = longest_edge(boundary) if edge_factor is None else edge_factor
     monitor.resolved(tolerance=tolerance, edge_factor=edge_factor)
     plane = _steep_planes(xyz, classification, tolerance, max_tilt, min_area, min_height, seed, sampling, monitor)
-    walls = as_strips(xyz, merged_planes(xyz, plane, tolerance), tolerance)
+    walls = as_strips(xyz, merged_planes(xyz, plane, tolerance, monitor.part(0.6, 0.65)), tolerance)
     pieces = split_at_gaps(xyz, walls, max_gap)
     _leave_small(xyz, pieces, min_height)
     facades = surfaces_of(
@@ -167,12 +167,12 @@ def extract_facades(
         max_gap=max_gap,
         boundary=boundary,
         complete=complete,
-        monitor=monitor.part(0.6, 0.95),
+        monitor=monitor.part(0.65, 0.95),
     )
     facades = [facade for facade in facades if facade.area >= min_area and facade.height >= min_height]
     facades = _numbered(facades)
     if corner_distance:
-        facades = with_common_borders(facades, corner_distance)
+        facades = with_common_borders(facades, corner_distance, monitor.part(0.95, 1.0))
     monitor.progress(1.0)
     return _result(facades, len(xyz), min_area, min_height, monitor)
 
@@ -226,7 +226,7 @@ class _Quiet(Monitor):
         self.listener.progress(fraction)
 
 
-def merged_planes(xyz: np.ndarray, segment_id: np.ndarray, tolerance: float) -> np.ndarray:
+def merged_planes(xyz: np.ndarray, segment_id: np.ndarray, tolerance: float, monitor: Monitor) -> np.ndarray:
     """Return numbers (n,) from 1 of planes, those that are one wall joined; 0 stays 0.
 
     A wall that is not quite flat is found as several planes that cross each other. Two planes are one wall if the
@@ -238,32 +238,38 @@ def merged_planes(xyz: np.ndarray, segment_id: np.ndarray, tolerance: float) -> 
         return result
     _, group = np.unique(segment_id[on_plane], return_inverse=True)
     pieces = planes_of(xyz[on_plane] - xyz.min(axis=0), group, int(group.max()) + 1)
-    # The largest first: each takes in what fits it, and is fitted again.
-    order = np.argsort(-pieces.count, kind="stable")
-    walls: list[Planes] = []
-    wall_of = np.zeros(len(pieces), np.int64)
-    for piece in order:
-        own = pieces.chosen(np.array([piece]))
-        off = [_deviation(own, wall) for wall in walls]
-        best = int(np.argmin(off)) if off else -1
-        if off and off[best] <= tolerance:
-            walls[best] = _joined(walls[best], own)
-        else:
-            walls.append(own)
-            best = len(walls) - 1
-        wall_of[piece] = best
-    result[on_plane] = wall_of[group] + 1
+    result[on_plane] = _walls_of(pieces, tolerance, monitor)[group]
     return result
 
 
-def _deviation(small: Planes, large: Planes) -> float:
-    """Return how far (root mean square, m) the points of a plane lie off another one."""
-    both = _stacked(small, large)
-    return float(both.deviation(np.array([0]), np.array([1]))[0])
+def _walls_of(pieces: Planes, tolerance: float, monitor: Monitor) -> np.ndarray:
+    """Return the wall (m,) from 1 of each plane: the largest first takes in what fits it, and is fitted again."""
+    walls = Planes(pieces.count.astype(float), pieces.center.copy(), pieces.covariance.copy())
+    normal = pieces.normal.copy()
+    # The number of the wall that a plane begins, 0 where it begins none.
+    begins, wall = np.zeros(len(pieces), np.int64), np.zeros(len(pieces), np.int64)
+    for done, piece in enumerate(np.argsort(-pieces.count, kind="stable")):
+        offset = np.einsum("ij,ij->i", pieces.center[piece] - walls.center, normal)
+        near = np.flatnonzero((begins > 0) & (np.abs(offset) <= tolerance))
+        off = _deviations(pieces.chosen([piece]), walls.chosen(near))
+        if len(near) and off.min() <= tolerance:
+            best = near[np.argmin(off)]
+            both = _stacked(walls.chosen([best]), pieces.chosen([piece])).merged(np.zeros(2, np.int64), 1)
+            for name in _MOMENTS:
+                getattr(walls, name)[best] = getattr(both, name)[0]
+            normal[best] = both.normal[0]
+        else:
+            best = piece
+            begins[piece] = begins.max() + 1
+        wall[piece] = begins[best]
+        monitor.progress((done + 1) / len(pieces))
+    return wall
 
 
-def _joined(one: Planes, other: Planes) -> Planes:
-    return _stacked(one, other).merged(np.zeros(2, np.int64), 1)
+def _deviations(small: Planes, large: Planes) -> np.ndarray:
+    """Return how far (m,) (root mean square, m) the points of one plane lie off each of the planes ``large``."""
+    last = len(large)
+    return _stacked(large, small).deviation(np.full(last, last), np.arange(last))
 
 
 def _stacked(one: Planes, other: Planes) -> Planes:

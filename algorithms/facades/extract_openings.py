@@ -134,8 +134,8 @@ def extract_openings(
         monitor=monitor.part(0, 0.5),
     )
     if corner_distance:
-        facades = with_common_borders(facades, corner_distance)
-    found = _searched(facades, xyz, max_depth, min_size, monitor.part(0.5, 1))
+        facades = with_common_borders(facades, corner_distance, monitor.part(0.5, 0.55))
+    found = _searched(facades, xyz, max_depth, min_size, monitor.part(0.55, 1))
     if not facades:
         monitor.warn("No segment is a vertical plane, so there are no facades; run 'Extract facades' first.")
     elif not any(openings for _, openings in found):

@@ -39,7 +39,11 @@ GABLE_FIELDS = (
     Field("kind", str, "roof, wall or ground"),
     Field("area", float, "Area of the face", "m²"),
     Field("slope", float, "Slope of the face", "°"),
-    *(Field(f"{axis}{k}", float, f"Parameter: {axis} of vertex {k}", "m") for k in range(1, 7) for axis in "xy"),
+    *(
+        Field(f"{name}{k}", float, f"Parameter: {name} of vertex {k}, in the units of the map", axis=axis)
+        for k in range(1, 7)
+        for axis, name in enumerate("xy")
+    ),
     Field("z1", float, "Parameter: elevation of the ridge", "m"),
     Field("z3", float, "Parameter: elevation of the eaves", "m"),
     Field("z7", float, "Parameter: elevation of the ground", "m"),
@@ -153,7 +157,7 @@ class _Ground:
         self.tree = spatial.cKDTree(self.points[:, :2])
 
     def near(self, corners: np.ndarray) -> Optional[float]:
-        """Return the elevation (m) around corners (m, 2); that of the lower half, where the house stands on a slope."""
+        """Return the elevation (m) around corners (m, 2): the median of the ground, or that of the lowest points."""
         near = np.unique(np.concatenate(self.tree.query_ball_point(corners, 2.0)).astype(np.int64))
         if not len(near):
             near = np.array(self.tree.query_ball_point(corners.mean(axis=0), _AROUND + np.ptp(corners)), int)

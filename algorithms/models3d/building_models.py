@@ -113,6 +113,9 @@ def model_building(xyz: np.ndarray, rings: list, base: float, settings: Settings
     planes = find_roof_planes(local, settings.tolerance, settings.max_slope, settings.min_points)
     tops = {"1.2": _single_top, "1.3": _level_tops, "2.2": _roof}
     top = _Top(local, around, planes, settings, base)
+    if np.median(xyz[top.is_roof, 2]) <= base:
+        model.reason = "its roof is not above the ground beside it"
+        return model
     for level in LEVELS[: LEVELS.index(settings.level) + 1]:
         partition, why = tops[level](top)
         if partition is not None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from typing import Annotated
 
 import numpy as np
@@ -11,10 +10,8 @@ from ..cloud.asprs import PointClass
 from ..geometry.rings import signed_area
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Param, feature_names, stage
 from .cityjson import unique_names
+from .model_inputs import NO_AREA, require_buildings, require_ground, tell_without_area
 from .roof_partition import inside_rings
-
-# Rings with less area (m²) are no footprints.
-_NO_AREA = 0.5
 
 
 @stage(
@@ -91,20 +88,11 @@ def export_for_roofer(
     Peters, R., Dukai, B., Vitalis, S., van Liempt, J., Stoter, J., 2022. Automated 3D reconstruction of LoD2 and LoD1
     models for all 10 million buildings of the Netherlands. Photogrammetric Engineering & Remote Sensing 88(3).
     """
-    counts = Counter({code: int((classification == code).sum()) for code in (PointClass.BUILDING, PointClass.GROUND)})
-    if not counts[PointClass.BUILDING]:
-        raise ValueError("No point is called building (class 6); run 'Detect buildings' first.")
-    if not counts[PointClass.GROUND]:
-        raise ValueError("No point is called ground (class 2); run 'Classify ground points (TIN)' first.")
+    require_buildings(classification)
+    require_ground(classification)
     plan = [[np.asarray(ring, float)[:, :2] for ring in rings] for rings in footprints.geometries]
-    sound = [i for i, rings in enumerate(plan) if len(rings[0]) > 3 and abs(signed_area(rings[0])) >= _NO_AREA]
-    if not sound:
-        raise ValueError(
-            f"None of the {len(plan)} footprints has an area of {_NO_AREA} m² or more; choose another layer."
-        )
-    if len(sound) < len(plan):
-        monitor.warn(f"{len(plan) - len(sound)} of {len(plan)} footprints have no area and are left out.")
-
+    sound = [i for i, rings in enumerate(plan) if len(rings[0]) > 3 and abs(signed_area(rings[0])) >= NO_AREA]
+    tell_without_area(len(sound), len(plan), monitor)
     order = np.argsort(xyz[:, 0], kind="stable")
     easting, is_near = xyz[order, 0], np.zeros(len(xyz), bool)
     wanted = np.isin(classification, (PointClass.GROUND, PointClass.BUILDING))

@@ -69,10 +69,9 @@ def _bridged(ring: list[int], hole: list[int], places: dict) -> list[int]:
     """Return one ring of a ring and a hole in it, joined along a line that crosses neither."""
     start = max(range(len(hole)), key=lambda i: places[hole[i]])
     order = sorted(range(len(ring)), key=lambda i: _distance(places[ring[i]], places[hole[start]]))
-    for i in order:
-        if _sees(ring, i, hole, places[hole[start]], places):
-            return [*ring[: i + 1], *hole[start:], *hole[: start + 1], *ring[i:]]
-    return ring
+    # Only a hole that touches the ring is seen from none of its vertices, or one that rounding put there.
+    i = next((i for i in order if _sees(ring, i, hole, places[hole[start]], places)), order[0])
+    return [*ring[: i + 1], *hole[start:], *hole[: start + 1], *ring[i:]]
 
 
 def _distance(a, b) -> float:

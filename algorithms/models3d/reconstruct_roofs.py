@@ -36,14 +36,16 @@ from .building_facts import (
     faces_of,
 )
 from .building_models import LEVELS, Settings, model_building
+from .model_inputs import (
+    NO_AREA,
+    TOLERANCE_TEXT,
+    plane_tolerance,
+    require_buildings,
+    require_ground,
+    tell_without_area,
+)
 from .roof_partition import inside_rings
 from .solids import ROOF, WALL
-
-# Points of a roof lie on its plane within this many times their roughness; in the mean of many that is all of them.
-_TOLERANCE_ROUGHNESS = 3.0
-
-# Tolerances (m) that are neither finer than the courses of tiles, nor coarser than the steps that parts have.
-_TOLERANCES = 0.08, 0.35
 
 # Fewer points than this over a footprint show no roof.
 _LEAST_POINTS = 4
@@ -51,11 +53,11 @@ _LEAST_POINTS = 4
 # The ground of a building is this percentile of the ground points nearest to its outline, taken every so many meters.
 _GROUND_PERCENTILE, _GROUND_STEP = 5.0, 2.0
 
+# Footprints without a model that a warning names.
+_NAMED = 5
+
 # Vertices of footprints nearer to each other than this (m) are one.
 _CLOSE = 0.01
-
-# Rings with less area (m²) are no footprints.
-_NO_AREA = 0.5
 
 
 @stage(
@@ -137,7 +139,7 @@ def reconstruct_roofs(
             unit="m",
             low=0.01,
             high=5,
-            automatic="3 times the roughness of the cloud's surfaces, 0.08 to 0.35 m.",
+            automatic=TOLERANCE_TEXT,
             advanced=True,
         ),
     ] = None,
@@ -198,7 +200,7 @@ def reconstruct_roofs(
     outlines = _outlines(footprints, monitor)
     sampling = sampling or CloudSampling.of(xyz, classification)
     if tolerance is None:
-        tolerance = float(np.clip(_TOLERANCE_ROUGHNESS * sampling.roughness, *_TOLERANCES))
+        tolerance = plane_tolerance(sampling.roughness)
         monitor.resolved(tolerance=tolerance)
     settings = Settings(
         point_spacing(building), tolerance, min_plane_area, max_slope, min_step, top_percentile, level_of_detail
@@ -218,13 +220,10 @@ class _Outline:
 
 def _points(xyz: np.ndarray, classification: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the points of buildings in the order of their eastings, and those of the ground."""
+    require_buildings(classification)
+    require_ground(classification)
     building = xyz[classification == PointClass.BUILDING]
-    if not len(building):
-        raise ValueError("No point is called building (class 6); run 'Detect buildings' first.")
-    ground = xyz[classification == PointClass.GROUND]
-    if not len(ground):
-        raise ValueError("No point is called ground (class 2); run 'Classify ground points (TIN)' first.")
-    return building[np.argsort(building[:, 0], kind="stable")], ground
+    return building[np.argsort(building[:, 0], kind="stable")], xyz[classification == PointClass.GROUND]
 
 
 def _outlines(footprints: LayerFeatures, monitor: Monitor) -> list[_Outline]:
@@ -233,16 +232,9 @@ def _outlines(footprints: LayerFeatures, monitor: Monitor) -> list[_Outline]:
     for rings, name in zip(footprints.geometries, feature_names(footprints)):
         plan = [_cleaned(np.asarray(ring, float)[:, :2]) for ring in rings]
         sound = [ring for ring in plan if len(ring) > 3 and np.isfinite(ring).all() and abs(signed_area(ring)) > 1e-6]
-        if sound and sound[0] is plan[0] and abs(signed_area(plan[0])) >= _NO_AREA:
+        if sound and sound[0] is plan[0] and abs(signed_area(plan[0])) >= NO_AREA:
             outlines.append(_Outline(name, sound))
-    if not outlines:
-        raise ValueError(
-            f"None of the {len(footprints)} footprints has an area of {_NO_AREA} m² or more; choose another layer."
-        )
-    if len(outlines) < len(footprints):
-        monitor.warn(
-            f"{len(footprints) - len(outlines)} of {len(footprints)} footprints have no area and are left out."
-        )
+    tell_without_area(len(outlines), len(footprints), monitor)
     return outlines
 
 
@@ -258,30 +250,44 @@ def _cleaned(ring: np.ndarray) -> np.ndarray:
 def _modelled(
     building: np.ndarray, ground: np.ndarray, outlines: list[_Outline], settings: Settings, monitor: Monitor
 ) -> list[NamedModel]:
-    """Return the models of all footprints that have points; say how many don't, and which levels there are."""
+    """Return the models of all footprints that can be modelled; say which levels they have, and what the others lack.
+
+    The points are those of buildings in the order of their eastings.
+    """
     base_of = _ground_heights(ground)
-    models, empty = [], 0
+    models, empty, failed = [], 0, []
     for number, outline in enumerate(outlines):
         points = _points_over(building, outline.rings)
-        if len(points) >= _LEAST_POINTS:
-            base = base_of(outline.rings)
-            model = model_building(points, outline.rings, base, settings)
+        if len(points) < _LEAST_POINTS:
+            empty += 1
+        else:
+            model = model_building(points, outline.rings, base_of(outline.rings), settings)
             if model.level:
                 models.append(NamedModel(outline.name, outline.rings, model))
-        empty += not models or models[-1].name != outline.name or len(points) < _LEAST_POINTS
+            else:
+                failed.append((outline.name, model.reason))
         monitor.progress((number + 1) / len(outlines))
-    _tell(models, empty, len(outlines), settings.level, monitor)
+    _inform_of_levels(models, len(outlines), monitor)
+    _warn_of_others(empty, failed, len(outlines), monitor)
     return models
 
 
-def _tell(models: list[NamedModel], empty: int, count: int, level: str, monitor: Monitor) -> None:
-    """Say which levels the models have, and how many footprints have none."""
+def _inform_of_levels(models: list[NamedModel], count: int, monitor: Monitor) -> None:
+    """Say which levels the models of ``count`` footprints have."""
     levels = Counter(one.model.level for one in models)
     shares = ", ".join(f"{levels[name]} at level {name}" for name in LEVELS[::-1] if levels[name])
     if shares:
         monitor.inform(f"Of {count} footprints: {shares}.")
+
+
+def _warn_of_others(empty: int, failed: list[tuple[str, str]], count: int, monitor: Monitor) -> None:
+    """Say how many footprints have no model, and why."""
     if empty:
         monitor.warn(f"{empty} of {count} footprints have no points of buildings over them, and so no model.")
+    if failed:
+        named = "; ".join(f"{name}: {reason}" for name, reason in failed[:_NAMED])
+        more = f"; and {len(failed) - _NAMED} more" if len(failed) > _NAMED else ""
+        monitor.warn(f"{len(failed)} of {count} footprints have points but no model ({named}{more}).")
 
 
 def _points_over(building: np.ndarray, rings: list) -> np.ndarray:

@@ -56,12 +56,6 @@ class Partition:
     coefficients: np.ndarray
     cost: np.ndarray = field(repr=False)
 
-    def height(self, vertex: int, label: int) -> float:
-        """Return the height (m) of a plane at a vertex."""
-        x, y = self.cells.vertices[vertex]
-        a, b, c = self.coefficients[label]
-        return a * x + b * y + c
-
 
 def inside_rings(xy: np.ndarray, rings: list) -> np.ndarray:
     """Return which places (n, 2) a polygon holds."""
@@ -109,9 +103,7 @@ def divide_footprint(
     inside = inside_rings(cells.centers(), rings) & ~cells.touch_rectangle()
     used = np.flatnonzero(inside)
     cost = np.zeros((len(cells), len(planes)))
-    cost[used] = _costs(xyz, planes, rings, cells, used, spacing, tolerance) + _forbidden(
-        planes, cells, used, xyz, base
-    )
+    cost[used] = _costs(xyz, planes, cells, used, spacing, tolerance) + _forbidden(planes, cells, used, xyz, base)
     label = np.full(len(cells), -1)
     label[used] = _labels(planes, cells, used, cost[used])
     return Partition(cells, label, planes.coefficients, cost)
@@ -139,13 +131,7 @@ def _labels(planes: RoofPlanes, cells: Subdivision, used: np.ndarray, cost: np.n
 
 
 def _costs(
-    xyz: np.ndarray,
-    planes: RoofPlanes,
-    rings: list,
-    cells: Subdivision,
-    used: np.ndarray,
-    spacing: float,
-    tolerance: float,
+    xyz: np.ndarray, planes: RoofPlanes, cells: Subdivision, used: np.ndarray, spacing: float, tolerance: float
 ) -> np.ndarray:
     """Return the area (m²) of each cell (len(used), m) that each plane leaves unexplained."""
     on_plane = planes.label >= 0

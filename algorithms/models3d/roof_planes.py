@@ -167,9 +167,7 @@ def _chosen_by_neighborhood(xyz: np.ndarray, neighbors: np.ndarray, label: np.nd
         off[options < 0] = np.inf
         best = np.argmin(off, axis=1)
         rows = np.arange(len(xyz))
-        chosen = np.where(off[rows, best] <= tolerance, options[rows, best], -1)
-        # A plane needs company: a point keeps its own where no better one is at hand.
-        label = np.where(chosen >= 0, chosen, -1)
+        label = np.where(off[rows, best] <= tolerance, options[rows, best], -1)
     return label
 
 

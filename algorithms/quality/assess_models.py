@@ -11,6 +11,7 @@ from ..cloud.asprs import PointClass
 from ..geometry.cell_outlines import outline_cells
 from ..geometry.grid import connected_cells, find_cells, grid_over
 from ..geometry.rings import signed_area
+from ..models3d.model_inputs import TOLERANCE_TEXT, plane_tolerance, require_buildings
 from ..models3d.roof_partition import inside_rings
 from ..models3d.roof_planes import find_roof_planes
 from ..report.charts import BLUE, Mark, Series, draw_histogram
@@ -21,9 +22,6 @@ from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, P
 # A point that lies under a face by this (m), with another one of a building as much higher in its cell or one beside,
 # is on a wall or on a floor seen through glass. Cells have this size (m, or spacings).
 _BELOW, _CELL, _CELL_SPACINGS = 1.0, 0.5, 1.5
-
-# Points of one plane lie within this many times their roughness of it, 0.08 to 0.35 m.
-_TOLERANCE_ROUGHNESS, _TOLERANCES = 3.0, (0.08, 0.35)
 
 # A plane is there where this share of its points lies on it, or on the model.
 _THERE = 0.5
@@ -125,7 +123,7 @@ def assess_models(
             unit="m",
             low=0.01,
             high=5,
-            automatic="3 times the roughness of the cloud's surfaces, 0.08 to 0.35 m.",
+            automatic=TOLERANCE_TEXT,
             advanced=True,
         ),
     ] = None,
@@ -173,11 +171,10 @@ def assess_models(
     models for all 10 million buildings of the Netherlands, section on quality. Photogrammetric Engineering & Remote
     Sensing 88(3).
     """
-    if not (classification == PointClass.BUILDING).any():
-        raise ValueError("No point is called building (class 6); run 'Detect buildings' first.")
+    require_buildings(classification)
     sampling = sampling or CloudSampling.of(xyz, classification)
     if tolerance is None:
-        tolerance = float(np.clip(_TOLERANCE_ROUGHNESS * sampling.roughness, *_TOLERANCES))
+        tolerance = plane_tolerance(sampling.roughness)
         monitor.resolved(tolerance=tolerance)
     faces = _faces(roofs, monitor)
     points = _RoofPoints(xyz, classification, sampling.spacing)
@@ -243,7 +240,8 @@ def _faces(roofs: LayerFeatures, monitor: Monitor) -> dict[str, list[_Face]]:
     found: dict[str, list[_Face]] = {}
     for rings, name in zip(roofs.geometries, names):
         corners = np.asarray(rings[0], float)
-        if corners.shape[1] != 3 or abs(signed_area(corners[:, :2])) < _UPRIGHT:
+        has_heights = corners.shape[1] == 3 and all(np.isfinite(ring).all() for ring in rings)
+        if not has_heights or abs(signed_area(corners[:, :2])) < _UPRIGHT:
             continue
         middle = corners[:-1].mean(axis=0)
         offset = corners[:-1] - middle

@@ -12,12 +12,16 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Field:
-    """One attribute of a layer that a stage makes (``type`` is int, float or str)."""
+    """One attribute of a layer that a stage makes (``type`` is int, float or str).
+
+    Values with an ``axis`` (0 east, 1 north) are positions: in local meters from the stage, in map units in the layer.
+    """
 
     name: str
     type: type
     help: str
     unit: str = ""
+    axis: Optional[int] = None
 
 
 @dataclass(frozen=True)

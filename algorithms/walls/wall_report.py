@@ -103,6 +103,6 @@ def wall_report(counts: dict[str, float], sources: list[str], outcomes: list[str
 def _row(measure: Measure, value: float, whole: float) -> Row:
     """Return the row of a number; points are told as a share of the ``whole`` cloud, too."""
     if math.isnan(value):
-        return Row(measure.title, "unknown", "The cloud doesn't tell.")
+        return Row(measure.title, "unknown", "The cloud has no value of it.")
     share = f" {value / whole:.1%} of all points." if "points" in measure.name and whole else ""
     return Row(measure.title, f"{value:,}", _MEANINGS[measure.name] + share)

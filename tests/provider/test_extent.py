@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
-from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
+from lidar_buildings.algorithms.cloud.files import count_points, read_cloud, write_cloud
 from lidar_buildings.algorithms.cloud.vpc import write_vpc
 from lidar_buildings.tests.builders import roof
 
@@ -96,3 +96,11 @@ def log_of():
     from qgis.core import QgsProcessingFeedback
 
     return QgsProcessingFeedback()
+
+
+def test_the_points_of_a_part_are_estimated_from_the_headers(tile):
+    """The warning of little memory counts on them; points are spread nearly evenly here."""
+    box = np.array([[WEST + 10, SOUTH + 5], [WEST + 40, SOUTH + 45]])
+    assert count_points(tile, box) == pytest.approx(inside(read_cloud(tile)).sum(), rel=0.1)
+    assert count_points(tile, box + 1000.0) == 0
+    assert count_points(tile, np.array([[0.0, 0.0], [1e6, 1e6]])) == count_points(tile)

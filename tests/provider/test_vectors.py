@@ -73,3 +73,11 @@ def test_nothing_found_is_an_empty_layer():
 def test_values_are_pythons_own(value, wanted):
     assert plain(value) == wanted
     assert type(plain(value)) is type(wanted)
+
+
+def test_positions_among_the_attributes_are_in_map_coordinates():
+    east, north = (Field(name, float, "Position.", axis=axis) for axis, name in enumerate(("x1", "y1")))
+    layer = Layer("places", "Places", "Point", (Field("id", int, "Number."), east, north))
+    features = LayerFeatures([np.array([1.0, 2.0])], {"id": [1], "x1": [3.0], "y1": np.array([4.0])})
+    (feature,) = qgis_features(layer, features, shifted)
+    assert feature.attributes() == [1, 103.0, 204.0]

@@ -6,7 +6,7 @@ import pytest
 from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.facades.extract_facades import extract_facades, merged_planes, split_at_gaps
 from lidar_buildings.algorithms.facades.facade_outline import key_points, pushed_out
-from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.tests.builders import FAR, turned
 from lidar_buildings.tests.facades import corner_errors, street_floor, wall, without
 
@@ -188,9 +188,9 @@ def test_a_few_points_or_points_on_a_line_have_no_facade(count):
 def test_one_wall_found_as_two_crossing_planes_is_joined(rng):
     points = wall(rng, (0, 0), (10, 0))
     found = np.where(points[:, 0] < 5, 1, 2)
-    assert merged_planes(points, found, 0.05).max() == 1
+    assert merged_planes(points, found, 0.05, Monitor()).max() == 1
     points[points[:, 0] >= 5, 1] += 0.3
-    assert merged_planes(points, found, 0.05).max() == 2
+    assert merged_planes(points, found, 0.05, Monitor()).max() == 2
 
 
 def test_pieces_far_apart_get_numbers_of_their_own(rng):
@@ -216,3 +216,27 @@ def test_a_boundary_is_pushed_out_until_it_holds_all_places():
     made = pushed_out(square, np.array([[2, -0.3], [4.2, 2], [4.2, -0.3]]), np.inf)
     np.testing.assert_allclose(made, [[0, -0.3], [4.2, -0.3], [4.2, 4], [0, 4], [0, -0.3]], atol=1e-9)
     np.testing.assert_allclose(pushed_out(square, np.array([[2, -3.0]]), 1.0), square)
+
+
+def test_planes_of_one_wall_are_joined_the_largest_first():
+    """Forty planes of two walls, the second 0.3 m behind the first: brute force joins the same ones."""
+    rng = np.random.default_rng(3)
+    number = np.repeat(np.arange(1, 41), rng.permutation(np.arange(20, 60)))
+    points = np.column_stack(
+        [rng.uniform(0, 2, len(number)) + number, rng.normal(0, 0.01, len(number)), np.zeros(len(number))]
+    )
+    points[:, 1] += np.where(number % 2 == 1, 0.3, 0.0)
+    points[:, 2] = rng.uniform(0, 5, len(number))
+    wall = merged_planes(points, number, 0.05, Monitor())
+    largest = np.argmax(np.bincount(number))
+    assert [set(number[wall == k] % 2) for k in (1, 2)] == [{largest % 2}, {1 - largest % 2}]
+    assert wall.max() == 2
+
+
+def test_the_search_for_one_wall_can_be_cancelled():
+    class Stopped(Monitor):
+        def progress(self, fraction):
+            raise Cancelled
+
+    with pytest.raises(Cancelled):
+        merged_planes(np.random.default_rng(0).random((20, 3)), np.repeat([1, 2], 10), 0.1, Stopped())

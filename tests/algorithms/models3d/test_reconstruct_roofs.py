@@ -162,6 +162,20 @@ def test_footprints_without_points_or_area_are_counted():
         reconstructed(xyz, classes, LayerFeatures(geometries[2:], {"id": [3]}))
 
 
+def test_a_roof_below_the_ground_beside_it_has_no_model_and_the_reason_is_told():
+    """Two footprints of one name: one is a house, the other lies on a hill of 20 m that is called building."""
+    xyz, classes, footprints = scene(SHAPES["gable"])
+    sunk = xyz + [100.0, 0.0, 0.0]
+    sunk[classes == 2, 2] += 20.0
+    rings = [footprints.geometries[0], [footprints.geometries[0][0] + [100.0, 0.0]]]
+    twice = LayerFeatures(rings, {"id": np.array([7, 7])})
+    layers, _, monitor = reconstructed(np.concatenate([xyz, sunk]), np.tile(classes, 2), twice)
+    assert len(layers["buildings"]) == 1
+    (warning,) = monitor.warnings
+    assert "1 of 2 footprints have points but no model" in warning
+    assert "its roof is not above the ground beside it" in warning
+
+
 def test_footprint_that_crosses_itself_gives_valid_solids():
     xyz, classes, _ = scene(SHAPES["flat"])
     # Two triangles that touch in a point, one of them larger.

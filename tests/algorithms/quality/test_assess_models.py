@@ -47,6 +47,16 @@ def test_a_model_that_lies_too_high_is_told_by_how_much():
     assert report.values["missing"] == 2
 
 
+def test_faces_with_undefined_heights_are_left_out():
+    """A hole whose heights are NaN made every distance NaN."""
+    hole = np.array([[2, 1, np.nan], [2, 2, np.nan], [3, 2, np.nan], [3, 1, np.nan], [2, 1, np.nan]])
+    faces = gable()
+    _, buildings, report, monitor = assessed(faces=[faces[0], [faces[1][0], hole]])
+    assert report.values["all_faces"] == 1
+    assert np.isfinite([report.values["rms"], *buildings["volume"]]).all()
+    assert any("1 of 2 faces" in warning for warning in monitor.warnings)
+
+
 def test_a_dormer_that_the_model_has_not_is_missing():
     faces, buildings, report, _ = assessed("dormer")
     assert report.values["missing"] == 1
