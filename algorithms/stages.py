@@ -30,6 +30,7 @@ from .quality.compare_corners import compare_corners
 from .segmentation.classify_ground_segments import classify_ground_segments
 from .segmentation.segment_clusters import segment_clusters
 from .segmentation.segment_planes_ransac import segment_planes_ransac
+from .segmentation.segment_recorded_lines import segment_recorded_lines
 from .segmentation.segment_regions import segment_regions
 from .segmentation.segment_roofs import segment_roofs
 from .segmentation.segment_scan_lines import segment_scan_lines
@@ -75,6 +76,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     segment_clusters,
     segment_surfaces,
     segment_scan_lines,
+    segment_recorded_lines,
     classify_ground_segments,
     segment_tin_planes,
     segment_planes_ransac,

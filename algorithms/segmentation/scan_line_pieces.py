@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..geometry.grid import turned_in_plan
-from ..geometry.groups import components
+from ..geometry.groups import components, items
 
 # Points of a line that each point is compared with: enough to pass over a few outliers between two points of a surface.
 _WINDOW = 8
@@ -64,11 +64,14 @@ def slices(xyz: np.ndarray, direction: float, width: float) -> tuple[np.ndarray,
     return order, line[order]
 
 
-def pieces(xyz: np.ndarray, direction: float, width: float, near: NearPoints, min_points: int) -> np.ndarray:
+def pieces(
+    xyz: np.ndarray, direction: float, width: float, near: NearPoints, min_points: int, obstacle: float = 0.0
+) -> np.ndarray:
     """Return the piece (n,) that each point belongs to on the lines of one direction, from 0; -1 is none.
 
     Points of a line that are near each other, directly or through others, are a piece; it may pass over points that
-    lie off it. Pieces of fewer than ``min_points`` points are none.
+    lie off it. Pieces of fewer than ``min_points`` points are none. One goes on behind an ``obstacle`` of at most that
+    width (m) if the line between their ends meets the criteria of ``near`` but the distance.
     """
     order, line = slices(xyz, direction, width)
     points = xyz[order]
@@ -81,10 +84,34 @@ def pieces(xyz: np.ndarray, direction: float, width: float, near: NearPoints, mi
     one, other = (np.concatenate(ends) for ends in zip(*links)) if links else (np.zeros(0, int),) * 2
     count, component = components(one, other, len(order))
     large = np.bincount(component, minlength=count) >= min_points
-    number = np.where(large, np.cumsum(large) - 1, -1)
+    number = np.where(large, np.cumsum(large) - 1, -1)[component]
+    if obstacle > 0:
+        along = turned_in_plan(points[:, :2], -direction)[:, 0]
+        # One axis for all lines, with more room between them than an obstacle is wide.
+        along += line * (np.ptp(along) + 2 * obstacle)
+        number = _over_obstacles(points, along, number, replace(near, distance=obstacle))
     piece = np.empty(len(order), np.int64)
-    piece[order] = number[component]
+    piece[order] = number
     return piece
+
+
+def _over_obstacles(points: np.ndarray, along: np.ndarray, piece: np.ndarray, near: NearPoints) -> np.ndarray:
+    """Return the pieces (n,) of points, joined where the end of one is near the start of another further ``along``."""
+    rows = np.flatnonzero(piece >= 0)
+    if not len(rows):
+        return piece
+    count = int(piece.max()) + 1
+    first, last = np.full(count, len(piece)), np.full(count, -1)
+    np.minimum.at(first, piece[rows], rows)
+    np.maximum.at(last, piece[rows], rows)
+    starts = np.argsort(first)
+    begin = np.searchsorted(first[starts], last, side="right")
+    stop = np.searchsorted(along[first[starts]], along[last] + near.distance, side="right")
+    one, item = items(np.maximum(stop - begin, 0))
+    other = starts[begin[one] + item]
+    joined = near.hold(points[last[one]], points[first[other]])
+    group = components(one[joined], other[joined], count)[1]
+    return np.where(piece >= 0, group[piece], -1)
 
 
 def merged_pieces(piece_sets: list[np.ndarray]) -> np.ndarray:

@@ -83,6 +83,17 @@ def segment_scan_lines(
             automatic="4 standard deviations of the surface noise.",
         ),
     ] = None,
+    max_obstacle: Annotated[
+        float,
+        Param(
+            "Widest obstacle",
+            "A piece of a line goes on behind an obstacle up to this width, such as a hedge, a car or a gap without "
+            "points, if its ends there meet the criteria of slope and height; 0: it ends.",
+            unit="m",
+            low=0,
+            high=1000,
+        ),
+    ] = 0.0,
     min_piece: Annotated[
         int, Param("Minimum points of a piece", "Pieces of a line with fewer points join nothing.", low=2, high=10_000)
     ] = 5,
@@ -116,7 +127,9 @@ def segment_scan_lines(
     Notes
     -----
     Each point is compared with the 8 that follow it on its line. Lines start at the lowest coordinate across them.
-    True scan lines (Jiang & Bunke 1994) are not reconstructed.
+    A piece meets a wider obstacle where its last point and the first one of a piece further on are compared: the gap
+    between them moves along the line with the pieces. For the scanner's own lines there is 'Segment recorded lines'
+    (Jiang & Bunke 1994).
 
     References
     ----------
@@ -139,7 +152,7 @@ def segment_scan_lines(
 
     piece_sets = []
     for number in range(directions):
-        piece_sets.append(pieces(points, 180 * number / directions, line_width, near, min_piece))
+        piece_sets.append(pieces(points, 180 * number / directions, line_width, near, min_piece, max_obstacle))
         monitor.progress(0.9 * (number + 1) / directions)
     segment = merged_pieces(piece_sets)
     inside = segment >= 0

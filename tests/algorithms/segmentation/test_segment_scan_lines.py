@@ -77,6 +77,22 @@ def test_a_piece_passes_over_outliers_and_narrow_obstacles(scene):
     assert np.bincount(near[ground[:, 0] < 9]).argmax() != np.bincount(near[ground[:, 0] > 11]).argmax()
 
 
+def test_a_piece_goes_on_behind_a_wide_obstacle_if_it_may(scene):
+    """A hedge 2.5 m wide, denser than the ground, from edge to edge; ground behind it at the same height or 1 m up."""
+    rng = np.random.default_rng(1)
+    x, y = rng.uniform(0, (20, 30), (3600, 2)).T
+    east = x > 11
+    for rise in (0.0, 1.0):
+        ground = np.column_stack([x, y, rise * east + rng.normal(0, 0.02, len(x))])[np.abs(x - 10) > 1.25]
+        hedge = rng.uniform((8.75, 0, 0.8), (11.25, 30, 2), (3000, 3))
+        xyz = np.concatenate([ground, hedge])
+        for obstacle, is_one in ((0.0, False), (2.0, False), (3.5, rise == 0)):
+            ids = segment_scan_lines(xyz, max_obstacle=obstacle, density=6.0, max_slope=10.0)[: len(ground)]
+            sides = (np.bincount(ids[ground[:, 0] < 8]).argmax(), np.bincount(ids[ground[:, 0] > 12]).argmax())
+            assert (sides[0] == sides[1]) == is_one
+            assert min((ids[ground[:, 0] < 8] == sides[0]).mean(), (ids[ground[:, 0] > 12] == sides[1]).mean()) > 0.97
+
+
 def test_slope_is_a_criterion_that_can_be_left_out(scene):
     xyz, part = scene
     assert len(np.unique(segment_scan_lines(xyz, max_slope=90.0, distance=5.0))) == 1

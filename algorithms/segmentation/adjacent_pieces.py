@@ -1,0 +1,145 @@
+"""Which straight pieces of scan lines lie side by side on adjacent lines."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..packages import spatial
+from ..stage import Monitor
+from ..threads import in_chunks
+from .straight_pieces import Pieces
+
+# Neighbors that each point looks through for adjacent lines, at most: lines three times as far apart as the points on
+# them have 60 points within two distances of lines.
+_MOST_NEIGHBORS = 64
+
+# Points of a chunk.
+_CHUNK = 20_000
+
+
+@dataclass(frozen=True)
+class Adjacency:
+    """Pairs of pieces on adjacent lines, each in both directions, sorted by the first piece.
+
+    Attributes
+    ----------
+    one, other : ndarray of shape (k,), int64
+        The two pieces.
+    overlap : ndarray of shape (k,), float64
+        Share of the points of the shorter piece that have a neighbor in the longer one.
+    offset : ndarray of shape (k, 3), float64
+        Mean way to the neighbors, square to ``one``, m: its side.
+    """
+
+    one: np.ndarray
+    other: np.ndarray
+    overlap: np.ndarray
+    offset: np.ndarray
+
+    def neighbors(self, count: int) -> list[list[int]]:
+        """Return the adjacent pieces of each of ``count`` pieces."""
+        ends = np.searchsorted(self.one, np.arange(count + 1)).tolist()
+        others = self.other.tolist()
+        return [others[start:stop] for start, stop in zip(ends[:-1], ends[1:])]
+
+    def triples(self, size: np.ndarray, min_overlap: float) -> np.ndarray:
+        """Return triples (t, 3) of pieces on three adjacent lines, at most one for each piece in the middle.
+
+        Parameters
+        ----------
+        size : ndarray of shape (m,)
+            Points of the pieces; of several on one side the largest is taken.
+        min_overlap : float
+            Least overlap with the piece in the middle.
+        """
+        beside = np.flatnonzero(self.overlap >= min_overlap)
+        beside = beside[np.lexsort((self.other[beside], -size[self.other[beside]], self.one[beside]))]
+        one = self.one[beside]
+        first = np.ones(len(beside), bool)
+        first[1:] = one[1:] != one[:-1]
+        best = beside[first]
+        place = np.cumsum(first) - 1
+        opposite = np.einsum("ij,ij->i", self.offset[beside], self.offset[best][place]) < 0
+        across = beside[opposite]
+        middle, at = np.unique(self.one[across], return_index=True)
+        partner = best[np.searchsorted(self.one[best], middle)]
+        return np.column_stack([self.other[partner], middle, self.other[across[at]]])
+
+
+def adjacent_pieces(xyz: np.ndarray, piece: np.ndarray, pieces: Pieces, distance: float, monitor: Monitor) -> Adjacency:
+    """Find the pieces beside each other on adjacent lines.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points of pieces (m).
+    piece : ndarray of shape (n,), int64
+        Piece of each point, from 0.
+    pieces : Pieces
+        The pieces.
+    distance : float
+        Distance of neighboring points of adjacent lines at most, m.
+    monitor : Monitor
+        Receives progress.
+
+    Notes
+    -----
+    Lines need no numbers: of the points to the side of a point, more across its piece than along it, the nearest one
+    is on an adjacent line, and the nearest one on the opposite side on the other.
+    """
+    n, count = len(xyz), min(_MOST_NEIGHBORS, len(xyz))
+    tree = spatial.cKDTree(xyz)
+    nearest = np.full((n, 2), -1, np.int64)
+
+    def work(rows: np.ndarray) -> None:
+        length, found = tree.query(xyz[rows], count, distance_upper_bound=distance)
+        known = np.isfinite(length).reshape(len(rows), count)
+        found = np.where(known, found.reshape(len(rows), count), rows[:, None])
+        nearest[rows] = _beside(xyz, piece, pieces.direction, rows, found)
+
+    in_chunks(work, np.arange(n), _CHUNK, monitor)
+    return _pairs(xyz, piece, pieces, nearest)
+
+
+def _beside(
+    xyz: np.ndarray, piece: np.ndarray, direction: np.ndarray, rows: np.ndarray, found: np.ndarray
+) -> np.ndarray:
+    """Return of the points ``found`` (r, k), nearest first, the first ones on both sides (r, 2) of a piece, or -1."""
+    along = direction[piece[rows]]
+    way = xyz[found] - xyz[rows][:, None]
+    length = np.einsum("ijk,ik->ij", way, along)
+    across = way - length[..., None] * along[:, None]
+    square = np.einsum("ijk,ijk->ij", across, across)
+    is_beside = (square > length * length) & (piece[found] != piece[rows][:, None])
+    place = np.arange(len(rows))
+    first = is_beside.argmax(axis=1)
+    opposite = is_beside & (np.einsum("ijk,ik->ij", across, across[place, first]) < 0)
+    second = opposite.argmax(axis=1)
+    return np.column_stack(
+        [
+            np.where(is_beside.any(axis=1), found[place, first], -1),
+            np.where(opposite.any(axis=1), found[place, second], -1),
+        ]
+    )
+
+
+def _pairs(xyz: np.ndarray, piece: np.ndarray, pieces: Pieces, nearest: np.ndarray) -> Adjacency:
+    """Return the pairs of pieces that points and the nearest points of adjacent lines make."""
+    point, side = np.nonzero(nearest >= 0)
+    there = nearest[point, side]
+    m = len(pieces)
+    key, which = np.unique(piece[point] * m + piece[there], return_inverse=True)
+    way = xyz[there] - xyz[point]
+    count = np.bincount(which, minlength=len(key))
+    mean = np.column_stack([np.bincount(which, column, len(key)) for column in way.T]) / np.maximum(count, 1)[:, None]
+    one, other = np.divmod(key, max(m, 1))
+    # Each pair once in both directions, whichever saw the other.
+    key, at = np.unique(np.concatenate([key, other * m + one]), return_index=True)
+    count, mean = np.tile(count, 2)[at], np.concatenate([mean, -mean])[at]
+    one, other = np.divmod(key, max(m, 1))
+    size = pieces.points.count
+    along = pieces.direction[one]
+    mean -= np.einsum("ij,ij->i", mean, along)[:, None] * along
+    return Adjacency(one, other, np.minimum(count / np.minimum(size[one], size[other]), 1.0), mean)

@@ -1,0 +1,186 @@
+"""Regions of straight pieces of scan lines: seeds of three, and the adjacent pieces that lie on their surface."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..stage import Monitor
+from .adjacent_pieces import Adjacency
+from .least_squares_planes import Planes
+from .straight_pieces import Pieces
+
+# Seeds between two reports of progress.
+_STRETCH = 200
+
+
+@dataclass(frozen=True)
+class Growth:
+    """When a piece belongs to a region.
+
+    Attributes
+    ----------
+    tolerance : float
+        Distance of both ends of a piece from the plane, m.
+    seed_deviation : float
+        Root mean square distance of the points of a seed from its plane, m.
+    is_planar : bool
+        Whether the plane is that of the whole region, or of the pieces beside the new one.
+    """
+
+    tolerance: float
+    seed_deviation: float
+    is_planar: bool
+
+
+class Regions:
+    """Regions that grow one after the other.
+
+    Parameters
+    ----------
+    pieces : Pieces
+        The pieces (m).
+    adjacency : Adjacency
+        Which of them lie side by side.
+    growth : Growth
+        What belongs together.
+
+    Attributes
+    ----------
+    region : list of int
+        Region of each piece, from 0; -1 is none.
+    plane : ndarray of shape (m, 4)
+        Unit normal and its product with a point of the plane that each piece of a region lies on.
+    """
+
+    def __init__(self, pieces: Pieces, adjacency: Adjacency, growth: Growth) -> None:
+        self.pieces, self.growth = pieces, growth
+        self.adjacency = adjacency
+        self.neighbors = adjacency.neighbors(len(pieces))
+        self.first_pair = np.searchsorted(adjacency.one, np.arange(len(pieces))).tolist()
+        self.region = [-1] * len(pieces)
+        self.plane = np.full((len(pieces), 4), np.nan)
+        self.moments = _moments(pieces.points)
+        self.ends = pieces.ends
+
+    def grow(self, min_overlap: float, monitor: Monitor) -> None:
+        """Grow a region from each seed whose pieces are still free, those of most points first."""
+        size = self.pieces.points.count
+        triples = self.adjacency.triples(size, min_overlap)
+        is_flat = self._flat(triples)
+        triples = triples[is_flat]
+        triples = triples[np.lexsort((triples[:, 1], -size[triples].sum(axis=1)))]
+        number = 0
+        for i, seed in enumerate(triples.tolist()):
+            if i % _STRETCH == 0:
+                monitor.progress(i / len(triples))
+            if all(self.region[piece] < 0 for piece in seed):
+                self._grow(seed, number)
+                number += 1
+        monitor.progress(1.0)
+
+    def _flat(self, triples: np.ndarray) -> np.ndarray:
+        """Return which triples (t, 3) lie on a plane: their points on the whole, and all their ends."""
+        if not len(triples):
+            return np.zeros(0, bool)
+        t = len(triples)
+        points = self.pieces.points.chosen(triples.ravel()).merged(np.repeat(np.arange(t), 3), t)
+        off = self.ends[triples].reshape(t, 6, 3) - points.center[:, None]
+        distance = np.abs(np.einsum("ijk,ik->ij", off, points.normal)).max(axis=1)
+        deviation = np.sqrt(np.maximum(points.eigenvalues[:, 2], 0))
+        return (deviation <= self.growth.seed_deviation) & (distance <= self.growth.tolerance)
+
+    def _grow(self, seed: list[int], number: int) -> None:
+        if self.growth.is_planar:
+            self._grow_plane(seed, number)
+        else:
+            self._grow_smooth(seed, number)
+
+    def _grow_plane(self, seed: list[int], number: int) -> None:
+        """Add pieces that lie on the plane of the region, which is fitted anew with each, until none can be added."""
+        members = list(seed)
+        moments = self.moments[seed].sum(axis=0)
+        plane = _plane(moments)
+        for piece in seed:
+            self.region[piece] = number
+        waiting = deque(self._free(seed))
+        rejected: list[int] = []
+        n_before = 0
+        while waiting:
+            piece = waiting.popleft()
+            if self.region[piece] >= 0:
+                continue
+            if self._is_on(piece, plane):
+                self.region[piece] = number
+                members.append(piece)
+                moments += self.moments[piece]
+                plane = _plane(moments)
+                waiting.extend(self._free([piece]))
+            else:
+                rejected.append(piece)
+            if not waiting and len(members) > n_before:
+                # The plane has changed since these were looked at.
+                n_before = len(members)
+                waiting.extend(dict.fromkeys(rejected))
+                rejected = []
+        self.plane[members] = plane
+
+    def _grow_smooth(self, seed: list[int], number: int) -> None:
+        """Add pieces that lie on the plane of the piece beside them, which leans to its neighbors in the region."""
+        for piece in seed:
+            self.region[piece] = number
+        for piece in seed:
+            self.plane[piece] = self._local_plane(piece, number)
+        waiting = deque((piece, beside) for beside in seed for piece in self._free([beside]))
+        while waiting:
+            piece, beside = waiting.popleft()
+            if self.region[piece] >= 0 or not self._is_beside(piece, beside):
+                continue
+            self.region[piece] = number
+            self.plane[piece] = self._local_plane(piece, number)
+            waiting.extend((other, piece) for other in self._free([piece]))
+
+    def _local_plane(self, piece: int, number: int) -> np.ndarray:
+        """Return the plane (4,) along a piece and, across it, to the pieces of its region beside it on the average."""
+        start, others = self.first_pair[piece], self.neighbors[piece]
+        rows = [row for row, other in enumerate(others, start) if self.region[other] == number]
+        ways = self.adjacency.offset[rows]
+        across = np.sign(ways @ ways[0]) @ ways
+        normal = np.cross(self.pieces.direction[piece], across)
+        normal /= max(float(np.linalg.norm(normal)), np.finfo(float).tiny)
+        return np.append(normal, normal @ self.pieces.points.center[piece])
+
+    def _free(self, pieces: list[int]) -> list[int]:
+        """Return the pieces beside some that are of no region."""
+        return [other for piece in pieces for other in self.neighbors[piece] if self.region[other] < 0]
+
+    def _is_on(self, piece: int, plane: np.ndarray) -> bool:
+        return bool((np.abs(self.ends[piece] @ plane[:3] - plane[3]) <= self.growth.tolerance).all())
+
+    def _is_beside(self, piece: int, beside: int) -> bool:
+        """Return whether the stretch of a piece beside another one lies on the plane there."""
+        first, last = self.ends[piece]
+        low, high = self.ends[beside] @ self.pieces.direction[beside]
+        start, stop = self.ends[piece] @ self.pieces.direction[beside]
+        way = stop - start
+        shares = np.sort([(low - start) / way, (high - start) / way]).clip(0, 1) if way else np.array([0.0, 1.0])
+        plane = self.plane[beside]
+        off = (first + shares[:, None] * (last - first)) @ plane[:3] - plane[3]
+        return bool((np.abs(off) <= self.growth.tolerance).all())
+
+
+def _moments(points: Planes) -> np.ndarray:
+    """Return number, sums and sums of products (m, 10) of the points of pieces."""
+    x, y, z = points.center.T
+    products = np.column_stack([x * x, y * y, z * z, x * y, x * z, y * z])
+    return np.column_stack([np.ones(len(points)), points.center, points.covariance + products]) * points.count[:, None]
+
+
+def _plane(moments: np.ndarray) -> np.ndarray:
+    """Return the normal, and its product with the center (4,), of the plane of points with these moments (10,)."""
+    center = moments[1:4] / moments[0]
+    covariance = moments[[4, 7, 8, 7, 5, 9, 8, 9, 6]].reshape(3, 3) / moments[0] - np.outer(center, center)
+    normal = np.linalg.eigh(covariance)[1][:, 0]
+    return np.append(normal, normal @ center)

@@ -1,0 +1,242 @@
+"""Planes and smooth surfaces from the straight pieces of recorded scan lines."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Optional
+
+import numpy as np
+
+from ..geometry.components import number_large
+from ..packages import spatial
+from ..params import PointDensity, SurfaceNoise
+from ..sampling.cloud_sampling import CloudSampling, without_noise
+from ..stage import Param, stage
+from .adjacent_pieces import adjacent_pieces
+from .piece_growing import Growth, Regions
+from .recorded_lines import Recording, recorded_lines
+from .straight_pieces import pieces_of, split_lines
+
+# Roughness of a surface beyond noise, in point spacings: what it bends between its points.
+_BENDS = 0.05
+
+# Distance from a chord or plane within which points belong to it (standard deviations): the ends of a chord have noise,
+# too, and of some hundred points the farthest counts.
+_WITHIN = 4.5
+
+# Root mean square distance of the points of a seed from their plane (standard deviations): with a dozen degrees of
+# freedom 1 % of the planes have more (chi-square).
+_SMOOTH = 1.5
+
+# Distance of adjacent lines at most, in mean distances of lines: where strips do not overlap lines are twice as far
+# apart as on the average, and pulses do not fall side by side.
+_LINES = 3.0
+
+# Steps between points of a line at most, in the same distances and in median steps of the lines.
+_LINE_GAPS, _STEP_GAPS = 3.0, 10.0
+
+
+@stage(
+    "Segment recorded lines",
+    group="Segmentation",
+    tags="scan line,scan angle,GPS time,split,region growing,range image,planes,segmentation,Jiang,Bunke",
+    writes=("segment_id",),
+)
+def segment_recorded_lines(
+    xyz,
+    classification,
+    gps_time=None,
+    scan_angle=None,
+    point_source_id=None,
+    scan_direction_flag=None,
+    edge_of_flight_line=None,
+    return_number=None,
+    number_of_returns=None,
+    *,
+    surfaces: Annotated[
+        str,
+        Param(
+            "Surfaces",
+            "Pieces join a region near the plane of all its points (planar), as published, or near the plane of the "
+            "pieces beside them (smooth), so that terrain, domes and ramps are one.",
+            choices=("planar", "smooth"),
+        ),
+    ] = "planar",
+    tolerance: Annotated[
+        Optional[float],
+        Param(
+            "Tolerance",
+            "Distance from the straight line through a piece, and of its ends from the plane of a region.",
+            unit="m",
+            low=0,
+            high=100,
+            open_low=True,
+            automatic="4.5 standard deviations: the surface noise and 0.05 point spacings.",
+        ),
+    ] = None,
+    line_distance: Annotated[
+        Optional[float],
+        Param(
+            "Line distance",
+            "Distance of neighboring points on adjacent scan lines at most.",
+            unit="m",
+            low=0,
+            high=1000,
+            open_low=True,
+            automatic="3 times the mean distance of scan lines.",
+        ),
+    ] = None,
+    max_gap: Annotated[
+        Optional[float],
+        Param(
+            "Widest gap",
+            "Scan lines end where two points in a row are farther apart.",
+            unit="m",
+            low=0,
+            high=1000,
+            open_low=True,
+            automatic="the larger of 10 median steps between points and 3 distances of scan lines.",
+        ),
+    ] = None,
+    min_overlap: Annotated[
+        float,
+        Param(
+            "Minimum overlap",
+            "Share of the shorter of two pieces of a seed that lies beside the other.",
+            low=0,
+            high=1,
+        ),
+    ] = 0.5,
+    min_piece: Annotated[
+        int,
+        Param("Minimum points of a piece", "Straight pieces with fewer points join nothing.", low=3, high=10_000),
+    ] = 5,
+    min_points: Annotated[
+        int, Param("Minimum points", "Segments with fewer points get no id.", low=1, high=10_000_000)
+    ] = 30,
+    noise: SurfaceNoise = None,
+    density: PointDensity = None,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Split recorded scan lines into straight pieces and merge those of adjacent lines to planes or smooth surfaces.
+
+    Lines come from GPS times, scan angles and the scanner's marks; without times, from the order of the points. Each
+    is split at its farthest point until its pieces are straight. Three long pieces side by side on adjacent lines that
+    lie on a plane are a seed. It grows by adjacent pieces whose ends lie on its surface until none can be added.
+    For clouds from scanners whose order is lost, run 'Segment scan lines', which lays lines of its own.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes; noise (7, 18) is left out.
+    gps_time : ndarray of shape (n,), float64, optional
+        Time of the pulses, s. Without it the points are taken in their order.
+    scan_angle : ndarray of shape (n,), float32, optional
+        Angles of the beams, °: lines end where they begin to grow or to shrink.
+    point_source_id : ndarray of shape (n,), uint16, optional
+        Flight line or scanner, each with lines of its own.
+    scan_direction_flag, edge_of_flight_line : ndarray of shape (n,), uint8, optional
+        Lines end where the mirror turns.
+    return_number, number_of_returns : ndarray of shape (n,), uint8, optional
+        The last return of a pulse is on the line.
+
+    Returns
+    -------
+    segment_id : ndarray of shape (n,), int32
+        Segments from 1, those of the largest seeds first; 0 is none.
+
+    Notes
+    -----
+    The paper works on range images. Here adjacent lines are found by their points: the nearest one to the side of a
+    piece, and the nearest one on the opposite side, also of another flight line. The ends of a piece are those of the
+    straight line through its points by least squares, so that noise of single points does not count. Points that are
+    on no piece, such as those at bends and first returns, join the region of one of the 3 nearest points that have one
+    if they lie on its plane. The published method merges planes only.
+
+    References
+    ----------
+    Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point
+    clouds, sections 2.1 and 3.1. Jiang, X. Y., Bunke, H., 1994. Fast segmentation of range images into planar regions
+    by scan line grouping. Machine Vision and Applications 7 (2), 115-122.
+    """
+    sampling = sampling or CloudSampling.of(xyz, classification)
+    density = sampling.surface_density if density is None else density
+    noise = sampling.noise if noise is None else noise
+    deviation = float(np.hypot(noise, _BENDS / np.sqrt(density)))
+    tolerance = _WITHIN * deviation if tolerance is None else tolerance
+    used = np.flatnonzero(without_noise(classification))
+    points = xyz[used] - xyz[used].min(axis=0)
+    recording = Recording(gps_time, scan_angle, point_source_id, scan_direction_flag, edge_of_flight_line).take(used)
+    if not recording.has_times:
+        monitor.warn("The points have no GPS times, so scan lines are taken from the order of the points.")
+    monitor.inform(f"Scan lines are told apart by: {', '.join(recording.evidence)}.")
+
+    last = np.flatnonzero(_is_last(return_number, number_of_returns, used))
+    row = last[recording.take(last).order(points[last])]
+    between = _distance_of_lines(points[row], density)
+    line_distance = _LINES * between if line_distance is None else line_distance
+    max_gap = max(_LINE_GAPS * between, _STEP_GAPS * _median_step(points[row])) if max_gap is None else max_gap
+    monitor.resolved(density=density, noise=noise, tolerance=tolerance, line_distance=line_distance, max_gap=max_gap)
+    line = recorded_lines(points[row], recording.take(row), max_gap)
+    piece = split_lines(points[row], line, tolerance, min_piece, monitor.part(0, 0.3))
+    monitor.inform(f"{int(line.max(initial=-1)) + 1} scan lines, {int(piece.max(initial=-1)) + 1} straight pieces.")
+
+    on_piece = piece >= 0
+    row, piece = row[on_piece], piece[on_piece]
+    pieces = pieces_of(points[row], piece)
+    adjacency = adjacent_pieces(points[row], piece, pieces, line_distance, monitor.part(0.3, 0.6))
+    growth = Growth(tolerance, _SMOOTH / _WITHIN * tolerance, surfaces == "planar")
+    regions = Regions(pieces, adjacency, growth)
+    regions.grow(min_overlap, monitor.part(0.6, 0.9))
+    segment = _with_others(points, row, piece, regions, line_distance, tolerance)
+    segment_id = np.zeros(len(xyz), np.int32)
+    segment_id[used] = number_large(segment, min_points)
+    monitor.progress(1.0)
+    return segment_id
+
+
+def _is_last(return_number: Any, number_of_returns: Any, used: np.ndarray) -> np.ndarray:
+    """Return which points are the last returns of their pulses; all where the cloud does not tell."""
+    if return_number is None or number_of_returns is None:
+        return np.ones(len(used), bool)
+    return return_number[used] >= number_of_returns[used]
+
+
+def _median_step(points: np.ndarray) -> float:
+    """Return the median distance (m) of points that follow one another."""
+    step = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    return float(np.median(step[step > 0])) if (step > 0).any() else 0.0
+
+
+def _distance_of_lines(points: np.ndarray, density: float) -> float:
+    """Return the mean distance (m) of lines on surfaces with so many points per m²; at least that of points on them."""
+    step = _median_step(points)
+    return max(1 / (density * step), 1 / float(np.sqrt(density))) if step > 0 else 1 / float(np.sqrt(density))
+
+
+def _with_others(
+    points: np.ndarray, row: np.ndarray, piece: np.ndarray, regions: Regions, distance: float, tolerance: float
+) -> np.ndarray:
+    """Return the region (n,) of each point, -1 is none: that of its piece, or of points beside it on whose plane it is.
+
+    ``row`` and ``piece`` tell the points of pieces.
+    """
+    region = np.asarray(regions.region, np.int64)
+    segment = np.full(len(points), -1, np.int64)
+    segment[row] = region[piece]
+    known = segment[row] >= 0
+    others = np.flatnonzero(segment < 0)
+    if not known.any() or not len(others):
+        return segment
+    row, piece = row[known], piece[known]
+    count = min(3, len(row))
+    found = spatial.cKDTree(points[row]).query(points[others], count, distance_upper_bound=distance, workers=-1)[1]
+    for near in found.reshape(len(others), count).T:
+        free = np.flatnonzero((segment[others] < 0) & (near < len(row)))
+        plane = regions.plane[piece[near[free]]]
+        off = np.abs(np.einsum("ij,ij->i", points[others[free]], plane[:, :3]) - plane[:, 3])
+        on = free[off <= tolerance]
+        segment[others[on]] = region[piece[near[on]]]
+    return segment
