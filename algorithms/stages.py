@@ -41,6 +41,7 @@ from .shapes.detect_cylinders import detect_cylinders
 from .shapes.detect_spheres import detect_spheres
 from .shapes.segment_planes_hough import segment_planes_hough
 from .shapes.segment_tree import segment_tree
+from .simulation.simulate_bridges import simulate_bridges
 from .simulation.simulate_drone_site import simulate_drone_site
 from .simulation.simulate_flight import simulate_flight
 from .simulation.simulate_plant import simulate_plant
@@ -104,6 +105,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     assess_segments,
     compare_corners,
     simulate_town,
+    simulate_bridges,
     simulate_flight,
     simulate_plant,
     simulate_tree,

@@ -87,6 +87,7 @@ STAGE_IDS = {
     "assessmodels",
     "comparecorners",
     "simulatetown",
+    "simulatebridges",
     "simulateflight",
     "simulatevillage",
     "simulatedronesite",
@@ -139,7 +140,7 @@ WITHOUT_UNIT = {
 OWN_CLASSES = {"classify_dimensionality"}
 # Our own, after no publication.
 WITHOUT_REFERENCES = {"simulate_plant", "simulate_town", "simulate_village", "simulate_street", "simulate_drone_site"}
-WITHOUT_REFERENCES |= {"simulate_tree"}
+WITHOUT_REFERENCES |= {"simulate_bridges", "simulate_tree"}
 # Stems are scanned from the ground, and finer than the scene is.
 WITHOUT_FEATURES = {"segment_tree"}
 # Automatic tunables that matter only beside another setting.
@@ -157,6 +158,7 @@ QUICK: dict[str, dict[str, Any]] = {
     "simulate_plant": {"pipes": 2, "tanks": 0, "spheres": 1, "density": 200.0},
     "filter_points": {"dimension": "Intensity"},
     "simulate_town": {"size": 80.0},
+    "simulate_bridges": {"kind": "canal", "density": 1.0},
     "simulate_flight": {"duration": 20.0, "line_rate": 4.0},
     "simulate_village": {"size": 90.0, "density": 5.0},
     "segment_facade_lines": {"tolerance": 1.0},

@@ -50,6 +50,8 @@ IDS = {
     "segmentclusters",
     "classifygroundsegments",
     "segmentscanlines",
+    "segmentrecordedlines",
+    "simulatebridges",
     "segmenttinplanes",
     "segmentsurfaces",
     "segmentvoxels",

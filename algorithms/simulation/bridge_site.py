@@ -1,0 +1,298 @@
+"""Bridges and what looks like them, each on a lot: terrain, decks, parapets, piers, quays, cars and trees."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from .relief import Relief
+from .scene import Scene
+from .solids import Rect, Solid, flat, inclined
+
+# Side of a lot (m): the ramps of a fly-over are 46 m long on both sides of its span.
+LOT = 140.0
+
+# Obstacles end this far (m) before the border of their lot, and over this length.
+_MARGIN, _FADE = 4.0, 12.0
+
+# Vertical walls that are terrain are this steep (tangent): beams up to 30° off the vertical meet them once.
+_WALL = 1.7
+
+# Thickness of a deck, height and width of its parapets, what it lies on at its ends (m).
+_THICKNESS, _PARAPET, _PARAPET_WIDTH, _SEAT = 0.9, 1.0, 0.25, 1.0
+
+# Length, width and height of a car, and the way from one to the next (m).
+_CAR, _CARS = (4.3, 1.8, 1.45), 15.0
+
+# Slope of the ramps of a fly-over, and its height (m); slope of embankments and cuttings.
+_RAMP, _FLY_OVER = 0.12, 5.5
+_BANK = 0.67
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What a lot holds.
+
+    Attributes
+    ----------
+    half_width : float
+        Half the width of the obstacle between its edges, m.
+    depth : float
+        Its depth under the land, m.
+    bank : float
+        Slope of its banks, a tangent; they lie within ``half_width``.
+    is_water : bool
+        Whether water stands in it.
+    decks : tuple of float
+        Widths of the decks side by side, m; none where nothing crosses it.
+    arch : float
+        Height of the middle of a deck over its ends, m.
+    """
+
+    half_width: float
+    depth: float
+    bank: float
+    is_water: bool = False
+    decks: tuple[float, ...] = (9.0,)
+    arch: float = 0.0
+
+
+KINDS = {
+    "canal": Kind(9.0, 3.0, _WALL, True, (8.0,)),
+    "arch": Kind(9.0, 3.0, _WALL, True, (6.0,), 0.9),
+    "footbridge": Kind(6.0, 2.2, 0.8, True, (2.5,)),
+    "cutting": Kind(20.0, 6.0, _BANK, False, (10.0,)),
+    "two decks": Kind(20.0, 6.0, _BANK, False, (10.0, 10.0)),
+    "valley": Kind(32.0, 14.0, 0.6, True, (9.0,)),
+    "fly-over": Kind(12.0, 0.0, _WALL, False, (9.0,)),
+    "tunnel": Kind(9.0, 6.0, _WALL, False, ()),
+    "jetty": Kind(15.0, 3.0, _WALL, True, ()),
+    "ramp": Kind(5.0, -4.0, _WALL, False, ()),
+}
+
+# Water stands this high over the bottom (m).
+_WATER = 1.0
+
+# Half the length of the tunnel, over which the land goes on (m), and the slope of the road down to its mouths.
+_TUNNEL, _ROAD = 30.0, 0.16
+
+
+@dataclass(frozen=True)
+class Lot:
+    """One kind at one place: its middle (m) and the angle (rad) of decks to the shortest way across."""
+
+    kind: str
+    x: float
+    y: float
+    turn: float
+    skew: float
+
+    def local(self, x, y) -> tuple[np.ndarray, np.ndarray]:
+        """Return positions (m) across and along the obstacle."""
+        cos, sin = np.cos(self.turn), np.sin(self.turn)
+        return (x - self.x) * cos + (y - self.y) * sin, (y - self.y) * cos - (x - self.x) * sin
+
+    def rect(self, across: float, along: float, length: float, width: float, turn: float = 0.0) -> Rect:
+        """Return a rectangle by its middle in the lot, its length across the obstacle but for a further turn (rad)."""
+        frame = Rect(self.x, self.y, 1.0, 1.0, self.turn)
+        return frame.part(across, along, length, width, turn)
+
+    def height(self, x, y) -> np.ndarray:
+        """Return the elevation (m) of the land, of the bottom under water."""
+        u, v = self.local(x, y)
+        made = KINDS[self.kind]
+        if self.kind == "fly-over":
+            return self._embankment(u, v)
+        fade = np.clip((LOT / 2 - _MARGIN - np.abs(v)) / _FADE, 0, 1)
+        if self.kind == "ramp":
+            # A road that climbs along the lot and ends over a wall, as loading ramps do.
+            climb = np.clip((v + 35) * _RAMP, 0, -made.depth) * (v < 5)
+            side = (made.half_width + 2 - np.abs(u)) * _WALL
+            return np.clip(np.minimum(np.minimum(climb, side), np.maximum(5 - v, 0) * _WALL), 0, None)
+        depth = np.clip((made.half_width - np.abs(u)) * made.bank, 0, made.depth)
+        if self.kind == "tunnel":
+            # The road comes down to both mouths between walls, and the land goes on over it between them.
+            down = np.clip((LOT / 2 - _MARGIN - np.abs(v)) * _ROAD, 0, made.depth)
+            return -np.minimum(np.minimum(depth, down), np.clip((np.abs(v) - _TUNNEL) * _WALL, 0, None))
+        return -depth * fade
+
+    def _embankment(self, u, v) -> np.ndarray:
+        """Return the height (m) of the ramps of a fly-over, which lie along its deck."""
+        cos, sin = np.cos(self.skew), np.sin(self.skew)
+        along, across = u * cos + v * sin, v * cos - u * sin
+        past = np.abs(along) - self.span / 2
+        top = _FLY_OVER - np.clip(past - 2, 0, None) * _RAMP
+        bank = (KINDS[self.kind].decks[0] / 2 + 8 - np.abs(across)) * _BANK
+        # Abutments follow the road below; the deck begins where they have its height.
+        wall = np.minimum(past, np.abs(u) - KINDS[self.kind].half_width) * _WALL + _FLY_OVER
+        foot = np.minimum(bank, wall)
+        return np.clip(np.minimum(top, foot), 0, None)
+
+    @property
+    def span(self) -> float:
+        """Length (m) of the deck from edge to edge of the obstacle."""
+        made = KINDS[self.kind]
+        width = sum(made.decks) + 1.5 * (len(made.decks) - 1)
+        return 2 * made.half_width / np.cos(self.skew) + width * np.tan(abs(self.skew))
+
+    @property
+    def water_level(self) -> float:
+        """Elevation (m) of the water, -inf without any."""
+        made = KINDS[self.kind]
+        return _WATER - made.depth if made.is_water else -np.inf
+
+
+@dataclass(frozen=True)
+class BridgeRelief(Relief):
+    """Level land with the obstacles of lots.
+
+    Parameters
+    ----------
+    lots : tuple of Lot
+        Each fills a square of :data:`LOT` around its middle.
+    """
+
+    lots: tuple[Lot, ...] = field(default=())
+
+    @property
+    def spread(self) -> float:
+        """Height (m) that the land never leaves the plane by."""
+        return max(max(kind.depth, _FLY_OVER) for kind in KINDS.values())
+
+    def ground(self, x, y) -> np.ndarray:
+        """Elevation (m) of the land, under water that of the bottom."""
+        x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
+        z = np.zeros(x.shape)
+        for lot in self.lots:
+            inside = self._in(lot, x, y)
+            z[inside] = lot.height(x[inside], y[inside])
+        return z
+
+    def surface(self, x, y) -> np.ndarray:
+        """Elevation (m) of land or water, whichever is higher."""
+        return np.maximum(self.ground(x, y), self._level(x, y))
+
+    def is_water(self, x, y) -> np.ndarray:
+        """Where water stands."""
+        return self._level(x, y) > self.ground(x, y)
+
+    def _level(self, x, y) -> np.ndarray:
+        x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
+        level = np.full(x.shape, -np.inf)
+        for lot in self.lots:
+            level[self._in(lot, x, y)] = lot.water_level
+        return level
+
+    @staticmethod
+    def _in(lot: Lot, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        return (np.abs(x - lot.x) < LOT / 2) & (np.abs(y - lot.y) < LOT / 2)
+
+
+@dataclass(frozen=True)
+class Deck:
+    """A deck: its number, kind, angle (°) and rectangle."""
+
+    object_id: int
+    kind: str
+    angle: float
+    rect: Rect
+
+
+def build_site(kinds: tuple[str, ...], angle: float, cars: bool, trees: bool, seed: int) -> tuple[Scene, list[Deck]]:
+    """Build a site with a lot for each of ``kinds``, its decks ``angle`` degrees off the shortest way across."""
+    rng = np.random.default_rng([seed, 7])
+    columns = int(np.ceil(np.sqrt(len(kinds))))
+    lots = []
+    for number, kind in enumerate(kinds):
+        row, column = divmod(number, columns)
+        turn = float(rng.uniform(0, 2 * np.pi)) if KINDS[kind].decks else float(rng.integers(4) * np.pi / 2)
+        x, y = (column + 0.5) * LOT, (row + 0.5) * LOT
+        lots.append(Lot(kind, x, y, turn, float(np.radians(angle))))
+    scene = Scene(BridgeRelief(columns * LOT, lots=tuple(lots)))
+    decks = []
+    for lot in lots:
+        decks += _bridge(scene, lot, cars)
+        if KINDS[lot.kind].is_water and KINDS[lot.kind].bank == _WALL:
+            _quays(scene, lot)
+        if trees:
+            _trees(scene, lot, rng)
+    return scene, decks
+
+
+def _bridge(scene: Scene, lot: Lot, cars: bool) -> list[Deck]:
+    """Put the decks of a lot with parapets, piers under long ones, and cars."""
+    made = KINDS[lot.kind]
+    top = _FLY_OVER if lot.kind == "fly-over" else 0.05
+    total = sum(made.decks) + 1.5 * (len(made.decks) - 1)
+    decks, at = [], -total / 2
+    for width in made.decks:
+        frame = lot.rect(0.0, 0.0, 1.0, 1.0, lot.skew)
+        rect = frame.part(0.0, at + width / 2, lot.span + 2 * _SEAT, width)
+        at += width + 1.5
+        number = scene.new_id()
+        scene.solids.append(
+            Solid(rect, _deck_top(rect, top, made.arch), top - _THICKNESS, PointClass.BRIDGE_DECK, number)
+        )
+        for side in (-1, 1):
+            rail = rect.part(0.0, side * (width - _PARAPET_WIDTH) / 2, rect.length, _PARAPET_WIDTH)
+            tops = _deck_top(rail, top + _PARAPET, made.arch)
+            scene.solids.append(Solid(rail, tops, top - _THICKNESS, PointClass.UNCLASSIFIED, number))
+        if rect.length > 40:
+            for share in (-0.2, 0.2):
+                pier = rect.part(share * rect.length, 0.0, 1.2, width - 2.0)
+                scene.solids.append(Solid(pier, flat(pier, top - _THICKNESS), -20.0, PointClass.UNCLASSIFIED, number))
+        if cars and width > 4 and not made.arch:
+            _cars(scene, rect, top)
+        decks.append(Deck(number, lot.kind, float(np.degrees(lot.skew)), rect))
+    return decks
+
+
+def _deck_top(rect: Rect, top: float, arch: float) -> np.ndarray:
+    """Return the planes of a deck whose ends are ``top`` (m) high, level or with a middle ``arch`` (m) higher."""
+    if not arch:
+        return flat(rect, top)
+    half = rect.length / 2
+    # Two planes on each side: steeper toward the ends.
+    planes = [
+        inclined(rect, side * half * share, 0.0, top + arch * rise, -side * arch / half * slope, 0.0)
+        for side in (-1, 1)
+        for share, rise, slope in ((1.0, 0.0, 1.4), (0.0, 1.0, 0.5))
+    ]
+    return np.array(planes)
+
+
+def _cars(scene: Scene, deck: Rect, top: float) -> None:
+    """Put cars on both lanes of a deck."""
+    length, width, height = _CAR
+    for side in (-1, 1):
+        for along in np.arange(-deck.length / 2 + 5 + 3 * side, deck.length / 2 - 4, _CARS):
+            car = deck.part(float(along), side * deck.width / 4, length, width)
+            scene.solids.append(Solid(car, flat(car, top + height), top, PointClass.UNCLASSIFIED, scene.new_id()))
+
+
+def _quays(scene: Scene, lot: Lot) -> None:
+    """Put vertical walls along a canal, and a jetty into it where nothing crosses it; both are terrain."""
+    made = KINDS[lot.kind]
+    long = LOT - 2 * (_MARGIN + _FADE)
+    for side in (-1, 1):
+        quay = lot.rect(side * (made.half_width - 0.5), 0.0, 3.0, long)
+        scene.solids.append(Solid(quay, flat(quay, 0.0), -made.depth - 1, PointClass.GROUND, 0))
+    if not made.decks:
+        jetty = lot.rect(-made.half_width / 2 - 1, 0.0, made.half_width + 2, 6.0)
+        scene.solids.append(Solid(jetty, flat(jetty, 0.0), -made.depth - 1, PointClass.GROUND, 0))
+
+
+def _trees(scene: Scene, lot: Lot, rng: np.random.Generator) -> None:
+    """Plant trees on the land at some distance from decks."""
+    made = KINDS[lot.kind]
+    for u, v in rng.uniform(-LOT / 2 + 8, LOT / 2 - 8, (24, 2)):
+        cos, sin = np.cos(lot.turn), np.sin(lot.turn)
+        x, y = lot.x + u * cos - v * sin, lot.y + u * sin + v * cos
+        across = abs(v * np.cos(lot.skew) - u * np.sin(lot.skew))
+        is_free = abs(u) > made.half_width + 4 and across > sum(made.decks) / 2 + 12
+        if is_free and max(abs(x - lot.x), abs(y - lot.y)) < LOT / 2 - 6:
+            radius = float(rng.uniform(2, 4))
+            z = float(scene.relief.ground(x, y))
+            scene.crowns.add(float(x), float(y), z + 2 + radius, radius, radius, 1.2, scene.new_id())

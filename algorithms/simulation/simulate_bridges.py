@@ -1,0 +1,121 @@
+"""Bridges over water, roads and valleys, and what looks like them, scanned from the air."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+from ..params import Seed
+from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
+from .bridge_site import KINDS, Deck, build_site
+from .scanner import MAX_PULSES, RECORDED, scan
+
+_ALL = "all"
+
+_DECK_FIELDS = (
+    Field("id", int, "number of the deck, as SegmentID of its points"),
+    Field("kind", str, "kind of the crossing"),
+    Field("angle", float, "angle to the shortest way across", "°"),
+    Field("width", float, "width", "m"),
+    Field("length", float, "length", "m"),
+)
+
+
+@stage(
+    "Simulate bridges",
+    group="Simulation",
+    tags="synthetic,bridge,fly-over,tunnel,canal,quay,ramp,airborne,demo,example,test,truth,teaching",
+    creates=RECORDED,
+    layers=(Layer("decks", "True bridge decks", "Polygon", _DECK_FIELDS),),
+)
+def simulate_bridges(
+    *,
+    kind: Annotated[
+        str,
+        Param(
+            "Kind",
+            "A flat or arched bridge over a canal between quays, a footbridge over a stream, one or two decks over a "
+            "cutting, a bridge over a valley, a fly-over with ramps; or what is no bridge: the mouths of a tunnel, a "
+            "jetty, a ramp that ends over a wall. 'all' lays them side by side.",
+            choices=(_ALL, *KINDS),
+        ),
+    ] = _ALL,
+    angle: Annotated[
+        float, Param("Angle", "Angle of the decks to the shortest way across.", unit="°", low=0, high=50)
+    ] = 0.0,
+    density: Annotated[
+        float, Param("Pulse density", "Laser pulses on average.", unit="pulses/m²", low=0.5, high=100)
+    ] = 8.0,
+    cars: Annotated[bool, Param("Cars", "Cars on the decks.")] = True,
+    trees: Annotated[bool, Param("Trees", "Trees on the land.")] = True,
+    range_noise: Annotated[
+        float,
+        Param("Range noise", "Standard deviation of the measured distances.", unit="m", low=0, high=0.2),
+    ] = 0.02,
+    seed: Seed = 1,
+    monitor: Optional[Monitor] = None,
+):
+    """Scan made-up bridges from the air: decks with parapets, piers and cars, and the true class of every point.
+
+    Each kind lies on a lot of 140 m, turned at random. Nothing but decks is bridge deck (17): the land over a tunnel,
+    quays, jetties and ramps are ground.
+
+    Returns
+    -------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates (m), by time, then by return.
+    classification : ndarray of shape (n,), uint8
+        The truth: 2 ground with banks, embankments and quays; 9 water; 17 bridge decks with their sides; 1 parapets,
+        piers and cars; 3, 4, 5 trees.
+    return_number, number_of_returns : ndarray of shape (n,), uint8
+        Returns of a pulse, up to five.
+    intensity : ndarray of shape (n,), uint16
+        Brightness by material.
+    scan_angle : ndarray of shape (n,), float32
+        Angle of the beam to the vertical (°).
+    point_source_id : ndarray of shape (n,), uint16
+        Flight line, from 1.
+    gps_time : ndarray of shape (n,), float64
+        Time of the pulse, s.
+    segment_id : ndarray of shape (n,), int32
+        Number of the deck, car or tree; 0 for ground and water.
+    decks : LayerFeatures
+        Outlines of the decks.
+
+    Raises
+    ------
+    ValueError
+        If there would be more than 50 million pulses.
+
+    Notes
+    -----
+    Scanned as in 'Simulate town', with strips, lines and occlusion. Walls of terrain, such as those of tunnel mouths
+    and abutments, rise at 60°, quays at 90°. Ramps rise at 12 %, steeper than roads, to keep lots small.
+
+    Examples
+    --------
+    >>> from lidar_buildings.algorithms.simulation.simulate_bridges import simulate_bridges
+    >>> xyz, classification, *_, decks = simulate_bridges(kind="canal", density=0.5)
+    >>> len(decks), bool((classification == 17).any())
+    (1, True)
+    """
+    kinds = tuple(KINDS) if kind == _ALL else (kind,)
+    scene, decks = build_site(kinds, angle, cars, trees, seed)
+    if density * scene.size**2 > MAX_PULSES:
+        raise ValueError(
+            f"The site of {scene.size:g} m with {density:g} pulses per m² has {density * scene.size**2 / 1e6:.0f} "
+            f"million pulses, more than {MAX_PULSES / 1e6:.0f} million; lower the density."
+        )
+    made = scan(scene, density=density, range_noise=range_noise, noise_points=0.0, seed=seed, monitor=monitor)
+    return (*(getattr(made, name) for name in RECORDED), _layer(decks))
+
+
+def _layer(decks: list[Deck]) -> LayerFeatures:
+    columns = {
+        "id": [deck.object_id for deck in decks],
+        "kind": [deck.kind for deck in decks],
+        "angle": [deck.angle for deck in decks],
+        "width": [deck.rect.width for deck in decks],
+        "length": [deck.rect.length for deck in decks],
+    }
+    rings = [deck.rect.corners() for deck in decks]
+    return LayerFeatures([[ring[[0, 1, 2, 3, 0]]] for ring in rings], columns)
