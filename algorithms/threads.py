@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import os
-from concurrent.futures import ThreadPoolExecutor
-from typing import Callable
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor, wait
+from threading import Event
+from typing import Any, Callable
 
 import numpy as np
 
-from .stage import Monitor
+from .stage import Cancelled, Monitor
 
 # Each thread holds arrays of its own, up to 20 MB: with one for each core of a large server they would take more memory
 # than the cloud.
 _MOST_THREADS = 32
 
+
+# Seconds between two looks at whether the user wants to stop.
+_BETWEEN_LOOKS = 0.2
 
 # What a process that shares the machine with others of its kind was told to take.
 _TOLD: list[int] = []
@@ -52,3 +57,61 @@ def in_chunks(work: Callable[[np.ndarray], None], rows: np.ndarray, size: int, m
     finally:
         # A cancelled run must not go on in the background.
         pool.shutdown(wait=True, cancel_futures=True)
+
+
+def made_ahead(work: Callable[[int, Monitor], Any], count: int, monitor: Monitor, share: float = 1.0) -> Iterator[Any]:
+    """Yield what ``work`` makes of items that have nothing to do with each other, while threads make the next ones.
+
+    Worth it where making an item lets go of the interpreter and what is done with it does not.
+
+    Parameters
+    ----------
+    work : callable
+        Is given the number of an item, from 0, and a monitor. What it tells that one is passed on in order.
+    count : int
+        Number of items. No more than there are threads are ready or being made at a time.
+    monitor : Monitor
+        Receives the progress of items that are waited for, and ends the work in all threads where it is cancelled.
+    share : float
+        How much of the progress of an item, 0 to 1, its making is; the rest is that of what is done with it.
+    """
+    if count < 2 or n_threads() < 2:
+        for item in range(count):
+            yield work(item, monitor.part(item / count, (item + share) / count))
+        return
+    stop, pool, ahead = Event(), ThreadPoolExecutor(n_threads()), n_threads()
+    heard = [_Thread(stop) for _ in range(count)]
+    try:
+        futures = [pool.submit(work, item, heard[item]) for item in range(min(ahead, count))]
+        for item in range(count):
+            while not wait(futures[:1], _BETWEEN_LOOKS).done:
+                monitor.progress(item / count)
+            made = futures.pop(0).result()
+            heard[item].pass_on(monitor)
+            if item + ahead < count:
+                futures.append(pool.submit(work, item + ahead, heard[item + ahead]))
+            yield made
+    finally:
+        stop.set()
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+class _Thread(Monitor):
+    """The monitor of work in a thread: it keeps what it is told, and ends the work when all is to stop."""
+
+    def __init__(self, stop: Event) -> None:
+        super().__init__()
+        self._stop = stop
+
+    def progress(self, fraction: float) -> None:
+        """Raise :class:`Cancelled` when all is to stop."""
+        if self._stop.is_set():
+            raise Cancelled
+
+    def pass_on(self, monitor: Monitor) -> None:
+        """Tell another monitor, in the thread of its own, what this one was told."""
+        monitor.resolved(**self.values)
+        for sentence in self.warnings:
+            monitor.warn(sentence)
+        for sentence in self.infos:
+            monitor.inform(sentence)

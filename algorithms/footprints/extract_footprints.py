@@ -14,6 +14,7 @@ from ..geometry.groups import split_groups
 from ..params import MinBuildingArea
 from ..sampling.density import point_spacing
 from ..stage import Layer, LayerFeatures, Monitor, Param, stage
+from ..threads import made_ahead
 from .alpha_shape import Tracing, trace_outlines
 from .footprint_attributes import FIELDS, PointMeasures, footprint_attributes
 from .roof_points import find_non_building_points, find_roof_points
@@ -30,6 +31,9 @@ _TOLERANCE_SPACINGS = 1.75
 
 # Least tolerance (m): gutters and small bays.
 _LEAST_TOLERANCE = 0.4
+
+# Share of the progress that tracing takes; drawing takes the rest.
+_TRACING = 0.5
 
 
 @stage(
@@ -171,11 +175,13 @@ def extract_footprints(
     rings: list = []
     attributes: list = []
     edges = []
-    for number, part in enumerate(parts):
-        done = monitor.part(number / len(parts), (number + 1) / len(parts))
-        traced = _traced(part, measures, how, done.part(0.0, 0.6))
+    tracings = made_ahead(
+        lambda number, ahead: _traced(parts[number], measures, how, ahead), len(parts), monitor, _TRACING
+    )
+    for number, (part, traced) in enumerate(zip(parts, tracings)):
+        done = monitor.part((number + _TRACING) / len(parts), (number + 1) / len(parts))
         if traced is not None:
-            drawing = outline_faces(traced, how.tolerance, how.regularize, done.part(0.6, 1.0))
+            drawing = outline_faces(traced, how.tolerance, how.regularize, done)
             rings += [drawing.rings[face] for face in range(len(traced.labels))]
             attributes += footprint_attributes(traced, drawing, part.points, part.members, measures, roof_spacing)
             edges.append(traced.max_edge)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Optional
 
 import numpy as np
@@ -18,6 +19,9 @@ _PRICE = 0.5
 
 # Edges are looked for between samples that describe the line to this share of the tolerance.
 _FINE = 0.25
+
+# Edges whose costs are found at once end at so many samples: as many as pay for the calls of numpy, and no more.
+_ENDS_AT_ONCE = 64
 
 
 @dataclass(frozen=True)
@@ -74,6 +78,23 @@ class Line:
         """Return the samples from ``first`` to ``last``, which may be beyond the end of a closed line."""
         return np.arange(first, last + 1) % len(self.samples)
 
+    def _between(self, first: int, last: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return the samples from ``first`` to ``last`` and their weights."""
+        places, weights = self._twice
+        start = first % len(self.samples)
+        stop = start + last + 1 - first
+        if stop > len(places):
+            rows = self.rows(first, last)
+            return self.samples[rows], self.weights[rows]
+        return places[start:stop], weights[start:stop]
+
+    @cached_property
+    def _twice(self) -> tuple[np.ndarray, np.ndarray]:
+        """Samples and weights; of a closed line two rounds, since a part of these is made faster than chosen rows."""
+        if not self.is_closed:
+            return self.samples, self.weights
+        return np.concatenate([self.samples, self.samples]), np.concatenate([self.weights, self.weights])
+
     def edges(self, tolerance: float, directions: Sequence[float] = ()) -> list:
         """Return the edges that the line is best made of, wiggles of ``tolerance`` (m) aside, fitted to its samples.
 
@@ -110,21 +131,23 @@ class Line:
 
     def fitted(self, first: int, last: int, tolerance: float, direction: Optional[np.ndarray] = None) -> OutlineEdge:
         """Return the edge along the samples from ``first`` to ``last``, of a given direction or their own."""
-        rows = self.rows(first, last)
-        places, weights = self.samples[rows], self.weights[rows]
-        chord = places[-1] - places[0]
-        length = float(np.hypot(*chord))
-        along = (places - places[0]) @ (chord / max(length, 1e-9))
+        places, weights = self._between(first, last)
+        offset = places - places[0]
+        chord = offset[-1]
+        length = float(np.hypot(chord[0], chord[1]))
+        along = offset @ (chord / max(length, 1e-9))
         # Corners are rounded by half the tolerance, a spacing: what lies there belongs to no edge.
         inner = np.abs(along - length / 2) <= length / 2 - tolerance / 2
-        if inner.sum() >= 3:
+        if np.count_nonzero(inner) >= 3:
             places, weights = places[inner], weights[inner]
+            offset = places - places[0]
         if direction is None:
             direction = _principal(places, weights, chord)
-        across = direction[0] * (places[:, 1] - places[0, 1]) - direction[1] * (places[:, 0] - places[0, 0])
-        middle = _median(across, weights) * np.array([-direction[1], direction[0]])
-        center = places[0] + ((places.mean(axis=0) - places[0]) @ direction) * direction
-        return OutlineEdge(direction, center + middle, length, first, last)
+        east, north = direction.tolist()
+        middle = _median(east * offset[:, 1] - north * offset[:, 0], weights)
+        center = np.add.reduce(places) / len(places) - places[0]
+        point = places[0] + (center @ direction) * direction + middle * np.array([-north, east])
+        return OutlineEdge(direction, point, length, first, last)
 
 
 def line_along(ring: np.ndarray, outset: float = 0.0) -> Line:
@@ -153,26 +176,40 @@ def simplify(places: np.ndarray, tolerance: float, is_closed: bool) -> np.ndarra
     far = int(np.argmax(((turned - turned[0]) ** 2).sum(axis=1))) if is_closed else last
     is_kept = np.zeros(last + 1, bool)
     is_kept[[0, far, last]] = True
-    spans = [(0, far), (far, last)]
-    while spans:
-        low, high = spans.pop()
-        if high - low < 2:
-            continue
-        distance = _distances_to_chord(turned[low : high + 1])
-        at = int(np.argmax(distance))
-        if distance[at] > tolerance:
-            middle = low + 1 + at
-            is_kept[middle] = True
-            spans += [(low, middle), (middle, high)]
+    low, high = np.array([0, far]), np.array([far, last])
+    while len(low):
+        middle, distance = _farthest_from_chords(turned, low, high)
+        wide = distance > tolerance
+        low, middle, high = low[wide], middle[wide], high[wide]
+        is_kept[middle] = True
+        low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
     kept = np.flatnonzero(is_kept[:-1] if is_closed else is_kept)
     return np.sort((kept + start) % count)
 
 
-def _distances_to_chord(line: np.ndarray) -> np.ndarray:
-    """Return the distances (m - 2,) of the inner vertices of a line (m, 2) to the segment between its ends."""
-    along, offset = line[-1] - line[0], (line[1:-1] - line[0]).T
-    share = np.clip((offset[0] * along[0] + offset[1] * along[1]) / max(along @ along, 1e-30), 0, 1)
-    return np.hypot(offset[0] - share * along[0], offset[1] - share * along[1])
+def _farthest_from_chords(line: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the vertex of each span of a line that is farthest from the segment between its ends, and how far (m).
+
+    Spans lead from the vertices ``low`` (s,) to ``high`` (s,); where nothing is between, the distance is -1.
+    """
+    size = np.maximum(high - low - 1, 0)
+    first = np.cumsum(size) - size
+    span = np.repeat(np.arange(len(low)), size)
+    vertex = np.arange(len(span)) + (low + 1 - first)[span]
+    along = line[high] - line[low]
+    square = np.maximum(along[:, 0] * along[:, 0] + along[:, 1] * along[:, 1], 1e-30)
+    east, north = along[span].T
+    offset_east, offset_north = (line[vertex] - line[low[span]]).T
+    share = np.minimum(np.maximum((offset_east * east + offset_north * north) / square[span], 0.0), 1.0)
+    away = np.hypot(offset_east - share * east, offset_north - share * north)
+    distance, middle = np.full(len(low), -1.0), low.copy()
+    filled = np.flatnonzero(size)
+    if len(filled):
+        distance[filled] = np.maximum.reduceat(away, first[filled])
+        # Of several that are as far, the first one: it is written last.
+        farthest = np.flatnonzero(away == distance[span])[::-1]
+        middle[span[farthest]] = vertex[farthest]
+    return middle, distance
 
 
 def _cheapest_chain(moments: tuple[np.ndarray, np.ndarray], price: float, directions: Sequence[float]) -> list:
@@ -181,32 +218,46 @@ def _cheapest_chain(moments: tuple[np.ndarray, np.ndarray], price: float, direct
     An edge costs its ``price`` (m³) and its squares; one that has none of the ``directions`` costs the price again.
     """
     before, after = moments
-    angles = np.concatenate([directions, np.add(directions, np.pi / 2)])
-    normals = np.stack([np.sin(angles) ** 2, -2 * np.sin(angles) * np.cos(angles), np.cos(angles) ** 2])
     cost, came = np.zeros(len(before)), np.zeros(len(before), np.int64)
-    open_ = np.zeros(1, np.int64)
-    for here in range(1, len(before)):
-        spread = _spread(after[here] - before[open_])
-        xx, xy, yy = spread
-        squares = (xx + yy) / 2 - np.hypot((xx - yy) / 2, xy)
-        if len(angles):
-            squares = np.minimum(squares + price, (spread.T @ normals).min(axis=1))
-        total = cost[open_] + np.maximum(squares, 0.0)
-        best = int(np.argmin(total))
-        cost[here], came[here] = total[best] + price, open_[best]
-        # An edge that costs more than going on from here in two will do so farther on, too.
-        open_ = np.append(open_[total <= cost[here] + price * bool(len(angles))], here)
+    # An edge that costs more than going on from here in two will do so farther on, too.
+    room = price * bool(len(directions))
+    starts = np.zeros(1, np.int64)
+    for first in range(1, len(before), _ENDS_AT_ONCE):
+        ends = np.arange(first, min(first + _ENDS_AT_ONCE, len(before)))
+        starts = np.append(starts, ends)
+        squares = _squares(after[ends], before[starts], price, directions)
+        so_far = np.full(len(starts), np.inf)
+        n_earlier = len(starts) - len(ends)
+        so_far[:n_earlier] = cost[starts[:n_earlier]]
+        for row, end in enumerate(ends.tolist()):
+            total = so_far + squares[row]
+            best = total.argmin()
+            cost[end] = least = total[best] + price
+            came[end] = starts[best]
+            so_far[total > least + room] = np.inf
+            so_far[n_earlier + row] = least
+        starts = starts[so_far < np.inf]
     chain = [len(before) - 1]
     while chain[-1]:
         chain.append(int(came[chain[-1]]))
     return chain[::-1]
 
 
-def _spread(moments: np.ndarray) -> np.ndarray:
-    """Return the sums (3, n) of squares about the mean: xx, xy, yy."""
-    weight, x, y, xx, xy, yy = moments.T
+def _squares(after: np.ndarray, before: np.ndarray, price: float, directions: Sequence[float]) -> np.ndarray:
+    """Return the squares (e, s) of edges from starts to ends, with the ``price`` of those that have no direction.
+
+    ``after`` (e, 6) are the sums of moments up to the ends, ``before`` (s, 6) those up to the starts.
+    """
+    weight, x, y, xx, xy, yy = after.T[:, :, None] - before.T[:, None]
     weight = np.maximum(weight, 1e-12)
-    return np.stack([xx - x * x / weight, xy - x * y / weight, yy - y * y / weight])
+    xx, xy, yy = xx - x * x / weight, xy - x * y / weight, yy - y * y / weight
+    squares = (xx + yy) / 2 - np.hypot((xx - yy) / 2, xy)
+    if len(directions):
+        squares += price
+    for angle in np.concatenate([directions, np.add(directions, np.pi / 2)]):
+        sine, cosine = np.sin(angle), np.cos(angle)
+        np.minimum(squares, sine**2 * xx - 2 * sine * cosine * xy + cosine**2 * yy, out=squares)
+    return np.maximum(squares, 0.0)
 
 
 def cross(a: np.ndarray, b: np.ndarray) -> float:
@@ -216,11 +267,11 @@ def cross(a: np.ndarray, b: np.ndarray) -> float:
 
 def _principal(places: np.ndarray, weights: np.ndarray, chord: np.ndarray) -> np.ndarray:
     """Return the unit direction of places, along the chord where they have none of their own."""
-    moved = places - np.average(places, axis=0, weights=weights)
-    xx, yy, xy = weights @ moved[:, 0] ** 2, weights @ moved[:, 1] ** 2, weights @ (moved[:, 0] * moved[:, 1])
+    x, y = (places - np.add.reduce(places * weights[:, None]) / np.add.reduce(weights)).T
+    xx, yy, xy = weights @ (x * x), weights @ (y * y), weights @ (x * y)
     angle = 0.5 * np.arctan2(2 * xy, xx - yy)
     direction = np.array([np.cos(angle), np.sin(angle)])
-    along, length = float(direction @ chord), float(np.hypot(*chord))
+    along, length = float(direction @ chord), float(np.hypot(chord[0], chord[1]))
     if abs(along) < 0.9 * length:
         return chord / length
     return direction if along > 0 else -direction
@@ -228,5 +279,6 @@ def _principal(places: np.ndarray, weights: np.ndarray, chord: np.ndarray) -> np
 
 def _median(values: np.ndarray, weights: np.ndarray) -> float:
     order = np.argsort(values)
-    total = np.cumsum(weights[order]) - weights[order] / 2
-    return float(np.interp(total[-1] / 2 + weights[order[-1]] / 4, total, values[order]))
+    values, weights = values[order], weights[order]
+    total = weights.cumsum() - weights / 2
+    return float(np.interp(total[-1] / 2 + weights[-1] / 4, total, values))

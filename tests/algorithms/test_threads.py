@@ -8,7 +8,7 @@ import pytest
 
 from lidar_buildings.algorithms import threads
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
-from lidar_buildings.algorithms.threads import in_chunks, n_threads
+from lidar_buildings.algorithms.threads import in_chunks, made_ahead, n_threads, use_threads
 from lidar_buildings.tests.monitors import Listening
 
 
@@ -81,3 +81,57 @@ def test_an_exception_in_a_chunk_is_that_of_the_whole():
 
     with pytest.raises(ValueError, match="seven"):
         in_chunks(work, np.arange(20), 3, Monitor())
+
+
+@pytest.fixture(params=[1, 3])
+def count_of_threads(request, monkeypatch):
+    monkeypatch.setattr(threads, "_TOLD", [])
+    use_threads(request.param)
+    return request.param
+
+
+def test_items_come_in_order_and_few_are_made_ahead(count_of_threads):
+    begun, monitor = [], Listening()
+
+    def work(item, own):
+        begun.append(item)
+        own.warn(f"item {item}")
+        return item**2
+
+    for number, made in enumerate(made_ahead(work, 9, monitor)):
+        assert made == number**2
+        assert len(begun) <= number + count_of_threads + 1
+        assert monitor.warnings == [f"item {item}" for item in range(number + 1)]
+    assert sorted(begun) == list(range(9))
+    assert list(made_ahead(work, 0, monitor)) == []
+
+
+def test_a_cancellation_ends_what_is_made_ahead(monkeypatch):
+    monkeypatch.setattr(threads, "_TOLD", [2])
+    before, stopped = threading.enumerate(), []
+
+    def work(item, own):
+        try:
+            for _ in range(6000):
+                own.progress(0.5)
+                threading.Event().wait(0.01)
+        except Cancelled:
+            stopped.append(item)
+            raise
+
+    with pytest.raises(Cancelled):
+        next(made_ahead(work, 5, Listening(stop_at=0.0)))
+    assert sorted(stopped) == [0, 1]
+    assert threading.enumerate() == before
+
+
+def test_an_exception_of_an_item_is_that_of_the_whole(count_of_threads):
+    def work(item, own):
+        if item == 2:
+            raise ValueError("two")
+        return item
+
+    made = made_ahead(work, 5, Monitor())
+    assert [next(made), next(made)] == [0, 1]
+    with pytest.raises(ValueError, match="two"):
+        next(made)

@@ -59,6 +59,34 @@ def test_bends_are_the_cheapest_of_all(directions):
         assert cost_of(line, made, 1.0, directions) == pytest.approx(least)
 
 
+@pytest.mark.parametrize("directions", [(), (0.3, 0.3 + np.pi / 2)])
+def test_bends_of_a_long_line_cost_as_little_as_those_of_one_step_after_the_other(rng, directions):
+    """Costs are found for many ends at once; here each end looks at every start by itself."""
+    line = traced([(0, 0), (9, 4), (6, 12), (20, 30), (50, 20)], rng, noise=0.6, closed=False)
+    rows = simplify(line.samples, 0.25, False).tolist()
+    assert len(rows) > 130
+    cost = [0.0] + [np.inf] * (len(rows) - 1)
+    for end in range(1, len(rows)):
+        cost[end] = min(cost[start] + cost_of(line, [rows[start], rows[end]], 1.0, directions) for start in range(end))
+    assert cost_of(line, line.bends(1.0, directions[:1]).tolist(), 1.0, directions) == pytest.approx(cost[-1])
+
+
+def test_simplified_lines_keep_the_vertices_of_douglas_and_peucker(rng):
+    def kept(line, low, high, tolerance):
+        along, offset = line[high] - line[low], line[low + 1 : high] - line[low]
+        share = np.clip(offset @ along / (along @ along), 0, 1)
+        distance = np.hypot(*(offset - share[:, None] * along).T)
+        if high - low < 2 or distance.max() <= tolerance:
+            return [low]
+        middle = low + 1 + int(np.argmax(distance))
+        return kept(line, low, middle, tolerance) + kept(line, middle, high, tolerance)
+
+    for tolerance in (0.05, 0.4, 3.0, 100.0):
+        line = np.cumsum(rng.normal(size=(300, 2)), axis=0)
+        expected = [*kept(line, 0, len(line) - 1, tolerance), len(line) - 1]
+        assert simplify(line, tolerance, is_closed=False).tolist() == expected
+
+
 @pytest.mark.parametrize("corners", [4, 6, 8])
 def test_polygons_have_as_many_walls_as_sides(corners):
     angle = np.linspace(0, 2 * np.pi, corners, endpoint=False)
