@@ -4,18 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Optional
 
 import numpy as np
 
 from ..geometry.line_segments import is_valid
 from ..stage import Monitor
-from .facade_frame import Frame
+from .facade_frame import Frame, intersection_line
 from .facade_outline import ring_of_lines
 from .facade_surfaces import Facade
-
-# Facades whose planes meet at a smaller angle (sine: 5°) have no intersection line that noise leaves in place.
-_LEAST_SINE = np.sin(np.radians(5.0))
 
 # An edge runs along an intersection line within this angle (cosine: 20°).
 _ALONG = np.cos(np.radians(20.0))
@@ -54,22 +50,6 @@ def with_common_borders(facades: Sequence[Facade], reach: float, monitor: Monito
     return [
         replace(facade, ring=_moved(facade, lines[k]), neighbors=len(neighbors[k])) for k, facade in enumerate(facades)
     ]
-
-
-def intersection_line(one: Frame, other: Frame) -> Optional[tuple[np.ndarray, np.ndarray]]:
-    """Return a point (3,), m, and the unit direction (3,) of the line that two planes share, None if nearly parallel.
-
-    The point is the one nearest to the middle between the origins of both.
-    """
-    direction = np.cross(one.normal, other.normal)
-    sine = float(np.linalg.norm(direction))
-    if sine < _LEAST_SINE:
-        return None
-    direction = direction / sine
-    middle = (one.origin + other.origin) / 2
-    offsets = [plane.normal @ (plane.origin - middle) for plane in (one, other)]
-    point = middle + np.linalg.solve(np.array([one.normal, other.normal, direction]), [*offsets, 0.0])
-    return point, direction
 
 
 def _near_pairs(facades: Sequence[Facade], reach: float, monitor: Monitor) -> Iterator[tuple[int, int]]:

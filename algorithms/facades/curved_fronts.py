@@ -6,9 +6,8 @@ from typing import Optional
 
 import numpy as np
 
-from ..geometry.grid import distinct, grid_over
+from ..geometry.grid import distinct, grid_over, shared_cells
 from ..geometry.groups import components
-from ..packages import sparse
 from ..segmentation.least_squares_planes import planes_of
 
 # Planes that meet at an angle between these (sines: 3° and 40°) may be strips of one curved front.
@@ -52,15 +51,10 @@ def _fronts(xyz: np.ndarray, wall: np.ndarray, count: int) -> list[np.ndarray]:
         return []
     start = xyz.min(axis=0)
     normal = planes_of(xyz[rows] - start, wall[rows] - 1, count).normal
-    grid = grid_over(xyz[rows], _TOUCH_CELL)
-    cells, cell = distinct(grid.number(xyz[rows]))
-    pairs = distinct(cell.astype(np.int64) * count + wall[rows] - 1)[0]
-    of_cell, of_wall = np.divmod(pairs, count)
-    holds = sparse.csr_matrix((np.ones(len(pairs), np.int64), (of_wall, of_cell)), shape=(count, len(cells)))
-    shared = sparse.triu(holds @ holds.T, k=1).tocoo()
-    sine = np.linalg.norm(np.cross(normal[shared.row], normal[shared.col]), axis=1)
-    touch = (shared.data >= _TOUCHES) & (sine >= _LEAST_SINE) & (sine <= _MOST_SINE)
-    _, group = components(shared.row[touch], shared.col[touch], count)
+    one, other, shared = shared_cells(xyz[rows], wall[rows] - 1, count, _TOUCH_CELL)
+    sine = np.linalg.norm(np.cross(normal[one], normal[other]), axis=1)
+    touch = (shared >= _TOUCHES) & (sine >= _LEAST_SINE) & (sine <= _MOST_SINE)
+    _, group = components(one[touch], other[touch], count)
     return [np.flatnonzero(group == number) + 1 for number in np.flatnonzero(np.bincount(group) > 1)]
 
 

@@ -78,7 +78,9 @@ def extract_facades(
     max_tilt: FacadeTilt = 10.0,
     min_area: Annotated[
         float,
-        Param("Minimum facade area", "Area of the smallest facade.", unit="m²", low=0.1, high=10_000),
+        Param(
+            "Minimum facade area", "Area of the smallest facade, where it has points.", unit="m²", low=0.1, high=10_000
+        ),
     ] = 2.0,
     min_height: Annotated[
         float,
@@ -143,7 +145,8 @@ def extract_facades(
     convex hull are filled where the hull is upright or follows the foot, and hidden corners of the foot are where
     side and foot meet; a passage that is open to the street is filled, too. Steps and gables at the top stay.
 
-    The outer side is that from which points lie in front of the wall (street, cars) or behind its openings.
+    The outer side is that from which points lie in front of the wall (street, cars), or close behind its openings;
+    facades that meet at a corner face the same side of it.
     A window that is a plane of its own and large enough is a facade, too; "Extract openings" takes it as an opening.
 
     References
@@ -169,7 +172,8 @@ def extract_facades(
         complete=complete,
         monitor=monitor.part(0.65, 0.95),
     )
-    facades = [facade for facade in facades if facade.area >= min_area and facade.height >= min_height]
+    # The area that was seen: a post, and what stands beside its foot, have a boundary of more.
+    facades = [each for each in facades if min(each.area, each.seen_area) >= min_area and each.height >= min_height]
     facades = _numbered(facades)
     if corner_distance:
         facades = with_common_borders(facades, corner_distance, monitor.part(0.95, 1.0))

@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Optional
 
 import numpy as np
 
 from ..geometry.grid import distinct
 
-# Side (m) of the cells in which a facade is held against the points on both of its sides.
-_CELL = 0.5
-
-# Points farther from the plane than this (m) say nothing about the side from which a facade was seen.
-_FARTHEST = 10.0
-
-# A facade wider than this (cells) is judged without its two ends.
-_LEAST_COLUMNS = 3
+# Planes that meet at a smaller angle (sine: 5°) have no intersection line that noise leaves in place.
+_LEAST_SINE = np.sin(np.radians(5.0))
 
 
 @dataclass(frozen=True)
@@ -61,44 +56,25 @@ def frame_of(origin: np.ndarray, normal: np.ndarray) -> Frame:
     return Frame(origin, along, np.cross(normal, along), normal)
 
 
-def facing_viewer(frame: Frame, own: np.ndarray, around: np.ndarray, thickness: float) -> Frame:
-    """Return the frame turned so that its normal points to the side that the facade was seen from.
+def turned(frame: Frame) -> Frame:
+    """Return the frame of the same plane seen from its other side."""
+    return frame_of(frame.origin, -frame.normal)
 
-    Parameters
-    ----------
-    frame : Frame
-        Of the facade, its normal to either side.
-    own, around : ndarray of shape (n, 3), (m, 3)
-        Points of the facade, and those of the whole cloud (m).
-    thickness : float
-        Points nearer to the plane than this (m) belong to the facade.
 
-    Notes
-    -----
-    An opaque wall hides what is behind it. Points in front of a cell of wall are on the viewer's side (streets, cars,
-    trees); points off the plane in cells without wall are seen through openings, on the other side.
+def intersection_line(one: Frame, other: Frame) -> Optional[tuple[np.ndarray, np.ndarray]]:
+    """Return a point (3,), m, and the unit direction (3,) of the line that two planes share, None if nearly parallel.
+
+    The point is the one nearest to the middle between the origins of both.
     """
-    own = frame.local(own)
-    near = around[np.linalg.norm(around - frame.origin, axis=1) <= _FARTHEST + np.ptp(own, axis=0).max()]
-    places, low = frame.local(near), own[:, :2].min(axis=0)
-    cell = np.floor((places[:, :2] - low) / _CELL).astype(np.int64)
-    own_cell = np.floor((own[:, :2] - low) / _CELL).astype(np.int64)
-    count = own_cell.max(axis=0) + 1
-    # Ground lies at the foot of the facade or a little below.
-    cell[:, 1] += cell[:, 1] == -1
-    inside = ((cell >= 0) & (cell < count)).all(axis=1)
-    if count[0] > _LEAST_COLUMNS:
-        # Walls at a right angle stand behind the ends of the facade.
-        inside &= (places[:, 0] > own[:, 0].min() + _CELL) & (places[:, 0] < own[:, 0].max() - _CELL)
-    off = np.abs(places[:, 2])
-    inside &= (off > thickness) & (off <= _FARTHEST)
-    points = np.bincount(own_cell @ [count[1], 1], minlength=int(count.prod()))
-    # A cell at the rim of an opening has fewer points than half of the usual.
-    is_wall = points >= 0.5 * np.median(points[points > 0])
-    before = is_wall[cell[inside] @ [count[1], 1]]
-    side = np.sign(places[inside, 2])
-    votes = float(np.sum(np.where(before, side, -side)))
-    return frame if votes >= 0 else frame_of(frame.origin, -frame.normal)
+    direction = np.cross(one.normal, other.normal)
+    sine = float(np.linalg.norm(direction))
+    if sine < _LEAST_SINE:
+        return None
+    direction = direction / sine
+    middle = (one.origin + other.origin) / 2
+    offsets = [plane.normal @ (plane.origin - middle) for plane in (one, other)]
+    point = middle + np.linalg.solve(np.array([one.normal, other.normal, direction]), [*offsets, 0.0])
+    return point, direction
 
 
 def thinned(xyz: np.ndarray, size: float = 0.1) -> np.ndarray:

@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..geometry.groups import members
-from ..packages import spatial
 from ..segmentation.least_squares_planes import Planes, planes_of
 from ..stage import LayerFeatures, Monitor
-from .facade_frame import Frame, facing_viewer, frame_of, thinned
+from .facade_frame import Frame, frame_of
 from .facade_outline import outline_of, ring_area
+from .facade_sides import facing_outside
 
 # Points nearer to a facade's plane than this (m) may be frames and reliefs of it: they don't tell which side was seen.
 _THICKNESS = 0.05
@@ -102,24 +102,19 @@ def surfaces_of(
     monitor.progress(0.0)
     if not groups:
         return []
-    start = xyz.min(axis=0)
-    around = thinned(xyz - start) + start
-    tree = spatial.cKDTree(around)
+    planes = {number: plane_of(xyz[points]) for number, points in groups.items()}
+    steep = [n for n, (frame, _) in planes.items() if len(groups[n]) >= 4 and abs(frame.tilt) <= max_tilt]
+    thickness = np.array([max(_THICKNESS, 3 * planes[n][1]) for n in steep])
+    rows = [groups[n] for n in steep]
+    frames = facing_outside([planes[n][0] for n in steep], xyz, rows, thickness, monitor.part(0, 0.3))
     facades = []
-    for done, (number, points) in enumerate(groups.items(), start=1):
-        frame, rms = plane_of(xyz[points])
-        if len(points) >= 4 and abs(frame.tilt) <= max_tilt:
-            middle, reach = xyz[points].mean(axis=0), np.linalg.norm(np.ptp(xyz[points], axis=0)) / 2 + 10.0
-            near = around[np.sort(tree.query_ball_point(middle, reach))]
-            frame = facing_viewer(frame, xyz[points], near, max(_THICKNESS, 3 * rms))
-            outline = outline_of(frame.local(xyz[points])[:, :2], edge_factor, max_gap, boundary, complete)
-            if outline is not None:
-                facades.append(
-                    Facade(
-                        number, frame, outline.ring, points, rms, outline.spacing, outline.hull_area, outline.seen_area
-                    )
-                )
-        monitor.progress(done / len(groups))
+    for done, (number, frame) in enumerate(zip(steep, frames), start=1):
+        places = frame.local(xyz[groups[number]])[:, :2]
+        outline = outline_of(places, edge_factor, max_gap, boundary, complete)
+        if outline is not None:
+            found = outline.ring, groups[number], planes[number][1], outline.spacing
+            facades.append(Facade(number, frame, *found, outline.hull_area, outline.seen_area))
+        monitor.progress(0.3 + 0.7 * done / len(steep))
     return facades
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..packages import sparse
 from .groups import components
 
 # A raster larger than this, in cells and in cells for each point, is a mistake in the coordinates.
@@ -143,6 +144,36 @@ def connected_cells(grid: Grid, cells: np.ndarray) -> tuple[int, np.ndarray]:
         here.append(np.flatnonzero(found))
         there.append(beside[found])
     return components(np.concatenate(here), np.concatenate(there), len(cells))
+
+
+def shared_cells(
+    xyz: np.ndarray, group: np.ndarray, count: int, size: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the pairs of groups that have points in the same cells.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Coordinates (m).
+    group : ndarray of shape (n,), int
+        Group of each point, from 0 to ``count`` - 1.
+    count : int
+        How many groups there are.
+    size : float
+        Side of a cell in plan (m).
+
+    Returns
+    -------
+    one, other : ndarray of shape (k,), int32
+        The groups of each pair, the lesser first.
+    cells : ndarray of shape (k,), int64
+        In how many cells both have points.
+    """
+    cells, cell = distinct(grid_over(xyz, size).number(xyz))
+    of_cell, of_group = np.divmod(distinct(cell.astype(np.int64) * count + group)[0], count)
+    holds = sparse.csr_matrix((np.ones(len(of_cell), np.int64), (of_group, of_cell)), shape=(count, len(cells)))
+    shared = sparse.triu(holds @ holds.T, k=1).tocoo()
+    return shared.row, shared.col, shared.data
 
 
 def find_cells(cells: np.ndarray, wanted: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

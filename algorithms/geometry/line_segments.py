@@ -10,6 +10,8 @@ _PAIRS_AT_ONCE = 1_000_000
 
 def is_valid(rings: list) -> bool:
     """Return whether no two segments of an outline meet but neighbors in their corner, and holes are inside."""
+    if min(map(len, rings)) < 4:
+        return False
     starts = np.concatenate([ring[:-1] for ring in rings])
     ends = np.concatenate([ring[1:] for ring in rings])
     if (np.hypot(*(ends - starts).T) < 1e-6).any():

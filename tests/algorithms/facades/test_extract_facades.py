@@ -5,7 +5,7 @@ import pytest
 
 from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.facades.extract_facades import extract_facades, merged_planes, split_at_gaps
-from lidar_buildings.algorithms.facades.facade_outline import key_points, pushed_out
+from lidar_buildings.algorithms.facades.facade_outline import key_points, outline_of, pushed_out, ring_area
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.tests.builders import FAR, turned
 from lidar_buildings.tests.facades import corner_errors, street_floor, wall, without
@@ -240,3 +240,12 @@ def test_the_search_for_one_wall_can_be_cancelled():
 
     with pytest.raises(Cancelled):
         merged_planes(np.random.default_rng(0).random((20, 3)), np.repeat([1, 2], 10), 0.1, Stopped())
+
+
+def test_a_facade_narrower_than_its_tolerance_keeps_the_boundary_of_its_points(rng):
+    """Sparse points of a strip 0.6 m wide: straight edges within two spacings would leave a line of it."""
+    places = np.column_stack([rng.uniform(0, 0.6, 60), np.sort(rng.uniform(0, 4.5, 60))])
+    places[::7, 1] += 0.4
+    outline = outline_of(places, 4.0, 1.0, "straight edges", True)
+    assert len(outline.ring) > 3
+    assert outline.seen_area <= ring_area(outline.ring) <= 1.1 * np.prod(np.ptp(places, axis=0))
