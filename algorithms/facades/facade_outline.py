@@ -32,8 +32,8 @@ _GROWTH = 1.5
 # The spacing of points where they are farthest apart: this percentile of the points' smallest triangles.
 _PERCENTILE = 95
 
-# Tolerance of straight edges: spacings, and m.
-_TOLERANCE_SPACINGS, _LEAST_TOLERANCE = 2.0, 0.05
+# Tolerance of straight edges: spacings, m, and the largest share of the width of a facade, lest a narrow one be a line.
+_TOLERANCE_SPACINGS, _LEAST_TOLERANCE, _TOLERANCE_SHARE = 2.0, 0.05, 0.2
 
 # Angles (rad) within which an edge of the hull is the foot of a facade, which may lie on a slope, and a side.
 _FOOT_ANGLE, _SIDE_ANGLE = np.radians(12.0), np.radians(4.0)
@@ -43,6 +43,9 @@ _HIDDEN = (5.0, 2.5)
 
 # Times the boundary is pushed out: a corner that moves may leave a point of the edge beside it outside.
 _PUSHES = 4
+
+# A corner may move this many times as far as the edges beside it: those of less than 39° would become spikes.
+_MITER = 3.0
 
 # Sine of the angle below which two edges count as parallel: their lines meet too far away to tell where.
 _PARALLEL = 0.05
@@ -100,7 +103,9 @@ def outline_of(
     seen = ring_area(traced)
     if complete:
         traced = _divided(completed(traced), spacing)
-    tolerance = max(_TOLERANCE_SPACINGS * spacing, _LEAST_TOLERANCE)
+    hull = spatial.ConvexHull(places)
+    width = float(hull.volume) / float(np.linalg.norm(np.ptp(places, axis=0)))
+    tolerance = max(min(_TOLERANCE_SPACINGS * spacing, _TOLERANCE_SHARE * width), _LEAST_TOLERANCE)
     if boundary == "key points":
         ring, limit = key_points(traced), np.inf
     else:
@@ -108,7 +113,6 @@ def outline_of(
         ring, limit = (found[0] if found else simplify_ring(traced, tolerance)), 2 * tolerance
     if not is_valid([ring]):
         ring = traced
-    hull = spatial.ConvexHull(places)
     return Outline(pushed_out(ring, traced[:-1], limit), spacing, float(hull.volume), seen)
 
 
@@ -261,7 +265,7 @@ def pushed_out(ring: np.ndarray, places: np.ndarray, limit: float) -> np.ndarray
     places : ndarray of shape (n, 2)
         Vertices of the traced boundary (m).
     limit : float
-        Places farther outside than this (m) are spikes, which stay outside.
+        Places farther outside than this (m) are spikes, which stay outside; infinite: none stays outside.
     """
     for _ in range(_PUSHES):
         starts, ends = ring[:-1], ring[1:]
@@ -276,7 +280,8 @@ def pushed_out(ring: np.ndarray, places: np.ndarray, limit: float) -> np.ndarray
         shift = np.zeros(len(starts))
         np.maximum.at(shift, nearest[rows], out[rows, nearest[rows]])
         moved = ring_of_lines(starts + shift[:, None] * _outward(starts, ends), ends - starts, starts)
-        if shift.max() < 1e-9 or not is_valid([moved]):
+        is_spike = np.isfinite(limit) and np.linalg.norm(moved - ring, axis=1).max() > _MITER * shift.max()
+        if shift.max() < 1e-9 or is_spike or not is_valid([moved]):
             break
         ring = moved
     return ring
