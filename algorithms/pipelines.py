@@ -37,7 +37,7 @@ _DETECTION = (
 _DETECTION_SHARED: dict[str, tuple[str, ...]] = {
     "min_area": ("buildings", "complete", "footprints"),
     "density": ("roofs", "buildings", "complete"),
-    "source": ("roofs", "buildings", "complete"),
+    "source": ("ground", "roofs", "buildings", "complete"),
 }
 
 _PIPELINES = (

@@ -15,7 +15,7 @@ from ..params import MinBuildingArea, PointDensity, PointSource
 from ..sampling.cloud_sampling import CloudSampling
 from ..segmentation.top_surface import TopSurface
 from ..stage import Param, stage
-from .roof_extent import RoofExtent, without_vehicles
+from .roof_extent import FOOT, GAP, RoofExtent, amid_rough, without_vehicles
 
 # Cells hold at least a point where the roof was seen: this many point spacings, and no less than half a meter.
 _CELL_SPACINGS, _LEAST_CELL = 1.2, 0.5
@@ -74,7 +74,7 @@ def complete_buildings(
             unit="m",
             low=0,
             high=20,
-            automatic="four point spacings, from 3 to 20 m.",
+            automatic="four point spacings, from 3 to 20 m; 1.5 m in clouds of matched images, which are dense.",
         ),
     ] = None,
     roof_clearance: Annotated[
@@ -113,8 +113,9 @@ def complete_buildings(
         float,
         Param(
             "Minimum share of roof surfaces",
-            "Share of the points up to a meter above and below a building's roof that must lie on roof surfaces. In "
-            "crowns with a smooth side it is less. 0 takes any.",
+            "Share of the points up to a meter above and below a building's roof that must lie on roof surfaces; in "
+            "clouds of matched images of the points inside its edges. In crowns with a smooth side it is less. 0 takes "
+            "any.",
             low=0,
             high=1,
         ),
@@ -128,8 +129,9 @@ def complete_buildings(
 
     Buildings are decided in columns: where a roof was found, everything from the foot of the walls to just above
     the roof is building, and so are chimneys and the walls along its edge. Small gaps between roof surfaces are
-    closed where the ground does not show in them. Where the scanner numbered its returns, crowns beside a wall are told
-    from it by the pulses that pass through them.
+    closed where the ground does not show in them. In clouds of matched images roofs reach to where the rounded edge has
+    half of their height, and the smeared walls below belong to them. Where the scanner numbered its returns, crowns
+    beside a wall are told from it by the pulses that pass through them.
 
     Parameters
     ----------
@@ -177,7 +179,9 @@ def complete_buildings(
     sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.effective_density if density is None else density
     spacing = 1 / np.sqrt(density)
-    gap = float(np.clip(_GAP_SPACINGS * spacing, _LEAST_GAP, _MOST_GAP)) if gap is None else gap
+    in_images = sampling.is_closed_surface(source)
+    if gap is None:
+        gap = GAP if in_images else float(np.clip(_GAP_SPACINGS * spacing, _LEAST_GAP, _MOST_GAP))
     monitor.resolved(density=density, gap=gap)
     result = np.where(classification == PointClass.BUILDING, np.uint8(PointClass.UNCLASSIFIED), classification)
     is_roof = classification == PointClass.BUILDING
@@ -186,12 +190,12 @@ def complete_buildings(
 
     is_noise = np.isin(classification, NOISE)
     raised = (height_above_ground >= _WALL_FOOT) & ~is_noise
-    in_images = sampling.is_closed_surface(source)
     if in_images:
         surface = TopSurface(xyz, height_above_ground, ~is_noise, density)
         cell, cell_size = surface.cell, surface.size
-        extent = RoofExtent(surface, _cells_with(cell, is_roof, surface.height.shape))
-        covered = extent.covered(min_width)
+        core = is_roof if segment_id is None else is_roof & ~amid_rough(surface, xyz, segment_id)
+        extent = RoofExtent(surface, _cells_with(cell, core, surface.height.shape))
+        covered = extent.covered(min_width, gap)
     else:
         cell_size = max(_LEAST_CELL, _CELL_SPACINGS * spacing)
         refuse_sparse(xyz, cell_size)
@@ -201,15 +205,21 @@ def complete_buildings(
     monitor.progress(0.3)
     building, refused = _numbered(covered, min_area, min_width, cell_size)
     if in_images:
+        refused[_cells_with(cell, is_roof & ~core, refused.shape) & (building == 0)] = Reason.MOSTLY_OTHER
         building, refused = without_vehicles(extent, building, refused)
         building = _numbers(np.bincount(building.ravel()) > 0)[building]
     top = _roof_top(cell, xyz[:, 2], is_roof, covered)
-    if segment_id is not None and not in_images:
-        at_roof = raised & (np.abs(xyz[:, 2] - top[cell]) <= _AT_ROOF)
+    if segment_id is not None:
+        if in_images:
+            at_roof = extent.interior(building)[cell] & surface.on_top(xyz) & ~is_noise
+        else:
+            at_roof = raised & (np.abs(xyz[:, 2] - top[cell]) <= _AT_ROOF)
         building, refused = _mostly_roof(building, refused, cell, at_roof, is_roof & (segment_id > 0), min_roof_share)
     if in_images:
         # Nothing is seen beneath a roof but its own walls, down to their feet.
         raised |= (building[cell] > 0) & ~is_noise
+        building = extent.faces(building)
+        raised |= (building[cell] > 0) & (height_above_ground >= FOOT) & ~is_noise
     columns = _Columns(building, top, cell_size)
     monitor.progress(0.6)
 
@@ -389,7 +399,8 @@ def _mostly_roof(
     """Return what :func:`_numbered` does, without buildings with less than ``least`` of their roof on surfaces."""
     number = building[cell]
     whole, part = (np.bincount(number[of], minlength=building.max() + 1) for of in (at_roof, at_roof & on_surface))
-    share = part / np.maximum(whole, 1)
+    # Buildings too narrow for anything but edges are not judged.
+    share = np.where(whole > 0, part / np.maximum(whole, 1), 1.0)
     kept = _numbers(share >= least)[building]
     return kept, np.where((building > 0) & (kept == 0), np.uint8(Reason.MOSTLY_OTHER), refused)
 

@@ -10,13 +10,21 @@ from ..cloud.reasons import Reason
 from ..packages import ndimage
 from ..segmentation.top_surface import TopSurface
 
-# Gaps between roof surfaces (ridges, dormers, chimneys) are closed over this (m) where the surface stays above the
-# ground by this (m).
-_GAP, _RAISED = 1.5, 1.0
+# Gaps between roof surfaces (ridges, dormers, chimneys) are closed over this (m), unless the caller says otherwise, ...
+GAP = 1.5
+
+# ... where the surface stays above the ground by this (m).
+_RAISED = 1.0
 
 # Matching rounds edges: a roof surface ends up to this far (m) before the roof. A step that is smeared evenly to both
 # sides has half its height where the edge is.
 _ROUNDED, _HALF = 0.7, 0.5
+
+# Smeared walls fall by this much (m per m) or more.
+_STEEP = 1.0
+
+# Beyond the edge of the roof, what lies lower than this (m) is ground, kerbs and low plants and no wall.
+FOOT = 0.3
 
 # What rises above the roof by more than this (m) is no edge of it but a crown or a higher wall.
 _ABOVE = 1.0
@@ -34,6 +42,31 @@ _DIRECTIONS = np.radians(np.arange(0.0, 90.0, 5.0))
 _EIGHT = np.ones((3, 3), bool)
 
 
+# Most of what lies within this (m) of a roof surface, no more than this (m) higher or lower, is on surfaces, too.
+# Around the smooth spots of crowns it is leaves.
+_NEAR, _AT_HEIGHT, _MOST = 2.0, 1.5, 0.5
+
+
+def amid_rough(surface: TopSurface, xyz: np.ndarray, segment_id: np.ndarray) -> np.ndarray:
+    """Return which points (n,) are of roof surfaces that lie amid what is rough.
+
+    Parameters
+    ----------
+    surface : TopSurface
+        The surface of the points ``xyz`` (n, 3), m, seen from above.
+    segment_id : ndarray of shape (n,), int32
+        Roof surfaces from 1; 0 is none.
+    """
+    on_top = np.flatnonzero((segment_id > 0) & surface.on_top(xyz))
+    row, column = surface.cell[0][on_top], surface.cell[1][on_top]
+    on_surface = np.zeros(surface.height.shape, bool)
+    on_surface[row, column] = True
+    share = surface.share_near(on_surface, _NEAR, _AT_HEIGHT, _RAISED)[row, column]
+    count = np.bincount(segment_id[on_top], minlength=int(segment_id.max()) + 1)
+    mean = np.bincount(segment_id[on_top], share, len(count)) / np.maximum(count, 1)
+    return ((mean < _MOST) & (count > 0))[segment_id] & (segment_id > 0)
+
+
 @dataclass(frozen=True)
 class RoofExtent:
     """Roofs in the cells of a surface, up to their edges.
@@ -49,11 +82,16 @@ class RoofExtent:
     surface: TopSurface
     is_roof: np.ndarray
 
-    def covered(self, min_width: float) -> np.ndarray:
-        """Return the cells (rows, columns) that roofs cover, without what is narrower than ``min_width`` (m)."""
+    def covered(self, min_width: float, gap: float) -> np.ndarray:
+        """Return the cells (rows, columns) that roofs cover.
+
+        What is narrower than ``min_width`` (m) is left out; what is no wider than ``gap`` (m) between roofs is closed.
+        """
         raised = self.surface.height >= _RAISED
-        closed = self.is_roof | (ndimage.binary_closing(self.is_roof, self._disk(_GAP / 2)) & raised)
-        closed |= self._small_holes(closed) & raised
+        closed = self.is_roof
+        if gap >= self.surface.size:
+            closed = closed | (ndimage.binary_closing(self.is_roof, self._disk(gap / 2)) & raised)
+            closed |= self._small_holes(closed, gap) & raised
         wide = ndimage.binary_opening(closed, self._disk(min_width / 2))
         # Opening rounds the corners off, too: they come back.
         wide = ndimage.binary_dilation(wide, _EIGHT, 2, mask=closed) if wide.any() else wide
@@ -72,6 +110,27 @@ class RoofExtent:
         # Smeared walls, fences and branches that reach out are thinner than what they hang on.
         return core | ndimage.binary_opening(grown, _EIGHT)
 
+    def interior(self, building: np.ndarray) -> np.ndarray:
+        """Return the cells (rows, columns) of numbered buildings that rounded edges don't reach."""
+        same = ndimage.grey_erosion(building, footprint=_EIGHT) == ndimage.grey_dilation(building, footprint=_EIGHT)
+        inward = ndimage.distance_transform_edt((building > 0) & same)
+        return inward * self.surface.size > _ROUNDED - self.surface.size
+
+    def faces(self, building: np.ndarray) -> np.ndarray:
+        """Return numbered buildings (rows, columns) with the smeared walls around them.
+
+        Walls are steep faces that fall from the edge of the roof without a break. What grows at their foot has a top of
+        its own, where the surface is level again.
+        """
+        cross = ndimage.generate_binary_structure(2, 1)
+        grown = building.copy()
+        for _ in range(max(1, round(_ROUNDED / self.surface.size))):
+            above = ndimage.grey_dilation(np.where(grown > 0, self.surface.elevation, -np.inf), footprint=cross)
+            falls = self.surface.elevation <= above - _STEEP * self.surface.size
+            is_face = (grown == 0) & falls & (self.surface.height >= FOOT)
+            grown = np.where(is_face, ndimage.grey_dilation(grown, footprint=cross), grown)
+        return grown
+
     def vehicles(self, region: np.ndarray, count: int) -> np.ndarray:
         """Return which regions (count + 1,) of labeled cells are of the size of a car or van."""
         found = np.zeros(count + 1, bool)
@@ -89,11 +148,11 @@ class RoofExtent:
         is_car = _between(length, _CAR_LENGTH) and top <= _CAR_HEIGHT
         return _between(width, _VAN_WIDTH) and filled >= _FILLED and (is_van or is_car)
 
-    def _small_holes(self, closed: np.ndarray) -> np.ndarray:
+    def _small_holes(self, closed: np.ndarray, gap: float) -> np.ndarray:
         holes, count = ndimage.label(ndimage.binary_fill_holes(closed) & ~closed)
         size = np.bincount(holes.ravel(), minlength=count + 1)
         size[0] = 0
-        return (holes > 0) & (size * self.surface.size**2 <= _GAP**2)[holes]
+        return (holes > 0) & (size * self.surface.size**2 <= gap**2)[holes]
 
     def _disk(self, radius: float) -> np.ndarray:
         """Return a disk of ``radius`` (m) as cells."""

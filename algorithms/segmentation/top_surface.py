@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 
 from ..geometry.grid import grid_over, refuse_sparse
@@ -61,6 +63,38 @@ class TopSurface:
     def on_top(self, xyz: np.ndarray) -> np.ndarray:
         """Return which of the points (n,) are of the surface."""
         return xyz[:, 2] >= self.elevation[self.cell] - (_DEPTH + self.size)
+
+    def share_near(self, chosen: np.ndarray, reach: float, tolerance: float, raised: float) -> np.ndarray:
+        """Return how many of the raised cells near each cell, at about its height, are chosen.
+
+        Parameters
+        ----------
+        chosen : ndarray of shape (rows, columns), bool
+            Which cells count.
+        reach, tolerance : float
+            How far away in plan and how much higher or lower cells may be (m).
+        raised : float
+            Least height above ground of cells that are looked at, m.
+
+        Returns
+        -------
+        ndarray of shape (rows, columns)
+            From 0 to 1; 0 where no cell is near.
+        """
+        steps = max(2, round(reach / self.size))
+        elevation = np.pad(np.where(self.height >= raised, self.elevation, -np.inf), steps, constant_values=-np.inf)
+        is_chosen = np.pad(chosen, steps)
+        own = np.where(np.isfinite(self.elevation), self.elevation, 0.0)
+        rows, columns = chosen.shape
+        whole, part = np.zeros((2, rows, columns), np.int32)
+        # Every second cell tells the same.
+        for row, column in product(range(-steps, steps + 1, 2), repeat=2):
+            if row**2 + column**2 <= steps**2:
+                there = slice(steps + row, steps + row + rows), slice(steps + column, steps + column + columns)
+                is_near = np.abs(elevation[there] - own) <= tolerance
+                whole += is_near
+                part += is_near & is_chosen[there]
+        return part / np.maximum(whole, 1)
 
 
 def highest_of_cells(xyz: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray]:

@@ -15,6 +15,9 @@ from .solids import Solid
 # Side of a cell, m: finer than the points of a drone's cloud lie apart.
 CELL = 0.1
 
+# Unevenness of the ground (gardens, kerbs, ruts): lengths (m), and their shares of the whole.
+_UNEVEN = ((2.5, 0.25), (8.0, 0.97))
+
 # Lumps of crowns: how wide they are and how far they stand out (m).
 _LUMPS = ((1.2, 0.35), (0.5, 0.15))
 
@@ -51,12 +54,13 @@ class HeightField:
         return row, column
 
 
-def see_from_above(scene: Scene, rng: np.random.Generator) -> HeightField:
-    """Return the surface of a scene, crowns as closed lumpy bodies."""
+def see_from_above(scene: Scene, unevenness: float, rng: np.random.Generator) -> HeightField:
+    """Return the surface of a scene, crowns as closed lumpy bodies, on ground as uneven (m) as is said."""
     n = round(scene.size / CELL)
     middle = (np.arange(n) + 0.5) * CELL
     x, y = np.meshgrid(middle, middle)
     ground = scene.relief.ground(x, y)
+    ground += unevenness * sum(share * smooth_noise(x.shape, length, rng) for length, share in _UNEVEN)
     field = HeightField(
         ground, ground.copy(), np.full(x.shape, PointClass.GROUND, np.uint8), np.zeros(x.shape, np.int32)
     )

@@ -12,13 +12,23 @@ from ..packages import ndimage
 from .height_field import CELL, HeightField, smooth_noise
 
 # Waves of matching (m): their length, and their share of the whole; the whole is a tunable.
-_WAVES = ((1.5, 0.4), (4.0, 0.6), (9.0, 0.7))
+_WAVES = ((0.6, 0.4), (1.5, 0.5), (4.0, 0.6), (9.0, 0.7))
 
 # Edges are rounded more and less over so many meters.
 _ROUNDING_CHANGES = 8.0
 
-# A window of matching follows a crown less than a roof: its leaves move and differ from view to view (m).
-_LEAF_NOISE = 0.12
+# Crowns are matched worse than roofs, since leaves move and differ from view to view: length and standard deviation of
+# these errors (m), chosen so that simulated crowns are as rough over 0.75 to 2 m as those of a real suburb.
+_LEAF_NOISE = ((0.6, 0.25), (1.6, 0.3))
+
+# And single points of crowns lie apart from their neighbors by this (m, standard deviation of heights).
+_LEAF_SCATTER = 0.08
+
+# Some crowns are matched better than others: least and greatest multiple of these errors.
+_LEAF_NOISE_FACTORS = (0.4, 1.6)
+
+# Plants of this height (m) and more have the full errors.
+_FULL_LEAF_NOISE = 2.0
 
 # The sun: its azimuth from east, counterclockwise, and its elevation (rad), and how far shadows are looked for (m).
 _SUN, _SHADOW_REACH = (np.radians(130.0), np.radians(38.0)), 25.0
@@ -69,8 +79,7 @@ def match(field: HeightField, rounding: float, waves: float, rng: np.random.Gene
     shared = sum(share * smooth_noise(shape, length, rng) for length, share in _WAVES)
     # Where there is little texture, matching wanders more.
     top = top + waves * shared / np.sqrt(sum(share**2 for _, share in _WAVES)) * _by_texture(field)
-    is_leaf = _is_vegetation(field.classification)
-    top += is_leaf * _LEAF_NOISE * smooth_noise(shape, 0.8, rng)
+    top += _leaf_noise(field, rng)
     fails = _fails(field, colors, rng)
     spike = fails & (smooth_noise(shape, 0.6, rng) > 1.0)
     top = np.where(spike, top + _SPIKE * smooth_noise(shape, 0.5, rng), top)
@@ -101,6 +110,15 @@ def _rounded(top: np.ndarray, rounding: float, rng: np.random.Generator) -> np.n
 def _by_texture(field: HeightField) -> np.ndarray:
     """Return the factor on waves: roofs and asphalt have little texture, plants much."""
     return np.where(field.classification == PointClass.BUILDING, 1.2, 0.8)
+
+
+def _leaf_noise(field: HeightField, rng: np.random.Generator) -> np.ndarray:
+    """Return the errors (rows, columns), m, of crowns, 0 elsewhere; each crown has its own multiple of them."""
+    factor = rng.uniform(*_LEAF_NOISE_FACTORS, int(field.object_id.max()) + 1)[field.object_id]
+    errors = sum(deviation * smooth_noise(field.top.shape, length, rng) for length, deviation in _LEAF_NOISE)
+    # A low plant is not rougher than it is high.
+    height = np.clip((field.top - field.ground) / _FULL_LEAF_NOISE, 0.0, 1.0)
+    return np.where(_is_vegetation(field.classification), factor * height * errors, 0.0)
 
 
 def _is_vegetation(classification: np.ndarray) -> np.ndarray:
@@ -183,6 +201,8 @@ def sample(
     row, column = field.at(xy)
     kept = ~matched.is_hole[row, column]
     z = _height_at(matched.top, xy)
+    is_leaf = field.classification[row, column] == PointClass.HIGH_VEGETATION
+    z += np.where(is_leaf, _LEAF_SCATTER, 0.0) * rng.standard_normal(count)
     faces = _faces(matched, density * walls, rng)
     xyz = np.concatenate([np.column_stack([xy, z])[kept], faces])
     xyz += noise * rng.standard_normal(xyz.shape)

@@ -7,11 +7,13 @@ from typing import Annotated, Optional
 import numpy as np
 
 from ..geometry.grid import distinct, grid_over
+from ..params import PointSource
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Param, stage
 from .false_pits import false_pits
 from .ground_points import in_plan_order, last_returns, usable_points, with_ground
 from .ground_seeds import USUAL_BUILDING, seeds_by_opening
+from .smeared_objects import on_smeared_objects
 from .tin_densification import JoinRules, Surface, grow, surface_roughness
 
 # Share of the point spacing by which the surface may bend between points, when they join.
@@ -174,6 +176,7 @@ def classify_ground_tin(
             advanced=True,
         ),
     ] = False,
+    source: PointSource = "automatic",
     sampling: Optional[CloudSampling] = None,
     monitor=None,
 ):
@@ -225,6 +228,9 @@ def classify_ground_tin(
     and the points do not fill it: other pulses see the ground amid them, they are closer together than pulses are, or
     fewer than six. Light shafts, cellar stairs and excavations, whose floors stop every pulse, stay ground.
 
+    In clouds of matched images walls are smeared to slopes that the surface climbs; ground points on objects narrower
+    than 4.5 m, and on the feet of walls, are taken out again.
+
     The kinds of terrain are this stage's own; the steps of lasground by the same names are smaller. 'Classify ground
     points (TIN, as published 2000)' starts from the seeds of the paper, and has none of the additions.
 
@@ -266,6 +272,8 @@ def classify_ground_tin(
     monitor.resolved(
         iteration_angle=angle, iteration_distance=distance, edge_length=edge_length, sweep_distance=sweep_distance
     )
+    if sampling.is_closed_surface(source):
+        is_ground &= ~on_smeared_objects(points, is_ground, spacing)
     if len(low_noise):
         monitor.resolved(low_noise=len(low_noise))
     return with_ground(classification, usable[is_ground], usable[low_noise])

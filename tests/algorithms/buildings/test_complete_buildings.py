@@ -8,6 +8,7 @@ from lidar_buildings.algorithms.cloud.reasons import Reason
 from lidar_buildings.algorithms.sampling.density import point_density
 from lidar_buildings.algorithms.stage import Monitor
 from lidar_buildings.tests.builders import FAR
+from lidar_buildings.tests.surfaces import box, mound, seen_from_above
 
 SIDE = 40.0
 
@@ -435,3 +436,40 @@ def test_leaves_above_a_roof_and_walls_below_don_t_count_as_its_share(scene, low
     height = scene.xyz[:, 2].astype(np.float32)
     classification = complete_buildings(scene.xyz, scene.classification, height, None, None, segment_id)[0]
     assert (classification[: len(spot)][spot] == 6).all()
+
+
+def complete_images(xyz, part, found, **tunables):
+    """Complete the parts that the stages before have found in a cloud of matched images; each part is a surface."""
+    segment = np.where(found, part, 0).astype(np.int32)
+    classification = np.where(found, 6, 1).astype(np.uint8)
+    arrays = xyz, classification, xyz[:, 2].astype(np.float32), None, np.zeros(len(xyz), np.uint8), segment
+    made = complete_buildings(*arrays, source="matched images", **tunables)
+    return made[0] == 6, made[3]
+
+
+def test_in_images_walls_go_down_to_their_feet_and_the_bush_beside_them_stays(rng):
+    xyz, part = seen_from_above(rng, box(8, 8, 18, 16, 5.0, smeared=0.4), mound((20.0, 12.0), 2.0, 1.5))
+    building, _ = complete_images(xyz, part, (part == 1) & (xyz[:, 2] > 4.9))
+    assert building[(part == 1) & (xyz[:, 2] > 0.5)].mean() > 0.98
+    assert not building[(part == 2) & (xyz[:, 0] > 19.2)].any()
+    assert not building[part == 0].any()
+
+
+@pytest.mark.parametrize(("gap", "closed"), [(None, False), (4.0, True)])
+def test_the_gap_to_close_holds_in_images(rng, gap, closed):
+    xyz, part = seen_from_above(rng, box(5, 5, 25, 20, 5.0))
+    in_gap = np.abs(xyz[:, 0] - 15) < 1.5
+    building, _ = complete_images(xyz, part, (part == 1) & ~in_gap, gap=gap)
+    middle = (np.abs(xyz[:, 0] - 15) < 0.3) & (np.abs(xyz[:, 1] - 12) < 5)
+    assert building[middle].all() == closed
+
+
+@pytest.mark.parametrize("least", [0.6, 0.0])
+def test_the_share_of_surfaces_holds_in_images(rng, least):
+    xyz, part = seen_from_above(rng, box(5, 5, 13, 13, 5.0))
+    # Strips of surface, with as much between that is none: more than half of what lies near them, less than 0.6 of all.
+    found = (part == 1) & (xyz[:, 0] % 1.0 < 0.55)
+    building, reason = complete_images(xyz, part, found, min_roof_share=least)
+    assert building[part == 1].any() == (least == 0.0)
+    if least:
+        assert (reason[found] == Reason.MOSTLY_OTHER).all()

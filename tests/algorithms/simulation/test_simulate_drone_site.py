@@ -29,7 +29,7 @@ def scene():
 
 @pytest.fixture
 def exact():
-    return site(rounding=0.0, waves=0.0, noise=0.0, walls=0.0)
+    return site(unevenness=0.0, rounding=0.0, waves=0.0, noise=0.0, walls=0.0)
 
 
 def test_points_of_a_building_lie_over_its_walls(exact):
@@ -50,8 +50,19 @@ def test_points_lie_on_the_ground_and_on_roofs(exact):
         assert np.nanmedian(np.abs(mine[:, 2] - building.roof(*mine[:, :2].T))) < 0.05
 
 
+def test_the_ground_is_as_uneven_as_asked(exact):
+    uneven = site(unevenness=0.2, rounding=0.0, waves=0.0, noise=0.0, walls=0.0)
+    xyz = uneven["xyz"][uneven["classification"] == PointClass.GROUND]
+    off = xyz[:, 2] - scene().relief.ground(*xyz[:, :2].T)
+    assert 0.12 < off.std() < 0.28
+    # Neighbors share it: the ground is bumpy, not noisy.
+    pair = np.argsort(np.floor(xyz[:, 0] / 0.5) * 1000 + np.floor(xyz[:, 1] / 0.5), kind="stable")
+    beside = np.hypot(*np.diff(xyz[pair, :2], axis=0).T) < 0.3
+    assert np.median(np.abs(np.diff(off[pair])[beside])) < 0.06
+
+
 def test_waves_are_as_high_as_asked_and_shared_by_neighbors(exact):
-    wavy = site(rounding=0.0, waves=0.05, noise=0.0, walls=0.0)
+    wavy = site(unevenness=0.0, rounding=0.0, waves=0.05, noise=0.0, walls=0.0)
     xyz = wavy["xyz"][wavy["classification"] == PointClass.GROUND]
     off = xyz[:, 2] - scene().relief.ground(*xyz[:, :2].T)
     off = off[np.abs(off) < 0.3]

@@ -1,0 +1,59 @@
+"""Ground points of matched images that lie on the smeared walls and roofs of small objects."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..geometry.grid import refuse_sparse
+from ..geometry.raster_opening import open_surface
+from ..packages import ndimage
+
+# Cells of the surface: this many point spacings, and no less than half a meter.
+_CELL_SPACINGS, _LEAST_CELL = 1.5, 0.5
+
+# What is narrower than this (m) is an object: a shed of 3 m with walls that are smeared over 0.7 m to both sides.
+_WIDTH = 4.5
+
+# Height (m) above the opened surface from which on points are of objects. Where two slopes of 12° meet in a sharp
+# crest, the surface is as far above the opened one.
+_HEIGHT = 0.5
+
+
+# A window is centered no farther beyond the end of the cloud than this share of its radius, so that it touches ground.
+_BEYOND = 0.8
+
+
+def on_smeared_objects(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -> np.ndarray:
+    """Return which points (n,) are ground points on small objects, which a surface climbs where walls are smeared.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points (m).
+    is_ground : ndarray of shape (n,), bool
+        Those that have been found to be ground.
+    spacing : float
+        Point spacing (m).
+
+    Notes
+    -----
+    The lowest ground points of cells are opened with a window. Planes of any slope and plateaus wider than the window
+    stay as they are; sheds go, and so does the ring of points that have climbed the walls of a house, since no window
+    is centered on its roof.
+    """
+    if not is_ground.any():
+        return np.zeros(len(xyz), bool)
+    size = max(_LEAST_CELL, _CELL_SPACINGS * spacing)
+    refuse_sparse(xyz, size)
+    radius = max(1, round(_WIDTH / 2 / size))
+    low = xyz[:, :2].min(axis=0) - (radius + 1) * size
+    column, row = np.floor((xyz[:, :2] - low) / size).astype(np.int64).T
+    lowest = np.full((row.max() + radius + 2, column.max() + radius + 2), np.inf)
+    np.minimum.at(lowest, (row[is_ground], column[is_ground]), xyz[is_ground, 2])
+    has_ground, is_occupied = np.isfinite(lowest), np.zeros(lowest.shape, bool)
+    is_occupied[row, column] = True
+    is_far = ndimage.distance_transform_edt(~has_ground) > _BEYOND * radius
+    opened = open_surface(lowest, radius, is_far | (is_occupied & ~has_ground))
+    # Slopes rise within a cell, to no more than the next one has.
+    highest = ndimage.maximum_filter(np.where(has_ground, opened, -np.inf), 3)
+    return is_ground & (xyz[:, 2] > highest[row, column] + _HEIGHT)

@@ -1,0 +1,105 @@
+"""Decisions on clusters of matched images: by the share of surfaces, by what stands around, by color."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.buildings.cluster_evidence import ClusterEvidence
+from lidar_buildings.algorithms.buildings.surface_evidence import decide_in_images, green_clusters
+from lidar_buildings.algorithms.cloud.reasons import Reason
+from lidar_buildings.tests.algorithms.buildings.parts import clusters
+from lidar_buildings.tests.builders import crown, roof
+
+GREEN, GRAY, RED = (20_000, 40_000, 15_000), (30_000, 30_000, 30_000), (40_000, 20_000, 18_000)
+
+
+def decided(parts, surface_share, green=None, min_area=4.0, min_share=0.4):
+    xyz, number = clusters(*parts)
+    evidence = ClusterEvidence(xyz, number - 1, np.arange(len(parts)), 6.0, min_area, None, None)
+    green = np.zeros(len(parts), bool) if green is None else np.array(green)
+    return decide_in_images(np.array(surface_share, float), green, evidence, min_share)
+
+
+@pytest.fixture
+def parts(rng):
+    """A roof and a crown far from each other."""
+    return roof(rng, 0, 0), crown(rng, 40, 40)
+
+
+def test_surfaces_are_buildings_and_what_is_rough_is_none(parts):
+    found = decided(parts, [0.9, 0.2])
+    assert [Reason(number) for number in found.reasons] == [Reason.SURFACE, Reason.ROUGH]
+    np.testing.assert_array_equal(found.is_building, [True, False])
+    # Nothing else stands around the roof.
+    assert found.confidence[0] == 1.0
+
+
+def test_a_smooth_spot_amid_leaves_is_none(rng):
+    leaves = crown(rng, 5, 5, 4.0, 6.0, 3000)
+    spot = roof(rng, 4, 4, 2.5, 2.5, 8.0)
+    found = decided((leaves, spot), [0.1, 1.0])
+    assert Reason(found.reasons[1]) == Reason.AMID_OTHERS
+    assert not found.is_building.any()
+    assert decided((leaves, spot), [0.1, 1.0], min_share=0.0).is_building[1]
+
+
+def test_green_surfaces_are_plants_unless_they_are_large(rng):
+    small, large = roof(rng, 0, 0, 5, 5), roof(rng, 40, 0, 12, 12)
+    found = decided((small, large), [1.0, 1.0], green=[True, True])
+    assert [Reason(number) for number in found.reasons] == [Reason.GREEN, Reason.SURFACE]
+    # Large is ten times the smallest building.
+    assert decided((small, large), [1.0, 1.0], [True, True], min_area=2.0).is_building.all()
+    assert not decided((small, large), [1.0, 1.0], [True, True], min_area=20.0).is_building.any()
+
+
+def test_confidence_follows_what_stands_around(rng):
+    house, leaves = roof(rng, 0, 0), crown(rng, 12, 4, 2.5, 6.0, 500)
+    alone, beside = decided((house,), [1.0]), decided((house, leaves), [1.0, 0.0])
+    assert 0.5 < beside.confidence[0] < alone.confidence[0]
+
+
+def colors(kinds, count):
+    return tuple(np.concatenate([np.full(count, kind[band], np.uint16) for kind in kinds]) for band in range(3))
+
+
+def test_green_clusters_are_told_from_all_other_colors():
+    group = np.repeat(np.arange(4), 100)
+    is_green, least = green_clusters(colors((GREEN, GRAY, RED, GREEN), 100), group, 4)
+    np.testing.assert_array_equal(is_green, [True, False, False, True])
+    assert 0 < least < (2 * 40 - 20 - 15) / 75
+
+
+def test_shadow_does_not_change_it():
+    group = np.repeat(np.arange(3), 100)
+    lit = colors((GREEN, GRAY, RED), 100)
+    shadow = np.tile(np.repeat([1.0, 0.4], 50), 3)
+    is_green, _ = green_clusters(tuple((band * shadow).astype(np.uint16) for band in lit), group, 3)
+    np.testing.assert_array_equal(is_green, [True, False, False])
+
+
+def test_most_points_of_a_cluster_decide():
+    group = np.repeat(np.arange(2), 100)
+    red, green, blue = colors((GREEN, GRAY), 100)
+    # A quarter of the plant's points is gray, and a quarter of the gray cluster's is green; others have no cluster.
+    for band, (of_green, of_gray) in zip((red, green, blue), zip(GREEN, GRAY)):
+        band[:25], band[100:125] = of_gray, of_green
+    is_green, _ = green_clusters((red, green, blue), group, 2)
+    np.testing.assert_array_equal(is_green, [True, False])
+    is_green, _ = green_clusters((red, green, blue), np.where(group == 0, -1, group), 2)
+    np.testing.assert_array_equal(is_green, [False, False])
+
+
+@pytest.mark.parametrize("missing", [0, 1, 2])
+def test_without_color_nothing_is_green(missing):
+    bands = list(colors((GREEN, GRAY), 100))
+    bands[missing] = None
+    is_green, least = green_clusters(tuple(bands), np.repeat(np.arange(2), 100), 2)
+    assert least is None
+    assert not is_green.any()
+
+
+def test_a_scene_of_one_color_has_no_plants():
+    is_green, least = green_clusters(colors((GRAY, RED), 100), np.repeat(np.arange(2), 100), 2)
+    assert least is None
+    assert not is_green.any()
