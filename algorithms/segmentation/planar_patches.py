@@ -7,6 +7,7 @@ from typing import Any, Union
 
 import numpy as np
 
+from ..geometry.boxes import by_first_point
 from ..neighborhoods.covariance import Nearest, smallest_eigenvectors, symmetric_eigenvalues
 from ..neighborhoods.wide_in_plan import Wide
 from ..packages import csgraph, sparse, spatial
@@ -29,21 +30,28 @@ _SAME_DIRECTION = np.cos(np.radians(15.0))
 # Links are looked for among so many neighbors.
 _LINKS = 8
 
-_CHUNK = 100_000
+# Points, and candidates for their planes, of a chunk: what is looked up of them stays in the caches.
+_CHUNK, _CHUNK_CANDIDATES = 20_000, 250_000
 
 
 @dataclass
-class LocalPlanes:
-    """The plane of each point and its neighbors: point ``center``, unit ``normal`` upward, ``deviation`` (m) across."""
+class _LocalPlanes:
+    """The planes of points and their neighbors.
 
-    center: np.ndarray
-    normal: np.ndarray
+    Attributes
+    ----------
+    planes : ndarray of shape (n, 4), float64
+        Unit normal upward, and how far along it the plane lies from the first of the points (m): the distance of
+        (x, y, z, -1) from the plane is one sum of products.
+    deviation : ndarray of shape (n,), float64
+        Standard deviation across the plane, m.
+    neighbors : ndarray of shape (n, k), int32
+        Points that showed the plane.
+    """
+
+    planes: np.ndarray
     deviation: np.ndarray
     neighbors: np.ndarray
-
-    def distance(self, points: np.ndarray, plane: np.ndarray) -> np.ndarray:
-        """Return the distance (m) of points (m, 3) to the planes numbered ``plane`` (m,)."""
-        return np.abs(np.einsum("ij,ij->i", points - self.center[plane], self.normal[plane]))
 
 
 def segment_patches(
@@ -77,28 +85,34 @@ def segment_patches(
     """
     if len(xyz) < LEAST_NEIGHBORS:
         return np.full(len(xyz), -1, np.int32), np.zeros(len(xyz), np.float32)
-    tree = spatial.cKDTree(xyz)
+    # Points that lie together follow each other, so that what is looked up of neighbors is in the caches.
+    order = spatial.cKDTree(xyz, balanced_tree=False).indices
     neighborhood = replace(neighborhood, count=min(neighborhood.count, len(xyz)))
-    planes = _local_planes(xyz, tree, neighborhood, monitor.part(0, 0.6))
-    del tree  # What is large goes as soon as it can: the links below are large, too.
-    plane = _smoothest_plane(xyz, planes, off_plane, monitor.part(0.6, 0.8))
+    points = xyz[order]
+    planes = _local_planes(points, neighborhood, monitor.part(0, 0.6))
+    points = np.column_stack([points - points[0], np.full(len(points), -1.0)])
+    plane = _smoothest_plane(points, planes, _ON_PLANE * off_plane, monitor.part(0.6, 0.8))
     on_surface = (planes.deviation[plane] <= _SMOOTH * off_plane) & (plane >= 0)
-    on_surface &= planes.normal[plane, 2] >= np.sin(np.radians(90 - max_slope))
-    links = _links(xyz, planes, plane, on_surface, off_plane, monitor.part(0.8, 1))
+    on_surface &= planes.planes[plane, 2] >= np.sin(np.radians(90 - max_slope))
+    links = _links(points, planes, plane, on_surface, _SAME_SURFACE * off_plane, monitor.part(0.8, 1))
     # Three of its points make a plane and tell nothing of how far others lie off it. Wide neighborhoods hold more
     # points than this: there it is a little too much.
     across = planes.deviation * np.sqrt(neighborhood.count / (neighborhood.count - 3))
-    roughness = across.astype(np.float32)[plane]
-    del planes, plane, across
-    component = csgraph.connected_components(links, directed=False)[1]
-    return np.where(on_surface, component, -1).astype(np.int32), roughness
+    roughness = np.empty(len(xyz), np.float32)
+    roughness[order] = across[plane]
+    del points, planes, plane, across
+    component = np.empty(len(xyz), np.int32)
+    component[order] = np.where(on_surface, csgraph.connected_components(links, directed=False)[1], -1)
+    patch = np.full(len(xyz), -1, np.int32)
+    patch[component >= 0] = by_first_point(component[component >= 0])
+    return patch, roughness
 
 
-def _local_planes(xyz: np.ndarray, tree: Any, neighborhood: Union[Nearest, Wide], monitor: Monitor) -> LocalPlanes:
+def _local_planes(xyz: np.ndarray, neighborhood: Union[Nearest, Wide], monitor: Monitor) -> _LocalPlanes:
+    tree = spatial.cKDTree(xyz, balanced_tree=False)
     columns = np.ascontiguousarray(xyz.T)
-    planes = LocalPlanes(
-        np.empty((len(xyz), 3)),
-        np.empty((len(xyz), 3)),
+    made = _LocalPlanes(
+        np.empty((len(xyz), 4)),
         np.empty(len(xyz)),
         np.empty((len(xyz), neighborhood.n_named), np.int32),
     )
@@ -106,61 +120,71 @@ def _local_planes(xyz: np.ndarray, tree: Any, neighborhood: Union[Nearest, Wide]
     def work(rows: np.ndarray) -> None:
         neighbors, centers, covariances = neighborhood.moments(columns, tree, rows)
         eigenvalues = symmetric_eigenvalues(covariances)
-        planes.neighbors[rows] = neighbors
-        planes.center[rows] = centers
-        planes.normal[rows] = smallest_eigenvectors(covariances, eigenvalues)
-        planes.deviation[rows] = np.sqrt(eigenvalues[:, 2])
+        normals = smallest_eigenvectors(covariances, eigenvalues)
+        made.neighbors[rows] = neighbors
+        made.planes[rows, :3] = normals
+        made.planes[rows, 3] = np.einsum("ij,ij->i", normals, centers - xyz[0])
+        made.deviation[rows] = np.sqrt(eigenvalues[:, 2])
 
-    in_chunks(work, tree.indices, neighborhood.rows_per_chunk(len(xyz)), monitor)
+    in_chunks(work, np.arange(len(xyz)), neighborhood.rows_per_chunk(len(xyz)), monitor)
     # Coincident neighbors have no normal and so no plane.
-    undefined = ~np.isfinite(planes.normal).all(axis=1)
-    planes.normal[undefined], planes.deviation[undefined] = 0.0, np.inf
-    return planes
+    undefined = ~np.isfinite(made.planes).all(axis=1)
+    made.planes[undefined], made.deviation[undefined] = 0.0, np.inf
+    return made
 
 
-def _smoothest_plane(xyz: np.ndarray, planes: LocalPlanes, off_plane: float, monitor: Monitor) -> np.ndarray:
-    """Return the number (n,) of the smoothest plane that holds each point; -1 where none does."""
-    plane = np.full(len(xyz), -1, np.int32)
+def _smoothest_plane(points: np.ndarray, planes: _LocalPlanes, reach: float, monitor: Monitor) -> np.ndarray:
+    """Return the number (n,) of the smoothest plane within ``reach`` (m) of each point (n, 4); -1 where none is."""
+    found = np.full(len(points), -1, np.int32)
 
     def work(rows: np.ndarray) -> None:
-        smoothest = np.full(len(rows), np.inf)
-        for candidate in planes.neighbors[rows].T:
-            better = planes.deviation[candidate] < smoothest
-            better[better] = planes.distance(xyz[rows[better]], candidate[better]) <= _ON_PLANE * off_plane
-            smoothest[better] = planes.deviation[candidate[better]]
-            plane[rows[better]] = candidate[better]
+        own, candidates = points[rows], planes.neighbors[rows]
+        deviation = planes.deviation[candidates]
+        left = np.arange(len(rows))
+        # The smoothest one holds most points; the others are held against all.
+        for is_last in (False, True):
+            if is_last:
+                off = np.einsum("ikj,ij->ik", planes.planes[candidates], own)
+                deviation[np.abs(off) > reach] = np.inf
+            every, best = np.arange(len(left)), np.argmin(deviation, axis=1)
+            plane = candidates[every, best]
+            holds = np.isfinite(deviation[every, best])
+            holds &= np.abs(np.einsum("ij,ij->i", planes.planes[plane], own)) <= reach
+            found[rows[left[holds]]] = plane[holds]
+            rest = ~holds
+            left, own, candidates, deviation = left[rest], own[rest], candidates[rest], deviation[rest]
 
-    in_chunks(work, np.arange(len(xyz)), _CHUNK, monitor)
-    return plane
+    in_chunks(work, np.arange(len(found)), max(1, _CHUNK_CANDIDATES // planes.neighbors.shape[1]), monitor)
+    return found
 
 
 def _links(
-    xyz: np.ndarray, planes: LocalPlanes, plane: np.ndarray, on_surface: np.ndarray, off_plane: float, monitor: Monitor
+    points: np.ndarray, planes: _LocalPlanes, plane: np.ndarray, on_surface: np.ndarray, reach: float, monitor: Monitor
 ) -> Any:
-    """Return the graph, sparse (n, n), of neighbors whose planes are one surface."""
+    """Return the graph, sparse (n, n), of neighbors whose planes are one surface: within ``reach`` (m) of each."""
     # Spread over the ranks, so that links cross from one scan line to the next.
     ranks = np.unique(np.linspace(1, planes.neighbors.shape[1] - 1, _LINKS - 1).astype(int))
     planes.neighbors = planes.neighbors[:, ranks]
-    n_links = np.zeros(len(xyz) + 1, np.int64)
-    there: list[np.ndarray] = [np.empty(0, np.int32)] * -(-len(xyz) // _CHUNK)
+    n_links = np.zeros(len(plane) + 1, np.int64)
+    there: list[np.ndarray] = [np.empty(0, np.int32)] * -(-len(plane) // _CHUNK)
 
     def work(rows: np.ndarray) -> None:
         neighbors = planes.neighbors[rows]
         is_link = on_surface[rows, None] & on_surface[neighbors]
-        for column, neighbor in enumerate(neighbors.T):
-            pair = is_link[:, column].nonzero()[0]
-            a, b = rows[pair], neighbor[pair]
-            # Normals point upward, those of walls to either side by chance.
-            cosine = np.einsum("ij,ij->i", planes.normal[plane[a]], planes.normal[plane[b]])
-            same = np.abs(cosine) >= _SAME_DIRECTION
-            same &= planes.distance(xyz[b], plane[a]) <= _SAME_SURFACE * off_plane
-            same &= planes.distance(xyz[a], plane[b]) <= _SAME_SURFACE * off_plane
-            is_link[pair, column] = same
+        # One plane holds both, mostly.
+        apart = np.nonzero(is_link & (plane[neighbors] != plane[rows, None]))
+        a, b = rows[apart[0]], neighbors[apart]
+        of_a, of_b = planes.planes[plane[a]], planes.planes[plane[b]]
+        # Normals point upward, those of walls to either side by chance.
+        same = np.abs(np.einsum("ij,ij->i", of_a[:, :3], of_b[:, :3])) >= _SAME_DIRECTION
+        same &= np.abs(np.einsum("ij,ij->i", points[b], of_a)) <= reach
+        same &= np.abs(np.einsum("ij,ij->i", points[a], of_b)) <= reach
+        is_link[apart] = same
         n_links[rows + 1] = is_link.sum(axis=1)
         there[rows[0] // _CHUNK] = neighbors[is_link]
 
-    in_chunks(work, np.arange(len(xyz)), _CHUNK, monitor)
+    in_chunks(work, np.arange(len(plane)), _CHUNK, monitor)
     columns = np.concatenate(there)
     there.clear()
     # The weights are of the type that the search for components would turn them to.
-    return sparse.csr_matrix((np.ones(len(columns)), columns, np.cumsum(n_links)), (len(xyz), len(xyz)))
+    return sparse.csr_matrix((np.ones(len(columns)), columns, np.cumsum(n_links)), (len(plane), len(plane)))
