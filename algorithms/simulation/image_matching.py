@@ -220,7 +220,9 @@ def _faces(matched: Matched, density: float, rng: np.random.Generator) -> np.nda
     """Return points (n, 3) on steep faces between a cell and the next, as many as their area has; smeared walls."""
     parts = []
     for axis in (0, 1):
-        low, high = matched.top, np.roll(matched.top, -1, axis=axis)
+        # The last cell has no next one.
+        low = matched.top
+        high = _moved(low, 1, 0) if axis == 0 else _moved(low, 0, 1)
         drop = np.abs(high - low)
         # Seen from above, gentle slopes have their points already; walls are often missing over meters.
         drop = np.where((drop > CELL) & ~matched.is_hole, drop - CELL, 0.0)

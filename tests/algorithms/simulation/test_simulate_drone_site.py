@@ -23,8 +23,12 @@ def site(**tunables) -> dict:
     return dict(zip(NAMES, simulate_drone_site(**{**SMALL, **tunables})))
 
 
+def scene_of(slope=4.0, trees=30.0):
+    return build_site(size=44.0, slope=slope, terrace_height=1.5, buildings=16.0, trees=trees, halls=1, seed=3)
+
+
 def scene():
-    return build_site(size=44.0, slope=4.0, terrace_height=1.5, buildings=16.0, trees=30.0, halls=1, seed=3)
+    return scene_of()
 
 
 @pytest.fixture
@@ -48,6 +52,13 @@ def test_points_lie_on_the_ground_and_on_roofs(exact):
     for building in made.buildings:
         mine = xyz[exact["segment_id"] == building.object_id]
         assert np.nanmedian(np.abs(mine[:, 2] - building.roof(*mine[:, :2].T))) < 0.05
+
+
+def test_nothing_lies_below_the_ground_at_the_border():
+    # Faces were once drawn from each border to the one across the site.
+    made = site(slope=15.0, unevenness=0.0, rounding=0.0, waves=0.0, noise=0.0, trees=0.0)
+    ground = scene_of(slope=15.0, trees=0.0).relief.ground(*made["xyz"][:, :2].T)
+    assert (made["xyz"][:, 2] - ground).min() > -0.5
 
 
 def test_the_ground_is_as_uneven_as_asked(exact):
