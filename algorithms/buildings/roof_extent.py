@@ -142,11 +142,13 @@ class RoofExtent:
         return found
 
     def _is_vehicle(self, inside: np.ndarray, height: np.ndarray) -> bool:
-        width, length, filled = smallest_rectangle(inside, self.surface.size)
+        # Sides are known to a cell.
+        cell = self.surface.size
+        width, length, filled = smallest_rectangle(inside, cell)
         top = float(np.percentile(height, 90))
-        is_van = _between(length, _VAN_LENGTH) and top <= _VAN_HEIGHT
-        is_car = _between(length, _CAR_LENGTH) and top <= _CAR_HEIGHT
-        return _between(width, _VAN_WIDTH) and filled >= _FILLED and (is_van or is_car)
+        is_van = _between(length, _VAN_LENGTH, cell) and top <= _VAN_HEIGHT
+        is_car = _between(length, _CAR_LENGTH, cell) and top <= _CAR_HEIGHT
+        return _between(width, _VAN_WIDTH, cell) and filled >= _FILLED and (is_van or is_car)
 
     def _small_holes(self, closed: np.ndarray, gap: float) -> np.ndarray:
         holes, count = ndimage.label(ndimage.binary_fill_holes(closed) & ~closed)
@@ -172,8 +174,8 @@ def smallest_rectangle(inside: np.ndarray, size: float) -> tuple[float, float, f
     return width, length, float(inside.sum() * size**2 / (width * length))
 
 
-def _between(value: float, bounds: tuple[float, float]) -> bool:
-    return bounds[0] <= value <= bounds[1]
+def _between(value: float, bounds: tuple[float, float], margin: float) -> bool:
+    return bounds[0] - margin <= value <= bounds[1] + margin
 
 
 def without_vehicles(extent: RoofExtent, building: np.ndarray, refused: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
