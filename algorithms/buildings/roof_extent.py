@@ -42,9 +42,12 @@ _DIRECTIONS = np.radians(np.arange(0.0, 90.0, 5.0))
 _EIGHT = np.ones((3, 3), bool)
 
 
-# Most of what lies within this (m) of a roof surface, no more than this (m) higher or lower, is on surfaces, too.
-# Around the smooth spots of crowns it is leaves.
-_NEAR, _AT_HEIGHT, _MOST = 2.0, 1.5, 0.5
+# Of what lies within this (m) of a roof surface, at about its height, this share is on surfaces, too. Around the smooth
+# spots of crowns it is leaves.
+_NEAR, _MOST = 2.0, 0.6
+
+# That is no more than this (m) higher or lower, and no more than this share of its height, below which edges are.
+_AT_HEIGHT, _AT_HEIGHT_SHARE = 1.5, 0.3
 
 
 def amid_rough(surface: TopSurface, xyz: np.ndarray, segment_id: np.ndarray) -> np.ndarray:
@@ -61,7 +64,8 @@ def amid_rough(surface: TopSurface, xyz: np.ndarray, segment_id: np.ndarray) -> 
     row, column = surface.cell[0][on_top], surface.cell[1][on_top]
     on_surface = np.zeros(surface.height.shape, bool)
     on_surface[row, column] = True
-    share = surface.share_near(on_surface, _NEAR, _AT_HEIGHT, _RAISED)[row, column]
+    tolerance = np.minimum(_AT_HEIGHT, _AT_HEIGHT_SHARE * surface.height)
+    share = surface.share_near(on_surface, _NEAR, tolerance, _RAISED)[row, column]
     count = np.bincount(segment_id[on_top], minlength=int(segment_id.max()) + 1)
     mean = np.bincount(segment_id[on_top], share, len(count)) / np.maximum(count, 1)
     return ((mean < _MOST) & (count > 0))[segment_id] & (segment_id > 0)

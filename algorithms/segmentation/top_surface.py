@@ -64,15 +64,17 @@ class TopSurface:
         """Return which of the points (n,) are of the surface."""
         return xyz[:, 2] >= self.elevation[self.cell] - (_DEPTH + self.size)
 
-    def share_near(self, chosen: np.ndarray, reach: float, tolerance: float, raised: float) -> np.ndarray:
+    def share_near(self, chosen: np.ndarray, reach: float, tolerance: np.ndarray, raised: float) -> np.ndarray:
         """Return how many of the raised cells near each cell, at about its height, are chosen.
 
         Parameters
         ----------
         chosen : ndarray of shape (rows, columns), bool
             Which cells count.
-        reach, tolerance : float
-            How far away in plan and how much higher or lower cells may be (m).
+        reach : float
+            How far away in plan cells may be, m.
+        tolerance : ndarray of shape (rows, columns)
+            How much higher or lower than each cell, m.
         raised : float
             Least height above ground of cells that are looked at, m.
 

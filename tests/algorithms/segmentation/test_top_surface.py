@@ -86,7 +86,7 @@ def test_what_lies_near_at_the_same_height(rng):
     chosen = np.zeros(surface.height.shape, bool)
     is_chosen = (part == 1) & (xyz[:, 0] < 10) & (xyz[:, 1] < 10)
     chosen[surface.cell[0][is_chosen], surface.cell[1][is_chosen]] = True
-    share = surface.share_near(chosen, 2.0, 1.5, 1.0)[surface.cell]
+    share = surface.share_near(chosen, 2.0, np.full(chosen.shape, 1.5), 1.0)[surface.cell]
 
     def around(x, y):
         return share[np.hypot(*(xyz[:, :2] - [x, y]).T) < 0.3].mean()
