@@ -90,6 +90,7 @@ def made_ahead(work: Callable[[int, Monitor], Any], count: int, monitor: Monitor
             heard[item].pass_on(monitor)
             if item + ahead < count:
                 futures.append(pool.submit(work, item + ahead, heard[item + ahead]))
+            monitor.progress((item + share) / count)
             yield made
     finally:
         stop.set()

@@ -91,6 +91,20 @@ class Boxes:
         here = np.flatnonzero(other.keys[there] == wanted) if len(other) else np.zeros(0, np.int64)
         return here, there[here]
 
+    def beside_all(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        """Yield, for one of each two opposite steps to boxes around, which boxes have one there, and which that is."""
+        half = {offset[:2] for offset in around() if offset > (0, 0, 0)}
+        for column in sorted(half, key=lambda step: (step[0] ** 2 + step[1] ** 2, step)):
+            lowest = -_REACH if any(column) else 1
+            wanted = self.keys + self._key(np.array([*column, lowest]))
+            there = np.searchsorted(self.keys, wanted)
+            for _ in range(lowest, _REACH + 1):
+                here = np.flatnonzero(self.keys[np.minimum(there, len(self) - 1)] == wanted)
+                yield here, there[here]
+                # Numbers count on upward: the next box is the next number, or the place stays.
+                there[here] += 1
+                wanted += 1
+
     def pairs(
         self, here: np.ndarray, other: Boxes, there: np.ndarray, most: Optional[int] = None
     ) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
@@ -135,15 +149,15 @@ def connected(boxes: Boxes, is_near: Callable[[np.ndarray], np.ndarray], monitor
     each, which joins most: pairs of points are never all held at once, and memory follows the points.
     """
     component = np.arange(len(boxes))
-    half = [offset for offset in around() if offset > (0, 0, 0)]
+    half = len(around()) // 2
     left: list[tuple[np.ndarray, np.ndarray]] = []
-    for done, offset in enumerate(half, start=1):
-        apart, component = _compared(boxes, boxes.beside(boxes, offset), component, is_near, 1)
+    for done, pairs in enumerate(boxes.beside_all(), start=1):
+        apart, component = _compared(boxes, pairs, component, is_near, 1)
         left.append(apart)
-        monitor.progress(done / (2 * len(half)))
+        monitor.progress(done / (2 * half))
     for done, apart in enumerate(left, start=1):
         component = _compared(boxes, apart, component, is_near, None)[1]
-        monitor.progress(0.5 + done / (2 * len(half)))
+        monitor.progress(0.5 + done / (2 * half))
     return component
 
 

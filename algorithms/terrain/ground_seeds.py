@@ -10,6 +10,7 @@ import numpy as np
 from ..geometry.grid import plan_box, refuse_sparse, turned_in_plan
 from ..geometry.raster_opening import open_surface
 from ..stage import Monitor
+from ..threads import made_ahead
 from .free_standing import find_free_standing
 from .removed_objects import ObjectRemoval, nearest_known
 
@@ -112,14 +113,19 @@ def seeds_by_opening(
     classification of airborne LIDAR data. ISPRS Journal of Photogrammetry and Remote Sensing 77, 21-30.
     """
     refuse_sparse(xyz, cell_size)
-    box, slope, views = plan_box(xyz), None, []
+    box = plan_box(xyz)
     angles = _TURNS if _is_compact(box) else _TURNS[:1]
-    for done, angle in enumerate(angles):
-        cells = _Cells(turned_in_plan(xyz, angle), box, angle, cell_size, spacing)
-        part = monitor.part(done / len(angles), (done + 1) / len(angles))
-        views.append(_view(cells, max_building_size, slope, part))
-        # The slope changes little from cell to cell: what the first direction measured will do.
-        slope = views[0].slope
+
+    def view(number: int, slope: Optional[np.ndarray], part: Monitor) -> _View:
+        cells = _Cells(turned_in_plan(xyz, angles[number]), box, angles[number], cell_size, spacing)
+        return _view(cells, max_building_size, slope, part)
+
+    first = view(0, None, monitor.part(0, 1 / len(angles)))
+    # The slope changes little from cell to cell: what the first direction measured will do.
+    others = made_ahead(
+        lambda number, part: view(number + 1, first.slope, part), len(angles) - 1, monitor.part(1 / len(angles), 1)
+    )
+    views = [first, *others]
     candidates = views[0].candidates
     # The first direction is that of the box: it tells best what the end of the cloud cuts off.
     stands_free = views[0].stands_free | np.logical_and.reduce([view.stands_free for view in views[1:] or views])
