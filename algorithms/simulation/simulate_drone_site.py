@@ -74,7 +74,7 @@ def simulate_drone_site(
             low=0,
             high=0.5,
         ),
-    ] = 0.08,
+    ] = 0.12,
     rounding: Annotated[
         float,
         Param("Rounding of edges", "Distance over which eaves and ridges are rounded.", unit="m", low=0, high=2),
@@ -82,7 +82,7 @@ def simulate_drone_site(
     waves: Annotated[
         float,
         Param("Waves", "Standard deviation of errors that neighboring points share.", unit="m", low=0, high=0.3),
-    ] = 0.02,
+    ] = 0.03,
     walls: Annotated[
         float,
         Param("Share of walls", "Density of points on walls, as a share of that on open ground.", low=0, high=1),

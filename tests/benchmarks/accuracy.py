@@ -38,8 +38,9 @@ from lidar_buildings.algorithms.run import (
 from lidar_buildings.algorithms.stage import Monitor  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 from lidar_buildings.tests.aged_maps import aged, with_plain_corners  # noqa: E402
-from lidar_buildings.tests.benchmarks.drone import drone, likeness, photos  # noqa: E402
+from lidar_buildings.tests.benchmarks.drone import drone, photos  # noqa: E402
 from lidar_buildings.tests.benchmarks.drone_scenes import places as drone_places  # noqa: E402
+from lidar_buildings.tests.benchmarks.likeness import likeness  # noqa: E402
 from lidar_buildings.tests.benchmarks.real_objects import CAR, FENCE, POLE, TREE, scene  # noqa: E402
 from lidar_buildings.tests.benchmarks.results import FOLDER, Table  # noqa: E402
 from lidar_buildings.tests.benchmarks.scenes import SCENES, estate, scanned  # noqa: E402

@@ -1,4 +1,4 @@
-"""Clouds of matched images, real and simulated: what the default chain finds, and how alike the two kinds are."""
+"""Clouds of matched images, real and simulated: what the default chain finds."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ SITES: dict[str, dict[str, Any]] = {
     "halls of up to 66 m": {"size": 110.0, "seed": 5, "halls": 8, "buildings": 4.0},
 }
 
-# Side of the cells that area is counted in (m), and of windows in which roughness is measured (m).
-_CELL, _WINDOWS = 0.5, (0.5, 1.0, 2.0, 4.0)
+# Side of the cells that area is counted in (m).
+_CELL = 0.5
 
 
 def photos() -> list[Table]:
@@ -85,41 +85,6 @@ def _figures(site: dict[str, Any], size: float) -> list[float]:
         100 * float(np.mean(called[is_roof] == PointClass.GROUND)),
         100 * float(np.mean(called[is_ground] != PointClass.GROUND)),
     ]
-
-
-def likeness() -> list[Table]:
-    """Print how rough roofs, plants and the rest are over some distances, in real and simulated clouds (m)."""
-    table = Table("likeness", "cloud", "surface", *(f"{window:g} m" for window in _WINDOWS), texts=2)
-    clouds = {name.split("/")[1]: (detected(name).cloud.get("xyz"), truth(name)) for name in WITH_IMAGES}
-    site = simulated(size=110.0, density=24.0)
-    # Plants have no class of their own in the real truth.
-    plants = np.isin(site["classification"], (3, 4, 5))
-    clouds["simulated"] = site["xyz"], np.where(plants, PointClass.UNCLASSIFIED, site["classification"])
-    for name, (xyz, true) in clouds.items():
-        for surface, chosen in (
-            ("roofs", true == PointClass.BUILDING),
-            ("everything else", true != PointClass.BUILDING),
-        ):
-            table.add(name, surface, *(median_roughness(xyz[chosen], window) for window in _WINDOWS), digits=3)
-    return [table]
-
-
-def median_roughness(xyz: np.ndarray, window: float) -> float:
-    """Return the median over windows (m) of the deviation (m) of the highest points from the plane of best fit."""
-    cell = np.floor(xyz[:, :2] / 0.25).astype(np.int64)
-    order = np.lexsort((xyz[:, 2], *cell.T))
-    is_top = np.append((np.diff(cell[order], axis=0) != 0).any(axis=1), True)
-    top = xyz[order[is_top]] - xyz.mean(axis=0)
-    _, which, count = np.unique(np.floor(top[:, :2] / window), axis=0, return_inverse=True, return_counts=True)
-    mean = np.column_stack([np.bincount(which, top[:, i]) / count for i in range(3)])
-    off = top - mean[which]
-    covariance = np.empty((len(count), 3, 3))
-    for i in range(3):
-        for j in range(3):
-            covariance[:, i, j] = np.bincount(which, off[:, i] * off[:, j]) / count
-    deviation = np.sqrt(np.maximum(np.linalg.eigvalsh(covariance)[:, 0], 0.0))
-    # Of windows that are full, but for a few cells.
-    return float(np.median(deviation[count >= 0.7 * (window / 0.25) ** 2]))
 
 
 def largest_false(xyz: np.ndarray, called: np.ndarray, true: np.ndarray) -> float:
