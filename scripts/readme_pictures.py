@@ -4,6 +4,9 @@ Runs inside QGIS, with the plugin enabled in the profile, on a screen that need 
 
     xvfb-run -s "-screen 0 1400x900x24" qgis --nologo --noversioncheck --code scripts/readme_pictures.py
     pngquant --force --ext .png 256 resources/readme/*.png
+
+With TILE, a cloud, in the environment it takes the picture of the 3D view instead, with models of the cloud's
+buildings; README's shows ahn3-delft (AHN3, Dutch open data).
 """
 
 from __future__ import annotations
@@ -20,10 +23,11 @@ from qgis.core import (
     QgsProcessing,
     QgsProcessingOutputLayerDefinition,
     QgsProject,
+    QgsVector3D,
 )
-from qgis.PyQt.QtCore import QRect, QRectF, QSize, Qt, QTimer
+from qgis.PyQt.QtCore import QPoint, QRect, QRectF, QSize, Qt, QTimer
 from qgis.PyQt.QtGui import QImage, QPainter
-from qgis.PyQt.QtWidgets import QDockWidget, QTreeView
+from qgis.PyQt.QtWidgets import QDockWidget, QToolBar, QTreeView
 from qgis.utils import iface
 
 from lidar_buildings.provider.paths import PLUGIN
@@ -33,6 +37,7 @@ WINDOW = QSize(1400, 900)
 GRAPH_WIDTH = 1300  # pixels
 CLOSER = 0.72  # the part of the village that is shown
 REDRAW = 20000  # milliseconds until the map is drawn
+CAMERA = 210.0, 55.0, 30.0  # distance (m), angle from the vertical and azimuth (°) of the camera of the 3D view
 
 
 def found_town() -> None:
@@ -127,6 +132,46 @@ def graph_picture() -> None:
     image.save(str(FOLDER / "model.png"))
 
 
+def modelled_buildings() -> None:
+    """Model the buildings of the tile and load roofs, walls and grounds."""
+    project = QgsProject.instance()
+    project.clear()
+    targets = {
+        name: QgsProcessingOutputLayerDefinition(QgsProcessing.TEMPORARY_OUTPUT, project)
+        for name in ("BUILDINGS", "WALLS", "ROOFS")
+    }
+    inputs = {"INPUT": os.environ["TILE"], "OUTPUT": QgsProcessing.TEMPORARY_OUTPUT}
+    processing.runAndLoadResults("lidarbuildings:modelbuildings", {**inputs, **targets})
+    (layer, *_) = project.mapLayers().values()
+    project.setCrs(layer.crs())
+    iface.mapCanvas().setDestinationCrs(layer.crs())
+    iface.zoomFull()
+
+
+class View:
+    """The 3D view over the whole window."""
+
+    def open(self) -> None:
+        """Open it."""
+        self.canvas = iface.createNewMapCanvas3D("Models")
+        shown = [window for window in QgsApplication.topLevelWidgets() if window.isVisible()]
+        (self.window,) = (window for window in shown if window is not iface.mainWindow())
+        self.window.setGeometry(QRect(QPoint(0, 0), WINDOW))
+
+    def turn(self) -> None:
+        """Look at the middle of the layers from above and aside."""
+        middle, origin = iface.mapCanvas().fullExtent().center(), self.canvas.mapSettings().origin()
+        place = QgsVector3D(middle.x() - origin.x(), 0, origin.y() - middle.y())
+        self.canvas.cameraController().setLookingAtPoint(place, *CAMERA)
+
+    def picture(self) -> None:
+        """Save it as the screen shows it, without its buttons."""
+        bar = self.window.findChild(QToolBar).height()
+        image = QgsApplication.primaryScreen().grabWindow(self.window.winId())
+        # The window may be larger than the screen.
+        image.copy(0, bar, WINDOW.width(), WINDOW.height() - bar).save(str(FOLDER / "models.png"))
+
+
 def follow(steps: list) -> None:
     """Take the steps one by one, with time to draw between them, and end QGIS."""
     try:
@@ -143,4 +188,6 @@ def follow(steps: list) -> None:
 FOLDER.mkdir(parents=True, exist_ok=True)
 TOWN = [found_town, arranged_window, town_picture]
 VILLAGE = [mapped_village, close_window, village_picture]
-QTimer.singleShot(REDRAW, lambda: follow([*TOWN, graph_picture, *VILLAGE]))
+VIEW = View()
+MODELS = [modelled_buildings, VIEW.open, VIEW.turn, VIEW.picture]
+QTimer.singleShot(REDRAW, lambda: follow(MODELS if os.environ.get("TILE") else [*TOWN, graph_picture, *VILLAGE]))

@@ -596,6 +596,47 @@ def test_arrays_that_do_not_belong_together_are_refused(stage):
                 stage.function(*arrays[:i], shorter, *arrays[i + 1 :], **layers)
 
 
+def one_point() -> dict[str, np.ndarray]:
+    return {name: values[1000:1001] for name, values in scene().items()}
+
+
+def one_place() -> dict[str, np.ndarray]:
+    return {**one_hundred(), "xyz": np.full((100, 3), 7.0)}
+
+
+def one_hundred() -> dict[str, np.ndarray]:
+    return {name: values[1000:1100] for name, values in scene().items()}
+
+
+def on_one_line() -> dict[str, np.ndarray]:
+    return {**one_hundred(), "xyz": np.arange(100.0)[:, None] * [0.3, 0.4, 0.0] + [3.0, 5.0, 7.0]}
+
+
+def all_noise() -> dict[str, np.ndarray]:
+    return {**one_hundred(), "classification": np.full(100, PointClass.LOW_NOISE, np.uint8)}
+
+
+@pytest.mark.parametrize("cloud", [one_point, one_place, on_one_line, all_noise], ids=lambda cloud: cloud.__name__)
+@each_reader
+def test_a_poor_cloud_has_a_result_or_is_refused_in_a_sentence(stage, cloud):
+    refusal, made = "", StageResults()
+    try:
+        made, _ = made_by(stage, cloud())
+    except ValueError as error:
+        refusal = str(error)
+    assert not refusal or is_sentences(refusal)
+    if cloud is all_noise and not refusal and "classification" in stage.reads:
+        assert_no_noise_found(stage, made)
+
+
+def assert_no_noise_found(stage: Stage, made: StageResults) -> None:
+    """Noise is of no segment, and no ground."""
+    if "segment_id" in stage.writes:
+        assert not made.dimensions["segment_id"].any()
+    if "classification" in stage.writes and "noise" not in stage.name:
+        assert not (made.dimensions["classification"] == PointClass.GROUND).any()
+
+
 @pytest.mark.parametrize("stage", [stage for stage in ALL.values() if stage.merges], ids=lambda stage: stage.name)
 def test_clouds_to_merge_are_at_least_two(stage):
     with pytest.raises(ValueError, match=rf"^{stage.title} needs at least two point clouds, got 1; add another\.$"):

@@ -117,7 +117,7 @@ def classify_buildings(
         Confidence that the cluster is a building, 0 to 1, more than 0.5 for buildings. Clusters refused in spite of a
         low entropy have 0.5 at most, undecided ones 0.5. NaN elsewhere.
     reason : ndarray of shape (n,), uint8
-        Why the point's cluster is called building or not, see :class:`~.reasons.Reason`; 0 outside clusters.
+        Why the point's cluster is called building or not, see :class:`~..cloud.reasons.Reason`; 0 outside clusters.
     report : Report
         Counts and the two mean entropies, and a page that shows what decided.
 

@@ -82,7 +82,7 @@ def classify_buildings_2019(
         The distance of the cluster's entropy from the upper mean over the sum of its distances from both, 0 to 1, more
         than 0.5 for buildings, 0.5 for undecided clusters (and less with fewer points, see Notes). NaN elsewhere.
     reason : ndarray of shape (n,), uint8
-        Why the point's cluster is called building or not, see :class:`~.reasons.Reason`; 0 outside clusters.
+        Why the point's cluster is called building or not, see :class:`~..cloud.reasons.Reason`; 0 outside clusters.
     report : Report
         Counts and the two mean entropies, and a page that shows what decided.
 

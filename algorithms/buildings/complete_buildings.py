@@ -144,7 +144,7 @@ def complete_buildings(
     confidence : ndarray of shape (n,), float32, optional
         How sure the roofs are buildings, 0 to 1.
     reason : ndarray of shape (n,), uint8, optional
-        Why the roofs are buildings, see :class:`~.reasons.Reason`.
+        Why the roofs are buildings, see :class:`~..cloud.reasons.Reason`.
     segment_id : ndarray of shape (n,), int32, optional
         Roof surfaces, 0 is none; without it their share is not looked at.
     return_number, number_of_returns : ndarray of shape (n,), uint8, optional

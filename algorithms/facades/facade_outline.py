@@ -10,7 +10,7 @@ import numpy as np
 from ..footprints.alpha_shape import Tracing, trace_outlines
 from ..footprints.regularization import regularize_outline
 from ..geometry.groups import items
-from ..geometry.line_segments import edge_distances, is_valid
+from ..geometry.line_segments import edge_distances, is_valid, nearest_edge_distances
 from ..geometry.polylines import simplify_ring
 from ..geometry.rings import signed_area
 from ..packages import spatial
@@ -308,7 +308,7 @@ def inside_ring(places: np.ndarray, ring: np.ndarray) -> np.ndarray:
             odd ^= crosses & (places[:, 0] < a + (places[:, 1] - b) * (c - a) / (d - b))
     rest = np.flatnonzero(~odd)
     if len(rest):
-        odd[rest] = edge_distances(places[rest], ring[:-1], ring[1:]).min(axis=1) < 1e-9
+        odd[rest] = nearest_edge_distances(places[rest], ring[:-1], ring[1:]) < 1e-9
     return odd
 
 

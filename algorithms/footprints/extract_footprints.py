@@ -122,7 +122,7 @@ def extract_footprints(
     confidence : ndarray of shape (n,), optional
         Sureness of being a building, 0 to 1, for the attributes only.
     reason : ndarray of shape (n,), optional
-        Why points are called building, see :class:`~.reasons.Reason`, for the attributes and to tell walls.
+        Why points are called building, see :class:`~..cloud.reasons.Reason`, for the attributes and to tell walls.
 
     Returns
     -------

@@ -70,7 +70,7 @@ class PointMeasures:
     entropy, confidence : ndarray of shape (n,), optional
         Mean entropy of the cluster, and confidence (0 to 1) of being a building; NaN where they are not defined.
     reason : ndarray of shape (n,), optional
-        Codes of :class:`~.reasons.Reason`.
+        Codes of :class:`~..cloud.reasons.Reason`.
     """
 
     xyz: np.ndarray
@@ -226,11 +226,13 @@ def _eave_heights(
 def _mean_heights(traced: Tracing, height: np.ndarray) -> np.ndarray:
     """Return the mean height (f,) of the roof's surface in each face."""
     is_roof = (traced.face >= 0) & (traced.label[traced.triangles] > 0).all(axis=1)
+    is_roof &= np.isfinite(height[traced.triangles]).all(axis=1)
     face, triangles = traced.face[is_roof], traced.triangles[is_roof]
     a, b = (traced.xy[triangles[:, k]] - traced.xy[triangles[:, 0]] for k in (1, 2))
     area = np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
     count = len(traced.labels)
-    return np.bincount(face, area * height[triangles].mean(axis=1), count) / np.bincount(face, area, count)
+    volume, total = np.bincount(face, area * height[triangles].mean(axis=1), count), np.bincount(face, area, count)
+    return np.divide(volume, total, out=np.full(count, np.nan), where=total > 0)
 
 
 def _percentile(values: np.ndarray, percent: float) -> float:

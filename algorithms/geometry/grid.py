@@ -93,6 +93,10 @@ def distinct(numbers: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.flatnonzero(is_there) + least, place[numbers - least]
 
 
+class SparsePointsError(ValueError):
+    """Points lie so far apart that a raster of cells over them would hold next to nothing."""
+
+
 def refuse_sparse(xyz: np.ndarray, size: float, most_cells: int = _MOST_CELLS) -> None:
     """Refuse points that lie so far apart that a raster of cells over them would hold next to nothing.
 
@@ -107,12 +111,12 @@ def refuse_sparse(xyz: np.ndarray, size: float, most_cells: int = _MOST_CELLS) -
 
     Raises
     ------
-    ValueError
+    SparsePointsError
         If the raster had more cells than that and more than twenty for each point.
     """
     width, height = np.ptp(xyz[:, :2], axis=0)
     if (width / size + 1) * (height / size + 1) > max(most_cells, _MOST_CELLS_PER_POINT * len(xyz)):
-        raise ValueError(
+        raise SparsePointsError(
             f"The {len(xyz)} points are spread over {width:,.0f} m by {height:,.0f} m, which is nearly empty in cells "
             f"of {size:.2g} m; remove points that lie far off in plan, cut the cloud into pieces, or set larger cells."
         )

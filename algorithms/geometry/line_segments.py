@@ -69,14 +69,20 @@ def are_inside(points: np.ndarray, ring: np.ndarray) -> np.ndarray:
 
 def distances_to(points: np.ndarray, line: np.ndarray) -> np.ndarray:
     """Return the distances (n,) (m) of points (n, 2) to the nearest place on a line (m, 2)."""
-    step = max(1, _PAIRS_AT_ONCE // len(line))
-    chunks = [points[low : low + step] for low in range(0, len(points), step)]
-    return np.concatenate([edge_distances(chunk, line[:-1], line[1:]).min(axis=1) for chunk in chunks])
+    return nearest_edge_distances(points, line[:-1], line[1:])
 
 
 def farthest(points: np.ndarray, line: np.ndarray) -> float:
     """Return the largest distance (m) of points (n, 2) to the nearest place on a line."""
     return float(distances_to(points, line).max())
+
+
+def nearest_edge_distances(points: np.ndarray, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
+    """Return the distances (n,) (m) of points (n, 2) to the nearest of segments (m, 2), which there must be."""
+    nearest, step = np.empty(len(points)), max(1, _PAIRS_AT_ONCE // len(starts))
+    for low in range(0, len(points), step):
+        nearest[low : low + step] = edge_distances(points[low : low + step], starts, ends).min(axis=1)
+    return nearest
 
 
 def edge_distances(points: np.ndarray, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:

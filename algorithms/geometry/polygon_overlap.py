@@ -79,14 +79,18 @@ def overlaps(first: Polygons, second: Polygons, monitor: Monitor) -> tuple[np.nd
 def shared_areas(first: Polygons, second: Polygons, one: np.ndarray, other: np.ndarray, monitor: Monitor) -> np.ndarray:
     """Return the area (k,), m², that polygon ``one[i]`` of the first and ``other[i]`` of the second share."""
     area = np.zeros(len(one))
-    work = np.cumsum(first.size[one] * second.size[other])
+    # Edges of the first polygons, each with all edges of the second of its pair.
+    pair, edge = items(first.size[one])
+    work = np.cumsum(second.size[other[pair]])
     start = 0
-    while start < len(one):
+    while start < len(pair):
         done = work[start - 1] if start else 0
         end = max(start + 1, int(np.searchsorted(work, done + _PAIRS_AT_ONCE)))
-        area[start:end] = _shared(first, second, one[start:end], other[start:end])
+        low, high = pair[start], pair[end - 1] + 1
+        rows = pair[start:end] - low, edge[start:end]
+        area[low:high] += _shared(first, second, one[low:high], other[low:high], *rows)
         start = end
-        monitor.progress(start / len(one))
+        monitor.progress(start / len(pair))
     return np.maximum(area, 0.0)
 
 
@@ -107,13 +111,15 @@ def _meeting_boxes(first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, n
     return one[by_both], other[by_both]
 
 
-def _shared(first: Polygons, second: Polygons, one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Return the area that each pair of polygons shares."""
-    pair, step = items(first.size[one] * second.size[other])
-    row, column = np.divmod(step, second.size[other[pair]])
+def _shared(
+    first: Polygons, second: Polygons, one: np.ndarray, other: np.ndarray, pair_of_edge: np.ndarray, edge: np.ndarray
+) -> np.ndarray:
+    """Return the area below the edges ``edge`` of the first polygon of pairs that the second of them shares."""
+    row, column = items(second.size[other[pair_of_edge]])
+    pair = pair_of_edge[row]
     # From a corner of the pair: large coordinates would lose the area's digits.
     origin = first.box[one[pair], 0][:, None]
-    below = first.edges[first.first[one[pair]] + row] - origin
+    below = first.edges[first.first[one[pair]] + edge[row]] - origin
     beside = second.edges[second.first[other[pair]] + column] - origin
     return np.bincount(pair, _below_both(below, beside), len(one))
 

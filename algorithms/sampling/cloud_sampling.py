@@ -157,3 +157,8 @@ def without_noise(classification: np.ndarray) -> np.ndarray:
     """Return which points (n,) a cloud is measured on: those that are not noise; all where there are no others."""
     counted = ~np.isin(classification, NOISE)
     return counted if counted.any() else np.ones(len(counted), bool)
+
+
+def not_noise(classification: np.ndarray) -> np.ndarray:
+    """Return the rows (m,) of the points that are not noise, which stages work on: none where all are noise."""
+    return np.flatnonzero(~np.isin(classification, NOISE))

@@ -9,7 +9,7 @@ import numpy as np
 from ..cloud.asprs import PointClass
 from ..geometry.grid import distinct, find_cells, grid_over
 from ..params import PointDensity, SurfaceNoise
-from ..sampling.cloud_sampling import CloudSampling, without_noise
+from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..stage import Param, stage
 from .bridge_decks import Decks
 from .scan_line_pieces import NearPoints
@@ -115,7 +115,9 @@ def classify_ground_segments(
     monitor.resolved(density=density, noise=noise)
     spacing = 1 / float(np.sqrt(density))
     cell = max(_LEAST_CELL, _CELL_SPACINGS * spacing)
-    used = np.flatnonzero(without_noise(classification))
+    used = not_noise(classification)
+    if not len(used):
+        return classification.astype(np.uint8)
     points, segment = xyz[used] - xyz[used].min(axis=0), segment_id[used]
 
     is_earth = _bare_earth(points, segment, cell, min_height, min_area, max_object_area)

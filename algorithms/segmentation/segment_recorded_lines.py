@@ -9,7 +9,7 @@ import numpy as np
 from ..geometry.components import number_large
 from ..packages import spatial
 from ..params import PointDensity, SurfaceNoise
-from ..sampling.cloud_sampling import CloudSampling, without_noise
+from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..stage import Param, stage
 from .adjacent_pieces import adjacent_pieces
 from .piece_growing import Growth, Regions
@@ -166,7 +166,9 @@ def segment_recorded_lines(
     noise = sampling.noise if noise is None else noise
     deviation = float(np.hypot(noise, _BENDS / np.sqrt(density)))
     tolerance = _WITHIN * deviation if tolerance is None else tolerance
-    used = np.flatnonzero(without_noise(classification))
+    used = not_noise(classification)
+    if not len(used):
+        return np.zeros(len(xyz), np.int32)
     points = xyz[used] - xyz[used].min(axis=0)
     recording = Recording(gps_time, scan_angle, point_source_id, scan_direction_flag, edge_of_flight_line).take(used)
     if not recording.has_times:

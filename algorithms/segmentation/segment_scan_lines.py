@@ -9,7 +9,7 @@ import numpy as np
 from ..geometry.boxes import by_first_point
 from ..geometry.components import number_large
 from ..params import PointDensity, SurfaceNoise
-from ..sampling.cloud_sampling import CloudSampling, without_noise
+from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..stage import Param, stage
 from .scan_line_pieces import NearPoints, merged_pieces, pieces
 
@@ -145,7 +145,9 @@ def segment_scan_lines(
     distance = _DISTANCE_SPACINGS * spacing if distance is None else distance
     max_step = _NOISE_STEP * noise if max_step is None else max_step
     monitor.resolved(density=density, noise=noise, line_width=line_width, distance=distance, max_step=max_step)
-    used = np.flatnonzero(without_noise(classification))
+    used = not_noise(classification)
+    if not len(used):
+        return np.zeros(len(xyz), np.int32)
     points = xyz[used] - xyz[used].min(axis=0)
     slope = np.inf if max_slope == 90 else float(np.tan(np.radians(max_slope)))
     near = NearPoints(distance, slope, max_step)

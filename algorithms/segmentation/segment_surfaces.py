@@ -11,7 +11,7 @@ from ..geometry.delaunay import triangulate
 from ..geometry.groups import items
 from ..packages import spatial
 from ..params import PointDensity, SurfaceNoise
-from ..sampling.cloud_sampling import CloudSampling, without_noise
+from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..stage import Monitor, Param, stage
 from .surface_growing import Criteria, LocalPlanes, grow_planes, grow_surfaces, local_planes
 
@@ -169,7 +169,9 @@ def segment_surfaces(
     radius = _RADIUS_SPACINGS * spacing if radius is None else radius
     tolerance = _WITHIN * float(np.hypot(noise, _BENDS * spacing)) if tolerance is None else tolerance
     monitor.resolved(density=density, noise=noise, radius=radius, tolerance=tolerance)
-    used = np.flatnonzero(without_noise(classification))
+    used = not_noise(classification)
+    if not len(used):
+        return np.zeros(len(xyz), np.int32)
     points = xyz[used] - xyz[used].mean(axis=0)
 
     tree = spatial.cKDTree(points)

@@ -10,7 +10,7 @@ from ..geometry.components import number_large
 from ..geometry.delaunay import triangulate
 from ..neighborhoods.nearest_blocks import PAIRS
 from ..params import PointDensity, SurfaceNoise
-from ..sampling.cloud_sampling import CloudSampling, without_noise
+from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..stage import Param, stage
 from .best_pairs import common_deviation, merge_best_pairs
 from .least_squares_planes import Planes
@@ -107,7 +107,9 @@ def segment_tin_planes(
     tolerance = _WITHIN * float(np.hypot(noise, _BENDS * spacing)) if tolerance is None else tolerance
     max_edge = _EDGE_SPACINGS * spacing if max_edge is None else max_edge
     monitor.resolved(density=density, noise=noise, tolerance=tolerance, max_edge=max_edge)
-    used = np.flatnonzero(without_noise(classification))
+    used = not_noise(classification)
+    if not len(used):
+        return np.zeros(len(xyz), np.int32)
     points = xyz[used] - xyz[used].mean(axis=0)
     segment_id = np.zeros(len(xyz), np.int32)
     if len(used) < 3 or np.linalg.matrix_rank(points[:, :2] - points[0, :2]) < 2:

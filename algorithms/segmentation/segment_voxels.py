@@ -19,7 +19,7 @@ from ..geometry.sparse_voxels import (
     voxelize,
 )
 from ..geometry.voxel_skeleton import skeleton
-from ..sampling.cloud_sampling import CloudSampling, without_noise
+from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..stage import Field, Layer, LayerFeatures, Param, stage
 
 # Side of an automatic voxel in point spacings on surfaces: it holds four points on average, so that fewer than 2 % of
@@ -140,7 +140,7 @@ def segment_voxels(
     Raises
     ------
     ValueError
-        If the points are spread over more voxels than can be numbered.
+        If the points are spread over more voxels than can be numbered, or all lie at one place and no size is given.
 
     Notes
     -----
@@ -166,10 +166,15 @@ def segment_voxels(
     >>> segment_voxels(xyz, np.ones(3, np.uint8), voxel_size=1.0, neighbors="6")[0].tolist()
     [1, 2, 3]
     """
-    used = np.flatnonzero(without_noise(classification))
+    used = not_noise(classification)
+    if not len(used):
+        return np.zeros(len(xyz), np.int32), LayerFeatures([], {"segment_id": [], "count": [], "distance": []})
     if voxel_size is None:
         sampling = sampling or CloudSampling.of(xyz, classification)
-        voxel_size = _VOXEL_SPACINGS / float(np.sqrt(sampling.surface_density))
+        density = sampling.surface_density
+        if not np.isfinite(density):
+            raise ValueError("All points lie at one place, so they have no spacing; set the voxel size.")
+        voxel_size = _VOXEL_SPACINGS / float(np.sqrt(density))
     monitor.resolved(voxel_size=voxel_size)
     low = xyz[used].min(axis=0)
     occupied, voxel, count = voxelize(xyz[used] - low, voxel_size)

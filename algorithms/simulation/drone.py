@@ -158,7 +158,7 @@ def fly(
     seed: int,
     monitor: Monitor,
 ) -> dict[str, np.ndarray]:
-    """Scan a site from a drone. The tunables are those of :func:`.flight.simulate_flight`.
+    """Scan a site from a drone. The tunables are those of :func:`.simulate_flight.simulate_flight`.
 
     Returns
     -------

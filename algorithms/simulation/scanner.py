@@ -121,7 +121,7 @@ def scan(
     seed: int = 1,
     monitor: Optional[Monitor] = None,
 ) -> Scan:
-    """Scan a scene from the air. The tunables are those of :func:`.town.simulate_town`.
+    """Scan a scene from the air. The tunables are those of :func:`.simulate_town.simulate_town`.
 
     Returns
     -------

@@ -41,7 +41,7 @@ def build_town(
     seed: int = 1,
     monitor: Optional[Monitor] = None,
 ) -> Scene:
-    """Make up a town. The tunables are those of :func:`.town.simulate_town`.
+    """Make up a town. The tunables are those of :func:`.simulate_town.simulate_town`.
 
     Returns
     -------

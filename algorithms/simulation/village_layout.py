@@ -48,7 +48,7 @@ class Village:
 def build_village(
     *, size: float, slope: float, buildings: float, trees: float, overhang: float, clutter: bool, seed: int
 ) -> Village:
-    """Make up a village. The tunables are those of :func:`.village.simulate_village`."""
+    """Make up a village. The tunables are those of :func:`.simulate_village.simulate_village`."""
     rng = np.random.default_rng([seed, 2])
     scene = Scene(make_relief(size, slope, _HILLS, 0.0, False, rng))
     plots = _plots(scene)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..geometry.line_segments import edge_distances
+from ..geometry.line_segments import nearest_edge_distances
 from .wall_lines import WallLine
 from .wall_outline import WallEdge, WallOutline
 
@@ -110,7 +110,7 @@ def _outcomes(outline: WallOutline, first: np.ndarray, second: np.ndarray, place
     used = np.array([_carries(line, edges) for line in outline.lines])
     is_corner = np.hypot(*(place[:, None] - starts).transpose(2, 0, 1)).min(axis=1) < _SAME
     is_unused = ~(used[first] & used[second])
-    on_edge = edge_distances(place, starts, ends).min(axis=1) < _SAME
+    on_edge = nearest_edge_distances(place, starts, ends) < _SAME
     return np.select([is_corner, is_unused, on_edge], [CORNER, WALL_UNUSED, ON_EDGE], OFF_OUTLINE).tolist()
 
 

@@ -139,8 +139,8 @@ def classify_walls(
     Notes
     -----
     The normal is that of the plane of the neighbors, which are low points near roofs; neighbors that lie on no plane
-    (bushes, corners) make no wall. A point inside the hulls of two roofs goes to the nearest roof. The paper scales
-    hulls up; here they grow by the same distance on all sides, whatever their size.
+    (bushes, corners) make no wall. A point belongs to the nearest roof, if the hull of that roof holds it. The paper
+    scales hulls up; here they grow by the same distance on all sides, whatever their size.
 
     References
     ----------

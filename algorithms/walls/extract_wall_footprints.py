@@ -10,6 +10,7 @@ import numpy as np
 
 from ..footprints.alpha_shape import trace_outlines
 from ..footprints.regularization import regularize_outline
+from ..geometry.grid import SparsePointsError
 from ..geometry.groups import members
 from ..geometry.line_segments import are_inside, is_inside
 from ..geometry.rings import perimeter, signed_area
@@ -176,11 +177,6 @@ def extract_wall_footprints(
     report : Report
         Points of each kind, footprints and corners, and a page that shows them.
 
-    Raises
-    ------
-    ValueError
-        If the points of one building are spread so thinly that it would be nearly empty.
-
     Notes
     -----
     Thresholds follow the data of each building: the distance of points to their line is that of the noise; a wall is
@@ -202,7 +198,8 @@ def extract_wall_footprints(
 
     What lies deeper under a roof than it juts out over the other walls counts as inside: loggias, porches. Sides
     without wall points lie as far inside the edge of the roof as the other walls in the median; ``quality`` 0 marks
-    them. The result depends on the seed, and not on the order of points.
+    them. The result depends on the seed, and not on the order of points. A building whose points are spread so thinly
+    that it would be nearly empty has no footprint; the log names it.
 
     References
     ----------
@@ -222,21 +219,40 @@ def extract_wall_footprints(
     limits = Limits(tolerance, min_length, max_overhang)
     for done, building in enumerate(buildings):
         part = monitor.part(done / len(buildings), (done + 1) / len(buildings))
-        for house, outline in _houses(building, limits, min_area, seed, part):
-            used = outline if outline is not None and house.seen_of(outline) >= min_seen else None
-            parts = _parts(used.rings) if used is not None else house.roof_outlines(limits, part)
-            large = [rings for rings in parts if sum(signed_area(closed(ring)) for ring in rings) >= min_area]
-            for rings in large:
+        try:
+            houses = [
+                (house, outline, *_parts_of(house, outline, limits, min_seen, min_area, part))
+                for house, outline in _houses(building, limits, min_area, seed, part)
+            ]
+        except SparsePointsError as error:
+            monitor.warn(f"Building {building.number} has no footprint. {error}")
+            continue
+        for house, outline, used, parts in houses:
+            for rings in parts:
                 _add(footprints, edges, rings, house, used, height_above_ground)
             if outline is not None:
-                rejected = ROOF_OUTLINE if used is None else "" if large else TOO_SMALL
-                kept = replace(outline, rings=[ring for rings in large for ring in rings])
+                rejected = ROOF_OUTLINE if used is None else "" if parts else TOO_SMALL
+                kept = replace(outline, rings=[ring for rings in parts for ring in rings])
                 _add_corners(corners, candidate_corners(kept, rejected), house)
         part.progress(1.0)
     monitor.progress(1.0)
     _tell_unseen(footprints, monitor)
     counts = point_counts(cluster_id, wall_of, classification, voxel_count)
     return footprints, edges, corners, wall_report(counts, footprints.columns["source"], corners.columns["outcome"])
+
+
+def _parts_of(
+    house: _Building,
+    outline: Optional[WallOutline],
+    limits: Limits,
+    min_seen: float,
+    min_area: float,
+    monitor: Monitor,
+) -> tuple[Optional[WallOutline], list]:
+    """Return the outline of walls, None where too little of them was seen, and the rings of each part of a house."""
+    used = outline if outline is not None and house.seen_of(outline) >= min_seen else None
+    parts = _parts(used.rings) if used is not None else house.roof_outlines(limits, monitor)
+    return used, [rings for rings in parts if sum(signed_area(closed(ring)) for ring in rings) >= min_area]
 
 
 def _houses(

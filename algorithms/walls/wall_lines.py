@@ -277,9 +277,10 @@ def merge_lines(lines: list[WallLine], xy: np.ndarray, scale: Scale) -> list[Wal
     merged: list[WallLine] = []
     for line in sorted(lines, key=lambda line: -np.ptp(line.along)):
         for i, other in enumerate(merged):
+            if abs(other.direction @ line.direction) <= np.cos(2 * _MOST):
+                continue
             both = _least_squares(xy, np.union1d(other.points, line.points))
-            parallel = abs(other.direction @ line.direction) > np.cos(2 * _MOST)
-            if parallel and both.deviation <= _ONE_WALL * scale.tolerance:
+            if both.deviation <= _ONE_WALL * scale.tolerance:
                 merged[i] = both
                 break
         else:

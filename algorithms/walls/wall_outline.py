@@ -12,7 +12,7 @@ from ..footprints.regularization import regularize_outline
 from ..geometry.arrangement import Arrangement, cheapest_cut, sides_of
 from ..geometry.grid import refuse_sparse
 from ..geometry.groups import components, members
-from ..geometry.line_segments import are_inside, edge_distances
+from ..geometry.line_segments import are_inside, nearest_edge_distances
 from ..geometry.polylines import simplify_ring
 from ..geometry.rings import signed_area
 from ..packages import ndimage
@@ -206,7 +206,7 @@ def outline_walls(
         return None
     sides = _sides(traced, spacing)
     on_walls = np.concatenate([walls[line.points] for line in seen])
-    to_roof = edge_distances(on_walls, *np.moveaxis(sides, 1, 0)).min(axis=1)
+    to_roof = nearest_edge_distances(on_walls, *np.moveaxis(sides, 1, 0))
     overhang = float(np.clip(np.median(to_roof), 0.0, limits.max_overhang))
     straight, sides = len(sides), np.concatenate([sides, _bends(traced, sides, spacing)])
     overhangs = np.where(is_party(sides), 0.0, overhang)
@@ -243,7 +243,7 @@ def _sides(traced: list, spacing: float) -> np.ndarray:
 def _bends(traced: list, sides: np.ndarray, spacing: float) -> np.ndarray:
     """Return the edges (k, 2, 2) of the roof's exterior as it was seen where the straight ``sides`` go over it (m)."""
     ring = simplify_ring(traced[0], max(_WIGGLE, 2 * spacing))
-    is_over = edge_distances(ring, *np.moveaxis(sides, 1, 0)).min(axis=1) > _WIGGLE
+    is_over = nearest_edge_distances(ring, *np.moveaxis(sides, 1, 0)) > _WIGGLE
     return _edges_of([ring])[is_over[:-1] | is_over[1:]]
 
 

@@ -3,7 +3,7 @@
   <renderer-3d layer="" type="vector">
     <vector-layer-3d-tiling zoom-levels-count="3" show-bounding-boxes="0"/>
     <symbol material_type="phong" type="polygon">
-      <data culling-mode="no-culling" alt-binding="centroid" extrusion-height="0" rendered-facade="3" add-back-faces="1" alt-clamping="absolute" offset="0" invert-normals="0"/>
+      <data culling-mode="back" alt-binding="centroid" extrusion-height="0" rendered-facade="3" add-back-faces="1" alt-clamping="absolute" offset="0" invert-normals="0"/>
       <material diffuse="178,72,54,255" ka="1" kd="1" shininess="0" opacity="1" specular="40,40,40,255" ks="1" ambient="92,38,30,255">
         <data-defined-properties>
           <Option type="Map">

@@ -75,6 +75,15 @@ def test_the_reason_is_that_of_most_roof_points(village):
     assert extract_footprints(**village).columns["reason"] == ["", ""]
 
 
+def test_a_point_without_a_height_leaves_the_volume_defined(village):
+    """One made the volume of its building NaN."""
+    whole = extract_footprints(**village).columns["volume"]
+    heights = village["height_above_ground"].copy()
+    heights[np.flatnonzero(village["cluster_id"] == 7)[0]] = np.nan
+    village["height_above_ground"] = heights
+    assert extract_footprints(**village).columns["volume"] == pytest.approx(whole, rel=0.01)
+
+
 def test_eave_ridge_and_volume_of_a_gable_roof(rng):
     """12 m by 8 m, eaves at 5 m, ridge at 8 m, with a chimney and a dormer wall that don't matter."""
     n = 12 * 8 * 12

@@ -1,5 +1,6 @@
 """Footprints of walls that were made point by point, so that every corner is known."""
 
+import re
 import tracemalloc
 
 import numpy as np
@@ -300,16 +301,21 @@ def test_roofs_without_area_give_no_footprint(roof):
     assert len(footprints) == len(edges) == 0
 
 
-def test_a_building_that_spans_a_country_is_refused(rng):
-    """One point with a wrong ClusterID asked for terabytes."""
+def test_a_building_that_spans_a_country_has_no_footprint_and_the_others_have(rng):
+    """One point with a wrong ClusterID asked for terabytes, then ended the work on all buildings."""
     arrays, _ = building(rng, "rectangle")
-    arrays["xyz"] = np.append(arrays["xyz"], [[900_000.0, 500_000.0, 5.0]], axis=0)
-    for name, value in (("cluster_id", 1), ("wall_of", 0)):
-        arrays[name] = np.append(arrays[name], value).astype(np.int32)
-    if "height_above_ground" in arrays:
-        arrays["height_above_ground"] = np.append(arrays["height_above_ground"], 5.0).astype(np.float32)
-    with pytest.raises(ValueError, match=r"points are spread over 900,\d+ m by 500,\d+ m, which is nearly empty"):
-        extract_wall_footprints(**arrays)
+    other = {name: values.copy() for name, values in arrays.items()}
+    other["xyz"][:, 0] += 100
+    for name in ("cluster_id", "wall_of"):
+        other[name] *= 2
+    stray = {name: values[:1].copy() for name, values in arrays.items()}
+    stray["xyz"][:], stray["cluster_id"][:], stray["wall_of"][:] = (900_000.0, 500_000.0, 5.0), 1, 0
+    together = {name: np.concatenate([part[name] for part in (arrays, other, stray)]) for name in arrays}
+    monitor = Listening()
+    footprints = extract_wall_footprints(**together, monitor=monitor)[0]
+    assert footprints.columns["cluster_id"] == [2]
+    (warning,) = monitor.warnings
+    assert re.match(r"Building 1 has no footprint\. The \d+ points are spread over 900,\d+ m by 500,\d+ m", warning)
 
 
 def test_a_long_row_across_the_grid_is_no_mistake(rng):
