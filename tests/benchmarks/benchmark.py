@@ -43,11 +43,16 @@ sys.path.insert(0, str(ROOT))
 import conftest  # noqa: E402, F401 - registers the checkout as the package lidar_buildings
 from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
+from lidar_buildings.algorithms.threads import n_threads  # noqa: E402
+from lidar_buildings.tests.benchmarks.measured import PEERS  # noqa: E402
 from lidar_buildings.tests.benchmarks.results import FOLDER, machine, write  # noqa: E402
 
 CHAIN = PIPELINES["detect_buildings"]
 DENSITY = 8.0  # pulses per m², of which come 8.7 points
 POINTS_PER_PULSE = 1.085
+
+# "Detect buildings" with reading and writing, as the table calls it.
+FILES = "from file to file"
 
 HEADER = f"{'':28s} {'points':>11s} {'s':>8s} {'cpu':>8s} {'ratio':>7s} {'peak MB':>8s} {'B/point':>8s}"
 
@@ -90,6 +95,25 @@ class Bench:
                 self._row(name, name)
         if "write" in wanted:
             self._row("write", "write", states, str(self.states / "written.laz"))
+        if "files" in wanted:
+            self._row(FILES, "files", state=str(self.states / "detected.laz"))
+            for peer in PEERS:
+                self._row(peer, peer, state=str(self.states / "by-peer.laz"))
+            self._compare()
+
+    def _compare(self) -> None:
+        """Print "Detect buildings" from file to file beside the floor, the cores and the programs of others."""
+        rows = {row["name"]: row for row in self.rows}
+        own, floor = rows[FILES], rows["read + neighbors"]
+        per_million, least = own["seconds"] / self.millions, floor["seconds"] / self.millions
+        print(
+            f"\nDetect buildings, from file to file: {per_million:.1f} s per million points, "
+            f"{per_million / least:.1f} times {floor['name']} ({least:.1f} s), "
+            f"{own['busy']:.0%} of the cores busy, {own['bytes_per_point']:.0f} bytes per point"
+        )
+        for peer in PEERS:
+            if peer in rows:
+                print(f"{peer}: {rows[peer]['seconds'] / own['seconds']:.1f} times as long", flush=True)
 
     def _scene(self, wanted: bool) -> None:
         if wanted or not all(path.exists() for path in (self.cloud, self.truth)):
@@ -127,6 +151,7 @@ class Bench:
         self.rows.append(row)
         unit = next((kept["seconds"] for kept in self.rows if kept["name"] == "read + neighbors"), None)
         row["ratio"] = row["seconds"] / unit if unit else None
+        row["busy"] = row["cpu_seconds"] / (row["seconds"] * n_threads())
         print(
             f"{row['name']:28s} {row['points']:11,d} {row['seconds']:8.2f} {row['cpu_seconds']:8.2f} "
             f"{'' if row['ratio'] is None else format(row['ratio'], '.2f'):>7s} "
@@ -157,7 +182,7 @@ def _fingerprint() -> str:
 
 def options() -> argparse.Namespace:
     """Return what the command line says."""
-    names = list(dict.fromkeys(["simulate_town", *STAGES, *PIPELINES, "write"]))
+    names = list(dict.fromkeys(["simulate_town", *STAGES, *PIPELINES, "write", "files"]))
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False
     )

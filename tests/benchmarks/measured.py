@@ -10,6 +10,8 @@ import json
 import resource
 import sys
 import time
+from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Callable
 
@@ -42,7 +44,8 @@ def main(job: dict[str, Any]) -> dict[str, Any]:
     Parameters
     ----------
     job : dict
-        ``what``: "simulate", "read", "neighbors", "write", or the name of a stage or chain; ``cloud``: file; ``truth``:
+        ``what``: "simulate", "read", "neighbors", "write", "files" (a chain from file to file), the name of a peer, or
+        that of a stage or chain; ``cloud``: file; ``truth``:
         array file with the true classes; ``states``: files with what the steps before left; ``state``: where to
         leave what this one wrote; ``tunables``: of the stage.
 
@@ -60,6 +63,8 @@ def main(job: dict[str, Any]) -> dict[str, Any]:
     if what == "read":
         found, cloud = _timed(lambda: read_cloud(path), base)
         return {"points": len(cloud), **found}
+    if what == "files" or what in PEERS:
+        return _from_file_to_file(job, path, base)
     cloud = _cloud(path, job["states"])
     try:
         found, made = _timed(_work(job, cloud), base)
@@ -86,6 +91,39 @@ def _work(job: dict[str, Any], cloud: Cloud) -> Callable[[], Any]:
     # A stage that merges is given the scan twice.
     given = [cloud, cloud.copy()] if stage.merges else cloud
     return lambda: run_stage(stage, given, reference, **job["tunables"])
+
+
+def _from_file_to_file(job: dict[str, Any], path: Path, base: int) -> dict[str, Any]:
+    """Measure "Detect buildings" or a peer with reading and writing, or tell that the peer is not installed."""
+    what, truth, target = job["what"], job["truth"], Path(job["state"])
+    if what == "files":
+        found, points = _timed(lambda: _detected(path, target), base)
+        return {"points": points, **found}
+    package, classify = PEERS[what]
+    if find_spec(package) is None:
+        return {"refused": f"{package} is not installed"}
+    try:
+        found, _ = _timed(lambda: classify(path, target), base)
+    except Exception as error:  # Programs of others fail in ways of their own, which is no reason to stop.
+        return {"refused": f"{package}: {error}"}
+    return {"points": len(np.load(truth, mmap_mode="r")), **found}
+
+
+def _detected(path: Path, target: Path) -> int:
+    cloud = run_pipeline(PIPELINES["detect_buildings"], read_cloud(path)).cloud
+    write_cloud(cloud, target)
+    return len(cloud)
+
+
+def _classified_by_whitebox(path: Path, target: Path) -> None:
+    lidar = import_module("whitebox_workflows").WbEnvironment().lidar
+    lidar.filtering_classification.classify_lidar(input=str(path), output=str(target))
+
+
+# Programs that classify buildings from file to file, by what the table calls them: their package, and the call.
+PEERS: dict[str, tuple[str, Callable[[Path, Path], None]]] = {
+    "whitebox classify_lidar": ("whitebox_workflows", _classified_by_whitebox),
+}
 
 
 def load_packages() -> None:
