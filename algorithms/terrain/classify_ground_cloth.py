@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -11,7 +12,7 @@ from ..geometry.grid import refuse_sparse
 from ..geometry.groups import components
 from ..packages import ndimage
 from ..stage import Param, stage
-from .cloth import Cloth
+from .cloth import NEIGHBORS, Cloth
 from .ground_points import usable_points, with_ground
 
 # The cloth reaches so many particles beyond the points.
@@ -111,8 +112,10 @@ def classify_ground_cloth(
     in each step neighbors draw each other to a common height, the more often the more rigid the cloth is. It ends
     when no particle moves by 5 mm. All returns are used: in woods of which the scanner saw through the leaves,
     'Classify ground points (TIN)' finds more. What the paper leaves open (gravity, damping, in which order neighbors
-    draw each other, particles without a point) is as in the program that its authors published, and so are the
-    defaults.
+    draw each other, particles without a point, from where the cloth falls) is as in the program that its authors
+    published, and so are the defaults. Two things are not: of two points equally near to a particle it takes the lower,
+    where the program takes the first in the file, so that the order of points has no influence; and particles at the
+    corners of the cloud are let down as all others are, where the program leaves some of them out.
 
     References
     ----------
@@ -124,7 +127,7 @@ def classify_ground_cloth(
     points = xyz[usable]
     refuse_sparse(points, cell_size, _MOST_PARTICLES)
     grid = _particles(points, cell_size)
-    cloth = Cloth(grid.floor(points), rigidness, time_step)
+    cloth = Cloth(grid.floor(points), rigidness, time_step, top=-points[:, 2].min())
     cloth.settle(iterations, monitor.part(0, 0.95))
     height = _let_down(cloth) if slope_processing else cloth.height
     is_ground = np.abs(grid.at(points, height) + points[:, 2]) <= threshold
@@ -134,16 +137,24 @@ def classify_ground_cloth(
 
 @dataclass(frozen=True)
 class _Particles:
-    """Where the particles of a cloth are in plan: the first at ``origin``, the others ``size`` apart, m."""
+    """Where the particles of a cloth are in plan: ``size`` apart (m), so that ``corner`` lies ``_BORDER`` from the rim."""
 
-    origin: np.ndarray
+    corner: np.ndarray
     size: float
     rows: int
     columns: int
 
+    def _places(self, points: np.ndarray) -> np.ndarray:
+        """Return the places (n, 2) of points in columns and rows.
+
+        Many coordinates are multiples of a centimeter and lie just between two particles. What is added first decides
+        where rounding takes them, so that it is done as in the authors' program on coordinates from the corner.
+        """
+        return (points[:, :2] - self.corner + _BORDER * self.size) / self.size
+
     def floor(self, points: np.ndarray) -> np.ndarray:
         """Return the height (rows, columns) of the point nearest to each particle, upside down, m."""
-        place = (points[:, :2] - self.origin) / self.size
+        place = self._places(points)
         column, row = np.floor(place + 0.5).astype(np.int64).T
         number = row * self.columns + column
         off = (place[:, 0] - column) ** 2 + (place[:, 1] - row) ** 2
@@ -156,7 +167,7 @@ class _Particles:
 
     def at(self, points: np.ndarray, height: np.ndarray) -> np.ndarray:
         """Return the height of the cloth (n,) at points, between the four particles around."""
-        place = (points[:, :2] - self.origin) / self.size
+        place = self._places(points)
         column, row = place.astype(np.int64).T
         east, north = place[:, 0] - column, place[:, 1] - row
         south_side = height[row, column] * (1 - east) + height[row, column + 1] * east
@@ -167,19 +178,43 @@ class _Particles:
 def _particles(points: np.ndarray, size: float) -> _Particles:
     low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
     columns, rows = (np.floor((high - low) / size).astype(np.int64) + 2 * _BORDER).tolist()
-    return _Particles(low - _BORDER * size, size, rows, columns)
+    return _Particles(low, size, rows, columns)
 
 
 def _filled(floor: np.ndarray) -> np.ndarray:
-    """Give particles without a point the floor of the next that has one: eastward, westward, southward, northward."""
+    """Give particles without a point the floor of the next that has one: eastward, westward, southward, northward.
+
+    Where row and column have none, it is the one that comes first over the links of the cloth.
+    """
     filled = floor
     for axis, backward in ((1, True), (1, False), (0, False), (0, True)):
         filled = np.where(np.isnan(filled), _carried(floor, axis, backward), filled)
-    missing = np.isnan(filled)
-    if missing.any():
-        nearest = ndimage.distance_transform_edt(missing, return_distances=False, return_indices=True)
-        filled = filled[tuple(nearest)]
+    missing = np.argwhere(np.isnan(filled))
+    for hops in _hops():
+        if not len(missing):
+            return filled
+        for hop in hops:
+            row, column = (missing + hop).T
+            inside = (row >= 0) & (row < floor.shape[0]) & (column >= 0) & (column < floor.shape[1])
+            found = np.full(len(missing), np.nan)
+            found[inside] = floor[row[inside], column[inside]]
+            filled[tuple(missing[~np.isnan(found)].T)] = found[~np.isnan(found)]
+            missing = missing[np.isnan(found)]
     return filled
+
+
+def _hops() -> Iterator[np.ndarray]:
+    """Yield offsets (k, 2) in rows and columns that one link of the cloth leads to, that two lead to, and so on.
+
+    Within each they are in the order in which a search in breadth comes upon them.
+    """
+    seen = {(0, 0)}
+    last = [(0, 0)]
+    while True:
+        reached = ((row + down, column + right) for row, column in last for down, right in NEIGHBORS)
+        last = [offset for offset in dict.fromkeys(reached) if offset not in seen]
+        seen.update(last)
+        yield np.array(last)
 
 
 def _carried(floor: np.ndarray, axis: int, backward: bool) -> np.ndarray:

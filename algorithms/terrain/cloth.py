@@ -34,7 +34,7 @@ _SHARE = 0.3
 
 # Neighbors (row, column) in the order in which a particle draws them: first those beside it, then those two away.
 _BESIDE = ((-1, -1), (0, -1), (1, -1), (-1, 0), (-1, 1), (0, 1), (1, 0), (1, 1))
-_NEIGHBORS = tuple((reach * row, reach * column) for reach in (1, 2) for row, column in _BESIDE)
+NEIGHBORS = tuple((reach * row, reach * column) for reach in (1, 2) for row, column in _BESIDE)
 
 # Columns by which a row is behind the row before it: the neighborhoods of two particles are five columns wide.
 _APART = 5
@@ -53,14 +53,6 @@ _STEPS_AT_ONCE = 32
 _MARGIN = 3
 
 _EVERYTHING = slice(None)
-
-
-class _Shift(NamedTuple):
-    """Where a neighbor is stored, seen from a particle: its phase, and diagonals and positions away."""
-
-    phase: int
-    diagonal: int
-    position: int
 
 
 class _Front(NamedTuple):
@@ -134,17 +126,15 @@ class _Order:
         start = self.start(front.phase, front.first_diagonal, 0)
         return slice(start, start + front.diagonals * self.breadth)
 
-    def beside(self, front: _Front, shift: _Shift) -> slice:
-        """Return where a neighbor of each of them is stored."""
-        start = self.start(shift.phase, front.first_diagonal + shift.diagonal, shift.position)
-        return slice(start, start + front.diagonals * self.breadth)
+    def neighbors(self, phase: int, diagonal: int) -> list[int]:
+        """Return where the neighbors of particles are stored, seen from these, in the order in which they are drawn.
 
-    def neighbors(self, phase: int) -> list[_Shift]:
-        """Return the neighbors of particles of a phase, in the order in which they are drawn."""
-        shifts = []
-        for row, column in _NEIGHBORS:
+        It depends on the diagonal by its remainder to ``_STEP_LAG`` only.
+        """
+        start, shifts = self.start(phase, diagonal, 0), []
+        for row, column in NEIGHBORS:
             block, other = divmod(phase + column, _APART)
-            shifts.append(_Shift(other, block + row, row if self.is_by_row else block))
+            shifts.append(self.start(other, diagonal + block + row, row if self.is_by_row else block) - start)
         return shifts
 
     def front(self, time: int, phase: int, steps: int) -> _Front:
@@ -203,9 +193,12 @@ class Cloth:
         How often a particle is drawn to each of its neighbors in a step.
     time_step : float
         Time step of the simulation.
+    top : float, optional
+        Height of the highest point, m, over which the particles start; that of the highest floor if None. The highest
+        point is on no floor where another point is nearer to its particle.
     """
 
-    def __init__(self, floor: np.ndarray, rigidness: int, time_step: float) -> None:
+    def __init__(self, floor: np.ndarray, rigidness: int, time_step: float, top: float | None = None) -> None:
         self.floor = floor
         both, one = (1 - (1 - 2 * _SHARE) ** rigidness) / 2, 1 - (1 - _SHARE) ** rigidness
         self._motion = _Motion(_GRAVITY * time_step**4, both, one)
@@ -213,13 +206,14 @@ class Cloth:
         self._places = self._order.places()
         zero = np.zeros(self._order.size)
         self._state = _State(zero, zero.copy(), np.full(self._order.size, -np.inf), zero.copy(), zero.copy())
-        start = floor.max() + _ABOVE
+        start = (floor.max() if top is None else top) + _ABOVE
         values = {"height": start, "before": start, "floor": floor, "movable": 1.0, "draw": both}
         for name, value in values.items():
             getattr(self._state, name)[self._places] = value
         room = _STEPS_AT_ONCE * self._order.breadth
         self._own, self._off, self._part = np.zeros(room), np.zeros(room), np.zeros(room)
-        self._shifts = [self._order.neighbors(phase) for phase in range(_APART)]
+        lags = range(_STEP_LAG)
+        self._shifts = [[self._order.neighbors(phase, lag) for lag in lags] for phase in range(_APART)]
 
     @property
     def height(self) -> np.ndarray:
@@ -279,8 +273,8 @@ class Cloth:
         own, off, part = (room[: here.stop - here.start] for room in (self._own, self._off, self._part))
         movable, draw = state.movable[here], state.draw[here]
         own[:] = state.height[here]
-        for shift in self._shifts[front.phase]:
-            beside = self._order.beside(front, shift)
+        for shift in self._shifts[front.phase][front.first_diagonal % _STEP_LAG]:
+            beside = slice(here.start + shift, here.stop + shift)
             other = state.height[beside]
             np.subtract(other, own, off)
             np.multiply(state.draw[beside], movable, part)

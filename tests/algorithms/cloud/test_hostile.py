@@ -1,5 +1,6 @@
 """Small files that promise what they can't hold: refused in one sentence, or read right, in little memory."""
 
+import importlib.util
 import io
 import json
 import struct
@@ -183,7 +184,7 @@ def test_waveforms_where_the_header_says_but_none_are(make_las, tmp_path):
     path = make_las(point_format=9, waveforms=True, evlrs=evlrs)
     cloud = read_cloud(path)
     cloud.set("cluster_id", np.zeros(len(cloud)))
-    for name in ("b.las", "b.laz"):
+    for name in ("b.las", "b.laz") if importlib.util.find_spec("laszip") else ("b.las",):
         write_cloud(cloud, tmp_path / name)
         again = read_cloud(tmp_path / name)
         assert [record.key for record in again.header.evlrs] == [(b"someone", 7), (b"LASF_Spec", 2047)]
