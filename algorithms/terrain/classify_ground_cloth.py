@@ -137,7 +137,7 @@ def classify_ground_cloth(
 
 @dataclass(frozen=True)
 class _Particles:
-    """Where the particles of a cloth are in plan: ``size`` apart (m), so that ``corner`` lies ``_BORDER`` from the rim."""
+    """Where particles are in plan: ``size`` apart (m), the first ``_BORDER`` of these before ``corner``."""
 
     corner: np.ndarray
     size: float
