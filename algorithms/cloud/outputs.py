@@ -35,6 +35,12 @@ def kind_of(path: Path) -> str:
     return next((kind for kind in (COPC, LAZ, LAS, VPC) if name.endswith(kind)), "")
 
 
+def stem_of(path: Path) -> str:
+    """Return the name of a file without the extension that says how it is written."""
+    kind = kind_of(path)
+    return path.name[: -len(kind)] if kind else path.name
+
+
 def check_output(path: Path, sources: Iterable[Path]) -> None:
     """Refuse an output that can't be written or that is an input.
 

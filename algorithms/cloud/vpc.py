@@ -13,7 +13,7 @@ import numpy as np
 
 from ..stage import Monitor
 from .header import COPC_HIERARCHY, COPC_INFO, LASZIP, WAVEFORMS, WKT_BIT, Header, Vlr
-from .outputs import COPC, LAS, LAZ, kind_of, replacing
+from .outputs import COPC, LAS, LAZ, kind_of, replacing, stem_of
 from .point_records import convert, merged_layout
 from .points import open_header, points_within, read_chunks
 from .units import crs_identity, wkt_of
@@ -132,7 +132,7 @@ def _feature(tile: Path, folder: Path, to_degrees: Optional[ToDegrees]) -> dict:
         "type": "Feature",
         "stac_version": "1.0.0",
         "stac_extensions": list(_EXTENSIONS),
-        "id": tile.name.split(".")[0],
+        "id": stem_of(tile),
         "geometry": {"type": "Polygon", "coordinates": [there.tolist()]},
         "bbox": [*there.min(axis=0).tolist(), float(low[2]), *there.max(axis=0).tolist(), float(high[2])],
         "properties": {

@@ -72,7 +72,7 @@ def overlaps(first: Polygons, second: Polygons, monitor: Monitor) -> tuple[np.nd
     A polygon is the signed sum of what lies below its edges; two polygons share the signed sum of what lies below
     both of two edges, which is the integral of the smaller of two straight lines.
     """
-    one, other = _meeting_boxes(first.box, second.box)
+    one, other = meeting_boxes(first.box, second.box)
     return one, other, shared_areas(first, second, one, other, monitor)
 
 
@@ -94,7 +94,7 @@ def shared_areas(first: Polygons, second: Polygons, one: np.ndarray, other: np.n
     return np.maximum(area, 0.0)
 
 
-def _meeting_boxes(first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def meeting_boxes(first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the pairs of boxes (n, 2, 2) and (m, 2, 2) that meet, by the first, then by the second."""
     if not len(first) or not len(second):
         return np.zeros(0, np.int64), np.zeros(0, np.int64)

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..geometry.grid import find_cells
 from ..geometry.groups import components
-from ..geometry.polygon_overlap import as_polygons, overlaps
+from ..geometry.polygon_overlap import as_polygons, meeting_boxes, shared_areas
 from ..stage import LayerFeatures, Monitor
 from .blocks import NUMBERED, Block, BlockResult, feature_boxes
 
@@ -127,8 +127,11 @@ def _once(features: LayerFeatures, of_block: np.ndarray, is_own: np.ndarray, mon
     """
     polygons = as_polygons(features.geometries)
     area = np.abs(polygons.area)
-    one, other, shared = overlaps(polygons, polygons, monitor)
-    is_same = (of_block[one] != of_block[other]) & (shared > _SAME * np.minimum(area[one], area[other]))
+    one, other = meeting_boxes(polygons.box, polygons.box)
+    of_two = of_block[one] != of_block[other]
+    one, other = one[of_two], other[of_two]
+    shared = shared_areas(polygons, polygons, one, other, monitor)
+    is_same = shared > _SAME * np.minimum(area[one], area[other])
     one, other = one[is_same], other[is_same]
     # Best first: the own block's, then the largest; a polygon stays if none that is better stays beside it.
     rank = np.empty(len(area), np.int64)

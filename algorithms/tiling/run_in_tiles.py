@@ -17,7 +17,7 @@ from typing import Any, Callable, Optional, Union
 import numpy as np
 
 from ..cloud.files import read_cloud, write_cloud
-from ..cloud.outputs import LAS, LAZ, kind_of, locked_folder
+from ..cloud.outputs import LAS, LAZ, locked_folder, stem_of
 from ..cloud.units import Resolver
 from ..pipeline import Pipeline
 from ..sampling.cloud_sampling import CloudSampling, without_noise
@@ -25,7 +25,7 @@ from ..stage import LayerFeatures, Monitor
 from .blocks import Block, BlockResult, BlockTask, work_on_block
 from .cutting import cut_into_tiles
 from .joining import join_features, join_numbers
-from .survey import Survey, Window, check_folder, open_survey
+from .survey import Source, Survey, Window, boxes_meet, check_folder, open_survey
 from .workers import Workers, run_all
 
 # A window has at most about this many points, so that a worker needs some 2 GB.
@@ -42,8 +42,11 @@ _LARGEST_FILE = 25_000_000
 _SAMPLED_WHOLE = 3_000_000
 _SAMPLES_ACROSS, _SAMPLE_SIDE = 4, 100.0
 
-# Shares of the progress: cutting, sampling, blocks; the rest is writing.
-_CUT, _SAMPLED, _WORKED = 0.05, 0.1, 0.9
+# Shares of the progress: cutting, sampling, blocks, layers; the rest is writing.
+_CUT, _SAMPLED, _WORKED, _JOINED = 0.05, 0.1, 0.88, 0.9
+
+# More blocks than this, and than one for so many points: a point far off makes the extent what it is not.
+_MANY_BLOCKS, _POINTS_PER_BLOCK = 10_000, 100
 
 # What a run keeps beside the tiles until it is complete.
 _WORK = ".lidar-buildings"
@@ -216,7 +219,8 @@ class _Run:
             done = [(blocks[number], results[number]) for number in sorted(results)]
             found = [BlockResult.read(path, with_points=False) for _, path in done]
             numbers = join_numbers(found)
-            outcome.layers = self._layers([block for block, _ in done], found, numbers)
+            joining = self.monitor.part(_WORKED, _JOINED)
+            outcome.layers = self._layers([block for block, _ in done], found, numbers, joining)
             for sentence in dict.fromkeys(one for result in found for one in result.messages):
                 self.monitor.warn(sentence)
             self._write_tiles(executor, done, numbers, [blocks[number] for number in failed], outcome)
@@ -240,12 +244,20 @@ class _Run:
         for done, box in enumerate(boxes):
             windows.append(survey.window(box, monitor.part(done / len(boxes), (done + 1) / len(boxes))))
         points = [_counted(window) for window in windows if window is not None]
-        if not points:
-            points = [_counted(window) for window in [survey.window(np.array([low, high + 1.0]), monitor)] if window]
+        if len(points) < len(boxes) / 4:
+            points = [_counted(window) for window in self._windows_with_points(survey, monitor)]
         together = np.concatenate(points)
         sampling = CloudSampling(lambda: together)
         # All measures are taken now and the points left behind, as on the way to another process.
         return pickle.loads(pickle.dumps(sampling))
+
+    def _windows_with_points(self, survey: Survey, monitor: Monitor) -> Iterator[Window]:
+        """Yield windows at points of a survey that fills little of its extent, as a corridor or a coast does."""
+        corners = np.floor(survey.places(_SAMPLES_ACROSS**2, monitor.part(1.0, 1.0)) / _SAMPLE_SIDE) * _SAMPLE_SIDE
+        for corner in np.unique(corners, axis=0):
+            window = survey.window(np.array([corner, corner + _SAMPLE_SIDE]), monitor.part(1.0, 1.0))
+            if window is not None:
+                yield window
 
     def _cut_large_files(self, side: float, largest_file: int) -> None:
         """Cut files that are too large to be read once for each of their blocks, and take the pieces in their place."""
@@ -257,13 +269,17 @@ class _Run:
         if not (pieces / key).is_file():
             shutil.rmtree(pieces, ignore_errors=True)
             pieces.mkdir()
-            for done, source in enumerate(large):
+            for done, (source, stem) in enumerate(zip(large, _unique_stems(large))):
                 part = self.monitor.part(_CUT, _SAMPLED).part(done / len(large), (done + 1) / len(large))
-                alone = open_survey([source.path], self.crs_units)
-                cut_into_tiles(alone, side, pieces, source.path.name.split(".")[0], False, part)
+                cut_into_tiles(open_survey([source.path], self.crs_units), side, pieces, stem, False, part)
             (pieces / key).touch()
         rest = [source.path for source in self.survey.sources if source not in large]
-        self.survey = open_survey([*rest, *sorted(pieces.glob(f"*{LAS}"))], self.crs_units)
+        whole, self.survey = self.survey, open_survey([*rest, *sorted(pieces.glob(f"*{LAS}"))], self.crs_units)
+        if len(self.survey) != len(whole):
+            raise ValueError(
+                f"The pieces of large files have {len(self.survey):,} of {len(whole):,} points; remove {self.work} and "
+                "start again."
+            )
 
     def _key(self, paths: Iterable[Path], *facts: Any) -> str:
         """Return a name for what is made of files in their present state, of facts, tunables and this version."""
@@ -330,19 +346,20 @@ class _Run:
         return tell
 
     def _layers(
-        self, blocks: list[Block], found: list[BlockResult], numbers: list[dict[str, np.ndarray]]
+        self, blocks: list[Block], found: list[BlockResult], numbers: list[dict[str, np.ndarray]], monitor: Monitor
     ) -> dict[str, LayerFeatures]:
         """Return each layer of the composite, of all blocks together."""
         names = dict.fromkeys(name for result in found for name in result.layers)
         layers = {}
-        for name in names:
+        for number, name in enumerate(names):
+            part = monitor.part(number / len(names), (number + 1) / len(names))
             have = [at for at, result in enumerate(found) if name in result.layers]
             layers[name] = join_features(
                 [blocks[at] for at in have],
                 [found[at].layers[name] for at in have],
                 [numbers[at].get("cluster_id", np.zeros(0, np.int32)) for at in have],
                 self.survey.origin,
-                Monitor(),
+                part,
             )
         return layers
 
@@ -360,32 +377,21 @@ class _Run:
             becomes.append(self.work / f"numbers-{block.name}.npz")
             np.savez(becomes[-1], **of_block)
         tasks = []
-        for number, (source, target) in enumerate(zip(self.survey.sources, self._targets())):
-            if any(source.meets(block.box) for block in failed):
+        stems = _unique_stems(self.survey.sources)
+        boxes, lost = (_boxes(some) for some in ([block for block, _ in done], failed))
+        for number, (source, stem) in enumerate(zip(self.survey.sources, stems)):
+            target = self.folder / f"{stem}{self.suffix}"
+            if boxes_meet(lost, source.box).any():
                 outcome.failures.append(f"{source.path.name} is not written, as a block of it failed.")
                 continue
-            near = [at for at, (block, _) in enumerate(done) if source.meets(block.box)]
+            near = np.flatnonzero(boxes_meet(boxes, source.box))
             parts, final = tuple(done[at][1] for at in near), tuple(becomes[at] for at in near)
             tasks.append(_TileTask(source.path, number, target, parts, final, self.stop))
         results, errors = run_all(
-            executor, write_tile, tasks, self.stop, self.monitor.part(_WORKED, 1.0), lambda _: None
+            executor, write_tile, tasks, self.stop, self.monitor.part(_JOINED, 1.0), lambda _: None
         )
         outcome.tiles = [results[at] for at in sorted(results)]
         outcome.failures += [f"{tasks[at].source.name}: {why}" for at, why in sorted(errors.items())]
-
-    def _targets(self) -> list[Path]:
-        """Return the tiles of the output, named as the files, also where two folders have files of one name."""
-        taken: set[str] = set()
-        targets = []
-        for source in self.survey.sources:
-            stem = source.path.name[: -len(kind_of(source.path))]
-            name, again = stem, 1
-            while name in taken:
-                again += 1
-                name = f"{stem}_{again}"
-            taken.add(name)
-            targets.append(self.folder / f"{name}{self.suffix}")
-        return targets
 
 
 def write_tile(task: _TileTask) -> Path:
@@ -431,12 +437,43 @@ def _side(density: float, halo: float) -> float:
 
 
 def _blocks(survey: Survey, side: float) -> list[Block]:
-    """Return the blocks that files of the survey reach into, from south-west to north-east."""
+    """Return the blocks that files of the survey reach into, from south-west to north-east.
+
+    Raises
+    ------
+    ValueError
+        If there are many more than the points can fill.
+    """
+    lowest, highest = (np.floor(survey.boxes[:, end] / side) for end in (0, 1))
+    count = (highest - lowest + 1).prod(axis=1)
+    if count.sum() > max(_MANY_BLOCKS, len(survey) / _POINTS_PER_BLOCK):
+        file = survey.sources[int(np.argmax(count))].path.name
+        raise ValueError(
+            f"The {len(survey):,} points are spread over {count.sum():,.0f} blocks of {side:g} m, most of them in "
+            f"{file}; remove points that lie far off in plan."
+        )
     found = set()
-    for source in survey.sources:
-        low, high = np.floor(source.box / side).astype(int)
+    for low, high in zip(lowest.astype(int), highest.astype(int)):
         found |= {(column, row) for row in range(low[1], high[1] + 1) for column in range(low[0], high[0] + 1)}
     return [Block(column, row, side) for column, row in sorted(found, key=lambda place: place[::-1])]
+
+
+def _boxes(blocks: list[Block]) -> np.ndarray:
+    """Return the boxes (k, 2, 2) of blocks, m."""
+    return np.array([block.box for block in blocks]).reshape(-1, 2, 2)
+
+
+def _unique_stems(sources: Iterable[Source]) -> list[str]:
+    """Return the names of files without extension, each once, also where two folders have files of one name."""
+    taken: dict[str, None] = {}
+    for source in sources:
+        stem = name = stem_of(source.path)
+        again = 1
+        while name in taken:
+            again += 1
+            name = f"{stem}_{again}"
+        taken[name] = None
+    return list(taken)
 
 
 def _minutes(seconds: float) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Optional, Union
 
@@ -32,10 +33,6 @@ class Source:
     path: Path
     header: Header
     box: np.ndarray
-
-    def meets(self, box: np.ndarray) -> bool:
-        """Whether the file may have points in a box (2, 2), m."""
-        return bool((self.box[0] <= box[1]).all() and (self.box[1] >= box[0]).all())
 
 
 @dataclass(frozen=True)
@@ -88,12 +85,16 @@ class Survey:
     @property
     def box(self) -> np.ndarray:
         """Least and greatest easting and northing (2, 2) of all files, m, as their headers tell."""
-        boxes = np.array([source.box for source in self.sources])
-        return np.array([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)])
+        return np.array([self.boxes[:, 0].min(axis=0), self.boxes[:, 1].max(axis=0)])
+
+    @cached_property
+    def boxes(self) -> np.ndarray:
+        """Boxes (m, 2, 2) of the files, m."""
+        return np.array([source.box for source in self.sources])
 
     def near(self, box: np.ndarray) -> list[int]:
         """Return the positions of the files that may have points in a box (2, 2), m."""
-        return [number for number, source in enumerate(self.sources) if source.meets(box)]
+        return np.flatnonzero(boxes_meet(self.boxes, box)).tolist()
 
     def part(self, numbers: Iterable[int]) -> dict[int, Source]:
         """Return some of the files by their positions."""
@@ -116,6 +117,29 @@ class Survey:
         source = np.repeat(np.array([number for number, _, _ in found], np.int32), [len(one[1]) for one in found])
         position = np.concatenate([position for _, position, _ in found])
         return self._in_order(records, source, position)
+
+    def places(self, count: int, monitor: Monitor) -> np.ndarray:
+        """Return the places (k, 2), m, of up to ``count`` points that are spread evenly over all records.
+
+        Memory: one portion of a file at a time.
+        """
+        first = np.cumsum([0, *(source.header.count for source in self.sources)])
+        wanted = np.unique(((np.arange(count) + 0.5) / count * first[-1]).astype(np.int64))
+        found = []
+        for number, source in enumerate(self.sources):
+            rows = wanted[(wanted >= first[number]) & (wanted < first[number + 1])] - first[number]
+            if not len(rows):
+                continue
+            scale, offset = (values * self.units.horizontal for values in (source.header.scale, source.header.offset))
+            for start, chunk in read_chunks(
+                source.path, source.header, monitor.part(number / len(self.sources), (number + 1) / len(self.sources))
+            ):
+                own = rows[(rows >= start) & (rows < start + len(chunk))] - start
+                found.append(np.column_stack([chunk[axis][own] * scale[i] + offset[i] for i, axis in enumerate("XY")]))
+                if start + len(chunk) > rows[-1]:
+                    break
+            monitor.progress((number + 1) / len(self.sources))
+        return np.concatenate(found)
 
     def _records(self, source: Source, box: np.ndarray, monitor: Monitor) -> Iterable[tuple[np.ndarray, np.ndarray]]:
         """Yield the positions in a file and the records, as those of the survey, of the points in a box."""
@@ -157,6 +181,11 @@ class Survey:
         cloud = Cloud(replace(self.header, count=len(records)), records, self.units)
         cloud.wkt, cloud.origin = self.wkt, self.origin
         return cloud
+
+
+def boxes_meet(boxes: np.ndarray, box: np.ndarray) -> np.ndarray:
+    """Return which boxes (m, 2, 2) meet a box (2, 2)."""
+    return ((boxes[:, 0] <= box[1]) & (boxes[:, 1] >= box[0])).all(axis=1)
 
 
 def open_survey(

@@ -14,6 +14,7 @@ from lidar_buildings.algorithms.run import run_pipeline
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.algorithms.tiling import run_in_tiles as module
 from lidar_buildings.algorithms.tiling.run_in_tiles import can_be_tiled, run_in_tiles
+from lidar_buildings.algorithms.tiling.survey import Survey
 from lidar_buildings.algorithms.tiling.workers import Workers
 from lidar_buildings.tests.builders import crown, roof
 from lidar_buildings.tests.monitors import Listening
@@ -145,6 +146,53 @@ def test_a_file_too_large_to_be_read_at_once_is_cut_first(points, tmp_path):
     for found, wanted in zip(classes_by_time(outcome), classes_by_time(expected)):
         np.testing.assert_array_equal(found, wanted)
     assert sorted(p.name for p in (tmp_path / "result").iterdir()) == sorted(p.name for p in outcome.tiles)
+
+
+def test_large_files_of_similar_names_keep_all_their_points(points, tmp_path):
+    """The pieces of area.2019.las were overwritten by those of area.2020.las: half of the points were lost."""
+    xyz, times, _ = points
+    paths = []
+    for number, name in enumerate(("area.2019.las", "area.2020.las")):
+        paths.append(tmp_path / name)
+        part = slice(number, None, 2)
+        write_cloud(create_cloud({"xyz": xyz[part], "gps_time": times[part]}, "EPSG:28992"), paths[-1])
+    outcome = run(paths, tmp_path / "result", pipeline=QUICK, largest_file=1000)
+    assert outcome.failures == []
+    written = np.concatenate([read_cloud(path).get("gps_time") for path in outcome.tiles])
+    np.testing.assert_allclose(np.sort(written), np.sort(times), atol=1e-9)
+
+
+def test_a_corridor_is_sampled_where_it_has_points(tmp_path, monkeypatch):
+    """None of the windows that were spread over its extent had points, so that all points were read at once."""
+    rng = np.random.default_rng(1)
+    along = np.concatenate([rng.uniform((0, 0), (4000, 90), (9000, 2)), rng.uniform((0, 0), (90, 4000), (9000, 2))])
+    xyz = np.column_stack([along, rng.normal(0, 0.02, len(along))]) + CORNER
+    path = tmp_path / "corridor.las"
+    write_cloud(create_cloud({"xyz": xyz, "gps_time": np.arange(len(xyz)) * 1e-3}, "EPSG:28992"), path)
+    read = []
+    window = Survey.window
+
+    def listened(self, box, monitor=None):
+        found = window(self, box, monitor)
+        read.append((box[1, 0] - box[0, 0], 0 if found is None else len(found.cloud)))
+        return found
+
+    monkeypatch.setattr(module, "_SAMPLED_WHOLE", 0)
+    monkeypatch.setattr(Survey, "window", listened)
+    outcome = run([path], tmp_path / "result", pipeline=QUICK, block_side=4400.0)
+    # What is read are windows of 100 m, and blocks with what lies around them.
+    sampled = [count for side, count in read if side < 4400]
+    assert {side for side, _ in read if side < 4400} == {100}
+    assert 0 < max(sampled) < len(xyz) / 10
+    assert outcome.sampling.density == pytest.approx(9000 / (4000 * 90), rel=0.3)
+
+
+def test_a_point_far_off_is_named_before_a_million_blocks_are(points, tmp_path):
+    xyz, times, _ = points
+    far = np.append(xyz[:1000], [CORNER + (200_000.0, 200_000.0, 0.0)], axis=0)
+    (path,) = tiles_of(tmp_path, far, times, np.arange(1001))
+    with pytest.raises(ValueError, match=r"The 1,001 points are spread over 25,\d{3},\d{3} blocks of 40 m.*tile0\.las"):
+        run([path], tmp_path / "result", pipeline=QUICK)
 
 
 def test_a_tile_keeps_its_points_and_their_order(points, tmp_path):
