@@ -19,6 +19,7 @@ from .models3d.reconstruct_roofs import reconstruct_roofs
 from .preparation.classify_noise_histogram import classify_noise_histogram
 from .preparation.classify_noise_histogram_2019 import classify_noise_histogram_2019
 from .preparation.classify_noise_statistical import classify_noise_statistical
+from .preparation.clip_cloud import clip_cloud
 from .preparation.downsample_voxels import downsample_voxels
 from .preparation.filter_points import filter_points
 from .preparation.merge_clouds import merge_clouds
@@ -63,6 +64,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     classify_noise_histogram,
     classify_noise_histogram_2019,
     classify_noise_statistical,
+    clip_cloud,
     filter_points,
     downsample_voxels,
     classify_ground_tin,

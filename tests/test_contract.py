@@ -47,6 +47,7 @@ STAGE_IDS = {
     "classifynoisehistogram2019",
     "classifynoisestatistical",
     "filterpoints",
+    "clipcloud",
     "downsamplevoxels",
     "mergeclouds",
     "classifygroundtin",
@@ -104,6 +105,7 @@ CLASSIFYING = {"classify", "complete"}
 VERBS = CLASSIFYING | {"segment", "cluster", "compute", "extract", "regularize", "simplify", "assess", "simulate"}
 VERBS |= {
     "detect",
+    "clip",
     "filter",
     "downsample",
     "merge",

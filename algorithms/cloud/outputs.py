@@ -17,6 +17,10 @@ try:
     import fcntl
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
+try:
+    import msvcrt
+except ImportError:  # all others
+    msvcrt = None  # type: ignore[assignment]
 
 LAS, LAZ, COPC, VPC = ".las", ".laz", ".copc.laz", ".vpc"
 
@@ -239,12 +243,18 @@ def _is_abandoned(folder: Path) -> bool:
 
 @contextmanager
 def locked_folder(folder: Path) -> Iterator[bool]:
-    """Tell whether no other running program has locked a folder, and lock it for as long as the block lasts."""
+    """Tell whether no other running program has locked a folder, and lock it for as long as the block lasts.
+
+    The system releases the lock when the program ends, however it ends.
+    """
     with (folder / _LOCK).open("ab") as lock:
         try:
             if fcntl is not None:
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
+            elif msvcrt is not None:
+                lock.seek(0)
+                msvcrt.locking(lock.fileno(), msvcrt.LK_NBLCK, 1)
+        except OSError:
             yield False
             return
         yield True

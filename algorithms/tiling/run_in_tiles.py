@@ -139,7 +139,10 @@ def run_in_tiles(
     check_folder(folder, survey)
     with _work_folder(folder) as work:
         run = _Run(pipeline, survey, folder, work, monitor, workers, tunables, compressed, crs_units)
-        return run.all(block_side, largest_file)
+        outcome = run.all(block_side, largest_file)
+    if not outcome.failures:
+        shutil.rmtree(work, ignore_errors=True)
+    return outcome
 
 
 def check_can_be_tiled(pipeline: Pipeline) -> None:
@@ -225,8 +228,8 @@ class _Run:
                 self.monitor.warn(sentence)
             self._write_tiles(executor, done, numbers, [blocks[number] for number in failed], outcome)
         if not outcome.failures:
-            # Nothing is left to go on with.
-            shutil.rmtree(self.work)
+            # Nothing is left to go on with. Windows keeps the lock, which is still open.
+            shutil.rmtree(self.work, ignore_errors=True)
         self.monitor.progress(1.0)
         return outcome
 

@@ -329,3 +329,24 @@ def test_a_folder_of_someone_else_is_not_swept(folder):
     with replacing(folder / "a.txt") as stream:
         stream.write(b"newer")
     assert names(folder) == [theirs.name, "a.txt"]
+
+
+def test_a_folder_is_locked_where_there_is_no_flock(folder, monkeypatch):
+    # As Windows has it: a range of bytes of a file, which one program alone may hold.
+    held = set()
+
+    class Msvcrt:
+        LK_NBLCK = 2
+
+        @staticmethod
+        def locking(descriptor, mode, length):
+            assert (mode, length, os.lseek(descriptor, 0, os.SEEK_CUR)) == (2, 1, 0)
+            place = os.fstat(descriptor).st_ino
+            if place in held:
+                raise PermissionError(errno.EACCES, "Permission denied")
+            held.add(place)
+
+    monkeypatch.setattr(outputs, "fcntl", None)
+    monkeypatch.setattr(outputs, "msvcrt", Msvcrt)
+    with outputs.locked_folder(folder) as is_ours, outputs.locked_folder(folder) as is_ours_again:
+        assert (is_ours, is_ours_again) == (True, False)

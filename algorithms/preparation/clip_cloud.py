@@ -1,0 +1,78 @@
+"""The part of a cloud that lies in polygons, or outside of them."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..geometry.points_in_polygons import are_in_polygons
+from ..geometry.polygon_overlap import as_polygons
+from ..stage import InputLayer, LayerFeatures, Param, stage
+
+
+@stage(
+    "Clip cloud",
+    group="Preparation",
+    tags="clip,crop,cut,polygon,mask,extent,window,area,subset,extract,outside,erase",
+    selects=True,
+    input_layers=(
+        InputLayer(
+            "polygons",
+            "Polygons",
+            "Polygon",
+            "Areas whose points are kept: a district, parcels, a mask. They may overlap and have holes. Without a "
+            "layer the extent alone cuts.",
+            optional=True,
+        ),
+    ),
+)
+def clip_cloud(
+    xyz,
+    polygons: Optional[LayerFeatures] = None,
+    *,
+    outside: Annotated[bool, Param("Keep outside", "Keep the points outside all polygons instead.")] = False,
+    monitor=None,
+):
+    """Keep the points that lie in polygons, within an extent, or both; all their dimensions stay.
+
+    Polygons cut in plan, at all heights. The extent is read first: of a COPC file only the chunks that touch it, of a
+    virtual point cloud only the tiles. So a window of a large cloud can be taken out without reading all of it.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Coordinates, m.
+    polygons : LayerFeatures, optional
+        Polygons in meters, each a list of closed rings, the exterior first; None keeps every point.
+
+    Returns
+    -------
+    selected : ndarray of shape (m,), int64
+        Positions of the points that are kept, ascending.
+
+    Raises
+    ------
+    ValueError
+        If points outside of polygons are asked for and there are no polygons, or if no point is left.
+
+    Notes
+    -----
+    A point on the common edge of two polygons belongs to exactly one of them, so that clouds clipped with adjacent
+    parcels share no point; on the outer edge of an area it may lie on either side. Points flagged as withheld are left
+    out, as by every step that selects.
+
+    References
+    ----------
+    Shimrat, M., 1962. Algorithm 112: position of point relative to polygon. Communications of the ACM 5(8).
+    """
+    if polygons is None:
+        if outside:
+            raise ValueError("'Keep outside' needs polygons to be outside of; choose a layer or leave it off.")
+        monitor.progress(1.0)
+        return np.arange(len(xyz))
+    is_kept = are_in_polygons(xyz[:, :2], as_polygons(polygons.geometries), monitor) != outside
+    if len(xyz) and not is_kept.any():
+        where = "outside" if outside else "within"
+        raise ValueError(f"None of {len(xyz)} points lies {where} the polygons; choose another layer or extent.")
+    return np.flatnonzero(is_kept)
