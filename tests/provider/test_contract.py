@@ -47,6 +47,7 @@ IDS = {
     "classifywalls",
     "extractwallfootprints",
     "filterpoints",
+    "clipcloud",
     "segmentclusters",
     "classifygroundsegments",
     "segmentscanlines",
