@@ -22,8 +22,12 @@ from .delaunay import circles
 from .grid import grid_over, plan_box
 from .tin import CORNERS, Tin
 
-# Nodes and places of a tile at most: large ones hold more memory, small ones cost more overhead.
-_NODES, _PLACES = 20_000, 40_000
+# Nodes and places of a tile at most: of few nodes each is triangulated in less than half the time that it takes among
+# twenty thousand, and of fewer the surroundings of tiles count.
+_NODES, _PLACES = 5_000, 20_000
+
+# Tiles that a thread works on between two reports.
+_TILES_AT_ONCE = 4
 
 # Cells around places, in distances between nodes: most triangles have their corners in such a cell or the next.
 _CELL = 1.5
@@ -57,43 +61,66 @@ class TiledTin:
 
     def elevation(self, places: np.ndarray, monitor: Optional[Monitor] = None) -> np.ndarray:
         """Return the elevation (n,) of the surface at places (n, 2 or 3), NaN outside the hull of the nodes (m)."""
+        monitor = monitor or Monitor()
         found = np.full(len(places), np.nan)
         tiles = list(_tiles(self.nodes, places))
+        gaps: list[tuple[np.ndarray, np.ndarray]] = [(np.zeros(0, np.int64), np.zeros(0, np.int64))] * len(tiles)
 
         def fill(some: np.ndarray) -> None:
             for tile in some:
                 rows, left = tiles[tile]
-                self._fill(_close(self.nodes, rows, places[left]), left, places, found)
+                gaps[tile] = self._fill(_close(self.nodes, rows, places[left]), left, places, found, is_start=True)
 
-        in_chunks(fill, np.arange(len(tiles)), 2, monitor or Monitor())
+        in_chunks(fill, np.arange(len(tiles)), _TILES_AT_ONCE, monitor.part(0, 0.7))
+        # The few places that are left, in gaps of the ground, need the nodes around the gaps only.
+        if tiles:
+            around, within = (np.unique(np.concatenate(parts)) for parts in zip(*gaps))
+            self._fill_gaps(around, within, places, found, monitor.part(0.7, 1))
         self._fill_edge(np.flatnonzero(np.isnan(found)), places, found)
+        monitor.progress(1.0)
         return found
 
     def nearest_elevation(self, places: np.ndarray) -> np.ndarray:
         """Return the elevation (n,) of the node nearest in plan to each place (n, 2 or 3), m."""
         return self.nodes[self._tree.query(places[:, :2] - self._shift, workers=-1)[1], 2]
 
-    def _fill(self, rows: np.ndarray, left: np.ndarray, places: np.ndarray, found: np.ndarray) -> None:
-        """Write the elevations at the places ``left`` to ``found``, starting from the nodes ``rows``."""
+    def _fill_gaps(
+        self, around: np.ndarray, within: np.ndarray, places: np.ndarray, found: np.ndarray, monitor: Monitor
+    ) -> None:
+        """Write the elevations at the places ``within`` gaps to ``found``, starting from the nodes ``around`` these."""
+        tiles = list(_tiles(self.nodes[around], places[within]))
+
+        def fill(some: np.ndarray) -> None:
+            for tile in some:
+                rows, left = around[tiles[tile][0]], within[tiles[tile][1]]
+                while len(left):
+                    more, left = self._fill(rows, left, places, found, is_start=False)
+                    rows = np.union1d(rows, more)
+
+        in_chunks(fill, np.arange(len(tiles)), 1, monitor)
+
+    def _fill(
+        self, rows: np.ndarray, left: np.ndarray, places: np.ndarray, found: np.ndarray, is_start: bool
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Write the elevations at those of the places ``left`` whose triangles between the nodes ``rows`` are right.
+
+        Returns nodes that the others need, at the start with those around them, and these other places.
+        """
         if not len(rows):
             rows = self._nearest(places[left])
-        is_start = True
-        while len(left):
-            tin = Tin(self.nodes[rows], self._box)
-            facet = tin.locate(places[left])
-            facets, of = np.unique(facet, return_inverse=True)
-            intruders, is_wrong = self._intruders(*tin.circles(facets), rows)
-            wrong = is_wrong[of]
-            right = left[~wrong]
-            elevation = tin.elevation(places[right], facet[~wrong])
-            found[right] = np.where(tin.is_extrapolated()[facet[~wrong]], np.nan, elevation)
-            left = left[wrong]
-            if is_start:
-                # The few places that are left, in gaps of the ground, need the nodes around the gaps only.
-                ends = np.unique(tin.facets[facets[is_wrong]])
-                rows, is_start = rows[ends[ends >= CORNERS] - CORNERS], False
-                intruders = np.append(intruders, self._nearest(places[left]))
-            rows = np.union1d(rows, intruders)
+        tin = Tin(self.nodes[rows], self._box)
+        facet = tin.locate(places[left])
+        facets, of = np.unique(facet, return_inverse=True)
+        intruders, is_wrong = self._intruders(*tin.circles(facets), rows)
+        wrong = is_wrong[of]
+        right = left[~wrong]
+        elevation = tin.elevation(places[right], facet[~wrong])
+        found[right] = np.where(tin.is_extrapolated()[facet[~wrong]], np.nan, elevation)
+        left = left[wrong]
+        if is_start and len(left):
+            ends = np.unique(tin.facets[facets[is_wrong]])
+            intruders = np.concatenate([rows[ends[ends >= CORNERS] - CORNERS], intruders, self._nearest(places[left])])
+        return intruders, left
 
     def _fill_edge(self, left: np.ndarray, places: np.ndarray, found: np.ndarray) -> None:
         """Write the elevations at those of the places ``left`` that lie in the hull of all nodes to ``found``.
