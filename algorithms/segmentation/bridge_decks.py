@@ -8,7 +8,7 @@ import numpy as np
 
 from ..geometry.components import connect
 from ..geometry.grid import distinct, find_cells, grid_over
-from ..geometry.groups import items
+from ..geometry.groups import items, run_starts
 from ..packages import spatial
 from ..stage import Monitor
 from .scan_line_pieces import NearPoints, pieces, slices
@@ -33,6 +33,18 @@ _LEAST_TERRAIN = 0.5
 
 # Each end is this share of the length of a deck.
 _END = 1 / 3
+
+# A deck goes on into the terrain along at least this share of its width: corners of ramps have a few points beside them.
+_LEAST_CONTACT = 0.4
+
+# Widest obstacle on a deck that a line goes on behind: a car or a parapet between two lanes (m).
+_OBSTACLE = 3.0
+
+# Water gives few points: the next one beyond an edge is looked for within this many reaches.
+_FAR = 4.0
+
+# Points at most this far (m) above the end of a piece are of the surface that follows; parapets and cars are higher.
+_NOT_ABOVE = 0.3
 
 
 @dataclass(frozen=True)
@@ -62,8 +74,12 @@ class Decks:
     ) -> np.ndarray:
         """Return which points (n,) of the bare earth ``is_earth`` (n,) are decks that lead to ``is_terrain`` (n,)."""
         votes = np.zeros(len(xyz), np.int8)
+        # Directions of lines as doubled angles: their sum tells across which one a deck is raised.
+        across = np.zeros(len(xyz), np.complex64)
         for number in range(_DIRECTIONS):
-            votes += self._raised(xyz, is_earth, near, 180 * number / _DIRECTIONS)
+            raised = self._raised(xyz, is_earth, near, 180 * number / _DIRECTIONS)
+            votes += raised
+            across += raised * np.exp(2j * np.pi * number / _DIRECTIONS)
             monitor.progress(0.8 * (number + 1) / _DIRECTIONS)
         candidates = np.flatnonzero(votes >= _LEAST_DIRECTIONS)
         is_deck = np.zeros(len(xyz), bool)
@@ -76,7 +92,9 @@ class Decks:
         size = np.bincount(beside, minlength=1)[beside]
         for rows in self._large(xyz, candidates, part):
             # The tip of a pier is no terrain that it leads to.
-            if self._is_joined(xyz[rows], xyz[terrain[size >= _LEAST_TERRAIN * len(rows)]]):
+            large = terrain[size >= _LEAST_TERRAIN * len(rows)]
+            angle = np.angle(across[rows].sum()) / 2 + np.pi / 2
+            if self._is_joined(xyz[rows], xyz[large], np.array([np.cos(angle), np.sin(angle)])):
                 is_deck[self._with_edges(xyz, rows, others)] = True
                 is_deck[self._with_corners(xyz, rows, others[votes[others] > 0])] = True
         return is_deck
@@ -89,7 +107,7 @@ class Decks:
         height = xyz[order, 2]
         # One axis for all lines, with more room between them than any distance on them.
         along = along - along.min() + line * (2 * np.ptp(along) + 10 * self.reach + self.max_width)
-        piece = pieces(xyz, direction, self.line_width, near, 3)[order]
+        piece = pieces(xyz, direction, self.line_width, near, 3, _OBSTACLE)[order]
         piece[~is_earth[order]] = -1
         rows = np.flatnonzero(piece >= 0)
         raised = np.zeros(len(xyz), bool)
@@ -97,11 +115,10 @@ class Decks:
             return raised
         _, number, count = np.unique(piece[rows], return_inverse=True, return_counts=True)
         first, last = _ends(rows, number, len(count))
-        is_raised = (along[last] - along[first] <= self.max_width) & (along[last] - along[first] >= self.reach)
+        is_raised = (along[last] - along[first] <= self.max_width) & (along[last] - along[first] >= self.reach / 2)
         low = height[first] - self.min_height, height[last] - self.min_height
-        is_raised &= _lowest(height, np.searchsorted(along, along[first] - self.reach), first) <= low[0]
-        stop = np.searchsorted(along, along[last] + self.reach, side="right")
-        is_raised &= _lowest(height, last + 1, stop) <= low[1]
+        for sign, end in ((-1, first), (1, last)):
+            is_raised &= self._ends_high(along, height, end, sign)
         is_raised &= _roughness(along[rows], height[rows], number, count) <= _MOST_ROUGH
         chosen = np.flatnonzero(is_raised)
         below = _count_below(height, first[chosen], last[chosen], np.minimum(*low)[chosen])
@@ -111,6 +128,26 @@ class Decks:
         raised[order[rows[kept[number]]]] = True
         return raised
 
+    def _ends_high(self, along: np.ndarray, height: np.ndarray, end: np.ndarray, sign: int) -> np.ndarray:
+        """Return which rows ``end`` (m,) have lower points beyond them, before or behind by ``sign``.
+
+        Either some are within reach, or the next point that is not above the end is lower.
+        """
+        if sign < 0:
+            count = end - np.searchsorted(along, along[end] - _FAR * self.reach)
+        else:
+            count = np.searchsorted(along, along[end] + _FAR * self.reach, side="right") - end - 1
+        which, item = items(np.maximum(count, 0))
+        rows = end[which] + sign * (item + 1)
+        below = height[end][which] - height[rows]
+        is_low = below >= self.min_height
+        within = np.abs(along[rows] - along[end][which]) <= self.reach
+        ends = np.bincount(which[is_low & within], minlength=len(end)) > 0
+        follows = np.flatnonzero(below >= -_NOT_ABOVE)
+        first = follows[run_starts(which[follows])]
+        ends[which[first[is_low[first]]]] = True
+        return ends
+
     def _large(self, xyz: np.ndarray, candidates: np.ndarray, part: np.ndarray):
         """Yield the rows of parts that are large enough."""
         grid = grid_over(xyz[candidates], self.reach / 2)
@@ -119,20 +156,25 @@ class Decks:
         for number in np.flatnonzero(area >= self.min_area):
             yield candidates[part == number]
 
-    def _is_joined(self, deck: np.ndarray, others: np.ndarray) -> bool:
-        """Return whether a deck goes on into the terrain at both of its ends."""
+    def _is_joined(self, deck: np.ndarray, others: np.ndarray, axis: np.ndarray) -> bool:
+        """Return whether a deck goes on into the terrain at both of its ends along its ``axis`` (2,)."""
         if not len(others):
             return False
-        plan = deck[:, :2] - deck[:, :2].mean(axis=0)
-        axis = np.linalg.svd(plan, full_matrices=False)[2][0]
-        along = plan @ axis
+        along = deck[:, :2] @ axis
         distance, nearest = spatial.cKDTree(others).query(deck, distance_upper_bound=1.5 * self.reach)
         near = np.flatnonzero(np.isfinite(distance))
-        near = near[np.abs(others[nearest[near], 2] - deck[near, 2]) <= _SAME_LEVEL]
-        if not len(near):
-            return False
-        low, high = along.min(), along.max()
-        return bool(along[near].min() <= low + _END * (high - low) and along[near].max() >= high - _END * (high - low))
+        way = others[nearest[near]] - deck[near]
+        ahead = way[:, :2] @ axis
+        aside = way[:, 0] * axis[1] - way[:, 1] * axis[0]
+        # Terrain beside a deck is none that it leads to.
+        is_next = (np.abs(way[:, 2]) <= _SAME_LEVEL) & (np.abs(ahead) >= np.abs(aside))
+        low, high = along.min() + _END * np.ptp(along), along.max() - _END * np.ptp(along)
+        across = deck[:, 0] * axis[1] - deck[:, 1] * axis[0]
+        strip = np.floor((across - across.min()) / self.reach).astype(np.int64)
+        ends = ((ahead < 0) & (along[near] <= low), (ahead > 0) & (along[near] >= high))
+        return all(
+            len(np.unique(strip[near[is_next & end]])) >= max(1, _LEAST_CONTACT * (strip.max() + 1)) for end in ends
+        )
 
     def _with_corners(self, xyz: np.ndarray, rows: np.ndarray, raised: np.ndarray) -> np.ndarray:
         """Return a deck with points beside it that are raised in one direction: corners of slanting and wide decks."""
@@ -157,14 +199,6 @@ def _ends(rows: np.ndarray, number: np.ndarray, count: int) -> tuple[np.ndarray,
     np.minimum.at(first, number, rows)
     np.maximum.at(last, number, rows)
     return first, last
-
-
-def _lowest(height: np.ndarray, start: np.ndarray, stop: np.ndarray) -> np.ndarray:
-    """Return the least height among the rows from ``start`` up to ``stop`` (m,), inf where there are none."""
-    which, item = items(np.maximum(stop - start, 0))
-    lowest = np.full(len(start), np.inf)
-    np.minimum.at(lowest, which, height[start[which] + item])
-    return lowest
 
 
 def _count_below(height: np.ndarray, first: np.ndarray, last: np.ndarray, level: np.ndarray) -> np.ndarray:

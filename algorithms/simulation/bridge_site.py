@@ -21,7 +21,7 @@ _MARGIN, _FADE = 4.0, 12.0
 _WALL = 1.7
 
 # Thickness of a deck, height and width of its parapets, what it lies on at its ends (m).
-_THICKNESS, _PARAPET, _PARAPET_WIDTH, _SEAT = 0.9, 1.0, 0.25, 1.0
+_THICKNESS, _PARAPET, _PARAPET_WIDTH, _SEAT = 0.9, 1.0, 0.25, 0.5
 
 # Length, width and height of a car, and the way from one to the next (m).
 _CAR, _CARS = (4.3, 1.8, 1.45), 15.0
@@ -57,6 +57,11 @@ class Kind:
     is_water: bool = False
     decks: tuple[float, ...] = (9.0,)
     arch: float = 0.0
+
+    @property
+    def behind(self) -> float:
+        """How far (m) the slope to the bottom lies behind the edges: vertical quays stand in front of it."""
+        return self.depth / _WALL if self.is_water and self.bank == _WALL else 0.0
 
 
 KINDS = {
@@ -111,7 +116,7 @@ class Lot:
             climb = np.clip((v + 35) * _RAMP, 0, -made.depth) * (v < 5)
             side = (made.half_width + 2 - np.abs(u)) * _WALL
             return np.clip(np.minimum(np.minimum(climb, side), np.maximum(5 - v, 0) * _WALL), 0, None)
-        depth = np.clip((made.half_width - np.abs(u)) * made.bank, 0, made.depth)
+        depth = np.clip((made.half_width + made.behind - np.abs(u)) * made.bank, 0, made.depth)
         if self.kind == "tunnel":
             # The road comes down to both mouths between walls, and the land goes on over it between them.
             down = np.clip((LOT / 2 - _MARGIN - np.abs(v)) * _ROAD, 0, made.depth)
@@ -277,10 +282,10 @@ def _quays(scene: Scene, lot: Lot) -> None:
     made = KINDS[lot.kind]
     long = LOT - 2 * (_MARGIN + _FADE)
     for side in (-1, 1):
-        quay = lot.rect(side * (made.half_width - 0.5), 0.0, 3.0, long)
+        quay = lot.rect(side * (made.half_width + 1.5), 0.0, 3.0, long)
         scene.solids.append(Solid(quay, flat(quay, 0.0), -made.depth - 1, PointClass.GROUND, 0))
     if not made.decks:
-        jetty = lot.rect(-made.half_width / 2 - 1, 0.0, made.half_width + 2, 6.0)
+        jetty = lot.rect(-made.half_width / 2, 0.0, made.half_width + 2, 6.0)
         scene.solids.append(Solid(jetty, flat(jetty, 0.0), -made.depth - 1, PointClass.GROUND, 0))
 
 
