@@ -93,6 +93,23 @@ SurfaceNoise = Annotated[
     ),
 ]
 
+BridgeHeight = Annotated[
+    float,
+    Param(
+        "Minimum height",
+        "Height above what lies beside them from which parts of the bare earth are bridges, and segments objects.",
+        unit="m",
+        low=0.1,
+        high=100,
+    ),
+]
+
+BridgeWidth = Annotated[float, Param("Maximum bridge width", "Width of the widest bridge.", unit="m", low=1, high=1000)]
+
+BridgeArea = Annotated[
+    float, Param("Minimum bridge area", "Area of the smallest bridge.", unit="m²", low=1, high=100_000)
+]
+
 MinClusterHeight = Annotated[
     float,
     Param(

@@ -28,6 +28,7 @@ _PETERS = (
 _DETECTION = (
     Step("noise", "classify_noise_histogram"),
     Step("ground", "classify_ground_tin"),
+    Step("bridges", "classify_bridges"),
     Step("height", "compute_height_above_ground"),
     Step("roofs", "segment_roofs"),
     Step("buildings", "classify_buildings"),
@@ -48,7 +49,7 @@ _PIPELINES = (
         tags="building,detection,roof,footprint,classification,entropy,k-means",
         summary="Find the buildings in a point cloud: classified points and footprints, with nothing to set.",
         description=(
-            "Noise, ground and heights first; then roof surfaces and clusters of everything else above the ground. A "
+            "Noise, ground, bridges and heights first; then roof surfaces and clusters of everything else above the ground. A "
             "cluster is a building by its mean entropy, compared with that of planes and volumes, and by how much of "
             "the beam passes through it; then whole buildings with their walls, and their outlines. Distances and "
             "tolerances follow the density and the noise of the cloud."

@@ -28,6 +28,7 @@ from .quality.assess_ground import assess_ground
 from .quality.assess_models import assess_models
 from .quality.assess_segments import assess_segments
 from .quality.compare_corners import compare_corners
+from .segmentation.classify_bridges import classify_bridges
 from .segmentation.classify_ground_segments import classify_ground_segments
 from .segmentation.segment_clusters import segment_clusters
 from .segmentation.segment_planes_ransac import segment_planes_ransac
@@ -81,6 +82,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     segment_scan_lines,
     segment_recorded_lines,
     classify_ground_segments,
+    classify_bridges,
     segment_tin_planes,
     segment_planes_ransac,
     segment_planes_hough,

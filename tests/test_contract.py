@@ -64,6 +64,7 @@ STAGE_IDS = {
     "segmentscanlines",
     "segmentrecordedlines",
     "classifygroundsegments",
+    "classifybridges",
     "segmenttinplanes",
     "segmentplanesransac",
     "segmentplaneshough",

@@ -189,7 +189,8 @@ def complete_buildings(
         return result.astype(np.uint8), np.zeros(len(xyz), np.int32), confidence, reason
 
     is_noise = np.isin(classification, NOISE)
-    raised = (height_above_ground >= _WALL_FOOT) & ~is_noise
+    # What lies on a bridge deck stands on no ground, and is no wall.
+    raised = (height_above_ground >= _WALL_FOOT) & ~is_noise & (classification != PointClass.BRIDGE_DECK)
     if in_images:
         surface = TopSurface(xyz, height_above_ground, ~is_noise, density)
         cell, cell_size = surface.cell, surface.size

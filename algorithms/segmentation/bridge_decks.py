@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -22,6 +23,10 @@ _LEAST_DIRECTIONS = 2
 # Points below a piece, as a share of its points: beams pass through crowns, and not through decks but at their sides.
 _MOST_BELOW = 0.15
 
+# Beams up to 30° off the vertical show what lies under the edges of a deck, to this multiple of its depth, at most this
+# share of the width on each side.
+_SLANT, _MOST_SHOWN = 0.58, 0.25
+
 # Deviation of a piece from a straight line (root mean square, m): crown, camber and railings of a deck.
 _MOST_ROUGH = 0.25
 
@@ -31,10 +36,20 @@ _SAME_LEVEL = 0.5
 # Terrain at an end of a deck has at least this many times its points.
 _LEAST_TERRAIN = 0.5
 
+# Ground that a deck leads to is looked for so many reaches ahead of its ends, and may rise or fall on the way as a road
+# does.
+_AHEAD, _ROAD = (1.5, 2.5, 3.5), 0.1
+
+# Share of the width of an end ahead of which there is such ground: more than half, but for what trees hide.
+_LEAST_AHEAD = 0.5
+
+# Share of the ground in what hangs together beside a deck, from which it is terrain: roofs and crowns hold hardly any.
+_LEAST_GROUND = 0.2
+
 # Each end is this share of the length of a deck.
 _END = 1 / 3
 
-# A deck goes on into the terrain along at least this share of its width: corners of ramps have a few points beside them.
+# A deck goes on into the terrain along at least this share of its width: corners of ramps touch it at some points.
 _LEAST_CONTACT = 0.4
 
 # Widest obstacle on a deck that a line goes on behind: a car or a parapet between two lanes (m).
@@ -43,8 +58,25 @@ _OBSTACLE = 3.0
 # Water gives few points: the next one beyond an edge is looked for within this many reaches.
 _FAR = 4.0
 
-# Points at most this far (m) above the end of a piece are of the surface that follows; parapets and cars are higher.
-_NOT_ABOVE = 0.3
+# Ways down with more points than a face of this width in plan (m) has, within this distance (m) of the end, are banks:
+# embankments, and the walls of ramps where they lean. Slabs of decks show less of their sides.
+_BANK, _BANK_REACH = 0.3, 1.2
+
+# Width of a line, side of a cell and half of the distance within which points are beside one another, in point
+# spacings; least side of a cell (m).
+LINE_SPACINGS, _LEAST_CELL = 3.0, 1.0
+
+# Distance on a line within which points belong together, in point spacings: gaps between scan lines.
+_NEAR_SPACINGS = 9.0
+
+# Sections of a deck are no steeper (°): between it and low water beside it, points are few and the way down is flat.
+_SLOPE = 15.0
+
+# Difference in height that is noise (standard deviations).
+_NOISE_STEP = 4.0
+
+# Points this near (m) to the height of the end of a piece say that the surface goes on behind parapets and cars.
+_GOES_ON = 0.3
 
 
 @dataclass(frozen=True)
@@ -61,6 +93,8 @@ class Decks:
         Distance within which points are beside one another, m.
     line_width : float
         Width of a line, m.
+    near : NearPoints
+        Which points of a line are of one section.
     """
 
     min_height: float
@@ -68,16 +102,21 @@ class Decks:
     min_area: float
     reach: float
     line_width: float
+    near: NearPoints
 
-    def find(
-        self, xyz: np.ndarray, is_earth: np.ndarray, is_terrain: np.ndarray, near: NearPoints, monitor: Monitor
-    ) -> np.ndarray:
+    @classmethod
+    def of(cls, min_height: float, max_width: float, min_area: float, spacing: float, noise: float) -> Decks:
+        """Return what a bridge is in a cloud with this point spacing and noise, m."""
+        near = NearPoints(_NEAR_SPACINGS * spacing, float(np.tan(np.radians(_SLOPE))), _NOISE_STEP * noise)
+        return cls(min_height, max_width, min_area, 2 * cell_size(spacing), LINE_SPACINGS * spacing, near)
+
+    def find(self, xyz: np.ndarray, is_earth: np.ndarray, is_terrain: np.ndarray, monitor: Monitor) -> np.ndarray:
         """Return which points (n,) of the bare earth ``is_earth`` (n,) are decks that lead to ``is_terrain`` (n,)."""
         votes = np.zeros(len(xyz), np.int8)
         # Directions of lines as doubled angles: their sum tells across which one a deck is raised.
         across = np.zeros(len(xyz), np.complex64)
         for number in range(_DIRECTIONS):
-            raised = self._raised(xyz, is_earth, near, 180 * number / _DIRECTIONS)
+            raised = self._raised(xyz, is_earth, 180 * number / _DIRECTIONS)
             votes += raised
             across += raised * np.exp(2j * np.pi * number / _DIRECTIONS)
             monitor.progress(0.8 * (number + 1) / _DIRECTIONS)
@@ -87,19 +126,24 @@ class Decks:
             return is_deck
         part = connect(xyz[candidates], self.reach, _SAME_LEVEL, monitor.part(0.8, 0.9))
         others = np.flatnonzero(is_earth & (votes < _LEAST_DIRECTIONS))
-        terrain = np.flatnonzero(is_terrain & (votes < _LEAST_DIRECTIONS))
+        # A filter may leave the last meters before a deck out of the ground: they count with what they go on to.
+        terrain = np.flatnonzero((is_terrain | is_earth) & (votes < _LEAST_DIRECTIONS))
         beside = connect(xyz[terrain], self.reach, _SAME_LEVEL, monitor.part(0.9, 1))
-        size = np.bincount(beside, minlength=1)[beside]
+        size = np.bincount(beside, minlength=1)
+        ground = np.bincount(beside, is_terrain[terrain], len(size))
+        size = np.where(ground >= _LEAST_GROUND * size, size, 0)[beside]
+        ground_tree = spatial.cKDTree(xyz[terrain[is_terrain[terrain]]] * self._stretch)
         for rows in self._large(xyz, candidates, part):
             # The tip of a pier is no terrain that it leads to.
             large = terrain[size >= _LEAST_TERRAIN * len(rows)]
             angle = np.angle(across[rows].sum()) / 2 + np.pi / 2
-            if self._is_joined(xyz[rows], xyz[large], np.array([np.cos(angle), np.sin(angle)])):
+            axis = np.array([np.cos(angle), np.sin(angle)])
+            if self._is_joined(xyz[rows], xyz[large], axis) and self._leads_to(xyz[rows], ground_tree, axis):
                 is_deck[self._with_edges(xyz, rows, others)] = True
                 is_deck[self._with_corners(xyz, rows, others[votes[others] > 0])] = True
         return is_deck
 
-    def _raised(self, xyz: np.ndarray, is_earth: np.ndarray, near: NearPoints, direction: float) -> np.ndarray:
+    def _raised(self, xyz: np.ndarray, is_earth: np.ndarray, direction: float) -> np.ndarray:
         """Return which points (n,) are of pieces of one direction that have lower points beyond both ends."""
         order, line = slices(xyz, direction, self.line_width)
         angle = np.radians(direction)
@@ -107,7 +151,7 @@ class Decks:
         height = xyz[order, 2]
         # One axis for all lines, with more room between them than any distance on them.
         along = along - along.min() + line * (2 * np.ptp(along) + 10 * self.reach + self.max_width)
-        piece = pieces(xyz, direction, self.line_width, near, 3, _OBSTACLE)[order]
+        piece = pieces(xyz, direction, self.line_width, self.near, 3, _OBSTACLE)[order]
         piece[~is_earth[order]] = -1
         rows = np.flatnonzero(piece >= 0)
         raised = np.zeros(len(xyz), bool)
@@ -116,12 +160,11 @@ class Decks:
         _, number, count = np.unique(piece[rows], return_inverse=True, return_counts=True)
         first, last = _ends(rows, number, len(count))
         is_raised = (along[last] - along[first] <= self.max_width) & (along[last] - along[first] >= self.reach / 2)
-        low = height[first] - self.min_height, height[last] - self.min_height
         for sign, end in ((-1, first), (1, last)):
             is_raised &= self._ends_high(along, height, end, sign)
         is_raised &= _roughness(along[rows], height[rows], number, count) <= _MOST_ROUGH
         chosen = np.flatnonzero(is_raised)
-        below = _count_below(height, first[chosen], last[chosen], np.minimum(*low)[chosen])
+        below = _count_below(along, height, first[chosen], last[chosen], self.min_height)
         chosen = chosen[below <= _MOST_BELOW * count[chosen]]
         kept = np.zeros(len(count), bool)
         kept[chosen] = True
@@ -131,7 +174,8 @@ class Decks:
     def _ends_high(self, along: np.ndarray, height: np.ndarray, end: np.ndarray, sign: int) -> np.ndarray:
         """Return which rows ``end`` (m,) have lower points beyond them, before or behind by ``sign``.
 
-        Either some are within reach, or the next point that is not above the end is lower.
+        Either some are within reach, or they come before the next point at the height of the end: parapets and the
+        sides of a deck are neither.
         """
         if sign < 0:
             count = end - np.searchsorted(along, along[end] - _FAR * self.reach)
@@ -143,10 +187,13 @@ class Decks:
         is_low = below >= self.min_height
         within = np.abs(along[rows] - along[end][which]) <= self.reach
         ends = np.bincount(which[is_low & within], minlength=len(end)) > 0
-        follows = np.flatnonzero(below >= -_NOT_ABOVE)
+        # Points on the way down are of a bank, but for the few on the side of a deck.
+        beside = (below > _GOES_ON) & ~is_low & (np.abs(along[rows] - along[end][which]) <= _BANK_REACH)
+        follows = np.flatnonzero(is_low | (np.abs(below) <= _GOES_ON))
         first = follows[run_starts(which[follows])]
         ends[which[first[is_low[first]]]] = True
-        return ends
+        most = _BANK * self.line_width * (LINE_SPACINGS / self.line_width) ** 2
+        return ends & (np.bincount(which[beside], minlength=len(end)) <= most)
 
     def _large(self, xyz: np.ndarray, candidates: np.ndarray, part: np.ndarray):
         """Yield the rows of parts that are large enough."""
@@ -176,6 +223,29 @@ class Decks:
             len(np.unique(strip[near[is_next & end]])) >= max(1, _LEAST_CONTACT * (strip.max() + 1)) for end in ends
         )
 
+    def _leads_to(self, deck: np.ndarray, ground: Any, axis: np.ndarray) -> bool:
+        """Return whether there is ground ahead of both ends of a deck at its height; ``ground`` is a stretched tree."""
+        along = deck[:, :2] @ axis
+        low, high = along.min() + _END * np.ptp(along), along.max() - _END * np.ptp(along)
+        return self._goes_on(deck[along <= low], ground, -axis) and self._goes_on(deck[along >= high], ground, axis)
+
+    def _goes_on(self, end: np.ndarray, ground: Any, axis: np.ndarray) -> bool:
+        """Return whether there is ground some way ahead of an end of a deck, beyond the edge of a wall."""
+        along = end[:, :2] @ axis
+        to_tip = (along.max() - along)[:, None]
+        forward = np.append(axis, 0.0)
+        for step in _AHEAD:
+            places = end + (to_tip + step * self.reach) * forward
+            distance, _ = ground.query(places * self._stretch, distance_upper_bound=self.reach / 2)
+            if np.isfinite(distance).mean() >= _LEAST_AHEAD:
+                return True
+        return False
+
+    @property
+    def _stretch(self) -> np.ndarray:
+        """Factors (3,) with which ground is near ahead of a deck if it is as high, but for what a road rises."""
+        return np.array([1.0, 1.0, self.reach / 2 / (_SAME_LEVEL + _ROAD * _AHEAD[-1] * self.reach)])
+
     def _with_corners(self, xyz: np.ndarray, rows: np.ndarray, raised: np.ndarray) -> np.ndarray:
         """Return a deck with points beside it that are raised in one direction: corners of slanting and wide decks."""
         distance, nearest = spatial.cKDTree(xyz[rows]).query(xyz[raised], distance_upper_bound=1.5 * self.reach)
@@ -193,6 +263,11 @@ class Decks:
         return np.concatenate([rows, others[same]])
 
 
+def cell_size(spacing: float) -> float:
+    """Return the side (m) of cells in which points of a cloud with this spacing (m) are beside one another."""
+    return max(_LEAST_CELL, LINE_SPACINGS * spacing)
+
+
 def _ends(rows: np.ndarray, number: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the first and the last row of each piece."""
     first, last = np.full(count, np.iinfo(np.int64).max), np.full(count, -1)
@@ -201,10 +276,16 @@ def _ends(rows: np.ndarray, number: np.ndarray, count: int) -> tuple[np.ndarray,
     return first, last
 
 
-def _count_below(height: np.ndarray, first: np.ndarray, last: np.ndarray, level: np.ndarray) -> np.ndarray:
-    """Return how many points (m,) between the ends of pieces lie below a level."""
+def _count_below(
+    along: np.ndarray, height: np.ndarray, first: np.ndarray, last: np.ndarray, least: float
+) -> np.ndarray:
+    """Return how many points (m,) lie under pieces, by at least ``least`` (m), where slanting beams do not reach."""
     which, item = items(last - first + 1)
-    return np.bincount(which, height[first[which] + item] < level[which], len(first))
+    rows = first[which] + item
+    depth = np.minimum(height[first], height[last])[which] - height[rows]
+    shown = np.minimum(_SLANT * depth, _MOST_SHOWN * (along[last] - along[first])[which])
+    hidden = np.minimum(along[rows] - along[first][which], along[last][which] - along[rows]) >= shown
+    return np.bincount(which, (depth > least) & hidden, len(first))
 
 
 def _roughness(along: np.ndarray, height: np.ndarray, number: np.ndarray, count: np.ndarray) -> np.ndarray:

@@ -9,11 +9,11 @@ import numpy as np
 from ..cloud.asprs import NOISE, PointClass
 
 # Nothing that stands on the ground is of these classes.
-NO_OBJECTS = (PointClass.GROUND, PointClass.WATER, PointClass.IGNORED_GROUND, *NOISE)
+NO_OBJECTS = (PointClass.GROUND, PointClass.WATER, PointClass.BRIDGE_DECK, PointClass.IGNORED_GROUND, *NOISE)
 
 
 def candidates(classification: np.ndarray, height_above_ground: Optional[np.ndarray], min_height: float) -> np.ndarray:
-    """Return the indices of the points that are neither ground, water nor noise, and high enough.
+    """Return the indices of the points that are neither ground, water, bridge deck nor noise, and high enough.
 
     Raises
     ------

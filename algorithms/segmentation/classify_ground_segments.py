@@ -8,15 +8,10 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..geometry.grid import distinct, find_cells, grid_over
-from ..params import PointDensity, SurfaceNoise
+from ..params import BridgeArea, BridgeHeight, BridgeWidth, PointDensity, SurfaceNoise
 from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..stage import Param, stage
-from .bridge_decks import Decks
-from .scan_line_pieces import NearPoints
-
-# Side of a cell, and half of the distance within which points are beside one another, in point spacings, and at least
-# (m).
-_CELL_SPACINGS, _LEAST_CELL = 3.0, 1.0
+from .bridge_decks import Decks, cell_size
 
 # A segment is an object if it is raised along at least this share of its border, that of the cloud included.
 _RAISED_BORDER = 0.5
@@ -37,22 +32,9 @@ def classify_ground_segments(
     classification,
     segment_id,
     *,
-    min_height: Annotated[
-        float,
-        Param(
-            "Minimum height",
-            "Height above what lies beside them from which segments are objects, and parts of the bare earth bridges.",
-            unit="m",
-            low=0.1,
-            high=100,
-        ),
-    ] = 1.0,
-    max_width: Annotated[
-        float, Param("Maximum bridge width", "Width of the widest bridge.", unit="m", low=1, high=1000)
-    ] = 40.0,
-    min_bridge_area: Annotated[
-        float, Param("Minimum bridge area", "Area of the smallest bridge.", unit="m²", low=1, high=100_000)
-    ] = 20.0,
+    min_height: BridgeHeight = 1.0,
+    max_width: BridgeWidth = 40.0,
+    min_bridge_area: BridgeArea = 20.0,
     min_area: Annotated[
         float,
         Param("Minimum ground area", "Area of the smallest segment of the bare earth.", unit="m²", low=1, high=100_000),
@@ -101,7 +83,7 @@ def classify_ground_segments(
     That beams do not pass through them, and that both ends are joined, is asked for in addition: crowns that hang over
     the terrain are raised, too. Of the bare earth only the points near the lowest of their cell are ground. In towns
     and forests roofs and crowns hang together with the terrain by pieces of walls and leaves: there a ground filter is
-    due before; what it called ground is then the terrain.
+    due before; what it called ground is then the terrain. For ground of a filter alone there is 'Classify bridges'.
 
     References
     ----------
@@ -114,7 +96,7 @@ def classify_ground_segments(
     noise = sampling.noise if noise is None else noise
     monitor.resolved(density=density, noise=noise)
     spacing = 1 / float(np.sqrt(density))
-    cell = max(_LEAST_CELL, _CELL_SPACINGS * spacing)
+    cell = cell_size(spacing)
     used = not_noise(classification)
     if not len(used):
         return classification.astype(np.uint8)
@@ -122,14 +104,13 @@ def classify_ground_segments(
 
     is_earth = _bare_earth(points, segment, cell, min_height, min_area, max_object_area)
     monitor.progress(0.2)
-    near = NearPoints(_CELL_SPACINGS**2 * spacing, float(np.tan(np.radians(_SLOPE))), _NOISE_STEP * noise)
-    decks = Decks(min_height, max_width, min_bridge_area, 2 * cell, _CELL_SPACINGS * spacing)
+    decks = Decks.of(min_height, max_width, min_bridge_area, spacing, noise)
     is_terrain = classification[used] == PointClass.GROUND
     if not is_terrain.any():
         is_terrain = is_earth.copy()
         is_terrain[is_earth] = _is_low(points[is_earth], cell / 2, _NOISE_STEP * noise)
         monitor.inform("The cloud has no ground points (class 2); the segments alone tell what is bare earth.")
-    is_deck = decks.find(points, is_earth, is_terrain, near, monitor.part(0.2, 0.9))
+    is_deck = decks.find(points, is_earth, is_terrain, monitor.part(0.2, 0.9))
     is_ground = is_terrain & ~is_deck
 
     classes = classification.astype(np.uint8)

@@ -94,6 +94,10 @@ class Lot:
     turn: float
     skew: float
 
+    def contains(self, x, y) -> np.ndarray:
+        """Return which places (m) lie on the lot."""
+        return (np.abs(x - self.x) < LOT / 2) & (np.abs(y - self.y) < LOT / 2)
+
     def local(self, x, y) -> tuple[np.ndarray, np.ndarray]:
         """Return positions (m) across and along the obstacle."""
         cos, sin = np.cos(self.turn), np.sin(self.turn)
@@ -171,7 +175,7 @@ class BridgeRelief(Relief):
         x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
         z = np.zeros(x.shape)
         for lot in self.lots:
-            inside = self._in(lot, x, y)
+            inside = lot.contains(x, y)
             z[inside] = lot.height(x[inside], y[inside])
         return z
 
@@ -187,12 +191,8 @@ class BridgeRelief(Relief):
         x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
         level = np.full(x.shape, -np.inf)
         for lot in self.lots:
-            level[self._in(lot, x, y)] = lot.water_level
+            level[lot.contains(x, y)] = lot.water_level
         return level
-
-    @staticmethod
-    def _in(lot: Lot, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        return (np.abs(x - lot.x) < LOT / 2) & (np.abs(y - lot.y) < LOT / 2)
 
 
 @dataclass(frozen=True)
@@ -203,6 +203,17 @@ class Deck:
     kind: str
     angle: float
     rect: Rect
+
+
+def land(scene: Scene, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Return the elevation (m) of the land of a site with its quays, of the bottom under water, at places (n,)."""
+    z = np.array(scene.relief.ground(x, y))
+    for lot in scene.relief.lots if isinstance(scene.relief, BridgeRelief) else ():
+        kind = KINDS[lot.kind]
+        if kind.behind:
+            on_quay = lot.contains(x, y) & (np.abs(lot.local(x, y)[0]) >= kind.half_width)
+            z[on_quay] = np.maximum(z[on_quay], 0.0)
+    return z
 
 
 def build_site(kinds: tuple[str, ...], angle: float, cars: bool, trees: bool, seed: int) -> tuple[Scene, list[Deck]]:

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from typing import Annotated, Optional
 
+from ..cloud.asprs import PointClass
 from ..params import Seed
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
-from .bridge_site import KINDS, Deck, build_site
+from .bridge_site import KINDS, Deck, build_site, land
 from .scanner import MAX_PULSES, RECORDED, scan
 
 _ALL = "all"
+
+# Decks are ground where the land beneath them is no farther (m): they lie on it.
+_ON_LAND = 0.5
 
 _DECK_FIELDS = (
     Field("id", int, "number of the deck, as SegmentID of its points"),
@@ -56,8 +60,8 @@ def simulate_bridges(
 ):
     """Scan made-up bridges from the air: decks with parapets, piers and cars, and the true class of every point.
 
-    Each kind lies on a lot of 140 m, turned at random. Nothing but decks is bridge deck (17): the land over a tunnel,
-    quays, jetties and ramps are ground.
+    Each kind lies on a lot of 140 m, turned at random. Nothing but decks is bridge deck (17), and only where they do
+    not lie on the land: the land over a tunnel, quays, jetties and ramps are ground.
 
     Returns
     -------
@@ -106,6 +110,9 @@ def simulate_bridges(
             f"million pulses, more than {MAX_PULSES / 1e6:.0f} million; lower the density."
         )
     made = scan(scene, density=density, range_noise=range_noise, noise_points=0.0, seed=seed, monitor=monitor)
+    x, y, z = made.xyz.T
+    lies_on_land = land(scene, x, y) >= z - _ON_LAND
+    made.classification[(made.classification == PointClass.BRIDGE_DECK) & lies_on_land] = PointClass.GROUND
     return (*(getattr(made, name) for name in RECORDED), _layer(decks))
 
 

@@ -50,6 +50,7 @@ IDS = {
     "clipcloud",
     "segmentclusters",
     "classifygroundsegments",
+    "classifybridges",
     "segmentscanlines",
     "segmentrecordedlines",
     "simulatebridges",

@@ -1,0 +1,94 @@
+"""Bridges in the ground of a filter, by how they lie over what they cross."""
+
+from __future__ import annotations
+
+from typing import Optional
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from ..params import BridgeArea, BridgeHeight, BridgeWidth, PointDensity, SurfaceNoise
+from ..sampling.cloud_sampling import CloudSampling, not_noise
+from ..stage import stage
+from .bridge_decks import Decks
+
+# No deck is of these classes.
+_NO_DECK = (
+    PointClass.LOW_VEGETATION,
+    PointClass.MEDIUM_VEGETATION,
+    PointClass.HIGH_VEGETATION,
+    PointClass.BUILDING,
+    PointClass.WATER,
+)
+
+
+@stage(
+    "Classify bridges",
+    group="Terrain",
+    tags="bridge,fly-over,bridge deck,footbridge,viaduct,ground,terrain,DTM,Sithole,Vosselman",
+    writes=("classification",),
+    reach=lambda tunables: 2 * tunables["max_width"],
+)
+def classify_bridges(
+    xyz,
+    classification,
+    *,
+    min_height: BridgeHeight = 1.0,
+    max_width: BridgeWidth = 40.0,
+    min_bridge_area: BridgeArea = 20.0,
+    noise: SurfaceNoise = None,
+    density: PointDensity = None,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Find bridges and fly-overs in a cloud with classified ground, whether they are ground or not.
+
+    On lines in eight directions the sections of a bridge are smooth, opaque and raised on both sides. Such parts become
+    bridge deck (17) if they are large enough and go on into the ground at both ends. Bridges whose ends are not in the
+    cloud, and embankments, are not found.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes with ground (2); vegetation, buildings and water are no decks, earlier bridge deck (17) is
+        forgotten.
+
+    Returns
+    -------
+    classification : ndarray of shape (n,), uint8
+        The same with bridge deck (17).
+
+    Raises
+    ------
+    ValueError
+        If there are no ground points.
+
+    Notes
+    -----
+    The second step of 'Classify ground segments' for the ground of any filter, without segments: all points but those
+    of classes that are no decks may be of one.
+
+    References
+    ----------
+    Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point
+    clouds, section 5.3. Sithole, G., Vosselman, G., 2003. Automatic structure detection in a point cloud of an urban
+    landscape. URBAN 2003, Berlin, 67-71.
+    """
+    if not (classification == PointClass.GROUND).any():
+        raise ValueError("No ground points (class 2); run 'Classify ground points (TIN)' first.")
+    sampling = sampling or CloudSampling.of(xyz, classification)
+    density = sampling.density if density is None else density
+    noise = sampling.noise if noise is None else noise
+    monitor.resolved(density=density, noise=noise)
+    used = not_noise(classification)
+    points = xyz[used] - xyz[used].min(axis=0)
+    may_be_deck = ~np.isin(classification[used], _NO_DECK)
+    decks = Decks.of(min_height, max_width, min_bridge_area, 1 / float(np.sqrt(density)), noise)
+    is_deck = decks.find(points, may_be_deck, classification[used] == PointClass.GROUND, monitor)
+    classes = classification.astype(np.uint8)
+    classes[classes == PointClass.BRIDGE_DECK] = PointClass.UNCLASSIFIED
+    classes[used[is_deck]] = PointClass.BRIDGE_DECK
+    monitor.progress(1.0)
+    return classes

@@ -1,0 +1,120 @@
+"""Bridges in classified ground: kinds and angles, what looks like one, roofs, and what they need."""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.run import run_pipeline
+from lidar_buildings.algorithms.segmentation.classify_bridges import classify_bridges
+from lidar_buildings.algorithms.simulation.simulate_bridges import simulate_bridges
+from lidar_buildings.algorithms.stage import Cancelled
+from lidar_buildings.tests.builders import FAR
+from lidar_buildings.tests.monitors import Listening
+
+EARTH, WATER, DECK, ROOF = range(4)
+
+
+def canal(angle=0.0, gap=0.0, drop=0.0, seed=6):
+    """A canal 12 m wide and 3 m deep between quays, a bridge 7 m wide, and a flat roof flush with a terrace behind it.
+
+    The bridge ends ``gap`` (m) before the eastern quay, and lies ``drop`` (m) lower than that. 40 m by 40 m, 6 per m².
+    """
+    rng = np.random.default_rng(seed)
+    x, y = rng.uniform(0, 40, (9600, 2)).T
+    part = np.where(np.abs(x - 20) < 6, WATER, EARTH)
+    off = (y - 20) * np.cos(np.radians(angle)) - (x - 20) * np.sin(np.radians(angle))
+    part[(np.abs(off) < 3.5) & (part == WATER) & (x < 26 - gap)] = DECK
+    part[(np.abs(x - 6) < 4) & (np.abs(y - 30) < 5)] = ROOF
+    z = np.array([0.0, -3.0, -drop, 4.0])[part] + np.where((part == EARTH) & (x < 2), 4.0, 0.0)
+    return np.column_stack([x, y, z + rng.normal(0, 0.02, len(x))]), part
+
+
+def classified(xyz, part, **tunables):
+    return classify_bridges(xyz, np.where((part == EARTH) | (part == WATER), 2, 1).astype(np.uint8), **tunables)
+
+
+def f_score(found, true):
+    return 2 * (found & true).sum() / (found.sum() + true.sum())
+
+
+@pytest.mark.parametrize("angle", [0.0, 30.0])
+def test_a_bridge_is_found_whether_it_is_ground_or_not(angle):
+    xyz, part = canal(angle)
+    for is_ground in (False, True):
+        classes = np.where((part == EARTH) | (part == WATER) | ((part == DECK) & is_ground), 2, 1).astype(np.uint8)
+        made = classify_bridges(xyz, classes)
+        assert f_score(made == 17, part == DECK) > 0.95
+        np.testing.assert_array_equal(made[made != 17], classes[made != 17])
+
+
+def test_what_leads_to_no_ground_is_no_bridge():
+    """A pier, a roof between terraces, and a deck that ends 1.5 m lower than the quay."""
+    for xyz, part in (canal(gap=4.0), canal(drop=1.5)):
+        assert not (classified(xyz, part) == 17).any()
+    xyz, part = canal()
+    assert not (classified(xyz, part)[part == ROOF] == 17).any()
+    is_only_west = np.where((part == EARTH) & (xyz[:, 0] < 14), 2, 1).astype(np.uint8)
+    assert not (classify_bridges(xyz, is_only_west) == 17).any()
+
+
+@pytest.mark.parametrize(("kind", "least"), [("arch", 0.9), ("footbridge", 0.7), ("two decks", 0.9), ("fly-over", 0.9)])
+def test_scanned_bridges_with_parapets_and_cars_are_found(kind, least):
+    density = 8.0 if kind == "footbridge" else 4.0
+    xyz, true, *_ = simulate_bridges(kind=kind, angle=20.0, density=density, seed=3)
+    classes = np.where(np.isin(true, (2, 9)), 2, 1).astype(np.uint8)
+    made = classify_bridges(xyz, classes)
+    assert f_score(made == 17, true == 17) > least
+
+
+@pytest.mark.parametrize("kind", ["tunnel", "jetty", "ramp"])
+def test_tunnel_mouths_jetties_and_ramps_are_no_bridges(kind):
+    xyz, true, *_ = simulate_bridges(kind=kind, density=4.0, seed=3)
+    classes = np.where(np.isin(true, (2, 9)), 2, 1).astype(np.uint8)
+    np.testing.assert_array_equal(classify_bridges(xyz, classes), classes)
+
+
+def test_no_bridge_is_a_building():
+    xyz, true, *_ = simulate_bridges(kind="cutting", density=4.0, seed=3, trees=False)
+    cloud = create_cloud({"xyz": xyz})
+    run_pipeline(PIPELINES["detect_buildings"], cloud)
+    made = cloud.get("classification")
+    assert not (made == 6).any()
+    assert (made[true == 17] == 17).mean() > 0.8
+
+
+def test_limits_have_their_effect():
+    xyz, part = canal()
+    assert not (classified(xyz, part, min_height=3.5) == 17).any()
+    assert not (classified(xyz, part, max_width=5.0) == 17).any()
+    assert not (classified(xyz, part, min_bridge_area=120.0) == 17).any()
+
+
+def test_water_vegetation_buildings_and_noise_are_no_decks_and_earlier_decks_are_forgotten():
+    xyz, part = canal()
+    ground = np.where((part == EARTH) | (part == WATER), 2, 1).astype(np.uint8)
+    for kept in (5, 6, 9, 18):
+        classes = np.where(part == DECK, kept, ground).astype(np.uint8)
+        np.testing.assert_array_equal(classify_bridges(xyz, classes), classes)
+    classes = np.where(part == ROOF, 17, ground).astype(np.uint8)
+    assert (classify_bridges(xyz, classes)[part == ROOF] == 1).all()
+
+
+def test_ground_is_needed():
+    with pytest.raises(ValueError, match=r"No ground points \(class 2\)"):
+        classify_bridges(np.zeros((5, 3)), np.ones(5, np.uint8))
+
+
+def test_order_and_place_change_nothing():
+    xyz, part = canal(20.0)
+    xyz = (xyz * 1024).round() / 1024
+    made = classified(xyz, part)
+    order = np.random.default_rng(3).permutation(len(xyz))
+    np.testing.assert_array_equal(classified(xyz[order], part[order]), made[order])
+    assert (classified(xyz + FAR, part) == made).mean() > 0.999
+
+
+def test_cancel_gets_through():
+    xyz, part = canal()
+    with pytest.raises(Cancelled):
+        classified(xyz, part, monitor=Listening(stop_at=0.5))
