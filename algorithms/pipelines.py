@@ -49,10 +49,10 @@ _PIPELINES = (
         tags="building,detection,roof,footprint,classification,entropy,k-means",
         summary="Find the buildings in a point cloud: classified points and footprints, with nothing to set.",
         description=(
-            "Noise, ground, bridges and heights first; then roof surfaces and clusters of everything else above the ground. A "
-            "cluster is a building by its mean entropy, compared with that of planes and volumes, and by how much of "
-            "the beam passes through it; then whole buildings with their walls, and their outlines. Distances and "
-            "tolerances follow the density and the noise of the cloud."
+            "Noise, ground, bridges and heights first; then roof surfaces and clusters of everything else above the "
+            "ground. A cluster is a building by its mean entropy, compared with that of planes and volumes, and by how "
+            "much of the beam passes through it; then whole buildings with their walls, and their outlines. Distances "
+            "and tolerances follow the density and the noise of the cloud."
         ),
         references=_SANTOS,
         steps=_DETECTION,

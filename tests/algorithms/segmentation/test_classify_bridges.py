@@ -75,7 +75,7 @@ def test_tunnel_mouths_jetties_and_ramps_are_no_bridges(kind):
 
 
 def test_no_bridge_is_a_building():
-    xyz, true, *_ = simulate_bridges(kind="cutting", density=4.0, seed=3, trees=False)
+    xyz, true, *_ = simulate_bridges(kind="fly-over", density=4.0, seed=3, trees=False)
     cloud = create_cloud({"xyz": xyz})
     run_pipeline(PIPELINES["detect_buildings"], cloud)
     made = cloud.get("classification")

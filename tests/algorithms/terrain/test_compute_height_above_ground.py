@@ -88,3 +88,16 @@ def test_points_above_change_nothing(rng):
     everything = compute_height_above_ground(xyz, classification)
     some = compute_height_above_ground(xyz[:350], classification[:350])
     np.testing.assert_array_equal(everything[:350], some)
+
+
+def test_what_stands_on_a_bridge_is_measured_from_its_deck():
+    """A deck 6 m over a road, a car on it, and a lamp beside the road under it."""
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(0, 20, 0.5), np.arange(0, 20, 0.5)))
+    road = np.column_stack([x, y, np.zeros(len(x))])
+    deck = np.column_stack([x, y, np.full(len(x), 6.0)])[np.abs(y - 10) < 4]
+    others = np.array([[10, 10, 7.5], [10, 10, 3.0], [10, 1, 3.0]])
+    xyz = np.concatenate([road, deck, others])
+    classes = np.repeat([2, 17, 1], [len(road), len(deck), 3]).astype(np.uint8)
+    height = compute_height_above_ground(xyz, classes)
+    np.testing.assert_allclose(height[-3:], [1.5, 3.0, 3.0])
+    np.testing.assert_allclose(height[len(road) : -3], 6.0)
