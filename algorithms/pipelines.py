@@ -159,7 +159,11 @@ _PIPELINES = (
             Step("footprints", "extract_wall_footprints"),
             Step("comparison", "compare_corners", layers={"footprints": "footprints.wall_footprints"}),
         ),
-        shared={"min_area": ("roofs", "footprints"), "split_height": ("roofs", "walls")},
+        shared={
+            "min_area": ("roofs", "footprints"),
+            "split_height": ("roofs", "walls"),
+            "source": ("ground", "roofs"),
+        },
         shown=("min_area", "voxels_voxel_size", "ground_max_building_size", "split_height", "footprints_min_seen"),
         kept=("noise", "voxels", "ground", "height", "planes", "roofs"),
     ),

@@ -7,11 +7,12 @@ from typing import Annotated, Optional
 import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
-from ..params import MinBuildingArea, PointDensity, SplitHeight
+from ..params import MinBuildingArea, PointDensity, PointSource, SplitHeight
 from ..sampling.cloud_sampling import CloudSampling
 from ..segmentation.cluster_measures import plan_areas
 from ..segmentation.segment_clusters import dbscan, points_at_corner
 from ..stage import Monitor, Param, stage
+from .bent_roofs import bent_roofs, with_bent_roofs
 from .stacked_roofs import join_stacked
 
 # Surfaces of one roof lie within this distance (m), or so many point spacings; roofs of two buildings seldom do.
@@ -46,6 +47,7 @@ def classify_roofs(
         ),
     ] = None,
     density: PointDensity = None,
+    source: PointSource = "automatic",
     sampling: Optional[CloudSampling] = None,
     monitor=None,
 ):
@@ -74,6 +76,8 @@ def classify_roofs(
 
     Notes
     -----
+    In clouds of matched images, in which roofs are bent, smooth surfaces beside the planes of a building belong to it.
+
     The clusters are those of DBSCAN with the gap as radius and a quarter of the points that a level roof has within it.
     A cluster that one larger cluster surrounds on more than three fifths of its border, seen from above, belongs to it:
     stair houses and penthouses on flat roofs, skylights in them. The paper takes the points above the height; here a
@@ -95,7 +99,12 @@ def classify_roofs(
     roof = np.flatnonzero(is_roof)
     result = np.where(classification == PointClass.BUILDING, np.uint8(PointClass.UNCLASSIFIED), classification)
     cluster_id = np.zeros(len(xyz), np.int32)
-    cluster_id[roof] = _clusters(xyz[roof], gap, min_area, density, monitor)
+    cluster_id[roof] = _clusters(xyz[roof], gap, min_area, density, monitor.part(0, 0.5))
+    if sampling.is_closed_surface(source) and cluster_id.any():
+        bent = bent_roofs(xyz, classification, height_above_ground, sampling, monitor.part(0.5, 0.9))
+        is_bent = _is_on_roof(bent, height_above_ground, split_height) & (cluster_id == 0)
+        cluster_id = with_bent_roofs(xyz, cluster_id, is_bent, gap, min_area, density, monitor.part(0.9, 1))
+    monitor.progress(1.0)
     result[cluster_id > 0] = PointClass.BUILDING
     if not cluster_id.any():
         monitor.warn(

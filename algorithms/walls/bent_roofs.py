@@ -1,0 +1,99 @@
+"""Parts of roofs in matched images that are no planes: matching bends them by decimeters over meters."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..buildings.roof_extent import amid_rough
+from ..cloud.asprs import NOISE
+from ..packages import spatial
+from ..sampling.cloud_sampling import CloudSampling
+from ..segmentation.cluster_measures import plan_areas
+from ..segmentation.segment_clusters import dbscan, points_at_corner
+from ..segmentation.segment_roofs import segment_roofs
+from ..segmentation.top_surface import TopSurface
+from ..stage import Monitor
+
+
+def bent_roofs(
+    xyz: np.ndarray, classification: np.ndarray, height: np.ndarray, sampling: CloudSampling, monitor: Monitor
+) -> np.ndarray:
+    """Return the smooth surface (n,), int32, from 1, that each point is of; 0 is none.
+
+    Surfaces are smooth where neighbors share a plane, however they bend on the whole. Smooth spots of crowns, which lie
+    amid what is rough, are none.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points (m).
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes; noise is left out.
+    height : ndarray of shape (n,)
+        Heights above ground, m.
+    sampling : CloudSampling
+        How the cloud was sampled.
+    monitor : Monitor
+        Receives progress.
+    """
+    segment_id = segment_roofs(
+        xyz, classification, height, source="matched images", sampling=sampling, monitor=monitor
+    )[0]
+    surface = TopSurface(xyz, height, ~np.isin(classification, NOISE), sampling.effective_density)
+    return np.where(amid_rough(surface, xyz, segment_id), 0, segment_id)
+
+
+def with_bent_roofs(
+    xyz: np.ndarray,
+    cluster_id: np.ndarray,
+    is_bent: np.ndarray,
+    gap: float,
+    min_area: float,
+    density: float,
+    monitor: Monitor,
+) -> np.ndarray:
+    """Return the buildings (n,) with the bent parts of roofs that lie beside their planes.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points (m).
+    cluster_id : ndarray of shape (n,), int32
+        Buildings of the points on planes, from 1; 0 is none.
+    is_bent : ndarray of shape (n,), bool
+        Other points on smooth surfaces.
+    gap : float
+        Points at most this far apart lie beside each other, m.
+    min_area : float
+        Area of the smallest part that is added, m².
+    density : float
+        Points per square meter.
+    monitor : Monitor
+        Receives progress.
+
+    Notes
+    -----
+    A part joins one building, the one that most of its points beside buildings lie nearest to, so that it never joins
+    two houses that touch.
+    """
+    bent = np.flatnonzero(is_bent)
+    if not len(bent):
+        return cluster_id
+    part = dbscan(xyz[bent], gap, points_at_corner(gap, density), monitor)
+    bent, part = bent[part >= 0], part[part >= 0]
+    if not len(bent):
+        return cluster_id
+    plane = np.flatnonzero(cluster_id > 0)
+    distance, nearest = spatial.cKDTree(xyz[plane]).query(xyz[bent], distance_upper_bound=gap, workers=-1)
+    touches = np.isfinite(distance)
+    pairs, count = np.unique(
+        np.column_stack([part[touches], cluster_id[plane[nearest[touches]]]]), axis=0, return_counts=True
+    )
+    owner = np.zeros(int(part.max()) + 1, np.int32)
+    # The last of equal parts counts: that with the most contacts.
+    order = np.lexsort((pairs[:, 1], count))
+    owner[pairs[order, 0]] = pairs[order, 1]
+    owner[plan_areas(xyz[bent], part, density) < min_area] = 0
+    result = cluster_id.copy()
+    result[bent] = owner[part]
+    return result
