@@ -186,8 +186,9 @@ def _joined(component: np.ndarray, here: np.ndarray, there: np.ndarray) -> np.nd
 
 
 def by_first_point(component: np.ndarray) -> np.ndarray:
-    """Renumber components (n,) from 0 in the order of their first points, int32."""
-    _, first, inverse = np.unique(component, return_index=True, return_inverse=True)
-    rank = np.empty(len(first), np.int32)
-    rank[np.argsort(first)] = np.arange(len(first), dtype=np.int32)
+    """Renumber components (n,) from 0 in the order of their first points, int32; negative numbers are none, now -1."""
+    number, first, inverse = np.unique(component, return_index=True, return_inverse=True)
+    negative = int(np.searchsorted(number, 0))
+    rank = np.full(len(first), -1, np.int32)
+    rank[negative + np.argsort(first[negative:])] = np.arange(len(first) - negative, dtype=np.int32)
     return rank[inverse]

@@ -66,7 +66,10 @@ _UNEVEN = 2.0
 _LEAST_ROUGHNESS = 0.02587
 
 # And they are the rougher the farther apart the points are, by this share of the point spacing.
-_ROUGHNESS_OF_SPACING = 0.06467
+ROUGHNESS_OF_SPACING = 0.06467
+
+# Distance from a plane (standard deviations) within which 98 % of its points lie where they are normally distributed.
+ON_PLANE = 2.3195
 
 
 def plane_roughness(noise: float, density: float) -> float:
@@ -79,7 +82,7 @@ def plane_roughness(noise: float, density: float) -> float:
     density : float
         Points per square meter.
     """
-    return float(np.hypot(max(noise, _LEAST_ROUGHNESS), _ROUGHNESS_OF_SPACING / np.sqrt(density)))
+    return float(np.hypot(max(noise, _LEAST_ROUGHNESS), ROUGHNESS_OF_SPACING / np.sqrt(density)))
 
 
 def surface_density(xyz: np.ndarray) -> float:

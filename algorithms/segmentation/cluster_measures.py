@@ -214,16 +214,18 @@ def share_joined(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray, density
 def _occupied(xyz: np.ndarray, group: np.ndarray, density: float) -> tuple[Grid, np.ndarray, np.ndarray]:
     """Return the grid that area is counted in, and group and cell of each cell of a group (m,), sorted by groups."""
     grid = grid_over(xyz, _cell_size(density))
-    member, count = group >= 0, grid.rows * grid.columns
-    owner, cell = np.divmod(np.unique(group[member].astype(np.int64) * count + grid.number(xyz)[member]), count)
-    return grid, owner, cell
+    member = group >= 0
+    # Numbers of occupied cells are small, those of cells between far points times the groups may be too large.
+    cells, which = distinct(grid.number(xyz)[member])
+    owner, place = np.divmod(np.unique(group[member].astype(np.int64) * len(cells) + which), max(len(cells), 1))
+    return grid, owner, cells[place]
 
 
 def _columns(xyz: np.ndarray, group: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the group of each cell of ``size`` (m) of a group, its points there, and the points well beneath them."""
-    cell, member, count = grid_over(xyz, size).number(xyz), group >= 0, int(group.max()) + 1
+    cell, member, count = distinct(grid_over(xyz, size).number(xyz))[1], group >= 0, int(group.max()) + 1
     # Sorted by cells, so that the groups in a point's cell are found by searching.
-    pairs, which = distinct(cell[member] * count + group[member])
+    pairs, which = distinct(cell[member].astype(np.int64) * count + group[member])
     where, owner = np.divmod(pairs, count)
     bottom = np.full(len(pairs), np.inf)
     np.minimum.at(bottom, which, xyz[member, 2])

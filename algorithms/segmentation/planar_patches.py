@@ -11,15 +11,12 @@ from ..geometry.boxes import by_first_point
 from ..neighborhoods.covariance import Nearest, smallest_eigenvectors, symmetric_eigenvalues
 from ..neighborhoods.wide_in_plan import Wide
 from ..packages import csgraph, sparse, spatial
-from ..sampling.surface_noise import LEAST_NEIGHBORS
+from ..sampling.surface_noise import LEAST_NEIGHBORS, ON_PLANE
 from ..stage import Monitor
 from ..threads import in_chunks
 
-# Distance within which a point lies on a plane (deviations of points from planes).
-_ON_PLANE = 2.3195
-
-# A plane is smooth if its own points deviate by less (the same deviations).
-_SMOOTH = 2.3195
+# A plane is smooth if its own points deviate by less (deviations of points from planes).
+_SMOOTH = ON_PLANE
 
 # Two planes are one surface when each holds the other's point within this distance (the same deviations) ...
 _SAME_SURFACE = 3.48
@@ -35,7 +32,7 @@ _CHUNK, _CHUNK_CANDIDATES = 20_000, 250_000
 
 
 @dataclass
-class _LocalPlanes:
+class _PointPlanes:
     """The planes of points and their neighbors.
 
     Attributes
@@ -91,7 +88,7 @@ def segment_patches(
     points = xyz[order]
     planes = _local_planes(points, neighborhood, monitor.part(0, 0.6))
     points = np.column_stack([points - points[0], np.full(len(points), -1.0)])
-    plane = _smoothest_plane(points, planes, _ON_PLANE * off_plane, monitor.part(0.6, 0.8))
+    plane = _smoothest_plane(points, planes, ON_PLANE * off_plane, monitor.part(0.6, 0.8))
     on_surface = (planes.deviation[plane] <= _SMOOTH * off_plane) & (plane >= 0)
     on_surface &= planes.planes[plane, 2] >= np.sin(np.radians(90 - max_slope))
     links = _links(points, planes, plane, on_surface, _SAME_SURFACE * off_plane, monitor.part(0.8, 1))
@@ -108,10 +105,10 @@ def segment_patches(
     return patch, roughness
 
 
-def _local_planes(xyz: np.ndarray, neighborhood: Union[Nearest, Wide], monitor: Monitor) -> _LocalPlanes:
+def _local_planes(xyz: np.ndarray, neighborhood: Union[Nearest, Wide], monitor: Monitor) -> _PointPlanes:
     tree = spatial.cKDTree(xyz, balanced_tree=False)
     columns = np.ascontiguousarray(xyz.T)
-    made = _LocalPlanes(
+    made = _PointPlanes(
         np.empty((len(xyz), 4)),
         np.empty(len(xyz)),
         np.empty((len(xyz), neighborhood.n_named), np.int32),
@@ -133,7 +130,7 @@ def _local_planes(xyz: np.ndarray, neighborhood: Union[Nearest, Wide], monitor: 
     return made
 
 
-def _smoothest_plane(points: np.ndarray, planes: _LocalPlanes, reach: float, monitor: Monitor) -> np.ndarray:
+def _smoothest_plane(points: np.ndarray, planes: _PointPlanes, reach: float, monitor: Monitor) -> np.ndarray:
     """Return the number (n,) of the smoothest plane within ``reach`` (m) of each point (n, 4); -1 where none is."""
     found = np.full(len(points), -1, np.int32)
 
@@ -159,7 +156,7 @@ def _smoothest_plane(points: np.ndarray, planes: _LocalPlanes, reach: float, mon
 
 
 def _links(
-    points: np.ndarray, planes: _LocalPlanes, plane: np.ndarray, on_surface: np.ndarray, reach: float, monitor: Monitor
+    points: np.ndarray, planes: _PointPlanes, plane: np.ndarray, on_surface: np.ndarray, reach: float, monitor: Monitor
 ) -> Any:
     """Return the graph, sparse (n, n), of neighbors whose planes are one surface: within ``reach`` (m) of each."""
     # Spread over the ranks, so that links cross from one scan line to the next.

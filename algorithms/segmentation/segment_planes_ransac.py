@@ -9,14 +9,12 @@ import numpy as np
 from ..geometry.boxes import Boxes, by_first_point
 from ..params import MinClusterHeight, Seed
 from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.surface_noise import ON_PLANE
 from ..stage import Monitor, Param, stage
 from .candidate_points import candidates
 from .least_squares_planes import Planes
 from .plane_merging import joined_planes
 from .voxel_planes import VoxelPlanes
-
-# Distance within which a point lies on a plane (times the roughness).
-_ON_PLANE = 2.3195
 
 # A surface puts so many points into a voxel, and a voxel is so many tolerances wide that it isn't filled by one.
 _POINTS_IN_VOXEL, _TOLERANCES_IN_VOXEL = 20.0, 10.0
@@ -136,7 +134,7 @@ def segment_planes_ransac(
         raise ValueError(f"The minimum slope ({min_slope:g}°) is above the maximum slope ({max_slope:g}°); lower it.")
     used = candidates(classification, height_above_ground, min_height)
     sampling = sampling or CloudSampling.of(xyz, classification)
-    tolerance = _ON_PLANE * sampling.roughness if tolerance is None else tolerance
+    tolerance = ON_PLANE * sampling.roughness if tolerance is None else tolerance
     voxel_size = _voxel_size(sampling.surface_density, tolerance) if voxel_size is None else voxel_size
     monitor.resolved(voxel_size=voxel_size, tolerance=tolerance)
 

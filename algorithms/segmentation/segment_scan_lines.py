@@ -157,11 +157,7 @@ def segment_scan_lines(
         piece_sets.append(pieces(points, 180 * number / directions, line_width, near, min_piece, max_obstacle))
         monitor.progress(0.9 * (number + 1) / directions)
     segment = merged_pieces(piece_sets)
-    inside = segment >= 0
-    ordered = np.full(len(used), -1, np.int64)
-    if inside.any():
-        ordered[inside] = by_first_point(segment[inside])
     segment_id = np.zeros(len(xyz), np.int32)
-    segment_id[used] = number_large(ordered, min_points)
+    segment_id[used] = number_large(by_first_point(segment), min_points)
     monitor.progress(1.0)
     return segment_id

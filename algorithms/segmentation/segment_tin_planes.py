@@ -6,6 +6,7 @@ from typing import Annotated, Optional
 
 import numpy as np
 
+from ..geometry.boxes import by_first_point
 from ..geometry.components import number_large
 from ..geometry.delaunay import triangulate
 from ..neighborhoods.nearest_blocks import PAIRS
@@ -163,6 +164,4 @@ def _of_points(facets: np.ndarray, group: np.ndarray, area: np.ndarray, n: int) 
     first = order[np.unique(point[order], return_index=True)[1]]
     of_point = np.full(n, -1, np.int64)
     of_point[point[first]] = which[first]
-    _, start, inverse = np.unique(of_point[of_point >= 0], return_index=True, return_inverse=True)
-    of_point[of_point >= 0] = np.argsort(np.argsort(start))[inverse]
-    return of_point
+    return by_first_point(of_point)

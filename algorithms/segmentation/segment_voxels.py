@@ -190,7 +190,7 @@ def segment_voxels(
     where = locate_voxels(cells, occupied)
     of_point = np.where(where >= 0, component[where] if len(component) else -1, -1)[voxel]
     segment_id = np.zeros(len(xyz), np.int32)
-    segment_id[used] = number_large(_in_order_of_points(of_point), min_points)
+    segment_id[used] = number_large(by_first_point(of_point), min_points)
     of_component = np.zeros(len(component) + 1, np.int32)
     of_component[of_point] = segment_id[used]
 
@@ -202,12 +202,3 @@ def segment_voxels(
     columns = {"segment_id": of_component[component[shown]], "count": layer_count[shown], "distance": distance[shown]}
     monitor.progress(1.0)
     return segment_id, LayerFeatures(list(centers), columns)
-
-
-def _in_order_of_points(component: np.ndarray) -> np.ndarray:
-    """Return components (n,) numbered from 0 in the order of their first points; -1 stays."""
-    ordered = np.full(len(component), -1, np.int64)
-    inside = component >= 0
-    if inside.any():
-        ordered[inside] = by_first_point(component[inside])
-    return ordered

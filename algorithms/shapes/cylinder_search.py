@@ -39,8 +39,8 @@ LEAST_POINTS = 16
 # Cylinders of one window.
 _MOST_IN_WINDOW = 4
 
-# Steps along the axis of a growing cylinder (radii), and their number.
-_STEP, _MOST_STEPS = 6.0, 60
+# First step along the axis of a growing cylinder at both ends (radii): the direction of a seed is known for so long.
+_FIRST_STEP = 6.0
 
 # Widest gap along a cylinder (radii, spacings): another pipe in front of it, or chance.
 _GAP_RADII, _GAP_SPACINGS = 2.0, 6.0
@@ -261,8 +261,9 @@ class CylinderSearch:
         ends = cylinder.center + np.outer([along.min(), along.max()], cylinder.axis)
         thinned = max(self.spacing, 0.15 * cylinder.radius)
         gap = max(_GAP_RADII * cylinder.radius, _GAP_SPACINGS * thinned)
-        for _ in range(_MOST_STEPS):
-            near = self._near(rows, ends, cylinder, _STEP * cylinder.radius)
+        step = _FIRST_STEP * cylinder.radius
+        while True:
+            near = self._near(rows, ends, cylinder, step)
             points = near[self._is_on(near, cylinder, self.tolerance)]
             points = self._run(points, cylinder, ends.mean(axis=0), gap)
             if len(points) < LEAST_POINTS:
@@ -274,6 +275,8 @@ class CylinderSearch:
             cylinder, ends = fitted, grown
             if longer < thinned:
                 break
+            # The longer it is, the better its direction is known.
+            step = 2 * step if longer >= step else step
         return self._checked(cylinder, ends, gap)
 
     def _near(self, rows: np.ndarray, ends: np.ndarray, cylinder: Cylinder, more: float) -> np.ndarray:

@@ -7,10 +7,8 @@ from typing import Annotated, Optional
 import numpy as np
 
 from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.surface_noise import ROUGHNESS_OF_SPACING
 from ..stage import Param
-
-# Surfaces are the rougher the farther apart the points are, by this share of the spacing (as roofs are).
-_ROUGHNESS_OF_SPACING = 0.06467
 
 # Least radius: spacings, so that half a circumference has five points, and deviations, so that it is no noise.
 _RADIUS_SPACINGS, _RADIUS_DEVIATIONS = 1.5, 6.0
@@ -26,7 +24,7 @@ MinRadius = Annotated[
         unit="m",
         low=0.001,
         high=1000,
-        automatic="1.5 times the point spacing and 6 times the noise.",
+        automatic="the larger of 1.5 times the point spacing and 6 times the roughness of surfaces.",
     ),
 ]
 
@@ -51,14 +49,15 @@ ShapeTolerance = Annotated[
         low=0,
         high=10,
         open_low=True,
-        automatic="3 times the noise of the scan and 0.065 point spacings.",
+        automatic="3 times the roughness of surfaces, which is the root of the sum of the squares of the noise of "
+        "the scan and of 0.065 point spacings.",
     ),
 ]
 
 
 def point_noise(sampling: CloudSampling) -> float:
     """Return the standard deviation of points across the surface of a shape, m."""
-    return float(np.hypot(sampling.scan_noise, _ROUGHNESS_OF_SPACING / np.sqrt(sampling.surface_density)))
+    return float(np.hypot(sampling.scan_noise, ROUGHNESS_OF_SPACING / np.sqrt(sampling.surface_density)))
 
 
 def check_radii(

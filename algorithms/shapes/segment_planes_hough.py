@@ -10,21 +10,17 @@ import numpy as np
 from ..geometry.boxes import Boxes, by_first_point
 from ..geometry.groups import split_groups
 from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.surface_noise import ON_PLANE
 from ..segmentation.plane_merging import joined_planes
 from ..segmentation.segment_clusters import dbscan
 from ..stage import Layer, Monitor, Param, stage
 from .hough_planes import HoughPlanes
 from .plane_polygons import PLANE_FIELDS, plane_polygons
+from .search_settings import point_noise
 from .searched_points import WHOLE_CLOUD, SearchedPoints, SearchIn, Shape, named, searched_points
 from .surface_normals import NormalPoints, normal_points, refuse_line, surface_normals
 
 METHODS = ("points", "normals")
-
-# Tolerance: 98 % of the points of a plane lie within so many deviations of it.
-_ON_PLANE = 2.3195
-
-# Surfaces are the rougher the farther apart the points are, by this share of the spacing (as roofs are).
-_ROUGHNESS_OF_SPACING = 0.06467
 
 # A surface puts so many points into a window, and a window is so many tolerances wide that none fills it.
 _POINTS_IN_WINDOW, _TOLERANCES_IN_WINDOW = 40.0, 20.0
@@ -73,7 +69,8 @@ def segment_planes_hough(
             low=0,
             high=10,
             open_low=True,
-            automatic="2.3 times the noise of the scan and 0.065 point spacings.",
+            automatic="2.3 times the roughness of surfaces, which is the root of the sum of the squares of the noise "
+            "of the scan and of 0.065 point spacings.",
         ),
     ] = None,
     distance_bin: Annotated[
@@ -199,8 +196,7 @@ def segment_planes_hough(
     refuse_line(xyz)
     sampling = sampling or CloudSampling.of(xyz, classification)
     spacing = 1 / float(np.sqrt(sampling.surface_density))
-    roughness = float(np.hypot(sampling.scan_noise, _ROUGHNESS_OF_SPACING * spacing))
-    tolerance = _ON_PLANE * roughness if tolerance is None else tolerance
+    tolerance = ON_PLANE * point_noise(sampling) if tolerance is None else tolerance
     wide = max(np.sqrt(_POINTS_IN_WINDOW) * spacing, _TOLERANCES_IN_WINDOW * tolerance)
     window_size = float(wide) if window_size is None else window_size
     distance_bin = tolerance if distance_bin is None else distance_bin
@@ -255,10 +251,8 @@ def _surfaces(xyz: np.ndarray, plane: np.ndarray, max_gap: float, min_points: fl
     for number, part in enumerate(split_groups(plane, n_planes)):
         monitor.progress(number / n_planes)
         if len(part) >= min_points:
-            group = dbscan(xyz[part], max_gap, 1, Monitor())
+            group = dbscan(xyz[part], max_gap, 1, monitor.part(number / n_planes, (number + 1) / n_planes))
             size = np.bincount(group)
             large = size[group] >= min_points
             label[part[large]] = label.max(initial=0) + 1 + group[large]
-    found = label > 0
-    label[found] = by_first_point(label[found]) + 1
-    return label
+    return by_first_point(label - 1) + 1

@@ -9,7 +9,7 @@ import numpy as np
 from ..geometry.groups import split_groups
 from ..sampling.cloud_sampling import CloudSampling
 from ..segmentation.candidate_points import candidates
-from ..stage import Field, Layer, LayerFeatures, Param, stage
+from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
 from .cylinder_fits import Cylinder
 from .stem_search import BREAST, find_stems, ground_level
 from .surface_normals import refuse_line
@@ -145,19 +145,19 @@ def segment_tree(
     rows = rows[np.lexsort(everything[rows].T)]
     places = everything[rows]
     segment_id = np.zeros(len(xyz), np.int32)
-    stems = find_stems(places, ground_level(everything, places[:, :2])) if len(rows) else []
-    monitor.progress(0.1)
+    level = ground_level(everything, places[:, :2])
+    stems = find_stems(places, level, monitor.part(0, 0.1)) if len(rows) else []
     if not stems:
         monitor.warn("No stem was found at a height of 1.3 m; no point has a SegmentID.")
         return segment_id, LayerFeatures([], {field.name: [] for field in _FIELDS})
-    voxels = voxels_of(places, voxel_size, min_count, max_gap)
-    monitor.progress(0.4)
+    voxels = voxels_of(places, voxel_size, min_count, max_gap, monitor.part(0.1, 0.4))
     feet = np.array([_at_breast(stem, level) for stem, level in stems])
     slices = slices_of(voxels, roots_of(voxels, feet), voxel_size)
     monitor.progress(0.7)
     branches, of_slice = branches_of(slices, min_length, monitor.part(0.7, 0.9))
     of_point = np.where(voxels.of_point >= 0, slices.of_voxel[voxels.of_point], -1)
-    label, layer = _measured(places, slices, branches, of_slice, of_point, feet, [stem for stem, _ in stems])
+    cylinders = [stem for stem, _ in stems]
+    label, layer = _measured(places, slices, branches, of_slice, of_point, feet, cylinders, monitor.part(0.9, 1))
     segment_id[rows] = label
     layer.geometries = [line + origin for line in layer.geometries]
     monitor.progress(1.0)
@@ -178,6 +178,7 @@ def _measured(
     of_point: np.ndarray,
     feet: np.ndarray,
     stems: list[Cylinder],
+    monitor: Monitor,
 ) -> tuple[np.ndarray, LayerFeatures]:
     """Return the branch (n,) of each point from 1, 0 for leaves, and the layer of the branches."""
     branch = np.where(of_point >= 0, of_slice[of_point], -1)
@@ -187,6 +188,7 @@ def _measured(
     lines = []
     position = np.zeros(len(slices.places), np.int64)
     for number, (one, own) in enumerate(zip(branches, parts), start=1):
+        monitor.progress(number / len(branches))
         line = smooth(slices.places[one.slices])
         position[one.slices] = np.arange(len(line))
         steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
@@ -209,11 +211,11 @@ def _measured(
             "length": float(along[-1]),
             "radius": float(np.median(radius)),
             "volume": float((np.pi * radius**2 * sizes).sum()),
-            "points": int((label == number).sum()),
         }
         for name, value in row.items():
             columns[name].append(value)
         lines.append(line)
+    columns["points"] = np.bincount(label, minlength=len(branches) + 1)[1:].tolist()
     return label, LayerFeatures(lines, columns)
 
 

@@ -75,12 +75,3 @@ def _one_per_cell(xyz: np.ndarray, cell: float) -> np.ndarray:
     """Return the first point of each occupied cell."""
     boxes = Boxes(xyz, cell)
     return boxes.order[boxes.start]
-
-
-def near_axis(xyz: np.ndarray, start: np.ndarray, end: np.ndarray, reach: float) -> np.ndarray:
-    """Return the points in the box around the line between two places, ``reach`` (m) wider on all sides."""
-    low, high = np.minimum(start, end) - reach, np.maximum(start, end) + reach
-    rows = np.flatnonzero((xyz[:, 0] >= low[0]) & (xyz[:, 0] <= high[0]))
-    for axis in (1, 2):
-        rows = rows[(xyz[rows, axis] >= low[axis]) & (xyz[rows, axis] <= high[axis])]
-    return rows

@@ -7,6 +7,8 @@ from typing import Optional
 import numpy as np
 
 from ..geometry.components import connect
+from ..geometry.grid import distinct, find_cells, grid_over
+from ..geometry.groups import split_groups
 from ..stage import Monitor
 from .cylinder_fits import Cylinder, fit_cylinder
 
@@ -27,22 +29,23 @@ _GROUND_CELL = 1.0
 
 
 def ground_level(xyz: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """Return the height (m) of the lowest of points (n, 3) in the cell of each place (m, 2) and the cells around it."""
-    low = xyz[:, :2].min(axis=0)
-    cells = np.floor((xyz[:, :2] - low) / _GROUND_CELL).astype(np.int64) + 1
-    wide = cells.max(axis=0) + 2
-    lowest = np.full(wide, np.inf)
-    np.minimum.at(lowest, tuple(cells.T), xyz[:, 2])
-    around = np.full(wide, np.inf)
-    for i in (-1, 0, 1):
-        for j in (-1, 0, 1):
-            around = np.minimum(around, np.roll(lowest, (i, j), axis=(0, 1)))
-    at = np.clip(np.floor((places - low) / _GROUND_CELL).astype(np.int64) + 1, 0, wide - 1)
-    level = around[tuple(at.T)]
-    return np.where(np.isfinite(level), level, xyz[:, 2].min())
+    """Return the height (m) of the lowest of points (n, 3) in the cell of each place (m, 2) and the cells around it.
+
+    Each place is that of one of the points.
+    """
+    grid = grid_over(xyz, _GROUND_CELL)
+    cells, which = distinct(grid.number(xyz))
+    lowest = np.full(len(cells), np.inf)
+    np.minimum.at(lowest, which, xyz[:, 2])
+    around = lowest.copy()
+    for step in grid.around:
+        beside, known = find_cells(cells, cells + step)
+        around[known] = np.minimum(around[known], lowest[beside[known]])
+    at, known = find_cells(cells, grid.number(places))
+    return np.where(known, around[at], xyz[:, 2].min())
 
 
-def find_stems(xyz: np.ndarray, level: np.ndarray) -> list[tuple[Cylinder, float]]:
+def find_stems(xyz: np.ndarray, level: np.ndarray, monitor: Monitor) -> list[tuple[Cylinder, float]]:
     """Return the stems at breast height as cylinders, and the height (m) of the ground below each.
 
     Parameters
@@ -51,14 +54,18 @@ def find_stems(xyz: np.ndarray, level: np.ndarray) -> list[tuple[Cylinder, float
         Points of trees (m).
     level : ndarray of shape (n,)
         Height of the ground below each (m).
+    monitor : Monitor
+        Receives progress.
     """
     inside = np.flatnonzero(np.abs(xyz[:, 2] - level - BREAST) <= _HALF_SLICE)
     if not len(inside):
         return []
-    cluster = connect(xyz[inside], _APART, _APART, Monitor())
+    cluster = connect(xyz[inside], _APART, _APART, monitor.part(0, 0.3))
+    parts = split_groups(cluster, int(cluster.max()) + 1)
     found = []
-    for number in range(int(cluster.max()) + 1):
-        rows = inside[cluster == number]
+    for number, part in enumerate(parts):
+        monitor.progress(0.3 + 0.7 * number / len(parts))
+        rows = inside[part]
         stem = _stem(xyz[rows]) if len(rows) >= _LEAST_POINTS else None
         if stem is not None:
             found.append((stem, float(np.median(level[rows]))))

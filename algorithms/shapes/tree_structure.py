@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..geometry.groups import components
+from ..geometry.groups import components, run_starts
 from ..geometry.sparse_voxels import close_voxels, locate_voxels, neighbor_pairs, voxelize
 from ..packages import csgraph, sparse, spatial
 from ..stage import Monitor
@@ -23,6 +23,9 @@ _SAME_STEM = 0.5
 # A branch leads from its base to its tip without too many turns: its chord over its length. Paths through leaves and
 # grass turn.
 _LEAST_STRAIGHT = 0.6
+
+# Voxels whose neighbors across gaps are listed at once: with nothing set up to 2100 each, of 40 bytes, so 86 MB.
+_CHUNK = 1_000
 
 # Rounds in which a line is smoothed: its steps are those of voxels.
 _SMOOTHINGS = 4
@@ -85,7 +88,7 @@ class Branch:
     order: int
 
 
-def voxels_of(xyz: np.ndarray, voxel_size: float, min_count: int, max_gap: float) -> Voxels:
+def voxels_of(xyz: np.ndarray, voxel_size: float, min_count: int, max_gap: float, monitor: Monitor) -> Voxels:
     """Return the closed voxels of points (n, 3), their pieces linked over gaps up to ``max_gap`` (m).
 
     Voxels with fewer points than ``min_count`` are empty; points there have the voxel -1, unless closing fills it.
@@ -95,7 +98,7 @@ def voxels_of(xyz: np.ndarray, voxel_size: float, min_count: int, max_gap: float
     places = (cells + 0.5) * voxel_size
     one, other, axes = neighbor_pairs(cells, 26)
     piece = components(one, other, len(places))[1]
-    gaps = _gaps(places, piece, max_gap)
+    gaps = _gaps(places, piece, max_gap, monitor)
     gap = np.linalg.norm(places[gaps[:, 0]] - places[gaps[:, 1]], axis=1)
     return Voxels(
         places,
@@ -106,25 +109,27 @@ def voxels_of(xyz: np.ndarray, voxel_size: float, min_count: int, max_gap: float
     )
 
 
-def _gaps(places: np.ndarray, piece: np.ndarray, max_gap: float) -> np.ndarray:
+def _gaps(places: np.ndarray, piece: np.ndarray, max_gap: float, monitor: Monitor) -> np.ndarray:
     """Return the shortest pair (k, 2) of voxels between any two pieces at most ``max_gap`` (m) apart."""
-    if not len(piece):
-        return np.zeros((0, 2), np.int64)
-    size = np.bincount(piece)
-    largest = int(np.argmax(size))
+    shortest = [np.zeros((0, 2), np.int64)]
     tree = spatial.cKDTree(places)
-    small = np.flatnonzero(piece != largest)
-    near = tree.query_ball_point(places[small], max_gap, workers=-1)
-    counts = np.array([len(one) for one in near], np.int64)
-    if not counts.sum():
-        return np.zeros((0, 2), np.int64)
-    pairs = np.column_stack([np.repeat(small, counts), np.concatenate([np.array(one, np.int64) for one in near])])
+    small = np.flatnonzero(piece != np.argmax(np.bincount(piece))) if len(piece) else np.zeros(0, np.int64)
+    for start in range(0, len(small), _CHUNK):
+        monitor.progress(start / len(small))
+        own = small[start : start + _CHUNK]
+        near = tree.query_ball_point(places[own], max_gap, workers=-1)
+        there = np.concatenate([np.array(one, np.int64) for one in near])
+        pairs = np.column_stack([np.repeat(own, [len(one) for one in near]), there])
+        shortest.append(_shortest(places, piece, pairs[piece[pairs[:, 0]] != piece[there]]))
+    return _shortest(places, piece, np.concatenate(shortest))
+
+
+def _shortest(places: np.ndarray, piece: np.ndarray, pairs: np.ndarray) -> np.ndarray:
+    """Return of pairs (k, 2) of voxels the shortest one between any two pieces."""
     ends = np.sort(piece[pairs], axis=1)
-    pairs, ends = pairs[ends[:, 0] != ends[:, 1]], ends[ends[:, 0] != ends[:, 1]]
     distance = np.linalg.norm(places[pairs[:, 0]] - places[pairs[:, 1]], axis=1)
     order = np.lexsort((pairs[:, 1], pairs[:, 0], distance, ends[:, 1], ends[:, 0]))
-    first = np.unique(ends[order], axis=0, return_index=True)[1]
-    return pairs[order[first]]
+    return pairs[order[run_starts(ends[order, 0].astype(np.int64) * len(places) + ends[order, 1])]]
 
 
 def roots_of(voxels: Voxels, stems: np.ndarray) -> np.ndarray:

@@ -20,12 +20,9 @@ from ..neighborhoods.covariance import (
 from ..packages import spatial
 from ..params import SplitHeight, SurfaceNoise
 from ..sampling.cloud_sampling import CloudSampling
-from ..sampling.surface_noise import plane_roughness, surface_density
+from ..sampling.surface_noise import ON_PLANE, plane_roughness, surface_density
 from ..segmentation.candidate_points import NO_OBJECTS
 from ..stage import Monitor, Param, stage
-
-# Points of a wall deviate from its plane by no more (times the roughness); those of leaves and corners do.
-_SMOOTH = 2.3195
 
 # The points of a normal reach this far (times the roughness), which holds its error to a few degrees.
 _REACH_DEVIATIONS = 6.185
@@ -166,7 +163,7 @@ def classify_walls(
     monitor.resolved(noise=noise, n_neighbors=n_neighbors)
     if len(low):
         chosen: Neighborhood = Nearest(n_neighbors) if neighborhood == "nearest" else Within(radius)
-        upright = _upright(xyz[low], chosen, max_tilt, _SMOOTH * roughness, monitor.part(0.4, 1))
+        upright = _upright(xyz[low], chosen, max_tilt, ON_PLANE * roughness, monitor.part(0.4, 1))
         wall_of[low[upright]] = owner[upright]
     if cluster_id.any() and not wall_of.any():
         monitor.warn("No wall was seen under any roof, so footprints can show the outlines of roofs only.")

@@ -8,6 +8,7 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
 from lidar_buildings.algorithms.geometry import boxes
+from lidar_buildings.algorithms.geometry.boxes import by_first_point
 from lidar_buildings.algorithms.geometry.components import connect, number_large
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.tests.builders import FAR
@@ -128,3 +129,9 @@ def test_small_components_get_no_number_and_the_others_follow_each_other():
     assert number_large(component, 0).tolist() == [1, 2, 2, 3, 3, 3, 0, 4, 4, 0]
     assert number_large(np.full(3, -1), 1).tolist() == [0, 0, 0]
     assert number_large(component, 2).dtype == np.int32
+
+
+def test_numbers_follow_first_points_and_none_stays_none():
+    assert by_first_point(np.array([7, -1, 2, 7, -3, 0, 2])).tolist() == [0, -1, 1, 0, -1, 2, 1]
+    assert by_first_point(np.array([-1, -1])).tolist() == [-1, -1]
+    assert by_first_point(np.zeros(0, int)).tolist() == []

@@ -52,6 +52,19 @@ def test_areas_are_cells_of_one_and_a_half_spacings_that_hold_points():
     np.testing.assert_allclose(plan_areas(at_cells(0, 1, 1, 1, 7), group, 1.0), [2 * 2.25, 0, 2 * 2.25])
 
 
+def test_areas_do_not_depend_on_a_point_far_away():
+    """Ten trillion cells by two million groups are more than there are numbers of 64 bits."""
+    group = np.array([0, 0, 0, 2**21, 2**21])
+    xyz = at_cells(0, 1, 1, 1, 7)
+    xyz[4, :2] = 6e6
+    areas = plan_areas(xyz, group, 1.0)
+    assert areas[0] == pytest.approx(2 * 2.25)
+    assert areas[-1] == pytest.approx(2 * 2.25)
+    assert areas.sum() == pytest.approx(4 * 2.25)
+    passed = points_below_share(np.append(xyz, xyz[1:2] - [0, 0, 3], axis=0), np.append(group, -1), 1.0)
+    assert passed[0] == pytest.approx(1 / 4)
+
+
 @pytest.mark.parametrize(("depth", "expected"), [(0.9, 0.0), (1.1, 2 / 5)])
 def test_penetration_by_hand(depth, expected):
     """Of five cells of a group two have points of no or another group so far beneath; one point of ten goes on."""

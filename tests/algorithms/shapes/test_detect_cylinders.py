@@ -81,6 +81,14 @@ def test_a_gap_in_a_pipe_is_bridged(rng):
     assert detect(xyz, max_radius=0.4)[2].columns["length"] == pytest.approx([2.0], rel=0.03)
 
 
+@pytest.mark.parametrize("axis", [(1, 0, 0), (1, 0.3, 0.5)])
+def test_a_pipe_of_any_length_is_one(axis, rng):
+    """A pipe of 1200 radii, longer than 60 steps of 6 radii to both sides, was two cylinders."""
+    ids, _, axes = detect(pipe(rng, 0.05, 60.0, 0.02, 0.001, axis), min_radius=0.04, max_radius=0.07)
+    assert axes.columns["length"] == pytest.approx([60.0], abs=0.1)
+    assert (ids == 1).mean() > 0.9
+
+
 def test_segments_are_searched_one_by_one(rng):
     """A pipe cut into two segments by hand is two cylinders; what has a shape is left alone."""
     xyz = pipe(rng, 0.1, 2.0, 0.02, 0.002, (1, 0, 0))

@@ -168,3 +168,13 @@ def test_a_cloud_without_planes_says_so(rng):
     assert not ids.any()
     assert len(planes) == 0
     assert monitor.warnings == ["No plane was found; no point got a new SegmentID."]
+
+
+def test_grouping_the_points_of_one_large_plane_can_be_canceled(rng):
+    """Progress was told once per plane, however many points it had."""
+    told: list[float] = []
+    monitor = Monitor()
+    monitor.progress = told.append
+    segment(square(rng, 0.0, size=20.0), monitor=monitor)
+    assert len([fraction for fraction in told if 0.8 < fraction < 1]) > 10
+    assert told == sorted(told)

@@ -1,9 +1,13 @@
 """Trees whose stems and branches are known."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
+from lidar_buildings.algorithms.shapes import tree_structure
 from lidar_buildings.algorithms.shapes.segment_tree import segment_tree
+from lidar_buildings.algorithms.shapes.stem_search import find_stems, ground_level
 from lidar_buildings.algorithms.simulation.simulate_tree import simulate_tree
 from lidar_buildings.algorithms.stage import Monitor
 from lidar_buildings.tests.builders import EXACT_FAR
@@ -95,3 +99,48 @@ def test_place_and_order_do_not_matter(rng):
     np.testing.assert_array_equal(segment_tree(xyz + EXACT_FAR, classification)[0], expected)
     order = rng.permutation(len(xyz))
     np.testing.assert_array_equal(segment_tree(xyz[order], classification[order])[0], expected[order])
+
+
+def test_the_ground_is_the_lowest_point_around_in_memory_of_the_points(rng):
+    """A point 1000 km away took a raster of a million by a million cells."""
+    near = rng.uniform(0, [9.0, 7.0, 3.0], (400, 3))
+    xyz = np.concatenate([near, [[1e6, 1e6, -5.0]]])
+    tracemalloc.start()
+    level = ground_level(xyz, xyz[:, :2])
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    cell = np.floor(xyz[:, :2] - xyz[:, :2].min(axis=0))
+    is_around = (np.abs(cell[:, None] - cell) <= 1).all(axis=2)
+    np.testing.assert_array_equal(level, [xyz[row, 2].min() for row in is_around])
+    assert peak < 1e6
+
+
+def test_the_search_for_stems_can_be_canceled(rng):
+    """Progress was told once, after the fits of all stems."""
+    stems = np.repeat(np.arange(30.0), 40)
+    angle = rng.uniform(0, 2 * np.pi, 1200)
+    xyz = np.column_stack([stems + 0.1 * np.cos(angle), 0.1 * np.sin(angle), rng.uniform(1.0, 1.6, 1200)])
+    told: list[float] = []
+    monitor = Monitor()
+    monitor.progress = told.append
+    assert len(find_stems(xyz, np.zeros(1200), monitor)) == 30
+    assert len([fraction for fraction in told if fraction >= 0.3]) >= 30
+    assert told == sorted(told)
+
+
+def test_gaps_are_the_shortest_pairs_of_pieces_however_many_are_listed_at_once(rng, monkeypatch):
+    """All voxels near all others were listed at once: 2 kB for each of a thin crown, 30 kB for each of a dense one."""
+    places = np.floor(rng.uniform(0, 12, (250, 3)))
+    piece = rng.integers(0, 40, 250)
+    monkeypatch.setattr(tree_structure, "_CHUNK", 7)
+    pairs = tree_structure._gaps(places, piece, 3.0, Monitor())
+    distance = np.linalg.norm(places[:, None] - places, axis=2)
+    expected = {}
+    for one in range(40):
+        for other in range(one):
+            shortest = distance[np.ix_(piece == one, piece == other)].min(initial=np.inf)
+            if shortest <= 3:
+                expected[other, one] = shortest
+    found = {tuple(sorted(piece[pair])): distance[tuple(pair)] for pair in pairs}
+    assert len(pairs) == len(found)
+    assert found == expected
