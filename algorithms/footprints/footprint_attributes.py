@@ -12,6 +12,7 @@ from ..geometry.groups import split_groups
 from ..geometry.rings import perimeter, signed_area
 from ..packages import spatial
 from ..stage import Field
+from ..threads import n_threads
 from .alpha_shape import Tracing
 from .block_drawing import Drawing
 
@@ -182,7 +183,7 @@ def _face_of_points(traced: Tracing) -> np.ndarray:
 def _face_of_members(traced: Tracing, face_of_point: np.ndarray, xyz: np.ndarray) -> np.ndarray:
     """Return the face (m,) of points of buildings: that of the nearest roof point, -1 beyond the longest edge of it."""
     roof = np.flatnonzero(face_of_point >= 0)
-    distance, nearest = spatial.cKDTree(traced.xy[roof]).query(xyz[:, :2])
+    distance, nearest = spatial.cKDTree(traced.xy[roof]).query(xyz[:, :2], workers=n_threads())
     return np.where(distance <= traced.max_edge, face_of_point[roof[nearest]], -1)
 
 
@@ -203,11 +204,13 @@ def _eave_heights(
     Many points of an outline are those of the wall below, down to where they are no longer taken for a roof's.
     """
     face, point = border
-    distance, _ = spatial.cKDTree(traced.xy[np.unique(point)]).query(traced.xy)
+    distance, _ = spatial.cKDTree(traced.xy[np.unique(point)]).query(traced.xy, workers=n_threads())
     inner = np.flatnonzero((roof_face >= 0) & (distance >= _INNER * spacing) & np.isfinite(height))
     if not len(inner):
         return height[point]
-    distance, nearest = spatial.cKDTree(traced.xy[inner]).query(traced.xy[point], min(_PLANE, len(inner)))
+    distance, nearest = spatial.cKDTree(traced.xy[inner]).query(
+        traced.xy[point], min(_PLANE, len(inner)), workers=n_threads()
+    )
     beside = inner[nearest.reshape(len(point), -1)]
     is_near = distance.reshape(beside.shape) <= _BESIDE * spacing
     weight = (is_near & (roof_face[beside] == face[:, None])).astype(float)

@@ -9,6 +9,7 @@ import numpy as np
 from ..cloud.asprs import NOISE, PointClass
 from ..geometry.grid import find_cells, grid_over
 from ..packages import spatial
+from ..threads import n_threads
 
 # Height (m) of another point of the building above one that is no part of the roof: more than roofs are rough.
 _STEP = 1.0
@@ -80,7 +81,7 @@ def find_non_building_points(
     if not len(other):
         return other
     tree = spatial.cKDTree(xyz[roof, :2])
-    distance, nearest = tree.query(xyz[other, :2], distance_upper_bound=reach)
+    distance, nearest = tree.query(xyz[other, :2], distance_upper_bound=reach, workers=n_threads())
     # A pulse that was split by the edge has a return on the ground right under that on the roof.
     beside = (distance > spacing / 2) & np.isfinite(distance)
     other, nearest = other[beside], nearest[beside]
@@ -95,11 +96,11 @@ def is_under_roof(positions: np.ndarray, tree: Any, spacing: float) -> np.ndarra
     """
     if not len(positions):
         return np.zeros(0, bool)
-    count = tree.query_ball_point(positions, _AROUND * spacing, return_length=True)
-    _, nearest = tree.query(positions, min(_NEAREST, tree.n))
+    count = tree.query_ball_point(positions, _AROUND * spacing, return_length=True, workers=n_threads())
+    _, nearest = tree.query(positions, min(_NEAREST, tree.n), workers=n_threads())
     nearest = nearest.reshape(len(positions), -1)
     beside, row = np.unique(nearest, return_inverse=True)
-    usual = tree.query_ball_point(tree.data[beside], _AROUND * spacing, return_length=True)
+    usual = tree.query_ball_point(tree.data[beside], _AROUND * spacing, return_length=True, workers=n_threads())
     # Bushes beside a roof that are taken for it are thinner than a roof.
     least = _DENSE * np.pi * _AROUND**2
     return count > _UNDER * np.maximum(usual[row.reshape(nearest.shape)].mean(axis=1), least)
