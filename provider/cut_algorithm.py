@@ -27,7 +27,7 @@ from .declared import DeclaredAlgorithm, shown_help
 from .dependencies import missing_sentence
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, warn_unknown_parameters
-from .inputs import INPUT, OUTPUT, with_help
+from .inputs import INPUT, OUTPUT, extent_box, extent_parameter, with_help
 from .surveys import VPC, WGS84, write_survey
 
 SIDE, COMPRESSED, TILES = "SIDE", "COMPRESSED", "TILES"
@@ -53,6 +53,7 @@ class CutAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         number = Qgis.ProcessingNumberParameterType.Double
         side = QgsProcessingParameterNumber(SIDE, "Side of a tile (m)", number, 500.0, False, 1.0, 100_000.0)
         self.addParameter(with_help(side, "Tiles are squares of this side."))
+        self.addParameter(extent_parameter())
         compressed = QgsProcessingParameterBoolean(COMPRESSED, "Write LAZ", True)
         self.addParameter(with_help(compressed, "Tiles are compressed (.laz); otherwise they are .las files."))
         folder = QgsProcessingParameterFolderDestination(OUTPUT, "Folder of the tiles")
@@ -71,6 +72,7 @@ class CutAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         """Find out the files; layers may be asked only here, in the main thread."""
         with as_processing_errors():
             self.files = files_of_survey(survey_paths(self, INPUT, parameters, context))
+            self.extent = extent_box(self, self.files[0], parameters, context)
             self._systems = make_in_main_thread([read_extent(self.files[0])[2], WGS84])
         return True
 
@@ -84,7 +86,7 @@ class CutAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         compressed = self.parameterAsBool(parameters, COMPRESSED, context)
         monitor = FeedbackMonitor(feedback)
         with as_processing_errors(feedback):
-            survey = open_survey(self.files, crs_units, monitor)
+            survey = open_survey(self.files, crs_units, monitor, self.extent)
             stem = self.files[0].name.split(".")[0] if len(self.files) == 1 else "tile"
             tiles = cut_into_tiles(survey, side, folder, stem, compressed, monitor)
             vpc = write_survey(survey, tiles, folder, context)

@@ -31,7 +31,7 @@ from .declared import DeclaredAlgorithm, shown_help
 from .dependencies import missing_sentence
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, warn_unknown_parameters
-from .inputs import INPUT, OUTPUT, with_help
+from .inputs import INPUT, OUTPUT, extent_box, extent_parameter, with_help
 from .layer_outputs import write_layer
 from .models import pipeline_parameters
 from .outputs import all_in_place, check_targets
@@ -79,6 +79,7 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         self.addParameter(with_help(survey, "A folder of .las and .laz files, a .vpc file, or any number of files."))
         for definition in pipeline_parameters(self.tiled.pipeline).values():
             self.addParameter(definition)
+        self.addParameter(extent_parameter())
         for definition in _work_parameters():
             self.addParameter(definition)
         folder = QgsProcessingParameterFolderDestination(OUTPUT, "Folder of the tiles")
@@ -114,6 +115,7 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         self.paths = survey_paths(self, INPUT, parameters, context)
         self.files = files_of_survey(self.paths)
         self.tunables = self._tunables(parameters, context)
+        self.extent = extent_box(self, self.files[0], parameters, context)
         self.workers = self._workers(parameters, context)
         sinks = [one for one in self.destinationParameterDefinitions() if one.name() != OUTPUT]
         check_targets(sinks, parameters, self.files)
@@ -191,6 +193,7 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
             block_side=None if side is None else self.parameterAsDouble(parameters, BLOCK_SIDE, context),
             compressed=self.parameterAsBool(parameters, COMPRESSED, context),
             crs_units=crs_units,
+            extent=self.extent,
             **self.tunables,
         )
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import struct
 from dataclasses import dataclass, replace
 from typing import Any, BinaryIO, Callable
 
@@ -10,6 +9,7 @@ import numpy as np
 
 from ..geometry.groups import run_starts
 from ..stage import Monitor
+from .copc_index import ENTRY, INFO
 from .header import COPC_HIERARCHY, COPC_INFO, LASZIP, WAVEFORMS, WKT_BIT, Header, Vlr
 from .laspy_library import need_lazrs
 from .points import AT_ONCE
@@ -24,9 +24,6 @@ _BITS = 21
 # Points are sorted within the cubes of the second level, one at a time.
 _TOP_BITS = 6
 _DEEPEST = _BITS - _GRID_LEVELS
-# center, halfsize, spacing, root hierarchy offset and size, GPS time range, reserved
-_INFO = struct.Struct("<3dddQQdd11Q")
-_ENTRY = np.dtype([("key", "<i4", 4), ("offset", "<u8"), ("size", "<i4"), ("count", "<i4")])
 _EVLR_HEAD = 60
 # Which points a level shows is drawn by lot, always the same one.
 _SEED = 0
@@ -183,7 +180,7 @@ def copc_header(header: Header) -> Header:
     """Return ``header`` as COPC wants it: LAS 1.4, the info record first, nothing about waveforms and old orders."""
     kept = header.without(LASZIP, COPC_INFO, COPC_HIERARCHY, WAVEFORMS, _LAX)
     encoding = kept.encoding & ~_WAVEFORM_BITS | (WKT_BIT if has_wkt(kept) else 0)
-    info = Vlr(*COPC_INFO, bytes(_INFO.size), description=b"COPC info")
+    info = Vlr(*COPC_INFO, bytes(INFO.size), description=b"COPC info")
     return replace(kept, minor=4, user_bytes=b"", gap=b"", waveforms_at=0, encoding=encoding, vlrs=[info, *kept.vlrs])
 
 
@@ -251,7 +248,7 @@ def _write_nodes(
 
 def _describe(stream: BinaryIO, header: Header, octree: Octree, sizes: np.ndarray, times: tuple[float, float]) -> None:
     """Fill in the info record and put the hierarchy before the other EVLRs."""
-    entries = np.zeros(len(sizes), _ENTRY)
+    entries = np.zeros(len(sizes), ENTRY)
     entries["key"], entries["size"], entries["count"] = octree.keys, sizes, np.diff(octree.ends, prepend=0)
     # The chunks begin behind the position of the chunk table.
     entries["offset"] = header.points_at + 8 + np.cumsum(sizes) - sizes
@@ -259,5 +256,5 @@ def _describe(stream: BinaryIO, header: Header, octree: Octree, sizes: np.ndarra
     header.evlrs = [hierarchy, *header.evlrs]
     at = stream.seek(0, 2) + _EVLR_HEAD
     center = octree.low + octree.side / 2
-    info = _INFO.pack(*center, octree.side / 2, octree.spacing, at, len(hierarchy), *times, *(0,) * 11)
+    info = INFO.pack(*center, octree.side / 2, octree.spacing, at, len(hierarchy), *times, *(0,) * 11)
     header.vlrs = [replace(header.vlrs[0], data=info), *header.vlrs[1:]]

@@ -87,8 +87,11 @@ class _Laz:
         if self.header.count > held:
             raise truncated(self.path, f"it promises {self.header.count} points, but its chunks hold at most {held}")
 
-    def check_chunks(self, table_at: int, record: bytes) -> None:
-        """Hold what the chunk table says of points and bytes, and each chunk of its layers, against the file."""
+    def check_chunks(self, table_at: int, record: bytes) -> np.ndarray:
+        """Hold what the chunk table says of points and bytes, and each chunk of its layers, against the file.
+
+        Return position, bytes and number of points (m, 3) of each chunk, int64.
+        """
         lazrs = need_lazrs()
         self.stream.seek(self.header.points_at)
         with explained(self.path):
@@ -102,6 +105,8 @@ class _Laz:
         if self.header.layout.point_format >= _FIRST_LAYERED_FORMAT:
             n_layers = sum(_LAYERS.get(kind, size) for kind, size, _ in _items(record))
             self._check_layers(np.array(sizes), n_layers)
+        ends = self._chunks_at + np.cumsum(sizes, dtype=np.int64)
+        return np.column_stack([ends - sizes, sizes, points]).astype(np.int64)
 
     def check_pointwise(self) -> None:
         """Refuse layers in points that are compressed in one go: laszip ends the process on them."""
@@ -223,6 +228,44 @@ def open_laz(path: Path, header: Header, stream: BinaryIO) -> Callable[[np.ndarr
         reader = backend.create_reader(stream, las)
     # What laspy's read_n_points calls, without the copy of all points that it makes.
     return reader.decompressor.decompress_many if hasattr(reader, "decompressor") else reader.unzipper.decompress_into
+
+
+def open_chunks(path: Path, header: Header, stream: BinaryIO) -> tuple[np.ndarray, Callable[[np.ndarray, Any], None]]:
+    """Return the chunks of a LAZ file with chunks of any sizes, and a function that reads some of them.
+
+    Returns
+    -------
+    chunks : ndarray of shape (m, 3), int64
+        Position, bytes and number of points of each, in the order of the file.
+    read : callable
+        Fills bytes, its second argument, with the points of chunks (k, 3) that lie one behind the other.
+
+    Raises
+    ------
+    ValueError
+        If the file promises what it can't hold, or lazrs is not installed.
+    """
+    laz = _Laz(path, header, stream)
+    record, table_at = laz.record(), laz.table_at()
+    laz.check_number(table_at, _chunk_size(record))
+    chunks = laz.check_chunks(table_at, record)
+
+    def read(some: np.ndarray, out: np.ndarray) -> None:
+        stream.seek(int(some[0, 0]))
+        raw = stream.read(int(some[:, 1].sum()))
+        with explained(path):
+            table = [(int(points), int(size)) for _, size, points in some]
+            need_lazrs().decompress_points_with_chunk_table(raw, record, out, table)
+
+    return chunks, read
+
+
+def has_variable_chunks(header: Header) -> bool:
+    """Whether chunks of a LAZ file may have any number of points each, and lazrs is there, which alone reads some."""
+    record = header.find(LASZIP)
+    if record is None or record.data is None or len(record.data) < _ITEMS_AT:
+        return False
+    return _chunk_size(record.data) == _VARIABLE_CHUNKS and has_backend(_LAZRS)
 
 
 def _backend(preferred: str, other: str) -> Any:

@@ -9,10 +9,12 @@ from typing import BinaryIO, Callable
 
 import numpy as np
 
+from ..geometry.groups import run_starts
 from ..stage import Monitor
+from .copc_index import has_index, read_index
 from .header import Header, read_header, truncated
 from .laspy_library import explained, need_laspy
-from .laz import POINTS_PER_CHUNK, open_laz, writing_backend
+from .laz import POINTS_PER_CHUNK, has_variable_chunks, open_chunks, open_laz, writing_backend
 
 # A multiple of the LAZ chunk, so that every call decompresses whole chunks, in well under a second.
 AT_ONCE = 10 * POINTS_PER_CHUNK
@@ -80,9 +82,55 @@ def points_within(path: Path, header: Header, box: np.ndarray, monitor: Monitor)
     ``box`` holds the least and the greatest easting and northing, in the coordinates of the file.
     """
     found = [np.empty(0, header.layout.dtype)]
-    if (box[1] >= header.low[:2]).all() and (box[0] <= header.high[:2]).all():
-        found += [chunk[is_within(chunk, header, box)] for _, chunk in read_chunks(path, header, monitor)]
+    found += [chunk[is_within(chunk, header, box)] for _, chunk in chunks_near(path, header, box, monitor)]
     return np.concatenate(found)
+
+
+def chunks_near(path: Path, header: Header, box: np.ndarray, monitor: Monitor) -> Iterator[tuple[int, np.ndarray]]:
+    """Yield (position of the first point, records) of the parts of a file that may have points in a box (2, 2) in plan.
+
+    Of a COPC file these are the chunks whose nodes touch the box, of any other file with points there all points. The
+    box is in coordinates of the file; the array is used again.
+
+    Raises
+    ------
+    ValueError
+        If the file or its index is damaged.
+    """
+    # The bounds of some files are rounded.
+    step = np.abs(header.scale[:2])
+    if (box[1] < header.low[:2] - step).any() or (box[0] > header.high[:2] + step).any():
+        return
+    if has_index(header) and has_variable_chunks(header):
+        yield from _indexed(path, header, box, monitor)
+    else:
+        yield from read_chunks(path, header, monitor)
+
+
+def _indexed(path: Path, header: Header, box: np.ndarray, monitor: Monitor) -> Iterator[tuple[int, np.ndarray]]:
+    """Yield (position of the first point, records) of the chunks of a COPC file whose nodes touch a box."""
+    with path.open("rb") as stream:
+        chunks, read = open_chunks(path, header, stream)
+        chunks = chunks[chunks[:, 2] > 0]
+        wanted = np.flatnonzero(read_index(path, header, stream, chunks).touch(box))
+        ends = np.cumsum(chunks[:, 2])
+        for done, some in enumerate(parts := _portions(wanted, chunks[:, 2])):
+            monitor.progress(done / len(parts))
+            records = np.empty(int(chunks[some, 2].sum()), header.layout.dtype)
+            read(chunks[some], records.view(np.uint8))
+            yield int(ends[some[0]] - chunks[some[0], 2]), records
+    monitor.progress(1.0)
+
+
+def _portions(wanted: np.ndarray, points: np.ndarray) -> list[np.ndarray]:
+    """Return chunks (m,) that are wanted in portions that lie one behind the other and have few enough points."""
+    if not len(wanted):
+        return []
+    before = np.cumsum(points[wanted]) - points[wanted]
+    # Neighbors in the file go on counting alike; so do chunks of the same portion of the work.
+    follows = wanted - np.arange(len(wanted))
+    starts = np.union1d(run_starts(follows), run_starts(before // AT_ONCE))
+    return np.split(wanted, starts[1:])
 
 
 def is_within(records: np.ndarray, header: Header, box: np.ndarray) -> np.ndarray:

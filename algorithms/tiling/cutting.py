@@ -10,7 +10,7 @@ from typing import BinaryIO
 import numpy as np
 
 from ..cloud.outputs import LAS, LAZ, replacing
-from ..cloud.points import read_chunks, write_points
+from ..cloud.points import chunks_near, write_points
 from ..cloud.vpc import fill_merged
 from ..geometry.groups import run_starts
 from ..stage import Monitor
@@ -26,8 +26,9 @@ def cut_into_tiles(
 ) -> list[Path]:
     """Write the points of a survey as tiles of a lattice that starts at the zero of the map.
 
-    Every record of every file is in exactly one tile, with all its dimensions, in the order of the files. Memory: one
-    portion of a file at a time; on the disk the points lie once uncompressed beside the tiles while they are made.
+    Every record of every file that lies within the extent of the survey is in exactly one tile, with all its
+    dimensions, in the order of the files. Memory: one portion of a file at a time; on the disk the points lie once
+    uncompressed beside the tiles while they are made.
 
     Parameters
     ----------
@@ -52,12 +53,15 @@ def cut_into_tiles(
     Raises
     ------
     ValueError
-        If a file is damaged, one of the files would be overwritten, or a tile can't be written.
+        If a file is damaged, no point lies within the extent, one of the files would be overwritten, or a tile can't
+        be written.
     """
     check_folder(folder, survey)
     kind = LAZ if compressed else LAS
     with tempfile.TemporaryDirectory(prefix=".cut-", dir=folder) as heaps:
         blocks = _sort_out(survey, side, Path(heaps), monitor.part(0.0, _READ))
+        if not blocks:
+            raise ValueError("The survey has no points within the extent; choose another extent.")
         tiles = []
         for done, block in enumerate(blocks):
             tile = folder / f"{stem}_{block.name}{kind}"
@@ -74,12 +78,14 @@ def cut_into_tiles(
 
 def _sort_out(survey: Survey, side: float, folder: Path, monitor: Monitor) -> list[Block]:
     """Append the records of all files to one file for each tile; return the tiles that have points."""
-    found: set[tuple[int, int]] = set()
+    blocks: set[tuple[int, int]] = set()
     share = 1 / len(survey.sources)
     for number, source in enumerate(survey.sources):
         header = source.header
         unit = survey.units.horizontal
-        for _, chunk in read_chunks(source.path, header, monitor.part(number * share, (number + 1) * share)):
+        box = source.box / unit
+        for _, found in chunks_near(source.path, header, box, monitor.part(number * share, (number + 1) * share)):
+            chunk = found[survey.holds(found, header)]
             records = np.zeros(len(chunk), survey.header.layout.dtype)
             fill_merged(records, chunk, header, survey.header)
             column, row = (
@@ -91,10 +97,10 @@ def _sort_out(survey: Survey, side: float, folder: Path, monitor: Monitor) -> li
             starts = run_starts(row * (1 << 32) + column)
             for start, stop in zip(starts, [*starts[1:], len(records)]):
                 place = int(column[start]), int(row[start])
-                found.add(place)
+                blocks.add(place)
                 with (folder / Block(*place, side).name).open("ab") as heap:
                     records[start:stop].tofile(heap)
-    return [Block(column, row, side) for column, row in sorted(found, key=lambda place: place[::-1])]
+    return [Block(column, row, side) for column, row in sorted(blocks, key=lambda place: place[::-1])]
 
 
 def _write(survey: Survey, records: np.ndarray, compressed: bool, stream: BinaryIO, monitor: Monitor) -> None:

@@ -18,6 +18,7 @@ import numpy as np
 
 from ..cloud.files import read_cloud, write_cloud
 from ..cloud.outputs import LAS, LAZ, locked_folder, stem_of
+from ..cloud.points import open_header
 from ..cloud.units import Resolver
 from ..pipeline import Pipeline
 from ..sampling.cloud_sampling import CloudSampling, without_noise
@@ -78,6 +79,7 @@ class _TileTask:
     results: tuple[Path, ...]
     becomes: tuple[Path, ...]
     stop: Path
+    extent: Optional[np.ndarray] = None
 
 
 def run_in_tiles(
@@ -91,6 +93,7 @@ def run_in_tiles(
     compressed: bool = True,
     crs_units: Optional[Resolver] = None,
     largest_file: int = _LARGEST_FILE,
+    extent: Optional[np.ndarray] = None,
     **tunables: Any,
 ) -> TilesOutcome:
     """Run a composite on a survey; write its classified tiles to a folder and return its layers.
@@ -122,6 +125,9 @@ def run_in_tiles(
         As for :func:`.read_cloud`.
     largest_file : int
         Points of the largest file that is read as it is.
+    extent : ndarray of shape (2, 2), optional
+        Least and greatest easting and northing, in coordinates of the files: only points within are worked on, and
+        written, edges included.
     **tunables
         Of the composite.
 
@@ -135,7 +141,7 @@ def run_in_tiles(
     check_can_be_tiled(pipeline)
     for step, chosen in pipeline.by_step(tunables):
         step.stage.check(chosen)
-    survey = open_survey(paths, crs_units, monitor)
+    survey = open_survey(paths, crs_units, monitor, extent)
     check_folder(folder, survey)
     with _work_folder(folder) as work:
         run = _Run(pipeline, survey, folder, work, monitor, workers, tunables, compressed, crs_units)
@@ -236,7 +242,7 @@ class _Run:
     def _sampling(self, survey: Survey, monitor: Monitor) -> CloudSampling:
         """Return how the survey was sampled, measured on windows whose places depend on its extent alone."""
         low, high = survey.box
-        if len(survey) <= _SAMPLED_WHOLE:
+        if survey.expected <= _SAMPLED_WHOLE:
             boxes = [np.array([low, high + 1.0])]
         else:
             across = (np.arange(_SAMPLES_ACROSS) + 0.5) / _SAMPLES_ACROSS
@@ -249,7 +255,9 @@ class _Run:
         points = [_counted(window) for window in windows if window is not None]
         if len(points) < len(boxes) / 4:
             points = [_counted(window) for window in self._windows_with_points(survey, monitor)]
-        together = np.concatenate(points)
+        together = np.concatenate([np.zeros((0, 3)), *points])
+        if not len(together):
+            raise ValueError("The survey has no points within the extent; choose another extent.")
         sampling = CloudSampling(lambda: together)
         # All measures are taken now and the points left behind, as on the way to another process.
         return pickle.loads(pickle.dumps(sampling))
@@ -268,17 +276,19 @@ class _Run:
         if not large:
             return
         pieces = self.work / "pieces"
-        key = self._key([source.path for source in large], side)
+        key = self._key([source.path for source in large], side, str(self.survey.extent))
         if not (pieces / key).is_file():
             shutil.rmtree(pieces, ignore_errors=True)
             pieces.mkdir()
             for done, (source, stem) in enumerate(zip(large, _unique_stems(large))):
                 part = self.monitor.part(_CUT, _SAMPLED).part(done / len(large), (done + 1) / len(large))
-                cut_into_tiles(open_survey([source.path], self.crs_units), side, pieces, stem, False, part)
+                alone = open_survey([source.path], self.crs_units, extent=self.survey.extent)
+                cut_into_tiles(alone, side, pieces, stem, False, part)
             (pieces / key).touch()
         rest = [source.path for source in self.survey.sources if source not in large]
-        whole, self.survey = self.survey, open_survey([*rest, *sorted(pieces.glob(f"*{LAS}"))], self.crs_units)
-        if len(self.survey) != len(whole):
+        whole, paths = self.survey, [*rest, *sorted(pieces.glob(f"*{LAS}"))]
+        self.survey = open_survey(paths, self.crs_units, extent=whole.extent)
+        if whole.extent is None and len(self.survey) != len(whole):
             raise ValueError(
                 f"The pieces of large files have {len(self.survey):,} of {len(whole):,} points; remove {self.work} and "
                 "start again."
@@ -302,7 +312,7 @@ class _Run:
                 f"{len(known)} of {len(blocks)} blocks were worked on before and are taken as they are."
             )
         todo = [number for number in range(len(blocks)) if number not in known]
-        tell = self._teller(len(todo), len(self.survey) * len(todo) / max(1, len(blocks)))
+        tell = self._teller(len(todo), self.survey.expected * len(todo) / max(1, len(blocks)))
         results, failed = run_all(
             executor,
             work_on_block,
@@ -318,13 +328,21 @@ class _Run:
         margin = np.array([[-8 * halo], [8 * halo]])
         near = self.survey.near(block.box + margin)
         within = self.survey.near(block.box + np.array([[-halo], [halo]]))
-        key = self._key((self.survey.sources[one].path for one in within), block.name, block.side, halo, str(sampling))
+        key = self._key(
+            (self.survey.sources[one].path for one in within),
+            block.name,
+            block.side,
+            halo,
+            str(sampling),
+            str(self.survey.extent),
+        )
         part = Survey(
             tuple(self.survey.sources[one] for one in near),
             self.survey.header,
             self.survey.units,
             self.survey.wkt,
             self.survey.origin,
+            self.survey.extent,
         )
         result = self.work / f"block-{block.name}-{key}.npz"
         return BlockTask(block, part, tuple(near), self.pipeline.name, self.tunables, sampling, halo, result, self.stop)
@@ -389,38 +407,53 @@ class _Run:
                 continue
             near = np.flatnonzero(boxes_meet(boxes, source.box))
             parts, final = tuple(done[at][1] for at in near), tuple(becomes[at] for at in near)
-            tasks.append(_TileTask(source.path, number, target, parts, final, self.stop))
+            tasks.append(_TileTask(source.path, number, target, parts, final, self.stop, self.survey.extent))
         results, errors = run_all(
             executor, write_tile, tasks, self.stop, self.monitor.part(_JOINED, 1.0), lambda _: None
         )
-        outcome.tiles = [results[at] for at in sorted(results)]
+        outcome.tiles = [results[at] for at in sorted(results) if results[at] is not None]
+        if self.survey.extent is not None:
+            outcome.points = sum(open_header(tile).count for tile in outcome.tiles)
         outcome.failures += [f"{tasks[at].source.name}: {why}" for at, why in sorted(errors.items())]
 
 
-def write_tile(task: _TileTask) -> Path:
-    """Write a tile with what its blocks found; return it.
+def write_tile(task: _TileTask) -> Optional[Path]:
+    """Write a tile with what its blocks found; return it, None where the extent of the survey holds none of its points.
 
     Raises
     ------
     ValueError
         If a file can't be read or written.
     """
-    cloud = read_cloud(task.source)
+    position = None if task.extent is None else _positions(task)
+    if position is not None and not len(position):
+        return None
+    cloud = read_cloud(task.source, box=task.extent)
     values: dict[str, np.ndarray] = {}
     for path, numbers in zip(task.results, task.becomes):
         result = BlockResult.read(path)
         rows = np.flatnonzero(result.source == task.number)
         if not len(rows):
             continue
+        own = result.position[rows] if position is None else np.searchsorted(position, result.position[rows])
         with np.load(numbers, allow_pickle=False) as final:
             for name, of_block in result.dimensions.items():
                 found = final[name][of_block[rows]] if name in final.files else of_block[rows]
                 whole = values.setdefault(name, np.zeros((len(cloud), *found.shape[1:]), found.dtype))
-                whole[result.position[rows]] = found
+                whole[own] = found
     for name, whole in values.items():
         cloud.set(name, whole)
     write_cloud(cloud, task.target)
     return task.target
+
+
+def _positions(task: _TileTask) -> np.ndarray:
+    """Return the places (n,) in a file of its points within the extent, ascending: every one is in one block."""
+    found = [np.zeros(0, np.int64)]
+    for path in task.results:
+        with np.load(path, allow_pickle=False) as stored:
+            found.append(stored["position"][stored["source"] == task.number])
+    return np.sort(np.concatenate(found))
 
 
 def _counted(window: Window) -> np.ndarray:

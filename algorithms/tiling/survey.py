@@ -14,7 +14,7 @@ from ..cloud.cloud import Cloud
 from ..cloud.files import files_of
 from ..cloud.header import COPC_HIERARCHY, COPC_INFO, LASZIP, Header
 from ..cloud.outputs import kind_of, same_file
-from ..cloud.points import check_points, open_header, read_chunks
+from ..cloud.points import check_points, chunks_near, is_within, open_header, read_chunks
 from ..cloud.units import Resolver, Units, units_of, wkt_of
 from ..cloud.vpc import check_tiles, fill_merged, merged_header
 from ..stage import Monitor
@@ -71,6 +71,9 @@ class Survey:
         Coordinate reference system, as :attr:`.Cloud.wkt`.
     origin : float64 array, (3,)
         What local coordinates are relative to, m.
+    extent : ndarray of shape (2, 2), optional
+        Only points within belong to the survey, edges included; least and greatest easting and northing in
+        coordinates of the files.
     """
 
     sources: tuple[Source, ...]
@@ -78,9 +81,21 @@ class Survey:
     units: Units
     wkt: str
     origin: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    extent: Optional[np.ndarray] = None
 
     def __len__(self) -> int:
         return sum(source.header.count for source in self.sources)
+
+    @property
+    def expected(self) -> float:
+        """Number of points, those of a file that reaches beyond the extent by the share of its area within."""
+        if self.extent is None:
+            return float(len(self))
+        wholes = [_box(source.header, self.units) for source in self.sources]
+        shares = [
+            np.prod((source.box[1] - source.box[0]) / (one[1] - one[0])) for source, one in zip(self.sources, wholes)
+        ]
+        return float(sum(source.header.count * share for source, share in zip(self.sources, shares)))
 
     @property
     def box(self) -> np.ndarray:
@@ -91,6 +106,10 @@ class Survey:
     def boxes(self) -> np.ndarray:
         """Boxes (m, 2, 2) of the files, m."""
         return np.array([source.box for source in self.sources])
+
+    def holds(self, records: np.ndarray, header: Header) -> np.ndarray:
+        """Return which records (n,) of a file with this header lie within the extent."""
+        return np.ones(len(records), bool) if self.extent is None else is_within(records, header, self.extent)
 
     def near(self, box: np.ndarray) -> list[int]:
         """Return the positions of the files that may have points in a box (2, 2), m."""
@@ -145,8 +164,8 @@ class Survey:
         """Yield the positions in a file and the records, as those of the survey, of the points in a box."""
         header = source.header
         scale, offset = (values * self.units.horizontal for values in (header.scale, header.offset))
-        for start, chunk in read_chunks(source.path, header, monitor):
-            inside = np.ones(len(chunk), bool)
+        for start, chunk in chunks_near(source.path, header, box / self.units.horizontal, monitor):
+            inside = self.holds(chunk, header)
             for i, axis in enumerate("XY"):
                 place = chunk[axis] * scale[i] + offset[i]
                 inside &= (place >= box[0, i]) & (place < box[1, i])
@@ -189,7 +208,10 @@ def boxes_meet(boxes: np.ndarray, box: np.ndarray) -> np.ndarray:
 
 
 def open_survey(
-    paths: Iterable[Union[str, Path]], crs_units: Optional[Resolver] = None, monitor: Optional[Monitor] = None
+    paths: Iterable[Union[str, Path]],
+    crs_units: Optional[Resolver] = None,
+    monitor: Optional[Monitor] = None,
+    extent: Optional[np.ndarray] = None,
 ) -> Survey:
     """Return the survey that files, virtual point clouds and folders of files make.
 
@@ -201,11 +223,14 @@ def open_survey(
         As for :func:`.read_cloud`.
     monitor : Monitor, optional
         Receives warnings about what can't be merged.
+    extent : ndarray of shape (2, 2), optional
+        As :attr:`Survey.extent`; files that lie wholly outside are no part of the survey.
 
     Raises
     ------
     ValueError
-        If there are no files, one can't be read, or they have different coordinate reference systems or units.
+        If there are no files, one can't be read, they have different coordinate reference systems or units, or all lie
+        outside of the extent.
     """
     monitor = monitor or Monitor()
     files = files_of_survey(paths)
@@ -218,9 +243,25 @@ def open_survey(
         monitor.warn(units.warning)
     header = merged_header(headers, "tiles", monitor) if len(headers) > 1 else headers[0]
     sources = tuple(Source(file, one, _box(one, units)) for file, one in zip(files, headers))
-    survey = Survey(sources, header.without(LASZIP, COPC_INFO, COPC_HIERARCHY), units, wkt_of(headers[0]))
+    if extent is not None:
+        sources = _within_extent(sources, extent * units.horizontal)
+    survey = Survey(
+        sources, header.without(LASZIP, COPC_INFO, COPC_HIERARCHY), units, wkt_of(headers[0]), extent=extent
+    )
     low = np.floor(survey.box[0] / _ORIGIN_STEP) * _ORIGIN_STEP
     return replace(survey, origin=np.append(low, 0.0))
+
+
+def _within_extent(sources: tuple[Source, ...], extent: np.ndarray) -> tuple[Source, ...]:
+    """Return the files that may have points in an extent (2, 2), m, with boxes that end at it."""
+    found = [
+        replace(one, box=np.array([np.maximum(one.box[0], extent[0]), np.minimum(one.box[1], extent[1])]))
+        for one in sources
+        if boxes_meet(one.box[None], extent).all()
+    ]
+    if not found:
+        raise ValueError("The survey has no points within the extent; choose another extent.")
+    return tuple(found)
 
 
 def files_of_survey(paths: Iterable[Union[str, Path]]) -> list[Path]:

@@ -104,3 +104,44 @@ def test_the_points_of_a_part_are_estimated_from_the_headers(tile):
     assert count_points(tile, box) == pytest.approx(inside(read_cloud(tile)).sum(), rel=0.1)
     assert count_points(tile, box + 1000.0) == 0
     assert count_points(tile, np.array([[0.0, 0.0], [1e6, 1e6]])) == count_points(tile)
+
+
+def test_a_survey_is_cut_within_an_extent(provider, context, log, tile, tmp_path):
+    given = {"INPUT": str(tile), "SIDE": 20.0, "EXTENT": EXTENT, "OUTPUT": str(tmp_path / "tiles")}
+    results, succeeded = provider.algorithm("cutintotiles").run(given, context, log)
+    assert succeeded, log.textLog()
+    whole = read_cloud(tile)
+    written = np.sort(read_cloud(results["VPC"]).get("gps_time"))
+    np.testing.assert_allclose(written, np.sort(whole.get("gps_time")[inside(whole)]))
+
+
+def test_a_survey_is_worked_on_within_an_extent(provider, context, log, tile, tmp_path):
+    from qgis.core import QgsVectorLayer
+
+    target = tmp_path / "footprints.gpkg"
+    given = {"INPUT": str(tile), "EXTENT": EXTENT, "OUTPUT": str(tmp_path / "tiles"), "FOOTPRINTS": str(target)}
+    results, succeeded = provider.algorithm("detectbuildingsintiles").run({**given, "PROCESSES": 1}, context, log)
+    assert succeeded, log.textLog()
+    assert results["POINTS"] == len(read_cloud(results["VPC"])) == inside(read_cloud(tile)).sum()
+    (house,) = QgsVectorLayer(str(target)).getFeatures()
+    assert house.geometry().boundingBox().xMaximum() < WEST + 40
+
+
+def test_points_are_clipped_with_polygons_and_an_extent(provider, context, log, tile, tmp_path):
+    from qgis.core import QgsFeature, QgsGeometry, QgsRectangle, QgsVectorLayer
+
+    layer = QgsVectorLayer("Polygon?crs=EPSG:28992", "areas", "memory")
+    area = QgsFeature()
+    area.setGeometry(QgsGeometry.fromRect(QgsRectangle(WEST + 20, SOUTH - 10, WEST + 90, SOUTH + 60)))
+    layer.dataProvider().addFeature(area)
+    given = {"INPUT": str(tile), "POLYGONS": layer, "EXTENT": EXTENT, "OUTPUT": str(tmp_path / "part.laz")}
+    algorithm = provider.algorithm("clipcloud")
+    results, succeeded = algorithm.run(given, context, log)
+    assert succeeded, log.textLog()
+    whole = read_cloud(tile)
+    east = whole.to_map(whole.get("xyz"))[:, 0] > WEST + 20
+    expected = whole.get("gps_time")[inside(whole) & east]
+    np.testing.assert_array_equal(read_cloud(results["OUTPUT"]).get("gps_time"), expected)
+    outside, succeeded = algorithm.run({**given, "OUTSIDE": True, "OUTPUT": str(tmp_path / "b.laz")}, context, log)
+    assert succeeded, log.textLog()
+    assert len(read_cloud(outside["OUTPUT"])) == inside(whole).sum() - len(expected)

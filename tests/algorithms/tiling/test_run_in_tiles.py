@@ -345,3 +345,30 @@ def test_progress_only_grows(points, tmp_path):
     run(tiles_of(tmp_path, xyz, times, np.ones(len(xyz), bool)), tmp_path / "result", monitor, pipeline=QUICK)
     assert monitor.heard == sorted(monitor.heard)
     assert monitor.heard[-1] == 1.0
+
+
+@pytest.mark.parametrize("largest", [10**9, 1000])
+def test_an_extent_takes_a_part_of_the_survey(tmp_path, points, largest):
+    xyz, times, _ = points
+    west = xyz[:, 0] < CORNER[0] + 33
+    tiles = tiles_of(tmp_path, xyz, times, west, ~west)
+    # Nothing of the eastern tile; the house at (10, 24) to (22, 34) and no other.
+    extent = np.array([[4.0, 20.0], [30.0, 60.0]]) + CORNER[:2]
+    outcome = run(tiles, tmp_path / "out", extent=extent, largest_file=largest)
+    assert not outcome.failures
+    inside = ((xyz[:, :2] >= extent[0]) & (xyz[:, :2] <= extent[1])).all(axis=1)
+    assert outcome.points == inside.sum()
+    written = np.concatenate([read_cloud(tile).get("gps_time") for tile in outcome.tiles])
+    np.testing.assert_allclose(np.sort(written), times[inside])
+    (house,) = outcome.layers["footprints"].geometries
+    np.testing.assert_allclose(house[0].mean(axis=0) + outcome.survey.origin[:2] - CORNER[:2], [16, 29], atol=3)
+    time, classes, _ = classes_by_time(outcome)
+    at = np.searchsorted(time, times[inside])
+    assert ((classes[at] == 6) == points[2][inside]).mean() > 0.98
+
+
+def test_an_extent_without_points_is_refused(tmp_path, points):
+    xyz, times, _ = points
+    tiles = tiles_of(tmp_path, xyz, times, np.ones(len(xyz), bool))
+    with pytest.raises(ValueError, match="no points within the extent"):
+        run(tiles, tmp_path / "out", extent=np.array([[0.0, 0.0], [10.0, 10.0]]))

@@ -1,0 +1,119 @@
+"""The index of a COPC file: which chunks of points may lie in a box."""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+
+from .header import COPC_INFO, Header, truncated
+
+# center, halfsize, spacing, root hierarchy offset and size, GPS time range, reserved
+INFO = struct.Struct("<3dddQQdd11Q")
+# Level, x, y, z of a node; position, bytes and number of points of its chunk.
+ENTRY = np.dtype([("key", "<i4", 4), ("offset", "<u8"), ("size", "<i4"), ("count", "<i4")])
+# What stands for the number of points where an entry leads to a further page of entries.
+_PAGE = -1
+# No octree is deeper: a cell of this level of the whole Earth is a hundredth of a millimeter wide.
+_DEEPEST = 42
+
+
+@dataclass(frozen=True)
+class CopcIndex:
+    """Nodes that have points, in the order of their chunks in the file.
+
+    Attributes
+    ----------
+    low, high : ndarrays of shape (m, 2)
+        Least and greatest easting and northing of each node, in coordinates of the file.
+    """
+
+    low: np.ndarray
+    high: np.ndarray
+
+    def touch(self, box: np.ndarray) -> np.ndarray:
+        """Return which nodes (m,) touch a box (2, 2) in plan."""
+        return ((self.low <= box[1]) & (self.high >= box[0])).all(axis=1)
+
+
+def has_index(header: Header) -> bool:
+    """Whether a header is that of a COPC file: its first record is the one that tells where the octree lies."""
+    first = header.vlrs[0] if header.vlrs else None
+    return bool(
+        first
+        and header.is_compressed
+        and first.key == COPC_INFO
+        and first.data is not None
+        and len(first.data) == INFO.size
+    )
+
+
+def read_index(path: Path, header: Header, stream: BinaryIO, chunks: np.ndarray) -> CopcIndex:
+    """Return the index of a COPC file, held against the chunks of points that the file has.
+
+    Parameters
+    ----------
+    path : Path
+        For messages.
+    header : Header
+        Of which :func:`has_index` is true.
+    stream : file
+        The open file.
+    chunks : ndarray of shape (m, 3), int64
+        Position, bytes and number of points of each chunk, in the order of the file.
+
+    Raises
+    ------
+    ValueError
+        If a page lies outside of the file or comes twice, or the nodes are not those of the chunks.
+    """
+    x, y, _, half, _, at, size, *_ = INFO.unpack(header.vlrs[0].data or b"")
+    if not (np.isfinite([x, y, half]).all() and half > 0):
+        raise _damaged(path, f"its root is a cube of {2 * half:g} around ({x:g}, {y:g})")
+    nodes = _nodes(path, stream, at, size, len(chunks))
+    nodes = nodes[np.argsort(nodes["offset"], kind="stable")]
+    found = np.column_stack([nodes[name].astype(np.int64) for name in ("offset", "size", "count")])
+    held = chunks[chunks[:, 2] > 0]
+    if not np.array_equal(found, held):
+        raise _damaged(path, f"it tells of {len(found)} nodes that are not the {len(held)} chunks of the file")
+    level, place = nodes["key"][:, 0], nodes["key"][:, 1:3]
+    is_odd = (level < 0) | (level > _DEEPEST)
+    is_odd |= ((place < 0) | (place >= 2.0 ** np.clip(level, 0, _DEEPEST)[:, None])).any(axis=1)
+    if is_odd.any():
+        key = tuple(nodes["key"][is_odd][0, :3].tolist())
+        raise _damaged(path, f"it tells of a node {key} (level, column, row)")
+    side = (2 * half / 2.0**level)[:, None]
+    # Coordinates are rounded to steps of the scale, also those on the faces of nodes.
+    margin = np.abs(header.scale[:2])
+    low = np.array([x, y]) - half + place * side
+    return CopcIndex(low - margin, low + side + margin)
+
+
+def _nodes(path: Path, stream: BinaryIO, at: int, size: int, most: int) -> np.ndarray:
+    """Return the entries of all nodes with points, page by page from the root's on."""
+    total = path.stat().st_size
+    waiting, seen, found = [(at, size)], set(), [np.empty(0, ENTRY)]
+    count = 0
+    while waiting:
+        at, size = waiting.pop()
+        if at in seen:
+            raise _damaged(path, f"it leads to the page at byte {at} more than once")
+        seen.add(at)
+        if size < 0 or size % ENTRY.itemsize or at + size > total:
+            raise _damaged(path, f"a page of {size} bytes should be at byte {at} of {total}")
+        stream.seek(at)
+        page = np.frombuffer(stream.read(size), ENTRY)
+        nodes = page[page["count"] > 0]
+        count += len(nodes)
+        if (page["count"] < _PAGE).any() or count > most:
+            raise _damaged(path, f"it tells of more nodes than the {most} chunks of the file")
+        found.append(nodes)
+        waiting += [(int(one["offset"]), int(one["size"])) for one in page[page["count"] == _PAGE]]
+    return np.concatenate(found)
+
+
+def _damaged(path: Path, what: str) -> ValueError:
+    return truncated(path, f"of its index, {what}")
