@@ -157,10 +157,11 @@ def check_can_be_tiled(pipeline: Pipeline) -> None:
     Raises
     ------
     ValueError
-        If it merges clouds, makes a cloud of other points, or reads layers.
+        With the step that can't be run in tiles, and why.
     """
-    if not can_be_tiled(pipeline):
-        raise ValueError(f"{pipeline.title} can't be run in tiles: it makes a cloud of other points than it is given.")
+    why = _why_whole(pipeline)
+    if why:
+        raise ValueError(f"{pipeline.title} can't be run in tiles: {why}; run it on each tile by itself.")
 
 
 def can_be_tiled(pipeline: Pipeline) -> bool:
@@ -168,11 +169,26 @@ def can_be_tiled(pipeline: Pipeline) -> bool:
 
     A step of infinite reach is decided by the whole cloud.
     """
-    stages = [step.stage for step in pipeline.steps]
-    return pipeline.reads_cloud and not any(
-        stage.merges or stage.selects or stage.creates or stage.rasters or stage.files or stage.reach == np.inf
-        for stage in stages
-    )
+    return not _why_whole(pipeline)
+
+
+def _why_whole(pipeline: Pipeline) -> str:
+    """Return why a composite works on whole clouds only; "" where it can be run in tiles."""
+    if not pipeline.reads_cloud:
+        return "it reads no cloud"
+    for stage in (step.stage for step in pipeline.steps):
+        title = f"'{stage.title}'"
+        if stage.merges:
+            return f"{title} merges clouds"
+        if stage.selects or stage.creates:
+            return f"{title} makes a cloud of other points than it is given"
+        if stage.rasters:
+            return f"{title} makes a raster of the whole"
+        if stage.files:
+            return f"{title} writes a text file of the whole"
+        if stage.reach == np.inf:
+            return f"{title} is decided by the whole cloud"
+    return ""
 
 
 @contextmanager

@@ -372,3 +372,17 @@ def test_an_extent_without_points_is_refused(tmp_path, points):
     tiles = tiles_of(tmp_path, xyz, times, np.ones(len(xyz), bool))
     with pytest.raises(ValueError, match="no points within the extent"):
         run(tiles, tmp_path / "out", extent=np.array([[0.0, 0.0], [10.0, 10.0]]))
+
+
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("model_buildings", "'Reconstruct roofs' writes a text file"),
+        ("map_footprints", "'Downsample to voxels' makes a cloud of other points"),
+        ("interpret_structure", "'Merge point clouds' merges clouds"),
+        ("model_facades", "'Extract facades' is decided by the whole cloud"),
+    ],
+)
+def test_what_can_not_be_tiled_says_why(tmp_path, name, why):
+    with pytest.raises(ValueError, match=why):
+        run([], tmp_path / "out", pipeline=PIPELINES[name])
