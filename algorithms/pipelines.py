@@ -19,6 +19,12 @@ _HRUTKA = (
     "International Archives of the Photogrammetry, Remote Sensing and Spatial Information Sciences XLVIII-4/W1."
 )
 
+_VOSSELMAN = (
+    "Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner "
+    "point clouds. International Archives of Photogrammetry, Remote Sensing and Spatial Information Sciences "
+    "46 (8/W2), 33-38."
+)
+
 _PETERS = (
     "Peters, R., Dukai, B., Vitalis, S., van Liempt, J., Stoter, J., 2022. Automated 3D reconstruction of LoD2 and "
     "LoD1 models for all 10 million buildings of the Netherlands. Photogrammetric Engineering & Remote Sensing 88(3)."
@@ -194,6 +200,29 @@ _PIPELINES = (
         shown=("planes_min_area", "planes_min_height", "openings_min_size", "boundary", "complete"),
     ),
     Pipeline(
+        name="model_terrain",
+        title="Model terrain",
+        group="Models",
+        tags="terrain,bare earth,DTM,DEM,bridge,fly-over,segments,scan line,filter,Sithole,Vosselman",
+        summary="Model the bare earth without objects and bridges: classified points and rasters, by segments.",
+        description=(
+            "Noise first; then pieces of artificial scan lines in several directions are merged to segments. Segments "
+            "that are higher than what lies around them are objects, the others bare earth, of which bridges and "
+            "fly-overs, raised on both sides and joined at both ends, become bridge deck (17). The rasters are made of "
+            "what is left. Large halls are removed whole. In towns and forests, where walls and leaves join roofs and "
+            "crowns to the terrain, 'Classify ground points (TIN)' before 'Classify bridges' errs less."
+        ),
+        references=_VOSSELMAN,
+        steps=(
+            Step("noise", "classify_noise_histogram"),
+            Step("segments", "segment_scan_lines"),
+            Step("ground", "classify_ground_segments"),
+            Step("terrain", "rasterize_terrain"),
+        ),
+        shared={"noise": ("segments", "ground"), "density": ("segments", "ground")},
+        shown=("ground_max_width", "ground_min_bridge_area", "ground_max_object_area", "segments_max_obstacle"),
+    ),
+    Pipeline(
         name="model_industry",
         title="Model industry",
         group="Models",
@@ -205,11 +234,7 @@ _PIPELINES = (
             "chain the points of one smooth surface are searched together: segment the cloud first and set 'Search in' "
             "to each segment for that."
         ),
-        references=(
-            "Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner "
-            "point clouds. International Archives of Photogrammetry, Remote Sensing and Spatial Information Sciences "
-            "46 (8/W2), 33-38."
-        ),
+        references=_VOSSELMAN,
         steps=(
             Step("cylinders", "detect_cylinders"),
             Step("spheres", "detect_spheres", {"search_in": "points without a shape"}),

@@ -100,7 +100,7 @@ STAGE_IDS = {
     "reconstructgables",
 }
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints", "modelbuildings"}
-PIPELINE_IDS |= {"modelfacades", "modelindustry"}
+PIPELINE_IDS |= {"modelfacades", "modelindustry", "modelterrain"}
 
 CLASSIFYING = {"classify", "complete"}
 VERBS = CLASSIFYING | {"segment", "cluster", "compute", "extract", "regularize", "simplify", "assess", "simulate"}

@@ -33,6 +33,9 @@ _MOST_ROUGH = 0.25
 # A deck goes on into the terrain where heights differ by no more (m).
 _SAME_LEVEL = 0.5
 
+# Ground this high over a deck (m) is none: a filter took cars for it.
+ABOVE_DECK = 0.5
+
 # Terrain at an end of a deck has at least this many times its points.
 _LEAST_TERRAIN = 0.5
 

@@ -10,7 +10,8 @@ from ..cloud.asprs import PointClass
 from ..params import BridgeArea, BridgeHeight, BridgeWidth, PointDensity, SurfaceNoise
 from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..stage import stage
-from .bridge_decks import Decks
+from ..terrain.on_decks import on_decks
+from .bridge_decks import ABOVE_DECK, Decks
 
 # No deck is of these classes.
 _NO_DECK = (
@@ -89,6 +90,9 @@ def classify_bridges(
     is_deck = decks.find(points, may_be_deck, classification[used] == PointClass.GROUND, monitor)
     classes = classification.astype(np.uint8)
     classes[classes == PointClass.BRIDGE_DECK] = PointClass.UNCLASSIFIED
+    ground = np.flatnonzero((classification[used] == PointClass.GROUND) & ~is_deck)
+    # Of ground on a deck, such as cars that a filter took for it, nothing is left.
+    classes[used[ground[on_decks(points[ground], points[is_deck], ABOVE_DECK)[0]]]] = PointClass.UNCLASSIFIED
     classes[used[is_deck]] = PointClass.BRIDGE_DECK
     monitor.progress(1.0)
     return classes

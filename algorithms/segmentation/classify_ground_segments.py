@@ -11,7 +11,8 @@ from ..geometry.grid import distinct, find_cells, grid_over
 from ..params import BridgeArea, BridgeHeight, BridgeWidth, PointDensity, SurfaceNoise
 from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..stage import Param, stage
-from .bridge_decks import Decks, cell_size
+from ..terrain.on_decks import on_decks
+from .bridge_decks import ABOVE_DECK, Decks, cell_size
 
 # A segment is an object if it is raised along at least this share of its border, that of the cloud included.
 _RAISED_BORDER = 0.5
@@ -112,6 +113,8 @@ def classify_ground_segments(
         monitor.inform("The cloud has no ground points (class 2); the segments alone tell what is bare earth.")
     is_deck = decks.find(points, is_earth, is_terrain, monitor.part(0.2, 0.9))
     is_ground = is_terrain & ~is_deck
+    others = np.flatnonzero(is_ground)
+    is_ground[others[on_decks(points[others], points[is_deck], ABOVE_DECK)[0]]] = False
 
     classes = classification.astype(np.uint8)
     classes[np.isin(classes, (PointClass.GROUND, PointClass.BRIDGE_DECK))] = PointClass.UNCLASSIFIED

@@ -6,14 +6,11 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..geometry.tiled_tin import TiledTin
-from ..packages import spatial
 from ..stage import stage
+from .on_decks import on_decks
 
 # Half the width of a usual building: how far the ground points are whose triangle a point is in (m).
 _REACH = 10.0
-
-# What stands on a bridge has points of its deck this near in plan (m), and none of its own this far (m) below them.
-_ON_DECK, _BELOW_DECK = 1.0, 0.3
 
 
 @stage(
@@ -68,20 +65,10 @@ def compute_height_above_ground(xyz, classification, *, monitor=None):
             f"{int(outside.sum())} of {len(xyz)} points lie outside the ground; "
             "the nearest ground point gave their height."
         )
-    _lift_to_decks(xyz, classification, above, elevation)
+    is_deck = classification[above] == PointClass.BRIDGE_DECK
+    stands, level = on_decks(xyz[above[~is_deck]], xyz[above[is_deck]])
+    stands = np.flatnonzero(~is_deck)[stands]
+    elevation[stands] = np.maximum(elevation[stands], level)
     height = np.zeros(len(xyz), np.float32)
     height[above] = xyz[above, 2] - elevation
     return height
-
-
-def _lift_to_decks(xyz: np.ndarray, classification: np.ndarray, above: np.ndarray, elevation: np.ndarray) -> None:
-    """Lift the ``elevation`` (m,) under the points ``above`` (m,) that stand on bridge decks to these."""
-    deck = xyz[classification == PointClass.BRIDGE_DECK]
-    if not len(deck):
-        return
-    others = np.flatnonzero(classification[above] != PointClass.BRIDGE_DECK)
-    distance, nearest = spatial.cKDTree(deck[:, :2]).query(xyz[above[others], :2], distance_upper_bound=_ON_DECK)
-    near = np.isfinite(distance)
-    others, level = others[near], deck[nearest[near], 2]
-    stands = xyz[above[others], 2] >= level - _BELOW_DECK
-    elevation[others[stands]] = np.maximum(elevation[others[stands]], level[stands])

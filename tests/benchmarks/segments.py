@@ -30,6 +30,8 @@ METHODS: dict[str, tuple[str, dict[str, Any]]] = {
     "Segment planes (Hough), points": ("segment_planes_hough", {"method": "points"}),
     "Segment planes (Hough), normals": ("segment_planes_hough", {"method": "normals"}),
     "Segment surfaces": ("segment_surfaces", {}),
+    "Segment surfaces, planes": ("segment_surfaces", {"planarity": "global"}),
+    "Segment TIN planes": ("segment_tin_planes", {}),
     "Model industry": ("model_industry", {}),
 }
 FATES = ("correct", "over", "under", "missed", "noise")

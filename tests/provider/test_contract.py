@@ -81,7 +81,7 @@ IDS = {
 }
 TILED_IDS = {"detectbuildingsintiles", "detectbuildings2019intiles"}
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints", "modelbuildings"}
-PIPELINE_IDS |= {"modelfacades", "modelindustry"}
+PIPELINE_IDS |= {"modelfacades", "modelindustry", "modelterrain"}
 ALL = {**STAGES, **TOYS}
 
 
