@@ -9,8 +9,12 @@ from scipy import ndimage
 
 from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.files import read_cloud
+from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.run import run_pipeline
 from lidar_buildings.algorithms.simulation.simulate_drone_site import simulate_drone_site
-from lidar_buildings.tests.real.clouds import WITH_IMAGES, detected, run_on, score, score_against, truth
+from lidar_buildings.tests.builders import is_inside
+from lidar_buildings.tests.real.clouds import WITH_IMAGES, detected, path_of, run_on, score, score_against, truth
 
 from .results import Table
 
@@ -38,7 +42,32 @@ def photos() -> list[Table]:
         largest = largest_false(result.cloud.get("xyz"), result.classification, truth(name))
         figures = [points[rate] for rate in rates]
         table.add(name.split("/")[1], *figures, cells, found["objects"]["completeness"], largest, result.seconds)
-    return [table]
+    return [table, _mapped_photos()]
+
+
+def _mapped_photos() -> Table:
+    columns = ("footprints", "cells: completeness, %", "cells: correctness, %")
+    table = Table("mapped_photos", "cloud", *columns, texts=1)
+    for name in WITH_IMAGES:
+        table.add(name.split("/")[1], *mapped_cells(name))
+    return table
+
+
+def mapped_cells(name: str) -> tuple[int, float, float]:
+    """Return how many footprints Map footprints makes of a real cloud, and how alike they and the buildings are (%).
+
+    Of the cells with a building point those that hold a point in a footprint, and the reverse.
+    """
+    cloud = read_cloud(path_of(name))
+    xyz, origin = cloud.get("xyz").copy(), cloud.origin.copy()
+    outcome = run_pipeline(PIPELINES["map_footprints"], cloud)
+    made = outcome.layers["wall_footprints"].geometries
+    moved = xyz + (origin - outcome.cloud.origin)
+    inside = np.any([np.zeros(len(xyz), bool), *(is_inside(moved[:, :2], rings) for rings in made)], axis=0)
+    cell = np.unique(np.floor(xyz[:, :2] / _CELL), axis=0, return_inverse=True)[1]
+    true, found = (np.bincount(cell, of) > 0 for of in (truth(name) == PointClass.BUILDING, inside))
+    both = (true & found).sum()
+    return len(made), 100 * float(both / true.sum()), 100 * float(both / max(found.sum(), 1))
 
 
 def drone() -> list[Table]:

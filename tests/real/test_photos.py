@@ -11,7 +11,7 @@ from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.cloud.files import read_cloud
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.run import run_pipeline, sampling_of
-from lidar_buildings.tests.benchmarks.drone import largest_false
+from lidar_buildings.tests.benchmarks.drone import largest_false, mapped_cells
 from lidar_buildings.tests.real.clouds import (
     WITH_BUILDINGS,
     WITH_IMAGES,
@@ -23,7 +23,7 @@ from lidar_buildings.tests.real.clouds import (
 )
 
 # F-score per point (%).
-REACHED = {"photo/uk-photo-100": 93.3, "photo/brighton-beach": 93.0}
+REACHED = {"photo/uk-photo-100": 94.0, "photo/brighton-beach": 92.6}
 
 # What other versions of numpy and scipy may change (%).
 MARGIN = 0.7
@@ -48,6 +48,14 @@ def test_matched_images_are_told_from_laser_scanners():
     assert all(sampling_of(read_cloud(path_of(name))).is_closed_surface() for name in WITH_IMAGES)
     for name in (*WITH_BUILDINGS, *WITHOUT_BUILDINGS):
         assert not sampling_of(read_cloud(path_of(name))).is_closed_surface()
+
+
+def test_houses_are_mapped_whole():
+    count, completeness, correctness = mapped_cells(TOWN)
+    # Sheds under 2.5 m and eaves beyond the walls are not mapped; halves of bent roofs were missing at 58.
+    assert count == 7
+    assert completeness > 63
+    assert correctness > 98
 
 
 def test_buildings_are_found_without_color():
