@@ -2,9 +2,36 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Annotated, NamedTuple, Optional
 
 from .stage import Param
+
+
+class PaperThresholds(NamedTuple):
+    """A column of table 2 of the paper of 2019: T_Dxy (m), T_Dh (m) and points/m², which T_Np and N are 4 m² of."""
+
+    plan_distance: float
+    height_distance: float
+    density: float
+
+
+# T_Np and N of the table, 50 and 16 points, are the minimum building area of 4 m² at these densities.
+PAPER_THRESHOLDS = {
+    "table 2, 12.5 points/m²": PaperThresholds(0.6, 0.2, 12.5),
+    "table 2, 4 points/m²": PaperThresholds(1.4, 0.3, 4.0),
+}
+
+Thresholds = Annotated[
+    Optional[str],
+    Param(
+        "Thresholds",
+        "The thresholds of the paper of 2019 (table 2) for its two surveys, whatever the cloud is like: planimetric "
+        "distance 0.6 m and height difference 0.2 m with 50 points per minimum building area of 4 m², or 1.4 m, 0.3 m "
+        "and 16 points. Values that are set go before.",
+        choices=tuple(PAPER_THRESHOLDS),
+        automatic="none of these: they follow the density and the noise of the cloud.",
+    ),
+]
 
 Seed = Annotated[
     int,

@@ -92,7 +92,8 @@ _PIPELINES = (
             "densification from the lowest point of each cell of the largest building's size, region growing, mean "
             "entropy per cluster and two means. Where the papers give no value (cells of the histograms, thresholds "
             "of the TIN, distances of the regions), it follows the density and the noise of the cloud; the Notes of "
-            "each step say how. The outlines are this project's. 'Detect buildings' finds more and errs less."
+            "each step say how. 'Thresholds' takes the values of the paper's table 2 instead. The outlines are this "
+            "project's. 'Detect buildings' finds more and errs less."
         ),
         references=_SANTOS,
         steps=(
@@ -102,8 +103,18 @@ _PIPELINES = (
             Step("buildings", "classify_buildings_2019"),
             Step("footprints", "extract_footprints"),
         ),
-        shared={"min_area": ("regions", "buildings", "footprints"), "density": ("regions", "buildings")},
-        shown=("min_area", "ground_max_building_size", "regions_plan_distance", "regions_height_distance"),
+        shared={
+            "thresholds": ("regions", "buildings"),
+            "min_area": ("regions", "buildings", "footprints"),
+            "density": ("regions", "buildings"),
+        },
+        shown=(
+            "thresholds",
+            "min_area",
+            "ground_max_building_size",
+            "regions_plan_distance",
+            "regions_height_distance",
+        ),
     ),
     Pipeline(
         name="interpret_structure",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Optional
 
 from ..neighborhoods.covariance import Nearest
-from ..params import MinBuildingArea, PointDensity, nearest_points
+from ..params import PAPER_THRESHOLDS, MinBuildingArea, PointDensity, Thresholds, nearest_points
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Param, stage
 from .cluster_decisions import decide_by_entropy, no_clusters, written_to_points
@@ -37,6 +37,7 @@ def classify_buildings_2019(
     cluster_id,
     reason=None,
     *,
+    thresholds: Thresholds = None,
     min_area: MinBuildingArea = 4.0,
     n_neighbors: Annotated[
         Optional[int], nearest_points("the points of the minimum building area (Ar_min d), at least 3.")
@@ -88,7 +89,8 @@ def classify_buildings_2019(
 
     Notes
     -----
-    Equations 5 to 11 of the paper, with N = Ar_min d (the paper has N = 50 and 16 at 12.5 and 4 points per m²).
+    Equations 5 to 11 of the paper, with N = Ar_min d (the paper has N = 50 and 16 at 12.5 and 4 points per m², which
+    'Thresholds' takes whatever the density of the cloud is).
     Neighbors are clustered points, and points equally far away at rank N share its weight, so that the order of the
     points decides nothing. The two means are the optimum that K-means approaches: in one dimension sorting finds it.
 
@@ -104,7 +106,8 @@ def classify_buildings_2019(
     entropy and the k-means concept, section 2.4.
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
-    density = sampling.density if density is None else density
+    if density is None:
+        density = sampling.density if thresholds is None else PAPER_THRESHOLDS[thresholds].density
     if n_neighbors is None:
         n_neighbors = max(_MIN_NEIGHBORS, round(min_area * density))
     monitor.resolved(density=density, n_neighbors=n_neighbors)

@@ -7,7 +7,7 @@ from typing import Annotated, Optional
 import numpy as np
 
 from ..geometry.components import connect, number_large
-from ..params import MinBuildingArea, MinClusterHeight, PointDensity
+from ..params import PAPER_THRESHOLDS, MinBuildingArea, MinClusterHeight, PointDensity, Thresholds
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Param, stage
 from .candidate_points import candidates
@@ -36,6 +36,7 @@ def segment_regions(
     classification,
     height_above_ground=None,
     *,
+    thresholds: Thresholds = None,
     plan_distance: Annotated[
         Optional[float],
         Param(
@@ -100,6 +101,7 @@ def segment_regions(
     paper's. Its T_Dxy are twice the spacings that it states (0.3 and 0.7 m); here the spacing is s = 1 / sqrt(d), which
     is 0.28 and 0.5 m there. For T_Dh it names "internal altimetric accuracy" and takes 0.2 and 0.3 m, about ten times
     the range noise of the two scanners. Automatic is ten times the measured noise between these two values.
+    'Thresholds' takes the values of the paper's table 2 themselves.
 
     References
     ----------
@@ -109,6 +111,11 @@ def segment_regions(
     """
     used = candidates(classification, height_above_ground, min_height)
     sampling = sampling or CloudSampling.of(xyz, classification)
+    if thresholds is not None:
+        published = PAPER_THRESHOLDS[thresholds]
+        plan_distance = published.plan_distance if plan_distance is None else plan_distance
+        height_distance = published.height_distance if height_distance is None else height_distance
+        density = published.density if density is None else density
     density = sampling.density if density is None else density
     spacing = 1 / np.sqrt(density)
     plan_distance = 2 * spacing if plan_distance is None else plan_distance

@@ -92,6 +92,14 @@ def test_neighbors_are_area_times_density(garden, min_area, density, expected):
     np.testing.assert_array_equal(by_density[1], by_hand[1])
 
 
+@pytest.mark.parametrize(("thresholds", "expected"), [("table 2, 12.5 points/m²", 50), ("table 2, 4 points/m²", 16)])
+def test_neighbors_of_the_papers_surveys(garden, thresholds, expected):
+    xyz, cluster_id = garden
+    monitor = Monitor()
+    classify_buildings_2019(xyz, ones(xyz), cluster_id, thresholds=thresholds, monitor=monitor)
+    assert monitor.values["n_neighbors"] == expected
+
+
 def test_reasons_of_the_published_method(garden):
     reasons, _, report = reasons_of(classify_buildings_2019, *garden)
     assert reasons == [Reason.PLANE] * 3 + [Reason.ROUGH] * 3

@@ -154,6 +154,22 @@ def test_the_height_difference_is_between_those_of_the_paper(noise, distance, rn
     assert monitor.values["height_distance"] == distance
 
 
+@pytest.mark.parametrize(
+    ("thresholds", "distances", "points"),
+    [("table 2, 12.5 points/m²", (0.6, 0.2), 50), ("table 2, 4 points/m²", (1.4, 0.3), 16)],
+)
+def test_thresholds_of_the_paper_whatever_the_cloud_is_like(thresholds, distances, points):
+    """Rows of points, each as dense as the others, of which those with T_Np points and more are regions."""
+    sizes = (points - 1, points, points + 5)
+    xyz = np.vstack([[[0.1 * i, 20.0 * row, 0] for i in range(size)] for row, size in enumerate(sizes)])
+    monitor = Monitor()
+    found = segment_regions(xyz, np.ones(len(xyz)), thresholds=thresholds, monitor=monitor)
+    assert (monitor.values["plan_distance"], monitor.values["height_distance"]) == distances
+    np.testing.assert_array_equal(found, np.repeat([0, 1, 2], sizes))
+    segment_regions(xyz, np.ones(len(xyz)), thresholds=thresholds, plan_distance=0.9, monitor=monitor)
+    assert (monitor.values["plan_distance"], monitor.values["height_distance"]) == (0.9, distances[1])
+
+
 def test_two_houses_and_a_field_with_nothing_to_set(rng):
     field = np.column_stack([rng.uniform(0, 60, (14_000, 2)), rng.normal(0, 0.03, 14_000)])
     field[((field[:, :2] > [10, 10]) & (field[:, :2] < [22, 18])).all(axis=1), 2] += 5
