@@ -22,14 +22,13 @@ PAPER_THRESHOLDS = {
 }
 
 Thresholds = Annotated[
-    Optional[str],
+    str,
     Param(
         "Thresholds",
-        "The thresholds of the paper of 2019 (table 2) for its two surveys, whatever the cloud is like: planimetric "
-        "distance 0.6 m and height difference 0.2 m with 50 points per minimum building area of 4 m², or 1.4 m, 0.3 m "
-        "and 16 points. Values that are set go before.",
-        choices=tuple(PAPER_THRESHOLDS),
-        automatic="none of these: they follow the density and the noise of the cloud.",
+        "'automatic' follows the density and the noise of the cloud. The others are those of the paper of 2019 for its "
+        "two surveys (table 2), whatever the cloud is like: planimetric distance 0.6 m and height difference 0.2 m with "
+        "50 points per minimum building area of 4 m², or 1.4 m, 0.3 m and 16 points. Values that are set go before.",
+        choices=("automatic", *PAPER_THRESHOLDS),
     ),
 ]
 

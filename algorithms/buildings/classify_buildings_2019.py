@@ -37,7 +37,7 @@ def classify_buildings_2019(
     cluster_id,
     reason=None,
     *,
-    thresholds: Thresholds = None,
+    thresholds: Thresholds = "automatic",
     min_area: MinBuildingArea = 4.0,
     n_neighbors: Annotated[
         Optional[int], nearest_points("the points of the minimum building area (Ar_min d), at least 3.")
@@ -107,7 +107,7 @@ def classify_buildings_2019(
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     if density is None:
-        density = sampling.density if thresholds is None else PAPER_THRESHOLDS[thresholds].density
+        density = PAPER_THRESHOLDS[thresholds].density if thresholds in PAPER_THRESHOLDS else sampling.density
     if n_neighbors is None:
         n_neighbors = max(_MIN_NEIGHBORS, round(min_area * density))
     monitor.resolved(density=density, n_neighbors=n_neighbors)

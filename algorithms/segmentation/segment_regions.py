@@ -36,7 +36,7 @@ def segment_regions(
     classification,
     height_above_ground=None,
     *,
-    thresholds: Thresholds = None,
+    thresholds: Thresholds = "automatic",
     plan_distance: Annotated[
         Optional[float],
         Param(
@@ -111,7 +111,7 @@ def segment_regions(
     """
     used = candidates(classification, height_above_ground, min_height)
     sampling = sampling or CloudSampling.of(xyz, classification)
-    if thresholds is not None:
+    if thresholds in PAPER_THRESHOLDS:
         published = PAPER_THRESHOLDS[thresholds]
         plan_distance = published.plan_distance if plan_distance is None else plan_distance
         height_distance = published.height_distance if height_distance is None else height_distance
