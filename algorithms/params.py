@@ -26,8 +26,8 @@ Thresholds = Annotated[
     Param(
         "Thresholds",
         "'automatic' follows the density and the noise of the cloud. The others are those of the paper of 2019 for its "
-        "two surveys (table 2), whatever the cloud is like: planimetric distance 0.6 m and height difference 0.2 m with "
-        "50 points per minimum building area of 4 m², or 1.4 m, 0.3 m and 16 points. Values that are set go before.",
+        "two surveys (table 2), whatever the cloud is like: planimetric distance 0.6 m and height difference 0.2 m "
+        "with 50 points per minimum building area of 4 m², or 1.4 m, 0.3 m and 16 points. Values that are set win.",
         choices=("automatic", *PAPER_THRESHOLDS),
     ),
 ]

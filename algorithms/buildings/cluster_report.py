@@ -68,6 +68,13 @@ def _page(clusters: Clusters, values: dict, groups: dict) -> str:
     )
     if clusters.split.is_given:
         lead += " Their entropies don't form two groups, so each was compared with the entropies of planes and volumes."
+    elif clusters.penetration is not None:
+        lead += (
+            " Their entropies were compared with those of planes and volumes at the density and noise of the cloud, "
+            "which the two means of the clusters move by little; the reasons below tell what decided."
+        )
+    elif values["clusters"]:
+        lead += " The two means of their entropies decided."
     rows = [
         Row(reason.name.replace("_", " ").capitalize(), f"{(clusters.reason == reason).sum():,}", reason.text)
         for reason in Reason

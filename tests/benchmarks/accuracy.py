@@ -2,7 +2,8 @@
 """Print how good the results are: ``accuracy.py [table …]``, all by default.
 
 ``buildings``, ``ground``, ``noise`` and ``noise_apart`` are of real clouds, ``turned`` of the same when cells fall
-elsewhere, ``harder`` of the same with fewer points or more noise, ``uneven`` of the same with points on lines, in bands or in pairs,
+elsewhere, ``harder`` of the same with fewer points or more noise, ``uneven`` of the same with points on lines, in bands
+or in pairs,
 ``pieces`` of squares cut out of clouds, ``objects`` of real houses, trees, cars, fences and poles on simulated ground,
 ``footprints`` of outlines, ``towns``, ``pits``, ``scenes``, ``villages``, ``places`` and ``confidence`` of simulated
 scenes, whose truth is exact, and ``maps`` of old maps with known differences.

@@ -234,6 +234,7 @@ def test_reasons_with_penetration(rng):
     assert reasons == [Reason.SOLID_PLANE, Reason.PENETRATED, Reason.SOLID] + [Reason.ROUGH] * 3
     assert confidence[0] > confidence[2] > 0.5 >= confidence[1]
     assert "Share of the beam" in report.html
+    assert "which the two means of the clusters move by little" in report.html
     assert (report.values["clusters"], report.values["building_clusters"]) == (6, 2)
 
 

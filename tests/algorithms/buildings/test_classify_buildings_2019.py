@@ -202,6 +202,7 @@ def test_the_report_tells_means_and_counts(garden):
     }
     assert f"buildings: {report.values['building_entropy']:.3g}" in report.html
     assert f"everything else: {report.values['other_entropy']:.3g}" in report.html
+    assert "The two means of their entropies decided" in report.html
 
 
 def test_the_smaller_a_roof_the_less_sure(rng):
