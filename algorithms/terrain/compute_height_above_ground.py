@@ -45,10 +45,11 @@ def compute_height_above_ground(xyz, classification, *, monitor=None):
     Notes
     -----
     Ground points are 0 m high. Points outside the hull of the ground points are measured from the nearest ground point;
-    the log says how many. The paper subtracts a terrain raster; here heights are those over the triangulation itself, which
-    the raster of 'Rasterize terrain' samples at the centers of its cells: on slopes nothing is lost to the cells. Its
-    filter of heights above 0.3 m is a step of its own, 'Filter points'. Of ground points at one place in plan the lowest counts. Bridge decks are measured from the
-    ground below them, and what stands on them, such as cars and parapets, from the decks.
+    the log says how many. The paper subtracts a terrain raster; here heights are those over the triangulation itself,
+    which the raster of 'Rasterize terrain' samples at the centers of its cells: on slopes nothing is lost to the cells.
+    Its filter of heights above 0.3 m is a step of its own, 'Filter points'. Of ground points at one place in plan the
+    lowest counts. Bridge decks are measured from the ground below them, and what stands on them, such as cars and
+    parapets, from the decks.
 
     References
     ----------
