@@ -1,0 +1,134 @@
+"""Surveys whose tiles differ, overlap, leave gaps or are damaged: worked on where that is sound, else one sentence."""
+
+import json
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
+from lidar_buildings.algorithms.pipeline import Pipeline, Step
+from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
+from lidar_buildings.algorithms.tiling.workers import Workers
+from lidar_buildings.tests.las_files import made_las, random_records, vlr
+
+QUICK = Pipeline("quick", "Quick", "Tests", "", "", "", "", (Step("clusters", "segment_clusters", {"radius": 1.0}),))
+RD = 'PROJCS["RD",UNIT["metre",1],AUTHORITY["EPSG","28992"]]'
+FEET = 'PROJCS["Oregon",UNIT["foot",0.3048],AUTHORITY["EPSG","2992"]]'
+
+
+@pytest.fixture(autouse=True)
+def _quick(monkeypatch):
+    monkeypatch.setitem(PIPELINES, QUICK.name, QUICK)
+
+
+@pytest.fixture
+def make_las(tmp_path):
+    """Write a LAS file with known bytes and return its path."""
+
+    def make(name, **contents):
+        path = tmp_path / name
+        path.write_bytes(made_las(**contents))
+        return path
+
+    return make
+
+
+def run(paths, folder):
+    return run_in_tiles(QUICK, paths, folder, workers=Workers(processes=1), block_side=50.0, compressed=False)
+
+
+def tile(path, low, high, n=500, seed=0):
+    """Write points on a square and return their file."""
+    xyz = np.random.default_rng(seed).uniform([*low, 0], [*high, 1], (n, 3)) + [600_000, 5_000_000, 0]
+    write_cloud(create_cloud({"xyz": xyz, "gps_time": np.arange(n) + 1000.0 * seed}, "EPSG:28992"), path)
+    return path
+
+
+def crs(wkt):
+    return vlr("LASF_Projection", 2112, wkt.encode() + b"\0")
+
+
+@pytest.mark.parametrize("other", [FEET, ""])
+def test_other_coordinate_systems_and_units_are_refused_by_name(make_las, tmp_path, other):
+    one = make_las("one.las", point_format=6, vlrs=(crs(RD),))
+    two = make_las("two.las", point_format=6, vlrs=(crs(other),) if other else ())
+    with pytest.raises(ValueError, match=r"one.las and two.las have different coordinate reference systems"):
+        run([one, two], tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_tiles_of_other_scales_and_point_formats_keep_theirs(make_las, tmp_path):
+    one = make_las("one.las", point_format=1, minor=2, vlrs=(crs(RD),), n=50)
+    records = random_records(7, 36, 70, seed=2)
+    two = make_las(
+        "two.las", point_format=7, vlrs=(crs(RD),), records=records,
+        scale=(0.001, 0.01, 0.01), offset=(600_100.0, 5_000_000.5, 10.0),
+    )  # fmt: skip
+    outcome = run([one, two], tmp_path / "out")
+    assert not outcome.failures
+    for source, made in zip((one, two), outcome.tiles):
+        before, after = read_cloud(source), read_cloud(made)
+        assert after.header.layout.point_format == before.header.layout.point_format
+        np.testing.assert_array_equal(after.header.scale, before.header.scale)
+        for axis in "XYZ":
+            np.testing.assert_array_equal(after.points[axis], before.points[axis])
+        assert after.has("cluster_id")
+
+
+def test_a_gap_between_tiles_is_no_failure(tmp_path):
+    paths = [tile(tmp_path / "a.las", (0, 0), (20, 20)), tile(tmp_path / "b.las", (400, 300), (420, 320), seed=1)]
+    outcome = run(paths, tmp_path / "out")
+    assert not outcome.failures
+    assert [len(read_cloud(one)) for one in outcome.tiles] == [500, 500]
+
+
+def test_what_two_tiles_have_alike_is_worked_on_once_and_written_twice(tmp_path):
+    one = tile(tmp_path / "a.las", (0, 0), (20, 20))
+    again = tmp_path / "b.las"
+    again.write_bytes(one.read_bytes())
+    outcome = run([one, again], tmp_path / "out")
+    first, second = (read_cloud(path) for path in outcome.tiles)
+    np.testing.assert_array_equal(first.get("cluster_id"), second.get("cluster_id"))
+    np.testing.assert_array_equal(first.points["X"], second.points["X"])
+
+
+@pytest.mark.parametrize(
+    ("damage", "sentence"),
+    [
+        (lambda raw: b"", "b.las"),
+        (lambda raw: raw[:100], "b.las"),
+        (lambda raw: raw[:-1000], "b.las is truncated or damaged"),
+        (lambda raw: raw[:107] + bytes(4) + raw[111:247] + bytes(8) + raw[255:], "b.las has no points"),
+    ],
+    ids=["nothing", "head", "points", "empty"],
+)
+def test_a_tile_that_is_empty_or_damaged_is_named_before_the_work(tmp_path, damage, sentence):
+    good, bad = (tile(tmp_path / name, (0, 0), (20, 20)) for name in ("a.las", "b.las"))
+    bad.write_bytes(damage(bad.read_bytes()))
+    with pytest.raises(ValueError, match=sentence):
+        run([good, bad], tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_missing_tile_of_a_virtual_point_cloud_is_named(tmp_path):
+    tile(tmp_path / "a.las", (0, 0), (20, 20))
+    features = [{"type": "Feature", "assets": {"data": {"href": one, "roles": ["data"]}}} for one in ("a.las", "b.las")]
+    vpc = tmp_path / "all.vpc"
+    vpc.write_text(json.dumps({"type": "FeatureCollection", "features": features}), encoding="utf-8")
+    with pytest.raises(ValueError, match=r"names the tile b.las"):
+        run([vpc], tmp_path / "out")
+
+
+def test_tiles_without_returns_are_worked_on(make_las, tmp_path):
+    path = make_las("one.las", point_format=0, minor=2, vlrs=(crs(RD),), n=60)
+    raw = bytearray(path.read_bytes())
+    header = read_cloud(path).header
+    at = raw.__len__() - 60 * header.layout.dtype.itemsize
+    raw[at + 14 :: header.layout.dtype.itemsize] = bytes(60)
+    path.write_bytes(raw)
+    assert not read_cloud(path).get("number_of_returns").any()
+    outcome = run([path], tmp_path / "out")
+    assert not outcome.failures
+    assert len(read_cloud(outcome.tiles[0])) == 60
