@@ -446,17 +446,25 @@ def write_tile(task: _TileTask) -> Optional[Path]:
         return None
     cloud = read_cloud(task.source, box=task.extent)
     values: dict[str, np.ndarray] = {}
+    worked_on = 0
     for path, numbers in zip(task.results, task.becomes):
         result = BlockResult.read(path)
         rows = np.flatnonzero(result.source == task.number)
         if not len(rows):
             continue
+        worked_on += len(rows)
         own = result.position[rows] if position is None else np.searchsorted(position, result.position[rows])
         with np.load(numbers, allow_pickle=False) as final:
             for name, of_block in result.dimensions.items():
                 found = final[name][of_block[rows]] if name in final.files else of_block[rows]
                 whole = values.setdefault(name, np.zeros((len(cloud), *found.shape[1:]), found.dtype))
                 whole[own] = found
+    if worked_on < len(cloud):
+        # Which blocks and files have to do with each other is told by the bounds in the headers.
+        raise ValueError(
+            f"{task.source.name} has {len(cloud) - worked_on} points outside the bounds in its header; repair its "
+            "header first."
+        )
     for name, whole in values.items():
         cloud.set(name, whole)
     write_cloud(cloud, task.target)

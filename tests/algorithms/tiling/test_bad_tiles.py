@@ -1,6 +1,7 @@
 """Surveys whose tiles differ, overlap, leave gaps or are damaged: worked on where that is sound, else one sentence."""
 
 import json
+import struct
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from lidar_buildings.tests.las_files import made_las, random_records, vlr
 
 QUICK = Pipeline("quick", "Quick", "Tests", "", "", "", "", (Step("clusters", "segment_clusters", {"radius": 1.0}),))
 RD = 'PROJCS["RD",UNIT["metre",1],AUTHORITY["EPSG","28992"]]'
+BOUNDS_AT = 179
 FEET = 'PROJCS["Oregon",UNIT["foot",0.3048],AUTHORITY["EPSG","2992"]]'
 
 
@@ -29,7 +31,9 @@ def make_las(tmp_path):
 
     def make(name, **contents):
         path = tmp_path / name
-        path.write_bytes(made_las(**contents))
+        raw = bytearray(made_las(**contents))
+        struct.pack_into("<6d", raw, BOUNDS_AT, 600_200, 600_000, 5_000_200, 5_000_000, 200, 0)
+        path.write_bytes(raw)
         return path
 
     return make
@@ -123,12 +127,25 @@ def test_a_missing_tile_of_a_virtual_point_cloud_is_named(tmp_path):
 
 def test_tiles_without_returns_are_worked_on(make_las, tmp_path):
     path = make_las("one.las", point_format=0, minor=2, vlrs=(crs(RD),), n=60)
+    size = read_cloud(path).header.layout.dtype.itemsize
     raw = bytearray(path.read_bytes())
-    header = read_cloud(path).header
-    at = raw.__len__() - 60 * header.layout.dtype.itemsize
-    raw[at + 14 :: header.layout.dtype.itemsize] = bytes(60)
+    # The byte of return number, number of returns and flags.
+    raw[len(raw) - 60 * size + 14 :: size] = bytes(60)
     path.write_bytes(raw)
     assert not read_cloud(path).get("number_of_returns").any()
     outcome = run([path], tmp_path / "out")
     assert not outcome.failures
     assert len(read_cloud(outcome.tiles[0])) == 60
+
+
+def test_points_outside_the_bounds_of_their_header_are_not_lost_in_silence(tmp_path):
+    # The second one reaches into a block that its header knows nothing of.
+    paths = [tile(tmp_path / "a.las", (0, 0), (20, 20)), tile(tmp_path / "b.las", (60, 0), (140, 20), seed=1)]
+    raw = bytearray(paths[1].read_bytes())
+    # The greatest easting.
+    struct.pack_into("<d", raw, BOUNDS_AT, 600_070.0)
+    paths[1].write_bytes(raw)
+    outcome = run(paths, tmp_path / "out")
+    assert [one.name for one in outcome.tiles] == ["a.las"]
+    (failure,) = outcome.failures
+    assert "points outside the bounds in its header; repair its header first" in failure
