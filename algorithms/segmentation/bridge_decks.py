@@ -208,6 +208,11 @@ class Decks:
 
     def _is_joined(self, deck: np.ndarray, others: np.ndarray, axis: np.ndarray) -> bool:
         """Return whether a deck goes on into the terrain at both of its ends along its ``axis`` (2,)."""
+        # A tree of what lies around the deck is made in a fraction of the time of one of the whole terrain.
+        least, most = deck.min(axis=0) - 1.5 * self.reach, deck.max(axis=0) + 1.5 * self.reach
+        for column in range(2):
+            place = others[:, column]
+            others = others[(place >= least[column]) & (place <= most[column])]
         if not len(others):
             return False
         along = deck[:, :2] @ axis
