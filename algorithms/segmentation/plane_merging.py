@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Optional
-
 import numpy as np
 
 from ..geometry.boxes import Boxes, around
@@ -164,17 +162,19 @@ def grown_planes(
     returns what :func:`nearest_plane` does.
     """
     box, around_each = boxes.box(), _around_each(boxes)
-    pieces = np.unique(voxel * len(planes) + group)
+    pieces = new = np.unique(voxel * len(planes) + group)
+    nearest, distance = np.full(len(box), -1), np.full(len(box), tolerance)
     for step in range(_MAX_ROUNDS):
         now = monitor.part(step / _MAX_ROUNDS, (step + 1) / _MAX_ROUNDS)
-        at, plane = np.divmod(pieces, max(len(planes), 1))
-        nearest = nearest_plane(boxes, at, plane, planes, tolerance, now, around_each)
+        seen = _planes_around(boxes, *np.divmod(new, max(len(planes), 1)), len(planes), around_each)
+        _take_nearer(boxes, box, *seen, planes, nearest, distance, now)
         on_plane = nearest >= 0
         held = np.bincount(box[on_plane], minlength=len(boxes)) >= _HELD * boxes.size
         inside = on_plane & held[box]
         found, count = np.unique(box[inside] * len(planes) + nearest[inside], return_counts=True)
         grown = np.union1d(pieces, found[count >= _LEAST_POINTS])
-        if len(grown) == len(pieces):
+        new = np.setdiff1d(grown, pieces, assume_unique=True)
+        if not len(new):
             break
         pieces = grown
     return nearest
@@ -187,7 +187,6 @@ def nearest_plane(
     planes: Planes,
     tolerance: float,
     monitor: Monitor,
-    around_each: Optional[_Pairs] = None,
 ) -> np.ndarray:
     """Return the plane (n,), of those in its voxel and the voxels around, that each point lies nearest to.
 
@@ -203,33 +202,46 @@ def nearest_plane(
         Distance within which a point lies on a plane, m.
     monitor : Monitor
         Receives progress.
-    around_each : list of pairs of ndarray, optional
-        What :func:`_around_each` returns for the boxes, where it is known.
 
     Returns
     -------
     ndarray of shape (n,), int64
         Numbers of planes in the order of the boxes; -1 where none is within the tolerance.
     """
-    around_each = _around_each(boxes) if around_each is None else around_each
-    seen_from, plane = _planes_around(boxes, voxel, group, len(planes), around_each)
+    box = boxes.box()
+    nearest, distance = np.full(len(box), -1), np.full(len(box), tolerance)
+    seen = _planes_around(boxes, voxel, group, len(planes), _around_each(boxes))
+    _take_nearer(boxes, box, *seen, planes, nearest, distance, monitor)
+    return nearest
+
+
+def _take_nearer(
+    boxes: Boxes,
+    box: np.ndarray,
+    seen_from: np.ndarray,
+    plane: np.ndarray,
+    planes: Planes,
+    nearest: np.ndarray,
+    distance: np.ndarray,
+    monitor: Monitor,
+) -> None:
+    """Change the plane ``nearest`` (n,) to each point, and its ``distance`` (m), to those that are nearer.
+
+    The planes numbered ``plane`` (m,) are compared with the points of the boxes ``seen_from`` (m,), ascending. Of
+    planes as near it is the one with the largest number.
+    """
     count = np.bincount(seen_from, minlength=len(boxes))
     start = np.cumsum(count) - count
-    box = boxes.box()
-    nearest = np.full(len(box), -1)
 
     def work(rows: np.ndarray) -> None:
-        least = np.full(len(rows), tolerance)
         for rank in range(int(count[box[rows]].max())):
-            has = np.flatnonzero(count[box[rows]] > rank)
-            candidate = plane[start[box[rows[has]]] + rank]
-            distance = planes.distance(boxes.xyz[rows[has]], candidate)
-            better = distance <= least[has]
-            least[has[better]] = distance[better]
-            nearest[rows[has[better]]] = candidate[better]
+            some = rows[count[box[rows]] > rank]
+            candidate = plane[start[box[some]] + rank]
+            off = planes.distance(boxes.xyz[some], candidate)
+            is_nearer = (off < distance[some]) | ((off == distance[some]) & (candidate > nearest[some]))
+            distance[some[is_nearer]], nearest[some[is_nearer]] = off[is_nearer], candidate[is_nearer]
 
-    in_chunks(work, np.arange(len(box)), _CHUNK, monitor)
-    return nearest
+    in_chunks(work, np.flatnonzero(count[box]), _CHUNK, monitor)
 
 
 def _around_each(boxes: Boxes) -> _Pairs:
