@@ -113,14 +113,17 @@ def _gaps(places: np.ndarray, piece: np.ndarray, max_gap: float, monitor: Monito
     """Return the shortest pair (k, 2) of voxels between any two pieces at most ``max_gap`` (m) apart."""
     shortest = [np.zeros((0, 2), np.int64)]
     tree = spatial.cKDTree(places)
-    small = np.flatnonzero(piece != np.argmax(np.bincount(piece))) if len(piece) else np.zeros(0, np.int64)
+    is_small = piece != np.argmax(np.bincount(piece)) if len(piece) else np.zeros(0, bool)
+    small = np.flatnonzero(is_small)
     for start in range(0, len(small), _CHUNK):
         monitor.progress(start / len(small))
         own = small[start : start + _CHUNK]
         near = tree.query_ball_point(places[own], max_gap, workers=-1)
         there = np.concatenate([np.array(one, np.int64) for one in near])
-        pairs = np.column_stack([np.repeat(own, [len(one) for one in near]), there])
-        shortest.append(_shortest(places, piece, pairs[piece[pairs[:, 0]] != piece[there]]))
+        here = np.repeat(own, [len(one) for one in near])
+        # Two voxels of small pieces see each other.
+        is_pair = (piece[here] != piece[there]) & ((here < there) | ~is_small[there])
+        shortest.append(_shortest(places, piece, np.column_stack([here[is_pair], there[is_pair]])))
     return _shortest(places, piece, np.concatenate(shortest))
 
 
