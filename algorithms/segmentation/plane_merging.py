@@ -166,7 +166,8 @@ def grown_planes(
     nearest, distance = np.full(len(box), -1), np.full(len(box), tolerance)
     for step in range(_MAX_ROUNDS):
         now = monitor.part(step / _MAX_ROUNDS, (step + 1) / _MAX_ROUNDS)
-        seen = _planes_around(boxes, *np.divmod(new, max(len(planes), 1)), len(planes), around_each)
+        at, plane = np.divmod(new, max(len(planes), 1))
+        seen = _planes_around(boxes, at, plane, len(planes), around_each)
         _take_nearer(boxes, box, *seen, planes, nearest, distance, now)
         on_plane = nearest >= 0
         held = np.bincount(box[on_plane], minlength=len(boxes)) >= _HELD * boxes.size
