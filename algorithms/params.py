@@ -130,7 +130,16 @@ BridgeHeight = Annotated[
     ),
 ]
 
-BridgeWidth = Annotated[float, Param("Maximum bridge width", "Width of the widest bridge.", unit="m", low=1, high=1000)]
+BridgeWidth = Annotated[
+    float,
+    Param(
+        "Maximum bridge width",
+        "Width of the widest bridge; 0 looks for no bridges.",
+        unit="m",
+        low=0,
+        high=1000,
+    ),
+]
 
 BridgeArea = Annotated[
     float, Param("Minimum bridge area", "Area of the smallest bridge.", unit="m²", low=1, high=100_000)

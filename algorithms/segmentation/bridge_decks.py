@@ -115,6 +115,8 @@ class Decks:
 
     def find(self, xyz: np.ndarray, is_earth: np.ndarray, is_terrain: np.ndarray, monitor: Monitor) -> np.ndarray:
         """Return which points (n,) of the bare earth ``is_earth`` (n,) are decks that lead to ``is_terrain`` (n,)."""
+        if not self.max_width:
+            return np.zeros(len(xyz), bool)
         votes = np.zeros(len(xyz), np.int8)
         # Directions of lines as doubled angles: their sum tells across which one a deck is raised.
         across = np.zeros(len(xyz), np.complex64)

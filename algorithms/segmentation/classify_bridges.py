@@ -59,7 +59,7 @@ def classify_bridges(
     Returns
     -------
     classification : ndarray of shape (n,), uint8
-        The same with bridge deck (17).
+        The same with bridge deck (17); unchanged where no bridges are looked for.
 
     Raises
     ------
@@ -77,6 +77,8 @@ def classify_bridges(
     clouds, section 5.3. Sithole, G., Vosselman, G., 2003. Automatic structure detection in a point cloud of an urban
     landscape. URBAN 2003, Berlin, 67-71.
     """
+    if not max_width:
+        return classification.astype(np.uint8)
     if not (classification == PointClass.GROUND).any():
         raise ValueError("No ground points (class 2); run 'Classify ground points (TIN)' first.")
     sampling = sampling or CloudSampling.of(xyz, classification)

@@ -74,10 +74,10 @@ def test_tunnel_mouths_jetties_and_ramps_are_no_bridges(kind):
     np.testing.assert_array_equal(classify_bridges(xyz, classes), classes)
 
 
-def test_no_bridge_is_a_building():
+def test_a_fly_over_is_a_bridge_and_no_building_where_bridges_are_looked_for():
     xyz, true, *_ = simulate_bridges(kind="fly-over", density=4.0, seed=3, trees=False)
     cloud = create_cloud({"xyz": xyz})
-    run_pipeline(PIPELINES["detect_buildings"], cloud)
+    run_pipeline(PIPELINES["detect_buildings"], cloud, bridges_max_width=40.0)
     made = cloud.get("classification")
     assert not (made == 6).any()
     assert (made[true == 17] == 17).mean() > 0.8
@@ -88,6 +88,12 @@ def test_limits_have_their_effect():
     assert not (classified(xyz, part, min_height=3.5) == 17).any()
     assert not (classified(xyz, part, max_width=5.0) == 17).any()
     assert not (classified(xyz, part, min_bridge_area=120.0) == 17).any()
+
+
+def test_nothing_changes_where_no_bridges_are_looked_for():
+    xyz, part = canal()
+    classes = np.where(part == DECK, 17, 1).astype(np.uint8)
+    np.testing.assert_array_equal(classify_bridges(xyz, classes, max_width=0.0), classes)
 
 
 def test_water_vegetation_buildings_and_noise_are_no_decks_and_earlier_decks_are_forgotten():
