@@ -190,8 +190,9 @@ def test_the_chains_own_defaults_hold_until_something_else_is_given(calls):
     assert [tunables for _, tunables in calls] == [own, {**own, "plan_distance": 3.0}, own]
 
 
-def test_detect_buildings_is_its_stages_with_nothing_set():
-    assert not any(step.tunables for step in PIPELINES["detect_buildings"].steps)
+def test_detect_buildings_is_its_stages_with_nothing_set_but_for_bridges_which_are_asked_for():
+    own = {step.stage_name: step.tunables for step in PIPELINES["detect_buildings"].steps if step.tunables}
+    assert own == {"classify_bridges": {"max_width": 0.0}}
 
 
 def test_one_stage_may_be_in_a_chain_twice(calls):
