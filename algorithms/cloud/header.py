@@ -299,6 +299,8 @@ class _Reader:
             self.stream.seek(start)
             header.evlrs = [self._record(_EVLR, self.total) for _ in range(n_evlrs)]
         if header.waveforms_at and header.encoding & _WAVEFORMS_INSIDE and header.find(WAVEFORMS) is None:
+            if header.waveforms_at > self.total:
+                raise truncated(self.path, f"waveforms should start at byte {header.waveforms_at} of {self.total}")
             self.stream.seek(header.waveforms_at)
             record = self._record(_EVLR, self.total)
             if record.key == WAVEFORMS:

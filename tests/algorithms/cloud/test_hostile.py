@@ -190,6 +190,14 @@ def test_waveforms_where_the_header_says_but_none_are(make_las, tmp_path):
         assert [record.key for record in again.header.evlrs] == [(b"someone", 7), (b"LASF_Spec", 2047)]
 
 
+def test_waveforms_farther_off_than_any_file_is_long(make_las):
+    """A position of 2^64 - 1 was refused in Python's own words."""
+    path = make_las(point_format=9, waveforms=True, evlrs=(evlr("someone", 7, b"anything"),))
+    raw = path.read_bytes()
+    hostile = [patched(raw, 227, "<Q", position) for position in (2**64 - 1, 2**63, len(raw) + 1)]
+    assert_refused(path, "waveforms should start at byte", *hostile)
+
+
 def test_points_of_other_kinds_in_the_laszip_record(laz):
     """Of points that were taken for colors lazrs read the sizes of layers at a wrong place, and made room for 3 GB."""
     raw, path = laz
