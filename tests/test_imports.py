@@ -129,6 +129,11 @@ MEASURE_PARTS = {
 }
 
 
+def test_searches_take_no_more_cores_than_the_process_may_use():
+    """``workers=-1`` takes all cores of the machine, also where processes share them or a batch system gives few."""
+    assert not [path for path in CORE if "workers=-1" in (ROOT / path).read_text(encoding="utf-8")]
+
+
 def test_how_a_cloud_was_sampled_is_asked_of_its_sampling():
     """A stage that measured the density of all its points would measure it again, and on other points than the next."""
     measuring = [name for name in CORE if not name.startswith("algorithms/sampling/")]

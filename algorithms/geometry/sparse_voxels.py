@@ -12,6 +12,7 @@ import math
 import numpy as np
 
 from ..packages import spatial
+from ..threads import n_threads
 from .groups import components, run_starts
 
 # A coordinate this little (m) under the side of a voxel is on it: more than float64 rounds off, less than files tell.
@@ -229,7 +230,7 @@ def distance_to_background(cells: np.ndarray, metric: str = "euclidean") -> np.n
     keys = box.of(cells)
     around = np.unique(np.concatenate([keys + box.step(offset) for offset in neighbor_offsets(6)]))
     shell = box.cells(around[find_keys(keys, around) < 0])
-    return spatial.cKDTree(shell).query(cells, p=_NORMS[metric], workers=-1)[0]
+    return spatial.cKDTree(shell).query(cells, p=_NORMS[metric], workers=n_threads())[0]
 
 
 def _structuring_parts(connectivity: int) -> list[np.ndarray]:

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..packages import interpolate, spatial
 from ..stage import Monitor
-from ..threads import in_chunks
+from ..threads import in_chunks, n_threads
 from .delaunay import circles
 from .grid import grid_over, plan_box
 from .tin import CORNERS, Tin
@@ -82,7 +82,7 @@ class TiledTin:
 
     def nearest_elevation(self, places: np.ndarray) -> np.ndarray:
         """Return the elevation (n,) of the node nearest in plan to each place (n, 2 or 3), m."""
-        return self.nodes[self._tree.query(places[:, :2] - self._shift, workers=-1)[1], 2]
+        return self.nodes[self._tree.query(places[:, :2] - self._shift, workers=n_threads())[1], 2]
 
     def _fill_gaps(
         self, around: np.ndarray, within: np.ndarray, places: np.ndarray, found: np.ndarray, monitor: Monitor

@@ -12,6 +12,7 @@ from ..packages import spatial
 from ..params import IsolatedPoints
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Monitor, Param, stage
+from ..threads import n_threads
 from .isolated_points import add_isolated, link_length
 
 # Points asked for at once, so that progress is told and the neighbors of only so many are held.
@@ -117,7 +118,7 @@ def _neighbor_distances(
         # In the order of the tree's leaves the neighbors of a chunk lie together.
         rows = tree.indices[start : start + _CHUNK]
         # The nearest point is the point itself.
-        found, neighbors = tree.query(points[rows], n_neighbors + 1, workers=-1)
+        found, neighbors = tree.query(points[rows], n_neighbors + 1, workers=n_threads())
         nearest[rows] = found[:, 1]
         distance[rows] = found[:, 1:].mean(axis=1)
         rise[rows] = points[rows, 2] - np.median(points[neighbors[:, 1:], 2], axis=1)

@@ -11,7 +11,7 @@ from ..neighborhoods.covariance import Nearest, symmetric_eigenvalues
 from ..neighborhoods.wide_in_plan import LEAST_WIDTH, MOST_ACROSS_LINES, Wide
 from ..packages import spatial, special
 from ..stage import Monitor
-from ..threads import in_chunks
+from ..threads import in_chunks, n_threads
 from .density import point_spacing
 
 # Points in the sample, about: their quantiles are good to a percent.
@@ -150,7 +150,7 @@ class SurfaceSample:
         """Return the points per square meter of the surfaces, see :func:`surface_density`."""
         count = min(_NEIGHBORS, len(self))
         own = self.columns[:, self.rows].T
-        reach = float(np.median(self.tree.query(own, k=[count], workers=-1)[0]))
+        reach = float(np.median(self.tree.query(own, k=[count], workers=n_threads())[0]))
         return count / (np.pi * reach**2) if reach > 0 else float("inf")
 
     def neighborhood(self, density: float, deviation: float) -> Union[Nearest, Wide]:

@@ -11,6 +11,7 @@ from ..packages import spatial
 from ..params import PointDensity, SurfaceNoise
 from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..stage import Param, stage
+from ..threads import n_threads
 from .adjacent_pieces import adjacent_pieces
 from .piece_growing import Growth, Regions
 from .recorded_lines import Recording, recorded_lines
@@ -234,7 +235,7 @@ def _with_others(
         return segment
     row, piece = row[known], piece[known]
     count = min(3, len(row))
-    found = spatial.cKDTree(points[row]).query(points[others], count, distance_upper_bound=distance, workers=-1)[1]
+    found = spatial.cKDTree(points[row]).query(points[others], count, distance_upper_bound=distance, workers=n_threads())[1]
     for near in found.reshape(len(others), count).T:
         free = np.flatnonzero((segment[others] < 0) & (near < len(row)))
         plane = regions.plane[piece[near[free]]]

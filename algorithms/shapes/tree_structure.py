@@ -10,6 +10,7 @@ from ..geometry.groups import components, run_starts
 from ..geometry.sparse_voxels import close_voxels, locate_voxels, neighbor_pairs, voxelize
 from ..packages import csgraph, sparse, spatial
 from ..stage import Monitor
+from ..threads import n_threads
 
 # A step over a gap costs so many times its length, so that paths keep to the wood where there is some.
 _GAP_PRICE = 3.0
@@ -118,7 +119,7 @@ def _gaps(places: np.ndarray, piece: np.ndarray, max_gap: float, monitor: Monito
     for start in range(0, len(small), _CHUNK):
         monitor.progress(start / len(small))
         own = small[start : start + _CHUNK]
-        near = tree.query_ball_point(places[own], max_gap, workers=-1)
+        near = tree.query_ball_point(places[own], max_gap, workers=n_threads())
         there = np.concatenate([np.array(one, np.int64) for one in near])
         here = np.repeat(own, [len(one) for one in near])
         # Two voxels of small pieces see each other.

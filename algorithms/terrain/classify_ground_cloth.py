@@ -24,6 +24,10 @@ _MOST_PARTICLES = 500_000
 # Hanging parts of at most so many particles stay as they are; others come down onto steps smaller than this (m).
 _SMALL_PART, _LARGEST_STEP = 50, 0.3
 
+# Particles at most so many grid cells from one with a point take over its floor as the authors' program does, which
+# searches link by link; the search grows with the square of the distance, and no point lies near those farther away.
+_FARTHEST_BY_LINKS = 20
+
 
 @stage(
     "Classify ground points (cloth)",
@@ -115,7 +119,9 @@ def classify_ground_cloth(
     draw each other, particles without a point, from where the cloth falls) is as in the program that its authors
     published, and so are the defaults. Two things are not: of two points equally near to a particle it takes the lower,
     where the program takes the first in the file, so that the order of points has no influence; and particles at the
-    corners of the cloud are let down as all others are, where the program leaves some of them out.
+    corners of the cloud are let down as all others are, where the program leaves some of them out. Particles more than
+    20 grid cells from any point, with none in their row and column, take the height of the nearest point, where the
+    program searches on over the links.
 
     References
     ----------
@@ -184,11 +190,15 @@ def _particles(points: np.ndarray, size: float) -> _Particles:
 def _filled(floor: np.ndarray) -> np.ndarray:
     """Give particles without a point the floor of the next that has one: eastward, westward, southward, northward.
 
-    Where row and column have none, it is the one that comes first over the links of the cloth.
+    Where row and column have none, it is the one that comes first over the links of the cloth, or the nearest one where
+    that would take too many links.
     """
     filled = floor
     for axis, backward in ((1, True), (1, False), (0, False), (0, True)):
         filled = np.where(np.isnan(filled), _carried(floor, axis, backward), filled)
+    empty = np.isnan(floor)
+    distance, nearest = ndimage.distance_transform_edt(empty, return_indices=True)
+    filled = np.where(np.isnan(filled) & (distance > _FARTHEST_BY_LINKS), floor[tuple(nearest)], filled)
     missing = np.argwhere(np.isnan(filled))
     for hops in _hops():
         if not len(missing):

@@ -13,6 +13,7 @@ from ..segmentation.segment_clusters import dbscan, points_at_corner
 from ..segmentation.segment_roofs import segment_roofs
 from ..segmentation.top_surface import TopSurface
 from ..stage import Monitor
+from ..threads import n_threads
 
 
 def bent_roofs(
@@ -84,7 +85,7 @@ def with_bent_roofs(
     if not len(bent):
         return cluster_id
     plane = np.flatnonzero(cluster_id > 0)
-    distance, nearest = spatial.cKDTree(xyz[plane]).query(xyz[bent], distance_upper_bound=gap, workers=-1)
+    distance, nearest = spatial.cKDTree(xyz[plane]).query(xyz[bent], distance_upper_bound=gap, workers=n_threads())
     touches = np.isfinite(distance)
     pairs, count = np.unique(
         np.column_stack([part[touches], cluster_id[plane[nearest[touches]]]]), axis=0, return_counts=True

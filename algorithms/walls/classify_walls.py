@@ -23,6 +23,7 @@ from ..sampling.cloud_sampling import CloudSampling
 from ..sampling.surface_noise import ON_PLANE, plane_roughness, surface_density
 from ..segmentation.candidate_points import NO_OBJECTS
 from ..stage import Monitor, Param, stage
+from ..threads import n_threads
 
 # The points of a normal reach this far (times the roughness), which holds its error to a few degrees.
 _REACH_DEVIATIONS = 6.185
@@ -192,7 +193,7 @@ def _owners(xy: np.ndarray, all_xy: np.ndarray, cluster_id: np.ndarray, margin: 
     cell = np.floor((all_xy[roof] - start) / _ROOF_CELL).astype(np.int64)
     _, first = np.unique(np.column_stack([cell, cluster_id[roof]]), axis=0, return_index=True)
     places = (cell[first] + 0.5) * _ROOF_CELL
-    nearest = spatial.cKDTree(places).query(xy - start, distance_upper_bound=_NEAR + margin, workers=-1)[1]
+    nearest = spatial.cKDTree(places).query(xy - start, distance_upper_bound=_NEAR + margin, workers=n_threads())[1]
     found = np.flatnonzero(nearest < len(first))
     owner[found] = cluster_id[roof[first]][nearest[found]]
     for number, part in members(owner).items():

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.algorithms.terrain import classify_ground_cloth as of_classify
 from lidar_buildings.algorithms.terrain import cloth as of_cloth
 from lidar_buildings.algorithms.terrain.classify_ground_cloth import classify_ground_cloth
 from lidar_buildings.algorithms.terrain.cloth import Cloth
@@ -214,6 +215,23 @@ def test_holes_without_points_are_crossed(rng):
     found = is_ground(xyz[there])
     assert found[~is_house[there]].mean() > 0.97
     assert found[is_house[there]].mean() < 0.01
+
+
+def test_wide_empty_corners_take_the_nearest_floor(monkeypatch):
+    """Two fields at opposite corners: searching 200 particles far over the links took a minute."""
+    rings = of_classify._hops
+    asked = []
+    monkeypatch.setattr(of_classify, "_hops", lambda: (asked.append(1) or ring for ring in rings()))
+    floor = np.full((240, 240), np.nan)
+    floor[:40, :40], floor[-40:, -40:] = -1.0, -7.0
+    filled = of_classify._filled(floor)
+    assert len(asked) <= 21
+    np.testing.assert_array_equal(np.unique(filled), [-7, -1])
+    row, column = np.indices(floor.shape)
+    is_far = (row > 60) & (column > 60) & (row < 180) & (column < 180)
+    from_first, from_last = np.hypot(row - 39, column - 39), np.hypot(row - 200, column - 200)
+    np.testing.assert_array_equal(filled[is_far & (from_first < from_last)], -1)
+    np.testing.assert_array_equal(filled[is_far & (from_first > from_last)], -7)
 
 
 def test_bad_clouds_are_refused():
