@@ -235,7 +235,8 @@ def _with_others(
         return segment
     row, piece = row[known], piece[known]
     count = min(3, len(row))
-    found = spatial.cKDTree(points[row]).query(points[others], count, distance_upper_bound=distance, workers=n_threads())[1]
+    tree = spatial.cKDTree(points[row])
+    _, found = tree.query(points[others], count, distance_upper_bound=distance, workers=n_threads())
     for near in found.reshape(len(others), count).T:
         free = np.flatnonzero((segment[others] < 0) & (near < len(row)))
         plane = regions.plane[piece[near[free]]]
