@@ -188,50 +188,139 @@ def complete_buildings(
     if not is_roof.any():
         return result.astype(np.uint8), np.zeros(len(xyz), np.int32), confidence, reason
 
-    is_noise = np.isin(classification, NOISE)
-    # What lies on a bridge deck stands on no ground, and is no wall.
-    raised = (height_above_ground >= _WALL_FOOT) & ~is_noise & (classification != PointClass.BRIDGE_DECK)
-    if in_images:
-        surface = TopSurface(xyz, height_above_ground, ~is_noise, density)
-        cell, cell_size = surface.cell, surface.size
-        core = is_roof if segment_id is None else is_roof & ~amid_rough(surface, xyz, segment_id)
-        extent = RoofExtent(surface, _cells_with(cell, core, surface.height.shape))
-        covered = extent.covered(min_width, gap)
-    else:
-        cell_size = max(_LEAST_CELL, _CELL_SPACINGS * spacing)
-        refuse_sparse(xyz, cell_size)
-        cell = _cells(xyz, cell_size, margin=gap)
-        # Multipath through a skylight is no ground that shows in it.
-        covered = _covered(cell, is_roof, ~raised & ~is_noise, gap, cell_size)
-    monitor.progress(0.3)
-    building, refused = _numbered(covered, min_area, min_width, cell_size)
-    if in_images:
-        refused[_cells_with(cell, is_roof & ~core, refused.shape) & (building == 0)] = Reason.MOSTLY_OTHER
-        building, refused = without_vehicles(extent, building, refused)
-        building = _numbers(np.bincount(building.ravel()) > 0)[building]
-    top = _roof_top(cell, xyz[:, 2], is_roof, covered)
-    if segment_id is not None:
-        if in_images:
-            at_roof = extent.interior(building)[cell] & surface.on_top(xyz) & ~is_noise
-        else:
-            at_roof = raised & (np.abs(xyz[:, 2] - top[cell]) <= _AT_ROOF)
-        building, refused = _mostly_roof(building, refused, cell, at_roof, is_roof & (segment_id > 0), min_roof_share)
-    if in_images:
-        # Nothing is seen beneath a roof but its own walls, down to their feet.
-        raised |= (building[cell] > 0) & ~is_noise
-        building = extent.faces(building)
-        raised |= (building[cell] > 0) & (height_above_ground >= FOOT) & ~is_noise
-    columns = _Columns(building, top, cell_size)
+    roofs = _Roofs.of(xyz, height_above_ground, classification, segment_id)
+    limits = _Limits(gap, density, min_area, min_width, min_roof_share)
+    extents = _extents_in_images(roofs, limits) if in_images else _extents_in_scan(roofs, limits)
+    columns = _Columns(extents.building, extents.top, extents.cell_size)
     monitor.progress(0.6)
 
     has_returns = return_number is not None and number_of_returns is not None
     goes_on = return_number < number_of_returns if has_returns else None
-    points = _Points(cell, xyz[:, 2], height_above_ground, raised, goes_on)
+    points = _Points(extents.cell, xyz[:, 2], height_above_ground, extents.raised, goes_on)
     cluster_id = columns.owners(points, roof_clearance, structure_height)
     result[cluster_id > 0] = PointClass.BUILDING
     monitor.progress(1.0)
-    refusal = np.where(building[cell] > 0, Reason.TOO_LOW, refused[cell])
+    refusal = np.where(extents.building[extents.cell] > 0, Reason.TOO_LOW, extents.refused[extents.cell])
     return result.astype(np.uint8), cluster_id, *_explained(confidence, reason, is_roof, cluster_id, refusal)
+
+
+@dataclass(frozen=True)
+class _Limits:
+    """What is asked of a building: gap that is closed (m), points per m², least area (m²), width (m) and roof share."""
+
+    gap: float
+    density: float
+    min_area: float
+    min_width: float
+    min_roof_share: float
+
+
+@dataclass(frozen=True)
+class _Roofs:
+    """All points (n,), with the roofs among them.
+
+    Attributes
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    height : ndarray of shape (n,)
+        Heights above ground, m.
+    is_roof, is_noise : ndarray of shape (n,), bool
+        Points of roofs to start from, and of noise.
+    may_stand : ndarray of shape (n,), bool
+        Points that can be of a building: neither noise nor bridge deck.
+    on_surface : ndarray of shape (n,), bool, optional
+        Points of roofs on a roof surface; None where these are not known.
+    segment_id : ndarray of shape (n,), int32, optional
+        Roof surfaces, 0 is none.
+    """
+
+    xyz: np.ndarray
+    height: np.ndarray
+    is_roof: np.ndarray
+    is_noise: np.ndarray
+    may_stand: np.ndarray
+    on_surface: Optional[np.ndarray]
+    segment_id: Optional[np.ndarray]
+
+    @classmethod
+    def of(
+        cls, xyz: np.ndarray, height: np.ndarray, classification: np.ndarray, segment_id: Optional[np.ndarray]
+    ) -> _Roofs:
+        """Tell roofs, noise and bridge decks by the classes of points."""
+        is_roof, is_noise = classification == PointClass.BUILDING, np.isin(classification, NOISE)
+        # What lies on a bridge deck stands on no ground, and is no wall.
+        may_stand = ~is_noise & (classification != PointClass.BRIDGE_DECK)
+        on_surface = None if segment_id is None else is_roof & (segment_id > 0)
+        return cls(xyz, height, is_roof, is_noise, may_stand, on_surface, segment_id)
+
+
+@dataclass(frozen=True)
+class _Extents:
+    """Where buildings are in plan.
+
+    Attributes
+    ----------
+    cell : tuple of two ndarrays of shape (n,)
+        Row and column of the cell that each point is in.
+    cell_size : float
+        Their size, m.
+    building : ndarray of shape (rows, columns), int32
+        Number of the building that covers each cell, 0 is none.
+    refused : ndarray of shape (rows, columns), uint8
+        Why what covers a cell is no building.
+    top : ndarray of shape (rows, columns)
+        Elevation of the roof in each cell or the nearest one with a roof, m.
+    raised : ndarray of shape (n,), bool
+        Points that belong to a building if their cell does.
+    """
+
+    cell: tuple[np.ndarray, np.ndarray]
+    cell_size: float
+    building: np.ndarray
+    refused: np.ndarray
+    top: np.ndarray
+    raised: np.ndarray
+
+
+def _extents_in_scan(roofs: _Roofs, limits: _Limits) -> _Extents:
+    """Return where buildings are in a laser scan: in cells with roof points, gaps closed where no ground shows."""
+    cell_size = max(_LEAST_CELL, _CELL_SPACINGS / np.sqrt(limits.density))
+    refuse_sparse(roofs.xyz, cell_size)
+    cell = _cells(roofs.xyz, cell_size, margin=limits.gap)
+    raised = (roofs.height >= _WALL_FOOT) & roofs.may_stand
+    # Multipath through a skylight is no ground that shows in it.
+    covered = _covered(cell, roofs.is_roof, ~raised & ~roofs.is_noise, limits.gap, cell_size)
+    building, refused = _numbered(covered, limits.min_area, limits.min_width, cell_size)
+    top = _roof_top(cell, roofs.xyz[:, 2], roofs.is_roof, covered)
+    if roofs.on_surface is not None:
+        at_roof = raised & (np.abs(roofs.xyz[:, 2] - top[cell]) <= _AT_ROOF)
+        building, refused = _mostly_roof(building, refused, cell, at_roof, roofs.on_surface, limits.min_roof_share)
+    return _Extents(cell, cell_size, building, refused, top, raised)
+
+
+def _extents_in_images(roofs: _Roofs, limits: _Limits) -> _Extents:
+    """Return where buildings are in a cloud of matched images: to half the height of the rounded edges of roofs."""
+    surface = TopSurface(roofs.xyz, roofs.height, ~roofs.is_noise, limits.density)
+    cell = surface.cell
+    core = roofs.is_roof
+    if roofs.segment_id is not None:
+        core = core & ~amid_rough(surface, roofs.xyz, roofs.segment_id)
+    extent = RoofExtent(surface, _cells_with(cell, core, surface.height.shape))
+    covered = extent.covered(limits.min_width, limits.gap)
+    building, refused = _numbered(covered, limits.min_area, limits.min_width, surface.size)
+    refused[_cells_with(cell, roofs.is_roof & ~core, refused.shape) & (building == 0)] = Reason.MOSTLY_OTHER
+    building, refused = without_vehicles(extent, building, refused)
+    building = _numbers(np.bincount(building.ravel()) > 0)[building]
+    if roofs.on_surface is not None:
+        at_roof = extent.interior(building)[cell] & surface.on_top(roofs.xyz) & ~roofs.is_noise
+        building, refused = _mostly_roof(building, refused, cell, at_roof, roofs.on_surface, limits.min_roof_share)
+    # Nothing is seen beneath a roof but its own walls, down to their feet.
+    raised = (roofs.height >= _WALL_FOOT) | (building[cell] > 0)
+    building = extent.faces(building)
+    raised |= (building[cell] > 0) & (roofs.height >= FOOT)
+    top = _roof_top(cell, roofs.xyz[:, 2], roofs.is_roof, covered)
+    return _Extents(cell, surface.size, building, refused, top, raised & roofs.may_stand)
 
 
 def _explained(

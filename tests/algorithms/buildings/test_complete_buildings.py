@@ -473,3 +473,14 @@ def test_the_share_of_surfaces_holds_in_images(rng, least):
     assert building[part == 1].any() == (least == 0.0)
     if least:
         assert (reason[found] == Reason.MOSTLY_OTHER).all()
+
+
+def test_a_bridge_deck_beside_a_roof_stays_deck_in_images(rng):
+    """A walkway at half the height of a house begins in its smeared wall."""
+    xyz, part = seen_from_above(rng, box(8, 8, 18, 16, 5.0, smeared=0.4), box(17.5, 11, 24, 14, 2.5))
+    classification = np.where((part == 1) & (xyz[:, 2] > 4.9), 6, np.where(part == 2, 17, 1)).astype(np.uint8)
+    height = xyz[:, 2].astype(np.float32)
+    result, cluster, *_ = complete_buildings(xyz, classification, height, source="matched images")
+    assert (result[(part == 1) & (xyz[:, 2] > 4.9)] == 6).all()
+    assert (result[part == 2] == 17).all()
+    assert not cluster[part == 2].any()
