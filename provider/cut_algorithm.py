@@ -17,9 +17,8 @@ from qgis.core import (
     QgsProcessingParameterNumber,
 )
 
-from ..algorithms.cloud.files import read_extent
 from ..algorithms.tiling.cutting import cut_into_tiles
-from ..algorithms.tiling.survey import files_of_survey, open_survey
+from ..algorithms.tiling.survey import crs_of_survey, files_of_survey, open_survey
 from ..algorithms.tiling.tiled_pipelines import CUT_INTO_TILES, survey_tool_help
 from .clouds import SurveyParameter, survey_paths
 from .crs import crs_units, make_in_main_thread
@@ -72,8 +71,9 @@ class CutAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         """Find out the files; layers may be asked only here, in the main thread."""
         with as_processing_errors():
             self.files = files_of_survey(survey_paths(self, INPUT, parameters, context))
-            self.extent = extent_box(self, self.files[0], parameters, context)
-            self._systems = make_in_main_thread([read_extent(self.files[0])[2], WGS84])
+            wkt = crs_of_survey(self.files)
+            self.extent = extent_box(self, wkt, parameters, context)
+            self._systems = make_in_main_thread([wkt, WGS84])
         return True
 
     def processAlgorithm(  # noqa: N802

@@ -16,7 +16,6 @@ from qgis.core import (
 )
 
 from ..algorithms.cloud.dimensions import DIMENSIONS
-from ..algorithms.cloud.files import read_extent
 from ..algorithms.stage import Stage
 from .clouds import CloudParameter, CloudsParameter, cloud_path, cloud_paths
 from .crs import crs_of
@@ -55,9 +54,9 @@ def extent_parameter() -> QgsProcessingParameterDefinition:
 
 
 def extent_box(
-    algorithm: QgsProcessingAlgorithm, path: Path, parameters: dict, context: QgsProcessingContext
+    algorithm: QgsProcessingAlgorithm, wkt: str, parameters: dict, context: QgsProcessingContext
 ) -> Optional[np.ndarray]:
-    """Return the extent that a user gives, (2, 2) in the coordinates of a cloud; None where none is given.
+    """Return the extent that a user gives, (2, 2) in the CRS ``wkt`` of a cloud; None where none is given.
 
     An extent in another coordinate reference system becomes the box around it.
 
@@ -68,8 +67,7 @@ def extent_box(
     """
     if parameters.get(EXTENT) in (None, ""):
         return None
-    crs = crs_of(read_extent(path)[2])
-    rectangle = algorithm.parameterAsExtent(parameters, EXTENT, context, crs)
+    rectangle = algorithm.parameterAsExtent(parameters, EXTENT, context, crs_of(wkt))
     if rectangle.isNull() or not rectangle.isFinite():
         raise ValueError(f"{parameters[EXTENT]!r} is not an extent; give it as xmin,xmax,ymin,ymax.")
     return np.array([[rectangle.xMinimum(), rectangle.yMinimum()], [rectangle.xMaximum(), rectangle.yMaximum()]])

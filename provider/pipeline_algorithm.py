@@ -192,7 +192,7 @@ class PipelineAlgorithm(DeclaredAlgorithm, QgsProcessingModelAlgorithm):
             check_readable(cloud, crs_units)
         if clouds:
             refuse_elsewhere(self, self.pipeline.input_layers.values(), clouds, given, context)
-            self._box = extent_box(self, clouds[0], given, context)
+            self._box = extent_box(self, read_extent(clouds[0])[2], given, context)
         return clouds
 
     def _with_defaults(self, parameters: dict) -> dict:

@@ -178,7 +178,7 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         if self.stage.reads_reference:
             job.reference = cloud_path(self, REFERENCE, parameters, context)
         if job.inputs:
-            job.box = extent_box(self, job.inputs[0], parameters, context)
+            job.box = extent_box(self, read_extent(job.inputs[0])[2], parameters, context)
         read = [*files_read(job.paths), *input_layer_files(self, self.stage.input_layers, parameters, context)]
         check_targets(self.destinationParameterDefinitions(), parameters, read)
         if job.inputs:

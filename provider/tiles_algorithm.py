@@ -20,9 +20,8 @@ from qgis.core import (
     QgsProcessingParameterString,
 )
 
-from ..algorithms.cloud.files import read_extent
 from ..algorithms.tiling.run_in_tiles import TilesOutcome, run_in_tiles
-from ..algorithms.tiling.survey import files_of_survey
+from ..algorithms.tiling.survey import crs_of_survey, files_of_survey
 from ..algorithms.tiling.tiled_pipelines import TiledPipeline, tiled_pipeline_help
 from ..algorithms.tiling.workers import Workers
 from .clouds import SurveyParameter, survey_paths
@@ -115,7 +114,8 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         self.paths = survey_paths(self, INPUT, parameters, context)
         self.files = files_of_survey(self.paths)
         self.tunables = self._tunables(parameters, context)
-        self.extent = extent_box(self, self.files[0], parameters, context)
+        self.wkt = crs_of_survey(self.files)
+        self.extent = extent_box(self, self.wkt, parameters, context)
         self.workers = self._workers(parameters, context)
         sinks = [one for one in self.destinationParameterDefinitions() if one.name() != OUTPUT]
         check_targets(sinks, parameters, self.files)
@@ -152,7 +152,7 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         """Find out files and values; layers may be asked only here, in the main thread."""
         with as_processing_errors():
             self._check(parameters, context)
-            self._systems = make_in_main_thread([read_extent(self.files[0])[2], WGS84])
+            self._systems = make_in_main_thread([self.wkt, WGS84])
         return True
 
     def postProcessAlgorithm(self, context: QgsProcessingContext, feedback: QgsProcessingFeedback) -> dict:  # noqa: N802

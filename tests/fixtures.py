@@ -7,6 +7,7 @@ import importlib.util
 import shutil
 import sys
 import tempfile
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -49,6 +50,14 @@ def pytest_collect_file(file_path):
         parts = file_path.relative_to(ROOT).with_suffix("").parts
         parts = parts[:-1] if parts[-1] == "__init__" else parts
         sys.modules[".".join((ROOT.name, *parts))] = importlib.import_module(".".join((PACKAGE, *parts)))
+
+
+@pytest.fixture(scope="session")
+def laspy():
+    """Laspy as a second opinion; it imports pyproj, which may complain about its own installation."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return pytest.importorskip("laspy")
 
 
 @pytest.fixture

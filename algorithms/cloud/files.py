@@ -20,7 +20,7 @@ from .laz import writing_backend
 from .outputs import COPC, LAZ, VPC, check_output, kind_of, replacing
 from .point_formats import WITH_WAVEFORMS
 from .point_records import PointRecords
-from .points import check_points, open_header, points_within, read_points, write_points
+from .points import check_points, open_headers, points_within, read_points, write_points
 from .units import Resolver, crs_records, has_wkt, units_of, wkt_of
 from .vpc import read_tiles, tiles_of
 
@@ -59,19 +59,19 @@ def read_cloud(
         In one sentence, whatever is wrong with the file; or if there are no points in the box.
     """
     path, monitor = Path(path), monitor or Monitor()
-    with _readable(path):
+    with readable(path):
         files = files_of(path)
-        header = open_header(files[0])
-        units = units_of(header, crs_units)
+        with_points, headers = open_headers(files, monitor)
+        header, units = headers[0], units_of(headers[0], crs_units)
         if len(files) == 1:
             points = (
                 read_points(files[0], header, monitor) if box is None else points_within(files[0], header, box, monitor)
             )
             header = header.without(LASZIP, COPC_INFO, COPC_HIERARCHY)
         else:
-            for file in files[1:]:
-                units_of(open_header(file), crs_units)
-            header, points = read_tiles(files, monitor, box)
+            for other in headers[1:]:
+                units_of(other, crs_units)
+            header, points = read_tiles(with_points, monitor, box)
     if not len(points):
         raise ValueError(f"{path.name} has no points within the extent; choose another extent.")
     header = header if box is None else replace(header, count=len(points))
@@ -89,9 +89,8 @@ def check_readable(path: Union[str, Path], crs_units: Optional[Resolver] = None)
         In one sentence, what is wrong with the file or with a tile of it.
     """
     path = Path(path)
-    with _readable(path):
-        for file in files_of(path):
-            header = open_header(file)
+    with readable(path):
+        for file, header in zip(*open_headers(files_of(path))):
             units_of(header, crs_units)
             check_points(file, header)
 
@@ -138,12 +137,19 @@ def _share_in(header: Header, box: Optional[np.ndarray]) -> float:
 
 def _headers(path: Path) -> list[Header]:
     """Return the headers of a file or of all its tiles."""
-    with _readable(path):
-        return [open_header(file) for file in files_of(path)]
+    with readable(path):
+        return open_headers(files_of(path))[1]
 
 
 @contextmanager
-def _readable(path: Path) -> Iterator[None]:
+def readable(path: Path) -> Iterator[None]:
+    """Say in one sentence why ``path`` can't be read where the block finds that out.
+
+    Raises
+    ------
+    ValueError
+        If the block fails with an error of the system.
+    """
     try:
         yield
     except OSError as error:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from io import BufferedReader
 from pathlib import Path
-from typing import BinaryIO, Callable
+from typing import BinaryIO, Callable, Optional
 
 import numpy as np
 
@@ -20,6 +20,8 @@ from .laz import POINTS_PER_CHUNK, has_variable_chunks, open_chunks, open_laz, w
 AT_ONCE = 10 * POINTS_PER_CHUNK
 # Points that are all alike come to 5,500 bytes per compressed byte in chunks of the usual size; nothing sound has more.
 _MOST_BYTES_PER_BYTE = 10_000
+# Files without points that a warning names.
+_NAMED = 5
 
 
 def open_header(path: Path) -> Header:
@@ -30,9 +32,38 @@ def open_header(path: Path) -> Header:
     ValueError
         If there are no points, or more are promised than the file can hold.
     """
-    header = read_header(path)
+    header = _held_header(path)
     if header.count == 0:
         raise ValueError(f"{path.name} has no points; choose another file.")
+    return header
+
+
+def open_headers(paths: list[Path], monitor: Optional[Monitor] = None) -> tuple[list[Path], list[Header]]:
+    """Return those files of one cloud that have points, and their headers; the monitor is warned of the others.
+
+    Surveys are delivered with a tile for each cell of their lattice, also where nothing was measured.
+
+    Raises
+    ------
+    ValueError
+        If one of the files can't be read, or none has points.
+    """
+    if len(paths) == 1:
+        return paths, [open_header(paths[0])]
+    headers = [_held_header(path) for path in paths]
+    empty = [path for path, header in zip(paths, headers) if header.count == 0]
+    if len(empty) == len(paths):
+        raise ValueError(f"None of the {len(paths)} tiles, {paths[0].name} and others, has points; choose others.")
+    if empty and monitor:
+        names = ", ".join(path.name for path in empty[:_NAMED]) + (", …" if len(empty) > _NAMED else "")
+        monitor.warn(f"{len(empty)} of {len(paths)} tiles have no points and are left out: {names}.")
+    found = [(path, header) for path, header in zip(paths, headers) if header.count]
+    return [path for path, _ in found], [header for _, header in found]
+
+
+def _held_header(path: Path) -> Header:
+    """Return the header of a file, its number of points held against the size of the file."""
+    header = read_header(path)
     left = path.stat().st_size - header.points_at
     most = left * (_MOST_BYTES_PER_BYTE if header.is_compressed else 1) // header.layout.dtype.itemsize
     if header.count > most:

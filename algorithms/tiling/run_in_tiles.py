@@ -16,7 +16,7 @@ from typing import Any, Callable, Optional, Union
 
 import numpy as np
 
-from ..cloud.files import read_cloud, write_cloud
+from ..cloud.files import read_cloud, readable, write_cloud
 from ..cloud.outputs import LAS, LAZ, locked_folder, stem_of
 from ..cloud.points import open_header
 from ..cloud.units import Resolver
@@ -267,7 +267,15 @@ class _Run:
             boxes = [np.array([corner, corner + _SAMPLE_SIDE]) for corner in corners]
         windows = []
         for done, box in enumerate(boxes):
-            windows.append(survey.window(box, monitor.part(done / len(boxes), (done + 1) / len(boxes))))
+            part = monitor.part(done / len(boxes), (done + 1) / len(boxes))
+            try:
+                windows.append(survey.window(box, part))
+            except ValueError as error:
+                # The blocks of a damaged file fail by name later; all others are worked on.
+                survey = survey.sound_part(box, monitor.part(1.0, 1.0))
+                if not survey.sources:
+                    raise error from None
+                windows.append(survey.window(box, monitor.part(1.0, 1.0)))
         points = [_counted(window) for window in windows if window is not None]
         if len(points) < len(boxes) / 4:
             points = [_counted(window) for window in self._windows_with_points(survey, monitor)]
@@ -312,8 +320,7 @@ class _Run:
 
     def _key(self, paths: Iterable[Path], *facts: Any) -> str:
         """Return a name for what is made of files in their present state, of facts, tunables and this version."""
-        stats = [(str(path.resolve()), path.stat().st_size, path.stat().st_mtime_ns) for path in paths]
-        described = [stats, self.pipeline.name, self.tunables, _version(), facts]
+        described = [[_state(path) for path in paths], self.pipeline.name, self.tunables, _version(), facts]
         return hashlib.sha256(json.dumps(described, default=str, sort_keys=True).encode()).hexdigest()[:16]
 
     def _work_on_blocks(
@@ -534,6 +541,13 @@ def _unique_stems(sources: Iterable[Source]) -> list[str]:
             name = f"{stem}_{again}"
         taken[name] = None
     return list(taken)
+
+
+def _state(path: Path) -> tuple[str, int, int]:
+    """Return what tells one state of a file from another: where it is, its size, when it was written."""
+    with readable(path):
+        stat = path.stat()
+    return str(path.resolve()), stat.st_size, stat.st_mtime_ns
 
 
 def _minutes(seconds: float) -> str:

@@ -11,10 +11,10 @@ from typing import Optional, Union
 import numpy as np
 
 from ..cloud.cloud import Cloud
-from ..cloud.files import files_of
-from ..cloud.header import COPC_HIERARCHY, COPC_INFO, LASZIP, Header
+from ..cloud.files import files_of, readable
+from ..cloud.header import COPC_HIERARCHY, COPC_INFO, LASZIP, Header, read_header
 from ..cloud.outputs import kind_of, same_file
-from ..cloud.points import check_points, chunks_near, is_within, open_header, read_chunks
+from ..cloud.points import check_points, chunks_near, is_within, open_headers, read_chunks
 from ..cloud.units import Resolver, Units, units_of, wkt_of
 from ..cloud.vpc import check_tiles, fill_merged, merged_header
 from ..stage import Monitor
@@ -137,6 +137,17 @@ class Survey:
         position = np.concatenate([position for _, position, _ in found])
         return self._in_order(records, source, position)
 
+    def sound_part(self, box: np.ndarray, monitor: Monitor) -> Survey:
+        """Return the survey without the files whose points in a box (2, 2), m, can't be read; warn of each."""
+        damaged = set()
+        for number in self.near(box):
+            try:
+                replace(self, sources=(self.sources[number],)).window(box, monitor)
+            except ValueError as error:
+                monitor.warn(str(error))
+                damaged.add(number)
+        return replace(self, sources=tuple(one for at, one in enumerate(self.sources) if at not in damaged))
+
     def places(self, count: int, monitor: Monitor) -> np.ndarray:
         """Return the places (k, 2), m, of up to ``count`` points that are spread evenly over all records.
 
@@ -164,16 +175,17 @@ class Survey:
         """Yield the positions in a file and the records, as those of the survey, of the points in a box."""
         header = source.header
         scale, offset = (values * self.units.horizontal for values in (header.scale, header.offset))
-        for start, chunk in chunks_near(source.path, header, box / self.units.horizontal, monitor):
-            inside = self.holds(chunk, header)
-            for i, axis in enumerate("XY"):
-                place = chunk[axis] * scale[i] + offset[i]
-                inside &= (place >= box[0, i]) & (place < box[1, i])
-            rows = np.flatnonzero(inside)
-            if len(rows):
-                records = np.zeros(len(rows), self.header.layout.dtype)
-                fill_merged(records, chunk[rows], header, self.header)
-                yield start + rows, records
+        with readable(source.path):
+            for start, chunk in chunks_near(source.path, header, box / self.units.horizontal, monitor):
+                inside = self.holds(chunk, header)
+                for i, axis in enumerate("XY"):
+                    place = chunk[axis] * scale[i] + offset[i]
+                    inside &= (place >= box[0, i]) & (place < box[1, i])
+                rows = np.flatnonzero(inside)
+                if len(rows):
+                    records = np.zeros(len(rows), self.header.layout.dtype)
+                    fill_merged(records, chunk[rows], header, self.header)
+                    yield start + rows, records
 
     def _in_order(self, records: np.ndarray, source: np.ndarray, position: np.ndarray) -> Window:
         """Sort records by what was measured, and leave every measurement once."""
@@ -233,8 +245,7 @@ def open_survey(
         outside of the extent.
     """
     monitor = monitor or Monitor()
-    files = files_of_survey(paths)
-    headers = [open_header(file) for file in files]
+    files, headers = open_headers(files_of_survey(paths), monitor)
     check_tiles(files, headers)
     for file, header in zip(files, headers):
         check_points(file, header)
@@ -281,6 +292,21 @@ def files_of_survey(paths: Iterable[Union[str, Path]]) -> list[Path]:
     if not found:
         raise ValueError("There are no point clouds in the folder; choose one with .las, .laz or .copc.laz files.")
     return list(found.values())
+
+
+def crs_of_survey(files: Iterable[Path]) -> str:
+    """Return the coordinate reference system of the first file that has points, as :attr:`.Cloud.wkt`.
+
+    Raises
+    ------
+    ValueError
+        If a file before it can't be read, or none has points.
+    """
+    for file in files:
+        header = read_header(file)
+        if header.count:
+            return wkt_of(header)
+    raise ValueError("None of the files has points; choose others.")
 
 
 def _box(header: Header, units: Units) -> np.ndarray:

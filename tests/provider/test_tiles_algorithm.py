@@ -1,6 +1,7 @@
 """Surveys in tiles through Processing: what goes in, where it comes out, and what is said where it can't."""
 
 import json
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.tests.builders import roof
+from lidar_buildings.tests.las_files import made_las
 
 
 def refused():
@@ -120,3 +122,18 @@ def test_tiles_are_cut_with_a_virtual_point_cloud_over_them(provider, context, l
         assert np.ptp(xyz.to_map(xyz.get("xyz"))[:, :2], axis=0).max() < 20
     with pytest.raises(refused(), match="choose another folder"):
         provider.algorithm("cutintotiles").run({**given, "OUTPUT": str(folder)}, context, log, {}, False)
+
+
+def test_a_tile_without_points_is_no_pattern_and_no_failure(provider, context, log, folder, tmp_path):
+    """The first file was asked for the reference system of all, and refused the run as it had no points."""
+    (tmp_path / "tiles").mkdir()
+    (tmp_path / "tiles" / "a.las").write_bytes(made_las(n=0))
+    shutil.copy(folder / "west.laz", tmp_path / "tiles")
+    given = {"INPUT": str(tmp_path / "tiles"), "EXTENT": "85000,85010,447000,447010", "SIDE": 20.0}
+    results, succeeded = provider.algorithm("cutintotiles").run({**given, "OUTPUT": str(tmp_path / "cut")}, context, log)
+    assert succeeded, log.textLog()
+    assert results["TILES"] == 1
+    assert "1 of 2 tiles have no points and are left out: a.las." in log.warnings
+    algorithm = provider.algorithm("detectbuildingsintiles")
+    accepted, why = algorithm.checkParameterValues({**given, "OUTPUT": str(tmp_path / "out"), **QUICKLY}, context)
+    assert accepted, why

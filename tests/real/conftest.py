@@ -1,7 +1,5 @@
 """Tests on real clouds run where these are, and say so where they aren't."""
 
-import warnings
-
 import pytest
 
 from lidar_buildings.tests.real.clouds import DATA, SCORER
@@ -13,11 +11,3 @@ def real_clouds():
     for path in (DATA, SCORER):
         if not path.exists():
             pytest.skip(f"no real clouds: {path} is missing; LIDAR_BUILDINGS_DATA names another folder of data")
-
-
-@pytest.fixture(scope="session")
-def laspy():
-    """Laspy as a second opinion; it imports pyproj, which may complain about its own installation."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        return pytest.importorskip("laspy")

@@ -2,21 +2,12 @@
 
 import os
 import struct
-import warnings
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from lidar_buildings.tests.las_files import HEADER_SIZES, made_las
-
-
-@pytest.fixture(scope="session")
-def laspy():
-    """Laspy as a second opinion; it imports pyproj, which may complain about its own installation."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        return pytest.importorskip("laspy")
 
 
 @pytest.fixture(scope="session")

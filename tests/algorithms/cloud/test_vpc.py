@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
-from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
+from lidar_buildings.algorithms.cloud.files import check_readable, count_points, read_cloud, read_extent, write_cloud
 from lidar_buildings.algorithms.stage import Monitor
 from lidar_buildings.tests.las_files import descriptor, random_records, vlr
 
@@ -51,6 +51,19 @@ def test_tiles_of_different_scale_offset_format_and_dimensions_become_one(make_l
     assert [record.key for record in cloud.header.vlrs] == [
         (b"LASF_Projection", 2112), (b"LASF_Spec", 4), (b"someone", 5)
     ]  # fmt: skip
+
+
+def test_a_tile_without_points_is_left_out_with_a_warning(make_las, make_vpc):
+    make_las("none.las", n=0)
+    make_las("one.las", n=50)
+    monitor = Monitor()
+    path = make_vpc("none.las", "one.las")
+    cloud = read_cloud(path, monitor)
+    assert len(cloud) == 50
+    assert "1 of 2 tiles have no points and are left out: none.las." in monitor.warnings
+    assert count_points(path) == 50
+    check_readable(path)
+    np.testing.assert_array_equal(read_extent(path)[0], read_extent(path.parent / "one.las")[0])
 
 
 def test_a_merged_cloud_is_written_and_read(make_las, make_vpc, tmp_path):

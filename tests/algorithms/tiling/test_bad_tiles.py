@@ -10,7 +10,10 @@ from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.pipeline import Pipeline, Step
 from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.algorithms.tiling import run_in_tiles as module
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
+from lidar_buildings.algorithms.tiling.survey import crs_of_survey, files_of_survey
 from lidar_buildings.algorithms.tiling.workers import Workers
 from lidar_buildings.tests.las_files import made_las, random_records, vlr
 
@@ -104,16 +107,80 @@ def test_what_two_tiles_have_alike_is_worked_on_once_and_written_twice(tmp_path)
         (lambda raw: b"", "b.las"),
         (lambda raw: raw[:100], "b.las"),
         (lambda raw: raw[:-1000], "b.las is truncated or damaged"),
-        (lambda raw: raw[:107] + bytes(4) + raw[111:247] + bytes(8) + raw[255:], "b.las has no points"),
     ],
-    ids=["nothing", "head", "points", "empty"],
+    ids=["nothing", "head", "points"],
 )
-def test_a_tile_that_is_empty_or_damaged_is_named_before_the_work(tmp_path, damage, sentence):
+def test_a_tile_that_is_damaged_is_named_before_the_work(tmp_path, damage, sentence):
     good, bad = (tile(tmp_path / name, (0, 0), (20, 20)) for name in ("a.las", "b.las"))
     bad.write_bytes(damage(bad.read_bytes()))
     with pytest.raises(ValueError, match=sentence):
         run([good, bad], tmp_path / "out")
     assert not (tmp_path / "out").exists()
+
+
+def without_points(laspy, path):
+    """Write a tile of no points, as surveys have them where nothing was measured."""
+    header = laspy.LasHeader(version="1.4", point_format=6)
+    header.offsets, header.scales = [0.0] * 3, [0.01] * 3
+    laspy.LasData(header).write(path)
+    return path
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_a_tile_without_points_is_left_out_with_a_warning(laspy, tmp_path, first):
+    """A tile of no points refused whole surveys; agencies deliver one for each cell of their lattice."""
+    good = [tile(tmp_path / f"{name}.laz", (i * 20, 0), (i * 20 + 20, 20), seed=i) for i, name in enumerate("bc")]
+    empty = without_points(laspy, tmp_path / ("a.laz" if first else "d.laz"))
+    monitor = Monitor()
+    outcome = run_in_tiles(
+        QUICK, [tmp_path], tmp_path / "out", monitor, workers=Workers(processes=1), block_side=50.0, compressed=False
+    )
+    assert not outcome.failures
+    assert [one.name for one in outcome.tiles] == ["b.las", "c.las"]
+    assert outcome.points == 1000
+    assert f"1 of 3 tiles have no points and are left out: {empty.name}." in monitor.warnings
+    assert crs_of_survey(files_of_survey([tmp_path])) == "EPSG:28992"
+    expected = run(good, tmp_path / "expected")
+    for one, other in zip(outcome.tiles, expected.tiles):
+        assert one.read_bytes() == other.read_bytes()
+
+
+def test_tiles_without_any_points_are_refused(laspy, tmp_path):
+    paths = [without_points(laspy, tmp_path / name) for name in ("a.laz", "b.laz")]
+    with pytest.raises(ValueError, match=r"None of the 2 tiles, a.laz and others, has points; choose others"):
+        run(paths, tmp_path / "out")
+    with pytest.raises(ValueError, match="None of the files has points"):
+        crs_of_survey(paths)
+    with pytest.raises(ValueError, match=r"a.laz has no points; choose another file"):
+        run(paths[:1], tmp_path / "out")
+
+
+def test_a_tile_whose_points_are_damaged_fails_by_name_and_the_rest_is_there(tmp_path):
+    paths = [
+        tile(tmp_path / f"{name}.laz", (i * 200, 0), (i * 200 + 20, 20), n=60_000, seed=i)
+        for i, name in enumerate("ab")
+    ]
+    raw = bytearray(paths[1].read_bytes())
+    middle = len(raw) // 2
+    raw[middle : middle + 4000] = b"\xff" * 4000
+    paths[1].write_bytes(raw)
+    outcome = run(paths, tmp_path / "out")
+    assert [one.name for one in outcome.tiles] == ["a.las"]
+    assert any("b.laz is truncated or damaged" in failure for failure in outcome.failures)
+
+
+def test_a_tile_that_vanishes_during_the_run_fails_by_name(tmp_path, monkeypatch):
+    paths = [tile(tmp_path / f"{name}.las", (i * 200, 0), (i * 200 + 20, 20), seed=i) for i, name in enumerate("ab")]
+    run_all = module.run_all
+
+    def removing(*given):
+        paths[1].unlink(missing_ok=True)
+        return run_all(*given)
+
+    monkeypatch.setattr(module, "run_all", removing)
+    outcome = run(paths, tmp_path / "out")
+    assert [one.name for one in outcome.tiles] == ["a.las"]
+    assert any("b.las can't be read" in failure for failure in outcome.failures)
 
 
 def test_a_missing_tile_of_a_virtual_point_cloud_is_named(tmp_path):
