@@ -130,7 +130,9 @@ def test_a_tile_without_points_is_no_pattern_and_no_failure(provider, context, l
     (tmp_path / "tiles" / "a.las").write_bytes(made_las(n=0))
     shutil.copy(folder / "west.laz", tmp_path / "tiles")
     given = {"INPUT": str(tmp_path / "tiles"), "EXTENT": "85000,85010,447000,447010", "SIDE": 20.0}
-    results, succeeded = provider.algorithm("cutintotiles").run({**given, "OUTPUT": str(tmp_path / "cut")}, context, log)
+    results, succeeded = provider.algorithm("cutintotiles").run(
+        {**given, "OUTPUT": str(tmp_path / "cut")}, context, log
+    )
     assert succeeded, log.textLog()
     assert results["TILES"] == 1
     assert "1 of 2 tiles have no points and are left out: a.las." in log.warnings
