@@ -7,7 +7,7 @@ from typing import Annotated, Optional
 import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
-from ..geometry.grid import plan_box
+from ..geometry.grid import distinct, plan_box
 from ..packages import spatial
 from ..params import IsolatedPoints
 from ..sampling.cloud_sampling import CloudSampling
@@ -17,6 +17,14 @@ from .isolated_points import add_isolated, link_length
 
 # Points asked for at once, so that progress is told and the neighbors of only so many are held.
 _CHUNK = 100_000
+
+# Of points with many others around them, about as many as this are enough for the mean and the standard deviation of
+# the distances: both are then off by some thousandths.
+_SAMPLE = 200_000
+
+# The sample are thin sheets across this wave vector (waves per meter), whose parts have no common measure with each
+# other or with the steps of coordinates in files.
+_SAMPLE_WAVE = 1e3 * np.sqrt([2.0, 3.0, 5.0])
 
 
 @stage(
@@ -78,7 +86,9 @@ def classify_noise_statistical(
     With isolated points, both are mended. A point must then be farther than 4.8 m (7 point spacings on sparse clouds)
     from its nearest one, too, so that facades and crowns keep their sparse parts. And noise is what no chain of points
     half as far apart ties to the scene, and what lies under the ground: the height histogram's stage finds these in the
-    same way, and its notes say what stays.
+    same way, and its notes say what stays. Since only points with nothing around them can be noise by their distance
+    then, neighbors are looked up for those in voxels with few points, and of the others of large clouds for a sample of
+    200,000, which stands for all in mean and standard deviation.
 
     References
     ----------
@@ -91,15 +101,18 @@ def classify_noise_statistical(
     if len(points) <= n_neighbors:
         monitor.warn(f"No noise was looked for: {len(points)} points are not enough for {n_neighbors} neighbors.")
         return made
-    nearest, distance, rise = _neighbor_distances(points, n_neighbors, monitor.part(0.0, 0.5))
-    limit = float(distance.mean() + deviations * distance.std())
-    monitor.resolved(max_mean_distance=limit)
-    is_noise = distance > limit
     isolated = isolated and bool(np.ptp(plan_box(points), axis=0).any())
     spacing = sampling.spacing if isolated else 0.0
-    if isolated:
-        is_noise &= nearest > 2 * link_length(spacing)
-    is_low, is_high = is_noise & (rise < 0), is_noise & (rise >= 0)
+    # Isolated points are farther than this from their nearest one.
+    apart = 2 * link_length(spacing) if isolated else 0.0
+    rows, weight = _measured(points, apart, n_neighbors)
+    nearest, distance, rise = _neighbor_distances(points, rows, n_neighbors, monitor.part(0.0, 0.5))
+    mean = float(np.average(distance, weights=weight))
+    limit = mean + deviations * float(np.sqrt(np.average((distance - mean) ** 2, weights=weight)))
+    monitor.resolved(max_mean_distance=limit)
+    noise = (distance > limit) & (nearest > apart)
+    is_low, is_high = np.zeros((2, len(points)), bool)
+    is_low[rows[noise]], is_high[rows[noise]] = rise[noise] < 0, rise[noise] >= 0
     if isolated:
         add_isolated(points, is_low, is_high, spacing, monitor.part(0.5, 1.0))
     made[used[is_low]] = PointClass.LOW_NOISE
@@ -108,19 +121,46 @@ def classify_noise_statistical(
     return made
 
 
+def _measured(points: np.ndarray, apart: float, n_neighbors: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the rows (m,) of the points whose neighbors are looked up, and how many points each of them stands for.
+
+    These are all points of voxels with few points, among which are all that lie farther than ``apart`` (m) from their
+    nearest one, and of the others a sample, if they are many.
+    """
+    share = _SAMPLE / len(points)
+    if not apart or share >= 1:
+        return np.arange(len(points)), np.ones(len(points))
+    offsets = points - points.min(axis=0)
+    step = np.floor(offsets * (np.sqrt(3.0) / apart)).astype(np.int64)
+    width, depth, _ = step.max(axis=0) + 1
+    which = distinct((step[:, 2] * depth + step[:, 1]) * width + step[:, 0])[1]
+    is_dense = (np.bincount(which) > n_neighbors)[which]
+    # Told by the coordinates, the sample is the same in whatever order the points come.
+    phase = offsets @ _SAMPLE_WAVE
+    is_sampled = is_dense & (phase - np.floor(phase) < share)
+    rows = np.flatnonzero(is_sampled | ~is_dense)
+    weight = np.where(is_dense[rows], np.count_nonzero(is_dense) / max(np.count_nonzero(is_sampled), 1), 1.0)
+    return rows, weight
+
+
 def _neighbor_distances(
-    points: np.ndarray, n_neighbors: int, monitor: Monitor
+    points: np.ndarray, rows: np.ndarray, n_neighbors: int, monitor: Monitor
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return least and mean distance to the neighbors, and the height over their median (n,), all in m."""
-    tree = spatial.cKDTree(points)
-    nearest, distance, rise = (np.empty(len(points), dtype) for dtype in (np.float32, np.float64, np.float32))
-    for start in range(0, len(points), _CHUNK):
-        # In the order of the tree's leaves the neighbors of a chunk lie together.
-        rows = tree.indices[start : start + _CHUNK]
+    """Return least and mean distance to the neighbors, and the height over their median (m,), of some rows, all in m."""
+    tree = spatial.cKDTree(points, balanced_tree=False)
+    nearest, distance, rise = np.empty((3, len(rows)))
+    # In the order of the tree's leaves the neighbors of a chunk lie together.
+    place = np.full(len(points), -1, np.int64)
+    place[rows] = np.arange(len(rows))
+    order = place[tree.indices]
+    order = order[order >= 0]
+    for start in range(0, len(order), _CHUNK):
+        chunk = order[start : start + _CHUNK]
+        own = points[rows[chunk]]
         # The nearest point is the point itself.
-        found, neighbors = tree.query(points[rows], n_neighbors + 1, workers=n_threads())
-        nearest[rows] = found[:, 1]
-        distance[rows] = found[:, 1:].mean(axis=1)
-        rise[rows] = points[rows, 2] - np.median(points[neighbors[:, 1:], 2], axis=1)
-        monitor.progress(min(1.0, (start + _CHUNK) / len(points)))
+        found, neighbors = tree.query(own, n_neighbors + 1, workers=n_threads())
+        nearest[chunk] = found[:, 1]
+        distance[chunk] = found[:, 1:].mean(axis=1)
+        rise[chunk] = own[:, 2] - np.median(points[neighbors[:, 1:], 2], axis=1)
+        monitor.progress(min(1.0, (start + _CHUNK) / len(order)))
     return nearest, distance, rise

@@ -88,3 +88,21 @@ def test_points_on_one_place_in_plan_have_no_scene_to_be_apart_from():
     xyz = np.zeros((50, 3))
     xyz[:, 2] = np.arange(50.0)
     assert (classify_noise_statistical(xyz, np.ones(50, np.uint8)) == 1).all()
+
+
+def test_a_sample_of_dense_parts_finds_the_same(rng, monkeypatch):
+    """Where points lie close together, the distances of a part of them stand for all; what is alone is looked at."""
+    ground = np.column_stack([rng.uniform(0, 60, (40_000, 2)), rng.normal(0, 0.02, 40_000)])
+    crowns = rng.normal([20.0, 20, 9], [4, 4, 1.5], (500, 3))
+    stray = rng.uniform([-20, -20, -60], [80, 80, 90], (60, 3))
+    xyz, found = np.concatenate([ground, crowns, stray]), []
+    for sample in (2_000, 10**9):
+        monkeypatch.setattr(noise_statistical, "_SAMPLE", sample)
+        monitor = Monitor()
+        found.append((classify_noise_statistical(xyz, np.ones(len(xyz), np.uint8), monitor=monitor), monitor.values))
+    (part, of_part), (every, of_every) = found
+    assert (part == every).all()
+    assert np.isin(part, (7, 18)).sum() >= 20
+    limits = of_part["max_mean_distance"], of_every["max_mean_distance"]
+    assert limits[0] == pytest.approx(limits[1], rel=0.02)
+    assert limits[0] != limits[1]
