@@ -146,7 +146,7 @@ def _measured(points: np.ndarray, apart: float, n_neighbors: int) -> tuple[np.nd
 def _neighbor_distances(
     points: np.ndarray, rows: np.ndarray, n_neighbors: int, monitor: Monitor
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return least and mean distance to the neighbors, and the height over their median (m,), of some rows, all in m."""
+    """Return least and mean distance to the neighbors, and height over their median (m,), of some rows, all in m."""
     tree = spatial.cKDTree(points, balanced_tree=False)
     nearest, distance, rise = np.empty((3, len(rows)))
     # In the order of the tree's leaves the neighbors of a chunk lie together.
