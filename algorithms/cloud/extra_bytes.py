@@ -12,6 +12,8 @@ from .laspy_library import need_laspy
 _SIZE = 192
 # Places in a descriptor: the number that means "no data", then minimum and maximum, of 8 bytes for up to 3 axes each.
 _NO_DATA, _RANGE = slice(40, 48), slice(64, 112)
+# Name and description.
+_TEXTS = (slice(4, 36), slice(160, 192))
 # Options; "no data" of all axes; scales and offsets.
 _MEANING = (slice(3, 4), slice(40, 64), slice(112, 160))
 _LARGEST_TYPE = 30
@@ -51,11 +53,6 @@ class ExtraField:
         descriptor = self.descriptor
         return self.is_scalar and descriptor.scale is None and descriptor.offset is None
 
-    @property
-    def description(self) -> str:
-        """What the file says of it."""
-        return self.descriptor.description.decode("utf-8", "replace")
-
     def same_numbers(self, other: ExtraField) -> bool:
         """Whether the stored numbers of two scalar fields mean the same."""
         mine, theirs = (field.without_range().raw or b"" for field in (self, other))
@@ -86,14 +83,27 @@ class ExtraField:
         raw[_RANGE] = bytes(_RANGE.stop - _RANGE.start)
         return replace(self, raw=bytes(raw))
 
+    def as_numbers(self, dtype: str) -> ExtraField:
+        """Return a field of the same name and description, byte for byte, that holds plain numbers of another type."""
+        descriptor = _parsed(bytes(_SIZE))
+        descriptor.data_type = _number_of(dtype)
+        raw = bytearray(bytes(descriptor))
+        for part in _TEXTS:
+            raw[part] = (self.raw or bytes(_SIZE))[part]
+        return ExtraField(self.name, np.dtype(dtype).newbyteorder("<"), bytes(raw))
+
+
+def _number_of(dtype: str) -> int:
+    """Return the number by which descriptors call a type."""
+    return need_laspy().extradims.get_id_for_extra_dim_type(np.dtype(dtype).newbyteorder("<"))
+
 
 def new_field(name: str, dtype: str, description: str) -> ExtraField:
     """Return a field of numbers without scale; ``name`` and ``description`` take at most 31 bytes each."""
-    little = np.dtype(dtype).newbyteorder("<")
     descriptor = _parsed(bytes(_SIZE))
-    descriptor.data_type = need_laspy().extradims.get_id_for_extra_dim_type(little)
+    descriptor.data_type = _number_of(dtype)
     descriptor.name, descriptor.description = name.encode(), description.encode()
-    return ExtraField(name, little, bytes(descriptor))
+    return ExtraField(name, np.dtype(dtype).newbyteorder("<"), bytes(descriptor))
 
 
 def fields_of(payload: bytes, size: int) -> tuple[ExtraField, ...]:

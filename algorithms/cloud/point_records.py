@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import Callable, Optional, Union
 
 import numpy as np
@@ -12,6 +13,8 @@ from .point_formats import FORMATS, UPGRADED, Layout
 from .units import Units
 
 Index = Union[slice, np.ndarray]
+# Name of a field, and which one of that name.
+_Key = tuple[str, int]
 _LARGEST_OLD_CLASS = 31
 
 
@@ -129,15 +132,15 @@ def merged_layout(layouts: list[Layout]) -> Layout:
     """
     names = {name for layout in layouts for name in layout.names}
     point_format = min(i for i in FORMATS if names <= set(Layout(i).names))
-    extras: dict[str, ExtraField] = {}
-    for field in (field for layout in layouts for field in layout.extras):
+    extras: dict[_Key, ExtraField] = {}
+    for key, field in (found for layout in layouts for found in _keyed(layout.extras)):
         if not _has_numbers(field):
             # Bytes of unknown meaning and vectors are kept where tiles have the same of them.
-            extras.setdefault(_name_among_all(field), field)
+            extras.setdefault(key, field)
             continue
-        same = extras.setdefault(field.name, field.without_range())
+        same = extras.setdefault(key, field.without_range())
         if not field.same_numbers(same):
-            extras[field.name] = new_field(field.name, "f8", field.description)
+            extras[key] = field.as_numbers("f8")
     return Layout(point_format, tuple(extras.values()))
 
 
@@ -146,9 +149,18 @@ def _has_numbers(field: ExtraField) -> bool:
     return field.is_scalar and bool(field.name)
 
 
-def _name_among_all(field: ExtraField) -> str:
-    """Return what tells a field from the others of files that are merged: its name, or name and type."""
-    return field.name if _has_numbers(field) else f"{field.name} {field.dtype}"
+def _keyed(fields: tuple[ExtraField, ...]) -> list[tuple[_Key, ExtraField]]:
+    """Return fields with what tells them from the others of files that are merged.
+
+    That is the name, or name and type, and which one of that name it is: some files have several.
+    """
+    seen: Counter[str] = Counter()
+    keyed = []
+    for field in fields:
+        name = field.name if _has_numbers(field) else f"{field.name} {field.dtype}"
+        keyed.append(((name, seen[name]), field))
+        seen[name] += 1
+    return keyed
 
 
 def convert(points: np.ndarray, source: Layout, target: Layout, out: np.ndarray) -> None:
@@ -157,9 +169,9 @@ def convert(points: np.ndarray, source: Layout, target: Layout, out: np.ndarray)
     Extra numbers that the source lacks become NaN where they can, else 0.
     """
     source.copy_standard(points, target, out)
-    given = {_name_among_all(field): i for i, field in enumerate(source.extras)}
-    for i, field in enumerate(target.extras):
-        at = given.get(_name_among_all(field))
+    given = {key: i for i, (key, _) in enumerate(_keyed(source.extras))}
+    for i, (key, field) in enumerate(_keyed(target.extras)):
+        at = given.get(key)
         if at is None:
             if field.is_scalar and field.dtype.kind == "f":
                 out[f"extra{i}"] = np.nan

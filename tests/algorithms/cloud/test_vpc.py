@@ -87,6 +87,27 @@ def test_same_name_with_another_type_becomes_float64(make_las, make_vpc, laspy):
     np.testing.assert_array_equal(cloud.points["extra0"], expected)
 
 
+def test_fields_of_one_name_and_bytes_without_any_keep_their_own_values(make_las, make_vpc):
+    twice = descriptor("Twice", 3) * 2 + descriptor("", 0, options=1) * 2
+    paths = [make_las(f"{n}.las", extra=6, vlrs=(vlr("LASF_Spec", 4, twice),), n=n) for n in (30, 40)]
+    cloud = read_cloud(make_vpc("30.las", "40.las"))
+    parts = [read_cloud(path) for path in paths]
+    assert len(cloud.header.layout.extras) == 4
+    for name in ("extra0", "extra1", "extra2", "extra3"):
+        expected = np.concatenate([part.points[name] for part in parts])
+        np.testing.assert_array_equal(cloud.points[name], expected, err_msg=name)
+
+
+def test_texts_of_other_encodings_keep_their_bytes_where_a_type_changes(make_las, make_vpc):
+    latin = "Höhe über dem Gelände, in Fuß".encode("latin-1")
+    raw = [descriptor("H", kind)[:160] + latin.ljust(32, b"\xdf") for kind in (3, 6)]
+    make_las("one.las", extra=2, vlrs=(vlr("LASF_Spec", 4, raw[0]),))
+    make_las("two.las", extra=4, vlrs=(vlr("LASF_Spec", 4, raw[1]),))
+    (field,) = read_cloud(make_vpc("one.las", "two.las")).header.layout.extras
+    assert field.dtype == np.dtype("<f8")
+    assert field.raw[160:] == latin.ljust(32, b"\xdf")
+
+
 def test_copc_tiles_and_overviews(tmp_path, rng):
     xyz = rng.uniform(0, 100, (1000, 3))
     for name, part in (("a", xyz[:600]), ("b", xyz[600:]), ("overview", xyz[::10])):
