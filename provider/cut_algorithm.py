@@ -27,7 +27,8 @@ from .dependencies import missing_sentence
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, warn_unknown_parameters
 from .inputs import INPUT, OUTPUT, extent_box, extent_parameter, with_help
-from .surveys import VPC, WGS84, write_survey
+from .outputs import target_path
+from .surveys import VPC, WGS84, check_vpc, write_survey
 
 SIDE, COMPRESSED, TILES = "SIDE", "COMPRESSED", "TILES"
 
@@ -70,7 +71,9 @@ class CutAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
     ) -> bool:
         """Find out the files; layers may be asked only here, in the main thread."""
         with as_processing_errors():
-            self.files = files_of_survey(survey_paths(self, INPUT, parameters, context))
+            given = survey_paths(self, INPUT, parameters, context)
+            check_vpc(target_path(parameters.get(OUTPUT)), given)
+            self.files = files_of_survey(given)
             wkt = crs_of_survey(self.files)
             self.extent = extent_box(self, wkt, parameters, context)
             self._systems = make_in_main_thread([wkt, WGS84])
@@ -85,7 +88,7 @@ class CutAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         side = self.parameterAsDouble(parameters, SIDE, context)
         compressed = self.parameterAsBool(parameters, COMPRESSED, context)
         monitor = FeedbackMonitor(feedback)
-        with as_processing_errors(feedback):
+        with as_processing_errors(feedback, f"Cancelled; tiles that were complete are in {folder}."):
             survey = open_survey(self.files, crs_units, monitor, self.extent)
             stem = self.files[0].name.split(".")[0] if len(self.files) == 1 else "tile"
             tiles = cut_into_tiles(survey, side, folder, stem, compressed, monitor)

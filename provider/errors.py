@@ -17,19 +17,22 @@ _CANCELLED = "Cancelled; nothing was written."
 
 
 @contextmanager
-def as_processing_errors(feedback: Optional[QgsProcessingFeedback] = None) -> Iterator[None]:
+def as_processing_errors(
+    feedback: Optional[QgsProcessingFeedback] = None, cancelled: str = _CANCELLED
+) -> Iterator[None]:
     """Turn the core's errors into Processing's, one sentence each.
 
     Who cancels a run, in ``feedback``, is told so and gets no error; but on the command line, where the run would end
-    with exit code 0 without one. What is neither of these is a fault of the program and keeps its traceback.
+    with exit code 0 without one; ``cancelled`` is the sentence. What is neither of these is a fault of the program and
+    keeps its traceback.
     """
     try:
         yield
     except Cancelled:
         if feedback is None or not feedback.isCanceled() or on_command_line():
-            raise QgsProcessingException(_CANCELLED) from None
+            raise QgsProcessingException(cancelled) from None
         if not is_step(feedback):
-            feedback.pushInfo(_CANCELLED)
+            feedback.pushInfo(cancelled)
     except MemoryError:
         raise QgsProcessingException(f"This needs more memory than there is; {LESS_MEMORY}.") from None
     except ValueError as error:

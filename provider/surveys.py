@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
+from typing import Optional
 
 import numpy as np
 from qgis.core import QgsCoordinateReferenceSystem, QgsCoordinateTransform, QgsPointXY, QgsProcessingContext
 
+from ..algorithms.cloud.outputs import VPC as VPC_SUFFIX
+from ..algorithms.cloud.outputs import kind_of, same_file
 from ..algorithms.cloud.vpc import write_vpc
 from ..algorithms.tiling.survey import Survey
 from .places import Place, place_of_cloud
@@ -19,6 +23,38 @@ WGS84 = "EPSG:4326"
 def place_of_survey(survey: Survey) -> Place:
     """Return the place of what is made of a survey."""
     return place_of_cloud(survey.cloud(np.zeros(1, survey.header.layout.dtype)))
+
+
+def check_vpc(folder: Optional[Path], given: Iterable[Path]) -> None:
+    """Refuse a folder of tiles whose virtual point cloud would take the place of one that is read.
+
+    Parameters
+    ----------
+    folder : Path or None
+        Where the tiles go; None for a temporary one.
+    given : iterable of Path
+        Files and folders that the survey is made of; virtual point clouds in a folder are read with it.
+
+    Raises
+    ------
+    ValueError
+        If it would.
+    """
+    if folder is None:
+        return
+    made = _vpc_of(folder)
+    for path in given:
+        for read in path.iterdir() if path.is_dir() else (path,):
+            if kind_of(read) == VPC_SUFFIX and same_file(read, made):
+                raise ValueError(
+                    f"{read.name} is an input, and the virtual point cloud over the tiles in {folder} would take its "
+                    "place; choose another folder."
+                )
+
+
+def _vpc_of(folder: Path) -> Path:
+    """Return the virtual point cloud over the tiles in a folder, named as the folder."""
+    return folder / f"{folder.resolve().name}{VPC_SUFFIX}"
 
 
 def write_survey(survey: Survey, tiles: list[Path], folder: Path, context: QgsProcessingContext) -> Path:
@@ -37,6 +73,6 @@ def write_survey(survey: Survey, tiles: list[Path], folder: Path, context: QgsPr
             there = [change.transform(QgsPointXY(*place)) for place in coordinates.tolist()]
             return np.array([(place.x(), place.y()) for place in there])
 
-    path = folder / f"{folder.name}.vpc"
+    path = _vpc_of(folder)
     write_vpc(tiles, path, to_degrees)
     return path

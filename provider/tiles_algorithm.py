@@ -33,9 +33,9 @@ from .feedback import FeedbackMonitor, warn_unknown_parameters
 from .inputs import INPUT, OUTPUT, extent_box, extent_parameter, with_help
 from .layer_outputs import write_layer
 from .models import pipeline_parameters
-from .outputs import all_in_place, check_targets
+from .outputs import all_in_place, check_targets, target_path
 from .parameters import tunable_values
-from .surveys import VPC, WGS84, place_of_survey, write_survey
+from .surveys import VPC, WGS84, check_vpc, place_of_survey, write_survey
 from .vectors import SOURCE_TYPES
 
 BLOCK_SIDE, PROCESSES, SCHEDULER, CERTIFICATES, COMPRESSED = (
@@ -112,6 +112,7 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         if missing:
             raise ValueError(missing)
         self.paths = survey_paths(self, INPUT, parameters, context)
+        check_vpc(target_path(parameters.get(OUTPUT)), self.paths)
         self.files = files_of_survey(self.paths)
         self.tunables = self._tunables(parameters, context)
         self.wkt = crs_of_survey(self.files)
@@ -168,7 +169,8 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         monitor = FeedbackMonitor(feedback)
         folder = Path(self.parameterAsString(parameters, OUTPUT, context))
         sinks = [one for one in self.destinationParameterDefinitions() if one.name() != OUTPUT]
-        with as_processing_errors(feedback):
+        cancelled = f"Cancelled; what was done is kept in {folder}, and the same run goes on with it."
+        with as_processing_errors(feedback, cancelled):
             with all_in_place(sinks, parameters, context, folder.name) as run:
                 outcome = self._run(folder, parameters, context, monitor)
                 results = self._write_layers(outcome, run.parameters, context, monitor)

@@ -117,7 +117,6 @@ class ResultFiles:
         if final.exists() and not final.is_file():
             raise ValueError(f"{target} is no ordinary file; give the name of a file.")
         with os_errors_as_messages(target):
-            _sweep(final.parent)
             entry = _Entry(target, final, [_followed(path) for path in companions])
             self._entries.append(entry)
         return entry.folder / final.name
@@ -154,17 +153,38 @@ def _followed(path: Path) -> Path:
     return Path(os.path.realpath(path))
 
 
+class _WorkingFolder:
+    """A new hidden folder in another one, from which those are removed that killed runs left."""
+
+    def __init__(self, parent: Path) -> None:
+        _sweep(parent)
+        self.path = Path(tempfile.mkdtemp(_SUFFIX, _PREFIX, parent))
+        self._lock = (self.path / _LOCK).open("wb")
+        if fcntl is not None:
+            # A file system without locks has none of its working folders swept either.
+            with suppress(OSError):
+                fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+    def remove(self) -> None:
+        """Remove the folder, its lock last: a run that is killed here leaves what the next one recognizes."""
+        for path in self.path.iterdir():
+            if path.is_dir():
+                shutil.rmtree(path, ignore_errors=True)
+            elif path.name != _LOCK:
+                # What another program holds is swept by a later run.
+                with suppress(OSError):
+                    path.unlink()
+        self._lock.close()
+        shutil.rmtree(self.path, ignore_errors=True)
+
+
 class _Entry:
     """A target and its working folder."""
 
     def __init__(self, target: Path, final: Path, companions: list[Path]) -> None:
         self.target, self.final, self.companions = target, final, companions
-        self.folder = Path(tempfile.mkdtemp(_SUFFIX, _PREFIX, final.parent))
-        self._lock = (self.folder / _LOCK).open("wb")
-        if fcntl is not None:
-            # A file system without locks has none of its working folders swept either.
-            with suppress(OSError):
-                fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        self._working = _WorkingFolder(final.parent)
+        self.folder = self._working.path
 
     def put_in_place(self, undo: ExitStack) -> None:
         """Move the files to their places, and note how to undo that."""
@@ -189,16 +209,8 @@ class _Entry:
             new.replace(path)
 
     def discard(self) -> None:
-        """Remove the working folder, its lock last: a run that is killed here leaves what the next one recognizes."""
-        for path in self.folder.iterdir():
-            if path.is_dir():
-                shutil.rmtree(path, ignore_errors=True)
-            elif path.name != _LOCK:
-                # What another program holds is swept by a later run.
-                with suppress(OSError):
-                    path.unlink()
-        self._lock.close()
-        shutil.rmtree(self.folder, ignore_errors=True)
+        """Remove the working folder."""
+        self._working.remove()
 
 
 def _keep(path: Path, aside: Path) -> None:
@@ -239,6 +251,25 @@ def _is_abandoned(folder: Path) -> bool:
     except OSError:
         return False
     return True
+
+
+@contextmanager
+def working_folder(parent: Path) -> Iterator[Path]:
+    """Give a new hidden folder in another one, for what is needed until the block ends.
+
+    That of a killed run is removed when something is written into the same folder again.
+
+    Raises
+    ------
+    ValueError
+        If nothing can be written there.
+    """
+    with os_errors_as_messages(parent):
+        working = _WorkingFolder(parent)
+    try:
+        yield working.path
+    finally:
+        working.remove()
 
 
 @contextmanager

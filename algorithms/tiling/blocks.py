@@ -134,7 +134,7 @@ class BlockResult:
             )
 
 
-class _StoppableMonitor(Monitor):
+class StoppableMonitor(Monitor):
     """Stops a worker when a file appears that says so."""
 
     def __init__(self, stop: Path) -> None:
@@ -142,6 +142,7 @@ class _StoppableMonitor(Monitor):
         self.stop, self._looked = stop, 0.0
 
     def progress(self, fraction: float) -> None:
+        """Raise :class:`Cancelled` when the file is there."""
         now = time.monotonic()
         if now - self._looked > _BETWEEN_LOOKS:
             self._looked = now
@@ -159,7 +160,7 @@ def work_on_block(task: BlockTask) -> Path:
     ValueError
         If a file can't be read or the chain refuses the points.
     """
-    monitor, halo = _StoppableMonitor(task.stop), task.halo
+    monitor, halo = StoppableMonitor(task.stop), task.halo
     while True:
         box = task.block.box + np.array([[-halo], [halo]])
         window = _window(task, box, monitor)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import tempfile
 from dataclasses import replace
 from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
 
-from ..cloud.outputs import LAS, LAZ, replacing
+from ..cloud.outputs import LAS, LAZ, os_errors_as_messages, replacing, working_folder
 from ..cloud.points import chunks_near, write_points
 from ..cloud.vpc import fill_merged
 from ..geometry.groups import run_starts
@@ -58,14 +57,14 @@ def cut_into_tiles(
     """
     check_folder(folder, survey)
     kind = LAZ if compressed else LAS
-    with tempfile.TemporaryDirectory(prefix=".cut-", dir=folder) as heaps:
-        blocks = _sort_out(survey, side, Path(heaps), monitor.part(0.0, _READ))
+    with working_folder(folder) as heaps:
+        blocks = _sort_out(survey, side, heaps, monitor.part(0.0, _READ))
         if not blocks:
             raise ValueError("The survey has no points within the extent; choose another extent.")
         tiles = []
         for done, block in enumerate(blocks):
             tile = folder / f"{stem}_{block.name}{kind}"
-            heap = Path(heaps) / block.name
+            heap = heaps / block.name
             records = np.memmap(heap, survey.header.layout.dtype, "r")
             part = monitor.part(_READ, 1.0).part(done / len(blocks), (done + 1) / len(blocks))
             with replacing(tile) as stream:
@@ -98,8 +97,9 @@ def _sort_out(survey: Survey, side: float, folder: Path, monitor: Monitor) -> li
             for start, stop in zip(starts, [*starts[1:], len(records)]):
                 place = int(column[start]), int(row[start])
                 blocks.add(place)
-                with (folder / Block(*place, side).name).open("ab") as heap:
-                    records[start:stop].tofile(heap)
+                with os_errors_as_messages(folder), (folder / Block(*place, side).name).open("ab") as heap:
+                    # numpy's own way does not say why it could not write.
+                    heap.write(records[start:stop].tobytes())
     return [Block(column, row, side) for column, row in sorted(blocks, key=lambda place: place[::-1])]
 
 

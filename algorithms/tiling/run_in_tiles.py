@@ -16,17 +16,18 @@ from typing import Any, Callable, Optional, Union
 
 import numpy as np
 
+from ..cloud.cloud import Cloud
 from ..cloud.files import read_cloud, readable, write_cloud
 from ..cloud.outputs import LAS, LAZ, locked_folder, stem_of
 from ..cloud.points import open_header
-from ..cloud.units import Resolver
+from ..cloud.units import Resolver, Units
 from ..pipeline import Pipeline
 from ..sampling.cloud_sampling import CloudSampling, without_noise
 from ..stage import LayerFeatures, Monitor
-from .blocks import Block, BlockResult, BlockTask, work_on_block
+from .blocks import Block, BlockResult, BlockTask, StoppableMonitor, work_on_block
 from .cutting import cut_into_tiles
 from .joining import join_features, join_numbers
-from .survey import Source, Survey, Window, boxes_meet, check_folder, open_survey
+from .survey import Source, Survey, boxes_meet, check_folder, open_survey
 from .workers import Workers, run_all
 
 # A window has at most about this many points, so that a worker needs some 2 GB.
@@ -38,8 +39,8 @@ _SIDES = (100.0, 200.0, 400.0, 800.0, 1600.0)
 # A file of more points is cut first: read again for each of its blocks it would be read too often.
 _LARGEST_FILE = 25_000_000
 
-# How a survey was sampled is measured on all its points up to this many, else on windows of that side (m), as many in
-# each direction.
+# How a survey was sampled is measured on all its points up to this many, else on windows of that side (m) at most, as
+# many in each direction.
 _SAMPLED_WHOLE = 3_000_000
 _SAMPLES_ACROSS, _SAMPLE_SIDE = 4, 100.0
 
@@ -79,6 +80,7 @@ class _TileTask:
     results: tuple[Path, ...]
     becomes: tuple[Path, ...]
     stop: Path
+    units: Units
     extent: Optional[np.ndarray] = None
 
 
@@ -257,42 +259,18 @@ class _Run:
 
     def _sampling(self, survey: Survey, monitor: Monitor) -> CloudSampling:
         """Return how the survey was sampled, measured on windows whose places depend on its extent alone."""
-        low, high = survey.box
-        if survey.expected <= _SAMPLED_WHOLE:
-            boxes = [np.array([low, high + 1.0])]
-        else:
-            across = (np.arange(_SAMPLES_ACROSS) + 0.5) / _SAMPLES_ACROSS
-            centers = [low + (high - low) * (x, y) for x in across for y in across]
-            corners = [np.floor(center / _SAMPLE_SIDE) * _SAMPLE_SIDE for center in centers]
-            boxes = [np.array([corner, corner + _SAMPLE_SIDE]) for corner in corners]
-        windows = []
-        for done, box in enumerate(boxes):
-            part = monitor.part(done / len(boxes), (done + 1) / len(boxes))
-            try:
-                windows.append(survey.window(box, part))
-            except ValueError as error:
-                # The blocks of a damaged file fail by name later; all others are worked on.
-                survey = survey.sound_part(box, monitor.part(1.0, 1.0))
-                if not survey.sources:
-                    raise error from None
-                windows.append(survey.window(box, monitor.part(1.0, 1.0)))
-        points = [_counted(window) for window in windows if window is not None]
-        if len(points) < len(boxes) / 4:
-            points = [_counted(window) for window in self._windows_with_points(survey, monitor)]
-        together = np.concatenate([np.zeros((0, 3)), *points])
+        boxes = _sample_boxes(survey)
+        found, survey = _sampled(survey, boxes, monitor)
+        if len(found) < len(boxes) / 4:
+            # It fills little of its extent, as a corridor or a coast does.
+            places = survey.places(_SAMPLES_ACROSS**2, monitor.part(1.0, 1.0))
+            found, _ = _sampled(survey, _squares_around(places, _sample_side(survey)), monitor.part(1.0, 1.0))
+        together = np.concatenate([np.zeros((0, 3)), *(xyz for xyz, _ in found)])
         if not len(together):
             raise ValueError("The survey has no points within the extent; choose another extent.")
-        sampling = CloudSampling(lambda: together)
+        sampling = CloudSampling(lambda: together, single_returns=all(is_single for _, is_single in found))
         # All measures are taken now and the points left behind, as on the way to another process.
         return pickle.loads(pickle.dumps(sampling))
-
-    def _windows_with_points(self, survey: Survey, monitor: Monitor) -> Iterator[Window]:
-        """Yield windows at points of a survey that fills little of its extent, as a corridor or a coast does."""
-        corners = np.floor(survey.places(_SAMPLES_ACROSS**2, monitor.part(1.0, 1.0)) / _SAMPLE_SIDE) * _SAMPLE_SIDE
-        for corner in np.unique(corners, axis=0):
-            window = survey.window(np.array([corner, corner + _SAMPLE_SIDE]), monitor.part(1.0, 1.0))
-            if window is not None:
-                yield window
 
     def _cut_large_files(self, side: float, largest_file: int) -> None:
         """Cut files that are too large to be read once for each of their blocks, and take the pieces in their place."""
@@ -350,9 +328,10 @@ class _Run:
     def _task(self, block: Block, halo: float, sampling: CloudSampling) -> BlockTask:
         margin = np.array([[-8 * halo], [8 * halo]])
         near = self.survey.near(block.box + margin)
-        within = self.survey.near(block.box + np.array([[-halo], [halo]]))
+        # Results tell files by their numbers, which change when a file is added or taken away.
         key = self._key(
-            (self.survey.sources[one].path for one in within),
+            (self.survey.sources[one].path for one in near),
+            near,
             block.name,
             block.side,
             halo,
@@ -430,7 +409,8 @@ class _Run:
                 continue
             near = np.flatnonzero(boxes_meet(boxes, source.box))
             parts, final = tuple(done[at][1] for at in near), tuple(becomes[at] for at in near)
-            tasks.append(_TileTask(source.path, number, target, parts, final, self.stop, self.survey.extent))
+            extent, units = self.survey.extent, self.survey.units
+            tasks.append(_TileTask(source.path, number, target, parts, final, self.stop, units, extent))
         results, errors = run_all(
             executor, write_tile, tasks, self.stop, self.monitor.part(_JOINED, 1.0), lambda _: None
         )
@@ -451,7 +431,10 @@ def write_tile(task: _TileTask) -> Optional[Path]:
     position = None if task.extent is None else _positions(task)
     if position is not None and not len(position):
         return None
-    cloud = read_cloud(task.source, box=task.extent)
+    monitor = StoppableMonitor(task.stop)
+    cloud = read_cloud(task.source, monitor, box=task.extent)
+    # A worker has no database to look units up in.
+    cloud.units = task.units
     values: dict[str, np.ndarray] = {}
     worked_on = 0
     for path, numbers in zip(task.results, task.becomes):
@@ -474,7 +457,7 @@ def write_tile(task: _TileTask) -> Optional[Path]:
         )
     for name, whole in values.items():
         cloud.set(name, whole)
-    write_cloud(cloud, task.target)
+    write_cloud(cloud, task.target, monitor)
     return task.target
 
 
@@ -487,14 +470,53 @@ def _positions(task: _TileTask) -> np.ndarray:
     return np.sort(np.concatenate(found))
 
 
-def _counted(window: Window) -> np.ndarray:
-    """Return the points (n, 3) of a window that the sampling is measured on."""
-    cloud = window.cloud
+def _sample_side(survey: Survey) -> float:
+    """Return the side of the windows that the sampling is measured on, m: all of them have at most _MOST_POINTS."""
+    density = survey.expected / np.prod(survey.boxes[:, 1] - survey.boxes[:, 0], axis=1).sum()
+    return float(min(_SAMPLE_SIDE, np.sqrt(_MOST_POINTS / _SAMPLES_ACROSS**2 / density)))
+
+
+def _sample_boxes(survey: Survey) -> list[np.ndarray]:
+    """Return the boxes (2, 2), m, that the sampling is measured on: the whole survey, or squares spread over it."""
+    low, high = survey.box
+    if survey.expected <= _SAMPLED_WHOLE:
+        return [np.array([low, high + 1.0])]
+    across = (np.arange(_SAMPLES_ACROSS) + 0.5) / _SAMPLES_ACROSS
+    centers = np.array([low + (high - low) * (x, y) for x in across for y in across])
+    return _squares_around(centers, _sample_side(survey))
+
+
+def _squares_around(places: np.ndarray, side: float) -> list[np.ndarray]:
+    """Return the squares (2, 2), m, of a lattice from zero that places (k, 2) lie in, each once."""
+    return [np.array([corner, corner + side]) for corner in np.unique(np.floor(places / side) * side, axis=0)]
+
+
+def _sampled(survey: Survey, boxes: list[np.ndarray], monitor: Monitor) -> tuple[list[tuple[np.ndarray, bool]], Survey]:
+    """Return what :func:`_counted` gives of the boxes with points, and the survey without files found damaged."""
+    found = []
+    for done, box in enumerate(boxes):
+        part = monitor.part(done / len(boxes), (done + 1) / len(boxes))
+        try:
+            window = survey.window(box, part)
+        except ValueError as error:
+            # The blocks of a damaged file fail by name later; all others are worked on.
+            survey = survey.sound_part(box, monitor.part(1.0, 1.0))
+            if not survey.sources:
+                raise error from None
+            window = survey.window(box, monitor.part(1.0, 1.0))
+        if window is not None:
+            found.append(_counted(window.cloud))
+    return found, survey
+
+
+def _counted(cloud: Cloud) -> tuple[np.ndarray, bool]:
+    """Return the points (n, 3) that the sampling is measured on, and whether no pulse is known to have two returns."""
+    several = cloud.has("number_of_returns") and int(cloud.get("number_of_returns").max(initial=0)) > 1
     counted = ~cloud.withheld
     if not counted.any():
-        return np.zeros((0, 3))
+        return np.zeros((0, 3)), not several
     counted[counted] = without_noise(cloud.get("classification")[counted])
-    return cloud.get("xyz")[counted]
+    return cloud.get("xyz")[counted], not several
 
 
 def _side(density: float, halo: float) -> float:
@@ -532,15 +554,16 @@ def _boxes(blocks: list[Block]) -> np.ndarray:
 
 def _unique_stems(sources: Iterable[Source]) -> list[str]:
     """Return the names of files without extension, each once, also where two folders have files of one name."""
-    taken: dict[str, None] = {}
+    # Some file systems don't tell upper from lower case.
+    taken: dict[str, str] = {}
     for source in sources:
         stem = name = stem_of(source.path)
         again = 1
-        while name in taken:
+        while name.lower() in taken:
             again += 1
             name = f"{stem}_{again}"
-        taken[name] = None
-    return list(taken)
+        taken[name.lower()] = name
+    return list(taken.values())
 
 
 def _state(path: Path) -> tuple[str, int, int]:

@@ -8,7 +8,15 @@ import shutil
 import sys
 import tempfile
 from collections.abc import Iterator
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+    ThreadPoolExecutor,
+    wait,
+)
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
@@ -24,6 +32,18 @@ _BETWEEN_LOOKS = 0.5
 
 # Seconds that a scheduler has to answer.
 _ANSWER = 15
+
+# What Dask raises, by its name, when the workers that were given a task have died one after the other.
+_ALL_DIED = "KilledWorker"
+
+# Of a process that the system has ended.
+_ENDED = (
+    "a process that worked on it was ended, by the system where memory was short; run it again with fewer processes or "
+    "smaller blocks"
+)
+
+# Windows waits for no more processes than that.
+_MOST_PROCESSES = 61
 
 # The package as workers import it, and the folder it is in.
 _PACKAGE = __name__.split(".", maxsplit=1)[0]
@@ -63,6 +83,8 @@ class Workers:
                 yield executor
             return
         count = self.processes or n_threads()
+        if os.name == "nt":
+            count = min(count, _MOST_PROCESSES)
         if count == 1:
             with ThreadPoolExecutor(1) as here:
                 yield here
@@ -163,6 +185,8 @@ def run_all(
     ------
     Cancelled
         If the monitor is told to cancel; no work is left running then.
+    ValueError
+        If a process of this machine ends before its work does.
     """
     waiting = {executor.submit(work, task): number for number, task in enumerate(tasks)}
     results: dict[int, Any] = {}
@@ -178,6 +202,10 @@ def run_all(
                     results[number] = future.result()
                 elif isinstance(error, (ValueError, OSError, MemoryError)):
                     failed[number] = str(error) or type(error).__name__
+                elif isinstance(error, BrokenExecutor):
+                    raise ValueError(f"The survey was not finished: {_ENDED}.") from None
+                elif type(error).__name__ == _ALL_DIED:
+                    failed[number] = f"{_ENDED}."
                 else:
                     raise error
                 tell(number)

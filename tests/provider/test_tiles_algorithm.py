@@ -9,6 +9,7 @@ import pytest
 
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
+from lidar_buildings.algorithms.cloud.vpc import write_vpc
 from lidar_buildings.tests.builders import roof
 from lidar_buildings.tests.las_files import made_las
 
@@ -105,6 +106,33 @@ def test_tiles_are_not_written_over_those_that_are_read(algorithm, context, log,
     with pytest.raises(refused(), match="choose another folder"):
         algorithm.run({"INPUT": str(folder), "OUTPUT": str(folder), **QUICKLY}, context, log, {}, False)
     assert {path: path.read_bytes() for path in folder.iterdir()} == before
+
+
+@pytest.mark.parametrize("name", ["detectbuildingsintiles", "cutintotiles"])
+@pytest.mark.parametrize("given", ["survey.vpc", ""], ids=["file", "folder"])
+def test_a_virtual_point_cloud_that_is_read_is_not_written_over(provider, context, log, folder, tmp_path, name, given):
+    survey = tmp_path / "survey"
+    survey.mkdir()
+    vpc = survey / "survey.vpc"
+    write_vpc(sorted(folder.glob("*.laz")), vpc)
+    before = vpc.read_bytes()
+    parameters = {"INPUT": str(survey / given), "OUTPUT": str(survey), **(QUICKLY if "detect" in name else {})}
+    _, succeeded = provider.algorithm(name).run(parameters, context, log)
+    assert not succeeded
+    assert "survey.vpc is an input" in log.errors[0]
+    assert [path.name for path in survey.iterdir()] == ["survey.vpc"]
+    assert vpc.read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("name", "kept"), [("detectbuildingsintiles", "what was done is kept in"), ("cutintotiles", "that were complete")]
+)
+def test_who_stops_a_run_is_told_what_stays(provider, context, log, folder, tmp_path, name, kept):
+    log.cancel()
+    given = {"INPUT": str(folder), "OUTPUT": str(tmp_path / "out"), **(QUICKLY if "detect" in name else {})}
+    provider.algorithm(name).run(given, context, log, {}, False)
+    (said,) = [sentence for sentence in log.infos if "Cancelled" in sentence]
+    assert kept in said
 
 
 def test_tiles_are_cut_with_a_virtual_point_cloud_over_them(provider, context, log, folder, tmp_path):

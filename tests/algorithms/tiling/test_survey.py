@@ -1,0 +1,171 @@
+"""Files that are tiles of one cloud: none gets what belongs to another, and all have the units of the survey."""
+
+import os
+import struct
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
+from lidar_buildings.algorithms.pipeline import Pipeline, Step
+from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.algorithms.tiling import run_in_tiles as module
+from lidar_buildings.algorithms.tiling.cutting import cut_into_tiles
+from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
+from lidar_buildings.algorithms.tiling.survey import open_survey
+from lidar_buildings.algorithms.tiling.workers import Workers, run_all
+from lidar_buildings.tests.las_files import descriptor, made_las, vlr
+from lidar_buildings.tests.monitors import Listening
+
+CLUSTERS = Pipeline("quick", "Quick", "Tests", "", "", "", "", (Step("clusters", "segment_clusters", {"radius": 1.0}),))
+HEIGHTS = Pipeline("heights", "Heights", "Tests", "", "", "", "", (Step("height", "compute_height_above_ground"),))
+BOUNDS_AT = 179
+
+
+@pytest.fixture(autouse=True)
+def _known(monkeypatch):
+    for pipeline in (CLUSTERS, HEIGHTS):
+        monkeypatch.setitem(PIPELINES, pipeline.name, pipeline)
+
+
+def run(paths, folder, pipeline=CLUSTERS, monitor=None, **options):
+    options = {"workers": Workers(processes=1), "block_side": 50.0, "compressed": False, **options}
+    return run_in_tiles(pipeline, paths, folder, monitor, **options)
+
+
+def tile(path, low, side=20.0, n=500, seed=0, epsg=28992, **dimensions):
+    """Write points on a square and return their file."""
+    xyz = np.random.default_rng(seed).uniform([*low, 0], [low[0] + side, low[1] + side, 1], (n, 3))
+    arrays = {"xyz": xyz + [600_000, 5_000_000, 0], "gps_time": np.arange(n) + 1000.0 * seed, **dimensions}
+    write_cloud(create_cloud(arrays, f"EPSG:{epsg}"), path)
+    return path
+
+
+def test_a_file_taken_away_before_a_run_goes_on_gives_no_other_file_its_points(tmp_path, monkeypatch):
+    paths = [
+        tile(tmp_path / f"{name}.las", (x, 0), seed=seed) for seed, (name, x) in enumerate(zip("abc", (0, 900, 1800)))
+    ]
+    # A survey too large to be measured whole has the same sampling without the file.
+    monkeypatch.setattr(module, "_SAMPLED_WHOLE", 0)
+    same = open_survey(paths[1:]).box
+    monkeypatch.setattr(module, "_sample_boxes", lambda survey: [same])
+    with pytest.raises(Cancelled):
+        run(paths, tmp_path / "out", monitor=Listening(stop_at=0.87))
+    outcome = run(paths[1:], tmp_path / "out")
+    assert not outcome.failures
+    expected = run(paths[1:], tmp_path / "expected")
+    for found, made in zip(outcome.tiles, expected.tiles):
+        np.testing.assert_array_equal(read_cloud(found).get("cluster_id"), read_cloud(made).get("cluster_id"))
+
+
+def test_heights_are_stored_in_the_unit_that_only_the_code_of_the_system_tells(tmp_path):
+    # GeoKeys of EPSG:2263 (US survey feet) name no unit.
+    ground = np.full(500, 2, np.uint8)
+    ground[::5] = 1
+    path = tile(tmp_path / "feet.las", (0, 0), epsg=2263, classification=ground)
+    foot = 1200 / 3937
+
+    def units(code):
+        assert code == 2263
+        return foot, foot, False
+
+    outcome = run([path], tmp_path / "out", HEIGHTS, crs_units=units)
+    assert not outcome.failures
+    stored = read_cloud(outcome.tiles[0])
+    # Read without the database its numbers are those in the file, feet.
+    z = stored.get("xyz")[:, 2]
+    assert np.abs(stored.get("height_above_ground")).max() > 0.5 * np.ptp(z)
+
+
+def test_matched_images_are_known_as_such(tmp_path):
+    one = {"return_number": np.ones(500, np.uint8), "number_of_returns": np.ones(500, np.uint8)}
+    two = {"return_number": np.ones(500, np.uint8), "number_of_returns": np.full(500, 2, np.uint8)}
+    images = [tile(tmp_path / f"{x}.las", (x, 0), seed=x, **one) for x in (0, 20)]
+    scan = tile(tmp_path / "scan.las", (40, 0), seed=3, **two)
+    assert run(images, tmp_path / "images").sampling.single_returns
+    assert not run([*images, scan], tmp_path / "both").sampling.single_returns
+
+
+def test_the_sampling_of_a_dense_survey_takes_no_more_points_than_a_block(tmp_path, monkeypatch):
+    path = tile(tmp_path / "dense.las", (0, 0), side=60.0, n=40_000)
+    monkeypatch.setattr(module, "_SAMPLED_WHOLE", 1000)
+    monkeypatch.setattr(module, "_MOST_POINTS", 4000)
+    survey = open_survey([path])
+    boxes = module._sample_boxes(survey)
+    assert len(boxes) > 8
+    counts = [len(window.cloud) for window in map(survey.window, boxes) if window is not None]
+    assert 1000 < sum(counts) < 6000
+
+
+def test_writing_a_tile_stops_when_the_run_does(tmp_path, monkeypatch):
+    path = tile(tmp_path / "a.las", (0, 0))
+    write = module.write_tile
+
+    def cancelled(task):
+        task.stop.touch()
+        return write(task)
+
+    monkeypatch.setattr(module, "write_tile", cancelled)
+    with pytest.raises(Cancelled):
+        run([path], tmp_path / "out")
+    assert not (tmp_path / "out" / "a.las").exists()
+
+
+def test_names_that_some_systems_take_for_one_are_told_apart(tmp_path):
+    folders = [tmp_path / one for one in ("one", "two")]
+    for folder in folders:
+        folder.mkdir()
+    paths = [tile(folders[0] / "Tile.las", (0, 0)), tile(folders[1] / "tile.las", (30, 0), seed=1)]
+    assert [made.name for made in run(paths, tmp_path / "out").tiles] == ["Tile.las", "tile_2.las"]
+
+
+def test_a_process_that_the_system_ends_is_a_sentence(tmp_path):
+    with Workers(processes=2).open() as executor, pytest.raises(ValueError, match="fewer processes or smaller blocks"):
+        run_all(executor, os._exit, [9], tmp_path / "stop", Monitor(), lambda number: None)
+
+
+def test_cutting_keeps_fields_of_one_name_apart(tmp_path):
+    twice = descriptor("Twice", 3) * 2 + descriptor("", 0, options=1) * 2
+    raw = bytearray(made_las(6, extra=6, n=50, vlrs=(vlr("LASF_Spec", 4, twice),)))
+    struct.pack_into("<6d", raw, BOUNDS_AT, 600_200, 600_000, 5_000_200, 5_000_000, 200, 0)
+    path = tmp_path / "made.las"
+    path.write_bytes(raw)
+    (cut,) = cut_into_tiles(open_survey([path]), 1e7, tmp_path / "cut", "tile", False, Monitor())
+    np.testing.assert_array_equal(read_cloud(cut).points, read_cloud(path).points)
+
+
+KILLED = """
+import os, sys
+sys.path.insert(0, sys.argv[1])
+import conftest
+from pathlib import Path
+from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.algorithms.tiling.cutting import cut_into_tiles
+from lidar_buildings.algorithms.tiling.survey import open_survey
+
+class Killed(Monitor):
+    def progress(self, fraction):
+        if fraction >= 0.5:
+            os._exit(9)
+
+cut_into_tiles(open_survey([Path(sys.argv[2])]), 10.0, Path(sys.argv[3]), "tile", False, Killed())
+"""
+
+
+def test_what_a_killed_cut_left_is_removed_by_the_next_one(tmp_path, monkeypatch):
+    from lidar_buildings.algorithms.cloud import outputs
+
+    path, folder = tile(tmp_path / "a.las", (0, 0)), tmp_path / "cut"
+    killed = subprocess.run(
+        [sys.executable, "-c", KILLED, str(Path(__file__).parents[3]), str(path), str(folder)], check=False
+    )
+    assert killed.returncode == 9
+    assert [one for one in folder.iterdir() if one.is_dir()]
+    monkeypatch.setattr(outputs, "_UNLOCKED", 0.0)
+    tiles = cut_into_tiles(open_survey([path]), 10.0, folder, "tile", False, Monitor())
+    assert sorted(folder.iterdir()) == sorted(tiles)
