@@ -14,6 +14,7 @@ import numpy as np
 from .cloud.cloud import Cloud, create_cloud
 from .cloud.dimensions import DIMENSIONS
 from .cloud.merging import merge_records
+from .memory import return_freed
 from .pipeline import CLOUD, REPORT, Pipeline, Step
 from .sampling.cloud_sampling import CloudSampling, without_noise
 from .stage import (
@@ -293,6 +294,7 @@ def run_pipeline(
         outcome = run_stage(
             step.stage, works_on, monitor=part, input_layers=layers, sampling=sampled, **chosen[step.name]
         )
+        return_freed()
         outcomes[step.name] = replace(outcome, cloud=None)
         if step.stage.makes_cloud:
             current = outcome.cloud

@@ -18,8 +18,8 @@ from ..stage import Monitor
 from ..threads import in_chunks
 from .nearest_blocks import PAIRS, Shapes, nearest_shapes, shapes_within
 
-# Neighbors that a thread works on between two reports: where they are gathered, 40 bytes each, they take 20 MB.
-_CHUNK_NEIGHBORS = 500_000
+# Neighbors that a thread works on between two reports: where they are gathered, 56 bytes each, they take 11 MB.
+_CHUNK_NEIGHBORS = 200_000
 
 # Points that a thread works on between two reports where radii hold who knows how many neighbors.
 _CHUNK_POINTS = 20_000

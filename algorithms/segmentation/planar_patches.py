@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, Union
+from typing import Union
 
 import numpy as np
 
@@ -83,24 +83,26 @@ def segment_patches(
     if len(xyz) < LEAST_NEIGHBORS:
         return np.full(len(xyz), -1, np.int32), np.zeros(len(xyz), np.float32)
     # Points that lie together follow each other, so that what is looked up of neighbors is in the caches.
-    order = spatial.cKDTree(xyz, balanced_tree=False).indices
+    order = spatial.cKDTree(xyz, balanced_tree=False).indices.astype(np.int32)
     neighborhood = replace(neighborhood, count=min(neighborhood.count, len(xyz)))
-    points = xyz[order]
-    planes = _local_planes(points, neighborhood, monitor.part(0, 0.6))
-    points = np.column_stack([points - points[0], np.full(len(points), -1.0)])
+    xyz = xyz[order]
+    planes = _local_planes(xyz, neighborhood, monitor.part(0, 0.6))
+    points = np.column_stack([xyz - xyz[0], np.full(len(xyz), -1.0)])
+    del xyz
     plane = _smoothest_plane(points, planes, ON_PLANE * off_plane, monitor.part(0.6, 0.8))
     on_surface = (planes.deviation[plane] <= _SMOOTH * off_plane) & (plane >= 0)
     on_surface &= planes.planes[plane, 2] >= np.sin(np.radians(90 - max_slope))
-    links = _links(points, planes, plane, on_surface, _SAME_SURFACE * off_plane, monitor.part(0.8, 1))
     # Three of its points make a plane and tell nothing of how far others lie off it. Wide neighborhoods hold more
     # points than this: there it is a little too much.
     across = planes.deviation * np.sqrt(neighborhood.count / (neighborhood.count - 3))
-    roughness = np.empty(len(xyz), np.float32)
+    roughness = np.empty(len(order), np.float32)
     roughness[order] = across[plane]
+    links = _links(points, planes, plane, on_surface, _SAME_SURFACE * off_plane, monitor.part(0.8, 1))
+    # The search for components takes the memory of these.
     del points, planes, plane, across
-    component = np.empty(len(xyz), np.int32)
-    component[order] = np.where(on_surface, csgraph.connected_components(links, directed=False)[1], -1)
-    patch = np.full(len(xyz), -1, np.int32)
+    component = np.empty(len(order), np.int32)
+    component[order] = np.where(on_surface, _components(*links), -1)
+    patch = np.full(len(order), -1, np.int32)
     patch[component >= 0] = by_first_point(component[component >= 0])
     return patch, roughness
 
@@ -157,16 +159,18 @@ def _smoothest_plane(points: np.ndarray, planes: _PointPlanes, reach: float, mon
 
 def _links(
     points: np.ndarray, planes: _PointPlanes, plane: np.ndarray, on_surface: np.ndarray, reach: float, monitor: Monitor
-) -> Any:
-    """Return the graph, sparse (n, n), of neighbors whose planes are one surface: within ``reach`` (m) of each."""
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the neighbors (m,) of each point whose planes are one surface with its own, and where (n + 1,) they start.
+
+    One surface is within ``reach`` (m) of both points.
+    """
     # Spread over the ranks, so that links cross from one scan line to the next.
     ranks = np.unique(np.linspace(1, planes.neighbors.shape[1] - 1, _LINKS - 1).astype(int))
-    planes.neighbors = planes.neighbors[:, ranks]
     n_links = np.zeros(len(plane) + 1, np.int64)
     there: list[np.ndarray] = [np.empty(0, np.int32)] * -(-len(plane) // _CHUNK)
 
     def work(rows: np.ndarray) -> None:
-        neighbors = planes.neighbors[rows]
+        neighbors = planes.neighbors[rows[:, None], ranks]
         is_link = on_surface[rows, None] & on_surface[neighbors]
         # One plane holds both, mostly.
         apart = np.nonzero(is_link & (plane[neighbors] != plane[rows, None]))
@@ -181,7 +185,12 @@ def _links(
         there[rows[0] // _CHUNK] = neighbors[is_link]
 
     in_chunks(work, np.arange(len(plane)), _CHUNK, monitor)
-    columns = np.concatenate(there)
-    there.clear()
+    return np.concatenate(there), np.cumsum(n_links)
+
+
+def _components(linked: np.ndarray, starts: np.ndarray) -> np.ndarray:
+    """Return the number (n,) of the component of each point, from what :func:`_links` returns."""
+    count = len(starts) - 1
     # The weights are of the type that the search for components would turn them to.
-    return sparse.csr_matrix((np.ones(len(columns)), columns, np.cumsum(n_links)), (len(plane), len(plane)))
+    graph = sparse.csr_matrix((np.ones(len(linked)), linked, starts), (count, count))
+    return csgraph.connected_components(graph, directed=False)[1]
