@@ -167,6 +167,8 @@ def _part(plan: np.ndarray, rows: np.ndarray, box: np.ndarray, seen: np.ndarray)
     x, y = center.T
     (left, bottom), (right, top) = seen
     is_known = (x - radius > left) & (x + radius < right) & (y - radius > bottom) & (y + radius < top)
+    # What closes the hull of all places has no other side, by which it would fit to the rest.
+    is_known &= (found.neighbors >= 0).all(axis=1)
     return _chosen(plan, facets, found.neighbors, is_known & _within(center, box))[0]
 
 

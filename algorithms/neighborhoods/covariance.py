@@ -249,20 +249,26 @@ def smallest_eigenvectors(covariances: np.ndarray, eigenvalues: np.ndarray) -> n
     """
     # In units of l1, so that neither small nor large neighborhoods leave the range of floats.
     largest = np.where(eigenvalues[:, 0] > 0, eigenvalues[:, 0], np.nan)
-    matrices = full_matrices(covariances / largest[:, None])
-    shifted = matrices - (eigenvalues[:, 2] / largest)[:, None, None] * np.eye(3)
+    xx, yy, zz, xy, xz, yz = np.asarray(covariances, dtype=np.float64).T / largest
+    smallest = eigenvalues[:, 2] / largest
+    xx, yy, zz = xx - smallest, yy - smallest, zz - smallest
     # All rows of the shifted matrix lie across the eigenvector: two of them give it, the most independent two best.
-    crosses = np.cross(shifted[:, [0, 0, 1]], shifted[:, [1, 2, 2]])
-    sizes = np.einsum("ijk,ijk->ij", crosses, crosses)
-    best = np.argmax(sizes, axis=1)
+    crosses = np.empty((3, 3, len(xx)))
+    crosses[0] = xy * yz - xz * yy, xz * xy - xx * yz, xx * yy - xy * xy
+    crosses[1] = xy * zz - xz * yz, xz * xz - xx * zz, xx * yz - xy * xz
+    crosses[2] = yy * zz - yz * yz, yz * xz - xy * zz, xy * yz - yy * xz
+    sizes = np.einsum("ijk,ijk->ik", crosses, crosses)
+    best = np.argmax(sizes, axis=0)
     every = np.arange(len(best))
-    normals, size = crosses[every, best], np.sqrt(sizes[every, best])
+    normals, size = crosses[best, :, every], np.sqrt(sizes[best, every])
     doubtful = np.flatnonzero(size < 1e-6)
     if len(doubtful):
-        normals[doubtful] = np.linalg.eigh(matrices[doubtful])[1][:, :, 0]
+        matrices = full_matrices(covariances[doubtful] / largest[doubtful, None])
+        normals[doubtful] = np.linalg.eigh(matrices)[1][:, :, 0]
         size[doubtful] = 1.0
     normals /= size[:, None]
-    return np.where(normals[:, 2:] < 0, -normals, normals)
+    normals[normals[:, 2] < 0] *= -1
+    return normals
 
 
 def full_matrices(covariances: np.ndarray) -> np.ndarray:

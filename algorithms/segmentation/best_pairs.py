@@ -6,8 +6,13 @@ from typing import Callable
 
 import numpy as np
 
+from ..neighborhoods.nearest_blocks import PAIRS
 from ..stage import Monitor
-from .least_squares_planes import Planes
+from ..threads import in_chunks
+from .least_squares_planes import Planes, off_planes
+
+# Pairs of a chunk: what is worked out of their planes, 700 bytes each, stays in the caches and small.
+_CHUNK = 20_000
 
 # What it costs to merge the planes of pairs (k,), inf where they must not; costs only depend on the two planes.
 Cost = Callable[[Planes, np.ndarray, np.ndarray], np.ndarray]
@@ -89,18 +94,23 @@ def _adjacent(one: np.ndarray, other: np.ndarray, price: np.ndarray, n: int) -> 
 
 def common_deviation(planes: Planes, one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Return how far (root mean square, m) points of either of two planes lie off their common plane at most."""
-    n = len(one)
-    both = Planes(
-        *(np.concatenate([part[one], part[other]]) for part in (planes.count, planes.center, planes.covariance))
-    )
-    common = both.merged(np.tile(np.arange(n), 2), n)
-    parts = Planes(
-        *(
-            np.concatenate([a, b])
-            for a, b in zip(
-                (both.count, both.center, both.covariance), (common.count, common.center, common.covariance)
-            )
-        )
-    )
-    off = parts.deviation(np.arange(2 * n), 2 * n + np.tile(np.arange(n), 2))
-    return np.maximum(off[:n], off[n:])
+    deviation = np.empty(len(one))
+
+    def work(rows: np.ndarray) -> None:
+        parts = planes.chosen(one[rows]), planes.chosen(other[rows])
+        common = _of_both(*parts)
+        off = (off_planes(part.center - common.center, part.covariance, common.normal) for part in parts)
+        deviation[rows] = np.maximum(*off)
+
+    in_chunks(work, np.arange(len(one)), _CHUNK, Monitor())
+    return deviation
+
+
+def _of_both(one: Planes, other: Planes) -> Planes:
+    """Return the planes of the points of pairs of planes."""
+    count = one.count + other.count
+    share = other.count / count
+    apart = other.center - one.center
+    between = np.column_stack([apart[:, a] * apart[:, b] for a, b in PAIRS]) * (share * (1 - share))[:, None]
+    within = one.covariance + (other.covariance - one.covariance) * share[:, None]
+    return Planes(count, one.center + apart * share[:, None], within + between)

@@ -43,12 +43,8 @@ class Planes:
 
     def deviation(self, points: np.ndarray, plane: np.ndarray) -> np.ndarray:
         """Return how far (root mean square, m) the points of the groups ``points`` lie off the planes ``plane``."""
-        normal = self.normal[plane]
-        offset = np.einsum("ij,ij->i", self.center[points] - self.center[plane], normal)
-        spread = np.zeros(len(offset))
-        for column, (a, b) in enumerate(PAIRS):
-            spread += (1 if a == b else 2) * self.covariance[points, column] * normal[:, a] * normal[:, b]
-        return np.sqrt(offset**2 + np.maximum(spread, 0))
+        offset = self.center[points] - self.center[plane]
+        return off_planes(offset, self.covariance[points], self.normal[plane])
 
     def chosen(self, which: np.ndarray) -> Planes:
         """Return the planes ``which``, a mask or numbers."""
@@ -75,3 +71,21 @@ def planes_of(xyz: np.ndarray, group: np.ndarray, n_groups: int) -> Planes:
 
 def _means(values: np.ndarray, group: np.ndarray, count: np.ndarray, weight=1.0) -> np.ndarray:
     return np.column_stack([np.bincount(group, column * weight, len(count)) / count for column in values.T])
+
+
+def off_planes(offset: np.ndarray, covariance: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """Return how far (root mean square, m) points lie off planes.
+
+    Parameters
+    ----------
+    offset : ndarray of shape (m, 3)
+        The center of the points, from a point on the plane (m).
+    covariance : ndarray of shape (m, 6)
+        Of the points (m²).
+    normal : ndarray of shape (m, 3)
+        Of the planes.
+    """
+    spread = np.zeros(len(offset))
+    for column, (a, b) in enumerate(PAIRS):
+        spread += (1 if a == b else 2) * covariance[:, column] * normal[:, a] * normal[:, b]
+    return np.sqrt(np.einsum("ij,ij->i", offset, normal) ** 2 + np.maximum(spread, 0))
