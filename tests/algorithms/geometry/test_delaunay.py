@@ -72,6 +72,22 @@ def test_tiles_make_the_triangulation_of_the_whole(plan):
     assert is_delaunay(mesh)
 
 
+@pytest.mark.parametrize("shape", ["round", "square"])
+def test_tiles_need_no_corners_far_around(shape, rng, monkeypatch):
+    """The sides of the hull, which have nothing beyond, were taken for holes: all was triangulated once more."""
+    places = rng.uniform(-50, 50, (1500, 2))
+    if shape == "round":
+        places = places[np.linalg.norm(places, axis=1) < 45]
+    at_once, largest = Delaunay(places), []
+    made = module._by_qhull
+    monkeypatch.setattr(module, "_by_qhull", lambda plan: largest.append(len(plan)) or made(plan))
+    mesh = triangulate(places)
+    assert max(largest) < len(places) / 2
+    assert (mesh.neighbors < 0).sum() == len(at_once.convex_hull)
+    assert len(mesh.facets) == len(at_once.simplices)
+    np.testing.assert_array_equal(ordered(mesh.facets), ordered(at_once.simplices))
+
+
 def test_the_hull_may_have_many_corners(plan):
     np.testing.assert_array_equal(ordered(triangulate(plan[4:]).facets), ordered(Delaunay(plan[4:]).simplices))
 
