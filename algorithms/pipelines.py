@@ -159,7 +159,7 @@ _PIPELINES = (
         name="map_footprints",
         title="Map footprints",
         group="Models",
-        tags="cadastre,land registry,wall,footprint,corner,drone,UAV,photogrammetry,map,update,Hrutka",
+        tags="cadastre,land registry,wall,footprint,corner,drone,UAV,photogrammetry,map,update,change detection,Hrutka",
         summary="Map the walls of buildings from a drone's point cloud, and compare them with the old map.",
         description=(
             "Noise is removed and one point left per voxel; progressive TIN densification finds the ground, which flat "

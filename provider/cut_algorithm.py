@@ -52,6 +52,7 @@ class CutAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         self.addParameter(with_help(survey, "A folder of .las and .laz files, a .vpc file, or any number of files."))
         number = Qgis.ProcessingNumberParameterType.Double
         side = QgsProcessingParameterNumber(SIDE, "Side of a tile (m)", number, 500.0, False, 1.0, 100_000.0)
+        side.setMetadata({"widget_wrapper": {"decimals": 1}})
         self.addParameter(with_help(side, "Tiles are squares of this side."))
         self.addParameter(extent_parameter())
         compressed = QgsProcessingParameterBoolean(COMPRESSED, "Write LAZ", True)

@@ -138,14 +138,13 @@ def tunable_values(
     Raises
     ------
     ValueError
-        In the words of the core, when a value is of the wrong kind or out of bounds.
+        In the words of the core, when a value is of the wrong kind or out of bounds; it names the parameter.
     """
-    return stage.check(
-        {
-            name: _value(algorithm, tunable, named[name] if named else parameter_name(tunable), parameters, context)
-            for name, tunable in stage.tunables.items()
-        }
-    )
+    names = named or {name: parameter_name(tunable) for name, tunable in stage.tunables.items()}
+    return {
+        name: tunable.check(_value(algorithm, tunable, names[name], parameters, context), names[name])
+        for name, tunable in stage.tunables.items()
+    }
 
 
 def _value(

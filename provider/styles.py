@@ -33,7 +33,7 @@ _DECIMALS = 3
 class Styler(QgsProcessingLayerPostProcessorInterface):
     """Gives a loaded result the style of one file, and its table the units of the fields and few decimals."""
 
-    def __init__(self, stem: str, fields: Sequence[Field] = ()) -> None:
+    def __init__(self, stem: Optional[str], fields: Sequence[Field] = ()) -> None:
         super().__init__()
         self.stem, self.fields = stem, fields
 
@@ -42,12 +42,17 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
         return Styler(self.stem, self.fields)
 
     def postProcessLayer(self, layer, context, feedback) -> None:  # noqa: N802 - QGIS asks for this name
-        """Load the style, and say so in the log when it can't be."""
-        message, loaded = layer.loadNamedStyle(str(STYLES / f"{self.stem}.qml"))
-        if not loaded:
-            feedback.pushWarning(f"The style {self.stem} can't be loaded: {message}")
+        """Load the style, if there is one, and say so in the log when it can't be."""
+        if self.stem is not None:
+            message, loaded = layer.loadNamedStyle(str(STYLES / f"{self.stem}.qml"))
+            if not loaded:
+                feedback.pushWarning(f"The style {self.stem} can't be loaded: {message}")
         if isinstance(layer, QgsPointCloudLayer):
             show_in_3d(layer)
+        if self.fields:
+            # A feature is called by its number; QGIS would take the first long text.
+            layer.setDisplayExpression(f'"{self.fields[0].name}"')
+            layer.setMapTipTemplate(_map_tip(self.fields))
         for declared in self.fields:
             index = layer.fields().indexOf(declared.name)
             if declared.unit:
@@ -57,6 +62,16 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
                 layer.setEditorWidgetSetup(index, rounded)
         layer.triggerRepaint()
         stack_results(context)
+
+
+def _map_tip(fields: Sequence[Field]) -> str:
+    """Return the table of all attributes that QGIS shows where the mouse rests on a feature."""
+    rows = []
+    for field in fields:
+        value = f'round("{field.name}", {_DECIMALS - 1})' if field.type is float else f'"{field.name}"'
+        shown = f"{value} || ' {field.unit}'" if field.unit else value
+        rows.append(f"<tr><td>{field.name}</td><td>[% coalesce({shown}, '') %]</td></tr>")
+    return f"<table>{''.join(rows)}</table>"
 
 
 # QGIS deletes post processors with the run's context, but keeps no reference until then: one that Python forgets
@@ -96,7 +111,7 @@ def show_on_load(
         return
     details = context.layerToLoadOnCompletionDetails(target)
     details.layerSortKey = _DRAWN.index(kind)
-    if stem is not None:
+    if stem is not None or fields:
         details.setPostProcessor(_kept(Styler(stem, fields)))
 
 

@@ -16,10 +16,15 @@ PLUGIN = "lidar_buildings"
 def shipped_files() -> list[str]:
     """Return the paths to ship: known to git, or new and not ignored, and not marked ``export-ignore``."""
     command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard", "--deduplicate"]
-    listed = subprocess.run(
-        [*command, "--", ".", ":(exclude,attr:export-ignore)"], cwd=ROOT, check=True, capture_output=True, text=True
-    )
-    return sorted(name for name in listed.stdout.split("\0") if name)
+    try:
+        listed = subprocess.run(
+            [*command, "--", ".", ":(exclude,attr:export-ignore)"], cwd=ROOT, check=True, capture_output=True, text=True
+        )
+    except (OSError, subprocess.CalledProcessError) as error:
+        why = getattr(error, "stderr", "").strip() or error
+        sys.exit(f"git lists the files to ship, but can't here ({why}); install git and clone the repository.")
+    # What is deleted and not committed is still known to git.
+    return sorted(name for name in listed.stdout.split("\0") if name and (ROOT / name).is_file())
 
 
 def make_zip(folder: Path) -> Path:

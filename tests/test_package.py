@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import ast
 import configparser
+import os
 import re
+import shutil
 import subprocess
 import sys
 import zipfile
@@ -157,3 +159,15 @@ def test_metadata_takes_the_newest_version_and_the_whole_history():
 def test_metadata_refuses_a_changelog_without_a_version():
     with pytest.raises(ValueError, match="no heading like"):
         metadata.filled("version=\nchangelog=\n", "# Changelog\n")
+
+
+def test_without_git_it_says_what_to_do(tmp_path):
+    (tmp_path / "scripts").mkdir()
+    for name in ("scripts/package.py", "metadata.txt"):
+        shutil.copy(ROOT / name, tmp_path / name)
+    command = [sys.executable, tmp_path / "scripts/package.py", tmp_path]
+    nowhere = {**os.environ, "GIT_CEILING_DIRECTORIES": str(tmp_path.parent)}
+    done = subprocess.run(command, check=False, capture_output=True, text=True, env=nowhere)
+    assert done.returncode == 1
+    assert done.stderr.startswith("git lists the files to ship, but can't here")
+    assert not list(tmp_path.glob("*.zip"))

@@ -50,7 +50,7 @@ _OF_EXTENT = {"height_range", "plan_radius", "plan_density"}
 @stage(
     "Compute features",
     group="Features",
-    tags="covariance,eigenvalues,linearity,planarity,scattering,entropy,normals,verticality,geometric,optimal,scale",
+    tags="PCA,covariance,eigenvalues,linearity,planarity,scattering,entropy,normals,verticality,geometric,optimal,scale",
     writes=_FEATURES,
 )
 def compute_features(

@@ -96,7 +96,7 @@ _MEASURES = (
 @stage(
     "Compare corners",
     group="Quality",
-    tags="cadastre,land registry,map,update,displacement,shift,accuracy,footprints,evaluation",
+    tags="cadastre,land registry,map,update,change detection,changes,displacement,shift,accuracy,footprints,evaluation",
     input_layers=(
         InputLayer("footprints", "Footprints", "Polygon", "New outlines of buildings."),
         InputLayer(

@@ -101,16 +101,19 @@ class Tunable:
             return f"{'any' if self.type is tuple else 'one'} of {', '.join(self.param.choices)}"
         return self.param.bounds
 
-    def check(self, value: Any) -> Any:
-        """Return ``value`` in the declared type, or raise ValueError in one sentence."""
+    def check(self, value: Any, called: str = "") -> Any:
+        """Return ``value`` in the declared type, or raise ValueError in one sentence.
+
+        It names the tunable as it is ``called`` where the value was given, by its own name where nothing is told.
+        """
         if value is None and self.is_automatic:
             return None
         try:
             value = self._converted(value)
         except (TypeError, ValueError, OverflowError):
-            raise ValueError(self._refusal(_KINDS[self.type], value)) from None
+            raise ValueError(self._refusal(called, _KINDS[self.type], value)) from None
         if not self._inside(value):
-            raise ValueError(self._refusal(self.range, value))
+            raise ValueError(self._refusal(called, self.range, value))
         return value
 
     def _converted(self, value: Any) -> Any:
@@ -144,8 +147,8 @@ class Tunable:
         too_high = param.high is not None and (value > param.high or (param.open_high and value == param.high))
         return not (too_low or too_high)
 
-    def _refusal(self, wanted: str, value: Any) -> str:
-        return f"{self.param.label} ({self.name}) must be {wanted or 'a finite number'}, got {value!r}."
+    def _refusal(self, called: str, wanted: str, value: Any) -> str:
+        return f"{self.param.label} ({called or self.name}) must be {wanted or 'a finite number'}, got {value!r}."
 
 
 _KINDS = {float: "a number", int: "a whole number", bool: "true or false", str: "a word", tuple: "a list of words"}

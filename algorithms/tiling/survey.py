@@ -328,7 +328,9 @@ def check_folder(folder: Path, survey: Survey) -> None:
     """
     if folder.exists() and not folder.is_dir():
         raise ValueError(f"{folder} is a file; choose a folder for the tiles.")
-    inside = [source.path for source in survey.sources if folder.exists() and same_file(source.path.parent, folder)]
+    paths = [source.path for source in survey.sources] if folder.exists() else []
+    # A link to a file elsewhere is followed: the file would be written over.
+    inside = [path for path in paths if any(same_file(one.parent, folder) for one in (path, path.resolve()))]
     if inside:
         raise ValueError(f"{inside[0].name} is in the folder {folder}, where the tiles go; choose another folder.")
     try:

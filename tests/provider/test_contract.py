@@ -194,7 +194,7 @@ def test_bounds_are_refused_in_the_words_of_the_core(stage, algorithm, context, 
         high = tunable.param.high
         beyond = high if tunable.param.open_high else high + 1
         with pytest.raises(ValueError, match="must be") as refused:
-            tunable.check(float(beyond))
+            tunable.check(float(beyond), tunable.name.upper())
         accepted, message = algorithm.checkParameterValues({**given, tunable.name.upper(): beyond}, context)
         assert (accepted, message) == (False, str(refused.value))
 

@@ -251,7 +251,7 @@ def test_the_composite_runs_without_its_layer(provider, context, log, town_file,
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
-        ({"SECOND_STEP": 0}, "Step (step) must be greater than 0 m and at most 10 m, got 0.0."),
+        ({"SECOND_STEP": 0}, "Step (SECOND_STEP) must be greater than 0 m and at most 10 m, got 0.0."),
         ({"OUTPUT": "{input}"}, "is also an input"),
         ({"INPUT": "nowhere.laz"}, "there is none at nowhere.laz"),
         ({"OUTPUT": "a.doc"}, "extension"),
@@ -473,7 +473,7 @@ def test_help_of_a_composite_tells_layers_and_what_is_kept():
         ({"HIGH_OUTPUT": "{one}"}, "is also an input; choose another name."),
         ({"TOP": "{out}/a.png"}, "a.png can't be written as a raster: give it the extension .tif."),
         ({"TOP": "{out}/a.tif", "FLOOR": "{out}/a.tif"}, "give each its own."),
-        ({"HEIGHTS_CELL_SIZE": 0}, "Cell size (cell_size) must be at least 0.1 m, got 0.0."),
+        ({"HEIGHTS_CELL_SIZE": 0}, "Cell size (HEIGHTS_CELL_SIZE) must be at least 0.1 m, got 0.0."),
     ],
 )
 def test_what_is_wrong_with_a_mapping_is_refused_at_once(provider, context, mapping, out, change, sentence):

@@ -174,11 +174,11 @@ def wrong(**change):
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
-        (wrong(STEP=0), "Step (step) must be greater than 0 m and at most 10 m, got 0.0."),
-        (wrong(STEP=11), "Step (step) must be greater than 0 m and at most 10 m, got 11.0."),
-        (wrong(STEP="much"), "Step (step) must be a number, got 'much'."),
-        (wrong(TIMES=1.5), "Times (times) must be a whole number, got 1.5."),
-        (wrong(SIGN="left"), "Sign (sign) must be one of up, down, got 'left'."),
+        (wrong(STEP=0), "Step (STEP) must be greater than 0 m and at most 10 m, got 0.0."),
+        (wrong(STEP=11), "Step (STEP) must be greater than 0 m and at most 10 m, got 11.0."),
+        (wrong(STEP="much"), "Step (STEP) must be a number, got 'much'."),
+        (wrong(TIMES=1.5), "Times (TIMES) must be a whole number, got 1.5."),
+        (wrong(SIGN="left"), "Sign (SIGN) must be one of up, down, got 'left'."),
         (wrong(INPUT=""), "Point cloud (INPUT) is missing; choose a point cloud."),
         (
             wrong(INPUT="nowhere.laz"),

@@ -28,6 +28,7 @@ from lidar_buildings.algorithms.cloud.reasons import Reason
 from lidar_buildings.algorithms.features.classify_dimensionality import Dimensionality
 from lidar_buildings.algorithms.quality import compare_corners as corners
 from lidar_buildings.algorithms.quality.assess_buildings import FOUND, INVENTED, INVENTED_PART, MISSED, MISSED_PART
+from lidar_buildings.algorithms.stage import Field
 from lidar_buildings.algorithms.walls.extract_wall_footprints import ROOF, WALL
 from lidar_buildings.provider.paths import STYLES
 from lidar_buildings.provider.styles import Styler, cloud_style, layer_style, load_from, show_on_load, stack_results
@@ -124,6 +125,19 @@ def test_footprints_are_labeled(qgis_application):
     message, loaded = layer.loadNamedStyle(str(STYLES / "footprints.qml"))
     assert loaded, message
     assert layer.labelsEnabled()
+
+
+def test_a_feature_is_called_by_its_number_and_tells_all_where_the_mouse_rests(context, log):
+    fields = (Field("id", int, "number"), Field("height", float, "height", "m"), Field("reason", str, "why"))
+    layer = QgsVectorLayer("Polygon?field=id:int&field=height:double&field=reason:string", "f", "memory")
+    Styler(None, fields).postProcessLayer(layer, context, log)
+    feature = QgsFeature(layer.fields())
+    feature.setAttributes([7, 4.2345, None])
+    of_feature = QgsExpressionContext()
+    of_feature.setFeature(feature)
+    assert QgsExpression(layer.displayExpression()).evaluate(of_feature) == 7
+    tip = QgsExpression.replaceExpressionText(layer.mapTipTemplate(), of_feature)
+    assert "<tr><td>height</td><td>4.23 m</td></tr><tr><td>reason</td><td></td></tr>" in tip
 
 
 @pytest.mark.parametrize(

@@ -139,6 +139,20 @@ def test_cutting_keeps_fields_of_one_name_apart(tmp_path):
     np.testing.assert_array_equal(read_cloud(cut).points, read_cloud(path).points)
 
 
+def test_a_folder_that_links_to_its_files_lead_to_is_refused(tmp_path):
+    raw, links = tmp_path / "raw", tmp_path / "links"
+    raw.mkdir()
+    links.mkdir()
+    path = tile(raw / "a.las", (0, 0))
+    (links / "a.las").symlink_to(path)
+    before = path.read_bytes()
+    with pytest.raises(ValueError, match="a.las is in the folder"):
+        cut_into_tiles(open_survey([links]), 10.0, raw, "tile", False, Monitor())
+    with pytest.raises(ValueError, match="a.las is in the folder"):
+        run([links], raw)
+    assert [(one.name, one.read_bytes()) for one in raw.iterdir()] == [("a.las", before)]
+
+
 KILLED = """
 import os, sys
 sys.path.insert(0, sys.argv[1])
