@@ -93,6 +93,6 @@ class CutAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
             survey = open_survey(self.files, crs_units, monitor, self.extent)
             stem = self.files[0].name.split(".")[0] if len(self.files) == 1 else "tile"
             tiles = cut_into_tiles(survey, side, folder, stem, compressed, monitor)
-            vpc = write_survey(survey, tiles, folder, context)
+            vpc = write_survey(survey, tiles, folder, context, monitor)
             return {OUTPUT: str(folder), VPC: str(vpc), TILES: len(tiles)}
         return {}

@@ -7,11 +7,18 @@ from pathlib import Path
 from typing import Optional
 
 import numpy as np
-from qgis.core import QgsCoordinateReferenceSystem, QgsCoordinateTransform, QgsPointXY, QgsProcessingContext
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransform,
+    QgsCsException,
+    QgsPointXY,
+    QgsProcessingContext,
+)
 
 from ..algorithms.cloud.outputs import VPC as VPC_SUFFIX
 from ..algorithms.cloud.outputs import kind_of, same_file
 from ..algorithms.cloud.vpc import write_vpc
+from ..algorithms.stage import Monitor
 from ..algorithms.tiling.survey import Survey
 from .places import Place, place_of_cloud
 
@@ -57,7 +64,9 @@ def _vpc_of(folder: Path) -> Path:
     return folder / f"{folder.resolve().name}{VPC_SUFFIX}"
 
 
-def write_survey(survey: Survey, tiles: list[Path], folder: Path, context: QgsProcessingContext) -> Path:
+def write_survey(
+    survey: Survey, tiles: list[Path], folder: Path, context: QgsProcessingContext, monitor: Monitor
+) -> Path:
     """Write a virtual point cloud over tiles of a survey, named as their folder; return its path.
 
     Raises
@@ -74,5 +83,13 @@ def write_survey(survey: Survey, tiles: list[Path], folder: Path, context: QgsPr
             return np.array([(place.x(), place.y()) for place in there])
 
     path = _vpc_of(folder)
-    write_vpc(tiles, path, to_degrees)
+    try:
+        write_vpc(tiles, path, to_degrees)
+    except QgsCsException:
+        # With coordinates far outside of its system a survey lies nowhere on Earth.
+        monitor.warn(
+            f"Places in {path.name} are not in degrees: the coordinates lie outside of {crs.userFriendlyIdentifier()}; "
+            "check the coordinate reference system of the input."
+        )
+        write_vpc(tiles, path)
     return path

@@ -174,7 +174,7 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
             with all_in_place(sinks, parameters, context, folder.name) as run:
                 outcome = self._run(folder, parameters, context, monitor)
                 results = self._write_layers(outcome, run.parameters, context, monitor)
-                results[VPC] = str(write_survey(outcome.survey, outcome.tiles, folder, context))
+                results[VPC] = str(write_survey(outcome.survey, outcome.tiles, folder, context, monitor))
                 results = run.final(results)
             _refuse_failures(outcome, folder)
             monitor.progress(1.0)

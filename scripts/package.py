@@ -31,10 +31,11 @@ def make_zip(folder: Path) -> Path:
     """Write ``lidar_buildings-<version>.zip`` into ``folder`` and return its path."""
     metadata = configparser.ConfigParser()
     metadata.read(ROOT / "metadata.txt", encoding="utf-8")
+    names = shipped_files()
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{PLUGIN}-{metadata['general']['version']}.zip"
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name in shipped_files():
+        for name in names:
             archive.write(ROOT / name, f"{PLUGIN}/{name}")
     return path
 

@@ -135,6 +135,17 @@ def test_who_stops_a_run_is_told_what_stays(provider, context, log, folder, tmp_
     assert kept in said
 
 
+def test_coordinates_far_outside_of_their_system_are_a_warning(provider, context, log, tmp_path):
+    xyz = np.random.default_rng(1).uniform(0, 20, (100, 3)) + [5e8, 5e8, 0]
+    path = tmp_path / "far.las"
+    write_cloud(create_cloud({"xyz": xyz}, "EPSG:32631"), path)
+    given = {"INPUT": str(path), "OUTPUT": str(tmp_path / "cut")}
+    results, succeeded = provider.algorithm("cutintotiles").run(given, context, log)
+    assert succeeded
+    assert any("outside of EPSG:32631" in sentence for sentence in log.warnings)
+    assert len(read_cloud(results["VPC"])) == 100
+
+
 def test_tiles_are_cut_with_a_virtual_point_cloud_over_them(provider, context, log, folder, tmp_path):
     given = {"INPUT": str(folder), "SIDE": 20.0, "OUTPUT": str(tmp_path / "cut")}
     results, succeeded = provider.algorithm("cutintotiles").run(given, context, log)
