@@ -11,6 +11,7 @@ from typing import Any, Optional
 
 import numpy as np
 
+from ..geometry.grid import distinct, find_cells, grid_over
 from ..geometry.groups import components
 from ..geometry.rings import signed_area
 from ..packages import spatial
@@ -20,6 +21,10 @@ _PERCENTILE, _ROOM = 95, 2.0
 
 # In terms of the mean point spacing: no shorter, which would tear roofs, and no longer, which would fill courtyards.
 _SHORTEST, _LONGEST = 4.0, 8.0
+
+# Cells (times the mean point spacing) in which the inside of an area is told: a lattice of their middles has no triangle
+# with an edge as long as the shortest of the longest edges.
+_INNER_CELL = 2.5
 
 # Buildings whose points are closer than so many spacings touch; chance leaves wider gaps in one roof of twenty.
 _TOUCHING = 3.0
@@ -128,6 +133,7 @@ def trace_outlines(
     max_edge: Optional[float] = None,
     min_area: float = 0.0,
     min_hole_area: float = 0.0,
+    stands_for: Optional[np.ndarray] = None,
 ) -> Optional[Tracing]:
     """Divide the area of labeled points among their labels: triangles of their triangulation without long edges.
 
@@ -146,6 +152,8 @@ def trace_outlines(
         Smaller pieces (m²) go to the building beside them, or vanish.
     min_hole_area : float
         Smaller holes (m²) are filled.
+    stands_for : ndarray of shape (n,), optional
+        How many points inside a building each point stands for, as :func:`without_inside` gives it; 0 for one itself.
 
     Returns
     -------
@@ -169,7 +177,8 @@ def trace_outlines(
     if not is_roof.any():
         return None
     if max_edge is None:
-        max_edge = _adapted_edge(triangles[is_roof], longest[is_roof], len(xy), spacing)
+        stands_for = np.zeros(len(xy)) if stands_for is None else stands_for
+        max_edge = _adapted_edge(triangles[is_roof], longest[is_roof], stands_for, spacing)
     is_mixed = (corner_label != corner_label[:, :1]).any(axis=1)
     is_kept = is_roof & (longest <= np.where(is_mixed, min(max_edge, _TOUCHING * spacing), max_edge))
     value = np.where(is_kept, _majority(corner_label), 0)
@@ -192,12 +201,46 @@ def _areas(xy: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     return 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
 
 
-def _adapted_edge(triangles: np.ndarray, longest: np.ndarray, n_points: int, spacing: float) -> float:
+def _adapted_edge(triangles: np.ndarray, longest: np.ndarray, stands_for: np.ndarray, spacing: float) -> float:
     """Return the longest edge that suits these points: scan lines far apart need longer ones than an even cloud."""
-    smallest = np.full(n_points, np.inf)
+    smallest = np.full(len(stands_for), np.inf)
     np.minimum.at(smallest, triangles.ravel(), np.repeat(longest, 3))
-    own = _ROOM * float(np.percentile(smallest[np.isfinite(smallest)], _PERCENTILE))
-    return float(np.clip(own, _SHORTEST * spacing, _LONGEST * spacing))
+    # Points inside a building that others stand for are close to each other.
+    own = np.sort(smallest[np.isfinite(smallest) & (stands_for == 0)])
+    n_close = int(stands_for.sum())
+    rank = _PERCENTILE / 100 * (len(own) + n_close - 1) - n_close
+    if rank < 0:
+        return _SHORTEST * spacing
+    edge = _ROOM * float(np.interp(rank, np.arange(len(own)), own))
+    return float(np.clip(edge, _SHORTEST * spacing, _LONGEST * spacing))
+
+
+def without_inside(xy: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return points of one area with a lattice in the place of those well inside, which no outline comes near.
+
+    Parameters
+    ----------
+    xy : ndarray of shape (n, 2)
+        Points (m).
+    spacing : float
+        Mean distance between neighboring points (m).
+
+    Returns
+    -------
+    points : ndarray of shape (m, 2)
+        The points near gaps and edges, then the middles of cells that have points and are surrounded by such cells.
+    stands_for : ndarray of shape (m,), int64
+        How many points each of these stands for, 0 for a point itself.
+    """
+    grid = grid_over(xy, _INNER_CELL * spacing)
+    cells, which = distinct(grid.number(xy))
+    is_inner = np.ones(len(cells), bool)
+    for step in grid.around:
+        is_inner &= find_cells(cells, cells + step)[1]
+    rest = xy[~is_inner[which]]
+    count = np.bincount(which, minlength=len(cells))[is_inner]
+    points = np.concatenate([rest, grid.center(cells[is_inner])])
+    return points, np.concatenate([np.zeros(len(rest), np.int64), count])
 
 
 def _majority(labels: np.ndarray) -> np.ndarray:

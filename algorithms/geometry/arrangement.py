@@ -204,14 +204,17 @@ def cheapest_cut(
     """
     n = len(if_inside)
     source, sink, cells = n, n + 1, np.arange(n)
-    rows = np.concatenate([left, right, np.full(n, source), cells])
-    columns = np.concatenate([right, left, cells, np.full(n, sink)])
-    costs = np.minimum(np.concatenate([cost, cost, if_outside, if_inside]), _LARGEST_COST)
-    capacity = np.rint(costs * _STEPS).astype(np.int32)
+    # With all edges both ways, the flow has the structure of the graph, and what is left of it is found number by number.
+    to_source, to_sink = np.full(n, source), np.full(n, sink)
+    rows = np.concatenate([left, right, to_source, cells, cells, to_sink])
+    columns = np.concatenate([right, left, cells, to_source, to_sink, cells])
+    costs = np.concatenate([cost, cost, if_outside, np.zeros(n), if_inside, np.zeros(n)])
+    capacity = np.rint(np.minimum(costs, _LARGEST_COST) * _STEPS).astype(np.int32)
     graph = sparse.csr_matrix((capacity, (rows, columns)), shape=(n + 2, n + 2))
-    residual = graph - csgraph.maximum_flow(graph, source, sink).flow
-    residual.data = np.maximum(residual.data, 0)
-    residual.eliminate_zeros()
+    flow = csgraph.maximum_flow(graph, source, sink).flow
+    has_room = graph.data > flow.data
+    starts = np.concatenate([[0], np.cumsum(has_room)])[graph.indptr]
+    residual = sparse.csr_matrix((np.ones(starts[-1], np.int8), graph.indices[has_room], starts), shape=graph.shape)
     reached = csgraph.breadth_first_order(residual, source, return_predecessors=False)
     inside = np.zeros(n + 2, bool)
     inside[reached] = True

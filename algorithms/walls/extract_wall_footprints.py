@@ -8,7 +8,7 @@ from typing import Annotated, Optional
 
 import numpy as np
 
-from ..footprints.alpha_shape import trace_outlines
+from ..footprints.alpha_shape import trace_outlines, without_inside
 from ..footprints.regularization import regularize_outline
 from ..geometry.grid import SparsePointsError
 from ..geometry.groups import members
@@ -312,7 +312,8 @@ class _Building:
         """Outlines of the roof: a list of rings for each part, the largest first."""
         if not self.roof_spacing:
             return []
-        traced = trace_outlines(self.whole_roof, np.ones(len(self.whole_roof), np.int64), self.roof_spacing)
+        points, stands_for = without_inside(self.whole_roof, self.roof_spacing)
+        traced = trace_outlines(points, np.ones(len(points), np.int64), self.roof_spacing, stands_for=stands_for)
         return sorted(without_nested(traced.parts if traced else []), key=lambda rings: -sum(map(signed_area, rings)))
 
     @cached_property

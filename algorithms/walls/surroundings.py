@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from ..geometry.grid import Grid, distinct, find_cells, grid_over, refuse_sparse
+from ..geometry.groups import items, run_starts
 from ..geometry.line_segments import are_inside
 from ..geometry.rings import signed_area
 from ..packages import ndimage
@@ -64,11 +65,11 @@ class Surroundings:
     def _table(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Numbers of the cells with points, ascending, the lowest elevation in each (m), and a roof in it, or 0."""
         cells, which = distinct(self.grid.number(self._xyz))
-        lowest, roof = np.full(len(cells), np.inf), np.zeros(len(cells), np.int64)
-        np.minimum.at(lowest, which, self._xyz[:, 2])
+        order = np.argsort(which, kind="stable")
+        starts = run_starts(which[order])
         # Of two roofs in a cell either one is beside a third.
-        np.maximum.at(roof, which, self._cluster_id)
-        return cells, lowest, roof
+        roof = np.maximum(np.maximum.reduceat(self._cluster_id[order], starts), 0)
+        return cells, np.minimum.reduceat(self._xyz[order, 2], starts), roof.astype(np.int64)
 
     def _at(self, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the lowest elevation (n,) (m) in the cells of places (n, 2), NaN without points, and a roof, or 0."""
@@ -107,21 +108,17 @@ class Surroundings:
 
     def is_party(self, sides: np.ndarray, number: int) -> np.ndarray:
         """Return beside which sides (k, 2, 2) of roof ``number``, which lies to their left, other roofs begin."""
-        length = np.hypot(*(sides[:, 1] - sides[:, 0]).T)
-        return np.array([self._shared(side, float(own), number) >= _SHARED for side, own in zip(sides, length)], bool)
-
-    def _shared(self, side: np.ndarray, length: float, number: int) -> float:
-        """Return the share of a side beside which another roof begins."""
-        if length <= 0:
-            return 0.0
-        direction = (side[1] - side[0]) / length
-        count = max(1, round(length / _STEP))
-        along = side[0] + (np.arange(count)[:, None] + 0.5) * length / count * direction
-        is_beside = np.zeros(count, bool)
-        for outward in _OUTWARD:
-            roof = self._at(along + outward * np.array([direction[1], -direction[0]]))[1]
+        step = sides[:, 1] - sides[:, 0]
+        length = np.hypot(*step.T)
+        count = np.where(length > 0, np.maximum(1, np.rint(length / _STEP)), 0).astype(np.int64)
+        side, place = items(count)
+        along = sides[side, 0] + ((place + 0.5) / count[side])[:, None] * step[side]
+        outward = np.column_stack([step[side, 1], -step[side, 0]]) / length[side, None]
+        is_beside = np.zeros(len(side), bool)
+        for distance in _OUTWARD:
+            roof = self._at(along + distance * outward)[1]
             is_beside |= (roof > 0) & (roof != number)
-        return float(is_beside.mean())
+        return np.bincount(side, is_beside, len(sides)) >= _SHARED * np.maximum(count, 1)
 
 
 def _closed(mask: np.ndarray, radius: float) -> np.ndarray:

@@ -16,6 +16,9 @@ _TRIALS = 500
 # Hypotheses are scored on so many points at most, and made of points at least so far apart (m).
 _SCORED, _LEAST_PAIR = 1500, 0.5
 
+# Hypotheses held against all points at once, so that the table of both stays in the cache.
+_LINES_AT_ONCE = 50
+
 # A wall goes on over a gap of this length (m): bushes, cars and holes.
 _GAP = 1.5
 
@@ -222,21 +225,36 @@ def _longest_stretches(
     xy: np.ndarray, ways: np.ndarray, starts: np.ndarray, directions: np.ndarray, scale: Scale
 ) -> np.ndarray:
     """Return for each line how many bins of its longest stretch hold points; a stretch goes on over small gaps."""
-    normals = np.column_stack([-directions[:, 1], directions[:, 0]])
-    near = np.abs(normals @ xy.T - np.einsum("ij,ij->i", normals, starts)[:, None]) <= scale.tolerance
-    near &= np.abs(directions @ ways.T) >= _ALONG
-    along = directions @ xy.T
-    bins = np.floor((along - along.min()) / scale.bin).astype(np.int64)
-    count = int(bins.max()) + 1
-    line, point = np.nonzero(near)
-    occupied = np.bincount(line * count + bins[line, point], minlength=len(starts) * count).reshape(-1, count) > 0
-    gap, run, best = (np.zeros(len(starts), np.int64) for _ in range(3))
-    longest_gap = round(_GAP / scale.bin)
-    for column in occupied.T:
-        gap = np.where(column, 0, gap + 1)
-        run = np.where(gap > longest_gap, 0, run + column)
-        best = np.maximum(best, run)
+    line, point, least = _near_lines(xy, starts, directions, scale.tolerance)
+    runs_along = np.abs(np.einsum("ij,ij->i", directions[line], ways[point])) >= _ALONG
+    line, point = line[runs_along], point[runs_along]
+    along = np.einsum("ij,ij->i", directions[line], xy[point])
+    bins = np.floor((along - least) / scale.bin).astype(np.int64)
+    count = int(bins.max(initial=0)) + 1
+    line, column = np.divmod(np.flatnonzero(np.bincount(line * count + bins)), count)
+    is_new = np.ones(len(line), bool)
+    is_new[1:] = (np.diff(line) > 0) | (np.diff(column) > round(_GAP / scale.bin) + 1)
+    runs = np.flatnonzero(is_new)
+    best = np.zeros(len(starts), np.int64)
+    np.maximum.at(best, line[runs], np.diff(runs, append=len(line)))
     return best
+
+
+def _near_lines(
+    xy: np.ndarray, starts: np.ndarray, directions: np.ndarray, tolerance: float
+) -> tuple[np.ndarray, np.ndarray, float]:
+    """Return the pairs of line and point (k,) within a tolerance (m), and the least way of any point along any line."""
+    normals = np.column_stack([-directions[:, 1], directions[:, 0]])
+    offset, columns, least = np.einsum("ij,ij->i", normals, starts), np.ascontiguousarray(xy.T), np.inf
+    pairs = []
+    for first in range(0, len(directions), _LINES_AT_ONCE):
+        some = slice(first, first + _LINES_AT_ONCE)
+        table = normals[some] @ columns
+        table -= offset[some, None]
+        near = np.flatnonzero(np.abs(table, out=table) <= tolerance)
+        pairs.append(near + first * len(xy))
+        least = min(least, float(np.matmul(directions[some], columns, out=table).min()))
+    return (*np.divmod(np.concatenate(pairs), len(xy)), least)
 
 
 def _fitted(
