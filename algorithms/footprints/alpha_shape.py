@@ -22,9 +22,12 @@ _PERCENTILE, _ROOM = 95, 2.0
 # In terms of the mean point spacing: no shorter, which would tear roofs, and no longer, which would fill courtyards.
 _SHORTEST, _LONGEST = 4.0, 8.0
 
-# Cells (times the mean point spacing) in which the inside of an area is told: a lattice of their middles has no triangle
-# with an edge as long as the shortest of the longest edges.
+# Cells (times the mean point spacing) in which the inside of an area is told: a lattice of their middles has no
+# triangle with an edge as long as the shortest of the longest edges.
 _INNER_CELL = 2.5
+
+# What is inside has so many cells with points around it on all sides: flat triangles at an edge reach over one.
+_DEEP_CELLS = 2
 
 # Buildings whose points are closer than so many spacings touch; chance leaves wider gaps in one roof of twenty.
 _TOUCHING = 3.0
@@ -228,15 +231,16 @@ def without_inside(xy: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarr
     Returns
     -------
     points : ndarray of shape (m, 2)
-        The points near gaps and edges, then the middles of cells that have points and are surrounded by such cells.
+        The points near gaps and edges, then the middles of cells well inside of such with points.
     stands_for : ndarray of shape (m,), int64
         How many points each of these stands for, 0 for a point itself.
     """
     grid = grid_over(xy, _INNER_CELL * spacing)
     cells, which = distinct(grid.number(xy))
     is_inner = np.ones(len(cells), bool)
-    for step in grid.around:
-        is_inner &= find_cells(cells, cells + step)[1]
+    around = [find_cells(cells, cells + step) for step in grid.around]
+    for _ in range(_DEEP_CELLS):
+        is_inner &= np.all([found & is_inner[place] for place, found in around], axis=0)
     rest = xy[~is_inner[which]]
     count = np.bincount(which, minlength=len(cells))[is_inner]
     points = np.concatenate([rest, grid.center(cells[is_inner])])

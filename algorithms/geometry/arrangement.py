@@ -204,7 +204,7 @@ def cheapest_cut(
     """
     n = len(if_inside)
     source, sink, cells = n, n + 1, np.arange(n)
-    # With all edges both ways, the flow has the structure of the graph, and what is left of it is found number by number.
+    # With all edges both ways, the flow has the structure of the graph, and its rest is found number by number.
     to_source, to_sink = np.full(n, source), np.full(n, sink)
     rows = np.concatenate([left, right, to_source, cells, cells, to_sink])
     columns = np.concatenate([right, left, cells, to_source, to_sink, cells])

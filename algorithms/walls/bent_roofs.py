@@ -6,7 +6,7 @@ import numpy as np
 
 from ..buildings.roof_extent import amid_rough
 from ..cloud.asprs import NOISE
-from ..packages import spatial
+from ..packages import ndimage, spatial
 from ..sampling.cloud_sampling import CloudSampling
 from ..segmentation.cluster_measures import plan_areas
 from ..segmentation.segment_clusters import dbscan, points_at_corner
@@ -15,14 +15,24 @@ from ..segmentation.top_surface import TopSurface
 from ..stage import Monitor
 from ..threads import n_threads
 
+# What stands on the ground is higher than this (m), and so much of the ground around it (m) shows whether a surface
+# goes on into the ground, and what surrounds it.
+_RAISED, _AROUND = 0.5, 2.0
+
 
 def bent_roofs(
-    xyz: np.ndarray, classification: np.ndarray, height: np.ndarray, sampling: CloudSampling, monitor: Monitor
+    xyz: np.ndarray,
+    classification: np.ndarray,
+    height: np.ndarray,
+    cluster_id: np.ndarray,
+    sampling: CloudSampling,
+    monitor: Monitor,
 ) -> np.ndarray:
     """Return the smooth surface (n,), int32, from 1, that each point is of; 0 is none.
 
     Surfaces are smooth where neighbors share a plane, however they bend on the whole. Smooth spots of crowns, which lie
-    amid what is rough, are none.
+    amid what is rough, are none. Only raised objects with a roof that is known already, and what lies close around
+    them, are looked at.
 
     Parameters
     ----------
@@ -32,16 +42,34 @@ def bent_roofs(
         ASPRS classes; noise is left out.
     height : ndarray of shape (n,)
         Heights above ground, m.
+    cluster_id : ndarray of shape (n,)
+        Buildings of the points on planes, from 1; 0 is none.
     sampling : CloudSampling
         How the cloud was sampled.
     monitor : Monitor
         Receives progress.
     """
-    segment_id = segment_roofs(
-        xyz, classification, height, source="matched images", sampling=sampling, monitor=monitor
-    )[0]
     surface = TopSurface(xyz, height, ~np.isin(classification, NOISE), sampling.effective_density)
+    is_near = _beside_roofs(surface, cluster_id > 0)[surface.cell]
+    # With the corner of the cloud cells fall as in the whole of it.
+    is_near[np.argmin(xyz[:, :2], axis=0)] = True
+    near = np.flatnonzero(is_near)
+    segment_id = np.zeros(len(xyz), np.int32)
+    segment_id[near] = segment_roofs(
+        xyz[near], classification[near], height[near], source="matched images", sampling=sampling, monitor=monitor
+    )[0]
     return np.where(amid_rough(surface, xyz, segment_id), 0, segment_id)
+
+
+def _beside_roofs(surface: TopSurface, is_roof: np.ndarray) -> np.ndarray:
+    """Return which cells lie in or near raised objects with a roof; ``is_roof`` (n,) are the points of roofs."""
+    row, column = surface.cell
+    has_roof = np.zeros(surface.height.shape, bool)
+    has_roof[row[is_roof], column[is_roof]] = True
+    label = ndimage.label(has_roof | (surface.height >= _RAISED), np.ones((3, 3), bool))[0]
+    is_object = np.zeros(int(label.max()) + 1, bool)
+    is_object[label[has_roof]] = True
+    return ndimage.distance_transform_edt(~is_object[label]) * surface.size <= _AROUND
 
 
 def with_bent_roofs(

@@ -101,7 +101,7 @@ def classify_roofs(
     cluster_id = np.zeros(len(xyz), np.int32)
     cluster_id[roof] = _clusters(xyz[roof], gap, min_area, density, monitor.part(0, 0.5))
     if sampling.is_closed_surface(source) and cluster_id.any():
-        bent = bent_roofs(xyz, classification, height_above_ground, sampling, monitor.part(0.5, 0.9))
+        bent = bent_roofs(xyz, classification, height_above_ground, cluster_id, sampling, monitor.part(0.5, 0.9))
         is_bent = _is_on_roof(bent, height_above_ground, split_height) & (cluster_id == 0)
         cluster_id = with_bent_roofs(xyz, cluster_id, is_bent, gap, min_area, density, monitor.part(0.9, 1))
     monitor.progress(1.0)

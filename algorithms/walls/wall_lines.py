@@ -32,6 +32,9 @@ _POINTS_PER_BIN = 3.0
 # no straighter. Beyond the larger figure no noise excuses.
 _SAME, _BUILT, _MOST = 3.0, np.deg2rad(0.7), np.deg2rad(8.0)
 
+# Points deviate from their line by more than noise explains if it is so many standard errors of the noise's variance.
+_CERTAIN = 2.0
+
 # The way a wall runs shows in the points within this distance (m), where they are at least so much longer than wide;
 # points of a wall run within this angle of it (cosine), those of bushes and corners any way.
 _AROUND, _LONGER, _ALONG = 0.6, 2.0, np.cos(np.deg2rad(30.0))
@@ -81,11 +84,21 @@ class WallLine:
         """Whether it has wall points."""
         return len(self.points) > 0
 
-    @property
-    def angle_deviation(self) -> float:
-        """Standard deviation of the direction (radians)."""
+    def excess(self, noise: float) -> float:
+        """Return the deviation (m) that is left when what noise of a standard deviation (m) makes is taken off."""
+        chance = 1 + _CERTAIN * np.sqrt(2 / max(len(self.points), 1))
+        return float(np.sqrt(max(self.deviation**2 - chance * noise**2, 0.0)))
+
+    def angle_deviation(self, noise: float) -> float:
+        """Return the standard deviation of the direction (radians).
+
+        Noise of a standard deviation (m) averages out over the points. What exceeds it does not: points of a bush at
+        one end of a wall turn it however many they are.
+        """
         spread = float(np.sqrt(np.sum(self.along**2)))
-        return self.deviation / spread if spread > 0 else np.inf
+        if not spread:
+            return np.inf
+        return float(np.hypot(self.deviation, np.sqrt(len(self.points)) * self.excess(noise))) / spread
 
     def across(self, xy: np.ndarray) -> np.ndarray:
         """Return how far (m) points (n, 2) lie to the left of the line."""
@@ -102,6 +115,10 @@ class WallLine:
         return replace(
             turned, along=offsets @ direction, deviation=float(np.sqrt(np.mean((offsets @ turned.normal) ** 2)))
         )
+
+    def centered(self, xy: np.ndarray) -> WallLine:
+        """Return the line moved across to the median of its points, which few of something else leave where it is."""
+        return replace(self, point=self.point + float(np.median(self.across(xy[self.points]))) * self.normal)
 
 
 @dataclass(frozen=True)
@@ -229,7 +246,8 @@ def _longest_stretches(
     runs_along = np.abs(np.einsum("ij,ij->i", directions[line], ways[point])) >= _ALONG
     line, point = line[runs_along], point[runs_along]
     along = np.einsum("ij,ij->i", directions[line], xy[point])
-    bins = np.floor((along - least) / scale.bin).astype(np.int64)
+    # By rounding the first point lies before the least way.
+    bins = np.maximum(np.floor((along - least) / scale.bin).astype(np.int64), 0)
     count = int(bins.max(initial=0)) + 1
     line, column = np.divmod(np.flatnonzero(np.bincount(line * count + bins)), count)
     is_new = np.ones(len(line), bool)
@@ -309,11 +327,15 @@ def merge_lines(lines: list[WallLine], xy: np.ndarray, scale: Scale) -> list[Wal
 def square_up(lines: list[WallLine], xy: np.ndarray) -> list[WallLine]:
     """Make lines parallel or square to each other where their points allow it; others keep their direction.
 
-    Each group of such lines gets the mean of their directions, the precise ones counting most.
+    Each group of such lines gets the mean of their directions, the precise ones counting most. Lines whose points
+    deviate by more than is usual among these are not sure of their direction, nor of their place across.
     """
+    if not lines:
+        return []
     result = list(lines)
+    noise = float(np.median(np.repeat([line.deviation for line in lines], [len(line.points) for line in lines])))
     angles = np.array([np.arctan2(line.direction[1], line.direction[0]) for line in lines])
-    deviations = np.array([np.hypot(line.angle_deviation, _BUILT / _SAME) for line in lines])
+    deviations = np.array([np.hypot(line.angle_deviation(noise), _BUILT / _SAME) for line in lines])
     open_lines = list(np.argsort(deviations, kind="stable"))
     while open_lines:
         first = open_lines[0]
@@ -323,6 +345,7 @@ def square_up(lines: list[WallLine], xy: np.ndarray) -> list[WallLine]:
         mean = np.angle(np.sum(np.exp(4j * angles[group]) / deviations[group] ** 2)) / 4
         for i in group:
             angle = mean + np.round((angles[i] - mean) / (np.pi / 2)) * np.pi / 2
-            result[i] = lines[i].turned(np.array([np.cos(angle), np.sin(angle)]), xy)
+            turned = lines[i].turned(np.array([np.cos(angle), np.sin(angle)]), xy)
+            result[i] = turned.centered(xy) if turned.excess(noise) > 0 else turned
         open_lines = [i for i in open_lines if i not in group]
     return result

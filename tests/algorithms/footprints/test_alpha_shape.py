@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial import Delaunay
 
-from lidar_buildings.algorithms.footprints.alpha_shape import trace_outlines
+from lidar_buildings.algorithms.footprints.alpha_shape import trace_outlines, without_inside
 from lidar_buildings.algorithms.geometry.rings import perimeter, signed_area
 from lidar_buildings.tests.polygon_validity import assert_valid
 
@@ -34,6 +34,26 @@ def test_courtyard_is_a_hole():
     assert signed_area(hole) == pytest.approx(-81, rel=0.05)  # from 5.5 to 14.5, corners rounded
     assert len(traced(points, min_hole_area=60.0).parts[0]) == 2
     assert len(traced(points, min_hole_area=90.0).parts[0]) == 1
+
+
+@pytest.mark.parametrize("step", [0.0, 0.8])
+def test_outlines_are_the_same_without_the_points_inside(rng, step):
+    """A roof with a courtyard and a notch, its points by chance or on scan lines that make longer edges."""
+    points = rng.uniform(0, 30, (36_000, 2))
+    if step:
+        points = points[np.abs(points[:, 1] % step - step / 2) < 0.1]
+    points = points[(np.abs(points - 15) > 3).any(axis=1) & ~((points[:, 0] > 20) & (points[:, 1] > 24))]
+    spacing = 0.9 / np.sqrt(len(points) / 820)
+    few, stands_for = without_inside(points, spacing)
+    assert len(few) < (0.6 if not step else 1.01) * len(points)
+    assert stands_for.sum() + (stands_for == 0).sum() == len(points)
+    whole, part = traced(points, spacing), traced(few, spacing, stands_for=stands_for)
+    assert part.max_edge == pytest.approx(whole.max_edge, rel=0.05)
+    for one, other in zip(
+        whole.parts[0][:1] + [min(whole.parts[0][1:], key=signed_area)],
+        part.parts[0][:1] + [min(part.parts[0][1:], key=signed_area)],
+    ):
+        assert {tuple(place) for place in one} == {tuple(place) for place in other}
 
 
 def test_gap_parts_and_joins():
