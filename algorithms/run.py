@@ -5,7 +5,7 @@ A stage: fetch what it reads, leave out withheld points, store what it writes. A
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Optional, Union
 
@@ -36,13 +36,17 @@ from .stages import STAGES
 
 @dataclass
 class Outcome:
-    """What a stage made: the cloud with its new dimensions, its layers, rasters and files by name, its report."""
+    """What a stage made: the cloud with its new dimensions, its layers, rasters and files by name, its report.
+
+    ``selected`` are the positions, int64 (m,), that the points of the cloud had in the one given; None where all stay.
+    """
 
     cloud: Optional[Cloud]
     layers: dict[str, LayerFeatures] = field(default_factory=dict)
     report: Optional[Report] = None
     rasters: dict[str, RasterSurface] = field(default_factory=dict)
     files: dict[str, FileContent] = field(default_factory=dict)
+    selected: Optional[np.ndarray] = None
 
 
 def run_stage(
@@ -87,24 +91,30 @@ def run_stage(
         arguments[SAMPLING] = sampling or own
     made = stage.unpack(stage.function(*arrays, **layers, **arguments, monitor=monitor))
     _log(own, monitor)
+    if made.selected is not None and used[0] is not None:
+        made = replace(made, selected=np.flatnonzero(used[0])[made.selected])
     result = _result(stage, clouds, used, made, monitor)
     if stage.merges and result is not None:
         _see_from(origin, [*together, result])
-    return Outcome(result, made.layers, made.report, made.rasters, made.files)
+    return Outcome(result, made.layers, made.report, made.rasters, made.files, made.selected)
 
 
 def sampling_of(cloud: Cloud) -> CloudSampling:
     """Return how those points of a cloud were sampled that are now neither withheld nor noise."""
-    counted = _counted(cloud)
-    several = cloud.has("number_of_returns") and int(cloud.get("number_of_returns").max(initial=0)) > 1
-    return CloudSampling(lambda: cloud.get("xyz")[counted], single_returns=not several)
+    used = counted(cloud)
+    return CloudSampling(lambda: cloud.get("xyz")[used], single_returns=not has_several_returns(cloud))
 
 
-def _counted(cloud: Cloud) -> np.ndarray:
+def has_several_returns(cloud: Cloud) -> bool:
+    """Whether a pulse of a cloud is known to have more than one return."""
+    return cloud.has("number_of_returns") and int(cloud.get("number_of_returns").max(initial=0)) > 1
+
+
+def counted(cloud: Cloud) -> np.ndarray:
     """Return which points (n,) the sampling of a cloud is measured on."""
-    counted = ~cloud.withheld
-    counted[counted] = without_noise(cloud.get("classification")[counted])
-    return counted
+    used = ~cloud.withheld
+    used[used] = without_noise(cloud.get("classification")[used])
+    return used
 
 
 def _log(sampling: Optional[CloudSampling], monitor: Monitor) -> None:
@@ -118,30 +128,37 @@ class _RunSampling:
 
     Parameters
     ----------
-    given : CloudSampling, optional
-        That of the points of ``cloud``; it holds until a step makes a cloud of other points.
+    given : mapping of str to CloudSampling
+        That of the points of ``cloud``, by the name "", and those of what steps make, by their names; each holds until
+        the next one, or until a step makes a cloud of other points.
     cloud : Cloud or several, optional
         What the pipeline begins with.
     monitor : Monitor
         Is told what was measured.
     """
 
-    def __init__(self, given: Optional[CloudSampling], cloud: Any, monitor: Monitor) -> None:
+    def __init__(self, given: Mapping[str, CloudSampling], cloud: Any, monitor: Monitor) -> None:
         self.monitor = monitor
         self.own: Optional[CloudSampling] = None
-        self.given = given if isinstance(cloud, Cloud) else None
+        self._all = given
+        self.given = given.get("") if isinstance(cloud, Cloud) else None
         self.points = cloud.points if isinstance(cloud, Cloud) else None
         self.counted: Optional[np.ndarray] = None
+
+    def after(self, step: Step, cloud: Any) -> None:
+        """Take the sampling that is given for what a step made, if one is."""
+        if step.name in self._all and isinstance(cloud, Cloud):
+            self.given, self.points = self._all[step.name], cloud.points
 
     def of(self, cloud: Cloud) -> CloudSampling:
         """Return the sampling of a cloud, the same as for the step before if it has the same points that count."""
         is_same = cloud.points is self.points
         if is_same and self.given is not None:
             return self.given
-        counted = _counted(cloud)
-        if self.own is None or not is_same or not np.array_equal(counted, self.counted):
+        used = counted(cloud)
+        if self.own is None or not is_same or not np.array_equal(used, self.counted):
             self.log()
-            self.given, self.own, self.points, self.counted = None, sampling_of(cloud), cloud.points, counted
+            self.given, self.own, self.points, self.counted = None, sampling_of(cloud), cloud.points, used
         return self.own
 
     def log(self) -> None:
@@ -212,7 +229,7 @@ def _result(
         seen = [cloud if points is None else cloud.take(np.flatnonzero(points)) for cloud, points in zip(clouds, used)]
         cloud, points = merge_records(seen, made.dimensions.pop("xyz", None), monitor), None
     elif stage.selects:
-        cloud, points = _selected(stage, clouds[0], used[0], made.selected), None
+        cloud, points = _selected(stage, clouds[0], made.selected), None
     else:
         cloud, points = clouds[0], used[0]
     for name, values in made.dimensions.items():
@@ -221,12 +238,12 @@ def _result(
     return cloud
 
 
-def _selected(stage: Stage, cloud: Cloud, used: Optional[np.ndarray], selected: Optional[np.ndarray]) -> Cloud:
-    """Return a cloud of the points that the stage chose of those that it saw."""
+def _selected(stage: Stage, cloud: Cloud, selected: Optional[np.ndarray]) -> Cloud:
+    """Return a cloud of the points that the stage chose."""
     chosen = np.asarray(selected)
     if not len(chosen):
         raise ValueError(f"{stage.title} leaves none of the points; choose wider limits.")
-    return cloud.take(chosen if used is None else np.flatnonzero(used)[chosen])
+    return cloud.take(chosen)
 
 
 def _whole(cloud: Cloud, name: str, values: np.ndarray, used: Optional[np.ndarray]) -> np.ndarray:
@@ -256,7 +273,7 @@ def run_pipeline(
     monitor: Optional[Monitor] = None,
     input_layers: Optional[dict[str, Optional[LayerFeatures]]] = None,
     kept: Optional[Collection[str]] = None,
-    sampling: Optional[CloudSampling] = None,
+    samplings: Optional[Mapping[str, CloudSampling]] = None,
     **tunables: Any,
 ) -> Results:
     """Run all steps on ``cloud``, in place as far as they do so, and return all that they made.
@@ -268,8 +285,8 @@ def run_pipeline(
     named ``<tunable>``.
 
     How the cloud was sampled is measured once for all steps, and again where a step has changed the points that it is
-    measured on: those that are neither withheld nor noise. A ``sampling`` that is given holds until a step makes a
-    cloud of other points.
+    measured on: those that are neither withheld nor noise. ``samplings`` are measured before, on the survey that the
+    cloud is a part of: of what is given by the name "", of what steps make by their names.
 
     Raises
     ------
@@ -284,7 +301,7 @@ def run_pipeline(
     copies: dict[str, Cloud] = {}
     outcomes: dict[str, Outcome] = {}
     current = cloud
-    of_run = _RunSampling(sampling, cloud, monitor)
+    of_run = _RunSampling(samplings or {}, cloud, monitor)
     for i, step in enumerate(pipeline.steps):
         part = monitor.part(i / len(pipeline.steps), (i + 1) / len(pipeline.steps), f"{step.name}_")
         names = [input_layer.name for input_layer in step.stage.input_layers]
@@ -298,10 +315,22 @@ def run_pipeline(
         outcomes[step.name] = replace(outcome, cloud=None)
         if step.stage.makes_cloud:
             current = outcome.cloud
+            of_run.after(step, current)
             if step.name in wanted and outcome.cloud is not None:
                 copies[step.name] = outcome.cloud.copy()
     of_run.log()
-    return _results(pipeline, outcomes, copies, current if isinstance(current, Cloud) else None)
+    results = _results(pipeline, outcomes, copies, current if isinstance(current, Cloud) else None)
+    results.selected = _selected_by_all(outcomes.values())
+    return results
+
+
+def _selected_by_all(outcomes: Iterable[Outcome]) -> Optional[np.ndarray]:
+    """Return the positions (m,) in the first cloud of the points that all steps, one after the other, have left."""
+    left: Optional[np.ndarray] = None
+    for outcome in outcomes:
+        if outcome.selected is not None:
+            left = outcome.selected if left is None else left[outcome.selected]
+    return left
 
 
 def _layer(

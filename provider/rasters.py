@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -10,8 +11,9 @@ import numpy as np
 from osgeo import gdal
 from qgis.core import QgsCoordinateReferenceSystem
 
-from ..algorithms.cloud.outputs import replacing
+from ..algorithms.cloud.outputs import os_errors_as_messages, replacing
 from ..algorithms.stage import Cancelled, Monitor, Raster, RasterSurface
+from ..algorithms.tiling.mosaics import RasterMosaic
 from .memory_files import copy_file, memory_folder
 from .places import Place
 
@@ -30,6 +32,34 @@ def check_raster(path: Path) -> None:
     """Refuse a file name that is none of a GeoTIFF."""
     if path.suffix.lower().lstrip(".") not in EXTENSIONS:
         raise ValueError(f"{path.name} can't be written as a raster: give it the extension .tif.")
+
+
+def write_mosaic(raster: Raster, mosaic: RasterMosaic, place: Place, path: Path, monitor: Monitor) -> None:
+    """Write a raster of any size, part by part; memory does not grow with it.
+
+    Parameters and errors are those of :func:`write_raster`.
+    """
+    check_raster(path)
+    progress = _Progress(monitor)
+    with tempfile.TemporaryDirectory(prefix=".raster-", dir=path.parent) as folder, _errors(path, progress):
+        parts, whole = Path(folder) / "parts.tif", Path(folder) / path.name
+        rows, columns = mosaic.shape
+        # Parts that are empty take no space.
+        options = ["TILED=YES", "SPARSE_OK=TRUE", "BIGTIFF=IF_SAFER", "COMPRESS=LZW"]
+        image = gdal.GetDriverByName("GTiff").Create(str(parts), columns, rows, 1, gdal.GDT_Float32, options)
+        _describe(image, raster, (mosaic.west, mosaic.north, mosaic.cell_size), place)
+        band = image.GetRasterBand(1)
+        for row, column, values in mosaic:
+            monitor.progress(0.0)
+            height, width = values.shape
+            band.WriteRaster(column, row, width, height, _filled(values), buf_type=gdal.GDT_Float32)
+        image.FlushCache()
+        written = gdal.GetDriverByName("COG").CreateCopy(str(whole), image, 0, list(_OPTIONS), progress)
+        if written is None:
+            raise RuntimeError(gdal.GetLastErrorMsg())
+        del band, image, written
+        with os_errors_as_messages(path):
+            whole.replace(path)
 
 
 def write_raster(raster: Raster, surface: RasterSurface, place: Place, path: Path, monitor: Monitor) -> None:
@@ -100,10 +130,23 @@ def _errors(path: Path, progress: _Progress) -> Iterator[None]:
 
 def _in_memory(raster: Raster, surface: RasterSurface, place: Place) -> gdal.Dataset:
     rows, columns = surface.values.shape
-    values = np.where(np.isfinite(surface.values), surface.values, np.float32(NO_DATA)).astype("<f4")
     image = gdal.GetDriverByName("MEM").Create("", columns, rows, 1, gdal.GDT_Float32)
-    west, north = place.to_map(np.array([[surface.west, surface.north]]))[0].tolist()
-    step = surface.cell_size / place.unit
+    _describe(image, raster, (surface.west, surface.north, surface.cell_size), place)
+    # As bytes: GDAL's own way with arrays fails where another numpy was installed after it.
+    image.GetRasterBand(1).WriteRaster(0, 0, columns, rows, _filled(surface.values), buf_type=gdal.GDT_Float32)
+    return image
+
+
+def _filled(values: np.ndarray) -> bytes:
+    """Return cells as they are written."""
+    return np.where(np.isfinite(values), values, np.float32(NO_DATA)).astype("<f4").tobytes()
+
+
+def _describe(image: gdal.Dataset, raster: Raster, lattice: tuple[float, float, float], place: Place) -> None:
+    """Tell an image where its cells are, by western and northern edge and size in local meters, and what they hold."""
+    west, north, size = lattice
+    west, north = place.to_map(np.array([[west, north]]))[0].tolist()
+    step = size / place.unit
     image.SetGeoTransform((west, step, 0.0, north, 0.0, -step))
     if place.crs.isValid():
         image.SetProjection(place.crs.toWkt(QgsCoordinateReferenceSystem.WktVariant.WKT_PREFERRED_GDAL))
@@ -111,6 +154,3 @@ def _in_memory(raster: Raster, surface: RasterSurface, place: Place) -> gdal.Dat
     band.SetDescription(raster.title)
     band.SetUnitType(raster.unit)
     band.SetNoDataValue(NO_DATA)
-    # As bytes: GDAL's own way with arrays fails where another numpy was installed after it.
-    band.WriteRaster(0, 0, columns, rows, values.tobytes(), buf_type=gdal.GDT_Float32)
-    return image

@@ -15,13 +15,19 @@ from qgis.core import (
     QgsProcessingParameterBoolean,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterFeatureSink,
+    QgsProcessingParameterFileDestination,
     QgsProcessingParameterFolderDestination,
     QgsProcessingParameterNumber,
+    QgsProcessingParameterRasterDestination,
     QgsProcessingParameterString,
 )
 
+from ..algorithms.cloud.outputs import replacing
+from ..algorithms.pipeline import Output
+from ..algorithms.stage import LayerFeatures, Raster
+from ..algorithms.tiling.mosaics import RasterMosaic
 from ..algorithms.tiling.run_in_tiles import TilesOutcome, run_in_tiles
-from ..algorithms.tiling.survey import crs_of_survey, files_of_survey
+from ..algorithms.tiling.survey import Survey, crs_of_survey, files_of_survey
 from ..algorithms.tiling.tiled_pipelines import TiledPipeline, tiled_pipeline_help
 from ..algorithms.tiling.workers import Workers
 from .clouds import SurveyParameter, survey_paths
@@ -30,11 +36,14 @@ from .declared import DeclaredAlgorithm, shown_help
 from .dependencies import missing_sentence
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, warn_unknown_parameters
-from .inputs import INPUT, OUTPUT, extent_box, extent_parameter, with_help
-from .layer_outputs import write_layer
+from .input_layers import find_input_layer, input_layer_files, input_layer_parameter, read_input_layer
+from .inputs import INPUT, OUTPUT, REPORT, extent_box, extent_parameter, with_help
+from .layer_outputs import UNWANTED, write_layer
 from .models import pipeline_parameters
 from .outputs import all_in_place, check_targets, target_path
 from .parameters import tunable_values
+from .rasters import write_mosaic
+from .styles import layer_style, show_on_load
 from .surveys import VPC, WGS84, check_vpc, place_of_survey, write_survey
 from .vectors import SOURCE_TYPES
 
@@ -78,6 +87,8 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         self.addParameter(with_help(survey, "A folder of .las and .laz files, a .vpc file, or any number of files."))
         for definition in pipeline_parameters(self.tiled.pipeline).values():
             self.addParameter(definition)
+        for input_layer in self.tiled.pipeline.input_layers.values():
+            self.addParameter(input_layer_parameter(input_layer))
         self.addParameter(extent_parameter())
         for definition in _work_parameters():
             self.addParameter(definition)
@@ -89,6 +100,12 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
                 output.name.upper(), layer.title, SOURCE_TYPES[layer.geometry], optional=True
             )
             self.addParameter(with_help(sink, "A GeoPackage or any other vector format that QGIS writes."))
+        for output in self.tiled.rasters:
+            image = QgsProcessingParameterRasterDestination(output.name.upper(), _raster(output).title, optional=True)
+            self.addParameter(with_help(image, "A GeoTIFF, tiled and compressed."))
+        if self.tiled.report:
+            page = QgsProcessingParameterFileDestination(REPORT, "Report", "HTML files (*.html)", optional=True)
+            self.addParameter(with_help(page, "A page that shows the numbers."))
         self.addOutput(QgsProcessingOutputFile(VPC, "Virtual point cloud over the tiles"))
         for name, title in _NUMBERS.items():
             self.addOutput(QgsProcessingOutputNumber(name, title))
@@ -119,7 +136,8 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         self.extent = extent_box(self, self.wkt, parameters, context)
         self.workers = self._workers(parameters, context)
         sinks = [one for one in self.destinationParameterDefinitions() if one.name() != OUTPUT]
-        check_targets(sinks, parameters, self.files)
+        given = input_layer_files(self, self.tiled.pipeline.input_layers.values(), parameters, context)
+        check_targets(sinks, parameters, [*self.files, *given])
 
     def _tunables(self, parameters: dict, context: QgsProcessingContext) -> dict[str, Any]:
         """Return the composite's parameters by its own names."""
@@ -172,8 +190,10 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         cancelled = f"Cancelled; what was done is kept in {folder}, and the same run goes on with it."
         with as_processing_errors(feedback, cancelled):
             with all_in_place(sinks, parameters, context, folder.name) as run:
-                outcome = self._run(folder, parameters, context, monitor)
-                results = self._write_layers(outcome, run.parameters, context, monitor)
+                results: dict[str, Any] = {}
+                outcome = self._run(folder, run.parameters, context, monitor, results)
+                results.update(self._write_layers(outcome, run.parameters, context, monitor))
+                results.update(self._write_report(outcome, run.parameters, context))
                 results[VPC] = str(write_survey(outcome.survey, outcome.tiles, folder, context, monitor))
                 results = run.final(results)
             _refuse_failures(outcome, folder)
@@ -183,9 +203,24 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         return {}
 
     def _run(
-        self, folder: Path, parameters: dict, context: QgsProcessingContext, monitor: FeedbackMonitor
+        self, folder: Path, parameters: dict, context: QgsProcessingContext, monitor: FeedbackMonitor, results: dict
     ) -> TilesOutcome:
+        """Run the survey, and write the rasters that are wanted, which are added to the results."""
         side = parameters.get(BLOCK_SIDE)
+        wanted = {one.name: one for one in self.tiled.rasters if parameters.get(one.name.upper()) not in UNWANTED}
+
+        def find_layers(survey: Survey) -> dict[str, Optional[LayerFeatures]]:
+            return self._given_layers(survey, parameters, context, monitor)
+
+        def take_raster(survey: Survey, mosaic: RasterMosaic) -> None:
+            if mosaic.name in wanted:
+                name = mosaic.name.upper()
+                target = self.parameterAsOutputLayer(parameters, name, context)
+                raster = _raster(wanted[mosaic.name])
+                write_mosaic(raster, mosaic, place_of_survey(survey), Path(target), monitor.part(_DONE, _DONE))
+                show_on_load(context, target, "Raster", layer_style(raster))
+                results[name] = target
+
         return run_in_tiles(
             self.tiled.pipeline,
             self.paths,
@@ -196,8 +231,31 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
             compressed=self.parameterAsBool(parameters, COMPRESSED, context),
             crs_units=crs_units,
             extent=self.extent,
+            find_layers=find_layers,
+            take_raster=take_raster if wanted else None,
             **self.tunables,
         )
+
+    def _given_layers(
+        self, survey: Survey, parameters: dict, context: QgsProcessingContext, monitor: FeedbackMonitor
+    ) -> dict[str, Optional[LayerFeatures]]:
+        """Return the layers that the composite is given, in meters from the origin of the survey."""
+        place, layers = place_of_survey(survey), {}
+        for name, wanted in self.tiled.pipeline.input_layers.items():
+            found = find_input_layer(self, wanted, parameters, context)
+            part = monitor.part(_DONE, _DONE)
+            layers[name] = None if found is None else read_input_layer(wanted, found, place, context, part)
+        return layers
+
+    def _write_report(self, outcome: TilesOutcome, parameters: dict, context: QgsProcessingContext) -> dict:
+        """Write the page of numbers, if it is wanted; return its output."""
+        report = outcome.reports.get(self.tiled.report.name) if self.tiled.report else None
+        if report is None or parameters.get(REPORT) in UNWANTED:
+            return {}
+        target = self.parameterAsFileOutput(parameters, REPORT, context)
+        with replacing(Path(target)) as stream:
+            stream.write(report.html.encode())
+        return {REPORT: target}
 
     def _write_layers(
         self, outcome: TilesOutcome, parameters: dict, context: QgsProcessingContext, monitor: FeedbackMonitor
@@ -212,6 +270,11 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
                 part, name = monitor.part(_DONE, _DONE), output.name.upper()
                 results.update(write_layer(self, name, layer, features, place, parameters, context, part))
         return results
+
+
+def _raster(output: Output) -> Raster:
+    """Return the raster that an output of a composite is."""
+    return next(one for one in output.step.stage.rasters if one.name == output.of)
 
 
 def _refuse_failures(outcome: TilesOutcome, folder: Path) -> None:
@@ -238,7 +301,7 @@ def _work_parameters() -> list[QgsProcessingParameterDefinition]:
                 BLOCK_SIDE, "Side of a block (m, empty = automatic)", number.Double, None, True, 20.0, 10_000.0
             ),
             "Larger blocks take more memory and less time, as less of what surrounds them is worked on twice. Empty: "
-            "the largest of 100 to 1600 m, doubled each time, that has at most 6 million points with those around it.",
+            "the largest multiple of 50 m, from 100 to 1600 m, that has at most 6 million points with those around it.",
         ),
         with_help(
             QgsProcessingParameterNumber(

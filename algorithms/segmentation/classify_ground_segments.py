@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Optional
 
 import numpy as np
@@ -27,6 +28,8 @@ _SLOPE, _NOISE_STEP = 30.0, 4.0
     group="Terrain",
     tags="ground,bare earth,DTM,bridge,fly-over,bridge deck,segments,filter,Sithole,Vosselman",
     writes=("classification",),
+    # Segments of the bare earth run through the whole cloud, and those of objects are up to hundreds of meters wide.
+    reach=math.inf,
 )
 def classify_ground_segments(
     xyz,

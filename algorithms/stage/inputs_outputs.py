@@ -15,6 +15,7 @@ class Field:
     """One attribute of a layer that a stage makes (``type`` is int, float or str).
 
     Values with an ``axis`` (0 east, 1 north) are positions: in local meters from the stage, in map units in the layer.
+    ``of`` is the layer of the stage whose ``id`` a field holds: what it belongs to.
     """
 
     name: str
@@ -22,6 +23,7 @@ class Field:
     help: str
     unit: str = ""
     axis: Optional[int] = None
+    of: str = ""
 
 
 @dataclass(frozen=True)

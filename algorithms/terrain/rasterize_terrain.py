@@ -8,6 +8,7 @@ import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
 from ..geometry.grid import refuse_sparse
+from ..geometry.sparse_voxels import voxel_index
 from ..geometry.tiled_tin import TiledTin
 from ..packages import ndimage
 from ..sampling.cloud_sampling import CloudSampling
@@ -104,10 +105,14 @@ def rasterize_terrain(
     monitor.resolved(cell_size=cell_size, gap_distance=gap_distance)
     refuse_sparse(used, cell_size)
 
-    # Measured from the south-western corner, rounding is the same wherever on Earth that is.
-    corner = np.append(used[:, :2].min(axis=0), 0.0)
+    # Measured from the south-western corner, rounding is the same wherever on Earth that is. Cells lie at multiples of
+    # their size, so that rasters of neighboring clouds have no seams.
+    first, last = (
+        voxel_index(end / cell_size, cell_size) for end in (used[:, :2].min(axis=0), used[:, :2].max(axis=0))
+    )
+    corner = np.append(first * cell_size, 0.0)
     used, ground = used - corner, xyz[is_ground] - corner
-    columns, rows = (np.floor(used[:, :2].max(axis=0) / cell_size).astype(np.int64) + 1).tolist()
+    columns, rows = (last - first + 1).astype(int).tolist()
     middle = _middles(cell_size, rows, columns)
     dtm = TiledTin(ground).elevation(middle.reshape(-1, 3), monitor.part(0, 0.6)).reshape(rows, columns)
     if np.isnan(dtm).all():
@@ -135,7 +140,7 @@ def _middles(size: float, rows: int, columns: int) -> np.ndarray:
 
 def _highest(points: np.ndarray, size: float, rows: int, columns: int) -> np.ndarray:
     """Return the elevation of the highest point of each cell (rows, columns), NaN where there is none."""
-    column, from_south = np.floor(points[:, :2] / size).astype(np.int64).T
+    column, from_south = voxel_index(points[:, :2] / size, size).astype(np.int64).T
     number = (rows - 1 - from_south) * columns + column
     order = np.argsort(number)
     cell, start = np.unique(number[order], return_index=True)

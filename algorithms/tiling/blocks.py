@@ -11,14 +11,19 @@ from typing import Any, Optional
 import numpy as np
 
 from ..cloud.outputs import replacing
+from ..pipeline import Pipeline
 from ..pipelines import PIPELINES
-from ..run import run_pipeline
+from ..run import Results, run_pipeline
 from ..sampling.cloud_sampling import CloudSampling
-from ..stage import Cancelled, LayerFeatures, Monitor
+from ..stage import Cancelled, LayerFeatures, Monitor, RasterSurface
 from .survey import Survey, Window
+from .tiled_steps import in_blocks, owners
 
 # Dimensions that number what points belong to: each block has numbers of its own, which are joined afterwards.
 NUMBERED = ("segment_id", "cluster_id")
+
+# Dimensions that hold the numbers of another one.
+REFERRING = {"wall_of": "cluster_id"}
 
 # Points up to this far (m) outside a block tell which of its segments go on in the next one. Points of one segment are
 # closer together in any cloud that the methods are for (0.1 points/m² and more).
@@ -35,7 +40,10 @@ _BETWEEN_LOOKS = 0.5
 
 
 # Arrays of a result that are kept by the names of dimensions.
-_KINDS = ("dimensions", "used", "inside", "beside")
+_KINDS = ("dimensions", "used", "inside", "beside", "rasters", "lattices")
+
+# Those of them that are read for the tiles and rasters only.
+_LARGE = ("dimensions", "rasters")
 
 
 @dataclass(frozen=True)
@@ -66,7 +74,7 @@ class BlockTask:
     numbers: tuple[int, ...]
     pipeline: str
     tunables: dict[str, Any]
-    sampling: CloudSampling
+    samplings: dict[str, CloudSampling]
     halo: float
     result: Path
     stop: Path
@@ -80,30 +88,44 @@ class BlockResult:
     ----------
     source, position : ndarrays of shape (n,)
         File and place in it of every record of the block.
+    stays : ndarray of shape (n,), bool
+        Which records are left by a chain that selects; empty where all are.
     dimensions : dict of str to ndarray of shape (n, ...)
-        What the chain wrote.
+        What the chain wrote; coordinates in meters from the zero of the map.
     used : dict of str to ndarray of shape (k,), int64
         For each numbered dimension the numbers that records of the block have, ascending.
     inside, beside : dict of str to ndarray of shape (m, 3), int64
         For each numbered dimension file, place and number of records that lie just inside and just outside the edges.
+    rasters : dict of str to ndarray of shape (rows, columns), float32
+        Cells whose middles lie in the block.
+    lattices : dict of str to ndarray of shape (5,)
+        For each raster its southern row, western column, rows, columns, and the side of a cell (m); rows and columns
+        are counted from the survey's origin, northward and eastward.
     layers : dict of str to LayerFeatures
         Features that have a part in the block, in meters from the survey's origin.
     messages : list of str
         Warnings, each once.
+    tries : ndarray of shape (k, 4)
+        What each window that was tried cost: what lay around the block (m), points, and processor time for reading and
+        for the chain (s).
     """
 
     source: np.ndarray
     position: np.ndarray
+    stays: np.ndarray = field(default_factory=lambda: np.zeros(0, bool))
     dimensions: dict[str, np.ndarray] = field(default_factory=dict)
     used: dict[str, np.ndarray] = field(default_factory=dict)
     inside: dict[str, np.ndarray] = field(default_factory=dict)
     beside: dict[str, np.ndarray] = field(default_factory=dict)
+    rasters: dict[str, np.ndarray] = field(default_factory=dict)
+    lattices: dict[str, np.ndarray] = field(default_factory=dict)
     layers: dict[str, LayerFeatures] = field(default_factory=dict)
     messages: list[str] = field(default_factory=list)
+    tries: np.ndarray = field(default_factory=lambda: np.zeros((0, 4)))
 
     def write(self, path: Path) -> None:
         """Write everything to a file, which is complete when it appears."""
-        arrays = {"source": self.source, "position": self.position}
+        arrays = {"source": self.source, "position": self.position, "stays": self.stays, "tries": self.tries}
         for kind in _KINDS:
             arrays.update({f"{kind}.{name}": values for name, values in getattr(self, kind).items()})
         for name, features in self.layers.items():
@@ -114,7 +136,7 @@ class BlockResult:
 
     @classmethod
     def read(cls, path: Path, with_points: bool = True) -> BlockResult:
-        """Return what :meth:`write` wrote; without the points there are no records and no dimensions in it."""
+        """Return what :meth:`write` wrote; without the points there are no records, dimensions and cells."""
         with np.load(path, allow_pickle=False) as stored:
             by_kind: dict[str, dict[str, np.ndarray]] = {kind: {} for kind in _KINDS}
             layers: dict[str, dict[str, np.ndarray]] = {}
@@ -123,15 +145,23 @@ class BlockResult:
                 if kind == "layer":
                     layer, _, part = name.partition(".")
                     layers.setdefault(layer, {})[part] = stored[key]
-                elif kind in by_kind and (with_points or kind != "dimensions"):
+                elif kind in by_kind and (with_points or kind not in _LARGE):
                     by_kind[kind][name] = stored[key]
             return cls(
                 stored["source"] if with_points else np.zeros(0, np.int32),
                 stored["position"] if with_points else np.zeros(0, np.int64),
+                stored["stays"] if with_points else np.zeros(0, bool),
                 **by_kind,
                 layers={name: _features(parts) for name, parts in layers.items()},
                 messages=json.loads(bytes(stored["messages"])),
+                tries=stored["tries"],
             )
+
+    @classmethod
+    def raster(cls, path: Path, name: str) -> np.ndarray:
+        """Return the cells (rows, columns) of one raster in a file of :meth:`write`."""
+        with np.load(path, allow_pickle=False) as stored:
+            return stored[f"rasters.{name}"]
 
 
 class StoppableMonitor(Monitor):
@@ -161,16 +191,21 @@ def work_on_block(task: BlockTask) -> Path:
         If a file can't be read or the chain refuses the points.
     """
     monitor, halo = StoppableMonitor(task.stop), task.halo
+    tries = []
     while True:
         box = task.block.box + np.array([[-halo], [halo]])
+        start = time.process_time()
         window = _window(task, box, monitor)
+        read = time.process_time()
         if window is None:
             result = BlockResult(np.zeros(0, np.int32), np.zeros(0, np.int64))
             break
         result, is_cut = _run(task, window, box, monitor)
+        tries.append((halo, len(window.cloud), read - start, time.process_time() - read))
         if not is_cut or halo >= _MOST_HALOS * task.halo:
             break
         halo *= 2
+    result.tries = np.array(tries).reshape(-1, 4)
     result.write(task.result)
     return task.result
 
@@ -197,36 +232,91 @@ def _inside(places: np.ndarray, box: np.ndarray) -> np.ndarray:
 
 def _run(task: BlockTask, window: Window, box: np.ndarray, monitor: Monitor) -> tuple[BlockResult, bool]:
     """Run the chain on a window; return what came of the block, and whether a feature of it was cut off."""
-    pipeline, cloud = PIPELINES[task.pipeline], window.cloud
+    pipeline = in_blocks(PIPELINES[task.pipeline])
     places = _places(task.survey, window)
-    made = run_pipeline(pipeline, cloud, monitor, kept=(), sampling=task.sampling, **task.tunables)
-    written = dict.fromkeys(name for step in pipeline.steps for name in step.stage.writes)
-    values = {name: cloud.get(name)[window.point] for name in written if cloud.has(name)}
+    made = run_pipeline(pipeline, window.cloud, monitor, kept=(), samplings=task.samplings, **task.tunables)
+    point, stays = _left(window, made)
+    values = _written(pipeline, made, point, task.survey.origin)
     core = _inside(places, task.block.box)
-    result = BlockResult(window.source[core], window.position[core])
+    result = BlockResult(
+        window.source[core], window.position[core], stays[core] if made.selected is not None else stays[:0]
+    )
     result.dimensions = {name: of_all[core] for name, of_all in values.items()}
-    _number(result, window, values, places, task.block)
-    cuts = []
-    for name, features in made.layers.items():
-        boxes = feature_boxes(features) + task.survey.origin[:2]
-        meets = (boxes[:, 0] < task.block.box[1]).all(axis=1) & (boxes[:, 1] >= task.block.box[0]).all(axis=1)
-        result.layers[name] = take_features(features, np.flatnonzero(meets))
-        cuts.append(meets & _cut_off(boxes, box, task.survey.box))
+    _number(result, window, values, stays, places, task.block)
+    is_cut = _keep_layers(result, pipeline, made, task, box)
+    for name, surface in made.rasters.items():
+        result.rasters[name], result.lattices[name] = _cropped(surface, task.block.box - task.survey.origin[:2])
     result.messages = list(dict.fromkeys(monitor.warnings))
-    return result, any(cut.any() for cut in cuts)
+    return result, is_cut
+
+
+def _left(window: Window, made: Results) -> tuple[np.ndarray, np.ndarray]:
+    """Return for each record of a window which point of the result it is, 0 where none, and whether it is one (n,)."""
+    if made.selected is None:
+        return window.point, np.ones(len(window.point), bool)
+    became = np.full(len(window.cloud), -1, np.int64)
+    became[made.selected] = np.arange(len(made.selected))
+    point = became[window.point]
+    return np.maximum(point, 0), point >= 0
+
+
+def _written(pipeline: Pipeline, made: Results, point: np.ndarray, origin: np.ndarray) -> dict[str, np.ndarray]:
+    """Return what the steps wrote for each record, coordinates in meters from the zero of the map."""
+    cloud = made.cloud
+    names = dict.fromkeys(name for step in pipeline.steps for name in step.stage.writes)
+    values = {name: cloud.get(name)[point] for name in names if cloud is not None and cloud.has(name)}
+    if "xyz" in values:
+        values["xyz"] = values["xyz"] + origin
+    return values
+
+
+def _keep_layers(result: BlockResult, pipeline: Pipeline, made: Results, task: BlockTask, box: np.ndarray) -> bool:
+    """Keep features that have a part in the block, and what belongs to them; return whether one was cut off."""
+    block, owner = task.block.box, owners(pipeline)
+    is_cut = False
+    for name in sorted(made.layers, key=lambda name: name in owner):
+        features = made.layers[name]
+        if name in owner:
+            column, of = owner[name]
+            kept = np.isin(np.asarray(features.columns[column]), np.asarray(result.layers[of].columns["id"]))
+        else:
+            boxes = feature_boxes(features) + task.survey.origin[:2]
+            kept = (boxes[:, 0] < block[1]).all(axis=1) & (boxes[:, 1] >= block[0]).all(axis=1)
+            is_cut |= bool((kept & _cut_off(boxes, box, task.survey.box)).any())
+        result.layers[name] = take_features(features, np.flatnonzero(kept))
+    return is_cut
+
+
+def _cropped(surface: RasterSurface, box: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the cells of a raster whose middles lie in a box (2, 2), local m, and their lattice."""
+    size, (n_rows, n_columns) = surface.cell_size, surface.values.shape
+    first = np.rint(np.array([surface.west, surface.north - n_rows * size]) / size)
+    # Cells that the box begins and ends with; a middle on its lower edge belongs to it.
+    low, high = np.ceil(box / size - 0.5)
+    low, high = np.maximum(low, first), np.maximum(np.minimum(high, first + [n_columns, n_rows]), first)
+    west, south = (low - first).astype(int)
+    east, north = np.maximum((high - first).astype(int), [west, south])
+    values = surface.values[n_rows - north : n_rows - south, west:east]
+    return values, np.array([low[1], low[0], *values.shape, size])
 
 
 def _number(
-    result: BlockResult, window: Window, values: dict[str, np.ndarray], places: np.ndarray, block: Block
+    result: BlockResult,
+    window: Window,
+    values: dict[str, np.ndarray],
+    stays: np.ndarray,
+    places: np.ndarray,
+    block: Block,
 ) -> None:
     """Keep in a result which numbers its points have, and those of records on both sides of its edges."""
     near = _inside(places, block.box + np.array([[-_BESIDE], [_BESIDE]]))
     near &= ~_inside(places, block.box + np.array([[_BESIDE], [-_BESIDE]]))
     core = _inside(places, block.box)
     for name in (name for name in NUMBERED if name in values):
-        number = values[name].astype(np.int64)
+        number = np.where(stays, values[name], 0).astype(np.int64)
+        others = [values[one][core & stays] for one, of in REFERRING.items() if of == name and one in values]
         records = np.column_stack([window.source, window.position, number])
-        result.used[name] = np.setdiff1d(number[core], [0])
+        result.used[name] = np.setdiff1d(np.concatenate([number[core], *others]), [0]).astype(np.int64)
         result.inside[name] = records[near & core & (number > 0)]
         result.beside[name] = records[near & ~core & (number > 0)]
 

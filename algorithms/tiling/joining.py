@@ -75,8 +75,8 @@ def _record_keys(source: np.ndarray, position: np.ndarray) -> np.ndarray:
 
 def join_features(
     blocks: list[Block], layers: list[LayerFeatures], numbers: list[np.ndarray], origin: np.ndarray, monitor: Monitor
-) -> LayerFeatures:
-    """Return the features of all blocks, each once, numbered from north-west to south-east.
+) -> tuple[LayerFeatures, np.ndarray]:
+    """Return the features of all blocks, each once, numbered from north-west to south-east, and which they were.
 
     Parameters
     ----------
@@ -90,10 +90,17 @@ def join_features(
         Of the survey, m.
     monitor : Monitor
         Receives progress.
+
+    Returns
+    -------
+    features : LayerFeatures
+        Of the survey.
+    kept : ndarray of shape (m, 2), int64
+        For each of them its position among ``blocks``, and its number in that block.
     """
     features = _all(layers, numbers)
     if not len(features):
-        return features
+        return features, np.zeros((0, 2), np.int64)
     of_block = np.repeat(np.arange(len(blocks)), [len(layer) for layer in layers])
     boxes = feature_boxes(features)
     middle = boxes.mean(axis=1) + origin[:2]
@@ -103,6 +110,41 @@ def join_features(
     is_kept = _once(features, of_block, is_own, monitor) if is_polygon else is_own
     rows = np.flatnonzero(is_kept)
     rows = rows[np.lexsort([boxes[rows, 0, 0], -boxes[rows, 1, 1]])]
+    own_id = np.asarray(features.columns.get(_ID, np.zeros(len(features))), np.int64)[rows]
+    return _numbered(features, rows), np.column_stack([of_block[rows], own_id])
+
+
+def join_belonging(
+    layers: list[LayerFeatures], numbers: list[np.ndarray], column: str, kept: np.ndarray
+) -> LayerFeatures:
+    """Return the features of all blocks that belong to features that stay, with the numbers that these have now.
+
+    Parameters
+    ----------
+    layers : list of LayerFeatures
+        Of one layer.
+    numbers : list of ndarray
+        What the cluster numbers of each block become.
+    column : str
+        The field that tells what a feature belongs to.
+    kept : ndarray of shape (m, 2), int64
+        From :func:`join_features` of the other layer.
+    """
+    features = _all(layers, numbers)
+    if not len(features):
+        return features
+    of_block = np.repeat(np.arange(len(layers)), [len(layer) for layer in layers])
+    becomes = {tuple(one): number for number, one in enumerate(kept.tolist(), 1)}
+    now = np.array([becomes.get(one, 0) for one in zip(of_block.tolist(), features.columns[column])], np.int64)
+    rows = np.flatnonzero(now)
+    rows = rows[np.argsort(now[rows], kind="stable")]
+    joined = _numbered(features, rows)
+    joined.columns[column] = now[rows].tolist()
+    return joined
+
+
+def _numbered(features: LayerFeatures, rows: np.ndarray) -> LayerFeatures:
+    """Return some features by their positions (m,), numbered anew."""
     columns = {name: [values[row] for row in rows] for name, values in features.columns.items()}
     if _ID in columns:
         columns[_ID] = list(range(1, len(rows) + 1))

@@ -9,7 +9,7 @@ import shutil
 import time
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from typing import Any, Callable, Optional, Union
@@ -21,20 +21,24 @@ from ..cloud.files import read_cloud, readable, write_cloud
 from ..cloud.outputs import LAS, LAZ, locked_folder, stem_of
 from ..cloud.points import open_header
 from ..cloud.units import Resolver, Units
-from ..pipeline import Pipeline
-from ..sampling.cloud_sampling import CloudSampling, without_noise
-from ..stage import LayerFeatures, Monitor
-from .blocks import Block, BlockResult, BlockTask, StoppableMonitor, work_on_block
+from ..pipeline import REPORT, Pipeline
+from ..run import counted, has_several_returns, run_pipeline, run_stage
+from ..sampling.cloud_sampling import CloudSampling
+from ..stage import LayerFeatures, Monitor, Report
+from .blocks import REFERRING, Block, BlockResult, BlockTask, StoppableMonitor, work_on_block
 from .cutting import cut_into_tiles
-from .joining import join_features, join_numbers
+from .joining import join_belonging, join_features, join_numbers
+from .mosaics import RasterMosaic, join_rasters
 from .survey import Source, Survey, boxes_meet, check_folder, open_survey
+from .tiled_steps import afterwards, in_blocks, owners, preparing, tunables_of, why_whole
 from .workers import Workers, run_all
 
 # A window has at most about this many points, so that a worker needs some 2 GB.
 _MOST_POINTS = 6_000_000
 
-# Sides of blocks to choose from, m; smaller ones would work mostly on what lies around them.
-_SIDES = (100.0, 200.0, 400.0, 800.0, 1600.0)
+# Sides of blocks are multiples of the step from the least to the greatest, m; smaller ones would work mostly on what
+# lies around them.
+_SIDE_STEP, _LEAST_SIDE, _MOST_SIDE = 50.0, 100.0, 1600.0
 
 # A file of more points is cut first: read again for each of its blocks it would be read too often.
 _LARGEST_FILE = 25_000_000
@@ -50,6 +54,10 @@ _CUT, _SAMPLED, _WORKED, _JOINED = 0.05, 0.1, 0.88, 0.9
 # More blocks than this, and than one for so many points: a point far off makes the extent what it is not.
 _MANY_BLOCKS, _POINTS_PER_BLOCK = 10_000, 100
 
+# What finds the layers that a composite is given, and what takes the rasters that it makes.
+FindLayers = Callable[[Survey], dict[str, Optional[LayerFeatures]]]
+TakeRaster = Callable[[Survey, RasterMosaic], None]
+
 # What a run keeps beside the tiles until it is complete.
 _WORK = ".lidar-buildings"
 
@@ -59,15 +67,20 @@ _BETWEEN_MESSAGES = 10.0
 
 @dataclass
 class TilesOutcome:
-    """What came of a survey: the tiles written, layers in meters from ``survey.origin``, and what went wrong."""
+    """What came of a survey: the tiles written, layers in meters from ``survey.origin``, reports, what went wrong.
+
+    ``tries`` are those of all blocks, see :class:`.BlockResult`.
+    """
 
     survey: Survey
     tiles: list[Path]
     layers: dict[str, LayerFeatures] = field(default_factory=dict)
+    reports: dict[str, Report] = field(default_factory=dict)
     failures: list[str] = field(default_factory=list)
     sampling: Optional[CloudSampling] = None
     blocks: int = 0
     points: int = 0
+    tries: np.ndarray = field(default_factory=lambda: np.zeros((0, 4)))
 
 
 @dataclass(frozen=True)
@@ -96,6 +109,8 @@ def run_in_tiles(
     crs_units: Optional[Resolver] = None,
     largest_file: int = _LARGEST_FILE,
     extent: Optional[np.ndarray] = None,
+    find_layers: Optional[FindLayers] = None,
+    take_raster: Optional[TakeRaster] = None,
     **tunables: Any,
 ) -> TilesOutcome:
     """Run a composite on a survey; write its classified tiles to a folder and return its layers.
@@ -120,7 +135,7 @@ def run_in_tiles(
     workers : Workers, optional
         Processes of this machine, one for each core, where nothing is given.
     block_side : float, optional
-        Side of a block, m; None is the largest of 100, 200, 400, 800, 1600 m with room for its points.
+        Side of a block, m; None is the largest multiple of 50 m from 100 to 1600 m with room for its points.
     compressed : bool
         Tiles as LAZ, or as LAS.
     crs_units : callable, optional
@@ -130,6 +145,10 @@ def run_in_tiles(
     extent : ndarray of shape (2, 2), optional
         Least and greatest easting and northing, in coordinates of the files: only points within are worked on, and
         written, edges included.
+    find_layers : callable, optional
+        Is given the survey, and returns by name the layers that the composite is given, in meters from its origin.
+    take_raster : callable, optional
+        Is given the survey and each raster, while the parts of it are there.
     **tunables
         Of the composite.
 
@@ -147,6 +166,7 @@ def run_in_tiles(
     check_folder(folder, survey)
     with _work_folder(folder) as work:
         run = _Run(pipeline, survey, folder, work, monitor, workers, tunables, compressed, crs_units)
+        run.find_layers, run.take_raster = find_layers, take_raster
         outcome = run.all(block_side, largest_file)
     if not outcome.failures:
         shutil.rmtree(work, ignore_errors=True)
@@ -161,36 +181,14 @@ def check_can_be_tiled(pipeline: Pipeline) -> None:
     ValueError
         With the step that can't be run in tiles, and why.
     """
-    why = _why_whole(pipeline)
+    why = why_whole(pipeline)
     if why:
         raise ValueError(f"{pipeline.title} can't be run in tiles: {why}; run it on each tile by itself.")
 
 
 def can_be_tiled(pipeline: Pipeline) -> bool:
-    """Whether a composite can be run in tiles: every step keeps the points of the one cloud that it is given.
-
-    A step of infinite reach is decided by the whole cloud.
-    """
-    return not _why_whole(pipeline)
-
-
-def _why_whole(pipeline: Pipeline) -> str:
-    """Return why a composite works on whole clouds only; "" where it can be run in tiles."""
-    if not pipeline.reads_cloud:
-        return "it reads no cloud"
-    for stage in (step.stage for step in pipeline.steps):
-        title = f"'{stage.title}'"
-        if stage.merges:
-            return f"{title} merges clouds"
-        if stage.selects or stage.creates:
-            return f"{title} makes a cloud of other points than it is given"
-        if stage.rasters:
-            return f"{title} makes a raster of the whole"
-        if stage.files:
-            return f"{title} writes a text file of the whole"
-        if stage.reach == np.inf:
-            return f"{title} is decided by the whole cloud"
-    return ""
+    """Whether a composite can be run in tiles: it works on one cloud, and no step of it is decided by the whole."""
+    return not why_whole(pipeline)
 
 
 @contextmanager
@@ -228,26 +226,34 @@ class _Run:
         self.monitor, self.workers, self.tunables = monitor, workers, tunables
         self.suffix = LAZ if compressed else LAS
         self.stop = work / "stop"
+        self.find_layers: Optional[FindLayers] = None
+        self.take_raster: Optional[TakeRaster] = None
 
     def all(self, block_side: Optional[float], largest_file: int) -> TilesOutcome:
         """Sample, work on the blocks, write the tiles."""
         given = self.survey
         halo = self.pipeline.reach(self.tunables)
-        sampling = self._sampling(given, self.monitor.part(0.0, _CUT))
+        samplings = self._samplings(given, self.monitor.part(0.0, _CUT))
+        sampling = samplings[""]
         side = block_side or _side(sampling.density, halo)
         self.monitor.resolved(sampling=sampling)
         self.monitor.inform(f"Blocks of {side:g} m, each worked on with {halo:g} m around it.")
         self._cut_large_files(side, largest_file)
         outcome = TilesOutcome(self.survey, [], sampling=sampling, points=len(self.survey))
         with self.workers.open() as executor:
-            blocks, results, failed = self._work_on_blocks(executor, side, halo, sampling)
+            blocks, results, failed = self._work_on_blocks(executor, side, halo, samplings)
             outcome.blocks = len(blocks)
             outcome.failures = [f"Block {blocks[number].name}: {why}" for number, why in sorted(failed.items())]
             done = [(blocks[number], results[number]) for number in sorted(results)]
             found = [BlockResult.read(path, with_points=False) for _, path in done]
+            outcome.tries = np.concatenate([outcome.tries, *(one.tries for one in found)])
             numbers = join_numbers(found)
             joining = self.monitor.part(_WORKED, _JOINED)
             outcome.layers = self._layers([block for block, _ in done], found, numbers, joining)
+            self._run_afterwards(outcome)
+            if self.take_raster:
+                for mosaic in join_rasters([path for _, path in done], found):
+                    self.take_raster(self.survey, mosaic)
             for sentence in dict.fromkeys(one for result in found for one in result.messages):
                 self.monitor.warn(sentence)
             self._write_tiles(executor, done, numbers, [blocks[number] for number in failed], outcome)
@@ -257,20 +263,29 @@ class _Run:
         self.monitor.progress(1.0)
         return outcome
 
-    def _sampling(self, survey: Survey, monitor: Monitor) -> CloudSampling:
-        """Return how the survey was sampled, measured on windows whose places depend on its extent alone."""
+    def _samplings(self, survey: Survey, monitor: Monitor) -> dict[str, CloudSampling]:
+        """Return how the survey was sampled, "", and how what its preparing steps make of it is, by their names.
+
+        It is measured on windows whose places depend on the extent of the survey alone.
+        """
         boxes = _sample_boxes(survey)
-        found, survey = _sampled(survey, boxes, monitor)
-        if len(found) < len(boxes) / 4:
+        clouds, survey = _sampled(survey, boxes, monitor)
+        if len(clouds) < len(boxes) / 4:
             # It fills little of its extent, as a corridor or a coast does.
             places = survey.places(_SAMPLES_ACROSS**2, monitor.part(1.0, 1.0))
-            found, _ = _sampled(survey, _squares_around(places, _sample_side(survey)), monitor.part(1.0, 1.0))
-        together = np.concatenate([np.zeros((0, 3)), *(xyz for xyz, _ in found)])
-        if not len(together):
+            clouds, _ = _sampled(survey, _squares_around(places, _sample_side(survey)), monitor.part(1.0, 1.0))
+        if not clouds:
             raise ValueError("The survey has no points within the extent; choose another extent.")
-        sampling = CloudSampling(lambda: together, single_returns=all(is_single for _, is_single in found))
-        # All measures are taken now and the points left behind, as on the way to another process.
-        return pickle.loads(pickle.dumps(sampling))
+        samplings = {"": _sampling_of(clouds)}
+        pipeline = in_blocks(self.pipeline)
+        for number, step in enumerate(preparing(pipeline)):
+            one = replace(pipeline, steps=(pipeline.steps[number],))
+            before = list(samplings.values())[-1]
+            given = tunables_of(one, self.tunables)
+            made = [run_pipeline(one, cloud, kept=(), samplings={"": before}, **given).cloud for cloud in clouds]
+            clouds = [cloud for cloud in made if cloud is not None]
+            samplings[step.name] = _sampling_of(clouds)
+        return samplings
 
     def _cut_large_files(self, side: float, largest_file: int) -> None:
         """Cut files that are too large to be read once for each of their blocks, and take the pieces in their place."""
@@ -302,11 +317,11 @@ class _Run:
         return hashlib.sha256(json.dumps(described, default=str, sort_keys=True).encode()).hexdigest()[:16]
 
     def _work_on_blocks(
-        self, executor: Any, side: float, halo: float, sampling: CloudSampling
+        self, executor: Any, side: float, halo: float, samplings: dict[str, CloudSampling]
     ) -> tuple[list[Block], dict[int, Path], dict[int, str]]:
         """Have all blocks worked on that are not done yet; return blocks, results and failures by position."""
         blocks = _blocks(self.survey, side)
-        tasks = [self._task(block, halo, sampling) for block in blocks]
+        tasks = [self._task(block, halo, samplings) for block in blocks]
         known = {number: task.result for number, task in enumerate(tasks) if task.result.is_file()}
         if known:
             self.monitor.inform(
@@ -325,7 +340,7 @@ class _Run:
         known.update({todo[at]: path for at, path in results.items()})
         return blocks, known, {todo[at]: why for at, why in failed.items()}
 
-    def _task(self, block: Block, halo: float, sampling: CloudSampling) -> BlockTask:
+    def _task(self, block: Block, halo: float, samplings: dict[str, CloudSampling]) -> BlockTask:
         margin = np.array([[-8 * halo], [8 * halo]])
         near = self.survey.near(block.box + margin)
         # Results tell files by their numbers, which change when a file is added or taken away.
@@ -335,7 +350,7 @@ class _Run:
             block.name,
             block.side,
             halo,
-            str(sampling),
+            {name: str(sampling) for name, sampling in samplings.items()},
             str(self.survey.extent),
         )
         part = Survey(
@@ -347,7 +362,8 @@ class _Run:
             self.survey.extent,
         )
         result = self.work / f"block-{block.name}-{key}.npz"
-        return BlockTask(block, part, tuple(near), self.pipeline.name, self.tunables, sampling, halo, result, self.stop)
+        tunables = tunables_of(in_blocks(self.pipeline), self.tunables)
+        return BlockTask(block, part, tuple(near), self.pipeline.name, tunables, samplings, halo, result, self.stop)
 
     def _teller(self, blocks: int, points: float) -> Callable[[int], None]:
         """Return what tells from time to time how many blocks are done, how fast, and how long it will take."""
@@ -372,19 +388,45 @@ class _Run:
         self, blocks: list[Block], found: list[BlockResult], numbers: list[dict[str, np.ndarray]], monitor: Monitor
     ) -> dict[str, LayerFeatures]:
         """Return each layer of the composite, of all blocks together."""
-        names = dict.fromkeys(name for result in found for name in result.layers)
-        layers = {}
-        for number, name in enumerate(names):
+        names = list(dict.fromkeys(name for result in found for name in result.layers))
+        layers: dict[str, LayerFeatures] = {}
+        kept: dict[str, np.ndarray] = {}
+        owner = owners(self.pipeline)
+        # A block without points has no layers, any other one has all of them.
+        have = [at for at, result in enumerate(found) if result.layers]
+        clusters = [numbers[at].get("cluster_id", np.zeros(0, np.int32)) for at in have]
+        for number, name in enumerate(sorted(names, key=lambda name: name in owner)):
             part = monitor.part(number / len(names), (number + 1) / len(names))
-            have = [at for at, result in enumerate(found) if name in result.layers]
-            layers[name] = join_features(
-                [blocks[at] for at in have],
-                [found[at].layers[name] for at in have],
-                [numbers[at].get("cluster_id", np.zeros(0, np.int32)) for at in have],
-                self.survey.origin,
-                part,
+            of_blocks = [found[at].layers[name] for at in have]
+            if name in owner:
+                column, of = owner[name]
+                layers[name] = join_belonging(of_blocks, clusters, column, kept[of])
+                continue
+            layers[name], kept[name] = join_features(
+                [blocks[at] for at in have], of_blocks, clusters, self.survey.origin, part
             )
-        return layers
+        return {name: layers[name] for name in names}
+
+    def _run_afterwards(self, outcome: TilesOutcome) -> None:
+        """Run the steps that read layers alone on the layers of the whole survey."""
+        steps = afterwards(self.pipeline)
+        if not steps or not outcome.layers:
+            return
+        given = self.find_layers(self.survey) if self.find_layers else {}
+        names = {(output.step.name, output.of): output.name for output in self.pipeline.outputs}
+        chosen = {step.name: of_step for step, of_step in self.pipeline.by_step(self.tunables)}
+        for step in steps:
+            monitor = self.monitor.part(_JOINED, _JOINED, f"{step.name}_")
+            layers = {
+                one.name: outcome.layers[names[_made_by(step.layers[one.name])]]
+                if one.name in step.layers
+                else given.get(one.name)
+                for one in step.stage.input_layers
+            }
+            made = run_stage(step.stage, monitor=monitor, input_layers=layers, **chosen[step.name])
+            outcome.layers.update({names[step.name, of]: features for of, features in made.layers.items()})
+            if made.report is not None:
+                outcome.reports[names[step.name, REPORT]] = made.report
 
     def _write_tiles(
         self,
@@ -435,6 +477,7 @@ def write_tile(task: _TileTask) -> Optional[Path]:
     cloud = read_cloud(task.source, monitor, box=task.extent)
     # A worker has no database to look units up in.
     cloud.units = task.units
+    stays = np.ones(len(cloud), bool)
     values: dict[str, np.ndarray] = {}
     worked_on = 0
     for path, numbers in zip(task.results, task.becomes):
@@ -444,9 +487,15 @@ def write_tile(task: _TileTask) -> Optional[Path]:
             continue
         worked_on += len(rows)
         own = result.position[rows] if position is None else np.searchsorted(position, result.position[rows])
+        if len(result.stays):
+            stays[own] = result.stays[rows]
         with np.load(numbers, allow_pickle=False) as final:
             for name, of_block in result.dimensions.items():
-                found = final[name][of_block[rows]] if name in final.files else of_block[rows]
+                number = REFERRING.get(name, name)
+                found = of_block[rows]
+                if number in final.files:
+                    # What no block keeps has no number.
+                    found = final[number][np.where(found < len(final[number]), found, 0)]
                 whole = values.setdefault(name, np.zeros((len(cloud), *found.shape[1:]), found.dtype))
                 whole[own] = found
     if worked_on < len(cloud):
@@ -455,8 +504,12 @@ def write_tile(task: _TileTask) -> Optional[Path]:
             f"{task.source.name} has {len(cloud) - worked_on} points outside the bounds in its header; repair its "
             "header first."
         )
+    rows = np.flatnonzero(stays)
+    if not len(rows):
+        return None
+    cloud = cloud if len(rows) == len(cloud) else cloud.take(rows)
     for name, whole in values.items():
-        cloud.set(name, whole)
+        cloud.set(name, whole[rows] - cloud.origin if name == "xyz" else whole[rows])
     write_cloud(cloud, task.target, monitor)
     return task.target
 
@@ -471,9 +524,9 @@ def _positions(task: _TileTask) -> np.ndarray:
 
 
 def _sample_side(survey: Survey) -> float:
-    """Return the side of the windows that the sampling is measured on, m: all of them have at most _MOST_POINTS."""
+    """Return the side of the windows that the sampling is measured on, m: all of them have at most _SAMPLED_WHOLE points."""
     density = survey.expected / np.prod(survey.boxes[:, 1] - survey.boxes[:, 0], axis=1).sum()
-    return float(min(_SAMPLE_SIDE, np.sqrt(_MOST_POINTS / _SAMPLES_ACROSS**2 / density)))
+    return float(min(_SAMPLE_SIDE, np.sqrt(_SAMPLED_WHOLE / _SAMPLES_ACROSS**2 / density)))
 
 
 def _sample_boxes(survey: Survey) -> list[np.ndarray]:
@@ -491,8 +544,8 @@ def _squares_around(places: np.ndarray, side: float) -> list[np.ndarray]:
     return [np.array([corner, corner + side]) for corner in np.unique(np.floor(places / side) * side, axis=0)]
 
 
-def _sampled(survey: Survey, boxes: list[np.ndarray], monitor: Monitor) -> tuple[list[tuple[np.ndarray, bool]], Survey]:
-    """Return what :func:`_counted` gives of the boxes with points, and the survey without files found damaged."""
+def _sampled(survey: Survey, boxes: list[np.ndarray], monitor: Monitor) -> tuple[list[Cloud], Survey]:
+    """Return the points of each box that has any, and the survey without files found damaged."""
     found = []
     for done, box in enumerate(boxes):
         part = monitor.part(done / len(boxes), (done + 1) / len(boxes))
@@ -504,25 +557,29 @@ def _sampled(survey: Survey, boxes: list[np.ndarray], monitor: Monitor) -> tuple
             if not survey.sources:
                 raise error from None
             window = survey.window(box, monitor.part(1.0, 1.0))
-        if window is not None:
-            found.append(_counted(window.cloud))
+        if window is not None and not window.cloud.withheld.all():
+            found.append(window.cloud)
     return found, survey
 
 
-def _counted(cloud: Cloud) -> tuple[np.ndarray, bool]:
-    """Return the points (n, 3) that the sampling is measured on, and whether no pulse is known to have two returns."""
-    several = cloud.has("number_of_returns") and int(cloud.get("number_of_returns").max(initial=0)) > 1
-    counted = ~cloud.withheld
-    if not counted.any():
-        return np.zeros((0, 3)), not several
-    counted[counted] = without_noise(cloud.get("classification")[counted])
-    return cloud.get("xyz")[counted], not several
+def _sampling_of(clouds: list[Cloud]) -> CloudSampling:
+    """Return how several parts of a survey were sampled, all measures taken."""
+    together = np.concatenate([cloud.get("xyz")[counted(cloud)] for cloud in clouds])
+    sampling = CloudSampling(lambda: together, single_returns=not any(has_several_returns(cloud) for cloud in clouds))
+    # The points are left behind, as on the way to another process.
+    return pickle.loads(pickle.dumps(sampling))
+
+
+def _made_by(layer: str) -> tuple[str, str]:
+    """Return the step and the name of a layer that another step reads, "walls.footprints"."""
+    step, name = layer.split(".")
+    return step, name
 
 
 def _side(density: float, halo: float) -> float:
     """Return the largest side of a block, m, whose window has room for its points."""
-    fitting = [side for side in _SIDES if (side + 2 * halo) ** 2 * density <= _MOST_POINTS]
-    return max(fitting, default=_SIDES[0])
+    side = np.floor((np.sqrt(_MOST_POINTS / density) - 2 * halo) / _SIDE_STEP) * _SIDE_STEP
+    return float(np.clip(side, _LEAST_SIDE, _MOST_SIDE))
 
 
 def _blocks(survey: Survey, side: float) -> list[Block]:

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Optional, Union
 
 from ..help import paragraphs, pipeline_help
-from ..pipeline import Output, Pipeline
+from ..pipeline import REPORT, Output, Pipeline
 from ..pipelines import PIPELINES
+from ..stage import Layer, Raster
 from .run_in_tiles import can_be_tiled
+from .tiled_steps import afterwards
 
 # The group of the toolbox.
 _GROUP = "Surveys in tiles"
@@ -20,8 +24,9 @@ survey, without seams and duplicates.
 
 The work is done in blocks of a lattice that starts at the zero of the map, each with the points around it as far as the
 steps reach, so that the result does not depend on how the points are spread over files. How the cloud was sampled is
-measured once for all blocks; the two means of the clusters are taken block by block. A block that cuts off a building
-is worked on again with more around it.
+measured once for all blocks; what a step compares all clusters or segments of a cloud by is taken block by block. A
+block that cuts off a building is worked on again with more around it. Rasters have the same cells in all blocks, and no
+seams. Steps that read layers alone are run once, on those of the whole survey.
 
 A run that was stopped goes on where it was when it is started again with the same input, parameters and version; until
 it is complete, what it has done is kept in a hidden folder among the tiles. Blocks that fail are named at the end; the
@@ -71,11 +76,22 @@ class TiledPipeline:
     @property
     def layers(self) -> list[Output]:
         """The outputs that are layers."""
-        return [
-            output
-            for output in self.pipeline.outputs
-            if output.of in [layer.name for layer in output.step.stage.layers]
-        ]
+        return [output for output in self.pipeline.outputs if _is_one(output, output.step.stage.layers)]
+
+    @property
+    def rasters(self) -> list[Output]:
+        """The outputs that are rasters."""
+        return [output for output in self.pipeline.outputs if _is_one(output, output.step.stage.rasters)]
+
+    @property
+    def report(self) -> Optional[Output]:
+        """The report of the steps that read the layers of the whole survey, None without such steps."""
+        steps = afterwards(self.pipeline)
+        return next((one for one in self.pipeline.outputs if one.step in steps and one.of == REPORT), None)
+
+
+def _is_one(output: Output, declared: Iterable[Union[Layer, Raster]]) -> bool:
+    return output.of in [one.name for one in declared]
 
 
 @dataclass(frozen=True)

@@ -57,7 +57,7 @@ _FIELDS = (
 
 _EDGE_FIELDS = (
     Field("id", int, "number of the edge, from 1"),
-    Field("footprint", int, "footprint that it belongs to"),
+    Field("footprint", int, "footprint that it belongs to", of="wall_footprints"),
     Field("edge", int, "number of the edge in its footprint, from 1, counterclockwise"),
     Field("source", str, "wall: seen; roof: told from the edge of the roof"),
     Field("length", float, "length", "m"),

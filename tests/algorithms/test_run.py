@@ -482,7 +482,7 @@ def test_a_sampling_from_outside_is_used_and_not_logged(lattice):
     run_stage(classify_sampled.stage, lattice, monitor=monitor, sampling=outside)
     assert monitor.values["given"] is outside
     assert "sampling" not in monitor.values
-    (first, second), monitor = sampled(lattice, "classify_sampled", "classify_sampled", sampling=outside)
+    (first, second), monitor = sampled(lattice, "classify_sampled", "classify_sampled", samplings={"": outside})
     assert first is second is outside
     assert "sampling" not in monitor.values
 
@@ -500,7 +500,7 @@ def test_steps_share_a_sampling_until_the_points_that_count_are_others(lattice):
 def test_a_sampling_from_outside_holds_until_a_step_makes_another_cloud(lattice):
     outside = CloudSampling.of(lattice.get("xyz") * 3)
     first, second, third = sampled(
-        lattice, "classify_sampled", "classify_sampled", "filter_halves", "classify_sampled", sampling=outside
+        lattice, "classify_sampled", "classify_sampled", "filter_halves", "classify_sampled", samplings={"": outside}
     )[0]
     assert first is second is outside
     assert third.density > 3 * outside.density

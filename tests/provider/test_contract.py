@@ -79,7 +79,7 @@ IDS = {
     "segmentfacadelines",
     "reconstructgables",
 }
-TILED_IDS = {"detectbuildingsintiles", "detectbuildings2019intiles"}
+TILED_IDS = {"detectbuildingsintiles", "detectbuildings2019intiles", "mapfootprintsintiles"}
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints", "modelbuildings"}
 PIPELINE_IDS |= {"modelfacades", "modelindustry", "modelterrain"}
 ALL = {**STAGES, **TOYS}

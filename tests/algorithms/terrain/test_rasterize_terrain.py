@@ -102,10 +102,26 @@ def test_every_point_lies_in_the_raster_and_order_and_place_change_nothing(rng):
     order = rng.permutation(len(xyz))
     for change in (
         rasterize_terrain(xyz[order], classes[order], cell_size=0.75),
-        rasterize_terrain(xyz + [2.0**19, 2.0**22, 0], classes, cell_size=0.75),
+        rasterize_terrain(xyz + [0.75 * 2.0**19, 0.75 * 2.0**22, 0], classes, cell_size=0.75),
     ):
         for surface, expected in zip(change, made):
             np.testing.assert_allclose(surface.values, expected.values, atol=1e-4)
+
+
+def test_cells_lie_at_multiples_of_their_size_so_that_neighbors_have_no_seam(rng):
+    xyz, classes = slope_with_house(rng)
+    whole = rasterize_terrain(xyz, classes, cell_size=0.3, gap_distance=0.0)
+    west, east = xyz[:, 0] < 17, xyz[:, 0] > 13
+    for part in (west, east):
+        for one, other in zip(rasterize_terrain(xyz[part], classes[part], cell_size=0.3, gap_distance=0.0), whole):
+            row, column = round((other.north - one.north) / 0.3), round((one.west - other.west) / 0.3)
+            assert one.west == pytest.approx(other.west + 0.3 * column, abs=1e-9)
+            assert one.north == pytest.approx(other.north - 0.3 * row, abs=1e-9)
+            rows, columns = one.values.shape
+            there = other.values[row : row + rows, column : column + columns]
+            # Away from the cut both have the same triangles and the same highest points.
+            inside = slice(0, 35) if part is west else slice(columns - 35, columns)
+            np.testing.assert_allclose(one.values[:, inside], there[:, inside], atol=1e-5)
 
 
 def test_bad_clouds_are_refused(rng):

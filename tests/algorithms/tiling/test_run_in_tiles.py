@@ -177,7 +177,7 @@ def test_a_corridor_is_sampled_where_it_has_points(tmp_path, monkeypatch):
         read.append((box[1, 0] - box[0, 0], 0 if found is None else len(found.cloud)))
         return found
 
-    monkeypatch.setattr(module, "_SAMPLED_WHOLE", 0)
+    monkeypatch.setattr(module, "_SAMPLED_WHOLE", 1000)
     monkeypatch.setattr(Survey, "window", listened)
     outcome = run([path], tmp_path / "result", pipeline=QUICK, block_side=4400.0)
     # What is read are windows of 100 m, and blocks with what lies around them.
@@ -378,9 +378,10 @@ def test_an_extent_without_points_is_refused(tmp_path, points):
     ("name", "why"),
     [
         ("model_buildings", "'Reconstruct roofs' writes a text file"),
-        ("map_footprints", "'Downsample to voxels' makes a cloud of other points"),
         ("interpret_structure", "'Merge point clouds' merges clouds"),
         ("model_facades", "'Extract facades' is decided by the whole cloud"),
+        ("model_industry", "'Detect cylinders' is decided by the whole cloud"),
+        ("model_terrain", "is decided by the whole cloud"),
     ],
 )
 def test_what_can_not_be_tiled_says_why(tmp_path, name, why):

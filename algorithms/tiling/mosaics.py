@@ -1,0 +1,70 @@
+"""Rasters of a survey, of which each block made a part: without seams, and never whole in memory."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from .blocks import BlockResult
+
+
+@dataclass(frozen=True)
+class RasterMosaic:
+    """A raster in parts, each in the file of its block.
+
+    Attributes
+    ----------
+    name : str
+        The composite's output.
+    west, north : float
+        Outer edges, m from the survey's origin.
+    cell_size : float
+        Side of a cell, m.
+    shape : tuple of int
+        Rows and columns.
+    parts : tuple of (Path, int, int)
+        For each part the file, and the row and the column of its north-western cell.
+    """
+
+    name: str
+    west: float
+    north: float
+    cell_size: float
+    shape: tuple[int, int]
+    parts: tuple[tuple[Path, int, int], ...]
+
+    def __iter__(self) -> Iterator[tuple[int, int, np.ndarray]]:
+        """Yield the row and the column of the north-western cell of each part, and its cells.
+
+        They are float32, the northern ones first, NaN where there is nothing.
+        """
+        for path, row, column in self.parts:
+            yield row, column, BlockResult.raster(path, self.name)
+
+
+def join_rasters(paths: list[Path], found: list[BlockResult]) -> list[RasterMosaic]:
+    """Return each raster of a survey from what blocks made of it.
+
+    Parameters
+    ----------
+    paths : list of Path
+        The files of the blocks.
+    found : list of BlockResult
+        What is in them; the cells themselves are left there.
+    """
+    mosaics = []
+    for name in dict.fromkeys(name for one in found for name in one.lattices):
+        lattices = np.array([one.lattices[name] if name in one.lattices else np.zeros(5) for one in found])
+        has = np.flatnonzero((lattices[:, 2:4] > 0).all(axis=1))
+        if not len(has):
+            continue
+        south, west, rows, columns, size = lattices[has].T
+        top, left = (south + rows).max(), west.min()
+        at = np.column_stack([top - south - rows, west - left]).astype(int).tolist()
+        shape = int(top - south.min()), int((west + columns).max() - left)
+        parts = tuple((paths[one], *where) for one, where in zip(has, at))
+        mosaics.append(RasterMosaic(name, float(left * size[0]), float(top * size[0]), float(size[0]), shape, parts))
+    return mosaics

@@ -1,0 +1,72 @@
+"""Which steps of a composite are run in blocks, which once for the whole survey, and which can't be run in tiles."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..pipeline import Pipeline, Step
+
+# Steps of this group at the head of a chain decide which points there are and which of them are noise.
+_PREPARATION = "Preparation"
+
+
+def in_blocks(pipeline: Pipeline) -> Pipeline:
+    """Return the part of a composite that works on points: it is run on each block."""
+    return replace(pipeline, steps=tuple(step for step in pipeline.steps if step.stage.reads_cloud))
+
+
+def afterwards(pipeline: Pipeline) -> list[Step]:
+    """Return the steps that read layers alone: they are run once, on the layers of the whole survey."""
+    return [step for step in pipeline.steps if not step.stage.reads_cloud]
+
+
+def tunables_of(pipeline: Pipeline, tunables: dict) -> dict:
+    """Return those tunables of a composite that a part of it has."""
+    return {name: value for name, value in tunables.items() if name in pipeline.parameters}
+
+
+def preparing(pipeline: Pipeline) -> list[Step]:
+    """Return the steps at the head of a composite after which its points are other ones, or other ones are noise."""
+    steps = []
+    for step in pipeline.steps:
+        if step.stage.group != _PREPARATION:
+            break
+        steps.append(step)
+    return steps
+
+
+def owners(pipeline: Pipeline) -> dict[str, tuple[str, str]]:
+    """Return for each layer whose features belong to those of another: its field that tells to which, and that layer.
+
+    Layers go by the composite's names.
+    """
+    names = {(output.step.name, output.of): output.name for output in pipeline.outputs}
+    found = {}
+    for step in pipeline.steps:
+        for layer in step.stage.layers:
+            for field in (field for field in layer.fields if field.of):
+                found[names[step.name, layer.name]] = field.name, names[step.name, field.of]
+    return found
+
+
+def why_whole(pipeline: Pipeline) -> str:
+    """Return why a composite works on whole clouds only; "" where it can be run in tiles."""
+    if not pipeline.reads_cloud:
+        return "it reads no cloud"
+    steps = in_blocks(pipeline).steps
+    given = pipeline.input_layers
+    for step in steps:
+        stage, title = step.stage, f"'{step.stage.title}'"
+        if stage.merges:
+            return f"{title} merges clouds"
+        if stage.creates or step.cloud:
+            return f"{title} works on another cloud than the steps before it"
+        if stage.files:
+            return f"{title} writes a text file of the whole"
+        if any(one.name in given and one.name not in step.layers for one in stage.input_layers):
+            return f"{title} reads points and a layer that it is given"
+        if stage.reach == np.inf:
+            return f"{title} is decided by the whole cloud"
+    return ""
