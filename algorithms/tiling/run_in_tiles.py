@@ -9,7 +9,7 @@ import shutil
 import time
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from typing import Any, Callable, Optional, Union
@@ -30,7 +30,7 @@ from .cutting import cut_into_tiles
 from .joining import join_belonging, join_features, join_numbers
 from .mosaics import RasterMosaic, join_rasters
 from .survey import Source, Survey, boxes_meet, check_folder, open_survey
-from .tiled_steps import afterwards, in_blocks, owners, preparing, tunables_of, why_whole
+from .tiled_steps import afterwards, in_blocks, owners, part_of, preparing, tunables_of, why_whole
 from .workers import Workers, run_all
 
 # A window has at most about this many points, so that a worker needs some 2 GB.
@@ -278,8 +278,8 @@ class _Run:
             raise ValueError("The survey has no points within the extent; choose another extent.")
         samplings = {"": _sampling_of(clouds)}
         pipeline = in_blocks(self.pipeline)
-        for number, step in enumerate(preparing(pipeline)):
-            one = replace(pipeline, steps=(pipeline.steps[number],))
+        for step in preparing(pipeline):
+            one = part_of(pipeline, [step])
             before = list(samplings.values())[-1]
             given = tunables_of(one, self.tunables)
             made = [run_pipeline(one, cloud, kept=(), samplings={"": before}, **given).cloud for cloud in clouds]
@@ -524,7 +524,7 @@ def _positions(task: _TileTask) -> np.ndarray:
 
 
 def _sample_side(survey: Survey) -> float:
-    """Return the side of the windows that the sampling is measured on, m: all of them have at most _SAMPLED_WHOLE points."""
+    """Return the side of the windows that the sampling is measured on, m; all have _SAMPLED_WHOLE points at most."""
     density = survey.expected / np.prod(survey.boxes[:, 1] - survey.boxes[:, 0], axis=1).sum()
     return float(min(_SAMPLE_SIDE, np.sqrt(_SAMPLED_WHOLE / _SAMPLES_ACROSS**2 / density)))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +15,12 @@ _PREPARATION = "Preparation"
 
 def in_blocks(pipeline: Pipeline) -> Pipeline:
     """Return the part of a composite that works on points: it is run on each block."""
-    return replace(pipeline, steps=tuple(step for step in pipeline.steps if step.stage.reads_cloud))
+    return part_of(pipeline, [step for step in pipeline.steps if step.stage.reads_cloud])
+
+
+def part_of(pipeline: Pipeline, steps: Iterable[Step]) -> Pipeline:
+    """Return a composite of some of the steps of another one, with parameters of the same names."""
+    return replace(pipeline, steps=tuple(steps), shown=())
 
 
 def afterwards(pipeline: Pipeline) -> list[Step]:

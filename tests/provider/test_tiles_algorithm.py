@@ -12,6 +12,7 @@ from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.cloud.vpc import write_vpc
 from lidar_buildings.tests.builders import roof
 from lidar_buildings.tests.las_files import made_las
+from lidar_buildings.tests.provider.helpers import opened, squares, values_of
 
 
 def refused():
@@ -178,3 +179,25 @@ def test_a_tile_without_points_is_no_pattern_and_no_failure(provider, context, l
     algorithm = provider.algorithm("detectbuildingsintiles")
     accepted, why = algorithm.checkParameterValues({**given, "OUTPUT": str(tmp_path / "out"), **QUICKLY}, context)
     assert accepted, why
+
+
+def test_footprints_of_walls_come_with_rasters_and_the_comparison(provider, context, log, folder, tmp_path):
+    """Seams, chosen points and edges are tested without QGIS; this is about the files."""
+    algorithm = provider.algorithm("mapfootprintsintiles")
+    old = squares((85_019, 447_020), size=10.0)
+    outputs = {"OUTPUT": "tiles", "WALL_FOOTPRINTS": "walls.gpkg", "BUILDINGS": "old.gpkg", "DTM": "dtm.tif"}
+    outputs["REPORT"] = "report.html"
+    given = {"INPUT": str(folder), "OLD_MAP": old, **QUICKLY}
+    given.update({name: str(tmp_path / one) for name, one in outputs.items()})
+    results, succeeded = algorithm.run(given, context, log)
+    assert succeeded, log.textLog()
+    assert results["TILES"] == 2
+    image = opened(results["DTM"])
+    west, size, _, north, *_ = image.GetGeoTransform()
+    assert (west % size, north % size) == (0, 0)
+    values = values_of(image)
+    assert (image.RasterXSize * size, image.RasterYSize * size) == (pytest.approx(50, abs=2), pytest.approx(50, abs=2))
+    np.testing.assert_allclose(values[values > -9999], 0.0, atol=0.3)
+    assert (values == -9999).mean() < 0.1
+    assert "Corners" in Path(results["REPORT"]).read_text(encoding="utf-8")
+    assert sorted(one.name for one in tmp_path.iterdir()) == sorted(outputs.values())
