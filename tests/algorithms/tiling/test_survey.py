@@ -91,10 +91,9 @@ def test_matched_images_are_known_as_such(tmp_path):
     assert not run([*images, scan], tmp_path / "both").sampling.single_returns
 
 
-def test_the_sampling_of_a_dense_survey_takes_no_more_points_than_a_block(tmp_path, monkeypatch):
+def test_the_sampling_of_a_dense_survey_takes_no_more_points_than_that_of_a_small_one(tmp_path, monkeypatch):
     path = tile(tmp_path / "dense.las", (0, 0), side=60.0, n=40_000)
-    monkeypatch.setattr(module, "_SAMPLED_WHOLE", 1000)
-    monkeypatch.setattr(module, "_MOST_POINTS", 4000)
+    monkeypatch.setattr(module, "_SAMPLED_WHOLE", 4000)
     survey = open_survey([path])
     boxes = module._sample_boxes(survey)
     assert len(boxes) > 8
