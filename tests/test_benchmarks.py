@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from lidar_buildings.tests.benchmarks.results import Table
+from lidar_buildings.tests.benchmarks.surveys import Job, simulate
 
 FOLDER = Path(__file__).resolve().parent / "benchmarks"
 
@@ -44,8 +45,22 @@ def test_a_row_has_as_many_cells_as_the_table_and_no_heading_comes_twice():
         Table("towns", "town", "s", "s")
 
 
-@pytest.mark.parametrize("script", ["accuracy.py", "benchmark.py", "models.py", "structure.py"])
+@pytest.mark.parametrize("script", ["accuracy.py", "benchmark.py", "models.py", "structure.py", "surveys.py"])
 def test_every_script_starts_and_tells_where_its_results_go(script):
     done = subprocess.run([sys.executable, FOLDER / script, "--help"], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert "--output" in done.stdout
+
+
+def test_the_simulation_of_a_survey_agrees_with_what_is_known_without_it():
+    alike = [Job(read=0.0, seconds=10.0, written=0.0)] * 40
+    assert simulate(alike, 1, 1.0) == (400.0, 0.0)
+    assert simulate(alike, 8, 1.0) == (50.0, 0.0)
+    # The last of 41 jobs has seven cores idle.
+    assert simulate([*alike, alike[0]], 8, 1.0)[0] == 60.0
+    # One core waits for each of its bytes; many wait for those of all.
+    moving = [Job(read=30.0, seconds=1.0, written=20.0)] * 40
+    assert simulate(moving, 1, 10.0) == (pytest.approx(40 * (1 + 5)), pytest.approx(5 / 6))
+    seconds, busy = simulate(moving, 200, 10.0)
+    assert seconds == pytest.approx(40 * 5, rel=0.01)
+    assert busy == pytest.approx(1.0, abs=0.01)

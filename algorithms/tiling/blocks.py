@@ -40,10 +40,10 @@ _BETWEEN_LOOKS = 0.5
 
 
 # Arrays of a result that are kept by the names of dimensions.
-_KINDS = ("dimensions", "used", "inside", "beside", "rasters", "lattices")
+_KINDS = ("dimensions", "used", "most", "inside", "beside", "rasters", "lattices")
 
-# Those of them that are read for the tiles and rasters only.
-_LARGE = ("dimensions", "rasters")
+# Those of them that grow with the points of a block: what is known of all blocks at once has none of them.
+_LARGE = ("dimensions", "inside", "beside", "rasters")
 
 
 @dataclass(frozen=True)
@@ -94,6 +94,8 @@ class BlockResult:
         What the chain wrote; coordinates in meters from the zero of the map.
     used : dict of str to ndarray of shape (k,), int64
         For each numbered dimension the numbers that records of the block have, ascending.
+    most : dict of str to ndarray of shape (1,), int64
+        For each numbered dimension the largest number that is used in the next two.
     inside, beside : dict of str to ndarray of shape (m, 3), int64
         For each numbered dimension file, place and number of records that lie just inside and just outside the edges.
     rasters : dict of str to ndarray of shape (rows, columns), float32
@@ -115,6 +117,7 @@ class BlockResult:
     stays: np.ndarray = field(default_factory=lambda: np.zeros(0, bool))
     dimensions: dict[str, np.ndarray] = field(default_factory=dict)
     used: dict[str, np.ndarray] = field(default_factory=dict)
+    most: dict[str, np.ndarray] = field(default_factory=dict)
     inside: dict[str, np.ndarray] = field(default_factory=dict)
     beside: dict[str, np.ndarray] = field(default_factory=dict)
     rasters: dict[str, np.ndarray] = field(default_factory=dict)
@@ -136,7 +139,7 @@ class BlockResult:
 
     @classmethod
     def read(cls, path: Path, with_points: bool = True) -> BlockResult:
-        """Return what :meth:`write` wrote; without the points there are no records, dimensions and cells."""
+        """Return what :meth:`write` wrote; without the points there are none of the arrays that grow with them."""
         with np.load(path, allow_pickle=False) as stored:
             by_kind: dict[str, dict[str, np.ndarray]] = {kind: {} for kind in _KINDS}
             layers: dict[str, dict[str, np.ndarray]] = {}
@@ -156,6 +159,16 @@ class BlockResult:
                 messages=json.loads(bytes(stored["messages"])),
                 tries=stored["tries"],
             )
+
+    @classmethod
+    def edges(cls, path: Path) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+        """Return what a file of :meth:`write` has of the records inside and beside the edges."""
+        with np.load(path, allow_pickle=False) as stored:
+            kinds = [
+                {key.partition(".")[2]: stored[key] for key in stored.files if key.startswith(f"{kind}.")}
+                for kind in ("inside", "beside")
+            ]
+        return kinds[0], kinds[1]
 
     @classmethod
     def raster(cls, path: Path, name: str) -> np.ndarray:
@@ -319,6 +332,7 @@ def _number(
         result.used[name] = np.setdiff1d(np.concatenate([number[core], *others]), [0]).astype(np.int64)
         result.inside[name] = records[near & core & (number > 0)]
         result.beside[name] = records[near & ~core & (number > 0)]
+        result.most[name] = records[near, 2].max(initial=0, keepdims=True)
 
 
 def _cut_off(boxes: np.ndarray, window: np.ndarray, survey: np.ndarray) -> np.ndarray:

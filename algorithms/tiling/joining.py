@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+from functools import lru_cache
+from typing import Any, Callable
 
 import numpy as np
 
@@ -15,57 +16,85 @@ from .blocks import NUMBERED, Block, BlockResult, feature_boxes
 # Two features of different blocks are the same one if they share more than this part of the smaller one.
 _SAME = 0.5
 
+# The neighbors of a block that come after it, by columns and rows, and of how many blocks the edges stay in memory.
+_FORWARD = ((1, 0), (-1, 1), (0, 1), (1, 1))
+_EDGES_KEPT = 8
+
 # The number of a feature in its layer, and what numbers the cluster that it is the outline of.
 _ID, _CLUSTER = "id", "cluster_id"
 
 
-def join_numbers(results: list[BlockResult]) -> list[dict[str, np.ndarray]]:
+# What gives the records inside and beside the edges of a block, by its position.
+Edges = Callable[[int], tuple[dict[str, np.ndarray], dict[str, np.ndarray]]]
+
+
+def join_numbers(blocks: list[Block], results: list[BlockResult], edges: Edges) -> list[dict[str, np.ndarray]]:
     """Return for each block and numbered dimension what its numbers become: an array that they are positions in.
 
     A segment of one block and a segment of another are one if a record just outside the first block has the number of
     the first there and of the second in its own block. Numbers go from 1 without gaps, in the order of the blocks;
     0 stays 0, and a number that no point of any block has becomes 0.
+
+    Parameters
+    ----------
+    blocks : list of Block
+        Squares of one lattice.
+    results : list of BlockResult
+        What was found in them; their edges are not asked for.
+    edges : callable
+        As ``edges`` of :class:`.BlockResult`. Memory: those of a few blocks at a time.
     """
     joined: list[dict[str, np.ndarray]] = [{} for _ in results]
+    links = _links(blocks, edges)
     for name in NUMBERED:
         most = [_largest(one, name) for one in results]
         first = np.concatenate([[0], np.cumsum(most)])
-        _, group = components(*_links(results, name, first), int(first[-1]))
+        found = [np.zeros((0, 2), np.int64)]
+        found += [pairs + [first[one] - 1, first[other] - 1] for one, other, of, pairs in links if of == name]
+        one_end, other_end = np.concatenate(found).T
+        _, group = components(one_end, other_end, int(first[-1]))
         used = [start + one.used[name] - 1 for one, start in zip(results, first) if name in one.used]
         # Numbers in the order of the blocks, as those of one cloud are in that of its points.
         distinct, at = np.unique(group[np.concatenate([np.zeros(0, np.int64), *used])], return_index=True)
         final = np.zeros(len(group) + 1, np.int32)
         final[distinct[np.argsort(at)]] = np.arange(1, len(distinct) + 1, dtype=np.int32)
-        for one, start, count in zip(joined, first, most):
-            one[name] = np.concatenate([np.zeros(1, np.int32), final[group[start : start + count]]])
+        for become, start, count in zip(joined, first, most):
+            become[name] = np.concatenate([np.zeros(1, np.int32), final[group[start : start + count]]])
     return joined
 
 
 def _largest(result: BlockResult, name: str) -> int:
     """Return the largest number that a block gave: in it, just outside, or to a feature whose box reaches into it."""
-    parts = [result.used.get(name, np.zeros(0, np.int64))]
-    parts += [rows[:, 2] for rows in (result.inside.get(name), result.beside.get(name)) if rows is not None]
+    parts = [kind[name] for kind in (result.used, result.most) if name in kind]
     parts += [np.asarray(layer.columns[name], np.int64) for layer in result.layers.values() if name in layer.columns]
-    return int(max(part.max(initial=0) for part in parts))
+    return int(max((part.max(initial=0) for part in parts), default=0))
 
 
-def _links(results: list[BlockResult], name: str, first: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return pairs of segments that are one, each by its position among those of all blocks."""
-    inside, beside = (
-        np.concatenate(
-            [np.zeros((0, 2), np.int64)]
-            + [
-                np.column_stack([_record_keys(rows[:, 0], rows[:, 1]), rows[:, 2] + start - 1])
-                for rows, start in ((getattr(one, kind).get(name), start) for one, start in zip(results, first))
-                if rows is not None
-            ]
-        )
-        for kind in ("inside", "beside")
-    )
-    # Every record is inside one block; it may be beside three others.
-    inside = inside[np.argsort(inside[:, 0])]
-    at, is_there = find_cells(inside[:, 0], beside[:, 0])
-    return inside[at[is_there], 1], beside[is_there, 1]
+def _links(blocks: list[Block], edges: Edges) -> list[tuple[int, int, str, np.ndarray]]:
+    """Return for pairs of neighboring blocks and each dimension which numbers (k, 2) of the two are one segment."""
+    position = {(block.column, block.row): at for at, block in enumerate(blocks)}
+    read = lru_cache(_EDGES_KEPT)(edges)
+    found = []
+    for (column, row), one in position.items():
+        for east, north in _FORWARD:
+            other = position.get((column + east, row + north))
+            if other is None:
+                continue
+            (inside_one, beside_one), (inside_other, beside_other) = read(one), read(other)
+            for name in inside_one.keys() & inside_other.keys():
+                ways = [_same_records(beside_one[name], inside_other[name])]
+                ways.append(_same_records(beside_other[name], inside_one[name])[:, ::-1])
+                pairs = np.unique(np.concatenate(ways), axis=0)
+                if len(pairs):
+                    found.append((one, other, name, pairs))
+    return found
+
+
+def _same_records(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Return the numbers (k, 2) that records in both have, by file, place and number (n, 3) and (m, 3)."""
+    other = other[np.argsort(_record_keys(other[:, 0], other[:, 1]))]
+    at, is_there = find_cells(_record_keys(other[:, 0], other[:, 1]), _record_keys(one[:, 0], one[:, 1]))
+    return np.column_stack([one[is_there, 2], other[at[is_there], 2]])
 
 
 def _record_keys(source: np.ndarray, position: np.ndarray) -> np.ndarray:

@@ -247,9 +247,10 @@ class _Run:
             done = [(blocks[number], results[number]) for number in sorted(results)]
             found = [BlockResult.read(path, with_points=False) for _, path in done]
             outcome.tries = np.concatenate([outcome.tries, *(one.tries for one in found)])
-            numbers = join_numbers(found)
+            places = [block for block, _ in done]
+            numbers = join_numbers(places, found, lambda at: BlockResult.edges(done[at][1]))
             joining = self.monitor.part(_WORKED, _JOINED)
-            outcome.layers = self._layers([block for block, _ in done], found, numbers, joining)
+            outcome.layers = self._layers(places, found, numbers, joining)
             self._run_afterwards(outcome)
             if self.take_raster:
                 for mosaic in join_rasters([path for _, path in done], found):

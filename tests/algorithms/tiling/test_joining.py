@@ -12,8 +12,16 @@ def result(used, inside=(), beside=(), features=None):
     made = BlockResult(np.zeros(0, np.int32), np.zeros(0, np.int64), used={"cluster_id": np.array(used, np.int64)})
     made.inside = {"cluster_id": np.reshape(np.array(inside, np.int64), (-1, 3))}
     made.beside = {"cluster_id": np.reshape(np.array(beside, np.int64), (-1, 3))}
+    ends = [number for *_, number in (*inside, *beside)]
+    made.most = {"cluster_id": np.array([max(ends, default=0)], np.int64)}
     made.layers = {} if features is None else {"footprints": features}
     return made
+
+
+def joined(*results):
+    """Join blocks that lie side by side."""
+    blocks = [Block(column, 0, 10.0) for column in range(len(results))]
+    return join_numbers(blocks, list(results), lambda at: (results[at].inside, results[at].beside))
 
 
 def square(west, south, side, number):
@@ -24,7 +32,7 @@ def square(west, south, side, number):
 def test_segments_that_go_on_in_the_next_block_get_one_number():
     first = result([1, 3], inside=[(0, 7, 3)], beside=[(0, 8, 3)])
     second = result([1, 2], inside=[(0, 8, 2)], beside=[(0, 7, 2)])
-    one, other = (numbers["cluster_id"] for numbers in join_numbers([first, second]))
+    one, other = (numbers["cluster_id"] for numbers in joined(first, second))
     assert one.tolist() == [0, 1, 0, 2]
     assert other.tolist() == [0, 3, 2]
 
@@ -32,7 +40,7 @@ def test_segments_that_go_on_in_the_next_block_get_one_number():
 def test_a_feature_whose_points_are_all_in_other_blocks_is_no_error():
     """A survey ended with an IndexError: the box of a slanted building reached into a block, but none of its points."""
     first = result([1], features=square(5, 5, 2, 9))
-    (numbers,) = join_numbers([first])
+    (numbers,) = joined(first)
     assert numbers["cluster_id"].tolist() == [0, 1, *[0] * 8]
     blocks = [Block(0, 0, 10.0)]
     found, _ = join_features(blocks, [first.layers["footprints"]], [numbers["cluster_id"]], np.zeros(3), Monitor())
