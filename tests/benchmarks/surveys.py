@@ -50,7 +50,7 @@ TILE = Path(os.environ.get("LIDAR_BUILDINGS_DATA", ROOT.parent / "shared" / "dat
 _BETWEEN_LOOKS = 0.5
 
 # The survey that the cost is told of: points per m², and bytes per point of LAZ.
-_DENSITY, _LAZ_BYTES = 20.0, 5.0
+_DENSITY, _LAZ_BYTES = 20.0, 6.0
 
 # Seconds of a core to decompress a point, and to read it again, and write it compressed with its new dimensions: of the
 # real tile, alone on a core.
