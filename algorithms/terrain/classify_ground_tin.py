@@ -229,7 +229,8 @@ def classify_ground_tin(
     fewer than six. Light shafts, cellar stairs and excavations, whose floors stop every pulse, stay ground.
 
     In clouds of matched images walls are smeared to slopes that the surface climbs; ground points on objects narrower
-    than 4.5 m, and on the feet of walls, are taken out again.
+    than 4.5 m, and on the feet of walls, are taken out again. Halls on slopes, whose uphill eaves are 1 m or more above
+    the terrain, are free-standing there if the steps around them are 2 m high on the mean.
 
     The kinds of terrain are this stage's own; the steps of lasground by the same names are smaller. 'Classify ground
     points (TIN, as published 2000)' starts from the seeds of the paper, and has none of the additions.
@@ -250,7 +251,10 @@ def classify_ground_tin(
     angle = by_terrain[1] if iteration_angle is None else iteration_angle
 
     # 1. Seeds. Free-standing segments may not join either: the surface would climb noisy roofs a step at a time.
-    seeds, stands_free, size = seeds_by_opening(points[last], cell_size, size, monitor.part(0, 0.3), spacing)
+    in_images = sampling.is_closed_surface(source)
+    seeds, stands_free, size = seeds_by_opening(
+        points[last], cell_size, size, monitor.part(0, 0.3), spacing, low_uphill=in_images
+    )
     may_join = last.copy()
     may_join[last] = ~stands_free
     terrain = _terrain(size) if terrain is None else terrain
@@ -272,7 +276,7 @@ def classify_ground_tin(
     monitor.resolved(
         iteration_angle=angle, iteration_distance=distance, edge_length=edge_length, sweep_distance=sweep_distance
     )
-    if sampling.is_closed_surface(source):
+    if in_images:
         is_ground &= ~on_smeared_objects(points, is_ground, spacing)
     if len(low_noise):
         monitor.resolved(low_noise=len(low_noise))

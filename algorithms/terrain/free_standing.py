@@ -188,6 +188,12 @@ class _Segments:
         """Shorter side (s,) of each segment's box, in cells."""
         return self.sides.min(axis=0)
 
+    def mean_step_down(self, least: float) -> np.ndarray:
+        """Return the mean height (s,) (m) of each one's steps down of at least some height (m), 0 without any."""
+        is_down, count = self.edges.step >= least, self.sides.shape[1]
+        total = np.bincount(self.edges.own[is_down], self.edges.step[is_down], count)
+        return total / np.maximum(np.bincount(self.edges.own[is_down], minlength=count), 1)
+
 
 def find_free_standing(
     surface: np.ndarray,
@@ -196,6 +202,7 @@ def find_free_standing(
     largest: float = np.inf,
     apart: float = 0.0,
     monitor: Optional[Monitor] = None,
+    low_uphill: bool = False,
 ) -> tuple[np.ndarray, float]:
     """Find the smooth segments of a surface that are bounded by steps down all round.
 
@@ -213,6 +220,8 @@ def find_free_standing(
         Distance of the points (m), where that is more than a cell: between two of them slopes look like steps.
     monitor : Monitor, optional
         Receives progress.
+    low_uphill : bool
+        Whether steps around a wide segment have to be high only on the mean.
 
     Returns
     -------
@@ -226,6 +235,9 @@ def find_free_standing(
     Segments wider than usual buildings are examined more closely: parts of a hall are judged together, and cells on its
     roof that are too rough to tell belong to it. Of smaller segments windows see the whole, unless the end of the cloud
     cuts them off: the more of one is cut off, the higher its walls must be.
+
+    A level roof on a slope has its highest steps downhill and its lowest uphill, which may be those of any roof. Quays
+    and platforms are low all round, so that with ``low_uphill`` the mean of the steps tells these from halls.
     """
     monitor = monitor or Monitor()
     least = max(_STEP, _STEEP * max(cell_size, apart))
@@ -233,7 +245,7 @@ def find_free_standing(
     number = _smooth_segments(surface, least)
     monitor.progress(0.3)
     segments = _measured(surface, number)
-    is_free = _are_free_standing(segments, least, usual_cells, largest_cells)
+    is_free = _are_free_standing(segments, least, usual_cells, largest_cells, low_uphill)
     monitor.progress(0.5)
     # Neither half of a hall that a row of skylights cuts in two is free-standing while the other is not, nor is a hall
     # beside a wing that is hardly lower. Windows don't see the whole of a smaller one that the cloud's end cuts off.
@@ -242,7 +254,7 @@ def find_free_standing(
     in_hall = is_hall[hall] & (hall > 0)
     segments = _measured(surface, np.where(in_hall, len(is_free) + hall, number))
     monitor.progress(0.7)
-    is_free = _are_free_standing(segments, least, usual_cells, largest_cells)
+    is_free = _are_free_standing(segments, least, usual_cells, largest_cells, low_uphill)
     monitor.progress(0.9)
     cells = is_free[segments.number]
     cells |= _on_roof(surface, segments.number == 0, cells & in_hall, least)
@@ -256,13 +268,15 @@ def _measured(surface: np.ndarray, number: np.ndarray) -> _Segments:
     return _Segments(number, sides, _edges(surface, number), _ends(surface, number, sides.shape[1]))
 
 
-def _are_free_standing(segments: _Segments, least: float, usual: float, largest: float) -> np.ndarray:
+def _are_free_standing(segments: _Segments, least: float, usual: float, largest: float, low_uphill: bool) -> np.ndarray:
     """Return which segments (s,) are free-standing.
 
-    ``least`` is the least height of a step (m), ``usual`` and ``largest`` are widths in cells.
+    ``least`` is the least height of a step (m), ``usual`` and ``largest`` are widths in cells. With ``low_uphill``
+    wide segments need high steps only on the mean.
     """
     is_wide = segments.width > usual
-    least_step = np.where(is_wide, max(_HALL_STEP, least), least)
+    is_low = is_wide & (segments.mean_step_down(least) < _HALL_STEP) if low_uphill else is_wide
+    least_step = np.where(is_low, max(_HALL_STEP, least), least)
     least_step[segments.width > largest] = np.inf
     is_free = np.zeros(len(segments.width), bool)
     # The highest come first; what is lower beside their walls is judged by the rest of its edge.

@@ -69,7 +69,12 @@ def lowest_points(xyz: np.ndarray, cell_size: float) -> Lowest:
 
 
 def seeds_by_opening(
-    xyz: np.ndarray, cell_size: float, max_building_size: Optional[float], monitor: Monitor, spacing: float = 0.0
+    xyz: np.ndarray,
+    cell_size: float,
+    max_building_size: Optional[float],
+    monitor: Monitor,
+    spacing: float = 0.0,
+    low_uphill: bool = False,
 ) -> tuple[np.ndarray, np.ndarray, float]:
     """Find ground points by opening the lowest surface with growing windows.
 
@@ -89,6 +94,8 @@ def seeds_by_opening(
         Receives progress.
     spacing : float
         Point spacing (m), where that is more than a cell.
+    low_uphill : bool
+        Whether the uphill eaves of halls may be as low as those of any roof, see :func:`.find_free_standing`.
 
     Returns
     -------
@@ -117,7 +124,7 @@ def seeds_by_opening(
     angles = _TURNS if _is_compact(box) else _TURNS[:1]
 
     def view(number: int, slope: Optional[np.ndarray], part: Monitor) -> _View:
-        cells = _Cells(turned_in_plan(xyz, angles[number]), box, angles[number], cell_size, spacing)
+        cells = _Cells(turned_in_plan(xyz, angles[number]), box, angles[number], cell_size, spacing, low_uphill)
         return _view(cells, max_building_size, slope, part)
 
     first = view(0, None, monitor.part(0, 1 / len(angles)))
@@ -172,6 +179,8 @@ class _Cells:
         By how much they were turned, °.
     size, spacing : float
         Size of the cells and spacing of the points, m.
+    low_uphill : bool
+        Whether the uphill eaves of halls may be as low as those of any roof.
     """
 
     xyz: np.ndarray
@@ -179,6 +188,7 @@ class _Cells:
     angle: float
     size: float
     spacing: float
+    low_uphill: bool = False
 
     def outside(self, lowest: Lowest) -> np.ndarray:
         """Return which cells lie outside the box."""
@@ -197,7 +207,9 @@ def _view(cells: _Cells, max_building_size: Optional[float], slope: Optional[np.
     surface, unknown = _surface(cells.xyz, lowest, monitor.part(0, 0.1))
     size, largest = max_building_size or USUAL_BUILDING, max_building_size or np.inf
     seen = np.where(cells.outside(lowest), np.nan, surface) if cells.angle else surface
-    is_free, found = find_free_standing(seen, cells.size, size, largest, cells.spacing, monitor.part(0.1, 0.3))
+    is_free, found = find_free_standing(
+        seen, cells.size, size, largest, cells.spacing, monitor.part(0.1, 0.3), cells.low_uphill
+    )
     removal = ObjectRemoval(surface, is_free, size, cells.size, cells.spacing)
     known = removal.slope(monitor.part(0.3, 0.75)) if slope is None else nearest_known(slope[lowest.index], unknown)
     is_object = lowest.at_points(removal.objects(known, monitor.part(0.75, 1)))

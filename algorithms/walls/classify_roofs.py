@@ -13,6 +13,7 @@ from ..segmentation.cluster_measures import plan_areas
 from ..segmentation.segment_clusters import dbscan, points_at_corner
 from ..stage import Monitor, Param, stage
 from .bent_roofs import bent_roofs, with_bent_roofs
+from .party_walls import split_blocks
 from .stacked_roofs import join_stacked
 
 # Surfaces of one roof lie within this distance (m), or so many point spacings; roofs of two buildings seldom do.
@@ -103,7 +104,8 @@ def classify_roofs(
     if sampling.is_closed_surface(source) and cluster_id.any():
         bent = bent_roofs(xyz, classification, height_above_ground, cluster_id, sampling, monitor.part(0.5, 0.9))
         is_bent = _is_on_roof(bent, height_above_ground, split_height) & (cluster_id == 0)
-        cluster_id = with_bent_roofs(xyz, cluster_id, is_bent, gap, min_area, density, monitor.part(0.9, 1))
+        cluster_id = with_bent_roofs(xyz, cluster_id, is_bent, gap, min_area, density, monitor.part(0.9, 0.95))
+        cluster_id = split_blocks(xyz, height_above_ground, cluster_id, sampling.spacing, monitor.part(0.95, 1))
     monitor.progress(1.0)
     result[cluster_id > 0] = PointClass.BUILDING
     if not cluster_id.any():

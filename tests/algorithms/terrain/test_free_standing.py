@@ -51,6 +51,25 @@ def test_what_is_wider_than_usual_needs_walls_higher_than_quays(width, height, i
     assert find_free_standing(surface, 1.0, USUAL)[0].any() == is_object
 
 
+@pytest.mark.parametrize(
+    ("rise", "uphill", "low_uphill", "is_object"),
+    [
+        (0.05, 1.4, False, False),
+        (0.05, 1.4, True, True),
+        (0.02, 1.4, True, True),
+        (0.05, 0.8, True, False),
+        (0.0, 1.9, True, False),
+        (0.0, 2.1, True, True),
+    ],
+)
+def test_a_hall_on_a_slope_may_have_a_low_eave_uphill(rise, uphill, low_uphill, is_object):
+    """Its walls downhill are high; those of a quay are low all round."""
+    surface = slope(120, 120, rise)
+    hall = block(surface, slice(20, 90), slice(20, 90), 69 * rise + uphill + rise)
+    found = find_free_standing(surface, 1.0, USUAL, low_uphill=low_uphill)[0]
+    np.testing.assert_array_equal(found, hall & is_object)
+
+
 @pytest.mark.parametrize(("height", "is_object"), [(4.0, True), (2.0, False)])
 def test_steps_are_as_wide_as_points_are_apart(height, is_object):
     """Between points 2.4 m apart a heap of soil of 40° rises by 2 m at once, as it seems on cells of half of that."""
