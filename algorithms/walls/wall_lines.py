@@ -89,16 +89,19 @@ class WallLine:
         chance = 1 + _CERTAIN * np.sqrt(2 / max(len(self.points), 1))
         return float(np.sqrt(max(self.deviation**2 - chance * noise**2, 0.0)))
 
-    def angle_deviation(self, noise: float) -> float:
-        """Return the standard deviation of the direction (radians).
-
-        Noise of a standard deviation (m) averages out over the points. What exceeds it does not: points of a bush at
-        one end of a wall turn it however many they are.
-        """
+    @property
+    def angle_deviation(self) -> float:
+        """Standard deviation of the direction (radians), if all that its points deviate by averages out over them."""
         spread = float(np.sqrt(np.sum(self.along**2)))
-        if not spread:
-            return np.inf
-        return float(np.hypot(self.deviation, np.sqrt(len(self.points)) * self.excess(noise))) / spread
+        return self.deviation / spread if spread > 0 else np.inf
+
+    def angle_excess(self, noise: float) -> float:
+        """Return the deviation of the direction (radians) that what exceeds noise makes.
+
+        It does not average out: points of a bush at one end of a wall turn it however many they are.
+        """
+        spread = float(np.sqrt(np.mean(self.along**2))) if self.is_seen else 0.0
+        return self.excess(noise) / spread if spread > 0 else np.inf
 
     def across(self, xy: np.ndarray) -> np.ndarray:
         """Return how far (m) points (n, 2) lie to the left of the line."""
@@ -335,17 +338,21 @@ def square_up(lines: list[WallLine], xy: np.ndarray) -> list[WallLine]:
     result = list(lines)
     noise = float(np.median(np.repeat([line.deviation for line in lines], [len(line.points) for line in lines])))
     angles = np.array([np.arctan2(line.direction[1], line.direction[0]) for line in lines])
-    deviations = np.array([np.hypot(line.angle_deviation(noise), _BUILT / _SAME) for line in lines])
-    open_lines = list(np.argsort(deviations, kind="stable"))
+    sure = np.array([np.hypot(line.angle_deviation, _BUILT / _SAME) for line in lines])
+    unsure = np.hypot(sure, [line.angle_excess(noise) for line in lines])
+    open_lines = list(np.argsort(sure, kind="stable"))
     while open_lines:
         first = open_lines[0]
-        apart = np.angle(np.exp(4j * (angles[open_lines] - angles[first]))) / 4
-        allowed = np.minimum(_SAME * np.hypot(deviations[open_lines], deviations[first]), _MOST)
-        group = [i for i, near in zip(open_lines, np.abs(apart) <= allowed) if near]
-        mean = np.angle(np.sum(np.exp(4j * angles[group]) / deviations[group] ** 2)) / 4
-        for i in group:
+        apart = np.abs(np.angle(np.exp(4j * (angles[open_lines] - angles[first]))) / 4)
+        is_sure, may_be = (
+            apart <= np.minimum(_SAME * np.hypot(own[open_lines], own[first]), _MOST) for own in (sure, unsure)
+        )
+        group = [i for i, near in zip(open_lines, may_be) if near]
+        deviations = np.where(is_sure, sure[open_lines], unsure[open_lines])[may_be]
+        mean = np.angle(np.sum(np.exp(4j * angles[group]) / deviations**2)) / 4
+        for i, keeps in zip(group, is_sure[may_be]):
             angle = mean + np.round((angles[i] - mean) / (np.pi / 2)) * np.pi / 2
             turned = lines[i].turned(np.array([np.cos(angle), np.sin(angle)]), xy)
-            result[i] = turned.centered(xy) if turned.excess(noise) > 0 else turned
+            result[i] = turned if keeps else turned.centered(xy)
         open_lines = [i for i in open_lines if i not in group]
     return result

@@ -40,7 +40,7 @@ def test_lines_lie_on_the_walls_within_what_noise_allows(rng, per_meter, noise):
         # Six deviations of the mean of its points.
         assert abs(place - wanted) < 6 * noise / np.sqrt(len(line.points))
         assert line.deviation == pytest.approx(noise, rel=0.35)
-        assert np.rad2deg(np.arccos(np.abs(line.direction).max())) < 6 * np.rad2deg(line.angle_deviation(noise))
+        assert np.rad2deg(np.arccos(np.abs(line.direction).max())) < 6 * np.rad2deg(line.angle_deviation)
 
 
 def test_memory_follows_the_points_and_not_their_pairs(rng):
