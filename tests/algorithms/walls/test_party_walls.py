@@ -35,7 +35,7 @@ def parted(xyz, house, height):
 
 @pytest.mark.parametrize(
     ("levels", "parapet"),
-    [((6, 6, 6, 6), 0.5), ((6, 6, 6, 6), 1.0), ((6, 6.5, 6, 6.5), 0.0), ((6, 7, 6), 0.0), ((6, 6.3, 6.6), 0.3)],
+    [((6, 6, 6, 6), 0.7), ((6, 6, 6, 6), 1.0), ((6, 6.5, 6, 6.5), 0.0), ((6, 7, 6), 0.0), ((6, 6.3, 6.6), 0.3)],
 )
 def test_walls_are_seen_by_parapets_and_steps(rng, levels, parapet):
     """On ground that falls by a meter and more beside the block."""
