@@ -9,6 +9,7 @@ import numpy as np
 
 from ..geometry.grid import plan_box, refuse_sparse, turned_in_plan
 from ..geometry.raster_opening import open_surface
+from ..packages import ndimage
 from ..stage import Monitor
 from ..threads import made_ahead
 from .free_standing import find_free_standing
@@ -140,6 +141,10 @@ def seeds_by_opening(
     return candidates[is_terrain], stands_free, max(max_building_size or USUAL_BUILDING, views[0].size)
 
 
+# Rounded eaves hang down so far (m): less than the lowest step.
+_RIM = 0.8
+
+
 @dataclass(frozen=True)
 class _View:
     """What cells tell that are laid in one direction.
@@ -218,7 +223,18 @@ def _view(cells: _Cells, max_building_size: Optional[float], slope: Optional[np.
     says_terrain = np.where(is_object, -1, above <= removal.rise(slope)).astype(np.int8)
     # What is seen through a roof as through a pit lies lower than the surface there.
     stands_free = lowest.at_points(is_free) & (above >= 0)
+    if cells.low_uphill:
+        stands_free |= cells.xyz[:, 2] >= lowest.at_points(_rim_levels(surface, is_free))
     return _View(lowest.points(~unknown), says_terrain, stands_free, found, slope)
+
+
+def _rim_levels(surface: np.ndarray, is_free: np.ndarray) -> np.ndarray:
+    """Return the elevation (m) from which on points are of a free-standing segment in each cell beside one, else inf.
+
+    Matching rounds edges, so that a rim as wide as a cell lies between a roof and the terrain and joins both.
+    """
+    level = ndimage.maximum_filter(np.where(is_free, surface, -np.inf), 3)
+    return np.where(np.isfinite(level) & ~is_free, level - _RIM, np.inf)
 
 
 def _is_compact(box: np.ndarray) -> bool:
