@@ -61,6 +61,21 @@ def test_a_hall_that_the_end_of_the_cloud_cuts_off_is_no_ground(houses, density,
     assert missed < 0.01
 
 
+@pytest.mark.parametrize("source", ["matched images", "laser scanner"])
+def test_a_hall_on_a_slope_with_a_low_rounded_eave_uphill_is_no_ground_in_matched_images(source, rng):
+    """63 m wide, on a slope of 5 %, its uphill eave 1.8 m above the terrain and rounded over 0.3 m."""
+    places = rng.uniform(0, 100, (60_000, 2))
+    inside = np.minimum(*(31.5 - np.abs(places - 50)).T)
+    share = np.clip(0.5 + inside / 0.3, 0, 1)
+    level = 0.05 * 81.5 + 1.8
+    z = (1 - share) * 0.05 * places[:, 0] + share * level + rng.normal(0, 0.02, len(places))
+    xyz = np.column_stack([places, z])
+    classes = classify_ground_tin(xyz, unclassified(xyz), source=source)
+    on_roof = (classes == 2)[inside > 0.3].mean()
+    assert on_roof == 0 if source == "matched images" else on_roof > 0.5
+    assert (classes == 2)[inside < -0.3].mean() > 0.97
+
+
 def test_a_courtyard_is_ground(rng):
     xyz, _ = scan(rng, TERRAINS["slope"])
     from_middle = np.abs(xyz[:, :2] - 40).max(axis=1)
