@@ -248,16 +248,16 @@ _PIPELINES = (
         tags="industry,plant,pipe,tank,vessel,cylinder,sphere,plane,as-built,terrestrial,laser scanner,Vosselman",
         summary="Model pipes, tanks, spheres and planes of a scanned plant: axes, centers and polygons with heights.",
         description=(
-            "Cylinders first, since a strip of a tank would pass for a plane; then spheres and planes among the points "
-            "that have no shape yet. Each step looks in windows that suit its radii and bins. In the published "
-            "chain the points of one smooth surface are searched together: segment the cloud first and set 'Search in' "
-            "to each segment for that."
+            "The cloud is divided into smooth surfaces: connected pipes with their elbows, a tank, a plate. In each of "
+            "them, cylinders are found first, since a strip of a tank would pass for a plane, then spheres and planes "
+            "among the points that have no shape yet. Points of a surface without a shape keep its SegmentID."
         ),
         references=_VOSSELMAN,
         steps=(
-            Step("cylinders", "detect_cylinders"),
-            Step("spheres", "detect_spheres", {"search_in": "points without a shape"}),
-            Step("planes", "segment_planes_hough", {"method": "normals", "search_in": "points without a shape"}),
+            Step("surfaces", "segment_surfaces"),
+            Step("cylinders", "detect_cylinders", {"search_in": "each segment"}),
+            Step("spheres", "detect_spheres", {"search_in": "each segment"}),
+            Step("planes", "segment_planes_hough", {"method": "normals", "search_in": "each segment"}),
         ),
         shared={"min_radius": ("cylinders", "spheres"), "max_radius": ("cylinders", "spheres")},
         shown=("min_radius", "max_radius", "cylinders_min_seen", "planes_min_area"),

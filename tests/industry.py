@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
+
+from lidar_buildings.algorithms.stage import LayerFeatures
 
 
 def pipe(
@@ -44,3 +48,53 @@ def bent(rng: np.random.Generator, radius: float, bend: float, spacing: float, n
     reach = radius + rng.normal(0, noise, count)
     out = bend + reach * np.cos(around)
     return np.column_stack([out * np.cos(turn), out * np.sin(turn), reach * np.sin(around)])
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Cylinders that were found, beside the true ones.
+
+    Attributes
+    ----------
+    is_found : ndarray of shape (m,), bool
+        True cylinders on which one was found with a radius within 5 % and an axis within a quarter of the radius.
+    error : ndarray of shape (k,)
+        Relative errors of the radii of those that were found.
+    invented : list of int
+        Numbers of cylinders that belong to no true one in this sense.
+    """
+
+    is_found: np.ndarray
+    error: np.ndarray
+    invented: list[int]
+
+
+def compared(true_id: np.ndarray, true_axes: LayerFeatures, found_id: np.ndarray, axes: LayerFeatures) -> Comparison:
+    """Compare cylinders with the truth.
+
+    Parameters
+    ----------
+    true_id, found_id : ndarray of shape (n,)
+        Numbers of the parts and of the segments of the points.
+    true_axes, axes : LayerFeatures
+        Axes with ``id`` and ``radius`` (m).
+    """
+    number_of = {number: row for row, number in enumerate(true_axes.columns["id"])}
+    is_found, errors, invented = np.zeros(len(true_axes), bool), [], []
+    for number, line, radius in zip(axes.columns["id"], axes.geometries, axes.columns["radius"]):
+        parts, count = np.unique(true_id[found_id == number], return_counts=True)
+        row = number_of.get(int(parts[np.argmax(count)])) if 2 * count.max() > count.sum() else None
+        if row is None:
+            invented.append(number)
+            continue
+        start, end = np.array(true_axes.geometries[row])
+        along = (end - start) / np.linalg.norm(end - start)
+        off = np.linalg.norm(np.cross(np.array(line) - start, along), axis=1).max()
+        true_radius = true_axes.columns["radius"][row]
+        error = abs(radius / true_radius - 1)
+        if error <= 0.05 and off <= 0.25 * true_radius:
+            is_found[row] = True
+            errors.append(error)
+        else:
+            invented.append(number)
+    return Comparison(is_found, np.array(errors), invented)

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass
+from functools import partial
+from itertools import count
+from typing import Callable
 
 import numpy as np
 
@@ -12,7 +15,7 @@ from .adjacent_pieces import Adjacency
 from .least_squares_planes import Planes
 from .straight_pieces import Pieces
 
-# Seeds between two reports of progress.
+# Seeds, and pieces that are looked at for one region, between two reports of progress.
 _STRETCH = 200
 
 
@@ -77,7 +80,7 @@ class Regions:
             if i % _STRETCH == 0:
                 monitor.progress(i / len(triples))
             if all(self.region[piece] < 0 for piece in seed):
-                self._grow(seed, number)
+                self._grow(seed, number, partial(monitor.progress, i / len(triples)))
                 number += 1
         monitor.progress(1.0)
 
@@ -92,13 +95,13 @@ class Regions:
         deviation = np.sqrt(np.maximum(points.eigenvalues[:, 2], 0))
         return (deviation <= self.growth.seed_deviation) & (distance <= self.growth.tolerance)
 
-    def _grow(self, seed: list[int], number: int) -> None:
+    def _grow(self, seed: list[int], number: int, report: Callable[[], None]) -> None:
         if self.growth.is_planar:
-            self._grow_plane(seed, number)
+            self._grow_plane(seed, number, report)
         else:
-            self._grow_smooth(seed, number)
+            self._grow_smooth(seed, number, report)
 
-    def _grow_plane(self, seed: list[int], number: int) -> None:
+    def _grow_plane(self, seed: list[int], number: int, report: Callable[[], None]) -> None:
         """Add pieces that lie on the plane of the region, which is fitted anew with each, until none can be added."""
         members = list(seed)
         moments = self.moments[seed].sum(axis=0)
@@ -108,7 +111,11 @@ class Regions:
         waiting = deque(self._free(seed))
         rejected: list[int] = []
         n_before = 0
-        while waiting:
+        for step in count():
+            if not waiting:
+                break
+            if step % _STRETCH == 0:
+                report()
             piece = waiting.popleft()
             if self.region[piece] >= 0:
                 continue
@@ -127,14 +134,18 @@ class Regions:
                 rejected = []
         self.plane[members] = plane
 
-    def _grow_smooth(self, seed: list[int], number: int) -> None:
+    def _grow_smooth(self, seed: list[int], number: int, report: Callable[[], None]) -> None:
         """Add pieces that lie on the plane of the piece beside them, which leans to its neighbors in the region."""
         for piece in seed:
             self.region[piece] = number
         for piece in seed:
             self.plane[piece] = self._local_plane(piece, number)
         waiting = deque((piece, beside) for beside in seed for piece in self._free([beside]))
-        while waiting:
+        for step in count():
+            if not waiting:
+                break
+            if step % _STRETCH == 0:
+                report()
             piece, beside = waiting.popleft()
             if self.region[piece] >= 0 or not self._is_beside(piece, beside):
                 continue

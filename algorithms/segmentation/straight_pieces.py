@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
+from typing import Callable
 
 import numpy as np
 
@@ -10,6 +12,9 @@ from ..geometry.groups import items, run_starts
 from ..neighborhoods.covariance import full_matrices
 from ..stage import Monitor
 from .least_squares_planes import Planes, planes_of
+
+# Points of a block of pieces (about 100 bytes each), between two reports of progress; a longer piece is a block.
+_BLOCK = 200_000
 
 
 @dataclass(frozen=True)
@@ -67,7 +72,7 @@ def split_lines(xyz: np.ndarray, line: np.ndarray, tolerance: float, min_points:
     while len(first):
         is_long = last - first + 1 >= min_points
         first, last = first[is_long], last[is_long]
-        farthest, distance = _farthest(xyz, first, last)
+        farthest, distance = _farthest_in_blocks(xyz, first, last, partial(monitor.progress, 1 - n_open / n_all))
         bent = distance > tolerance
         done.append(np.column_stack([first[~bent], last[~bent]]))
         first, last = (
@@ -77,6 +82,19 @@ def split_lines(xyz: np.ndarray, line: np.ndarray, tolerance: float, min_points:
         n_open = int((last - first).sum())
         monitor.progress(1 - n_open / n_all)
     return _numbered(np.concatenate(done) if done else np.zeros((0, 2), np.int64), len(xyz), min_points)
+
+
+def _farthest_in_blocks(
+    xyz: np.ndarray, first: np.ndarray, last: np.ndarray, report: Callable[[], None]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return what `_farthest` returns, for pieces of about ``_BLOCK`` points at once; ``report`` is called for each."""
+    block = np.cumsum(last - first + 1) // _BLOCK
+    farthest, distance = np.zeros(len(first), np.int64), np.zeros(len(first))
+    starts = run_starts(block)
+    for start, stop in zip(starts, np.append(starts[1:], len(block))):
+        report()
+        farthest[start:stop], distance[start:stop] = _farthest(xyz, first[start:stop], last[start:stop])
+    return farthest, distance
 
 
 def _farthest(xyz: np.ndarray, first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

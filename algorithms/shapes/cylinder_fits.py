@@ -11,6 +11,9 @@ from .hough_planes import unit
 # Rounds of Gauss and Newton: from a start within a few percent they converge in three to five.
 _ROUNDS = 8
 
+# Least eigenvalue of products of patterns (times the largest): below it, patterns are the same but for rounding.
+_LEAST_PRODUCT = 1e-12
+
 # Sectors of the circumference in which a cylinder is seen or not: 10° each.
 SECTORS = 36
 
@@ -27,9 +30,10 @@ class Cylinder:
         """Return the position along the axis, the distance from it (m), and the directions away from it (n, 3)."""
         offset = xyz - self.center
         along = offset @ self.axis
-        across = offset - along[:, None] * self.axis
-        distance = np.linalg.norm(across, axis=1)
-        return along, distance, across / np.maximum(distance, 1e-12)[:, None]
+        offset -= along[:, None] * self.axis
+        distance = np.sqrt(np.einsum("ij,ij->i", offset, offset))
+        offset /= np.maximum(distance, 1e-12)[:, None]
+        return along, distance, offset
 
     def angle(self, away: np.ndarray) -> np.ndarray:
         """Return the angle (n,) around the axis, radians, of directions away from it (n, 3)."""
@@ -56,10 +60,10 @@ def upward(axis: np.ndarray) -> np.ndarray:
     return axis
 
 
-def fit_cylinder(xyz: np.ndarray, start: Cylinder) -> Cylinder:
+def fit_cylinder(xyz: np.ndarray, start: Cylinder, rounds: int = _ROUNDS) -> Cylinder:
     """Return the cylinder with the least sum of squared distances of points (n, 3), n >= 6, from it."""
     cylinder = start
-    for _ in range(_ROUNDS):
+    for _ in range(rounds):
         middle = cylinder.center + cylinder.axis * float(((xyz - cylinder.center) @ cylinder.axis).mean())
         cylinder = Cylinder(middle, cylinder.axis, cylinder.radius)
         along, distance, away = cylinder.local(xyz)
@@ -109,10 +113,13 @@ def explained(residual: np.ndarray, patterns: np.ndarray) -> float:
 
     Chance lets k patterns explain k of n parts of the variance.
     """
-    fitted = patterns @ np.linalg.lstsq(patterns, residual, rcond=1e-8)[0]
     count, k = patterns.shape
+    size, direction = np.linalg.eigh(patterns.T @ patterns)
+    share = (residual @ patterns) @ direction
+    is_own = size > _LEAST_PRODUCT * size[-1]
+    fitted = float((share[is_own] ** 2 / size[is_own]).sum())
     by_chance = k * float(residual @ residual) / count
-    return float(np.sqrt(max(float(fitted @ fitted) - 2 * by_chance, 0.0) / count))
+    return float(np.sqrt(max(fitted - 2 * by_chance, 0.0) / count))
 
 
 def bends(cylinder: Cylinder, xyz: np.ndarray) -> float:

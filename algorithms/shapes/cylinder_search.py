@@ -7,66 +7,104 @@ from typing import Optional
 
 import numpy as np
 
+from ..neighborhoods.covariance import symmetric_eigenvalues
+from ..neighborhoods.nearest_blocks import PAIRS
 from ..stage import Monitor
 from .cylinder_fits import SECTORS, Cylinder, across_axis, bends, fit_cylinder, upward
 from .hough_planes import PlaneDirections
-from .shape_windows import WINDOW, level_of, levels
+from .shape_windows import WINDOW, Level, level_of, levels
 
-# Bins of directions on the Gaussian sphere (slope): 8°.
+# Width of a bin of the Gaussian sphere, as a slope: 8°, about three times the error of a normal.
 _DIRECTION_BIN = 0.14
 
-# Normals that are of one great circle lie at most so far from it (°), while it is looked for and when it is fitted.
-_ON_CIRCLE, _ON_FITTED_CIRCLE = 12.0, 15.0
+# Largest angle (°) between a normal and a great circle while the circle is searched for: a bin and half a bin.
+_ON_CIRCLE = 12.0
 
-# Bins of the Gaussian sphere that a great circle must fill: three would be the faces of a box.
+# The same when the circle is fitted to normals: wider, as its first direction is off by up to half a bin.
+_ON_FITTED_CIRCLE = 15.0
+
+# Fewest bins that the normals of a cylinder fill along their great circle: the faces of a box fill three.
 _LEAST_BINS = 5
 
-# Each bin counts at most this share of the normals, so that one plane doesn't decide the direction.
+# Largest share of the normals that one bin counts, so that a plane does not decide the direction of the circle.
 _MOST_IN_BIN = 1 / 16
 
-# Bins of radii in one level, and side of the bins of centers (times the least radius).
-_RADII, _CENTER_BIN = 8, 0.15
+# Least second eigenvalue of the mean product of the normals of a window: (4°)². Normals of planes, which are good to
+# 3°, have less; a cylinder of which 72° are seen has 0.13, and 0.0065 if it is a twentieth of the points of a window.
+_LEAST_SPREAD = 0.005
 
-# Distances from the circle (times the least radius) at which a start is fitted again, before the tolerance counts.
+# Cylinders of one level may be thinner than its least radius and wider than its largest by this factor, so that those
+# between two levels are found in one of them.
+_WIDER = 1.1
+
+# Radii that are tried in one level of radii: steps of 9 %, which the first fit bridges.
+_RADII = 8
+
+# Side of the bins for centers of circles (least radius of the level), as fine as the steps of the radius.
+_CENTER_BIN = 0.15
+
+# Distances from the circle (least radius of the level) of the points of the first fits, before the tolerance counts.
 _FIRST_FITS = (0.15, 0.06)
 
-# Angle (°) between the normal of a point and the direction away from the axis.
+# Rounds of the first fits: the points change after each, so that they need not converge.
+_FIRST_ROUNDS = 2
+
+# Largest angle (°) between the normal of a point on a cylinder and the direction away from the axis: on thin pipes
+# normals are rounded by neighborhoods nearly as wide as the pipe.
 _NORMAL_ANGLE = 30.0
 
-# Points of a seed, and of a window in which one is looked for.
+# Fewest points of a seed, and of a window in which one is searched for: three times the unknowns of a cylinder.
 LEAST_POINTS = 16
 
-# Cylinders of one window.
+# Most seeds of one window, which is as wide as two of the widest cylinders.
 _MOST_IN_WINDOW = 4
 
-# First step along the axis of a growing cylinder at both ends (radii): the direction of a seed is known for so long.
+# Length (radii) by which a seed is first extended at both ends: the direction of its axis is good for that long.
 _FIRST_STEP = 6.0
 
-# Widest gap along a cylinder (radii, spacings): another pipe in front of it, or chance.
-_GAP_RADII, _GAP_SPACINGS = 2.0, 6.0
+# Widest gap along a cylinder in radii (the shadow of another pipe) and in point spacings (chance).
+_GAP_RADII = 2.0
+_GAP_SPACINGS = 6.0
 
-# Length of the shortest cylinder: diameters, but no more than so much (m), and of wide ones diameters.
-_LENGTH, _LONG_ENOUGH, _SHORT = 1.5, 1.0, 0.3
+# Least length of a cylinder (diameters): shorter pieces cannot be told from elbows.
+_LENGTH = 1.5
 
-# Largest deviation of the points (times the noise), and of what bends, cones and faces explain of it.
-_MOST_ROUGH, _MOST_BENT = 1.25, 0.6
+# Length (m) that is enough for any diameter: of a tank less may be seen.
+_LONG_ENOUGH = 1.0
 
-# Points at which a fit or a test looks at most: more don't change it.
+# Least length (diameters) of cylinders that are long enough in meters: shorter ones cannot be told from spheres.
+_SHORT = 0.3
+
+# Largest root mean square distance of the points from the cylinder (standard deviations of the noise).
+_MOST_ROUGH = 1.25
+
+# Largest part of that distance (standard deviations of the noise) that a bend, a cone or faces explain.
+_MOST_BENT = 0.6
+
+# Most points of a fit or a test of shape: more do not change the result.
 _MOST_LOOKED_AT = 1500
 
-# Median angle (°) between normals and the directions away from the axis: on the rounded normals of an edge it is more.
+# Largest median angle (°) between normals and the directions away from the axis, in addition to that of uneven points:
+# the rounded normals of an edge have more.
 _MOST_MEDIAN_ANGLE = 10.0
 
-# Around a cylinder there is air: points up to so many radii from its axis, per point on it. Plates go on.
-_AROUND, _MOST_AROUND = 1.5, 0.6
+# Median angle (°, times point spacing over radius) by which normals are off because points are uneven: the center of
+# random points in a disk deviates by 1 / (2 √π) spacings from its middle, and the normal is that of the surface there.
+_UNEVEN_ANGLE = 10.9
 
-# Least height of the arc that is seen over its chord (times the noise): a flatter one is a plane.
+# Distance from the axis (radii) up to which the space around a cylinder is free.
+_AROUND = 1.5
+
+# Most points in that space (per point on the cylinder): where a plate was taken for a cylinder, it goes on there.
+_MOST_AROUND = 0.6
+
+# Least height of the arc that is seen above its chord (standard deviations of the noise): a flatter one is a plane.
 _LEAST_SAGITTA = 6.0
 
-# Share of the cells of the surface, between its ends and where it is seen, that must hold points.
+# Least share of the cells of the surface, between the ends and on the circumference seen, that hold points.
 _LEAST_FILLED = 0.5
 
-# A cylinder is empty: points inside it, per point on it.
+# Most points inside a cylinder (per point on it): solids of other shapes have more.
 _MOST_INSIDE = 0.15
 
 
@@ -144,11 +182,23 @@ class CylinderSearch:
         for step, (low, high) in enumerate(ranges):
             level = level_of(self.xyz, self.is_free, low, high, LEAST_POINTS)
             part = monitor.part(step / len(ranges), (step + 1) / len(ranges))
-            for number, window in enumerate(level.windows):
-                part.progress(number / len(level.windows))
+            windows = [level.windows[n] for n in np.flatnonzero(self._is_curved(level))]
+            for number, window in enumerate(windows):
+                part.progress(number / len(windows))
                 found += self._in_window(level.rows, window, low, high)
         monitor.progress(1.0)
         return found
+
+    def _is_curved(self, level: Level) -> np.ndarray:
+        """Return whether the normals of each window spread more than those of a plane."""
+        if not level.windows:
+            return np.zeros(0, bool)
+        starts = np.cumsum([0, *(len(window) for window in level.windows)])
+        spread = np.empty((len(level.windows), 6))
+        for column, (a, b) in enumerate(PAIRS):
+            product = (self.normals[level.rows, a] * self.normals[level.rows, b])[np.concatenate(level.windows)]
+            spread[:, column] = np.add.reduceat(product, starts[:-1]) / np.diff(starts)
+        return symmetric_eigenvalues(spread)[:, 1] >= _LEAST_SPREAD
 
     def _in_window(self, rows: np.ndarray, window: np.ndarray, low: float, high: float) -> list[Found]:
         """Return the cylinders that have a seed in a window, and take their points."""
@@ -161,7 +211,7 @@ class CylinderSearch:
                 break
             cylinder, points = seed
             one = self._grown(rows, cylinder, points)
-            if one is not None and low * 0.9 <= one.cylinder.radius <= high * 1.1:
+            if one is not None and low / _WIDER <= one.cylinder.radius <= high * _WIDER:
                 self.is_free[one.points] = False
                 found.append(one)
             # A seed without a cylinder is not looked at twice.
@@ -177,17 +227,21 @@ class CylinderSearch:
         if len(on_circle) < LEAST_POINTS:
             return None
         cylinder = self._circle(on_circle, axis, low, high)
-        for reach in (*(share * low for share in _FIRST_FITS), 2 * self.tolerance, self.tolerance):
+        reaches = (*(share * low for share in _FIRST_FITS), 2 * self.tolerance, self.tolerance)
+        for fits_left, reach in enumerate(reaches, start=1 - len(reaches)):
             points = on_circle[self._is_on(on_circle, cylinder, max(reach, self.tolerance))]
             if len(points) < LEAST_POINTS:
                 return None
-            cylinder = self._fitted(points, cylinder)
+            cylinder = self._fitted(points, cylinder, *([_FIRST_ROUNDS] if fits_left else []))
             if not 0.8 * low <= cylinder.radius <= 1.25 * high:
                 return None
+        if not low / _WIDER <= cylinder.radius <= high * _WIDER:
+            # It belongs to another level, of which the windows have longer seeds; each window here would grow it again.
+            return None
         return (cylinder, points) if self._is_round(rows, points, cylinder) else None
 
-    def _fitted(self, points: np.ndarray, cylinder: Cylinder) -> Cylinder:
-        return fit_cylinder(self.xyz[points[:: len(points) // _MOST_LOOKED_AT + 1]], cylinder)
+    def _fitted(self, points: np.ndarray, cylinder: Cylinder, *rounds: int) -> Cylinder:
+        return fit_cylinder(self.xyz[points[:: len(points) // _MOST_LOOKED_AT + 1]], cylinder, *rounds)
 
     def _is_round(self, near: np.ndarray, points: np.ndarray, cylinder: Cylinder) -> bool:
         """Return whether ``points`` look like a cylinder among the points ``near`` it."""
@@ -195,7 +249,7 @@ class CylinderSearch:
         if np.sqrt(((distance - cylinder.radius) ** 2).mean()) > _MOST_ROUGH * self.noise:
             return False
         facing = np.abs(np.einsum("ij,ij->i", away, self.normals[points]))
-        if np.median(facing) < np.cos(np.radians(_MOST_MEDIAN_ANGLE)):
+        if np.median(facing) < np.cos(np.radians(_MOST_MEDIAN_ANGLE + _UNEVEN_ANGLE * self.spacing / cylinder.radius)):
             return False
         at, reach, _ = cylinder.local(self.xyz[near])
         margin = 0.05 * np.ptp(along) + 2 * self.tolerance

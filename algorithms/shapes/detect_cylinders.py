@@ -5,16 +5,12 @@ from __future__ import annotations
 import math
 from typing import Annotated, Optional
 
-import numpy as np
-
-from ..geometry.boxes import by_first_point
 from ..sampling.cloud_sampling import CloudSampling
-from ..stage import Field, Layer, LayerFeatures, Param, stage
+from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
 from .cylinder_search import LEAST_POINTS, CylinderSearch, Found
-from .search_settings import MaxRadius, MinRadius, ShapeTolerance, check_radii, point_noise
-from .searched_points import WHOLE_CLOUD, SearchedPoints, SearchIn, Shape, named, searched_points
-from .shape_windows import WINDOW
-from .surface_normals import NormalPoints, normal_points, surface_normals
+from .search_settings import MaxRadius, MinRadius, ShapeTolerance
+from .searched_points import WHOLE_CLOUD, SearchIn, Shape, Surroundings, search_shapes
+from .surface_normals import NormalPoints
 
 _FIELDS = (
     Field("id", int, "number of the cylinder, as SegmentID of its points"),
@@ -112,40 +108,29 @@ def detect_cylinders(
     Communications of the ACM 18 (2), 120-122. Rabbani, T., van den Heuvel, F., 2005. Efficient Hough transform for
     automatic detection of cylinders in point clouds.
     """
-    sampling = sampling or CloudSampling.of(xyz, classification)
-    spacing = 1 / float(np.sqrt(sampling.surface_density))
-    noise = point_noise(sampling)
-    tolerance = 3 * noise if tolerance is None else tolerance
-    min_radius, max_radius = check_radii(min_radius, max_radius, noise, spacing, xyz)
-    n_neighbors = normal_points(sampling) if n_neighbors is None else n_neighbors
-    monitor.resolved(tolerance=tolerance, min_radius=min_radius, max_radius=max_radius, n_neighbors=n_neighbors)
-    normals = surface_normals(xyz - xyz.min(axis=0), n_neighbors, monitor.part(0, 0.2))[0]
-    points = searched_points(xyz, classification, segment_id, shape, search_in, WINDOW * max_radius)
-    label, found = np.zeros(len(points.rows), np.int64), []
-    if len(points.rows):
-        # Noise is what the tolerance says where that is set.
-        deviation = max(noise, tolerance / 3)
-        search = CylinderSearch(points.xyz, normals[points.rows], deviation, tolerance, spacing, min_seen, min_points)
-        found = search.find(min_radius, max_radius, monitor.part(0.2, 1))
-        for number, one in enumerate(found, start=1):
-            label[one.points] = number
-    if not found:
-        monitor.warn("No cylinder was found; no point got a new SegmentID.")
-    inside = label > 0
-    old, label[inside] = label[inside], by_first_point(label[inside]) + 1
-    number_of = dict(zip(old.tolist(), label[inside].tolist()))
-    ids, shapes, first = named(points, label, Shape.CYLINDER, segment_id, shape, len(xyz), search_in)
-    return ids, shapes, _axes(points, found, number_of, first)
 
+    def search(around: Surroundings, low: float, high: float, monitor: Monitor) -> list[Found]:
+        return CylinderSearch(
+            around.xyz, around.normals, around.noise, around.tolerance, around.spacing, min_seen, min_points
+        ).find(low, high, monitor)
 
-def _axes(points: SearchedPoints, found: list[Found], number_of: dict[int, int], first: int) -> LayerFeatures:
-    """Return the axes of the cylinders, by number."""
-    rows = sorted(((number_of[n], one) for n, one in enumerate(found, start=1)), key=lambda row: row[0])
-    ones = [one for _, one in rows]
-    return LayerFeatures(
-        [points.in_place(one.ends, int(one.points[0])) for one in ones],
+    found = search_shapes(
+        (xyz, classification, segment_id, shape),
+        Shape.CYLINDER,
+        search,
+        min_radius=min_radius,
+        max_radius=max_radius,
+        tolerance=tolerance,
+        n_neighbors=n_neighbors,
+        search_in=search_in,
+        sampling=sampling,
+        monitor=monitor,
+    )
+    ones = found.shapes
+    axes = LayerFeatures(
+        [found.points.in_place(one.ends, int(one.points[0])) for one in ones],
         {
-            "id": [number + first for number, _ in rows],
+            "id": found.numbers,
             "radius": [one.cylinder.radius for one in ones],
             "length": [one.high - one.low for one in ones],
             "points": [len(one.points) for one in ones],
@@ -153,3 +138,4 @@ def _axes(points: SearchedPoints, found: list[Found], number_of: dict[int, int],
             "seen": [one.seen for one in ones],
         },
     )
+    return found.segment_id, found.shape, axes

@@ -5,16 +5,12 @@ from __future__ import annotations
 import math
 from typing import Annotated, Optional
 
-import numpy as np
-
-from ..geometry.boxes import by_first_point
 from ..sampling.cloud_sampling import CloudSampling
-from ..stage import Field, Layer, LayerFeatures, Param, stage
-from .search_settings import MaxRadius, MinRadius, ShapeTolerance, check_radii, point_noise
-from .searched_points import WHOLE_CLOUD, SearchedPoints, SearchIn, Shape, named, searched_points
-from .shape_windows import WINDOW
+from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
+from .search_settings import MaxRadius, MinRadius, ShapeTolerance
+from .searched_points import WHOLE_CLOUD, SearchIn, Shape, Surroundings, search_shapes
 from .sphere_search import LEAST_POINTS, FoundSphere, SphereSearch
-from .surface_normals import NormalPoints, normal_points, surface_normals
+from .surface_normals import NormalPoints
 
 METHODS = ("center first", "four dimensions")
 
@@ -115,44 +111,33 @@ def detect_spheres(
     Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point clouds,
     section 4.3.
     """
-    sampling = sampling or CloudSampling.of(xyz, classification)
-    spacing = 1 / float(np.sqrt(sampling.surface_density))
-    noise = point_noise(sampling)
-    tolerance = 3 * noise if tolerance is None else tolerance
-    min_radius, max_radius = check_radii(min_radius, max_radius, noise, spacing, xyz)
-    n_neighbors = normal_points(sampling) if n_neighbors is None else n_neighbors
-    monitor.resolved(tolerance=tolerance, min_radius=min_radius, max_radius=max_radius, n_neighbors=n_neighbors)
-    normals = surface_normals(xyz - xyz.min(axis=0), n_neighbors, monitor.part(0, 0.2))[0]
-    points = searched_points(xyz, classification, segment_id, shape, search_in, WINDOW * max_radius)
-    label, found = np.zeros(len(points.rows), np.int64), []
-    if len(points.rows):
-        deviation = max(noise, tolerance / 3)
-        search = SphereSearch(
-            points.xyz, normals[points.rows], deviation, tolerance, min_seen, min_points, method == METHODS[0]
-        )
-        found = search.find(min_radius, max_radius, monitor.part(0.2, 1))
-        for number, one in enumerate(found, start=1):
-            label[one.points] = number
-    if not found:
-        monitor.warn("No sphere was found; no point got a new SegmentID.")
-    inside = label > 0
-    old, label[inside] = label[inside], by_first_point(label[inside]) + 1
-    number_of = dict(zip(old.tolist(), label[inside].tolist()))
-    ids, shapes, first = named(points, label, Shape.SPHERE, segment_id, shape, len(xyz), search_in)
-    return ids, shapes, _centers(points, found, number_of, first)
 
+    def search(around: Surroundings, low: float, high: float, monitor: Monitor) -> list[FoundSphere]:
+        return SphereSearch(
+            around.xyz, around.normals, around.noise, around.tolerance, min_seen, min_points, method == METHODS[0]
+        ).find(low, high, monitor)
 
-def _centers(points: SearchedPoints, found: list[FoundSphere], number_of: dict[int, int], first: int) -> LayerFeatures:
-    """Return the centers of the spheres, by number."""
-    rows = sorted(((number_of[n], one) for n, one in enumerate(found, start=1)), key=lambda row: row[0])
-    ones = [one for _, one in rows]
-    return LayerFeatures(
-        [points.in_place(one.center, int(one.points[0])) for one in ones],
+    found = search_shapes(
+        (xyz, classification, segment_id, shape),
+        Shape.SPHERE,
+        search,
+        min_radius=min_radius,
+        max_radius=max_radius,
+        tolerance=tolerance,
+        n_neighbors=n_neighbors,
+        search_in=search_in,
+        sampling=sampling,
+        monitor=monitor,
+    )
+    ones = found.shapes
+    centers = LayerFeatures(
+        [found.points.in_place(one.center, int(one.points[0])) for one in ones],
         {
-            "id": [number + first for number, _ in rows],
+            "id": found.numbers,
             "radius": [one.radius for one in ones],
             "points": [len(one.points) for one in ones],
             "rms": [one.rms for one in ones],
             "seen": [one.seen for one in ones],
         },
     )
+    return found.segment_id, found.shape, centers

@@ -10,11 +10,17 @@ from ..sampling.cloud_sampling import CloudSampling
 from ..sampling.surface_noise import ROUGHNESS_OF_SPACING
 from ..stage import Param
 
-# Least radius: spacings, so that half a circumference has five points, and deviations, so that it is no noise.
-_RADIUS_SPACINGS, _RADIUS_DEVIATIONS = 1.5, 6.0
+# Least radius (point spacings): half a circumference has four points across it.
+_RADIUS_SPACINGS = 1.2
 
-# Largest radius (m) that is looked for with nothing set, and share of the extent that it may have.
-_LARGEST_RADIUS, _SHARE_OF_EXTENT = 20.0, 0.5
+# Least radius (standard deviations of the noise across surfaces): the arc that is seen rises above the noise.
+_RADIUS_DEVIATIONS = 6.0
+
+# Largest radius (m) that is searched for with nothing set: tanks have up to 20 m, and time goes with what is wider.
+_LARGEST_RADIUS = 20.0
+
+# Largest radius as a share of the longest side of the cloud: wider ones are seen on less than a third of their arc.
+_SHARE_OF_EXTENT = 0.5
 
 MinRadius = Annotated[
     Optional[float],
@@ -24,7 +30,7 @@ MinRadius = Annotated[
         unit="m",
         low=0.001,
         high=1000,
-        automatic="the larger of 1.5 times the point spacing and 6 times the roughness of surfaces.",
+        automatic="the larger of 1.2 times the point spacing and 6 times the roughness of surfaces.",
     ),
 ]
 

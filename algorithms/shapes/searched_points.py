@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Annotated, Optional
+from typing import Annotated, Callable, Generic, Optional, Protocol, TypeVar
 
 import numpy as np
 
 from ..geometry.boxes import by_first_point
+from ..sampling.cloud_sampling import CloudSampling
 from ..segmentation.candidate_points import candidates
-from ..stage import Param
+from ..stage import Monitor, Param
+from .search_settings import check_radii, point_noise
+from .shape_windows import WINDOW
+from .surface_normals import normal_points, surface_normals
 
 # Segments are laid out side by side, so that no window holds points of two: this many window sides apart.
 _SIDES_APART = 3.0
@@ -37,6 +41,17 @@ SearchIn = Annotated[
         choices=SEARCHES,
     ),
 ]
+
+
+class FoundShape(Protocol):
+    """A shape that was found: what all kinds of them have."""
+
+    @property
+    def points(self) -> np.ndarray:
+        """Which of the searched points (k,) lie on it."""
+
+
+F = TypeVar("F", bound=FoundShape)
 
 
 @dataclass(frozen=True)
@@ -159,3 +174,108 @@ def named(
     ids[points.rows[found]] = label[found] + first
     shapes[points.rows[found]] = kind
     return ids, shapes, first
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """What a search needs besides the radii.
+
+    Attributes
+    ----------
+    xyz, normals : ndarray of shape (k, 3)
+        Searched points (m), sorted by elevation, and their unit normals; zero where there is none.
+    noise : float
+        Standard deviation across smooth surfaces, m.
+    tolerance : float
+        Distance within which a point lies on a surface, m.
+    spacing : float
+        Distance between points on surfaces, m.
+    """
+
+    xyz: np.ndarray
+    normals: np.ndarray
+    noise: float
+    tolerance: float
+    spacing: float
+
+
+@dataclass(frozen=True)
+class SearchResult(Generic[F]):
+    """Shapes of one kind in a cloud.
+
+    Attributes
+    ----------
+    segment_id, shape : ndarray of shape (n,), int32 and uint8
+        The dimensions of the cloud.
+    shapes : list
+        The shapes, by number.
+    numbers : list of int
+        Their numbers in ``segment_id``.
+    points : SearchedPoints
+        The points that were searched.
+    """
+
+    segment_id: np.ndarray
+    shape: np.ndarray
+    shapes: list[F]
+    numbers: list[int]
+    points: SearchedPoints
+
+
+def search_shapes(
+    cloud: tuple[np.ndarray, np.ndarray, Optional[np.ndarray], Optional[np.ndarray]],
+    kind: Shape,
+    search: Callable[[Surroundings, float, float, Monitor], list[F]],
+    *,
+    min_radius: Optional[float],
+    max_radius: Optional[float],
+    tolerance: Optional[float],
+    n_neighbors: Optional[int],
+    search_in: str,
+    sampling: Optional[CloudSampling],
+    monitor: Monitor,
+) -> SearchResult[F]:
+    """Find the shapes of one kind in a cloud and number them in the order of their first points.
+
+    Parameters
+    ----------
+    cloud : tuple of ndarray
+        Coordinates (n, 3), m, and classes (n,); segments and shapes (n,) found before, or None.
+    kind : Shape
+        What is searched for.
+    search : callable
+        Returns the shapes among points, for the least and the largest radius (m).
+    min_radius, max_radius, tolerance, n_neighbors, search_in, sampling
+        Tunables of the stages; None is automatic.
+    monitor : Monitor
+        Receives automatic values, a warning where nothing is found, and progress.
+
+    Raises
+    ------
+    ValueError
+        If the range of radii is empty, segments are asked for and missing, or all points lie on one line.
+    """
+    xyz, classification, segment_id, shape = cloud
+    sampling = sampling or CloudSampling.of(xyz, classification)
+    spacing = 1 / float(np.sqrt(sampling.surface_density))
+    noise = point_noise(sampling)
+    tolerance = 3 * noise if tolerance is None else tolerance
+    min_radius, max_radius = check_radii(min_radius, max_radius, noise, spacing, xyz)
+    n_neighbors = normal_points(sampling) if n_neighbors is None else n_neighbors
+    monitor.resolved(tolerance=tolerance, min_radius=min_radius, max_radius=max_radius, n_neighbors=n_neighbors)
+    normals = surface_normals(xyz - xyz.min(axis=0), n_neighbors, monitor.part(0, 0.2))[0]
+    points = searched_points(xyz, classification, segment_id, shape, search_in, WINDOW * max_radius)
+    label, found = np.zeros(len(points.rows), np.int64), []
+    if len(points.rows):
+        # A tolerance that is set tells the noise, too.
+        around = Surroundings(points.xyz, normals[points.rows], max(noise, tolerance / 3), tolerance, spacing)
+        found = search(around, min_radius, max_radius, monitor.part(0.2, 1))
+    for number, one in enumerate(found, start=1):
+        label[one.points] = number
+    if not found:
+        monitor.warn(f"No {kind.name.lower()} was found; no point got a new SegmentID.")
+    inside = label > 0
+    old, label[inside] = label[inside], by_first_point(label[inside]) + 1
+    order = sorted(dict(zip(label[inside].tolist(), old.tolist())).items())
+    ids, shapes, first = named(points, label, kind, segment_id, shape, len(xyz), search_in)
+    return SearchResult(ids, shapes, [found[n - 1] for _, n in order], [n + first for n, _ in order], points)

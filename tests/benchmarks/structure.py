@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
-"""Repeat the experiment of Weinmann et al. (2017) on a simulated flight, and time the voxel grid.
+"""Repeat the experiment of Weinmann et al. (2017) on a simulated flight, time the voxel grid, and model a plant.
 
     structure.py flight             merge, voxels, features with k = 50 and k_opt, shares of dimensionality
     structure.py flight --part 0.1  the same with a tenth of the scan lines
     structure.py voxels             10 million points: the voxel grid in units of reading them from LAZ
-    structure.py                    both
+    structure.py plant              Model industry on a plant of 200 pipes, 3 tanks and 4 spheres
+    structure.py plant --part 0.2   the same with a fifth of the pipes, one tank and one sphere
+    structure.py                    all
     structure.py --output folder    where the JSON files go (benchmarks)
 
 Shares and counts are the same on every machine. Times are not: only ratios tell, which are of one run, the two
@@ -25,12 +27,16 @@ import numpy as np  # noqa: E402
 
 import conftest  # noqa: E402, F401 - registers the checkout as the package lidar_buildings
 from lidar_buildings.algorithms.cloud.asprs import PointClass  # noqa: E402
-from lidar_buildings.algorithms.cloud.cloud import Cloud  # noqa: E402
+from lidar_buildings.algorithms.cloud.cloud import Cloud, create_cloud  # noqa: E402
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud  # noqa: E402
 from lidar_buildings.algorithms.packages import spatial  # noqa: E402
-from lidar_buildings.algorithms.run import run_stage  # noqa: E402
+from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
+from lidar_buildings.algorithms.run import run_pipeline, run_stage  # noqa: E402
+from lidar_buildings.algorithms.simulation.simulate_plant import simulate_plant  # noqa: E402
+from lidar_buildings.algorithms.stage import LayerFeatures  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 from lidar_buildings.tests.benchmarks.results import FOLDER, Table  # noqa: E402
+from lidar_buildings.tests.industry import compared  # noqa: E402
 
 LINES = STAGES["simulate_flight"].tunables["line_rate"].default
 NEIGHBORHOODS = {"k = 50": {"neighborhood": "nearest", "n_neighbors": 50}, "k_opt": {"neighborhood": "optimal"}}
@@ -103,6 +109,46 @@ def voxels() -> list[Table]:
     return [table]
 
 
+def plant(part: float) -> list[Table]:
+    """Print how many pipes of a simulated plant Model industry finds, how many it invents, and what it takes."""
+    pipes = max(1, round(200 * part))
+    xyz, classification, true_id, _, true_axes, true_centers = simulate_plant(
+        pipes=pipes, tanks=max(1, round(3 * part)), spheres=max(1, round(4 * part))
+    )
+    start, start_cpu = time.perf_counter(), time.process_time()
+    made_of = run_pipeline(PIPELINES["model_industry"], create_cloud({"xyz": xyz, "classification": classification}))
+    took, took_cpu = time.perf_counter() - start, time.process_time() - start_cpu
+    assert made_of.cloud is not None
+    result = compared(true_id, true_axes, made_of.cloud.get("segment_id"), made_of.layers["axes"])
+    is_pipe = np.array(true_axes.columns["kind"]) == "pipe"
+    columns = ("found", "of", "invented", "radius off by (median), %", "by (95 %), %", "points", "s", "cpu s")
+    table = Table("plant", "what", *columns)
+    errors = (100 * np.percentile(result.error, [50, 95])).tolist() if len(result.error) else [None, None]
+    table.add(
+        "pipes of 5 to 60 cm",
+        int(result.is_found[is_pipe].sum()),
+        int(is_pipe.sum()),
+        len(result.invented),
+        *errors,
+        len(xyz),
+        took,
+        took_cpu,
+        digits=2,
+    )
+    table.add("tanks", int(result.is_found[~is_pipe].sum()), int((~is_pipe).sum()), *[None] * 6)
+    table.add("spheres", *_spheres_found(true_centers, made_of.layers["centers"]), *[None] * 5)
+    return [table]
+
+
+def _spheres_found(true: LayerFeatures, found: LayerFeatures) -> tuple[int, int, int]:
+    """Return how many true spheres have a found one within 5 % of their radius, how many there are, and what is else."""
+    center, radius = np.array(true.geometries).reshape(-1, 3), np.array(true.columns["radius"])
+    other, size = np.array(found.geometries).reshape(-1, 3), np.array(found.columns["radius"])
+    off = np.linalg.norm(center[:, None] - other, axis=2)
+    same = (np.maximum(off, np.abs(radius[:, None] - size)) <= 0.05 * radius[:, None]).astype(bool)
+    return int(same.any(axis=1).sum()), len(center), int((~same.any(axis=0)).sum())
+
+
 def timed(work: Callable[[], Cloud]) -> tuple[tuple[float, float], Cloud]:
     """Return the seconds on the wall and over all cores that ``work`` takes, and what it makes."""
     start, start_cpu = time.perf_counter(), time.process_time()
@@ -113,12 +159,13 @@ def timed(work: Callable[[], Cloud]) -> tuple[tuple[float, float], Cloud]:
 def main() -> None:
     """Print what is asked for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("parts", nargs="*", choices=["flight", "voxels", []], help="which tables (both)")
-    parser.add_argument("--part", type=float, default=1.0, help="share of the scan lines of the flight (1)")
+    parser.add_argument("parts", nargs="*", choices=["flight", "voxels", "plant", []], help="which tables (all)")
+    parser.add_argument("--part", type=float, default=1.0, help="share of the scan lines or of the plant (1)")
     parser.add_argument("--output", type=Path, default=FOLDER, help="folder of the JSON files (benchmarks)")
     chosen = parser.parse_args()
     tables = flight(chosen.part) if "flight" in (chosen.parts or ["flight"]) else []
     tables += voxels() if "voxels" in (chosen.parts or ["voxels"]) else []
+    tables += plant(chosen.part) if "plant" in (chosen.parts or ["plant"]) else []
     for table in tables:
         print(table.write(chosen.output))
 
