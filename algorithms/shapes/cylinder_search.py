@@ -92,6 +92,10 @@ _MOST_MEDIAN_ANGLE = 10.0
 # random points in a disk deviates by 1 / (2 √π) spacings from its middle, and the normal is that of the surface there.
 _UNEVEN_ANGLE = 10.9
 
+# Where normals are farther off than at most edges, the points must be as close to the cylinder as the noise lets them:
+# the root mean square of k points exceeds the deviation by 2 / √(2 k) of it in one case of forty.
+_CONFIDENCE = 2.0
+
 # Distance from the axis (radii) up to which the space around a cylinder is free.
 _AROUND = 1.5
 
@@ -246,10 +250,12 @@ class CylinderSearch:
     def _is_round(self, near: np.ndarray, points: np.ndarray, cylinder: Cylinder) -> bool:
         """Return whether ``points`` look like a cylinder among the points ``near`` it."""
         along, distance, away = cylinder.local(self.xyz[points])
-        if np.sqrt(((distance - cylinder.radius) ** 2).mean()) > _MOST_ROUGH * self.noise:
-            return False
+        rough = float(np.sqrt(((distance - cylinder.radius) ** 2).mean())) / self.noise
         facing = np.abs(np.einsum("ij,ij->i", away, self.normals[points]))
-        if np.median(facing) < np.cos(np.radians(_MOST_MEDIAN_ANGLE + _UNEVEN_ANGLE * self.spacing / cylinder.radius)):
+        angle = np.degrees(np.arccos(min(float(np.median(facing)), 1.0)))
+        if rough > _MOST_ROUGH or angle > _MOST_MEDIAN_ANGLE + _UNEVEN_ANGLE * self.spacing / cylinder.radius:
+            return False
+        if angle > _MOST_MEDIAN_ANGLE and rough > 1 + _CONFIDENCE / np.sqrt(2 * len(points)):
             return False
         at, reach, _ = cylinder.local(self.xyz[near])
         margin = 0.05 * np.ptp(along) + 2 * self.tolerance
