@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Measure every stage that segments surfaces on the same scenes: ``segments.py [scene …]``, all by default.
 
-``gables`` are six houses with roofs of 15 to 50° and noise of 2 cm, ``plant`` is a rack of twelve pipes with beams
+``gables`` are six houses with roofs of 15 to 50° and noise of 2 cm, ``lines`` the same houses in lines of a scanner,
+which also *Segment recorded lines* is measured on, ``plant`` is a rack of twelve pipes with beams
 and gratings. Segments are compared with the truth as Hoover et al. (1996) do, with an overlap of 0.8; true segments of
 fewer than 50 points are left out. The JSON file goes to ``--output``.
 """
@@ -48,6 +49,19 @@ def gables() -> tuple[np.ndarray, np.ndarray]:
     return np.concatenate(parts), np.concatenate(ids)
 
 
+def lines() -> tuple[np.ndarray, np.ndarray]:
+    """Return points of the same houses in the order of a scanner's lines, 0.29 m apart across the ridges."""
+    rng, parts, ids = np.random.default_rng(3), [], []
+    for house, pitch in enumerate((15, 22, 30, 35, 42, 50)):
+        x, y = np.meshgrid(np.arange(0, 14, 0.29), np.arange(0, 9, 0.29), indexing="ij")
+        # A mirror that turns: each line begins on the same side.
+        xy = np.column_stack([x.ravel() + 0.01 * y.ravel(), y.ravel()]) + rng.normal(0, 0.01, (x.size, 2))
+        z = 6 + np.tan(np.radians(pitch)) * (4.5 - np.abs(xy[:, 1] - 4.5)) + rng.normal(0, 0.02, len(xy))
+        parts.append(np.column_stack([xy[:, 0] + 25 * (house % 3), xy[:, 1] + 20 * (house // 3), z]))
+        ids.append(2 * house + 1 + (xy[:, 1] > 4.5))
+    return np.concatenate(parts), np.concatenate(ids)
+
+
 def plant() -> tuple[np.ndarray, np.ndarray]:
     """Return the points of a simulated rack without the floor, and their true segments."""
     xyz, classification, segment_id, *_ = simulate_plant(pipes=12, tanks=0, spheres=0, density=8000.0)
@@ -55,7 +69,15 @@ def plant() -> tuple[np.ndarray, np.ndarray]:
     return xyz[above], segment_id[above]
 
 
-SCENES: dict[str, Callable[[], tuple[np.ndarray, np.ndarray]]] = {"gables": gables, "plant": plant}
+SCENES: dict[str, Callable[[], tuple[np.ndarray, np.ndarray]]] = {
+    "gables": gables,
+    "lines": lines,
+    "plant": plant,
+}
+# Methods that need the lines of the scanner, here from the order of the points, and the scene that has them.
+IN_LINES: dict[str, tuple[str, dict[str, Any]]] = {
+    "Segment recorded lines": ("segment_recorded_lines", {}),
+}
 
 
 def segmented(name: str, tunables: dict[str, Any], xyz: np.ndarray) -> Any:
@@ -76,7 +98,8 @@ def main() -> None:
     for scene in arguments.scene or SCENES:
         xyz, truth = SCENES[scene]()
         reference = create_cloud({"xyz": xyz, "segment_id": truth.astype(np.int32)})
-        for title, (name, tunables) in METHODS.items():
+        methods = {**METHODS, **IN_LINES} if scene == "lines" else METHODS
+        for title, (name, tunables) in methods.items():
             cloud = segmented(name, tunables, xyz)
             report = run_stage(STAGES["assess_segments"], cloud, reference, min_points=50).report
             assert report is not None
