@@ -141,7 +141,7 @@ def plant(part: float) -> list[Table]:
 
 
 def _spheres_found(true: LayerFeatures, found: LayerFeatures) -> tuple[int, int, int]:
-    """Return how many true spheres have a found one within 5 % of their radius, how many there are, and others found."""
+    """Return how many true spheres are found with center and radius within 5 % of it, of how many, and others found."""
     center, radius = np.array(true.geometries).reshape(-1, 3), np.array(true.columns["radius"])
     other, size = np.array(found.geometries).reshape(-1, 3), np.array(found.columns["radius"])
     off = np.linalg.norm(center[:, None] - other, axis=2)
