@@ -15,6 +15,7 @@ from ..params import MinBuildingArea, PointDensity, PointSource
 from ..sampling.cloud_sampling import CloudSampling
 from ..segmentation.top_surface import TopSurface
 from ..stage import Param, stage
+from ..terrain.on_decks import on_bridges
 from .roof_extent import FOOT, GAP, RoofExtent, amid_rough, without_vehicles
 
 # Cells hold at least a point where the roof was seen: this many point spacings, and no less than half a meter.
@@ -228,7 +229,7 @@ class _Roofs:
     is_roof, is_noise : ndarray of shape (n,), bool
         Points of roofs to start from, and of noise.
     may_stand : ndarray of shape (n,), bool
-        Points that can be of a building: neither noise nor bridge deck.
+        Points that can be of a building: neither noise nor bridge deck nor what stands on one.
     on_surface : ndarray of shape (n,), bool, optional
         Points of roofs on a roof surface; None where these are not known.
     segment_id : ndarray of shape (n,), int32, optional
@@ -249,8 +250,8 @@ class _Roofs:
     ) -> _Roofs:
         """Tell roofs, noise and bridge decks by the classes of points."""
         is_roof, is_noise = classification == PointClass.BUILDING, np.isin(classification, NOISE)
-        # What lies on a bridge deck stands on no ground, and is no wall.
-        may_stand = ~is_noise & (classification != PointClass.BRIDGE_DECK)
+        # Vehicles and parapets on a bridge deck stand on no ground, and are no wall.
+        may_stand = ~is_noise & ~on_bridges(xyz, classification)
         on_surface = None if segment_id is None else is_roof & (segment_id > 0)
         return cls(xyz, height, is_roof, is_noise, may_stand, on_surface, segment_id)
 

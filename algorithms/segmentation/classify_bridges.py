@@ -42,7 +42,7 @@ def classify_bridges(
     sampling: Optional[CloudSampling] = None,
     monitor=None,
 ):
-    """Find bridges and fly-overs in a cloud with classified ground, whether they are ground or not.
+    """Find bridges and fly-overs in a cloud with classified ground, also where the ground filter took them for ground.
 
     On lines in eight directions the sections of a bridge are smooth, opaque and raised on both sides. Such parts become
     bridge deck (17) if they are large enough and go on into the ground at both ends. Bridges whose ends are not in the
@@ -93,7 +93,7 @@ def classify_bridges(
     classes = classification.astype(np.uint8)
     classes[classes == PointClass.BRIDGE_DECK] = PointClass.UNCLASSIFIED
     ground = np.flatnonzero((classification[used] == PointClass.GROUND) & ~is_deck)
-    # Of ground on a deck, such as cars that a filter took for it, nothing is left.
+    # Cars and parapets on a deck that a filter took for ground are none; ground that rises beside the deck stays.
     classes[used[ground[on_decks(points[ground], points[is_deck], ABOVE_DECK)[0]]]] = PointClass.UNCLASSIFIED
     classes[used[is_deck]] = PointClass.BRIDGE_DECK
     monitor.progress(1.0)

@@ -16,6 +16,7 @@ from ..params import PointDensity, PointSource, SurfaceNoise
 from ..sampling.cloud_sampling import CloudSampling
 from ..sampling.surface_noise import plane_roughness
 from ..stage import Monitor, Param, stage
+from ..terrain.on_decks import on_bridges
 from .cluster_measures import plan_areas, share_joined
 from .decks_and_ramps import part_decks
 from .planar_patches import segment_patches
@@ -125,7 +126,7 @@ def segment_roofs(
     xyz : ndarray of shape (n, 3), float64
         Coordinates, m.
     classification : ndarray of shape (n,), uint8
-        ASPRS classes; noise (7, 18) is left out.
+        ASPRS classes; noise (7, 18), bridge decks (17) and what stands on these, to 4.5 m, is left out.
     height_above_ground : ndarray of shape (n,), float32
         Heights, m.
 
@@ -160,7 +161,7 @@ def segment_roofs(
         min_height = _LOWEST_IN_IMAGES if in_images else _LOWEST
     monitor.resolved(density=density, noise=noise, min_height=min_height, matched_images=in_images)
     off_plane = _off_plane_deviation(noise, density)
-    is_used = ~np.isin(classification, NOISE)
+    is_used = ~np.isin(classification, NOISE) & ~on_bridges(xyz, classification)
     if in_images:
         is_used &= TopSurface(xyz, height_above_ground, is_used, density).on_top(xyz)
     used = np.flatnonzero(is_used)

@@ -14,13 +14,20 @@ _CELL_SPACINGS, _LEAST_CELL = 1.5, 0.5
 # What is narrower than this (m) is an object: a shed of 3 m with walls that are smeared over 0.7 m to both sides.
 _WIDTH = 4.5
 
-# Height (m) above the opened surface from which on points are of objects. Where two slopes of 12° meet in a sharp
-# crest, the surface is as far above the opened one.
+# Height (m) above the opened surface from which on points are of objects.
 _HEIGHT = 0.5
 
+# Longest small object (m), with the smeared walls at both of its ends: a shed of 6 m. Crests of ridges and dikes rise
+# as far above the opened surface where slopes of 12° meet in them, but they are longer.
+_LENGTH = 8.0
+
+# Share of what is longer that lies beside points that are no ground, from which it is the walls of a larger object.
+_BESIDE = 0.5
 
 # A window is centered no farther beyond the end of the cloud than this share of its radius, so that it touches ground.
 _BEYOND = 0.8
+
+_EIGHT = np.ones((3, 3), bool)
 
 
 def on_smeared_objects(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -> np.ndarray:
@@ -39,7 +46,8 @@ def on_smeared_objects(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -
     -----
     The lowest ground points of cells are opened with a window. Planes of any slope and plateaus wider than the window
     stay as they are; sheds go, and so does the ring of points that have climbed the walls of a house, since no window
-    is centered on its roof.
+    is centered on its roof. Ridges and dikes narrower than the window rise above the opened surface as well: what is
+    longer than a shed stays, but for such rings.
     """
     if not is_ground.any():
         return np.zeros(len(xyz), bool)
@@ -56,4 +64,23 @@ def on_smeared_objects(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -
     opened = open_surface(lowest, radius, is_far | (is_occupied & ~has_ground))
     # Slopes rise within a cell, to no more than the next one has.
     highest = ndimage.maximum_filter(np.where(has_ground, opened, -np.inf), 3)
-    return is_ground & (xyz[:, 2] > highest[row, column] + _HEIGHT)
+    is_above = is_ground & (xyz[:, 2] > highest[row, column] + _HEIGHT)
+    above = np.zeros(lowest.shape, bool)
+    above[row[is_above], column[is_above]] = True
+    return is_above & _of_objects(above, is_occupied & ~has_ground, size)[row, column]
+
+
+def _of_objects(above: np.ndarray, is_other: np.ndarray, size: float) -> np.ndarray:
+    """Return which cells (rows, columns) of those ``above`` the surface are of small objects or beside large ones.
+
+    Large ones show by cells ``is_other`` (rows, columns) with points but without ground.
+    """
+    # Parts are joined over a cell, so that a crest is one where noise interrupts it.
+    part, count = ndimage.label(ndimage.binary_dilation(above, _EIGHT), _EIGHT)
+    is_short = np.zeros(count + 1, bool)
+    for number, box in enumerate(ndimage.find_objects(part), 1):
+        is_short[number] = max(side.stop - side.start - 2 for side in box) * size <= _LENGTH
+    to_other = ndimage.distance_transform_edt(~is_other) * size if is_other.any() else np.full(above.shape, np.inf)
+    cells = np.bincount(part[above], minlength=count + 1)
+    beside = np.bincount(part[above & (to_other <= _WIDTH / 2)], minlength=count + 1)
+    return above & (is_short | (beside >= _BESIDE * np.maximum(cells, 1)))[part]

@@ -74,8 +74,9 @@ def test_tunnel_mouths_jetties_and_ramps_are_no_bridges(kind):
     np.testing.assert_array_equal(classify_bridges(xyz, classes), classes)
 
 
-def test_a_fly_over_is_a_bridge_and_no_building_where_bridges_are_looked_for():
-    xyz, true, *_ = simulate_bridges(kind="fly-over", density=4.0, seed=3, trees=False)
+@pytest.mark.parametrize(("kind", "angle"), [("fly-over", 0.0), ("two decks", 20.0)])
+def test_a_bridge_with_cars_is_no_building_where_bridges_are_looked_for(kind, angle):
+    xyz, true, *_ = simulate_bridges(kind=kind, angle=angle, density=4.0, seed=3, trees=False)
     cloud = create_cloud({"xyz": xyz})
     run_pipeline(PIPELINES["detect_buildings"], cloud, bridges_max_width=40.0)
     made = cloud.get("classification")

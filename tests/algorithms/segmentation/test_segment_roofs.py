@@ -166,6 +166,23 @@ def test_a_bridge_on_scan_lines_is_none(rng):
     assert not segment_roofs(turned, ones(z), np.where(is_road, -ground, 0))[0].any()
 
 
+def test_bridge_decks_and_what_stands_on_them_are_no_roofs(rng):
+    """A deck 6 m high, a truck of 3 m on it that hides it, and a house of 6 m beside it."""
+    deck, truck, house = (
+        np.insert(rng.uniform(low, high, (8 * int(np.prod(np.subtract(high, low))), 2)), 2, z, axis=1)
+        for low, high, z in (((0, 0), (40, 10), 6.0), ((15, 3), (27, 5), 9.0), ((0, 12), (10, 22), 6.0))
+    )
+    deck = deck[~((deck[:, 0] > 15) & (deck[:, 0] < 27) & (deck[:, 1] > 3) & (deck[:, 1] < 5))]
+    xyz = np.concatenate([deck, truck, house])
+    part = np.repeat([17, 1, 0], [len(deck), len(truck), len(house)])
+    height = np.where(part == 1, 3.0, 6.0).astype(np.float32)
+    classes = np.where(part == 17, 17, 1).astype(np.uint8)
+    segment, cluster, _ = segment_roofs(xyz, classes, height)
+    assert not cluster[part > 0].any()
+    assert (segment[part == 0] > 0).mean() > 0.95
+    assert (segment_roofs(xyz, np.ones_like(classes), height)[0][part == 1] > 0).any()
+
+
 def test_a_high_part_without_a_ramp_to_be_seen_stays_with_its_patch(rng):
     plan = rng.uniform(0, 40, (6400, 2))
     is_high, is_between = plan[:, 0] < 15, (plan[:, 0] >= 15) & (plan[:, 0] < 25)

@@ -101,3 +101,19 @@ def test_what_stands_on_a_bridge_is_measured_from_its_deck():
     height = compute_height_above_ground(xyz, classes)
     np.testing.assert_allclose(height[-3:], [1.5, 3.0, 3.0])
     np.testing.assert_allclose(height[len(road) : -3], 6.0)
+
+
+def test_a_house_beside_a_bridge_is_measured_from_the_ground():
+    """A deck 6 m over the land, a truck that hides it from the scanner, and a roof 9 m high 1.5 m beside it."""
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(0, 30, 0.5), np.arange(0, 30, 0.5)))
+    on_deck, on_roof = np.abs(y - 10) < 4, (y > 14.5) & (y < 24)
+    hidden = (np.abs(x - 12) < 3) & (np.abs(y - 10) < 1.3)
+    deck = np.column_stack([x, y, np.full(len(x), 6.0)])[on_deck & ~hidden]
+    truck = np.column_stack([x, y, np.full(len(x), 8.5)])[hidden]
+    roof = np.column_stack([x, y, np.full(len(x), 9.0)])[on_roof]
+    land = np.column_stack([x, y, np.zeros(len(x))])[~on_roof]
+    xyz = np.concatenate([land, deck, truck, roof])
+    classes = np.repeat([2, 17, 1, 1], [len(land), len(deck), len(truck), len(roof)]).astype(np.uint8)
+    height = compute_height_above_ground(xyz, classes)
+    np.testing.assert_allclose(height[-len(roof) :], 9.0)
+    np.testing.assert_allclose(height[-len(roof) - len(truck) : -len(roof)], 2.5)

@@ -42,8 +42,10 @@ def test_the_ring_of_climbed_walls_around_a_house_is_found(rng):
         lambda x, y: 2.5 * np.clip((x - 15) / 2.5, 0, 1),
         lambda x, y: 1.5 * np.sin(x / 4) * np.sin(y / 5),
         lambda x, y: -2.0 * ((np.abs(x - 15) < 2) & (np.abs(y - 15) < 2)),
+        lambda x, y: -np.tan(np.radians(20)) * np.abs(x + 0.3 * y - 19),
+        lambda x, y: np.clip(2.5 - 0.6 * np.abs(y - 15), 0, 2),
     ],
-    ids=["slope", "terrace", "hills", "pit"],
+    ids=["slope", "terrace", "hills", "pit", "ridge", "dike"],
 )
 def test_terrain_stays(rng, terrain):
     xyz = seen_from_above(rng, lambda x, y: terrain(x, y) + 10.0)[0]
