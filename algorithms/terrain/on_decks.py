@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ..cloud.asprs import PointClass
@@ -69,7 +71,7 @@ def on_bridges(xyz: np.ndarray, classification: np.ndarray) -> np.ndarray:
     return result
 
 
-def _has_deck_behind(places: np.ndarray, nearest: np.ndarray, tree: spatial.cKDTree) -> np.ndarray:
+def _has_deck_behind(places: np.ndarray, nearest: np.ndarray, tree: Any) -> np.ndarray:
     """Return which places (n, 2) have points of the deck on the side away from their ``nearest`` (n, 2), too.
 
     These are looked for in the circle that touches the place on that side, which the straight edge of a deck beside it
