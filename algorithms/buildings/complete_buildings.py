@@ -189,7 +189,7 @@ def complete_buildings(
     if not is_roof.any():
         return result.astype(np.uint8), np.zeros(len(xyz), np.int32), confidence, reason
 
-    roofs = _Roofs.of(xyz, height_above_ground, classification, segment_id)
+    roofs = _Roofs.of(xyz, height_above_ground, classification, segment_id, float(spacing))
     limits = _Limits(gap, density, min_area, min_width, min_roof_share)
     extents = _extents_in_images(roofs, limits) if in_images else _extents_in_scan(roofs, limits)
     columns = _Columns(extents.building, extents.top, extents.cell_size)
@@ -246,12 +246,17 @@ class _Roofs:
 
     @classmethod
     def of(
-        cls, xyz: np.ndarray, height: np.ndarray, classification: np.ndarray, segment_id: Optional[np.ndarray]
+        cls,
+        xyz: np.ndarray,
+        height: np.ndarray,
+        classification: np.ndarray,
+        segment_id: Optional[np.ndarray],
+        spacing: float,
     ) -> _Roofs:
         """Tell roofs, noise and bridge decks by the classes of points."""
         is_roof, is_noise = classification == PointClass.BUILDING, np.isin(classification, NOISE)
         # Vehicles and parapets on a bridge deck stand on no ground, and are no wall.
-        may_stand = ~is_noise & ~on_bridges(xyz, classification)
+        may_stand = ~is_noise & ~on_bridges(xyz, classification, spacing)
         on_surface = None if segment_id is None else is_roof & (segment_id > 0)
         return cls(xyz, height, is_roof, is_noise, may_stand, on_surface, segment_id)
 

@@ -46,7 +46,8 @@ def classify_bridges(
 
     On lines in eight directions the sections of a bridge are smooth, opaque and raised on both sides. Such parts become
     bridge deck (17) if they are large enough and go on into the ground at both ends. Bridges whose ends are not in the
-    cloud, and embankments, are not found.
+    cloud, and embankments, are not found. A run in tiles sees twice the maximum width around each block: bridges that
+    go farther beyond its border are not found there; give long ones a larger block or maximum width.
 
     Parameters
     ----------
@@ -88,13 +89,14 @@ def classify_bridges(
     used = not_noise(classification)
     points = xyz[used] - xyz[used].min(axis=0)
     may_be_deck = ~np.isin(classification[used], _NO_DECK)
-    decks = Decks.of(min_height, max_width, min_bridge_area, 1 / float(np.sqrt(density)), noise)
+    spacing = 1 / float(np.sqrt(density))
+    decks = Decks.of(min_height, max_width, min_bridge_area, spacing, noise)
     is_deck = decks.find(points, may_be_deck, classification[used] == PointClass.GROUND, monitor)
     classes = classification.astype(np.uint8)
     classes[classes == PointClass.BRIDGE_DECK] = PointClass.UNCLASSIFIED
     ground = np.flatnonzero((classification[used] == PointClass.GROUND) & ~is_deck)
     # Cars and parapets on a deck that a filter took for ground are none; ground that rises beside the deck stays.
-    classes[used[ground[on_decks(points[ground], points[is_deck], ABOVE_DECK)[0]]]] = PointClass.UNCLASSIFIED
+    classes[used[ground[on_decks(points[ground], points[is_deck], spacing, ABOVE_DECK)[0]]]] = PointClass.UNCLASSIFIED
     classes[used[is_deck]] = PointClass.BRIDGE_DECK
     monitor.progress(1.0)
     return classes

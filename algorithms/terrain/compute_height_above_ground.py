@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Optional
+
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..geometry.tiled_tin import TiledTin
+from ..sampling.cloud_sampling import CloudSampling
 from ..stage import stage
 from .on_decks import on_decks
 
@@ -20,7 +23,7 @@ _REACH = 10.0
     writes=("height_above_ground",),
     reach=_REACH,
 )
-def compute_height_above_ground(xyz, classification, *, monitor=None):
+def compute_height_above_ground(xyz, classification, *, sampling: Optional[CloudSampling] = None, monitor=None):
     """Measure how high each point lies above the ground points around it.
 
     The ground is the triangulated surface (TIN) of the points of class 2.
@@ -69,9 +72,11 @@ def compute_height_above_ground(xyz, classification, *, monitor=None):
             "the nearest ground point gave their height."
         )
     is_deck = classification[above] == PointClass.BRIDGE_DECK
-    stands, level = on_decks(xyz[above[~is_deck]], xyz[above[is_deck]])
-    stands = np.flatnonzero(~is_deck)[stands]
-    elevation[stands] = np.maximum(elevation[stands], level)
+    if is_deck.any():
+        spacing = (sampling or CloudSampling.of(xyz, classification)).spacing
+        stands, level = on_decks(xyz[above[~is_deck]], xyz[above[is_deck]], spacing)
+        stands = np.flatnonzero(~is_deck)[stands]
+        elevation[stands] = np.maximum(elevation[stands], level)
     height = np.zeros(len(xyz), np.float32)
     height[above] = xyz[above, 2] - elevation
     return height

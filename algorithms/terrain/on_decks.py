@@ -8,9 +8,8 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..packages import spatial
-from ..sampling.density import point_density
 
-# What stands on a bridge has points of its deck this near in plan (spacings of the deck, and at least so far, m): where
+# What stands on a bridge has points of its deck this near in plan (point spacings, and at least so far, m): where
 # points lie at random, one place in 300,000 has none within two spacings.
 _NEAR_SPACINGS, _LEAST_NEAR = 2.0, 0.5
 
@@ -24,7 +23,9 @@ _BELOW = 0.3
 _TRAFFIC = 4.5
 
 
-def on_decks(points: np.ndarray, deck: np.ndarray, least: float = -_BELOW) -> tuple[np.ndarray, np.ndarray]:
+def on_decks(
+    points: np.ndarray, deck: np.ndarray, spacing: float, least: float = -_BELOW
+) -> tuple[np.ndarray, np.ndarray]:
     """Find the points that stand on bridge decks, such as those of cars and parapets.
 
     Parameters
@@ -33,6 +34,8 @@ def on_decks(points: np.ndarray, deck: np.ndarray, least: float = -_BELOW) -> tu
         Points that are not of a deck, m.
     deck : ndarray of shape (m, 3), float64
         Points of decks, m.
+    spacing : float
+        Point spacing of the cloud, m.
     least : float
         Least height over the deck, m; negative for what begins in its surface.
 
@@ -43,13 +46,13 @@ def on_decks(points: np.ndarray, deck: np.ndarray, least: float = -_BELOW) -> tu
     level : ndarray of shape (k,), float64
         Elevation of the deck there, m.
     """
-    if len(deck) < 2 or not len(points) or not np.ptp(deck[:, :2], axis=0).any():
+    if not len(deck) or not len(points):
         return np.zeros(0, np.int64), np.zeros(0)
     around = (points[:, :2] >= deck[:, :2].min(axis=0) - _HIDDEN).all(axis=1)
     around &= (points[:, :2] <= deck[:, :2].max(axis=0) + _HIDDEN).all(axis=1)
     rows = np.flatnonzero(around)
     tree = spatial.cKDTree(deck[:, :2])
-    near = max(_LEAST_NEAR, _NEAR_SPACINGS / float(np.sqrt(point_density(deck))))
+    near = max(_LEAST_NEAR, _NEAR_SPACINGS * spacing)
     distance, nearest = tree.query(points[rows, :2], distance_upper_bound=max(near, _HIDDEN))
     known = np.isfinite(distance)
     rows, distance, nearest = rows[known], distance[known], nearest[known]
@@ -60,13 +63,13 @@ def on_decks(points: np.ndarray, deck: np.ndarray, least: float = -_BELOW) -> tu
     return rows[stands], level[stands]
 
 
-def on_bridges(xyz: np.ndarray, classification: np.ndarray) -> np.ndarray:
+def on_bridges(xyz: np.ndarray, classification: np.ndarray, spacing: float) -> np.ndarray:
     """Return which points (n,) are of bridge decks (class 17) or of vehicles and parapets on them: no buildings."""
     is_deck = classification == PointClass.BRIDGE_DECK
     result = is_deck.copy()
     if is_deck.any():
         others = np.flatnonzero(~is_deck)
-        rows, level = on_decks(xyz[others], xyz[is_deck])
+        rows, level = on_decks(xyz[others], xyz[is_deck], spacing)
         result[others[rows]] = xyz[others[rows], 2] <= level + _TRAFFIC
     return result
 
