@@ -15,7 +15,6 @@ from ..params import MinBuildingArea, PointDensity, PointSource
 from ..sampling.cloud_sampling import CloudSampling
 from ..segmentation.top_surface import TopSurface
 from ..stage import Param, stage
-from ..terrain.on_decks import on_bridges
 from .roof_extent import FOOT, GAP, RoofExtent, amid_rough, without_vehicles
 
 # Cells hold at least a point where the roof was seen: this many point spacings, and no less than half a meter.
@@ -189,7 +188,7 @@ def complete_buildings(
     if not is_roof.any():
         return result.astype(np.uint8), np.zeros(len(xyz), np.int32), confidence, reason
 
-    roofs = _Roofs.of(xyz, height_above_ground, classification, segment_id, float(spacing))
+    roofs = _Roofs.of(xyz, height_above_ground, classification, segment_id)
     limits = _Limits(gap, density, min_area, min_width, min_roof_share)
     extents = _extents_in_images(roofs, limits) if in_images else _extents_in_scan(roofs, limits)
     columns = _Columns(extents.building, extents.top, extents.cell_size)
@@ -229,7 +228,7 @@ class _Roofs:
     is_roof, is_noise : ndarray of shape (n,), bool
         Points of roofs to start from, and of noise.
     may_stand : ndarray of shape (n,), bool
-        Points that can be of a building: neither noise nor bridge deck nor what stands on one.
+        Points that can be of a building: neither noise nor bridge deck.
     on_surface : ndarray of shape (n,), bool, optional
         Points of roofs on a roof surface; None where these are not known.
     segment_id : ndarray of shape (n,), int32, optional
@@ -246,17 +245,12 @@ class _Roofs:
 
     @classmethod
     def of(
-        cls,
-        xyz: np.ndarray,
-        height: np.ndarray,
-        classification: np.ndarray,
-        segment_id: Optional[np.ndarray],
-        spacing: float,
+        cls, xyz: np.ndarray, height: np.ndarray, classification: np.ndarray, segment_id: Optional[np.ndarray]
     ) -> _Roofs:
         """Tell roofs, noise and bridge decks by the classes of points."""
         is_roof, is_noise = classification == PointClass.BUILDING, np.isin(classification, NOISE)
-        # Vehicles and parapets on a bridge deck stand on no ground, and are no wall.
-        may_stand = ~is_noise & ~on_bridges(xyz, classification, spacing)
+        # What lies on a bridge deck stands on no ground, and is no wall.
+        may_stand = ~is_noise & (classification != PointClass.BRIDGE_DECK)
         on_surface = None if segment_id is None else is_roof & (segment_id > 0)
         return cls(xyz, height, is_roof, is_noise, may_stand, on_surface, segment_id)
 
