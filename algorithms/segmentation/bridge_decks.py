@@ -12,7 +12,7 @@ from ..geometry.grid import distinct, find_cells, grid_over
 from ..geometry.groups import items, run_starts
 from ..packages import spatial
 from ..stage import Monitor
-from .scan_line_pieces import NearPoints, pieces, slices
+from .scan_line_pieces import NearPoints, ends_of, pieces_of_lines, slices
 
 # Directions of lines: one of them crosses each bridge within 12° of its shortest section.
 _DIRECTIONS = 8
@@ -123,7 +123,7 @@ class Decks:
         for number in range(_DIRECTIONS):
             raised = self._raised(xyz, is_earth, 180 * number / _DIRECTIONS)
             votes += raised
-            across += raised * np.exp(2j * np.pi * number / _DIRECTIONS)
+            across[raised] += np.exp(2j * np.pi * number / _DIRECTIONS)
             monitor.progress(0.8 * (number + 1) / _DIRECTIONS)
         candidates = np.flatnonzero(votes >= _LEAST_DIRECTIONS)
         is_deck = np.zeros(len(xyz), bool)
@@ -137,13 +137,15 @@ class Decks:
         size = np.bincount(beside, minlength=1)
         ground = np.bincount(beside, is_terrain[terrain], len(size))
         size = np.where(ground >= _LEAST_GROUND * size, size, 0)[beside]
+        eastward = np.argsort(xyz[terrain, 0])
+        around = _Around(xyz[terrain[eastward]], size[eastward], 1.5 * self.reach)
         ground_tree = spatial.cKDTree(xyz[terrain[is_terrain[terrain]]] * self._stretch)
         for rows in self._large(xyz, candidates, part):
             # The tip of a pier is no terrain that it leads to.
-            large = terrain[size >= _LEAST_TERRAIN * len(rows)]
+            large = around.of(xyz[rows], _LEAST_TERRAIN * len(rows))
             angle = np.angle(across[rows].sum()) / 2 + np.pi / 2
             axis = np.array([np.cos(angle), np.sin(angle)])
-            if self._is_joined(xyz[rows], xyz[large], axis) and self._leads_to(xyz[rows], ground_tree, axis):
+            if self._is_joined(xyz[rows], large, axis) and self._leads_to(xyz[rows], ground_tree, axis):
                 is_deck[self._with_edges(xyz, rows, others)] = True
                 is_deck[self._with_corners(xyz, rows, others[votes[others] > 0])] = True
         return is_deck
@@ -151,29 +153,28 @@ class Decks:
     def _raised(self, xyz: np.ndarray, is_earth: np.ndarray, direction: float) -> np.ndarray:
         """Return which points (n,) are of pieces of one direction that have lower points beyond both ends."""
         order, line = slices(xyz, direction, self.line_width)
+        points = xyz[order]
         angle = np.radians(direction)
-        along = xyz[order, 0] * np.cos(angle) + xyz[order, 1] * np.sin(angle)
-        height = xyz[order, 2]
+        along = points[:, 0] * np.cos(angle) + points[:, 1] * np.sin(angle)
+        height = np.ascontiguousarray(points[:, 2])
         # One axis for all lines, with more room between them than any distance on them.
         along = along - along.min() + line * (2 * np.ptp(along) + 10 * self.reach + self.max_width)
-        piece = pieces(xyz, direction, self.line_width, self.near, 3, _OBSTACLE)[order]
+        piece = pieces_of_lines(points, line, direction, self.near, 3, _OBSTACLE)
         piece[~is_earth[order]] = -1
-        rows = np.flatnonzero(piece >= 0)
         raised = np.zeros(len(xyz), bool)
-        if not len(rows):
+        rows, number, count = _numbered(piece)
+        if not count:
             return raised
-        _, number, count = np.unique(piece[rows], return_inverse=True, return_counts=True)
-        first, last = _ends(rows, number, len(count))
-        is_raised = (along[last] - along[first] <= self.max_width) & (along[last] - along[first] >= self.reach / 2)
+        first, last = ends_of(rows, number, count)
+        width = along[last] - along[first]
+        chosen = np.flatnonzero((width <= self.max_width) & (width >= self.reach / 2))
         for sign, end in ((-1, first), (1, last)):
-            is_raised &= self._ends_high(along, height, end, sign)
-        is_raised &= _roughness(along[rows], height[rows], number, count) <= _MOST_ROUGH
-        chosen = np.flatnonzero(is_raised)
+            chosen = chosen[self._ends_high(along, height, end[chosen], sign)]
+        rows, number = _of_chosen(rows, number, chosen, count)
+        size = np.bincount(number, minlength=len(chosen))
+        is_smooth = _roughness(along[rows], height[rows], number, size) <= _MOST_ROUGH
         below = _count_below(along, height, first[chosen], last[chosen], self.min_height)
-        chosen = chosen[below <= _MOST_BELOW * count[chosen]]
-        kept = np.zeros(len(count), bool)
-        kept[chosen] = True
-        raised[order[rows[kept[number]]]] = True
+        raised[order[rows[(is_smooth & (below <= _MOST_BELOW * size))[number]]]] = True
         return raised
 
     def _ends_high(self, along: np.ndarray, height: np.ndarray, end: np.ndarray, sign: int) -> np.ndarray:
@@ -205,16 +206,14 @@ class Decks:
         grid = grid_over(xyz[candidates], self.reach / 2)
         cells = distinct(part.astype(np.int64) * (grid.rows * grid.columns) + grid.number(xyz[candidates]))[0]
         area = np.bincount(cells // (grid.rows * grid.columns)) * grid.size**2
-        for number in np.flatnonzero(area >= self.min_area):
-            yield candidates[part == number]
+        is_large = (area >= self.min_area)[part]
+        candidates, part = candidates[is_large], part[is_large]
+        order = np.argsort(part, kind="stable")
+        if len(order):
+            yield from np.split(candidates[order], run_starts(part[order])[1:])
 
     def _is_joined(self, deck: np.ndarray, others: np.ndarray, axis: np.ndarray) -> bool:
         """Return whether a deck goes on into the terrain at both of its ends along its ``axis`` (2,)."""
-        # A tree of what lies around the deck is made in a fraction of the time of one of the whole terrain.
-        least, most = deck.min(axis=0) - 1.5 * self.reach, deck.max(axis=0) + 1.5 * self.reach
-        for column in range(2):
-            place = others[:, column]
-            others = others[(place >= least[column]) & (place <= most[column])]
         if not len(others):
             return False
         along = deck[:, :2] @ axis
@@ -273,17 +272,43 @@ class Decks:
         return np.concatenate([rows, others[same]])
 
 
+@dataclass(frozen=True)
+class _Around:
+    """Terrain (n, 3) from west to east, how many points hang together with each (n,), and how far to look (m).
+
+    A tree of what lies around a deck is made in a fraction of the time of one of the whole terrain.
+    """
+
+    xyz: np.ndarray
+    size: np.ndarray
+    distance: float
+
+    def of(self, deck: np.ndarray, least: float) -> np.ndarray:
+        """Return the points (k, 3) around a deck that hang together with at least so many."""
+        low, high = deck.min(axis=0) - self.distance, deck.max(axis=0) + self.distance
+        first, stop = np.searchsorted(self.xyz[:, 0], low[0]), np.searchsorted(self.xyz[:, 0], high[0], side="right")
+        near, size = self.xyz[first:stop], self.size[first:stop]
+        return near[(near[:, 1] >= low[1]) & (near[:, 1] <= high[1]) & (size >= least)]
+
+
 def cell_size(spacing: float) -> float:
     """Return the side (m) of cells in which points of a cloud with this spacing (m) are beside one another."""
     return max(_LEAST_CELL, LINE_SPACINGS * spacing)
 
 
-def _ends(rows: np.ndarray, number: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the first and the last row of each piece."""
-    first, last = np.full(count, np.iinfo(np.int64).max), np.full(count, -1)
-    np.minimum.at(first, number, rows)
-    np.maximum.at(last, number, rows)
-    return first, last
+def _numbered(piece: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:
+    """Return the rows of points of pieces, the numbers of these from 0 without gaps, and how many there are."""
+    rows = np.flatnonzero(piece >= 0)
+    is_there = np.bincount(piece[rows]) > 0
+    return rows, (np.cumsum(is_there) - 1)[piece[rows]], int(is_there.sum())
+
+
+def _of_chosen(rows: np.ndarray, number: np.ndarray, chosen: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the rows of ``chosen`` pieces out of ``count``, with their new numbers from 0."""
+    renumbered = np.full(count, -1)
+    renumbered[chosen] = np.arange(len(chosen))
+    kept = renumbered[number] >= 0
+    return rows[kept], renumbered[number[kept]]
 
 
 def _count_below(
