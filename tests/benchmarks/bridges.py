@@ -3,8 +3,9 @@
 
 ``bridges`` has simulated ones: F (%) of the points of decks with *Segment scan lines* and *Classify ground segments*,
 and with *Classify bridges* on the true ground. Of kinds that are no bridges it has the points that are called deck.
-``real_bridges`` has real clouds, where they are, with *Classify bridges* after *Classify ground points (TIN)*. The JSON
-files go to ``--output``.
+``bridges_as_buildings`` has the points called building on the same sites by *Detect buildings*, without bridges and
+with them. ``real_bridges`` has real clouds, where they are, with *Classify bridges* after *Classify ground points
+(TIN)*. The JSON files go to ``--output``.
 """
 
 from __future__ import annotations
@@ -21,7 +22,8 @@ import conftest  # noqa: E402, F401 - registers the checkout as the package lida
 from lidar_buildings.algorithms.cloud.asprs import PointClass  # noqa: E402
 from lidar_buildings.algorithms.cloud.cloud import create_cloud  # noqa: E402
 from lidar_buildings.algorithms.cloud.files import read_cloud  # noqa: E402
-from lidar_buildings.algorithms.run import run_stage  # noqa: E402
+from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
+from lidar_buildings.algorithms.run import run_pipeline, run_stage  # noqa: E402
 from lidar_buildings.algorithms.simulation.bridge_site import KINDS  # noqa: E402
 from lidar_buildings.algorithms.simulation.simulate_bridges import simulate_bridges  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
@@ -76,6 +78,23 @@ def simulated() -> Table:
     return table
 
 
+def as_buildings() -> Table:
+    """Print how many points *Detect buildings* calls building on simulated bridges, where there is no building."""
+    headings = (f"{angle:.0f}°, {how}" for angle in ANGLES for how in ("without", "with"))
+    table = Table("bridges_as_buildings", "kind", "points per m²", *headings, texts=2)
+    for kind in (kind for kind in KINDS if KINDS[kind].decks):
+        for density in DENSITIES:
+            row = []
+            for angle in ANGLES:
+                xyz = simulate_bridges(kind=kind, angle=angle, density=density, seed=SEED)[0]
+                for width in (0.0, 40.0):
+                    cloud = create_cloud({"xyz": xyz})
+                    run_pipeline(PIPELINES["detect_buildings"], cloud, bridges_max_width=width)
+                    row.append(int((cloud.get("classification") == PointClass.BUILDING).sum()))
+            table.add(kind, f"{density:g}", *row)
+    return table
+
+
 def real() -> Table:
     """Print the figures of real clouds."""
     table = Table("real_bridges", "cloud", "true points", "found", "of these true", "F, %")
@@ -96,7 +115,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--output", type=Path, default=FOLDER)
     folder = parser.parse_args().output
-    for table in (real(), simulated()):
+    for table in (real(), simulated(), as_buildings()):
         table.write(folder)
 
 
