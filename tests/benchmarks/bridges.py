@@ -86,9 +86,10 @@ def as_buildings() -> Table:
         for density in DENSITIES:
             row = []
             for angle in ANGLES:
-                xyz = simulate_bridges(kind=kind, angle=angle, density=density, seed=SEED)[0]
+                made = simulate_bridges(kind=kind, angle=angle, density=density, seed=SEED)
                 for width in (0.0, 40.0):
-                    cloud = create_cloud({"xyz": xyz})
+                    # Without the numbers of returns a scan would pass for matched images.
+                    cloud = create_cloud({"xyz": made[0], "return_number": made[2], "number_of_returns": made[3]})
                     run_pipeline(PIPELINES["detect_buildings"], cloud, bridges_max_width=width)
                     row.append(int((cloud.get("classification") == PointClass.BUILDING).sum()))
             table.add(kind, f"{density:g}", *row)
