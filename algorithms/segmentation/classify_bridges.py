@@ -96,7 +96,7 @@ def classify_bridges(
     classes[classes == PointClass.BRIDGE_DECK] = PointClass.UNCLASSIFIED
     ground = np.flatnonzero((classification[used] == PointClass.GROUND) & ~is_deck)
     # Cars and parapets on a deck that a filter took for ground are none; ground that rises beside the deck stays.
-    classes[used[ground[on_decks(points[ground], points[is_deck], spacing, ABOVE_DECK)[0]]]] = PointClass.UNCLASSIFIED
+    classes[used[ground[on_decks(points[ground], points[is_deck], ABOVE_DECK)[0]]]] = PointClass.UNCLASSIFIED
     classes[used[is_deck]] = PointClass.BRIDGE_DECK
     monitor.progress(1.0)
     return classes

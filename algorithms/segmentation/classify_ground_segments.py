@@ -118,7 +118,7 @@ def classify_ground_segments(
     is_ground = is_terrain & ~is_deck
     # Cars and parapets on a deck are no ground; terrain that rises beside the deck stays.
     others = np.flatnonzero(is_ground)
-    is_ground[others[on_decks(points[others], points[is_deck], spacing, ABOVE_DECK)[0]]] = False
+    is_ground[others[on_decks(points[others], points[is_deck], ABOVE_DECK)[0]]] = False
 
     classes = classification.astype(np.uint8)
     classes[np.isin(classes, (PointClass.GROUND, PointClass.BRIDGE_DECK))] = PointClass.UNCLASSIFIED

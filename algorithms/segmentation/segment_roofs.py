@@ -161,7 +161,7 @@ def segment_roofs(
         min_height = _LOWEST_IN_IMAGES if in_images else _LOWEST
     monitor.resolved(density=density, noise=noise, min_height=min_height, matched_images=in_images)
     off_plane = _off_plane_deviation(noise, density)
-    is_used = ~np.isin(classification, NOISE) & ~on_bridges(xyz, classification, 1 / float(np.sqrt(density)))
+    is_used = ~np.isin(classification, NOISE) & ~on_bridges(xyz, classification)
     if in_images:
         is_used &= TopSurface(xyz, height_above_ground, is_used, density).on_top(xyz)
     used = np.flatnonzero(is_used)

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Optional
-
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..geometry.tiled_tin import TiledTin
-from ..sampling.cloud_sampling import CloudSampling
 from ..stage import stage
 from .on_decks import on_decks
 
@@ -23,7 +20,7 @@ _REACH = 10.0
     writes=("height_above_ground",),
     reach=_REACH,
 )
-def compute_height_above_ground(xyz, classification, *, sampling: Optional[CloudSampling] = None, monitor=None):
+def compute_height_above_ground(xyz, classification, *, monitor=None):
     """Measure how high each point lies above the ground points around it.
 
     The ground is the triangulated surface (TIN) of the points of class 2.
@@ -72,11 +69,9 @@ def compute_height_above_ground(xyz, classification, *, sampling: Optional[Cloud
             "the nearest ground point gave their height."
         )
     is_deck = classification[above] == PointClass.BRIDGE_DECK
-    if is_deck.any():
-        spacing = (sampling or CloudSampling.of(xyz, classification)).spacing
-        stands, level = on_decks(xyz[above[~is_deck]], xyz[above[is_deck]], spacing)
-        stands = np.flatnonzero(~is_deck)[stands]
-        elevation[stands] = np.maximum(elevation[stands], level)
+    stands, level = on_decks(xyz[above[~is_deck]], xyz[above[is_deck]])
+    stands = np.flatnonzero(~is_deck)[stands]
+    elevation[stands] = np.maximum(elevation[stands], level)
     height = np.zeros(len(xyz), np.float32)
     height[above] = xyz[above, 2] - elevation
     return height

@@ -9,9 +9,12 @@ import numpy as np
 from ..cloud.asprs import PointClass
 from ..packages import spatial
 
-# What stands on a bridge has points of its deck this near in plan (point spacings, and at least so far, m): where
-# points lie at random, one place in 300,000 has none within two spacings.
+# What stands on a bridge has points of its deck this near in plan (spacings of the deck's points, and at least so far,
+# m): where they lie at random, one place in 300,000 has none within two spacings.
 _NEAR_SPACINGS, _LEAST_NEAR = 2.0, 0.5
+
+# Neighbors of a point that its spacing is measured with.
+_NEIGHBORS = 8
 
 # Beneath cars and trucks, up to 2.6 m wide, the deck was not seen: there its points lie this near (m) on both sides.
 _HIDDEN = 2.0
@@ -23,9 +26,7 @@ _BELOW = 0.3
 _TRAFFIC = 4.5
 
 
-def on_decks(
-    points: np.ndarray, deck: np.ndarray, spacing: float, least: float = -_BELOW
-) -> tuple[np.ndarray, np.ndarray]:
+def on_decks(points: np.ndarray, deck: np.ndarray, least: float = -_BELOW) -> tuple[np.ndarray, np.ndarray]:
     """Find the points that stand on bridge decks, such as those of cars and parapets.
 
     Parameters
@@ -34,8 +35,6 @@ def on_decks(
         Points that are not of a deck, m.
     deck : ndarray of shape (m, 3), float64
         Points of decks, m.
-    spacing : float
-        Point spacing of the cloud, m.
     least : float
         Least height over the deck, m; negative for what begins in its surface.
 
@@ -46,13 +45,13 @@ def on_decks(
     level : ndarray of shape (k,), float64
         Elevation of the deck there, m.
     """
-    if not len(deck) or not len(points):
+    if len(deck) <= _NEIGHBORS or not len(points):
         return np.zeros(0, np.int64), np.zeros(0)
     around = (points[:, :2] >= deck[:, :2].min(axis=0) - _HIDDEN).all(axis=1)
     around &= (points[:, :2] <= deck[:, :2].max(axis=0) + _HIDDEN).all(axis=1)
     rows = np.flatnonzero(around)
     tree = spatial.cKDTree(deck[:, :2])
-    near = max(_LEAST_NEAR, _NEAR_SPACINGS * spacing)
+    near = max(_LEAST_NEAR, _NEAR_SPACINGS * _spacing(deck, tree))
     distance, nearest = tree.query(points[rows, :2], distance_upper_bound=max(near, _HIDDEN))
     known = np.isfinite(distance)
     rows, distance, nearest = rows[known], distance[known], nearest[known]
@@ -63,15 +62,21 @@ def on_decks(
     return rows[stands], level[stands]
 
 
-def on_bridges(xyz: np.ndarray, classification: np.ndarray, spacing: float) -> np.ndarray:
+def on_bridges(xyz: np.ndarray, classification: np.ndarray) -> np.ndarray:
     """Return which points (n,) are of bridge decks (class 17) or of vehicles and parapets on them: no buildings."""
     is_deck = classification == PointClass.BRIDGE_DECK
     result = is_deck.copy()
     if is_deck.any():
         others = np.flatnonzero(~is_deck)
-        rows, level = on_decks(xyz[others], xyz[is_deck], spacing)
+        rows, level = on_decks(xyz[others], xyz[is_deck])
         result[others[rows]] = xyz[others[rows], 2] <= level + _TRAFFIC
     return result
+
+
+def _spacing(deck: np.ndarray, tree: Any) -> float:
+    """Return the point spacing (m) of decks in plan, by how far around its points the neighbors lie."""
+    radius = float(np.median(tree.query(deck[:, :2], k=[_NEIGHBORS + 1])[0]))
+    return radius * float(np.sqrt(np.pi / _NEIGHBORS))
 
 
 def _has_deck_behind(places: np.ndarray, nearest: np.ndarray, tree: Any) -> np.ndarray:
