@@ -20,6 +20,7 @@ import sys
 import time
 from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import closing
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -71,7 +72,7 @@ def _of_cloud(path: Path) -> bytes:
 
 def _of_layer(path: Path) -> bytes:
     """Return the rows of all tables; the file itself has the time in it."""
-    with sqlite3.connect(f"file:{path}?mode=ro", uri=True) as database:
+    with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as database:
         if database.execute("PRAGMA integrity_check").fetchall() != [("ok",)]:
             raise ValueError("The database is damaged.")
         tables = [name for (name,) in database.execute("SELECT table_name FROM gpkg_contents")]

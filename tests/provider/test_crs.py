@@ -10,12 +10,14 @@ from osgeo import gdal, osr
 from qgis.core import (
     QgsApplication,
     QgsCoordinateReferenceSystem,
+    QgsLayerTreeModel,
     QgsProcessingAlgRunnerTask,
     QgsProcessingContext,
     QgsProcessingFeedback,
     QgsProcessingOutputLayerDefinition,
     QgsProject,
 )
+from qgis.gui import QgsLayerTreeView
 from qgis.PyQt.QtCore import QEventLoop, QTimer
 
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
@@ -27,6 +29,7 @@ _EXPIRY = 20  # ms
 
 
 def _rd_new():
+    osr.UseExceptions()
     system = osr.SpatialReference()
     system.ImportFromEPSG(28992)
     return system.ExportToWkt(["FORMAT=WKT2_2019"])
@@ -53,9 +56,14 @@ def wait_for_threads(provider):
 
 
 @pytest.fixture
-def in_desktop(provider, wait_for_threads):
+def in_desktop(provider, wait_for_threads, monkeypatch):
     """Run an algorithm and load its results as the desktop does: in a task, whose thread then ends."""
+    from processing.gui import Postprocessing
     from processing.gui.Postprocessing import handleAlgorithmResults
+
+    tree = QgsLayerTreeView()
+    tree.setModel(QgsLayerTreeModel(QgsProject.instance().layerTreeRoot()))
+    monkeypatch.setattr(Postprocessing.iface, "layerTreeView", lambda: tree)
 
     def run(name, given, outputs):
         project, loop, done = QgsProject.instance(), QEventLoop(), []

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import sqlite3
+from contextlib import closing
 
 import numpy as np
 import pytest
@@ -143,7 +144,8 @@ def test_an_older_journal_is_not_applied_to_a_new_layer(provider, context, log, 
     editing.close()
     (feature,) = QgsVectorLayer(str(target), "f", "ogr").getFeatures()
     assert feature["kind"] == "box"
-    assert not list(sqlite3.connect(target).execute("SELECT * FROM sqlite_master WHERE name = 'edited'"))
+    with closing(sqlite3.connect(target)) as database:
+        assert not list(database.execute("SELECT * FROM sqlite_master WHERE name = 'edited'"))
 
 
 def test_errors_name_the_file_that_the_user_gave(provider, context, log, town_file, out, monkeypatch):
