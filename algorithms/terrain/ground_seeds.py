@@ -224,17 +224,18 @@ def _view(cells: _Cells, max_building_size: Optional[float], slope: Optional[np.
     # What is seen through a roof as through a pit lies lower than the surface there.
     stands_free = lowest.at_points(is_free) & (above >= 0)
     if cells.low_uphill:
-        stands_free |= cells.xyz[:, 2] >= lowest.at_points(_rim_levels(surface, is_free))
+        below = lowest.at_points(_rim_levels(surface, is_free)) - cells.xyz[:, 2]
+        stands_free |= (below >= 0) & (below <= _RIM)
     return _View(lowest.points(~unknown), says_terrain, stands_free, found, slope)
 
 
 def _rim_levels(surface: np.ndarray, is_free: np.ndarray) -> np.ndarray:
-    """Return the elevation (m) from which on points are of a free-standing segment in each cell beside one, else inf.
+    """Return the elevation (m) of the free-standing segment beside each cell that is of none, -inf without any.
 
     Matching rounds edges, so that a rim as wide as a cell lies between a roof and the terrain and joins both.
     """
     level = ndimage.maximum_filter(np.where(is_free, surface, -np.inf), 3)
-    return np.where(np.isfinite(level) & ~is_free, level - _RIM, np.inf)
+    return np.where(is_free, -np.inf, level)
 
 
 def _is_compact(box: np.ndarray) -> bool:
