@@ -35,6 +35,9 @@ _CUT = 1.0
 # A window is enlarged for features that it cuts off, to at most this many times its halo on each side.
 _MOST_HALOS = 8
 
+# A window of fewer points is enlarged, too: stages refuse two points, of a bird over water say, as no surface.
+_FEWEST_POINTS = 20
+
 # Seconds between two looks at whether to stop.
 _BETWEEN_LOOKS = 0.5
 
@@ -196,14 +199,14 @@ class StoppableMonitor(Monitor):
 def work_on_block(task: BlockTask) -> Path:
     """Run the chain on a block and its surroundings; return the file of what came of it.
 
-    The window is enlarged where it cuts off a feature that has a part in the block.
+    The window is enlarged where it cuts off a feature that has a part in the block, or holds hardly any points.
 
     Raises
     ------
     ValueError
         If a file can't be read or the chain refuses the points.
     """
-    monitor, halo = StoppableMonitor(task.stop), task.halo
+    monitor, halo, most = StoppableMonitor(task.stop), task.halo, _MOST_HALOS * task.halo
     tries = []
     while True:
         box = task.block.box + np.array([[-halo], [halo]])
@@ -213,9 +216,12 @@ def work_on_block(task: BlockTask) -> Path:
         if window is None:
             result = BlockResult(np.zeros(0, np.int32), np.zeros(0, np.int64))
             break
+        if len(window.cloud) < _FEWEST_POINTS and halo < most:
+            halo *= 2
+            continue
         result, is_cut = _run(task, window, box, monitor)
         tries.append((halo, len(window.cloud), read - start, time.process_time() - read))
-        if not is_cut or halo >= _MOST_HALOS * task.halo:
+        if not is_cut or halo >= most:
             break
         halo *= 2
     result.tries = np.array(tries).reshape(-1, 4)

@@ -183,6 +183,20 @@ def test_a_tile_that_vanishes_during_the_run_fails_by_name(tmp_path, monkeypatch
     assert any("b.las can't be read" in failure for failure in outcome.failures)
 
 
+def test_a_point_far_from_all_others_is_worked_on_with_them(tmp_path, monkeypatch):
+    """A bird over the sea, alone in its block and around it: no surface can be laid through it."""
+    ground = Pipeline("ground", "Ground", "Tests", "", "", "", "", (Step("ground", "classify_ground_tin"),))
+    monkeypatch.setitem(PIPELINES, ground.name, ground)
+    paths = [
+        tile(tmp_path / "land.laz", (0, 0), (50, 50), n=2000),
+        tile(tmp_path / "bird.laz", (250, 20), (251, 21), n=1),
+    ]
+    done = run_in_tiles(ground, paths, tmp_path / "out", workers=Workers(processes=1), block_side=50.0)
+    assert not done.failures
+    assert len(read_cloud(tmp_path / "out" / "bird.laz")) == 1
+    assert (read_cloud(tmp_path / "out" / "land.laz").get("classification") == 2).mean() > 0.9
+
+
 def test_a_missing_tile_of_a_virtual_point_cloud_is_named(tmp_path):
     tile(tmp_path / "a.las", (0, 0), (20, 20))
     features = [{"type": "Feature", "assets": {"data": {"href": one, "roles": ["data"]}}} for one in ("a.las", "b.las")]
