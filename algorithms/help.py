@@ -28,8 +28,11 @@ def stage_help(stage: Stage) -> str:
     )
 
 
-def pipeline_help(pipeline: Pipeline) -> str:
-    """Return what a pipeline does, step by step, with the parameters of its steps."""
+def pipeline_help(pipeline: Pipeline, made: Optional[list[str]] = None) -> str:
+    """Return what a pipeline does, step by step, with the parameters of its steps.
+
+    ``made`` are texts of the outputs, where they differ from those of a run on one cloud.
+    """
     steps = [
         f"<b>{step_title(step)}</b> ({html.escape(step.stage.title)}): {inline(step.stage.summary)}"
         for step in pipeline.steps
@@ -42,24 +45,25 @@ def pipeline_help(pipeline: Pipeline) -> str:
     parts += [_list(title, items) for title, items in rows.items() if items]
     input_layers = [input_layer_text(input_layer) for input_layer in pipeline.input_layers.values()]
     parts.append(_list("Layers", input_layers))
-    made = sorted(pipeline.outputs, key=lambda output: output.name != "output")
+    if made is None:
+        in_order = sorted(pipeline.outputs, key=lambda output: output.name != "output")
+        made = [output_text(pipeline, output) for output in in_order]
     return "\n".join(
         part
         for part in (
             *parts,
-            _list("Outputs", [_output_text(pipeline, output) for output in made]),
+            _list("Outputs", made),
             _section("References", pipeline.references),
         )
         if part
     )
 
 
-def _output_text(pipeline: Pipeline, output: Output) -> str:
-    """Return what one output of a composite is."""
+def output_text(pipeline: Pipeline, output: Output) -> str:
+    """Return what one output of a composite is, as HTML."""
     name, stage = output.name.upper(), output.step.stage
     if output.name == "output":
-        written = dict.fromkeys(name for step in pipeline.steps for name in step.stage.writes)
-        return f"<b>{name}</b>: the cloud with {_disk_names(written)}."
+        return f"<b>{name}</b>: the cloud with {written_by(pipeline)}."
     if output.of == "output":
         return f"<b>{name}</b>: the cloud as the step {step_title(output.step)} leaves it."
     if output.of == "report":
@@ -67,6 +71,11 @@ def _output_text(pipeline: Pipeline, output: Output) -> str:
     texts = {layer.name: _layer_text(layer, name) for layer in stage.layers}
     texts.update({raster.name: _raster_text(raster, name) for raster in stage.rasters})
     return {**texts, **{file.name: _file_text(file, name) for file in stage.files}}[output.of]
+
+
+def written_by(pipeline: Pipeline) -> str:
+    """Return the dimensions that the steps of a composite write, by their names in files."""
+    return _disk_names(dict.fromkeys(name for step in pipeline.steps for name in step.stage.writes))
 
 
 def step_title(step: Step) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Optional, Union
 
-from ..help import paragraphs, pipeline_help
+from ..help import output_text, paragraphs, pipeline_help, written_by
 from ..pipeline import REPORT, Output, Pipeline
 from ..pipelines import PIPELINES
 from ..stage import Layer, Raster
@@ -138,4 +138,15 @@ TILED_PIPELINES = {
 
 def tiled_pipeline_help(tiled: TiledPipeline) -> str:
     """Return what a composite does in tiles, and then what it does, as HTML that QGIS's help pane shows."""
-    return "\n".join([paragraphs(tiled.summary), paragraphs(_DESCRIPTION), pipeline_help(tiled.pipeline)])
+    made = [output_text(tiled.pipeline, output) for output in (*tiled.layers, *tiled.rasters)]
+    if tiled.report:
+        made.append(output_text(tiled.pipeline, tiled.report))
+    tiles = (
+        f"<b>OUTPUT</b>: a folder with a tile for each file, with {written_by(tiled.pipeline)}, and a virtual point "
+        "cloud over all of them."
+    )
+    numbers = (
+        "<b>TILES, BLOCKS, POINTS, FAILURES</b>: how many tiles were written, blocks and points worked on, failed."
+    )
+    of_composite = pipeline_help(tiled.pipeline, [tiles, *made, numbers])
+    return "\n".join([paragraphs(tiled.summary), paragraphs(_DESCRIPTION), of_composite])

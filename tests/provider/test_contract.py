@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from qgis.core import (
     Qgis,
@@ -208,6 +210,14 @@ def test_help_tells_everything(stage, algorithm):
         assert (f"<h3>{name}</h3>" in text) == bool(stage.section(name))
     for definition in algorithm.parameterDefinitions():
         assert definition.help(), definition.name()
+
+
+@pytest.mark.parametrize("tiled", sorted(TILED_IDS))
+def test_help_of_tiled_composites_tells_their_own_outputs(tiled, provider):
+    algorithm = provider.algorithm(tiled)
+    text = algorithm.shortHelpString().split("<h3>Outputs</h3>")[1].split("<h3>")[0]
+    told = {name for names in re.findall("<b>([A-Z_, ]+)</b>", text) for name in names.split(", ")}
+    assert told == {definition.name() for definition in algorithm.outputDefinitions()} - {"VPC"}
 
 
 @pytest.mark.parametrize("name", PIPELINES)
