@@ -34,8 +34,8 @@ _PETERS = (
 _DETECTION = (
     Step("noise", "classify_noise_histogram"),
     Step("ground", "classify_ground_tin"),
-    # Off by default: in the clouds with truth no bridge becomes a building without this step, which takes a third as
-    # long as all others.
+    # Off by default: in the clouds with truth no bridge becomes a building without this step, which takes a quarter
+    # as long as all others.
     Step("bridges", "classify_bridges", {"max_width": 0.0}),
     Step("height", "compute_height_above_ground"),
     Step("roofs", "segment_roofs"),
