@@ -79,7 +79,8 @@ def classify_roofs(
     -----
     In clouds of matched images, in which roofs are bent, smooth surfaces beside the planes of a building belong to it.
     There, rows and blocks of three level roofs or more fall into houses where walls rise 0.3 m above both roofs or the
-    roofs step by 0.4 m; with fewer than about 40 points/m² parapets of half a meter are not seen.
+    roofs step by 0.4 m. Matching rounds both: parapets of half a meter between level roofs are not seen at 59 points
+    per m², and of steps of 0.4 m every other one is.
 
     The clusters are those of DBSCAN with the gap as radius and a quarter of the points that a level roof has within it.
     A cluster that one larger cluster surrounds on more than three fifths of its border, seen from above, belongs to it:
