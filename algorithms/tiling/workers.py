@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import pickle
 import shutil
+import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
@@ -30,7 +31,7 @@ from ..threads import n_threads, use_threads
 # Seconds between two looks at whether the user wants to stop.
 _BETWEEN_LOOKS = 0.5
 
-# Seconds that a scheduler has to answer.
+# Seconds that a scheduler, or an interpreter, has to answer.
 _ANSWER = 15
 
 # What Dask raises, by its name, when the workers that were given a task have died one after the other.
@@ -48,6 +49,30 @@ _MOST_PROCESSES = 61
 # The package as workers import it, and the folder it is in.
 _PACKAGE = __name__.split(".", maxsplit=1)[0]
 _FOLDER = Path(__file__).resolve().parents[2]
+
+
+def own_python() -> str:
+    """Return the interpreter that new processes of this machine are started with: the one that runs this program.
+
+    A program that embeds Python, as QGIS, is no interpreter itself. Python then believes that it is the first one on
+    the PATH, which may be another one, that can't load the packages of this one.
+    """
+    prefix = Path(sys.exec_prefix)
+    version = f"python{sys.version_info.major}.{sys.version_info.minor}"
+    names = ("python.exe",) if os.name == "nt" else (f"bin/{version}", "bin/python3")
+    candidates = [sys.executable, *(str(prefix / name) for name in names)]
+    found = [one for one in candidates if Path(one).stem.lower().startswith("python") and Path(one).exists()]
+    return next(filter(_is_own, found), (found or [sys.executable])[-1])
+
+
+def _is_own(python: str) -> bool:
+    """Return whether an interpreter has the version and the standard library of this one."""
+    asked = "import os, sys; print(sys.version, os.__file__)"
+    try:
+        answer = subprocess.run([python, "-c", asked], capture_output=True, text=True, timeout=_ANSWER, check=False)
+    except (OSError, subprocess.TimeoutExpired):
+        return False
+    return answer.stdout.strip() == f"{sys.version} {os.__file__}"
 
 
 @dataclass(frozen=True)
@@ -89,9 +114,8 @@ class Workers:
             with ThreadPoolExecutor(1) as here:
                 yield here
             return
-        # A program that has threads, as QGIS, can't be forked safely; and a program that embeds Python is no Python.
-        if Path(sys.executable).stem.lower().startswith("qgis"):
-            set_executable(str(Path(sys.exec_prefix) / ("python.exe" if os.name == "nt" else "bin/python3")))
+        # A program that has threads, as QGIS, can't be forked safely.
+        set_executable(own_python())
         context = get_context("spawn")
         threads = max(1, n_threads() // count)
         executor = ProcessPoolExecutor(count, context, initializer=use_threads, initargs=(threads,))

@@ -17,7 +17,7 @@ from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.stage import Monitor
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
-from lidar_buildings.algorithms.tiling.workers import Workers
+from lidar_buildings.algorithms.tiling.workers import Workers, own_python
 from lidar_buildings.tests.builders import roof
 
 DETECT = PIPELINES["detect_buildings"]
@@ -110,3 +110,16 @@ def test_a_cluster_gives_what_this_machine_gives_though_a_worker_is_killed(tile,
     np.testing.assert_array_equal(one, other)
     assert len(outcome.layers["footprints"]) == 1
     assert Path(outcome.tiles[0]).is_file()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="a script is no program on Windows")
+@pytest.mark.parametrize("name", ["python3", "qgis.bin"])
+def test_processes_are_started_with_the_interpreter_that_runs(tmp_path, monkeypatch, name):
+    """In QGIS Python takes the first one on the PATH for itself, or QGIS; processes then failed to import numpy."""
+    other = tmp_path / name
+    other.write_text("#!/bin/sh\necho 3.9.1 /opt/other/lib/python3.9/os.py\n")
+    other.chmod(0o755)
+    monkeypatch.setattr(sys, "executable", str(other))
+    monkeypatch.setattr(sys, "exec_prefix", sys.base_exec_prefix)
+    answer = subprocess.check_output([own_python(), "-c", "import sys; print(sys.version)"], text=True)
+    assert answer.strip() == sys.version
