@@ -31,7 +31,7 @@ Makefile: ;
 
 else
 
-.PHONY: help install resources demo test test-core lint bench fuzz package clean
+.PHONY: help install resources pictures demo test test-core lint bench fuzz package clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.* ## /  make \1\t/p' Makefile | expand -t 18
@@ -63,6 +63,10 @@ fuzz: $(VENV)/made ## read damaged files for MINUTES, with the damage of SEED (f
 
 resources: install ## write the help pages and models anew, after a change of a stage or pipeline
 	@scripts/offscreen.sh $(PYTHON) scripts/generate_resources.py
+
+pictures: $(VENV)/made ## draw the pictures of the help pages anew, or those of IDS
+	@scripts/offscreen.sh $(VENV)/bin/python scripts/help_pictures.py $(IDS)
+	@$(if $(IDS),,scripts/offscreen.sh $(VENV)/bin/python scripts/hough_picture.py)
 
 package: ## the zip for QGIS's plugin repository (in dist/)
 	@$(PYTHON) scripts/metadata.py

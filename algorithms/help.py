@@ -6,6 +6,7 @@ import html
 import re
 from typing import Optional
 
+from .captions import CAPTIONS
 from .cloud.dimensions import DIMENSIONS
 from .pipeline import Output, Pipeline, Step
 from .stage import REFERENCE_PREFIX, VALUES, Field, InputLayer, Layer, Raster, Stage, TextFile, Tunable
@@ -105,13 +106,36 @@ def as_text(text: str) -> str:
 _LIST = re.compile("<(/?)[ou]l>(?:</li>)?")
 
 
-def page(title: str, body: str) -> str:
-    """Return a complete page around a help text."""
+def with_picture(text: str, algorithm: str, folder: str) -> str:
+    """Return a help text with the picture of an algorithm (id), where it has one, below the summary.
+
+    ``folder`` is the URL of the folder with the pictures.
+    """
+    if algorithm not in CAPTIONS:
+        return text
+    caption = html.escape(CAPTIONS[algorithm])
+    picture = (
+        f'<p><img src="{folder}/{algorithm}.png" width="{_PICTURE_WIDTH}" alt="{caption}"></p>\n<p><i>{caption}</i></p>'
+    )
+    summary, rest = text.split("\n", 1)
+    return f"{summary}\n{picture}\n{rest}"
+
+
+# Folder of the pictures beside the pages.
+PICTURES = "pictures"
+
+# Pixels that the help pane of a dialog has room for, at the width that it opens with; pages set their own.
+_PICTURE_WIDTH = 220
+
+
+def page(title: str, text: str, algorithm: str) -> str:
+    """Return a complete page around the help text of an algorithm (id), with its picture."""
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f"<title>{html.escape(title)}</title>\n"
-        "<style>body{font-family:sans-serif;max-width:48em;margin:2em auto;line-height:1.5;padding:0 1em}</style>\n"
-        f"</head>\n<body>\n<h1>{html.escape(title)}</h1>\n{body}\n</body>\n</html>\n"
+        "<style>body{font-family:sans-serif;max-width:48em;margin:2em auto;line-height:1.5;padding:0 1em}"
+        "img{width:100%;max-width:40em}</style>\n"
+        f"</head>\n<body>\n<h1>{html.escape(title)}</h1>\n{with_picture(text, algorithm, PICTURES)}\n</body>\n</html>\n"
     )
 
 

@@ -22,7 +22,7 @@ from ..algorithms.tiling.survey import crs_of_survey, files_of_survey, open_surv
 from ..algorithms.tiling.tiled_pipelines import CUT_INTO_TILES, survey_tool_help
 from .clouds import SurveyParameter, survey_paths
 from .crs import crs_units, make_in_main_thread
-from .declared import DeclaredAlgorithm, shown_help
+from .declared import DeclaredAlgorithm
 from .dependencies import missing_sentence
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, warn_unknown_parameters
@@ -44,7 +44,7 @@ class CutAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
 
     def shortHelpString(self) -> str:  # noqa: N802
         """Return the help that the dialog shows beside the parameters."""
-        return shown_help(survey_tool_help(CUT_INTO_TILES))
+        return self.shown(survey_tool_help(CUT_INTO_TILES))
 
     def initAlgorithm(self, configuration: Optional[dict] = None) -> None:  # noqa: N802
         """Declare the survey, the size of tiles, and the folder."""

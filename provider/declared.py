@@ -8,10 +8,10 @@ from qgis.core import QgsApplication
 from qgis.PyQt.QtCore import QUrl
 from qgis.PyQt.QtGui import QIcon
 
-from ..algorithms.help import as_text
+from ..algorithms.help import as_text, with_picture
 from ..algorithms.pipeline import Pipeline
 from ..algorithms.stage import Stage
-from .paths import HELP, ICON
+from .paths import HELP, ICON, PICTURES
 
 
 class DeclaredAlgorithm:
@@ -55,12 +55,13 @@ class DeclaredAlgorithm:
         """Return the help page, which comes with the plugin."""
         return QUrl.fromLocalFile(str(HELP / f"{self.declared.id}.html")).toString()
 
+    def shown(self, text: str) -> str:
+        """Return its help as dialogs, with the picture, or the command line show it."""
+        if on_command_line():
+            return as_text(text)
+        return with_picture(text, self.declared.id, QUrl.fromLocalFile(str(PICTURES)).toString())
+
 
 def on_command_line() -> bool:
     """Whether this is ``qgis_process``, which shows HTML as it is written."""
     return QgsApplication.platform() == "qgis_process"
-
-
-def shown_help(text: str) -> str:
-    """Return a help as dialogs or the command line show it."""
-    return as_text(text) if on_command_line() else text

@@ -27,7 +27,7 @@ from ..algorithms.pipeline import Output, Pipeline, Step
 from ..algorithms.stage import Cancelled
 from .clouds import files_read
 from .crs import crs_units, make_in_main_thread, renew_in_main_thread
-from .declared import DeclaredAlgorithm, on_command_line, shown_help
+from .declared import DeclaredAlgorithm, on_command_line
 from .dependencies import missing_sentence
 from .errors import as_processing_errors
 from .feedback import ChainFeedback, FeedbackMonitor, warn_unknown_parameters
@@ -156,7 +156,7 @@ class PipelineAlgorithm(DeclaredAlgorithm, QgsProcessingModelAlgorithm):
 
     def shortHelpString(self) -> str:  # noqa: N802
         """Return the help that the dialog shows beside the parameters."""
-        return shown_help(pipeline_help(self.pipeline))
+        return self.shown(pipeline_help(self.pipeline))
 
     def asPythonCommand(self, parameters: dict, context: QgsProcessingContext) -> str:  # noqa: N802
         """Return the call that the dialog copies; of a model as such QGIS knows none."""

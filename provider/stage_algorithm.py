@@ -27,7 +27,7 @@ from ..algorithms.run import Outcome, run_stage
 from ..algorithms.stage import FileContent, MapFrame, Monitor, Raster, RasterSurface, Stage, TextFile
 from .clouds import CloudParameter, cloud_path, files_read
 from .crs import crs_units, make_in_main_thread, renew_in_main_thread
-from .declared import DeclaredAlgorithm, shown_help
+from .declared import DeclaredAlgorithm
 from .dependencies import missing_sentence
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, announce, warn_unknown_parameters
@@ -86,7 +86,7 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
 
     def shortHelpString(self) -> str:  # noqa: N802
         """Return the help that the dialog shows beside the parameters."""
-        return shown_help(stage_help(self.stage))
+        return self.shown(stage_help(self.stage))
 
     def initAlgorithm(self, configuration: Optional[dict] = None) -> None:  # noqa: N802
         """Declare inputs, tunables and outputs."""

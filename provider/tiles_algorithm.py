@@ -32,7 +32,7 @@ from ..algorithms.tiling.tiled_pipelines import TiledPipeline, tiled_pipeline_he
 from ..algorithms.tiling.workers import Workers
 from .clouds import SurveyParameter, survey_paths
 from .crs import crs_units, make_in_main_thread, renew_in_main_thread
-from .declared import DeclaredAlgorithm, shown_help
+from .declared import DeclaredAlgorithm
 from .dependencies import missing_sentence
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, warn_unknown_parameters
@@ -79,7 +79,7 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
 
     def shortHelpString(self) -> str:  # noqa: N802
         """Return the help that the dialog shows beside the parameters."""
-        return shown_help(tiled_pipeline_help(self.tiled))
+        return self.shown(tiled_pipeline_help(self.tiled))
 
     def initAlgorithm(self, configuration: Optional[dict] = None) -> None:  # noqa: N802
         """Declare the survey, the composite's parameters, how it is worked on, and the outputs."""

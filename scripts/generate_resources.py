@@ -32,12 +32,10 @@ from lidar_buildings.provider.provider import Provider  # noqa: E402
 
 def help_pages() -> dict[str, str]:
     """Return the help pages by file name."""
-    pages = {f"{stage.id}.html": page(stage.title, stage_help(stage)) for stage in STAGES.values()}
-    pages.update({f"{p.id}.html": page(p.title, pipeline_help(p)) for p in PIPELINES.values()})
-    pages.update(
-        {f"{tiled.id}.html": page(tiled.title, tiled_pipeline_help(tiled)) for tiled in TILED_PIPELINES.values()}
-    )
-    pages[f"{CUT_INTO_TILES.id}.html"] = page(CUT_INTO_TILES.title, survey_tool_help(CUT_INTO_TILES))
+    pages = {f"{stage.id}.html": page(stage.title, stage_help(stage), stage.id) for stage in STAGES.values()}
+    pages.update({f"{p.id}.html": page(p.title, pipeline_help(p), p.id) for p in PIPELINES.values()})
+    pages.update({f"{t.id}.html": page(t.title, tiled_pipeline_help(t), t.id) for t in TILED_PIPELINES.values()})
+    pages[f"{CUT_INTO_TILES.id}.html"] = page(CUT_INTO_TILES.title, survey_tool_help(CUT_INTO_TILES), CUT_INTO_TILES.id)
     return pages
 
 

@@ -4,7 +4,17 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from lidar_buildings.algorithms.help import as_text, inline, page, paragraphs, pipeline_help, stage_help, tunable_help
+from lidar_buildings.algorithms.captions import CAPTIONS
+from lidar_buildings.algorithms.help import (
+    as_text,
+    inline,
+    page,
+    paragraphs,
+    pipeline_help,
+    stage_help,
+    tunable_help,
+    with_picture,
+)
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.stages import STAGES
 from lidar_buildings.algorithms.tiling.tiled_pipelines import (
@@ -19,12 +29,25 @@ HELP = Path(__file__).resolve().parents[2] / "resources" / "help"
 
 
 def test_pages_are_what_the_stages_say():
-    real = {f"{stage.id}.html": page(stage.title, stage_help(stage)) for n, stage in STAGES.items() if n not in TOYS}
-    real |= {f"{p.id}.html": page(p.title, pipeline_help(p)) for p in PIPELINES.values() if p.group != "Toys"}
-    real |= {f"{tiled.id}.html": page(tiled.title, tiled_pipeline_help(tiled)) for tiled in TILED_PIPELINES.values()}
-    real[f"{CUT_INTO_TILES.id}.html"] = page(CUT_INTO_TILES.title, survey_tool_help(CUT_INTO_TILES))
+    real = {f"{s.id}.html": page(s.title, stage_help(s), s.id) for n, s in STAGES.items() if n not in TOYS}
+    real |= {f"{p.id}.html": page(p.title, pipeline_help(p), p.id) for p in PIPELINES.values() if p.group != "Toys"}
+    real |= {f"{t.id}.html": page(t.title, tiled_pipeline_help(t), t.id) for t in TILED_PIPELINES.values()}
+    real[f"{CUT_INTO_TILES.id}.html"] = page(CUT_INTO_TILES.title, survey_tool_help(CUT_INTO_TILES), CUT_INTO_TILES.id)
     shipped = {path.name: path.read_text(encoding="utf-8") for path in HELP.glob("*.html")}
     assert shipped == real, "run make resources"
+
+
+def test_every_picture_has_a_caption_and_belongs_to_an_algorithm():
+    ids = {declared.id for declared in (*STAGES.values(), *PIPELINES.values())}
+    assert set(CAPTIONS) <= ids
+    assert {path.stem for path in (HELP / "pictures").glob("*.png")} == set(CAPTIONS)
+    assert all(path.read_bytes().startswith(b"\x89PNG") for path in (HELP / "pictures").iterdir())
+
+
+def test_the_picture_stands_below_the_summary():
+    text = with_picture("<p>Find roofs.</p>\n<p>More.</p>", "segmentroofs", "file:///pictures")
+    assert text.index("roofs.</p>") < text.index('<img src="file:///pictures/segmentroofs.png"') < text.index("More.")
+    assert with_picture("<p>Nothing to see.</p>", "filterpoints", "pictures") == "<p>Nothing to see.</p>"
 
 
 def test_help_of_a_stage_has_all_its_parts():

@@ -1,0 +1,59 @@
+"""What the pictures of the help pages show, by the ids of the algorithms that have one.
+
+The pictures are made of simulated scenes by ``scripts/help_pictures.py`` and ``scripts/hough_picture.py``.
+"""
+
+from __future__ import annotations
+
+_SEGMENTS = "Each segment in a color of its own, points of none in gray."
+
+CAPTIONS = {
+    "detectbuildings": "A simulated town: ground brown, buildings red with their footprints, the rest gray.",
+    "mapfootprints": "A simulated village from a drone's images: roofs red, and the walls below them as footprints.",
+    "modelbuildings": "Edges of the closed models over the points they were made of.",
+    "modelfacades": "One side of a simulated street: each facade in a color, windows and doors outlined.",
+    "modelterrain": "A simulated valley: bare earth brown, the bridge over it blue, objects gray.",
+    "modelindustry": "Pipes, elbows and posts of a simulated plant, each in a color of its own.",
+    "interpretstructure": "Points of a simulated flight by what they lie on: lines, surfaces or volumes.",
+    "classifygroundtin": "Ground of a simulated town in brown, up to the river's banks; all else gray.",
+    "classifygroundcloth": "Ground of a simulated town in brown, as the cloth finds it; all else gray.",
+    "classifygroundsegments": "Bare earth brown, the bridge over the valley blue, objects gray.",
+    "classifybridges": "The bridge over the valley, which had been ground, in blue.",
+    "computeheightaboveground": "Heights from blue, the ground, to red, the highest roofs and crowns.",
+    "computefeatures": "Planarity from blue, low in crowns and at edges, to red, high on roofs and ground.",
+    "classifydimensionality": "Points by what they lie on: lines, surfaces or volumes.",
+    "segmentregions": "Regions of neighboring points above the ground, each in a color of its own.",
+    "segmentroofs": "Roof surfaces in a color each; what is no roof is gray.",
+    "segmentclusters": "Clusters of points above the ground, each in a color of its own.",
+    "segmentsurfaces": _SEGMENTS,
+    "segmentscanlines": _SEGMENTS,
+    "segmentrecordedlines": _SEGMENTS,
+    "segmenttinplanes": _SEGMENTS,
+    "segmentplanesransac": "Planes of the roofs of a simulated village, each in a color of its own.",
+    "segmentplaneshough": (
+        "The bins decide between accuracy and reliability, measured on planes among scattered points: in bins smaller "
+        "than the noise planes get lost, in large ones those that lie close become one."
+    ),
+    "detectcylinders": "Pipes of a simulated plant with their axes, each in a color of its own.",
+    "detectspheres": "A sphere of a simulated plant in color.",
+    "segmenttree": "Stem and branches of a simulated tree in a color each; leaves are gray.",
+    "segmentvoxels": "Components of connected voxels, each in a color of its own.",
+    "classifybuildings": "How sure it is that a cluster is a building, from blue to red.",
+    "completebuildings": "Whole buildings in red, with walls, dormers and edges.",
+    "extractfootprints": "Footprints around the points of buildings.",
+    "classifyroofs": "Roofs of a simulated village in red; plants at their height are gray.",
+    "classifywalls": "Roofs with the walls below their eaves.",
+    "extractwallfootprints": "Outlines of the walls, which lie within the eaves.",
+    "extractfacades": "One side of a simulated street: each facade in a color, with its boundary.",
+    "extractopenings": "One side of a simulated street: windows and doors outlined.",
+    "segmentfacadelines": "Pieces of a vehicle's scan lines, joined to surfaces in a color each.",
+    "reconstructroofs": "Edges of the closed models over the points they were made of.",
+    "simulatetown": "The town from above, in the colors of the true classes.",
+    "simulatevillage": "The village from above, in the colors of its images.",
+    "simulatedronesite": "The site from above, in the colors of its images.",
+    "simulateflight": "The site of the flight, in the colors of the true classes.",
+    "simulateplant": "The rack of the plant: pipes, elbows, flanges and beams, each in a color of its own.",
+    "simulatetree": "The tree, each branch in a color of its own.",
+    "simulatestreet": "One side of the street, each true facade in a color of its own.",
+    "simulatebridges": "A bridge over a valley, in the colors of the true classes.",
+}
