@@ -34,7 +34,7 @@ APART = 8.0
 # Planes or pairs of a scene, scattered points to each point of a plane, scenes.
 COUNT, CLUTTER, SCENES = 9, 14.0, 4
 
-# What else decides, the same for all widths. With smaller slope bins the space of the smallest widths would not fit into
+# What else decides, the same for all widths. With smaller slope bins the space of the smallest widths does not fit into
 # memory.
 FIXED = {"slope_bin": 3.0, "tolerance": 2.3 * NOISE, "window_size": 4.0, "max_gap": 1.5, "min_area": 2.0}
 
