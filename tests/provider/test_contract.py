@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import pytest
 from qgis.core import (
@@ -14,12 +15,14 @@ from qgis.core import (
     QgsProcessingParameterNumber,
     QgsProcessingParameterString,
 )
+from qgis.PyQt.QtCore import QUrl
 
-from lidar_buildings.algorithms.help import pipeline_help
+from lidar_buildings.algorithms.help import pipeline_help, with_picture
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.stages import STAGES
 from lidar_buildings.algorithms.tiling.tiled_pipelines import CUT_INTO_TILES, TILED_PIPELINES
 from lidar_buildings.provider.clouds import CloudParameter, CloudsParameter
+from lidar_buildings.provider.paths import PICTURES
 from lidar_buildings.provider.vectors import SOURCE_TYPES
 from lidar_buildings.tests.toys import TOYS
 
@@ -225,4 +228,11 @@ def test_composites_tell_their_steps(name, provider):
     pipeline = PIPELINES[name]
     text = pipeline_help(pipeline)
     assert all(step.stage.title in text for step in pipeline.steps)
-    assert provider.algorithm(pipeline.id).create().shortHelpString() == text
+    shown = provider.algorithm(pipeline.id).create().shortHelpString()
+    assert shown == with_picture(text, pipeline.id, QUrl.fromLocalFile(str(PICTURES)).toString())
+
+
+def test_pictures_of_the_help_are_there(provider):
+    shown = re.findall('src="([^"]+)"', " ".join(algorithm.shortHelpString() for algorithm in provider.algorithms()))
+    assert len(shown) > 40
+    assert all(Path(QUrl(source).toLocalFile()).is_file() for source in shown)
