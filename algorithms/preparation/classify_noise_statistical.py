@@ -138,6 +138,9 @@ def _measured(points: np.ndarray, apart: float, n_neighbors: int) -> tuple[np.nd
     # Told by the coordinates, the sample is the same in whatever order the points come.
     phase = offsets @ _SAMPLE_WAVE
     is_sampled = is_dense & (phase - np.floor(phase) < share)
+    if is_dense.any() and not is_sampled.any():
+        # All lie at few places, none of them in a sheet.
+        is_sampled = is_dense
     rows = np.flatnonzero(is_sampled | ~is_dense)
     weight = np.where(is_dense[rows], np.count_nonzero(is_dense) / max(np.count_nonzero(is_sampled), 1), 1.0)
     return rows, weight

@@ -87,6 +87,9 @@ def rasterize_terrain(
 
     Notes
     -----
+    Cells lie at multiples of their size from a corner at whole kilometers of the map: neighboring clouds have the same
+    cells if these divide 1000 m, as those of 1, 2 and 5 times a power of ten do.
+
     There is no terrain outside the hull of the ground points. Small gaps of the surface (shadows, dark roofs, water)
     are interpolated linearly between the cells around them; larger ones stay empty.
 
@@ -105,19 +108,19 @@ def rasterize_terrain(
     monitor.resolved(cell_size=cell_size, gap_distance=gap_distance)
     refuse_sparse(used, cell_size)
 
-    # Measured from the south-western corner, rounding is the same wherever on Earth that is. Cells lie at multiples of
-    # their size, so that rasters of neighboring clouds have no seams.
-    first, last = (
-        voxel_index(end / cell_size, cell_size) for end in (used[:, :2].min(axis=0), used[:, :2].max(axis=0))
-    )
+    # Cells lie at multiples of their size, so that rasters of neighboring clouds have no seams.
+    cell = voxel_index(used[:, :2] / cell_size, cell_size)
+    first = cell.min(axis=0)
+    cell = (cell - first).astype(np.int64)
+    columns, rows = (cell.max(axis=0) + 1).tolist()
+    # Measured from the south-western corner, rounding is the same wherever on Earth that is.
     corner = np.append(first * cell_size, 0.0)
-    used, ground = used - corner, xyz[is_ground] - corner
-    columns, rows = (last - first + 1).astype(int).tolist()
     middle = _middles(cell_size, rows, columns)
-    dtm = TiledTin(ground).elevation(middle.reshape(-1, 3), monitor.part(0, 0.6)).reshape(rows, columns)
+    ground = TiledTin(xyz[is_ground] - corner)
+    dtm = ground.elevation(middle.reshape(-1, 3), monitor.part(0, 0.6)).reshape(rows, columns)
     if np.isnan(dtm).all():
         monitor.warn("The ground points span no area: the terrain model is empty.")
-    dsm = _highest(used, cell_size, rows, columns)
+    dsm = _highest(used[:, 2], cell, rows, columns)
     _fill_gaps(dsm, middle, gap_distance / cell_size, monitor.part(0.6, 1))
     west, north = float(corner[0]), float(corner[1]) + rows * cell_size
     return tuple(RasterSurface(values.astype(np.float32), west, north, cell_size) for values in (dtm, dsm, dsm - dtm))
@@ -138,14 +141,17 @@ def _middles(size: float, rows: int, columns: int) -> np.ndarray:
     return middle
 
 
-def _highest(points: np.ndarray, size: float, rows: int, columns: int) -> np.ndarray:
-    """Return the elevation of the highest point of each cell (rows, columns), NaN where there is none."""
-    column, from_south = voxel_index(points[:, :2] / size, size).astype(np.int64).T
+def _highest(elevation: np.ndarray, cell: np.ndarray, rows: int, columns: int) -> np.ndarray:
+    """Return the elevation of the highest point of each cell (rows, columns), NaN where there is none.
+
+    ``cell`` (n, 2) are the column of each point and its row, counted from the south.
+    """
+    column, from_south = cell.T
     number = (rows - 1 - from_south) * columns + column
     order = np.argsort(number)
     cell, start = np.unique(number[order], return_index=True)
     highest = np.full(rows * columns, np.nan)
-    highest[cell] = np.maximum.reduceat(points[order, 2], start)
+    highest[cell] = np.maximum.reduceat(elevation[order], start)
     return highest.reshape(rows, columns)
 
 

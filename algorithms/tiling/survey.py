@@ -151,25 +151,35 @@ class Survey:
     def places(self, count: int, monitor: Monitor) -> np.ndarray:
         """Return the places (k, 2), m, of up to ``count`` points that are spread evenly over all records.
 
-        Memory: one portion of a file at a time.
+        Files that can't be read give none, with a warning. Memory: one portion of a file at a time.
         """
         first = np.cumsum([0, *(source.header.count for source in self.sources)])
         wanted = np.unique(((np.arange(count) + 0.5) / count * first[-1]).astype(np.int64))
-        found = []
+        found = [np.zeros((0, 2))]
         for number, source in enumerate(self.sources):
             rows = wanted[(wanted >= first[number]) & (wanted < first[number + 1])] - first[number]
+            part = monitor.part(number / len(self.sources), (number + 1) / len(self.sources))
             if not len(rows):
                 continue
-            scale, offset = (values * self.units.horizontal for values in (source.header.scale, source.header.offset))
-            for start, chunk in read_chunks(
-                source.path, source.header, monitor.part(number / len(self.sources), (number + 1) / len(self.sources))
-            ):
+            try:
+                found += self._places_of(source, rows, part)
+            except ValueError as error:
+                # The blocks of a damaged file fail by name later.
+                monitor.warn(str(error))
+            part.progress(1.0)
+        return np.concatenate(found)
+
+    def _places_of(self, source: Source, rows: np.ndarray, monitor: Monitor) -> list[np.ndarray]:
+        """Return the places (k, 2), m, of the records of a file at ascending positions, in parts."""
+        scale, offset = (values * self.units.horizontal for values in (source.header.scale, source.header.offset))
+        found = []
+        with readable(source.path):
+            for start, chunk in read_chunks(source.path, source.header, monitor):
                 own = rows[(rows >= start) & (rows < start + len(chunk))] - start
                 found.append(np.column_stack([chunk[axis][own] * scale[i] + offset[i] for i, axis in enumerate("XY")]))
                 if start + len(chunk) > rows[-1]:
                     break
-            monitor.progress((number + 1) / len(self.sources))
-        return np.concatenate(found)
+        return found
 
     def _records(self, source: Source, box: np.ndarray, monitor: Monitor) -> Iterable[tuple[np.ndarray, np.ndarray]]:
         """Yield the positions in a file and the records, as those of the survey, of the points in a box."""

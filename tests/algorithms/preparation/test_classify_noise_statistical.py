@@ -106,3 +106,9 @@ def test_a_sample_of_dense_parts_finds_the_same(rng, monkeypatch):
     limits = of_part["max_mean_distance"], of_every["max_mean_distance"]
     assert limits[0] == pytest.approx(limits[1], rel=0.02)
     assert limits[0] != limits[1]
+
+
+def test_piles_of_points_at_places_that_no_sample_meets(monkeypatch):
+    monkeypatch.setattr(noise_statistical, "_SAMPLE", 4)
+    xyz = np.repeat([[0.0, 10, 0], [10, 0, 0]], 200, axis=0)
+    assert (classify_noise_statistical(xyz, np.ones(400, np.uint8)) == 1).all()

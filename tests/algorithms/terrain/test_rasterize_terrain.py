@@ -146,3 +146,13 @@ def test_cancel_gets_through(rng):
     xyz, classes = slope_with_house(rng)
     with pytest.raises(Cancelled):
         rasterize_terrain(xyz, classes, monitor=Listening(stop_at=0.0))
+
+
+@pytest.mark.parametrize("cell_size", [0.2, 0.3, 0.7])
+def test_points_that_touch_the_last_cell_are_in_a_cell(cell_size):
+    """A tenth of a micrometer below the side of a cell counts as on it, wherever that is told from."""
+    for last in range(40, 400, 7):
+        side = last * cell_size - 1e-7
+        xyz = np.array([[side - 5, side - 5, 1.0], [side, side - 5, 2], [side - 5, side, 3], [side, side, 4]])
+        dsm = rasterize_terrain(np.tile(xyz, (100, 1)), np.full(400, 2), cell_size=cell_size)[1]
+        assert dsm.values[0, -1] == 4

@@ -155,17 +155,35 @@ def test_tiles_without_any_points_are_refused(laspy, tmp_path):
         run(paths[:1], tmp_path / "out")
 
 
+def damage_points(path):
+    raw = bytearray(path.read_bytes())
+    middle = len(raw) // 2
+    raw[middle : middle + 4000] = b"\xff" * 4000
+    path.write_bytes(raw)
+
+
 def test_a_tile_whose_points_are_damaged_fails_by_name_and_the_rest_is_there(tmp_path):
     paths = [
         tile(tmp_path / f"{name}.laz", (i * 200, 0), (i * 200 + 20, 20), n=60_000, seed=i)
         for i, name in enumerate("ab")
     ]
-    raw = bytearray(paths[1].read_bytes())
-    middle = len(raw) // 2
-    raw[middle : middle + 4000] = b"\xff" * 4000
-    paths[1].write_bytes(raw)
+    damage_points(paths[1])
     outcome = run(paths, tmp_path / "out")
     assert [one.name for one in outcome.tiles] == ["a.las"]
+    assert any("b.laz is truncated or damaged" in failure for failure in outcome.failures)
+
+
+def test_a_damaged_tile_of_a_corridor_does_not_stop_the_rest(tmp_path, monkeypatch):
+    """Windows spread over the extent of the survey hold no points, so that places are taken from the files."""
+    monkeypatch.setattr(module, "_SAMPLED_WHOLE", 1000)
+    corners = {"a": (0, 0), "b": (2000, 0), "c": (0, 2000)}
+    paths = [
+        tile(tmp_path / f"{name}.laz", low, (low[0] + 20, low[1] + 20), n=60_000, seed=i)
+        for i, (name, low) in enumerate(corners.items())
+    ]
+    damage_points(paths[1])
+    outcome = run(paths, tmp_path / "out")
+    assert [one.name for one in outcome.tiles] == ["a.las", "c.las"]
     assert any("b.laz is truncated or damaged" in failure for failure in outcome.failures)
 
 
