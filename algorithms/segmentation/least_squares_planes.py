@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Optional
 
 import numpy as np
 
 from ..neighborhoods.covariance import smallest_eigenvectors, symmetric_eigenvalues
 from ..neighborhoods.nearest_blocks import PAIRS
+
+# Points whose moments are added up at once: 45 MB of workspace.
+_CHUNK = 500_000
 
 
 @dataclass(frozen=True)
@@ -59,17 +63,28 @@ class Planes:
         return Planes(count, center, _means(self.covariance + between, group, count, self.count))
 
 
-def planes_of(xyz: np.ndarray, group: np.ndarray, n_groups: int) -> Planes:
-    """Return the planes of points (n, 3) by their ``group`` (n,) from 0; each group has a point."""
+def planes_of(xyz: np.ndarray, group: np.ndarray, n_groups: int, rows: Optional[np.ndarray] = None) -> Planes:
+    """Return the planes of points (n, 3) by their ``group`` (n,) from 0; each group has a point.
+
+    With ``rows`` (m,) only these points count, and ``group`` (m,) is theirs.
+    """
+    # As many points as there are groups: more chunks would take longer to add up than the points.
+    size = max(_CHUNK, n_groups)
+    parts = [slice(start, start + size) for start in range(0, len(group), size)]
     count = np.bincount(group, minlength=n_groups)
-    center = _means(xyz, group, count)
-    offset = xyz - center[group]
-    products = (offset[:, a] * offset[:, b] for a, b in PAIRS)
-    covariance = np.column_stack([np.bincount(group, product, n_groups) / count for product in products])
-    return Planes(count, center, covariance)
+    center, covariance = np.zeros((n_groups, 3)), np.zeros((n_groups, 6))
+    for part in parts:
+        points = xyz[part] if rows is None else xyz[rows[part]]
+        center += np.column_stack([np.bincount(group[part], column, n_groups) for column in points.T])
+    center /= count[:, None]
+    for part in parts:
+        offset = (xyz[part] if rows is None else xyz[rows[part]]) - center[group[part]]
+        products = (offset[:, a] * offset[:, b] for a, b in PAIRS)
+        covariance += np.column_stack([np.bincount(group[part], product, n_groups) for product in products])
+    return Planes(count, center, covariance / count[:, None])
 
 
-def _means(values: np.ndarray, group: np.ndarray, count: np.ndarray, weight=1.0) -> np.ndarray:
+def _means(values: np.ndarray, group: np.ndarray, count: np.ndarray, weight: np.ndarray) -> np.ndarray:
     return np.column_stack([np.bincount(group, column * weight, len(count)) / count for column in values.T])
 
 

@@ -9,7 +9,6 @@ import numpy as np
 from ..geometry.components import number_large
 from ..geometry.delaunay import triangulate
 from ..geometry.groups import items
-from ..packages import spatial
 from ..params import PointDensity, SurfaceNoise
 from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..stage import Monitor, Param, stage
@@ -172,10 +171,9 @@ def segment_surfaces(
     used = not_noise(classification)
     if not len(used):
         return np.zeros(len(xyz), np.int32)
-    points = xyz[used] - xyz[used].mean(axis=0)
+    points = xyz if len(used) == len(xyz) else xyz[used]
 
-    tree = spatial.cKDTree(points)
-    planes = local_planes(points, tree, neighbors, radius, seeds, tolerance, monitor.part(0, 0.5))
+    planes = local_planes(points, neighbors, radius, seeds, tolerance, monitor.part(0, 0.5))
     if proximity == "edges":
         planes.neighbors = _edge_neighbors(points, radius, monitor.part(0.5, 0.6))
     is_seed = planes.deviation <= _SMOOTH / _WITHIN * tolerance
@@ -205,7 +203,7 @@ def _edge_neighbors(points: np.ndarray, longest: float, monitor: Monitor) -> np.
     neighbors = np.repeat(np.arange(n, dtype=np.int32)[:, None], 1, axis=1)
     if n < 3 or np.linalg.matrix_rank(points[:, :2] - points[0, :2]) < 2:
         return neighbors
-    facets = triangulate(points[:, :2], monitor).facets.astype(np.int64)
+    facets = triangulate(points[:, :2] - points[0, :2], monitor).facets.astype(np.int64)
     ends = np.concatenate([facets[:, [0, 1]], facets[:, [1, 2]], facets[:, [2, 0]]])
     key = np.unique(np.concatenate([ends @ [n, 1], ends @ [1, n]]))
     one, other = np.divmod(key, n)

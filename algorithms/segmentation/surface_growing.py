@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Callable, Optional
+from typing import Callable, Optional
 
 import numpy as np
 
+from ..geometry.disjoint_sets import DisjointSets
 from ..geometry.groups import components
-from ..neighborhoods.covariance import nearest_offsets, smallest_eigenvectors, symmetric_eigenvalues
+from ..neighborhoods.covariance import smallest_eigenvectors, symmetric_eigenvalues
 from ..neighborhoods.nearest_blocks import PAIRS
-from ..packages import csgraph, sparse
+from ..packages import spatial
 from ..stage import Monitor
 from ..threads import in_chunks
 from .best_pairs import common_deviation, merge_best_pairs
@@ -30,8 +31,14 @@ _REFITS = 3
 # leaves most of its points within the bins of one.
 _DIRECTIONS = 128
 
-# Points of a chunk, and for the Hough transform, whose workspace is larger.
-_CHUNK, _HOUGH_CHUNK = 20_000, 2_000
+# Neighbors of a chunk, 60 bytes each and 15 MB in all. The Hough transform takes 10 times as much for each of them.
+_CHUNK_NEIGHBORS, _HOUGH_NEIGHBORS = 240_000, 24_000
+
+# Points of a chunk.
+_CHUNK = 20_000
+
+# Neighbors by which seeds are connected first: most of the others then are of the same surface already.
+_FIRST_NEIGHBORS = 3
 
 # Growth by one neighborhood in each round: more than the widest gap between seeds takes.
 _MAX_ROUNDS = 1000
@@ -114,7 +121,7 @@ class LocalPlanes:
 
 
 def local_planes(
-    xyz: np.ndarray, tree: Any, count: int, radius: float, method: str, tolerance: float, monitor: Monitor
+    xyz: np.ndarray, count: int, radius: float, method: str, tolerance: float, monitor: Monitor
 ) -> LocalPlanes:
     """Fit a plane to the neighborhood of each point.
 
@@ -122,8 +129,6 @@ def local_planes(
     ----------
     xyz : ndarray of shape (n, 3), float64
         Points (m).
-    tree : scipy.spatial.cKDTree
-        Of the points.
     count : int
         Points of a neighborhood at most, the point itself among them.
     radius : float
@@ -135,8 +140,10 @@ def local_planes(
     monitor : Monitor
         Receives progress.
     """
-    n, columns = len(xyz), np.ascontiguousarray(xyz.T)
-    count = min(count, n)
+    # Cells cut at their middle are built in half the time of balanced ones.
+    n, tree = len(xyz), spatial.cKDTree(xyz, balanced_tree=False)
+    # Points at the radius itself are near, however coordinates are rounded.
+    count, reach = min(count, n), radius * (1 + 1e-7)
     planes = LocalPlanes(
         xyz,
         np.zeros((n, 3), np.float32),
@@ -147,15 +154,19 @@ def local_planes(
     inliers = {"least squares": _every, "robust": _without_outliers, "hough": _voted}[method]
 
     def work(rows: np.ndarray) -> None:
-        neighbors, parts = nearest_offsets(columns, tree, rows, count)
-        offsets = np.stack(parts, axis=-1).astype(np.float32)
-        near = np.einsum("ijk,ijk->ij", offsets, offsets) <= radius * radius
-        planes.neighbors[rows] = np.where(near, neighbors, rows[:, None])[:, 1:]
+        own = xyz[rows]
+        neighbors = tree.query(own, k=count, distance_upper_bound=reach)[1].reshape(len(rows), count)
+        near = neighbors < n
+        neighbors = np.where(near, neighbors, rows[:, None])
+        planes.neighbors[rows] = neighbors[:, 1:]
+        offsets = (xyz[neighbors] - own[:, None]).astype(np.float32)
         chosen = inliers(offsets, near, tolerance)
         enough = chosen.sum(axis=1) >= np.maximum(_LEAST_POINTS, _LEAST_SHARE * near.sum(axis=1))
         _store(planes, rows[enough], *_fitted(offsets[enough], chosen[enough]))
 
-    in_chunks(work, tree.indices, _HOUGH_CHUNK if method == "hough" else _CHUNK, monitor)
+    # In the order of the tree's leaves the neighbors of one chunk lie together in memory.
+    chunk = (_HOUGH_NEIGHBORS if method == "hough" else _CHUNK_NEIGHBORS) // max(count, 1)
+    in_chunks(work, tree.indices, max(chunk, 1), monitor)
     return planes
 
 
@@ -251,21 +262,30 @@ def grow_surfaces(planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria, 
     Surfaces that meet there and agree are one.
     """
     surface = connected_seeds(planes, is_seed, criteria, monitor.part(0, 0.6))
-    open_ = np.flatnonzero(surface < 0)
+    open_ = np.flatnonzero(surface < 0).astype(np.int32)
     for step in range(_MAX_ROUNDS):
-        monitor.progress(0.6 + 0.4 * (1 - 0.8**step))
-        parent = _nearest_that_holds(planes, open_, surface, lambda a, b: planes.hold(criteria, a, b))
+        part = monitor.part(1 - 0.4 * 0.8**step, 1 - 0.4 * 0.8 ** (step + 1))
+        parent = _nearest_that_holds(planes, open_, surface, partial(planes.hold, criteria), part)
         joins = parent >= 0
         rows, parent = open_[joins], parent[joins]
         if not len(rows):
             break
         surface[rows] = surface[parent]
         _refit(planes, rows, parent, surface)
-        is_new = np.zeros(len(surface), bool)
-        is_new[rows] = True
-        open_ = open_[~joins]
-        open_ = open_[is_new[planes.neighbors[open_]].any(axis=1)]
+        open_ = _beside(planes, open_[~joins], rows)
     return _met(planes, surface, np.flatnonzero((surface >= 0) & ~is_seed), criteria)
+
+
+def _beside(planes: LocalPlanes, rows: np.ndarray, those: np.ndarray) -> np.ndarray:
+    """Return which of the points ``rows`` (m,) have one of ``those`` among their neighbors."""
+    is_one, is_beside = np.zeros(len(planes.xyz), bool), np.empty(len(rows), bool)
+    is_one[those] = True
+
+    def work(some: np.ndarray) -> None:
+        is_beside[some] = is_one[planes.neighbors[rows[some]]].any(axis=1)
+
+    in_chunks(work, np.arange(len(rows)), _CHUNK, Monitor())
+    return rows[is_beside]
 
 
 def _met(planes: LocalPlanes, surface: np.ndarray, rows: np.ndarray, criteria: Criteria) -> np.ndarray:
@@ -285,48 +305,59 @@ def _met(planes: LocalPlanes, surface: np.ndarray, rows: np.ndarray, criteria: C
 
 def connected_seeds(planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria, monitor: Monitor) -> np.ndarray:
     """Return the surface (n,), int32, of each seed from 0, -1 of other points."""
-    n = len(is_seed)
-    there: list[np.ndarray] = [np.empty(0, np.int32)] * -(-n // _CHUNK)
-    n_links = np.zeros(n + 1, np.int64)
+    sets = DisjointSets(len(is_seed))
 
     def work(rows: np.ndarray) -> None:
-        neighbors = planes.neighbors[rows]
-        a, column = np.nonzero(is_seed[rows, None] & is_seed[neighbors])
-        one, other = rows[a], neighbors[a, column]
-        held = planes.agree(criteria, one, other)
-        n_links[rows + 1] = np.bincount(one[held] - rows[0], minlength=len(rows))
-        there[rows[0] // _CHUNK] = other[held]
+        for columns in (slice(_FIRST_NEIGHBORS), slice(_FIRST_NEIGHBORS, None)):
+            neighbors = planes.neighbors[rows, columns]
+            a, column = np.nonzero(is_seed[neighbors])
+            one, other = rows[a], neighbors[a, column]
+            # Whether two seeds agree matters only while nothing else has made them one surface.
+            apart = sets.apart(one, other)
+            one, other = one[apart], other[apart]
+            held = planes.agree(criteria, one, other)
+            sets.join(one[held], other[held])
 
-    in_chunks(work, np.arange(n), _CHUNK, monitor)
-    columns = np.concatenate(there)
-    there.clear()
-    links = sparse.csr_matrix((np.ones(len(columns)), columns, np.cumsum(n_links)), (n, n))
-    component = csgraph.connected_components(links, directed=False)[1]
-    return np.where(is_seed, component, -1).astype(np.int32)
+    seeds = np.flatnonzero(is_seed).astype(np.int32)
+    in_chunks(work, seeds, _CHUNK, monitor)
+    first = sets.first(seeds)
+    number = np.cumsum(first == seeds, dtype=np.int32) - np.int32(1)
+    surface = np.full(len(is_seed), -1, np.int32)
+    surface[seeds[first == seeds]] = number[first == seeds]
+    surface[seeds] = surface[first]
+    return surface
 
 
 def _nearest_that_holds(
-    planes: LocalPlanes, rows: np.ndarray, surface: np.ndarray, hold: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    planes: LocalPlanes,
+    rows: np.ndarray,
+    surface: np.ndarray,
+    hold: Callable[[np.ndarray, np.ndarray], np.ndarray],
+    monitor: Monitor,
 ) -> np.ndarray:
-    """Return the nearest neighbor (m,) of points ``rows`` whose surface holds them, -1 where there is none."""
+    """Return the nearest neighbor (m,), int32, of points ``rows`` whose surface holds them, -1 where there is none."""
     parent = np.full(len(rows), -1, np.int32)
-    left = np.arange(len(rows))
-    for column in range(planes.neighbors.shape[1]):
-        neighbor = planes.neighbors[rows[left], column]
-        tried = np.flatnonzero(surface[neighbor] >= 0)
-        held = tried[hold(neighbor[tried], rows[left[tried]])]
-        parent[left[held]] = neighbor[held]
-        left = np.delete(left, held)
+
+    def work(left: np.ndarray) -> None:
+        for column in range(planes.neighbors.shape[1]):
+            neighbor = planes.neighbors[rows[left], column]
+            tried = np.flatnonzero(surface[neighbor] >= 0)
+            held = tried[hold(neighbor[tried], rows[left[tried]])]
+            parent[left[held]] = neighbor[held]
+            left = np.delete(left, held)
+
+    in_chunks(work, np.arange(len(rows), dtype=np.int32), _CHUNK, monitor)
     return parent
 
 
 def _refit(planes: LocalPlanes, rows: np.ndarray, parent: np.ndarray, surface: np.ndarray) -> None:
     """Give points that joined a surface the plane of its points around them, that of their parent if these are few."""
-    planes.offset[rows] = planes.offset[parent] + (planes.xyz[parent] - planes.xyz[rows]).astype(np.float32)
-    planes.normal[rows] = planes.normal[parent]
-    planes.deviation[rows] = planes.deviation[parent]
-    for start in range(0, len(rows), _CHUNK):
-        some = rows[start : start + _CHUNK]
+
+    def work(joined: np.ndarray) -> None:
+        some, beside = rows[joined], parent[joined]
+        planes.offset[some] = planes.offset[beside] + (planes.xyz[beside] - planes.xyz[some]).astype(np.float32)
+        planes.normal[some] = planes.normal[beside]
+        planes.deviation[some] = planes.deviation[beside]
         around = np.column_stack([some, planes.neighbors[some]])
         same = surface[around] == surface[some, None]
         same[:, 1:] &= around[:, 1:] != some[:, None]
@@ -334,6 +365,8 @@ def _refit(planes: LocalPlanes, rows: np.ndarray, parent: np.ndarray, surface: n
         some, around, same = some[enough], around[enough], same[enough]
         offsets = (planes.xyz[around] - planes.xyz[some, None]).astype(np.float32)
         _store(planes, some, *_fitted(offsets, same))
+
+    in_chunks(work, np.arange(len(rows)), max(_CHUNK_NEIGHBORS // (planes.neighbors.shape[1] + 1), 1), Monitor())
 
 
 def grow_planes(
@@ -364,10 +397,8 @@ def grow_planes(
     One seed in each neighborhood, the smoothest, grows together with all others. Planes that meet are joined in rounds
     of mutually best pairs while the points of both deviate no more from the common plane than those of a seed.
     """
-    rank = np.empty(len(is_seed), np.int64)
-    rank[np.lexsort((planes.deviation, ~is_seed))] = np.arange(len(rank))
-    best = is_seed & (rank <= rank[planes.neighbors].min(axis=1, initial=len(rank)))
-    surface = np.where(best, np.cumsum(best) - 1, -1).astype(np.int32)
+    best = _smoothest(planes, is_seed)
+    surface = np.where(best, np.cumsum(best, dtype=np.int32) - np.int32(1), np.int32(-1))
     if not best.any():
         return surface
     fitted = _first_planes(planes, surface, criteria)
@@ -384,31 +415,42 @@ def grow_planes(
     return surface
 
 
+def _smoothest(planes: LocalPlanes, is_seed: np.ndarray) -> np.ndarray:
+    """Return which seeds (n,) are the smoothest among their neighbors."""
+    seeds = np.flatnonzero(is_seed).astype(np.int32)
+    rank = np.full(len(is_seed), len(seeds), np.int32)
+    rank[seeds[np.argsort(planes.deviation[seeds], kind="stable")]] = np.arange(len(seeds), dtype=np.int32)
+    best = np.zeros(len(is_seed), bool)
+
+    def work(rows: np.ndarray) -> None:
+        best[rows] = rank[rows] <= rank[planes.neighbors[rows]].min(axis=1, initial=len(seeds))
+
+    in_chunks(work, seeds, _CHUNK, Monitor())
+    return best
+
+
 def _first_planes(planes: LocalPlanes, surface: np.ndarray, criteria: Criteria) -> Planes:
     """Let seeds take what their own planes hold, and return the planes of their points."""
-    rows = np.flatnonzero(surface < 0)
-    seeds = surface.copy()
-    parent = _nearest_that_holds(planes, rows, seeds, lambda a, b: planes.hold(criteria, a, b))
-    surface[rows[parent >= 0]] = seeds[parent[parent >= 0]]
-    members = np.flatnonzero(surface >= 0)
-    return planes_of(planes.xyz[members], surface[members], int(surface.max()) + 1)
+    rows = np.flatnonzero(surface < 0).astype(np.int32)
+    parent = _nearest_that_holds(planes, rows, surface, partial(planes.hold, criteria), Monitor())
+    surface[rows[parent >= 0]] = surface[parent[parent >= 0]]
+    members = np.flatnonzero(surface >= 0).astype(np.int32)
+    return planes_of(planes.xyz, surface[members], int(surface.max()) + 1, members)
 
 
 def _take_points(
     planes: LocalPlanes, surface: np.ndarray, fitted: Planes, criteria: Criteria, monitor: Monitor
 ) -> Planes:
     """Let planes take the points beside them in rounds, and return the planes of all points then."""
-    open_ = np.flatnonzero(surface < 0)
+    open_ = np.flatnonzero(surface < 0).astype(np.int32)
     for step in range(_MAX_ROUNDS):
-        monitor.progress(1 - 0.8**step)
-
         hold = partial(_plane_holds, planes, surface, fitted, criteria)
-        parent = _nearest_that_holds(planes, open_, surface, hold)
+        parent = _nearest_that_holds(planes, open_, surface, hold, monitor.part(1 - 0.8**step, 1 - 0.8 ** (step + 1)))
         rows = open_[parent >= 0]
         if not len(rows):
             break
         surface[rows] = surface[parent[parent >= 0]]
-        fitted = _with_points(fitted, planes.xyz[rows], surface[rows])
+        fitted = _with_points(fitted, planes.xyz, surface[rows], rows)
         open_ = open_[parent < 0]
     return fitted
 
@@ -426,10 +468,10 @@ def _plane_holds(
     return criteria.hold(planes.xyz[point] - fitted.center[plane], fitted.normal[plane], planes.normal[point])
 
 
-def _with_points(fitted: Planes, xyz: np.ndarray, plane: np.ndarray) -> Planes:
-    """Return planes fitted to further points, too."""
+def _with_points(fitted: Planes, xyz: np.ndarray, plane: np.ndarray, rows: np.ndarray) -> Planes:
+    """Return planes fitted to further points ``rows`` (m,) of ``xyz``, those of each by its number ``plane`` (m,)."""
     number, which = np.unique(plane, return_inverse=True)
-    more = planes_of(xyz, which, len(number))
+    more = planes_of(xyz, which, len(number), rows)
     both = Planes(
         np.concatenate([fitted.count, more.count]),
         np.concatenate([fitted.center, more.center]),

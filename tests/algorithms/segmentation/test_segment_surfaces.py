@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from scipy import spatial
 
 from lidar_buildings.algorithms.segmentation.segment_surfaces import segment_surfaces as stage
 from lidar_buildings.algorithms.segmentation.surface_growing import Criteria, connected_seeds, local_planes
@@ -148,7 +147,7 @@ def test_surfaces_of_seeds_are_those_of_a_literal_growth(rng):
     x, y = rng.uniform(0, 8, (500, 2)).T
     xyz = np.column_stack([x, y, np.where(x < 4, 0.5 * np.sin(y), 1.0) + rng.normal(0, 0.03, 500)])
     criteria = Criteria(0.06, np.cos(np.radians(20)))
-    planes = local_planes(xyz, spatial.cKDTree(xyz), 9, 1.2, "least squares", 0.06, Monitor())
+    planes = local_planes(xyz, 9, 1.2, "least squares", 0.06, Monitor())
     is_seed = planes.deviation < 0.05
     expected = literal(planes, is_seed, criteria)
     surface = connected_seeds(planes, is_seed, criteria, Monitor())
