@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from lidar_buildings.algorithms.segmentation import least_squares_planes
 from lidar_buildings.algorithms.segmentation.least_squares_planes import planes_of
 
 
@@ -55,3 +56,13 @@ def test_merged_planes_are_those_of_the_merged_points(patches):
 def test_area_is_that_of_the_rectangle(rng):
     xyz = np.column_stack([rng.uniform(0, 6, 20_000), np.zeros(20_000), rng.uniform(0, 4, 20_000)])
     assert planes_of(xyz, np.zeros(20_000, int), 1).area[0] == pytest.approx(24, rel=0.02)
+
+
+def test_planes_of_points_in_chunks_are_those_of_all_at_once(patches, monkeypatch):
+    xyz, group = patches
+    whole = planes_of(xyz, group, 5)
+    monkeypatch.setattr(least_squares_planes, "_CHUNK", 7)
+    for planes in (planes_of(xyz, group, 5), planes_of(np.repeat(xyz, 2, axis=0), group, 5, 2 * np.arange(len(xyz)))):
+        np.testing.assert_array_equal(planes.count, whole.count)
+        np.testing.assert_allclose(planes.center, whole.center, rtol=1e-14)
+        np.testing.assert_allclose(planes.covariance, whole.covariance, rtol=1e-6, atol=1e-9)

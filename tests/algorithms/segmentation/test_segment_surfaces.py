@@ -1,8 +1,11 @@
 """Surface growing on a tile of two strips with roofs, a dome, a ramp and a crown, and against a literal growth."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
+from lidar_buildings.algorithms.segmentation import least_squares_planes, surface_growing
 from lidar_buildings.algorithms.segmentation.segment_surfaces import segment_surfaces as stage
 from lidar_buildings.algorithms.segmentation.surface_growing import Criteria, connected_seeds, local_planes
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
@@ -153,6 +156,28 @@ def test_surfaces_of_seeds_are_those_of_a_literal_growth(rng):
     surface = connected_seeds(planes, is_seed, criteria, Monitor())
     pairs = np.unique(np.column_stack([surface[is_seed], expected[is_seed]]), axis=0)
     assert len(pairs) == len(np.unique(pairs[:, 0])) == len(np.unique(pairs[:, 1])) >= 2
+
+
+def peak_memory(n_points, planarity):
+    """Return the most memory (bytes) that is held beyond the cloud while a rough plane of 4 points/m² is segmented."""
+    rng = np.random.default_rng(7)
+    xyz = np.column_stack([rng.uniform(0, [500, n_points / 2000], (n_points, 2)), rng.normal(0, 0.02, n_points)])
+    tracemalloc.start()
+    try:
+        segment_surfaces(xyz, planarity=planarity, noise=0.02, density=4.0)
+        return tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+
+
+@pytest.mark.parametrize("planarity", ["local"])
+def test_memory_is_bounded_by_the_points(planarity, monkeypatch):
+    """The nodes of the tree, 14 bytes for each point, are not seen by Python and not counted."""
+    for name in ("_CHUNK", "_CHUNK_NEIGHBORS"):
+        monkeypatch.setattr(surface_growing, name, getattr(surface_growing, name) // 20)
+    monkeypatch.setattr(least_squares_planes, "_CHUNK", 1000)
+    few, many = (peak_memory(n_points, planarity) for n_points in (40_000, 120_000))
+    assert (many - few) / 80_000 < 100
 
 
 def test_order_place_and_turns_change_nothing(tile):
