@@ -49,7 +49,7 @@ class DisjointSets:
             low, high = np.divmod(np.unique(low[low < high] << 32 | high[low < high]), 2**32)
             items, pairs = np.unique(np.concatenate([low, high]), return_inverse=True)
             pairs = pairs.reshape(2, -1)
-            group = components(*pairs, len(items))[1]
+            group = components(pairs[0], pairs[1], len(items))[1]
             self._lower[items] = items[np.unique(group, return_index=True)[1]][group]
 
     def _first(self, items: np.ndarray) -> np.ndarray:
