@@ -16,69 +16,119 @@ from ..geometry.groups import components
 from ..packages import spatial
 from ..stage import Monitor
 
-# Points at most so far from each other are one thing (m; point spacings where that is more): chimneys and what stands
-# on roofs are lower, points along masts and wires closer.
-_LINK, _LINK_SPACINGS = 2.4, 3.5
+# Largest distance (m) between points of one object: chimneys and structures on roofs are lower, points along masts and
+# wires closer.
+_LINK = 2.4
 
-# A thing that stops a smaller share of the pulses than this is loose.
+# The same in point spacings, where that is more: of points at random hardly any has none within it.
+_LINK_SPACINGS = 3.5
+
+# Share of the pulses that an object stops, below which it is not solid.
 _SOLID_SHARE = 0.3
 
-# The share is told by columns so many point spacings wide, 16 points of the scene in each; columns that the edge of the
-# cloud cuts count as half full.
-_SHARE_SPACINGS, _LEAST_IN_COLUMN = 4.0, 8
+# Side (point spacings) of the columns in which this share is measured: 16 points of the scene in each.
+_SHARE_SPACINGS = 4.0
 
-# Three points or more in so small a space (m; point spacings where that is more) are the head of a lamp: birds fly
-# farther apart.
-_COMPACT, _COMPACT_SPACINGS = 1.0, 1.5
+# Points that a column counts as having at least: those that the edge of the cloud cuts count as half full.
+_LEAST_IN_COLUMN = 8
 
-# Wires are lines and roofs of glass planes: points deviate by no more than this (m) across a plane, and across either
-# by no more than this share of their deviation along it.
-_THIN, _THIN_RATIO = 0.3, 0.1
+# Size (m) up to which three points or more are the head of a lamp: birds are farther apart.
+_COMPACT = 1.0
 
-# Wires in bundles are lines near by only: around more than this share of the points, the so many nearest ones vary
-# across a line by less than this share of their variance along it.
-_BUNDLE_SHARE, _BUNDLE_NEIGHBORS, _BUNDLE_RATIO = 0.5, 8, 0.1
+# The same in point spacings, where that is more.
+_COMPACT_SPACINGS = 1.5
 
-# A wire that gives few points shows where so many of them lie near a line through two of them, no farther off it than
-# this across and up (m), and reach over this length (m).
-_TUBE_POINTS, _TUBE_ACROSS, _TUBE_UP, _TUBE_LENGTH = 5, 0.35, 0.6, 12.0
+# Largest standard deviation (m) of points across a plane: roofs of glass are no thicker.
+_THIN = 0.3
 
-# Lines are tried through a point and so many nearest ones, no nearer (m), where the direction would be chance, and no
-# farther than this.
-_TUBE_NEIGHBORS, _TUBE_NEAREST, _TUBE_REACH = 24, 1.0, 16.0
+# Largest standard deviation across a plane or a line, as a share of that along it.
+_THIN_RATIO = 0.1
 
-# Depth under the ground (m; point spacings where that is more) within which points are those of grass, ruts and the
-# scanner's own noise.
-_DEPTH, _DEPTH_SPACINGS = 0.45, 0.4
+# Wires in bundles are lines in small neighborhoods only: share of the points whose neighbors must lie along a line.
+_BUNDLE_SHARE = 0.5
 
-# Cells of the ground close by, in point spacings: four points in each, the lowest of which is its level.
+# Points of these neighborhoods.
+_BUNDLE_NEIGHBORS = 8
+
+# Largest variance of a neighborhood across its line, as a share of that along it.
+_BUNDLE_RATIO = 0.1
+
+# Fewest points near one line that show a wire of which little is seen.
+_TUBE_POINTS = 5
+
+# Largest distance (m) of these from the line, sideways.
+_TUBE_ACROSS = 0.35
+
+# Largest distance (m) of these from the line, up and down: wires sag.
+_TUBE_UP = 0.6
+
+# Least length (m) along the line over which they are spread.
+_TUBE_LENGTH = 12.0
+
+# Nearest points of each point through which lines are tried.
+_TUBE_NEIGHBORS = 24
+
+# Least distance (m) between the two points of a line: between nearer ones its direction is chance.
+_TUBE_NEAREST = 1.0
+
+# Largest distance (m) between the two points of a line.
+_TUBE_REACH = 16.0
+
+# Depth (m) under the ground down to which points are those of grass, ruts and the noise of the scanner.
+_DEPTH = 0.45
+
+# The same in point spacings, where that is more.
+_DEPTH_SPACINGS = 0.4
+
+# Side (point spacings) of the cells that show the ground close by: four points in each, the lowest of which is its
+# level.
 _CLOSE_SPACINGS = 2.0
 
-# Cells of the surroundings (m; point spacings where that is more), where ground is seen even among trees. This share of
-# their points may lie lower than their level: more points under the ground are believed.
-_AROUND, _AROUND_SPACINGS, _AROUND_PART = 10.0, 16.0, 0.02
+# Side (m) of the cells that show the ground of the surroundings: some of it is seen in each, even among trees.
+_AROUND = 10.0
 
-# Ground and roofs differ by no more than this (m) from cell to cell, crowns by more.
+# The same in point spacings, where that is more.
+_AROUND_SPACINGS = 16.0
+
+# Share of the points of such a cell that may lie lower than its level; more points under the ground are believed.
+_AROUND_PART = 0.02
+
+# Largest step (m) between neighboring cells of ground and roofs; crowns have larger ones.
 _SMOOTH = 0.3
 
-# A smooth surface is ground if it is no higher (m) than this above the ground seen around. What lies no deeper (m)
-# under it than the second figure is under it and not beside it.
-_ON_GROUND, _SHALLOW = 0.5, 2.0
+# Largest height (m) of a smooth surface above the ground of the surroundings with which it is ground itself.
+_ON_GROUND = 0.5
 
-# Low points hide others beneath the surface that they pull down: so often it is looked again without those found.
+# Largest depth (m) at which a point is under such a surface; deeper ones are beside it.
+_SHALLOW = 2.0
+
+# Rounds in which low points are searched for: those that are found hide others beneath the surface that they pull down.
 _ROUNDS = 3
 
-# Ground that is seen here and there between leaves: so many others in a flat disk of this half height (m) around it
-# make a point part of a surface.
-_SUPPORT_POINTS, _SUPPORT_HEIGHT = 3, 0.3
+# Other points in a flat disk around a point that make it part of a surface: ground seen here and there between leaves.
+_SUPPORT_POINTS = 3
 
-# The radius of that disk is so many point spacings, in dense clouds up to this (m) and up to so many spacings. A wider
-# one would reach from a point under a slope to where the slope is as low.
-_SUPPORT_SPACINGS, _SUPPORT_REACH, _SUPPORT_MOST_SPACINGS = 2.5, 1.25, 5.0
+# Half the height (m) of this disk.
+_SUPPORT_HEIGHT = 0.3
 
-# What was found is a floor after all if so many points are at least this share of all in their cells, or in a trench:
-# in more cells than so many, side by side.
-_FLOOR_POINTS, _FLOOR_SHARE, _FLOOR_CELLS = 5, 0.5, 8
+# Radius of this disk in point spacings. A wider one would reach from a point under a slope to where the slope is as
+# low.
+_SUPPORT_SPACINGS = 2.5
+
+# Radius (m) of this disk in dense clouds.
+_SUPPORT_REACH = 1.25
+
+# Largest radius of this disk in dense clouds, in point spacings.
+_SUPPORT_MOST_SPACINGS = 5.0
+
+# Fewest points that are a floor and no low noise, if they are also enough by the share or the cells that follow.
+_FLOOR_POINTS = 5
+
+# Share of all points in their cells from which they are a floor.
+_FLOOR_SHARE = 0.5
+
+# Cells side by side, of more of which they are a trench.
+_FLOOR_CELLS = 8
 
 # Cells at once, so that memory stays small.
 _CHUNK = 50_000

@@ -9,17 +9,22 @@ import numpy as np
 
 from ..geometry.grid import Grid, connected_cells, distinct, find_cells, grid_over
 
-# Cells in which area and what lies beneath are counted, in point spacings; for the area they have a least size (m).
-_CELL_SPACINGS, _LEAST_CELL = 1.5, 0.3
+# Side (point spacings) of the cells in which areas, and points beneath a group, are counted.
+_CELL_SPACINGS = 1.5
 
-# What lies at least so far beneath a group lies under it and not on it, m. What passes a surface and what it stops are
-# counted in cells at least so wide (m): between two wires most of it passes.
-_BENEATH, _LEAST_COLUMN = 1.0, 1.0
+# Least side (m) of the cells in which areas are counted.
+_LEAST_CELL = 0.3
 
-# A group lies beside others when so much of it does: the edge of a dormer does, the tip of a crown's branch doesn't.
+# Distance (m) below a group from which points lie under it and not on it.
+_BENEATH = 1.0
+
+# Least side (m) of the columns in which points that pass a surface are counted: between two wires most of them pass.
+_LEAST_COLUMN = 1.0
+
+# Share of a group that must lie beside others: the edge of a dormer does, the tip of a branch does not.
 _BESIDE = 0.2
 
-# What stands around a group is counted in boxes of this width, depth and height (m), and the 26 next to each: a house
+# Width, depth and height (m) of the boxes in which points around a group are counted, with the 26 next to each: a house
 # or a tree is as wide, and trees are twice as high.
 _BOX = np.array([2.0, 2.0, 4.0])
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Annotated, Optional
+from typing import Annotated, Optional, Union
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from ..cloud.asprs import NOISE
 from ..cloud.reasons import Reason
 from ..geometry.components import connect, number_large
 from ..neighborhoods.covariance import Nearest
+from ..neighborhoods.wide_in_plan import Wide
 from ..params import PointDensity, PointSource, SurfaceNoise
 from ..sampling.cloud_sampling import CloudSampling
 from ..sampling.surface_noise import plane_roughness
@@ -25,23 +26,35 @@ from .top_surface import TopSurface, highest_of_cells
 # Points lower than this stand on the ground (kerbs, cars' bonnets, low plants), m.
 _RAISED = 1.5
 
-# Mean height (m) of the lowest roof, in laser clouds and in matched images. In these, sheds and carports of 2 m have
-# rounded edges, and the mean over their surface is lower; cars are told from them by their shape.
-_LOWEST, _LOWEST_IN_IMAGES = 2.0, 1.2
+# Mean height (m) of the lowest roof in laser clouds: cars are lower.
+_LOWEST = 2.0
+
+# The same in matched images, where sheds and carports of 2 m have rounded edges, which lower the mean over their
+# surface; cars are told from them by their shape.
+_LOWEST_IN_IMAGES = 1.2
 
 # In matched images, what stands lower than this (m) is no part of a cluster: as low as the lowest roof's edge.
 _RAISED_IN_IMAGES = 1.0
 
-# In matched images planes are laid through what lies within this (m), a meter across: crowns are smooth over less. And
-# they hold points within this deviation (m) at least, since errors of matching are shared by neighbors, which the
-# measured noise doesn't show. One point per cell of this side (m) is enough for that, and bounds time and memory.
-_REACH_IN_IMAGES, _OFF_PLANE_IN_IMAGES, _CELL_IN_IMAGES = 0.6, 0.05, 0.15
+# Radius (m) of the neighborhoods that planes are fitted to in matched images: crowns are smooth over less.
+_REACH_IN_IMAGES = 0.6
+
+# Least standard deviation (m) of points from planes in matched images: errors of matching are shared by neighbors, so
+# that the measured noise does not show them.
+_OFF_PLANE_IN_IMAGES = 0.05
+
+# Side (m) of the cells of which one point is taken in matched images: as dense as planes need it, which bounds time
+# and memory.
+_CELL_IN_IMAGES = 0.15
 
 # Points of a neighborhood in matched images, where so few lie within its reach.
 _FEWEST_IN_IMAGES = 12
 
-# A surface of which more than this share lies lower than this (m) goes on into the ground: a bridge, a ramp, a slope.
-_LOW_SHARE, _LOW = 0.1, 0.5
+# Share of low points from which a surface goes on into the ground: a bridge, a ramp, a slope.
+_LOW_SHARE = 0.1
+
+# Height (m) above ground up to which points are low.
+_LOW = 0.5
 
 # With fewer points per square meter than this, planes reach farther than half a meter.
 _DENSE = 10.0
@@ -58,10 +71,12 @@ _ROUGHEST_NOISE = 1.1597
 # Where it is sparse, they are no rougher than this share of the deviation of points from planes.
 _ROUGHEST_OFF_PLANE = 0.7732
 
-# What is rougher is a roof where at least so much of what hangs together with it is not: eaves, dormers, machines. And
-# so is what is smooth but smaller than this (m²), as crops have such spots.
-_SMOOTH_SHARE, _LARGE = 0.3, 10.0
+# Least share of smooth surfaces among those connected with a rough or a small one that make it a roof: eaves, dormers,
+# machines.
+_SMOOTH_SHARE = 0.3
 
+# Area (m²) from which a smooth surface is a roof by itself: crops have smaller smooth spots.
+_LARGE = 10.0
 
 # What surrounds a cluster decides on it; the clusters themselves may be of any size (m).
 _REACH = 5.0
@@ -161,39 +176,67 @@ def segment_roofs(
         min_height = _LOWEST_IN_IMAGES if in_images else _LOWEST
     monitor.resolved(density=density, noise=noise, min_height=min_height, matched_images=in_images)
     off_plane = _off_plane_deviation(noise, density)
-    is_used = ~np.isin(classification, NOISE) & ~on_bridges(xyz, classification)
-    if in_images:
-        is_used &= TopSurface(xyz, height_above_ground, is_used, density).on_top(xyz)
-    used = np.flatnonzero(is_used)
+    used = _seen(xyz, classification, height_above_ground, density, in_images)
+    around = None if in_images else sampling.neighborhood(density, off_plane)
+    part = monitor.part(0, 0.75)
+    patch, roughness = _patches_among(xyz, used, around, density, off_plane, max_slope, part)
 
-    patch, roughness = np.full(len(xyz), -1, np.int32), np.zeros(len(xyz), np.float32)
-    if in_images:
-        patch[used], roughness[used] = _patches_of_images(
-            xyz[used], density, off_plane, max_slope, monitor.part(0, 0.75)
-        )
-    else:
-        around = sampling.neighborhood(density, off_plane)
-        patch[used], roughness[used] = segment_patches(xyz[used], around, off_plane, max_slope, monitor.part(0, 0.75))
     patches = _Patches(xyz, patch, height_above_ground, density).with_decks(min_height, min_area)
-    patch, is_terrain = patches.number, patches.is_terrain
     monitor.progress(0.8)
-    is_roof = patches.roofs(min_height, min_area) & ~is_terrain
     roughest = max(_ROUGHEST, _ROUGHEST_NOISE * noise, _ROUGHEST_OFF_PLANE * off_plane)
-    is_roof = patches.smooth(is_roof, roughness, roughest)
-    segment_id = _renumbered(patch, is_roof)
+    is_roof = patches.smooth(patches.roofs(min_height, min_area), roughness, roughest)
+    segment_id = _renumbered(patches.number, is_roof)
     monitor.progress(0.85)
 
     raised = height_above_ground >= min(_RAISED_IN_IMAGES if in_images else _RAISED, min_height)
-    # Points of no patch, -1, find the last entry.
-    goes_on = np.append(is_terrain, False)[patch]
-    is_other = raised & (segment_id == 0) & ~goes_on
-    others = used[is_other[used]]
-    reach = 2 / np.sqrt(density)
-    component = connect(xyz[others], reach, reach, monitor.part(0.85, 1))
-    ids = number_large(_high(component, height_above_ground[others], min_height), min_area * density)
+    goes_on = patches.points_of(patches.is_terrain)
+    others = used[(raised & (segment_id == 0) & ~goes_on)[used]]
+    part = monitor.part(0.85, 1)
+    ids = _clusters(xyz[others], height_above_ground[others], min_height, min_area, density, part)
     cluster_id = segment_id.copy()
     cluster_id[others] = np.where(ids > 0, ids + segment_id.max(initial=0), 0)
     return segment_id, cluster_id, np.where(raised & goes_on, np.uint8(Reason.INTO_GROUND), np.uint8(0))
+
+
+def _seen(
+    xyz: np.ndarray, classification: np.ndarray, height: np.ndarray, density: float, in_images: bool
+) -> np.ndarray:
+    """Return the rows of points that may be of roofs or other clusters; in matched images, of the top surface only."""
+    is_used = ~np.isin(classification, NOISE) & ~on_bridges(xyz, classification)
+    if in_images:
+        is_used &= TopSurface(xyz, height, is_used, density).on_top(xyz)
+    return np.flatnonzero(is_used)
+
+
+def _patches_among(
+    xyz: np.ndarray,
+    used: np.ndarray,
+    around: Union[Nearest, Wide, None],
+    density: float,
+    off_plane: float,
+    max_slope: float,
+    monitor: Monitor,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the patch (n,) from 0, -1 for none, and the roughness (n,), m, of all points.
+
+    Patches are searched for among the ``used`` rows, in neighborhoods ``around`` points, None in matched images.
+    """
+    patch, roughness = np.full(len(xyz), -1, np.int32), np.zeros(len(xyz), np.float32)
+    if around is None:
+        found = _patches_of_images(xyz[used], density, off_plane, max_slope, monitor)
+    else:
+        found = segment_patches(xyz[used], around, off_plane, max_slope, monitor)
+    patch[used], roughness[used] = found
+    return patch, roughness
+
+
+def _clusters(
+    xyz: np.ndarray, height: np.ndarray, min_height: float, min_area: float, density: float, monitor: Monitor
+) -> np.ndarray:
+    """Return the cluster (k,), from 1, of points that are of no roof surface; 0 for low and small ones."""
+    reach = 2 / np.sqrt(density)
+    component = connect(xyz, reach, reach, monitor)
+    return number_large(_high(component, height, min_height), min_area * density)
 
 
 def _patches_of_images(
@@ -246,19 +289,19 @@ class _Patches:
 
     def with_decks(self, min_height: float, min_area: float) -> _Patches:
         """Return them with decks apart from the ramps that lead up to them."""
-        joined = np.where(self._of(self.is_terrain), self.number, -1)
+        joined = np.where(self.points_of(self.is_terrain), self.number, -1)
         deck = part_decks(self.xyz, joined, self.height, self.density, min_height, min_area)
         return replace(self, number=np.where(deck >= 0, deck + len(self.is_terrain), self.number).astype(np.int32))
 
     def roofs(self, min_height: float, min_area: float) -> np.ndarray:
-        """Return which of them are high and large enough."""
-        return (self.areas >= min_area) & (self.mean(self.height) >= min_height)
+        """Return which of them are high and large enough, and do not go on into the ground."""
+        return (self.areas >= min_area) & (self.mean(self.height) >= min_height) & ~self.is_terrain
 
     def smooth(self, chosen: np.ndarray, roughness: np.ndarray, most: float) -> np.ndarray:
         """Return which of the chosen are smooth enough: ``roughness`` (n,) of the points and ``most`` of it, in m."""
         if not chosen.any():
             return chosen
-        group = np.where(self._of(chosen), self.number, -1)
+        group = np.where(self.points_of(chosen), self.number, -1)
         is_smooth = chosen & (self.mean(roughness) <= most)
         share = share_joined(self.xyz, group, is_smooth, self.density)
         return chosen & ((is_smooth & (self.areas >= _LARGE)) | (share >= _SMOOTH_SHARE))
@@ -267,8 +310,9 @@ class _Patches:
     def _member(self) -> np.ndarray:
         return self.number >= 0
 
-    def _of(self, mask: np.ndarray) -> np.ndarray:
-        """Return which points are of patches that a mask has."""
+    def points_of(self, mask: np.ndarray) -> np.ndarray:
+        """Return which points (n,) are of patches that a mask has."""
+        # Points of no patch, -1, find the last entry.
         return np.append(mask, False)[self.number]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Annotated, Optional
 
 import numpy as np
@@ -22,8 +23,11 @@ from .surface_normals import NormalPoints, normal_points, refuse_line, surface_n
 
 METHODS = ("points", "normals")
 
-# A surface puts so many points into a window, and a window is so many tolerances wide that none fills it.
-_POINTS_IN_WINDOW, _TOLERANCES_IN_WINDOW = 40.0, 20.0
+# Points that a surface has in a window: enough for a maximum that chance does not make.
+_POINTS_IN_WINDOW = 40.0
+
+# Least side of a window (tolerances): noise around a surface must not fill it.
+_TOLERANCES_IN_WINDOW = 20.0
 
 # Coarser slopes than this (ratio) join planes of different directions.
 _MOST_SLOPE_BIN = 0.2
@@ -214,34 +218,51 @@ def segment_planes_hough(
     if method == "normals":
         n_neighbors = normal_points(sampling) if n_neighbors is None else n_neighbors
         monitor.resolved(n_neighbors=n_neighbors)
+    else:
+        n_neighbors = None
     points = searched_points(xyz, classification, segment_id, shape, search_in, window_size)
-    label = np.zeros(len(points.rows), np.int64)
-    if len(points.rows):
-        boxes = Boxes(points.xyz, window_size)
-        normals = _normals(xyz, points, boxes, n_neighbors, monitor.part(0, 0.3)) if method == "normals" else None
-        slope = float(np.tan(np.radians(slope_bin)))
-        hough = HoughPlanes(boxes, window_size, tolerance, distance_bin, slope, normals, _MOST_ANGLE)
-        found = hough.find(monitor.part(0.3, 0.7))
-        plane = np.empty(len(label), np.int64)
-        plane[boxes.order] = joined_planes(boxes, found, tolerance, 0.0, monitor.part(0.7, 0.8))[1]
-        label = _surfaces(points.xyz, plane, max_gap, min_area * sampling.surface_density, monitor.part(0.8, 1))
+    search = _Search(window_size, tolerance, distance_bin, slope_bin, n_neighbors)
+    plane = search.planes(xyz, points, monitor.part(0, 0.8))
+    label = _surfaces(points.xyz, plane, max_gap, min_area * sampling.surface_density, monitor.part(0.8, 1))
     if not label.any():
         monitor.warn("No plane was found; no point got a new SegmentID.")
     ids, shapes, first = named(points, label, Shape.PLANE, segment_id, shape, len(xyz), search_in)
     return ids, shapes, plane_polygons(xyz[points.rows], label, first, sampling.surface_density)
 
 
+@dataclass(frozen=True)
+class _Search:
+    """Windows, tolerance and bins (m; slopes in °), and points of a normal; None where only points vote."""
+
+    window_size: float
+    tolerance: float
+    distance_bin: float
+    slope_bin: float
+    n_neighbors: Optional[int]
+
+    def planes(self, xyz: np.ndarray, points: SearchedPoints, monitor: Monitor) -> np.ndarray:
+        """Return the plane (k,), from 0, that each searched point of a cloud (n, 3) is on; -1 for none."""
+        plane = np.full(len(points.rows), -1, np.int64)
+        if not len(plane):
+            return plane
+        boxes = Boxes(points.xyz, self.window_size)
+        normals = self._normals(xyz, points, boxes, monitor.part(0, 0.375))
+        slope = float(np.tan(np.radians(self.slope_bin)))
+        hough = HoughPlanes(boxes, self.window_size, self.tolerance, self.distance_bin, slope, normals, _MOST_ANGLE)
+        found = hough.find(monitor.part(0.375, 0.875))
+        plane[boxes.order] = joined_planes(boxes, found, self.tolerance, 0.0, monitor.part(0.875, 1))[1]
+        return plane
+
+    def _normals(self, xyz: np.ndarray, points: SearchedPoints, boxes: Boxes, monitor: Monitor) -> Optional[np.ndarray]:
+        """Return the normals (k, 3) of the points in the order of the boxes, measured in the whole cloud."""
+        if self.n_neighbors is None:
+            return None
+        return surface_normals(xyz - points.origin, self.n_neighbors, monitor)[0][points.rows[boxes.order]]
+
+
 def _slope_bin(distance_bin: float, window_size: float) -> float:
     """Return the width of a bin of slopes (°) that suits the width of a bin of distances (m)."""
     return float(np.degrees(np.arctan(min(4 * distance_bin / window_size, _MOST_SLOPE_BIN))))
-
-
-def _normals(
-    xyz: np.ndarray, points: SearchedPoints, boxes: Boxes, n_neighbors: Optional[int], monitor: Monitor
-) -> np.ndarray:
-    """Return the normals (k, 3) of the points in the order of the boxes, measured in the whole cloud."""
-    assert n_neighbors is not None
-    return surface_normals(xyz - points.origin, n_neighbors, monitor)[0][points.rows[boxes.order]]
 
 
 def _surfaces(xyz: np.ndarray, plane: np.ndarray, max_gap: float, min_points: float, monitor: Monitor) -> np.ndarray:

@@ -15,9 +15,12 @@ from ..segmentation.top_surface import TopSurface
 from ..stage import Monitor
 from ..threads import n_threads
 
-# What stands on the ground is higher than this (m), and so much of the ground around it (m) shows whether a surface
-# goes on into the ground, and what surrounds it.
-_RAISED, _AROUND = 0.5, 2.0
+# Least height (m) of objects above the ground.
+_RAISED = 0.5
+
+# Width (m) of the ground around an object that is looked at with it: whether a surface goes on into the ground, and
+# what surrounds it, shows there.
+_AROUND = 2.0
 
 
 def bent_roofs(

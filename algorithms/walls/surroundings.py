@@ -13,30 +13,39 @@ from ..geometry.rings import signed_area
 from ..packages import ndimage
 from ..sampling.cloud_sampling import CloudSampling
 
-# Side of the cells (m) in which surroundings are looked up, and no less than so many point spacings: chance leaves less
-# than one cell in two hundred of a surface without a point.
-_CELL, _CELL_SPACINGS = 0.25, 2.5
+# Least side (m) of the cells in which surroundings are looked up.
+_CELL = 0.25
 
-# Where matching finds nothing on a roof, it finds nothing below it either. A gap in a roof or a bite at its edge is
-# roof where nothing is seen; bites up to this width (m), gaps of any width.
+# The same in point spacings: chance leaves less than one cell in two hundred of a surface without a point.
+_CELL_SPACINGS = 2.5
+
+# Widest bite (m) at the edge of a roof that is filled where nothing is seen in it: where matching finds nothing on a
+# roof, it finds nothing below it either. Gaps inside a roof are filled whatever their width.
 _BITE = 4.0
 
-# That nothing is seen tells something where surfaces are seen all around: in this share of the cells beside the roof.
+# Least share of the cells beside a roof with points, from which empty cells show a bite: elsewhere the surroundings
+# are not seen either.
 _SEEN_BESIDE = 0.8
 
-# A gap is a courtyard where this share of its cells shows points so far (m) below the eaves.
-_SEEN, _BELOW = 0.3, 1.0
+# Least share of the cells of a gap with points below the eaves that makes it a courtyard.
+_SEEN = 0.3
+
+# Least distance (m) of these points below the eaves.
+_BELOW = 1.0
 
 # The eaves of a roof: this percentile of its heights.
 _EAVES = 5
 
-# Points put into gaps are at most this many spacings of the roof's points apart.
+# Largest distance between points put into gaps (spacings of the roof's points).
 _FILLED = 2.0
 
-# A side of a roof is a party wall where beside so much of it another roof begins, looked for so far outward (m).
-_SHARED, _OUTWARD = 0.5, (0.25, 0.5, 0.75, 1.0)
+# Least share of a side of a roof, beside which another roof begins, that makes it a party wall.
+_SHARED = 0.5
 
-# Distance (m) between the places on a side where that is looked for.
+# Distances (m) outward from a side at which the other roof is searched for: gaps between party walls are narrower.
+_OUTWARD = (0.25, 0.5, 0.75, 1.0)
+
+# Distance (m) between the places on a side where it is searched for.
 _STEP = 0.5
 
 

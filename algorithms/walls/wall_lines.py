@@ -13,10 +13,13 @@ from ..stage import Monitor
 # Hypotheses for each line: where a wall holds a tenth of the points, one pair in a hundred lies on it.
 _TRIALS = 500
 
-# Hypotheses are scored on so many points at most, and made of points at least so far apart (m).
-_SCORED, _LEAST_PAIR = 1500, 0.5
+# Most points that hypotheses are scored on: a sample of as many ranks them as all do.
+_SCORED = 1500
 
-# Hypotheses held against all points at once, so that the table of both stays in the cache.
+# Least distance (m) between the two points of a hypothesis: the direction of nearer ones is noise.
+_LEAST_PAIR = 0.5
+
+# Hypotheses that are compared with all points at once, so that the table of both stays in the cache.
 _LINES_AT_ONCE = 50
 
 # A wall goes on over a gap of this length (m): bushes, cars and holes.
@@ -25,25 +28,35 @@ _GAP = 1.5
 # A line is a wall where at least this share of it has points.
 _LEAST_COVERED = 0.5
 
-# A piece of wall as long as a bin holds so many points on average.
+# Mean number of points in a bin of a wall: with as many, one bin in twenty is empty by chance.
 _POINTS_PER_BIN = 3.0
 
-# Angles are the same within so many of their deviations, and in any case within so much (radians): walls are built
-# no straighter. Beyond the larger figure no noise excuses.
-_SAME, _BUILT, _MOST = 3.0, np.deg2rad(0.7), np.deg2rad(8.0)
+# Angles are the same if they differ by up to so many standard deviations.
+_SAME = 3.0
 
-# Points deviate from their line by more than noise explains if it is so many standard errors of the noise's variance.
+# Angles (radians) that are the same in any case: walls are built no straighter.
+_BUILT = np.deg2rad(0.7)
+
+# Angles (radians) that are not the same, however uncertain they are.
+_MOST = np.deg2rad(8.0)
+
+# Points deviate from their line by more than noise does if their variance exceeds its by so many standard errors.
 _CERTAIN = 2.0
 
-# The way a wall runs shows in the points within this distance (m), where they are at least so much longer than wide;
-# points of a wall run within this angle of it (cosine), those of bushes and corners any way.
-_AROUND, _LONGER, _ALONG = 0.6, 2.0, np.cos(np.deg2rad(30.0))
+# Radius (m) of the neighborhoods that show the direction of a wall at a point.
+_AROUND = 0.6
 
-# Pairs of near points held at once, about 80 bytes each: in plan the points of a wall lie on top of one another, so
-# that each has hundreds around it.
+# Least length of such a neighborhood (times its width).
+_LONGER = 2.0
+
+# Cosine of the largest angle between the direction at a point and its wall: at bushes and corners any angle occurs.
+_ALONG = np.cos(np.deg2rad(30.0))
+
+# Pairs of near points in memory at once, about 80 bytes each: in plan the points of a wall lie on top of one another,
+# so that each has hundreds around it.
 _PAIRS_AT_ONCE = 500_000
 
-# Lines are one wall where one line fits the points of both to this share of the tolerance.
+# Lines are one wall if one line fits the points of both with this deviation (times the tolerance).
 _ONE_WALL = 0.45
 
 

@@ -19,52 +19,95 @@ from ..packages import ndimage
 from ..stage import Monitor
 from .wall_lines import Scale, WallLine, find_lines, merge_lines, square_up, wall_scale
 
-# Side of the cells in which a roof is held against walls (m); where they would be more than so many, larger ones are
-# taken. Around the roof there is so much room (m).
-_CELL, _LARGEST_CELL, _MOST_CELLS, _ROOM = 0.25, 1.0, 5e5, 2.0
+# Side (m) of the cells in which a roof is compared with walls.
+_CELL = 0.25
 
-# What an outline costs, in meters of wall that nobody sees: the cheapest one is taken.
-# A square meter in the outline that is no roof. Room for noise and for the roof's own ragged edge (m) costs nothing.
-_OUTSIDE, _BEYOND = 5.0, 0.4
-# A square meter left out although it lies farther under the roof than the overhang and this distance (m) together.
-_INSIDE, _WELL_INSIDE = 1.0, 0.3
-# More for one farther under it than the largest overhang, or than this share of the depth of the deepest place, where
-# the roof is small.
-_DEEP, _DEEPER = 2.0, 0.6
-# More than any wall: the deepest place left out, and the sides of the rectangle that everything lies in.
+# Side (m) of the largest cells, which are taken where there would be more than the number that follows.
+_LARGEST_CELL = 1.0
+
+# Most cells of one building.
+_MOST_CELLS = 5e5
+
+# Width (m) of the margin around the roof in which walls are searched for.
+_ROOM = 2.0
+
+# The outline of least cost is taken. All costs are in meters of wall without points.
+
+# Cost of a square meter in the outline that is no roof.
+_OUTSIDE = 5.0
+
+# Distance (m) beyond the roof within which this costs nothing: noise and the uneven edge of the roof.
+_BEYOND = 0.4
+
+# Cost of a square meter of roof that is left out although it is farther from the edge than the overhang.
+_INSIDE = 1.0
+
+# Distance (m) from the edge, in addition to the overhang, up to which leaving roof out costs nothing.
+_WELL_INSIDE = 0.3
+
+# Additional cost of a square meter of roof left out farther from the edge than the largest overhang.
+_DEEP = 2.0
+
+# Distance from the edge from which this is due on small roofs (times that of the place farthest from the edge).
+_DEEPER = 0.6
+
+# A cost above that of any wall: of leaving out the place farthest from the edge, and of the surrounding rectangle.
 _CERTAIN = 1e5
-# A meter of unseen wall where the roof says that there is one, and of any wall on top, seen or not.
-_EXPECTED, _ANY = 0.6, 0.05
-# A corner, and on top one that isn't square to within this (cosine of the angle between its walls).
-_CORNER_COST, _SKEW_COST, _SQUARE = 0.6, 1.5, np.sin(np.deg2rad(2.0))
 
-# Sides of a roof may wiggle by so much (m).
+# Cost of a meter of wall without points where a side of the roof makes a wall likely.
+_EXPECTED = 0.6
+
+# Additional cost of a meter of any wall.
+_ANY = 0.05
+
+# Cost of a corner.
+_CORNER_COST = 0.6
+
+# Additional cost of a corner that is not square.
+_SKEW_COST = 1.5
+
+# Corners are square within 2°: the cosine of the angle between their walls is no more than this.
+_SQUARE = np.sin(np.deg2rad(2.0))
+
+# Tolerance (m) of the outline of a roof when its sides are made straight.
 _WIGGLE = 0.4
 
-# Holes at the edge of a roof bite pieces out of its outline. Straight sides that may lie so many wiggles off go over
-# them; wider ones are taken only where the first make no outline.
+# Larger tolerances (times the first) for roofs whose edges have bites from holes in the cloud; the larger one is used
+# only where no outline comes of the smaller.
 _OVER_BITES = (1.5, 2.0)
 
-# Where the roof says that there is a wall, so many points that cover this share of it are enough to show where.
-_FEW, _LEAST_COVERED = 5, 0.2
+# Fewest points that show where a wall is, where a side of the roof makes it likely.
+_FEW = 5
 
-# A wall shows no farther (m) beyond the roof than noise makes it.
+# Least share of the length of this wall that they cover.
+_LEAST_COVERED = 0.2
+
+# Largest distance (m) of a wall beyond the roof: that of noise.
 _FLUSH = 0.2
 
-# A side of the roof runs like a wall within this angle (radians), and is its eave within the second one.
-_LIKE, _EAVE_ANGLE = np.deg2rad(8.0), np.deg2rad(3.0)
+# Largest angle (radians) between a side of the roof and walls that are seen, whose direction the side then takes.
+_LIKE = np.deg2rad(8.0)
 
-# The eave of a wall lies within this distance (m) of where it is expected, and as expected within the second.
-_EAVE, _AS_EXPECTED = 0.3, 0.15
+# Largest angle (radians) between a wall and its eave.
+_EAVE_ANGLE = np.deg2rad(3.0)
 
-# Corners are left out where an edge is judged: so much on both sides (m), no more than this share of a short edge.
-_CORNER, _CORNER_SHARE = 0.4, 0.25
+# Largest distance (m) of the eave of a wall from where the overhang makes it likely.
+_EAVE = 0.3
 
-# What leaving out a line changes lies within this distance (m) of its edges: bumps and notches that are worth a line
-# are no deeper, as each square meter of them costs as much as a meter of wall.
+# Largest distance (m) at which it counts as lying right there.
+_AS_EXPECTED = 0.15
+
+# Length (m) at both ends of an edge that is left out where its quality is measured: corners are rounded.
+_CORNER = 0.4
+
+# The same as a share of a short edge.
+_CORNER_SHARE = 0.25
+
+# Largest distance (m) from the edges of a line within which leaving it out changes the outline: bumps and notches that
+# are worth a line are no deeper, as each square meter of them costs as much as a meter of wall.
 _NEARBY = 4.0
 
-# Places times lines that are looked at at once.
+# Most places times lines that are compared at once.
 _AT_ONCE = 10_000_000
 
 
