@@ -171,7 +171,10 @@ def segment_surfaces(
     used = not_noise(classification)
     if not len(used):
         return np.zeros(len(xyz), np.int32)
-    points = xyz if len(used) == len(xyz) else xyz[used]
+    if len(used) == len(xyz):
+        # A slice takes no memory, and the points that it names are not copied.
+        used = slice(None)
+    points = xyz[used]
 
     planes = local_planes(points, neighbors, radius, seeds, tolerance, monitor.part(0, 0.5))
     if proximity == "edges":
