@@ -267,6 +267,10 @@ def _shape(box: np.ndarray, places: np.ndarray, spacing: float) -> tuple[np.ndar
     if share >= _RECTANGULAR:
         return rectangle, 1.0
     corners = inside[hull.vertices]
+    # Points that a cloud holds twice may both be vertices, as the hull is that of slightly moved points.
+    corners = corners[(corners != np.roll(corners, 1, axis=0)).any(axis=1)]
+    if len(corners) < 3:
+        return rectangle, 1.0
     # The edge lies halfway between the outermost points behind and the wall.
     ring = grown(np.concatenate([corners, corners[:1]]), spacing / 2)
     ring = simplify_ring(ring, max(spacing, _LEAST_STRAIGHT))

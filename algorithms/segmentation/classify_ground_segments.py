@@ -139,7 +139,9 @@ def _bare_earth(
     low = np.full(len(cells), np.inf)
     np.minimum.at(low, which, points[:, 2])
     member = np.flatnonzero(segment > 0)
-    own, place = distinct(segment[member].astype(np.int64) * room + grid.number(points[member]))
+    # Other programs number segments as they like.
+    segments, of = distinct(segment[member].astype(np.int64))
+    own, place = distinct(of * room + grid.number(points[member]))
     level = np.bincount(place, points[member, 2]) / np.bincount(place)
     number = own // room
     border, raised = np.zeros(len(own), bool), np.zeros(len(own), bool)
@@ -148,13 +150,15 @@ def _bare_earth(
         outside = ~find_cells(own, own + step)[1]
         border |= outside
         raised |= outside & known & (low[beside] <= level - min_height)
-    n = int(segment.max(initial=0)) + 1
+    n = len(segments)
     n_border = np.bincount(number, border, n)
     area = np.bincount(number, minlength=n) * cell**2
     is_object = np.bincount(number, raised, n) >= _RAISED_BORDER * np.maximum(n_border, 1)
     is_object &= area <= max_object_area
     is_large = area >= min_area
-    return (~is_object & is_large)[segment] & (segment > 0)
+    is_earth = np.zeros(len(points), bool)
+    is_earth[member] = (~is_object & is_large)[of]
+    return is_earth
 
 
 def _is_low(points: np.ndarray, cell: float, step: float) -> np.ndarray:

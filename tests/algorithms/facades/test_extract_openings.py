@@ -154,3 +154,16 @@ def test_clouds_without_facades_or_openings_are_told(rng):
         monitor = Monitor()
         assert not len(extract_openings(xyz, np.ones(len(xyz), np.int32), monitor=monitor)[1])
         assert monitor.warnings == [told]
+
+
+def test_points_that_a_cloud_holds_twice_change_no_window(rng):
+    """The hull of a triangular window of few points has no vertex twice."""
+    wall_points, pane = pierced(rng, [(4, 2, 8, 5)], density=60, kept=1.0)
+    x, z = pane[:, 0], pane[:, 2]
+    is_glass = z < 5 - 1.5 * np.abs(x - 6)
+    filled = pane[~is_glass] - [0, 0.15, 0]
+    xyz, segment = as_cloud(rng, np.concatenate([wall_points, filled]), pane[is_glass])
+    once, twice = (extract_openings(np.repeat(xyz, n, axis=0), np.repeat(segment, n))[1] for n in (1, 2))
+    assert len(once) == len(twice) == 1
+    assert np.isfinite(twice.geometries[0][0]).all()
+    np.testing.assert_allclose(boxes_of(twice), boxes_of(once), atol=0.15)

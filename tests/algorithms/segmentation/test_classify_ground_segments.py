@@ -123,3 +123,12 @@ def test_cancel_gets_through():
     ones = np.ones(len(xyz), np.uint8)
     with pytest.raises(Cancelled):
         classify_ground_segments(xyz, ones, segment_scan_lines(xyz, ones), monitor=Listening(stop_at=0.5))
+
+
+def test_segments_of_other_programs_may_have_any_numbers():
+    xyz, part = valley()
+    ones = np.ones(len(xyz), np.uint8)
+    ids = segment_scan_lines(xyz, ones)
+    classes = classify_ground_segments(xyz, ones, ids)
+    spread = np.where(ids > 0, ids * (2_000_000_000 // ids.max()), 0).astype(np.int32)
+    np.testing.assert_array_equal(classify_ground_segments(xyz, ones, spread), classes)
