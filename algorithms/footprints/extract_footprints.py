@@ -256,20 +256,28 @@ def _parts(
     return parts
 
 
-def _apart(xyz: np.ndarray, building: np.ndarray, non_building: np.ndarray, apart: float) -> list:
-    """Return the rows of building points that can be outlined alone, and of the non-building points beside them."""
+def _apart(
+    xyz: np.ndarray, building: np.ndarray, non_building: np.ndarray, apart: float
+) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Return the rows of building points that can be outlined alone, and of the non-building points beside them.
+
+    A non-building point beside two groups of buildings shows for both where their roofs end.
+    """
     grid = grid_over(xyz, apart)
     cell = grid.number(xyz[building])
     cells = np.unique(cell)
     count, group = connected_cells(grid, cells)
     own = group[np.searchsorted(cells, cell)]
-    # Non-building points lie in a cell of the group or beside one.
+    # Non-building points lie in a cell of a group or beside one.
     non_building_cell = grid.number(xyz[non_building])
-    non_building_group = np.full(len(non_building), -1)
+    pairs = [np.zeros(0, np.int64)]
     for step in (0, *grid.around):
         position, there = find_cells(cells, non_building_cell + step)
-        non_building_group = np.where(there, group[position], non_building_group)
-    return list(zip(split_groups(own, count), split_groups(non_building_group, count)))
+        rows = np.flatnonzero(there)
+        pairs.append(group[position[rows]] * len(non_building) + rows)
+    beside, row = np.divmod(np.unique(np.concatenate(pairs)), max(len(non_building), 1))
+    rows_beside = np.split(row, np.searchsorted(beside, np.arange(1, count)))
+    return list(zip(split_groups(own, count), rows_beside))
 
 
 def _traced(part: _Part, measures: PointMeasures, how: _Outlining, monitor: Monitor) -> Optional[Tracing]:

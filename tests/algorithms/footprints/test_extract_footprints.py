@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.cloud.reasons import Reason
+from lidar_buildings.algorithms.footprints import extract_footprints as outlining
 from lidar_buildings.algorithms.footprints.extract_footprints import extract_footprints
 from lidar_buildings.algorithms.footprints.roof_points import is_under_roof
 from lidar_buildings.algorithms.geometry.rings import signed_area
@@ -277,3 +278,10 @@ def test_what_lies_inside_the_edge_of_a_roof_is_under_it():
     assert inside > 0.65
     assert outside < 0.15
     assert yard < 0.2
+
+
+def test_ground_between_two_houses_shows_for_both_where_they_end():
+    """The cell of the ground lies beside those of both houses; each house is outlined alone."""
+    houses, ground = np.array([[0.5, 0.5, 5], [2.5, 0.5, 5], [2.6, 0.6, 5]]), np.array([[1.5, 0.5, 0], [9.5, 0.5, 0]])
+    parts = outlining._apart(np.concatenate([houses, ground]), np.arange(3), np.array([3, 4]), 1.0)
+    assert [(own.tolist(), beside.tolist()) for own, beside in parts] == [([0], [0]), ([1, 2], [0])]
