@@ -66,9 +66,10 @@ def amid_rough(surface: TopSurface, xyz: np.ndarray, segment_id: np.ndarray) -> 
     on_surface[row, column] = True
     tolerance = np.minimum(_AT_HEIGHT, _AT_HEIGHT_SHARE * surface.height)
     share = surface.share_near(on_surface, _NEAR, tolerance, _RAISED)[row, column]
-    count = np.bincount(segment_id[on_top], minlength=int(segment_id.max()) + 1)
-    mean = np.bincount(segment_id[on_top], share, len(count)) / np.maximum(count, 1)
-    return ((mean < _MOST) & (count > 0))[segment_id] & (segment_id > 0)
+    # Other programs number surfaces as they like.
+    segments, of = np.unique(segment_id[on_top], return_inverse=True)
+    mean = np.bincount(of, share) / np.bincount(of)
+    return np.isin(segment_id, segments[mean < _MOST])
 
 
 @dataclass(frozen=True)

@@ -58,14 +58,27 @@ def split_blocks(
     corner = parted.triangles[parted.face >= 0]
     face_of = np.full(len(top), -1)
     face_of[corner] = parted.face[parted.face >= 0][:, None]
-    known = np.flatnonzero(face_of >= 0)
-    nearest = known[spatial.cKDTree(xyz[top[known], :2]).query(xyz[own, :2], workers=n_threads())[1]]
+    nearest = _nearest_of_building(xyz[own, :2], cluster_id[own], xyz[top, :2], cluster_id[top], face_of >= 0)
     # What tracing alone has parted, beside a gap, stays one building.
     first = len(tracing.labels)
     building = np.append(tracing.labels, int(cluster_id.max()) + 1 + np.arange(len(parted.labels) - first))
+    # A building without an outline, of a few points or a row of them, stays as it is.
+    house = np.where(nearest >= 0, building[face_of[nearest]], cluster_id[own])
     result = np.zeros_like(cluster_id)
-    result[own] = _from_west_to_east(xyz[own, 0], building[face_of[nearest]])
+    result[own] = _from_west_to_east(xyz[own, 0], house)
     return result
+
+
+def _nearest_of_building(
+    xy: np.ndarray, cluster: np.ndarray, places: np.ndarray, of: np.ndarray, known: np.ndarray
+) -> np.ndarray:
+    """Return the nearest of the ``known`` places (m, 2) of its own building for each point (n, 2), -1 without any."""
+    rows = np.flatnonzero(known)
+    # Buildings one above the other, farther apart than any two points of one.
+    apart = 1 + 2 * float(np.ptp(xy, axis=0).sum())
+    tree = spatial.cKDTree(np.column_stack([places[rows], apart * of[rows]]))
+    _, found = tree.query(np.column_stack([xy, apart * cluster]), distance_upper_bound=apart, workers=n_threads())
+    return np.append(rows, -1)[found]
 
 
 def _from_west_to_east(x: np.ndarray, building: np.ndarray) -> np.ndarray:

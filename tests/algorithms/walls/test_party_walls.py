@@ -59,6 +59,19 @@ def test_parts_of_a_building_beside_a_gap_stay_together(rng):
     np.testing.assert_array_equal(parted(xyz, house, height), house > 0)
 
 
+@pytest.mark.parametrize("shape", ["a row", "far apart"])
+def test_a_building_of_few_points_far_from_a_block_is_none_of_its_houses(rng, shape):
+    """No triangle is drawn between points in a row, or too far apart."""
+    xyz, house, height = block(rng, (6, 6.5, 6, 7))
+    plan = [np.full(40, 80.0), np.linspace(0, 8, 40)] if shape == "a row" else rng.uniform(80, 100, (2, 40))
+    xyz = np.concatenate([xyz, np.column_stack([*plan, np.full(40, 5.0)])])
+    cluster_id = np.concatenate([house > 0, np.full(40, 2)]).astype(np.int32)
+    found = split_blocks(xyz, np.append(height, np.full(40, 5.0)), cluster_id, 0.16, Monitor())
+    assert found.max() == 5
+    assert (found[-40:] == 5).all()
+    assert (found[:-40] == house).mean() > 0.97
+
+
 def test_the_order_of_points_does_not_matter(rng):
     xyz, house, height = block(rng, (6, 6.5, 6, 7))
     order = rng.permutation(len(xyz))
