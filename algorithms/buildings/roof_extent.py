@@ -16,9 +16,11 @@ GAP = 1.5
 # ... where the surface stays above the ground by this (m).
 _RAISED = 1.0
 
-# Matching rounds edges: a roof surface ends up to this far (m) before the roof. A step that is smeared evenly to both
-# sides has half its height where the edge is.
-_ROUNDED, _HALF = 0.7, 0.5
+# Largest distance (m) between the end of a roof surface and the edge of the roof, which matching rounds.
+_ROUNDED = 0.7
+
+# Height at the edge of a roof (share of the roof's height): a step is smeared evenly to both sides.
+_HALF = 0.5
 
 # Smeared walls fall by this much (m per m) or more.
 _STEEP = 1.0
@@ -29,9 +31,20 @@ FOOT = 0.3
 # What rises above the roof by more than this (m) is no edge of it but a crown or a higher wall.
 _ABOVE = 1.0
 
-# Widths, lengths and heights (m) of vans, buses apart, and of cars; smeared edges included. Heights above ground.
-_VAN_WIDTH, _VAN_LENGTH, _VAN_HEIGHT = (1.4, 2.6), (4.3, 7.5), 3.0
-_CAR_LENGTH, _CAR_HEIGHT = (3.2, 5.4), 1.75
+# Least and largest width (m) of vans and cars, smeared edges included; buses are wider.
+_VAN_WIDTH = (1.4, 2.6)
+
+# Least and largest length (m) of vans, smeared edges included.
+_VAN_LENGTH = (4.3, 7.5)
+
+# Largest height (m) of vans above the ground.
+_VAN_HEIGHT = 3.0
+
+# Least and largest length (m) of cars, smeared edges included.
+_CAR_LENGTH = (3.2, 5.4)
+
+# Largest height (m) of cars above the ground.
+_CAR_HEIGHT = 1.75
 
 # Share of its rectangle that a vehicle fills.
 _FILLED = 0.65
@@ -41,13 +54,17 @@ _DIRECTIONS = np.radians(np.arange(0.0, 90.0, 5.0))
 
 _EIGHT = np.ones((3, 3), bool)
 
+# Distance (m) within which points around a roof surface are looked at.
+_NEAR = 2.0
 
-# Of what lies within this (m) of a roof surface, at about its height, this share is on surfaces, too. Around the smooth
-# spots of crowns it is leaves.
-_NEAR, _MOST = 2.0, 0.6
+# Share of these, at about its height, that are on surfaces around a roof; fewer are around the smooth spots of crowns.
+_MOST = 0.6
 
-# That is no more than this (m) higher or lower, and no more than this share of its height, below which edges are.
-_AT_HEIGHT, _AT_HEIGHT_SHARE = 1.5, 0.3
+# Largest difference (m) of points at about the height of a surface.
+_AT_HEIGHT = 1.5
+
+# The same as a share of its height, where that is less: lower ones are of edges.
+_AT_HEIGHT_SHARE = 0.3
 
 
 def amid_rough(surface: TopSurface, xyz: np.ndarray, segment_id: np.ndarray) -> np.ndarray:

@@ -25,21 +25,29 @@ _FACING = 60.0
 # No corner is looked for farther off (m) while the tolerance isn't known; most walls are longer.
 _FARTHEST = 3.0
 
-# Where errors are normal, 99.8 % of the distances are less than three times their median. Not less than half of a
-# short wall (m), so that corners that have moved since the map was made are told and not lost.
-_MEDIANS, _LEAST_TOLERANCE = 3.0, 1.0
+# Automatic tolerance (medians of the distances): where errors are normal, 99.8 % of the distances are less.
+_MEDIANS = 3.0
+
+# Least automatic tolerance (m), half of a short wall: corners that have moved since the map was made are still matched.
+_LEAST_TOLERANCE = 1.0
 
 # Pairs farther apart than this share of the farthest are by chance.
 _FAR_OFF = 2 / 3
 
-# The shift between two maps is known when it changes by less, m.
-_STILL, _MOST_ROUNDS = 1e-3, 10
+# Change (m) of the shift between two maps in one round, below which it is known.
+_STILL = 1e-3
+
+# Most rounds in which the shift is searched for.
+_MOST_ROUNDS = 10
 
 # Footprints and a map that lie farther apart (m) show different places, whatever of one place each of them lacks.
 _ELSEWHERE = 1000.0
 
-# Polygons and lines that are smaller (m², m) are none.
-_NO_AREA, _NO_LENGTH = 1e-6, 1e-3
+# Area (m²) below which a polygon is left out.
+_NO_AREA = 1e-6
+
+# Length (m) below which a line is left out.
+_NO_LENGTH = 1e-3
 
 FOUND, MISSED, NEW = "found", "missed", "new"
 

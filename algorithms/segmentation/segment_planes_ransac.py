@@ -16,11 +16,17 @@ from .least_squares_planes import Planes
 from .plane_merging import joined_planes
 from .voxel_planes import VoxelPlanes
 
-# A surface puts so many points into a voxel, and a voxel is so many tolerances wide that it isn't filled by one.
-_POINTS_IN_VOXEL, _TOLERANCES_IN_VOXEL = 20.0, 10.0
+# Points that a surface has in a voxel: enough for a plane that chance does not make.
+_POINTS_IN_VOXEL = 20.0
 
-# The range of the paper, m.
-_SMALLEST_VOXEL, _LARGEST_VOXEL = 0.5, 3.0
+# Least side of a voxel (tolerances): noise around a surface must not fill it.
+_TOLERANCES_IN_VOXEL = 10.0
+
+# Smallest voxel (m), that of the paper.
+_SMALLEST_VOXEL = 0.5
+
+# Largest voxel (m), that of the paper.
+_LARGEST_VOXEL = 3.0
 
 
 @stage(

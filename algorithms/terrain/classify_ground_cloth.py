@@ -21,8 +21,11 @@ _BORDER = 2
 # Particles of a cloth that is simulated however few points there are for it: all steps take about a minute.
 _MOST_PARTICLES = 500_000
 
-# Hanging parts of at most so many particles stay as they are; others come down onto steps smaller than this (m).
-_SMALL_PART, _LARGEST_STEP = 50, 0.3
+# Most particles of a hanging part of the cloth that stays as it is; larger ones are let down to the ground.
+_SMALL_PART = 50
+
+# Largest step (m) between neighboring particles over which a hanging part is let down.
+_LARGEST_STEP = 0.3
 
 # Particles at most so many grid cells from one with a point take over its floor as the authors' program does, which
 # searches link by link; the search grows with the square of the distance, and no point lies near those farther away.

@@ -14,8 +14,14 @@ from ..packages import ndimage
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Monitor, Param, Raster, RasterSurface, stage
 
-# A cell so many point spacings wide holds four points on average, and one in fifty is empty.
-_CELL_SPACINGS, _LEAST_CELL, _MOST_CELL = 2.0, 0.05, 1000.0
+# Side of a cell (point spacings): it holds four points on average, and one in fifty is empty.
+_CELL_SPACINGS = 2.0
+
+# Least side of a cell (m) that is set automatically.
+_LEAST_CELL = 0.05
+
+# Largest side of a cell (m), that of the tunable.
+_MOST_CELL = 1000.0
 
 # People choose cells of 1, 2 or 5 times a power of ten.
 _ROUND = np.array([1.0, 2.0, 5.0, 10.0])

@@ -8,8 +8,11 @@ from ..geometry.grid import refuse_sparse
 from ..geometry.raster_opening import open_surface
 from ..packages import ndimage
 
-# Cells of the surface: this many point spacings, and no less than half a meter.
-_CELL_SPACINGS, _LEAST_CELL = 1.5, 0.5
+# Side of the cells of the surface (point spacings).
+_CELL_SPACINGS = 1.5
+
+# Least side of these cells (m).
+_LEAST_CELL = 0.5
 
 # What is narrower than this (m) is an object: a shed of 3 m with walls that are smeared over 0.7 m to both sides.
 _WIDTH = 4.5

@@ -34,9 +34,11 @@ _LEAST_NEIGHBORS = 8
 # ... and at most this many: more would reach around corners.
 _MOST_NEIGHBORS = 30
 
-# Roofs in plan are thinned to one point in a cell of this size (m) to find the nearest. A wall stands under its roof,
-# or as near to it as this (m) where the roof was seen in part.
-_ROOF_CELL, _NEAR = 0.25, 2.0
+# Side (m) of the cells of which one roof point is taken when the nearest roof in plan is searched for.
+_ROOF_CELL = 0.25
+
+# Largest distance (m) in plan of a wall from its roof where the roof was seen in part; other walls stand under it.
+_NEAR = 2.0
 
 # The hull of a roof without area: one side that everything is outside of.
 _NOWHERE = np.array([[0.0, 0.0, np.inf]])

@@ -30,14 +30,20 @@ ROOF = "roof"
 # Distance in plan within which points lie on a wall (times the roughness).
 _ON_WALL = 3.09
 
-# Bounds of that distance (m), those of the tunable.
-_LEAST_TOLERANCE, _MOST_TOLERANCE = 0.01, 2.0
+# Least value of that distance (m), that of the tunable.
+_LEAST_TOLERANCE = 0.01
+
+# Largest value of that distance (m), that of the tunable.
+_MOST_TOLERANCE = 2.0
 
 # An edge of which this share has points was seen.
 _SEEN = 0.5
 
-# Outlines of roofs may wiggle by so many point spacings, and no less than so much (m).
-_WIGGLE_SPACINGS, _LEAST_WIGGLE = 2.0, 0.3
+# Simplification tolerance of roof outlines (point spacings).
+_WIGGLE_SPACINGS = 2.0
+
+# Least simplification tolerance of roof outlines (m).
+_LEAST_WIGGLE = 0.3
 
 _FIELDS = (
     Field("id", int, "number of the footprint, from 1"),
