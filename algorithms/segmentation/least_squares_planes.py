@@ -71,10 +71,10 @@ def planes_of(xyz: np.ndarray, group: np.ndarray, n_groups: int, rows: Optional[
     # As many points as there are groups: more chunks would take longer to add up than the points.
     size = max(_CHUNK, n_groups)
     parts = [slice(start, start + size) for start in range(0, len(group), size)]
-    count = np.bincount(group, minlength=n_groups)
-    center, covariance = np.zeros((n_groups, 3)), np.zeros((n_groups, 6))
+    count, center, covariance = np.zeros(n_groups, np.int64), np.zeros((n_groups, 3)), np.zeros((n_groups, 6))
     for part in parts:
         points = xyz[part] if rows is None else xyz[rows[part]]
+        count += np.bincount(group[part], minlength=n_groups)
         center += np.column_stack([np.bincount(group[part], column, n_groups) for column in points.T])
     center /= count[:, None]
     for part in parts:

@@ -47,6 +47,10 @@ _FIRST_NEIGHBORS = 3
 _MAX_ROUNDS = 1000
 
 
+# Whether the surfaces at some points (m,) hold other points (m,), by their numbers.
+Hold = Callable[[np.ndarray, np.ndarray], np.ndarray]
+
+
 @dataclass(frozen=True)
 class Criteria:
     """When a point belongs to the surface beside it.
@@ -302,7 +306,7 @@ def _adjacent(
     planes: LocalPlanes,
     surface: np.ndarray,
     rows: np.ndarray,
-    agree: Optional[Callable[[np.ndarray, np.ndarray], np.ndarray]] = None,
+    agree: Optional[Hold] = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return pairs of surfaces (k,), each once, between which points ``rows`` have a neighbor that they ``agree`` with.
 
@@ -350,11 +354,7 @@ def connected_seeds(planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria
 
 
 def _nearest_that_holds(
-    planes: LocalPlanes,
-    rows: np.ndarray,
-    surface: np.ndarray,
-    hold: Callable[[np.ndarray, np.ndarray], np.ndarray],
-    monitor: Monitor,
+    planes: LocalPlanes, rows: np.ndarray, surface: np.ndarray, hold: Hold, monitor: Monitor
 ) -> np.ndarray:
     """Return the nearest neighbor (m,), int32, of points ``rows`` whose surface holds them, -1 where there is none."""
     parent = np.full(len(rows), -1, np.int32)
@@ -453,11 +453,17 @@ def _smoothest(planes: LocalPlanes, is_seed: np.ndarray) -> np.ndarray:
 
 def _first_planes(planes: LocalPlanes, surface: np.ndarray, criteria: Criteria) -> Planes:
     """Let seeds take what their own planes hold, and return the planes of their points."""
-    rows = np.flatnonzero(surface < 0).astype(np.int32)
-    parent = _nearest_that_holds(planes, rows, surface, partial(planes.hold, criteria), Monitor())
-    surface[rows[parent >= 0]] = surface[parent[parent >= 0]]
+    _join(planes, np.flatnonzero(surface < 0).astype(np.int32), surface, partial(planes.hold, criteria), Monitor())
     members = np.flatnonzero(surface >= 0).astype(np.int32)
     return planes_of(planes.xyz, surface[members], int(surface.max()) + 1, members)
+
+
+def _join(planes: LocalPlanes, rows: np.ndarray, surface: np.ndarray, hold: Hold, monitor: Monitor) -> np.ndarray:
+    """Let the points ``rows`` (m,) join the surface of the nearest neighbor that holds them; return those that do."""
+    parent = _nearest_that_holds(planes, rows, surface, hold, monitor)
+    joins = parent >= 0
+    surface[rows[joins]] = surface[parent[joins]]
+    return rows[joins]
 
 
 def _take_points(
@@ -466,14 +472,12 @@ def _take_points(
     """Let planes take the points beside them in rounds, and return the planes of all points then."""
     open_ = np.flatnonzero(surface < 0).astype(np.int32)
     for step in range(_MAX_ROUNDS):
-        hold = partial(_plane_holds, planes, surface, fitted, criteria)
-        parent = _nearest_that_holds(planes, open_, surface, hold, monitor.part(1 - 0.8**step, 1 - 0.8 ** (step + 1)))
-        rows = open_[parent >= 0]
+        part = monitor.part(1 - 0.8**step, 1 - 0.8 ** (step + 1))
+        rows = _join(planes, open_, surface, partial(_plane_holds, planes, surface, fitted, criteria), part)
         if not len(rows):
             break
-        surface[rows] = surface[parent[parent >= 0]]
         fitted = _with_points(fitted, planes.xyz, surface[rows], rows)
-        open_ = open_[parent < 0]
+        open_ = open_[surface[open_] < 0]
     return fitted
 
 
