@@ -7,6 +7,7 @@ import json
 import pickle
 import shutil
 import time
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -255,8 +256,7 @@ class _Run:
             if self.take_raster:
                 for mosaic in join_rasters([path for _, path in done], found):
                     self.take_raster(self.survey, mosaic)
-            for sentence in dict.fromkeys(one for result in found for one in result.messages):
-                self.monitor.warn(sentence)
+            self._warn_of_blocks(found)
             self._write_tiles(executor, done, numbers, [blocks[number] for number in failed], outcome)
         if not outcome.failures:
             # Nothing is left to go on with. Windows keeps the lock, which is still open.
@@ -428,6 +428,12 @@ class _Run:
             outcome.layers.update({names[step.name, of]: features for of, features in made.layers.items()})
             if made.report is not None:
                 outcome.reports[names[step.name, REPORT]] = made.report
+
+    def _warn_of_blocks(self, found: list[BlockResult]) -> None:
+        """Pass on each warning once, and in how many of the blocks with points it was given, if not in all."""
+        count = sum(len(result.tries) > 0 for result in found)
+        for sentence, given in Counter(one for result in found for one in result.messages).items():
+            self.monitor.warn(sentence if given == count else f"In {given} of {count} blocks: {sentence}")
 
     def _write_tiles(
         self,

@@ -215,6 +215,25 @@ def test_a_point_far_from_all_others_is_worked_on_with_them(tmp_path, monkeypatc
     assert (read_cloud(tmp_path / "out" / "land.laz").get("classification") == 2).mean() > 0.9
 
 
+def test_a_warning_of_some_blocks_says_of_how_many(tmp_path, monkeypatch):
+    """That nothing was found in a block at the edge says nothing of the survey."""
+    outlines = Pipeline("outlines", "Outlines", "Tests", "", "", "", "", (Step("roofs", "extract_footprints"),))
+    monkeypatch.setitem(PIPELINES, outlines.name, outlines)
+    paths, monitor = [], Monitor()
+    for name, west, number in (("house", 10, 6), ("meadow", 410, 2)):
+        xyz = np.random.default_rng(5).uniform([west, 10, 5], [west + 20, 30, 5.1], (2000, 3)) + [600_000, 5_000_000, 0]
+        classes = np.full(2000, number, np.uint8)
+        arrays = {"xyz": xyz, "classification": classes, "height_above_ground": np.full(2000, 5, np.float32)}
+        paths.append(tmp_path / f"{name}.las")
+        write_cloud(create_cloud(arrays, RD), paths[-1])
+    options = {"workers": Workers(processes=1), "block_side": 50.0, "compressed": False}
+    outcome = run_in_tiles(outlines, paths, tmp_path / "out", monitor, **options)
+    assert len(next(iter(outcome.layers.values()))) == 1
+    assert "In 1 of 2 blocks: No point is called building (class 6), so there are no footprints." in monitor.warnings
+    run_in_tiles(outlines, paths[1:], tmp_path / "meadow", monitor, **options)
+    assert "No point is called building (class 6), so there are no footprints." in monitor.warnings
+
+
 def test_a_missing_tile_of_a_virtual_point_cloud_is_named(tmp_path):
     tile(tmp_path / "a.las", (0, 0), (20, 20))
     features = [{"type": "Feature", "assets": {"data": {"href": one, "roles": ["data"]}}} for one in ("a.las", "b.las")]
