@@ -62,7 +62,7 @@ def open_headers(paths: list[Path], monitor: Optional[Monitor] = None) -> tuple[
 
 
 def _held_header(path: Path) -> Header:
-    """Return the header of a file, its number of points held against the size of the file."""
+    """Return the header of a file after its number of points was compared with the size of the file."""
     header = read_header(path)
     left = path.stat().st_size - header.points_at
     most = left * (_MOST_BYTES_PER_BYTE if header.is_compressed else 1) // header.layout.dtype.itemsize

@@ -26,7 +26,7 @@ _SHORTEST, _LONGEST = 4.0, 8.0
 # triangle with an edge as long as the shortest of the longest edges.
 _INNER_CELL = 2.5
 
-# What is inside has so many cells with points around it on all sides: flat triangles at an edge reach over one.
+# Width (cells) of the margin of cells with points around the inside of an area: flat triangles at an edge span one.
 _DEEP_CELLS = 2
 
 # Buildings whose points are closer than so many spacings touch; chance leaves wider gaps in one roof of twenty.

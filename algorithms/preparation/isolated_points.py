@@ -90,7 +90,7 @@ _AROUND = 10.0
 # The same in point spacings, where that is more.
 _AROUND_SPACINGS = 16.0
 
-# Share of the points of such a cell that may lie lower than its level; more points under the ground are believed.
+# Share of the points of such a cell that may lie below its level; where more lie below it, they are ground.
 _AROUND_PART = 0.02
 
 # Largest step (m) between neighboring cells of ground and roofs; crowns have larger ones.

@@ -284,7 +284,7 @@ class _Around:
     distance: float
 
     def of(self, deck: np.ndarray, least: float) -> np.ndarray:
-        """Return the points (k, 3) around a deck that hang together with at least so many."""
+        """Return the points (k, 3) around a deck that are connected with at least ``least`` others."""
         low, high = deck.min(axis=0) - self.distance, deck.max(axis=0) + self.distance
         first, stop = np.searchsorted(self.xyz[:, 0], low[0]), np.searchsorted(self.xyz[:, 0], high[0], side="right")
         near, size = self.xyz[first:stop], self.size[first:stop]

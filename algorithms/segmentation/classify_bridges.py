@@ -95,7 +95,7 @@ def classify_bridges(
     classes = classification.astype(np.uint8)
     classes[classes == PointClass.BRIDGE_DECK] = PointClass.UNCLASSIFIED
     ground = np.flatnonzero((classification[used] == PointClass.GROUND) & ~is_deck)
-    # Cars and parapets on a deck that a filter took for ground are none; ground that rises beside the deck stays.
+    # Ground points on a deck are those of cars and parapets; ground that rises beside the deck stays ground.
     classes[used[ground[on_decks(points[ground], points[is_deck], ABOVE_DECK)[0]]]] = PointClass.UNCLASSIFIED
     classes[used[is_deck]] = PointClass.BRIDGE_DECK
     monitor.progress(1.0)

@@ -15,9 +15,15 @@ from ..threads import made_ahead
 from .free_standing import find_free_standing
 from .removed_objects import ObjectRemoval, nearest_known
 
-# A pit steeper than this on all sides is multipath, not terrain (5 m deep in a cell of 1 m), unless within so far (m)
-# this share of the cells is as deep: a tenth of the pulses reach the ground of dense forest, far fewer go astray.
-_PIT_SLOPE, _PIT_REACH, _PIT_SHARE = 5.0, 10.0, 0.1
+# Slope of all sides of a pit from which it is multipath and no terrain: 5 m deep in a cell of 1 m.
+_PIT_SLOPE = 5.0
+
+# Radius (m) of the surroundings in which cells as deep as a pit are counted.
+_PIT_REACH = 10.0
+
+# Share of these cells from which a pit is terrain: a tenth of the pulses reach the ground of dense forest, far fewer
+# are those of multipath.
+_PIT_SHARE = 0.1
 
 # Cells are looked at one by one up to so far, and in as many steps beyond.
 _PIT_STEPS = 10
@@ -25,9 +31,15 @@ _PIT_STEPS = 10
 # Without a largest building given, windows go up to this size (m); larger halls stand free.
 USUAL_BUILDING = 60.0
 
-# Where cells fall decides on single bushes and roofs, so that they are laid in three directions (°), which decide
-# together. The box of a narrow strip, turned, is more than so many times as large, and hardly filled.
-_TURNS, _MOST_TURNED = (0.0, 30.0, 60.0), 2.5
+# Directions (°) of the three grids of cells that decide together: which points share a cell decides on single bushes
+# and roofs.
+_TURNS = (0.0, 30.0, 60.0)
+
+# Largest area of the box of a turned cloud (times its own box): that of a narrow strip is larger and hardly filled.
+_MOST_TURNED = 2.5
+
+# Largest depth (m) of the rounded rim of a roof below it: less than the lowest step.
+_RIM = 0.8
 
 
 @dataclass
@@ -139,10 +151,6 @@ def seeds_by_opening(
     stands_free = views[0].stands_free | np.logical_and.reduce([view.stands_free for view in views[1:] or views])
     is_terrain = (sum(view.says_terrain[candidates] for view in views) > 0) & ~stands_free[candidates]
     return candidates[is_terrain], stands_free, max(max_building_size or USUAL_BUILDING, views[0].size)
-
-
-# Rounded eaves hang down so far (m): less than the lowest step.
-_RIM = 0.8
 
 
 @dataclass(frozen=True)

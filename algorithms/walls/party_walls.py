@@ -49,7 +49,7 @@ def split_blocks(
     tracing = trace_outlines(xyz[top, :2], cluster_id[top].astype(np.int64), size)
     if tracing is None:
         return cluster_id
-    # Roofs are held against each other by their elevations: the heights of a level roof on a slope are not level.
+    # Roofs are compared by their elevations: above sloping ground the heights of a level roof differ.
     lowest = np.full(int(cluster_id.max()) + 1, np.inf)
     np.minimum.at(lowest, cluster_id[top], (xyz[:, 2] - height)[top])
     parted = split_rows(tracing, xyz[top, 2] - lowest[cluster_id[top]], size, _TOLERANCE, monitor)

@@ -343,13 +343,14 @@ def merge_lines(lines: list[WallLine], xy: np.ndarray, scale: Scale) -> list[Wal
 def square_up(lines: list[WallLine], xy: np.ndarray) -> list[WallLine]:
     """Make lines parallel or square to each other where their points allow it; others keep their direction.
 
-    Each group of such lines gets the mean of their directions, the precise ones counting most. Lines whose points
-    deviate by more than is usual among these are not sure of their direction, nor of their place across.
+    Each group of such lines gets the mean of their directions, weighted by their precision. Where the points of a line
+    deviate by more than the median deviation, its direction and its position across are less certain.
     """
     if not lines:
         return []
     result = list(lines)
     noise = float(np.median(np.repeat([line.deviation for line in lines], [len(line.points) for line in lines])))
+    # Standard deviations of the directions, without and with what exceeds the noise.
     angles = np.array([np.arctan2(line.direction[1], line.direction[0]) for line in lines])
     sure = np.array([np.hypot(line.angle_deviation, _BUILT / _SAME) for line in lines])
     unsure = np.hypot(sure, [line.angle_excess(noise) for line in lines])
