@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""Repeat the experiment of Weinmann et al. (2017) on a simulated flight, time the voxel grid, and model a plant.
+"""Repeat the experiment of Weinmann et al. (2017) on a simulated flight; voxel grids, plants and surfaces of size.
 
     structure.py flight             merge, voxels, features with k = 50 and k_opt, shares of dimensionality
     structure.py flight --part 0.1  the same with a tenth of the scan lines
     structure.py voxels             10 million points: the voxel grid in units of reading them from LAZ
     structure.py plant              Model industry on a plant of 200 pipes, 3 tanks and 4 spheres
     structure.py plant --part 0.2   the same with a fifth of the pipes, one tank and one sphere
+    structure.py surfaces           Segment surfaces on 20 million points: processor time and memory
+    structure.py surfaces --part 0.2  the same on a fifth of them
     structure.py                    all
     structure.py --output folder    where the JSON files go (benchmarks)
 
@@ -32,10 +34,13 @@ from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud  # no
 from lidar_buildings.algorithms.packages import spatial  # noqa: E402
 from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
 from lidar_buildings.algorithms.run import run_pipeline, run_stage  # noqa: E402
+from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling  # noqa: E402
+from lidar_buildings.algorithms.segmentation.segment_surfaces import segment_surfaces  # noqa: E402
 from lidar_buildings.algorithms.simulation.simulate_plant import simulate_plant  # noqa: E402
 from lidar_buildings.algorithms.stage import LayerFeatures  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 from lidar_buildings.tests.benchmarks.results import FOLDER, Table  # noqa: E402
+from lidar_buildings.tests.benchmarks.surveys import Memory  # noqa: E402
 from lidar_buildings.tests.industry import compared  # noqa: E402
 
 LINES = STAGES["simulate_flight"].tunables["line_rate"].default
@@ -50,6 +55,9 @@ OBJECTS = {
 # A town of so much (m) has 10 million points at this density (pulses per m²).
 TOWN = {"size": 588.0, "density": 25.0}
 ROUNDS = 4
+
+# Towns of a million points each (8 pulses per m²), side by side.
+TOWNS, TOWN_SIDE = 18, 345.0
 
 
 def made(name: str, cloud: Any = None, **tunables: Any) -> Cloud:
@@ -149,6 +157,28 @@ def _spheres_found(true: LayerFeatures, found: LayerFeatures) -> tuple[int, int,
     return int(same.any(axis=1).sum()), len(center), int((~same.any(axis=0)).sum())
 
 
+def surfaces(part: float) -> list[Table]:
+    """Print what Segment surfaces takes on towns side by side: processor time, and memory beyond the cloud."""
+    town = made("simulate_town", size=TOWN_SIDE).get("xyz").round(3)
+    count = max(1, round(TOWNS * part))
+    xyz = np.empty((count * len(town), 3))
+    for number in range(count):
+        xyz[number * len(town) : (number + 1) * len(town)] = town + [number * TOWN_SIDE, 0, 0]
+    classification = np.ones(len(xyz), np.uint8)
+    sampling = CloudSampling.of(xyz, classification)
+    tunables = {"noise": sampling.noise, "density": sampling.surface_density}
+    table = Table("surfaces", "planarity", "points", "segments", "cpu µs per point", "bytes per point beyond the cloud")
+    for planarity in ("local", "global"):
+        start_cpu = time.process_time()
+        with Memory() as memory:
+            time.sleep(1)
+            before = memory.peak
+            ids = segment_surfaces(xyz, classification, planarity=planarity, **tunables)
+        each = (time.process_time() - start_cpu) / len(xyz), (memory.peak - before) / len(xyz)
+        table.add(planarity, len(xyz), int(ids.max()), 1e6 * each[0], each[1])
+    return [table]
+
+
 def timed(work: Callable[[], Cloud]) -> tuple[tuple[float, float], Cloud]:
     """Return the seconds on the wall and over all cores that ``work`` takes, and what it makes."""
     start, start_cpu = time.perf_counter(), time.process_time()
@@ -159,13 +189,16 @@ def timed(work: Callable[[], Cloud]) -> tuple[tuple[float, float], Cloud]:
 def main() -> None:
     """Print what is asked for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("parts", nargs="*", choices=["flight", "voxels", "plant", []], help="which tables (all)")
+    parser.add_argument(
+        "parts", nargs="*", choices=["flight", "voxels", "plant", "surfaces", []], help="which tables (all)"
+    )
     parser.add_argument("--part", type=float, default=1.0, help="share of the scan lines or of the plant (1)")
     parser.add_argument("--output", type=Path, default=FOLDER, help="folder of the JSON files (benchmarks)")
     chosen = parser.parse_args()
     tables = flight(chosen.part) if "flight" in (chosen.parts or ["flight"]) else []
     tables += voxels() if "voxels" in (chosen.parts or ["voxels"]) else []
     tables += plant(chosen.part) if "plant" in (chosen.parts or ["plant"]) else []
+    tables += surfaces(chosen.part) if "surfaces" in (chosen.parts or ["surfaces"]) else []
     for table in tables:
         print(table.write(chosen.output))
 
