@@ -17,8 +17,11 @@ from ..segmentation.top_surface import TopSurface
 from ..stage import Param, stage
 from .roof_extent import FOOT, GAP, RoofExtent, amid_rough, without_vehicles
 
-# Cells hold at least a point where the roof was seen: this many point spacings, and no less than half a meter.
-_CELL_SPACINGS, _LEAST_CELL = 1.2, 0.5
+# Side of the cells (point spacings): where a roof was seen, they hold at least a point.
+_CELL_SPACINGS = 1.2
+
+# Least side of the cells (m).
+_LEAST_CELL = 0.5
 
 # Points lower than this stand on the ground (kerbs, plants, steps) and are no wall, m.
 _WALL_FOOT = 0.5
@@ -26,21 +29,38 @@ _WALL_FOOT = 0.5
 # Points so far above and below the roof of a building are looked for on its surfaces, m.
 _AT_ROOF = 1.0
 
-# Gaps are closed over so many point spacings, and no less and no more than so far (m).
-_GAP_SPACINGS, _LEAST_GAP, _MOST_GAP = 4.0, 3.0, 20.0
+# Largest gap that is closed (point spacings).
+_GAP_SPACINGS = 4.0
 
-# What stands on a roof is a chimney or dormer where it covers less than this share of the cells around.
-_SPARSE, _AROUND = 0.3, 7
+# Least value of that gap (m).
+_LEAST_GAP = 3.0
 
-# Beside a roof, what is lower than this share of its height may be bushes, but these grow no higher than so far (m).
-_BUSHES, _HIGHEST_BUSHES = 0.33, 2.5
+# Largest value of that gap (m), that of the tunable.
+_MOST_GAP = 20.0
+
+# Share of the cells around that an object on a roof covers, below which it is a chimney or a dormer and no crown.
+_SPARSE = 0.3
+
+# Side (cells) of the square in which these are counted.
+_AROUND = 7
+
+# Height (share of the roof's height) up to which objects beside a roof may be bushes.
+_BUSHES = 0.33
+
+# Largest height (m) of bushes.
+_HIGHEST_BUSHES = 2.5
 
 # The wall of a higher roof stands no farther from it than this, m: eaves reach out, and roof surfaces end before them.
 _WALL_REACH = 1.0
 
-# What stands beside a building on patches of two cells square, over half of it passed by the beam within five cells, is
-# a crown, and what it touches isn't wall.
-_CROWN, _PASSED, _WITHIN = np.ones((2, 2), bool), 0.5, 5
+# Smallest patch of cells beside a building that may be a crown: walls are narrower.
+_CROWN = np.ones((2, 2), bool)
+
+# Least share of the points of a crown that the beam passed; what a crown touches is no wall.
+_PASSED = 0.5
+
+# Side (cells) of the square in which this share is measured.
+_WITHIN = 5
 
 _EIGHT = np.ones((3, 3), bool)
 

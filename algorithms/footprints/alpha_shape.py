@@ -16,11 +16,17 @@ from ..geometry.groups import components
 from ..geometry.rings import signed_area
 from ..packages import spatial
 
-# Between this percentile of the points' own spacing and the longest edge: room for what chance leaves open.
-_PERCENTILE, _ROOM = 95, 2.0
+# Percentile of the points' own spacing that the longest edge follows.
+_PERCENTILE = 95
 
-# In terms of the mean point spacing: no shorter, which would tear roofs, and no longer, which would fill courtyards.
-_SHORTEST, _LONGEST = 4.0, 8.0
+# The longest edge as a multiple of this percentile: chance leaves wider gaps.
+_ROOM = 2.0
+
+# Least value of the longest edge (mean point spacings): a shorter one would tear roofs.
+_SHORTEST = 4.0
+
+# Largest value of the longest edge (mean point spacings): a longer one would fill courtyards.
+_LONGEST = 8.0
 
 # Cells (times the mean point spacing) in which the inside of an area is told: a lattice of their middles has no
 # triangle with an edge as long as the shortest of the longest edges.
@@ -32,10 +38,15 @@ _DEEP_CELLS = 2
 # Buildings whose points are closer than so many spacings touch; chance leaves wider gaps in one roof of twenty.
 _TOUCHING = 3.0
 
-# In terms of the mean point spacing, measured on simulated roofs: how far the outermost points lie inside the edge of a
-# roof on average. Where non-building points are seen beside them, the edge is half-way and a little more, since those
-# nearest to the roof stand ahead of the others; those beyond the last distance are what the roof leaves to be seen.
-_INSET, _AHEAD, _SEEN = 0.3, 0.2, 2.0
+# Mean distance of the outermost points from the edge of their roof (mean point spacings), on simulated roofs.
+_INSET = 0.3
+
+# Distance by which the edge lies beyond the middle between the outermost points and the non-building points beside
+# them (mean point spacings), on simulated roofs: those nearest to the roof stand ahead of the others.
+_AHEAD = 0.2
+
+# Distance (mean point spacings) from which non-building points no longer show where the edge is.
+_SEEN = 2.0
 
 
 @dataclass(frozen=True)

@@ -16,9 +16,14 @@ from .bent_roofs import bent_roofs, with_bent_roofs
 from .party_walls import split_blocks
 from .stacked_roofs import join_stacked
 
-# Surfaces of one roof lie within this distance (m), or so many point spacings; roofs of two buildings seldom do.
-# Farther apart than a lane is wide (m) they never are one roof, however few points there are.
-_LEAST_GAP, _GAP_SPACINGS, _MOST_GAP = 0.6, 3.0, 5.0
+# Least distance (m) within which surfaces are of one roof: roofs of two buildings are seldom as close.
+_LEAST_GAP = 0.6
+
+# The same in point spacings, where that is more.
+_GAP_SPACINGS = 3.0
+
+# Largest value of that distance (m), the width of a lane, however few points there are.
+_MOST_GAP = 5.0
 
 
 @stage(
