@@ -155,8 +155,9 @@ def segment_surfaces(
     128 directions of planes through each point. In *global* mode planes start from the smoothest seed of each
     neighborhood and are joined in mutually best pairs where they meet.
 
-    The neighbors and the plane of each point are kept, of seeds that hold one another only the sets: 100 bytes for each
-    point beyond the cloud (120 in *global* mode), 30 more where noise is left out and 4 for each neighbor beyond 12.
+    The neighbors and the plane of each point are kept; links between seeds are not, only the sets that they join. The
+    memory beyond the cloud is 100 bytes for each point, 120 in *global* mode, with 12 neighbors; each further neighbor
+    takes 4 bytes, and a copy without noise 30.
 
     References
     ----------
