@@ -33,7 +33,7 @@ from ..algorithms.cloud.outputs import (
     os_errors_as_messages,
     same_file,
 )
-from ..algorithms.stage import Monitor, TextFile
+from ..algorithms.stage import Monitor
 from .clouds import reads_las
 from .memory_files import copy_folder, memory_folder
 from .rasters import check_raster
@@ -149,11 +149,6 @@ def _check_target(definition, path: Path, inputs: list) -> None:
         if any(same_file(file, source) for source in inputs):
             raise ValueError(f"The output {file} is also an input; choose another name.")
     _check_file(path)
-
-
-def file_filter(file: TextFile) -> str:
-    """Return the filter of the dialog that asks for a text file: a line for each format."""
-    return ";;".join(f"{called} (*{' *'.join(endings)})" for called, endings in file.formats.items())
 
 
 def _check_ending(definition, path: Path) -> None:

@@ -24,7 +24,7 @@ from ..algorithms.cloud.files import count_points, read_cloud, read_extent
 from ..algorithms.cloud.outputs import replacing
 from ..algorithms.help import stage_help
 from ..algorithms.run import Outcome, run_stage
-from ..algorithms.stage import FileContent, MapFrame, Monitor, Raster, RasterSurface, Stage, TextFile
+from ..algorithms.stage import Monitor, Raster, RasterSurface, Stage
 from .clouds import CloudParameter, cloud_path, files_read
 from .crs import crs_units, make_in_main_thread, renew_in_main_thread
 from .declared import DeclaredAlgorithm
@@ -44,13 +44,14 @@ from .inputs import (
     subject_of,
     with_help,
 )
-from .layer_outputs import BETWEEN_CHECKS, UNWANTED, write_layer
+from .layer_outputs import UNWANTED, write_layer
 from .memory import warn_if_memory_is_short
-from .outputs import all_in_place, check_targets, file_filter, write_for_qgis
+from .outputs import all_in_place, check_targets, write_for_qgis
 from .parameters import automatic_numbers, number_outputs, parameter, tunable_values, used_name
 from .places import Place, place_of_cloud, place_of_layers
 from .rasters import write_raster
 from .styles import cloud_style, layer_style, show_on_load
+from .text_files import file_parameter, write_text
 from .vectors import SOURCE_TYPES, plain
 
 # How far the progress is when clouds are read, when the stage is done, and when the cloud is written.
@@ -124,10 +125,7 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
             image = QgsProcessingParameterRasterDestination(raster.name.upper(), raster.title, optional=optional)
             self.addParameter(with_help(image, "A GeoTIFF, tiled and compressed."))
         for file in stage.files:
-            text = QgsProcessingParameterFileDestination(
-                file.name.upper(), file.title, file_filter(file), optional=True
-            )
-            self.addParameter(with_help(text, f"A text file: {' or '.join(file.formats)}, as its name ends."))
+            self.addParameter(file_parameter(file))
         if self.stage.measures:
             page = QgsProcessingParameterFileDestination(REPORT, "Report", "HTML files (*.html)", optional=True)
             self.addParameter(with_help(page, "A page that shows the numbers."))
@@ -208,7 +206,8 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
                 results.update(self._write_raster(raster, surface, place, run.parameters, context, monitor))
             for file in self.stage.files:
                 content = outcome.files[file.name]
-                results.update(self._write_text(file, content, place, run.parameters, context, monitor))
+                part = monitor.part(_WRITTEN, _WRITTEN)
+                results.update(write_text(self, file, content, place, run.parameters, context, part))
             if outcome.report is not None:
                 results.update(self._write_report(outcome.report.html, run.parameters, context))
             monitor.progress(1.0)
@@ -270,28 +269,6 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         target = self.parameterAsOutputLayer(parameters, name, context)
         write_raster(raster, surface, place, Path(target), monitor.part(_WRITTEN, _WRITTEN))
         show_on_load(context, target, "Raster", layer_style(raster))
-        return {name: target}
-
-    def _write_text(
-        self,
-        file: TextFile,
-        content: FileContent,
-        place: Place,
-        parameters: dict,
-        context: QgsProcessingContext,
-        monitor: Monitor,
-    ) -> dict:
-        """Write a text file, if it is wanted; return its output."""
-        name = file.name.upper()
-        target = "" if parameters.get(name) in UNWANTED else self.parameterAsFileOutput(parameters, name, context)
-        if not target:
-            return {}
-        frame = MapFrame(place.to_map, place.crs.authid())
-        with replacing(Path(target)) as stream:
-            for number, piece in enumerate(content.pieces(file.format_of(target), frame)):
-                if number % BETWEEN_CHECKS == 0:
-                    monitor.progress(_WRITTEN)
-                stream.write(piece.encode())
         return {name: target}
 
     def _write_report(self, html: str, parameters: dict, context: QgsProcessingContext) -> dict:

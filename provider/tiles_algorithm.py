@@ -24,11 +24,12 @@ from qgis.core import (
 
 from ..algorithms.cloud.outputs import replacing
 from ..algorithms.pipeline import Output
-from ..algorithms.stage import LayerFeatures, Raster
+from ..algorithms.stage import FileContent, LayerFeatures, Raster
 from ..algorithms.tiling.mosaics import RasterMosaic
 from ..algorithms.tiling.run_in_tiles import TilesOutcome, run_in_tiles
 from ..algorithms.tiling.survey import Survey, crs_of_survey, files_of_survey
 from ..algorithms.tiling.tiled_pipelines import TiledPipeline, tiled_pipeline_help
+from ..algorithms.tiling.tiled_steps import files_of
 from ..algorithms.tiling.workers import Workers
 from .clouds import SurveyParameter, survey_paths
 from .crs import crs_units, make_in_main_thread, renew_in_main_thread
@@ -45,6 +46,7 @@ from .parameters import tunable_values
 from .rasters import write_mosaic
 from .styles import layer_style, show_on_load
 from .surveys import VPC, WGS84, check_vpc, place_of_survey, write_survey
+from .text_files import file_parameter, write_text
 from .vectors import SOURCE_TYPES
 
 BLOCK_SIDE, PROCESSES, SCHEDULER, CERTIFICATES, COMPRESSED = (
@@ -103,6 +105,8 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         for output in self.tiled.rasters:
             image = QgsProcessingParameterRasterDestination(output.name.upper(), _raster(output).title, optional=True)
             self.addParameter(with_help(image, "A GeoTIFF, tiled and compressed."))
+        for file in files_of(self.tiled.pipeline).values():
+            self.addParameter(file_parameter(file[0]))
         if self.tiled.report:
             page = QgsProcessingParameterFileDestination(REPORT, "Report", "HTML files (*.html)", optional=True)
             self.addParameter(with_help(page, "A page that shows the numbers."))
@@ -205,8 +209,8 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
     def _run(
         self, folder: Path, parameters: dict, context: QgsProcessingContext, monitor: FeedbackMonitor, results: dict
     ) -> TilesOutcome:
-        """Run the survey, and write the rasters that are wanted, which are added to the results."""
-        side = parameters.get(BLOCK_SIDE)
+        """Run the survey, and write the rasters and text files that are wanted, which are added to the results."""
+        side, files = parameters.get(BLOCK_SIDE), files_of(self.tiled.pipeline)
         wanted = {one.name: one for one in self.tiled.rasters if parameters.get(one.name.upper()) not in UNWANTED}
 
         def find_layers(survey: Survey) -> dict[str, Optional[LayerFeatures]]:
@@ -221,6 +225,10 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
                 show_on_load(context, target, "Raster", layer_style(raster))
                 results[name] = target
 
+        def take_file(survey: Survey, name: str, content: FileContent) -> None:
+            part, place = monitor.part(_DONE, _DONE), place_of_survey(survey)
+            results.update(write_text(self, files[name][0], content, place, parameters, context, part))
+
         return run_in_tiles(
             self.tiled.pipeline,
             self.paths,
@@ -233,6 +241,7 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
             extent=self.extent,
             find_layers=find_layers,
             take_raster=take_raster if wanted else None,
+            take_file=take_file,
             **self.tunables,
         )
 

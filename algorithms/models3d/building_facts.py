@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -30,7 +30,7 @@ _MANSARD = 12.0
 
 BUILDING_FIELDS = (
     Field("id", int, "number of the building, from 1"),
-    Field("building", str, "footprint that it stands on: its attribute id, or its number"),
+    Field("building", str, "footprint that it stands on: its attribute id, or its number", of="footprints"),
     Field("level", str, "level of detail that it has: 1.2, 1.3 or 2.2"),
     Field("reason", str, "why it has not the level that was wanted, empty where it has"),
     Field("roof_type", str, "flat, stepped flat, shed, gable, hip, mansard or other"),
@@ -47,7 +47,7 @@ BUILDING_FIELDS = (
 )
 ROOF_FIELDS = (
     Field("id", int, "number of the face, from 1"),
-    Field("building", str, "building that it is part of, as in the layer of buildings"),
+    Field("building", str, "building that it is part of, as in the layer of buildings", of="footprints"),
     Field("slope", float, "slope", "°"),
     Field("azimuth", float, "direction that it faces, clockwise from north; empty for level faces", "°"),
     Field("area", float, "area, in the slope", "m²"),
@@ -57,7 +57,7 @@ ROOF_FIELDS = (
 )
 WALL_FIELDS = (
     Field("id", int, "number of the face, from 1"),
-    Field("building", str, "building that it is part of, as in the layer of buildings"),
+    Field("building", str, "building that it is part of, as in the layer of buildings", of="footprints"),
     Field("azimuth", float, "direction that it faces, clockwise from north", "°"),
     Field("area", float, "area", "m²"),
 )
@@ -70,6 +70,28 @@ class NamedModel:
     name: str
     rings: list
     model: BuildingModel
+
+    def record(self) -> dict[str, Any]:
+        """Return it as plain values, which JSON keeps to the last bit."""
+        facts = {field.name: getattr(self.model, field.name) for field in fields(self.model) if field.name != "solids"}
+        solids = {level: [_plain_solid(solid) for solid in some] for level, some in self.model.solids.items()}
+        face_rms = [(int(plane), float(rms)) for plane, rms in self.model.face_rms.items()]
+        rings = [np.asarray(ring).tolist() for ring in self.rings]
+        return {"rings": rings, "model": {**facts, "face_rms": face_rms}, "solids": solids}
+
+    @classmethod
+    def of_record(cls, record: dict[str, Any], name: str) -> NamedModel:
+        """Return the model of plain values, on the footprint of a name."""
+        solids = {
+            level: [Solid(**{**solid, "vertices": np.array(solid["vertices"])}) for solid in some]
+            for level, some in record["solids"].items()
+        }
+        facts = {**record["model"], "face_rms": {plane: rms for plane, rms in record["model"]["face_rms"]}}
+        return cls(name, [np.array(ring) for ring in record["rings"]], BuildingModel(**facts, solids=solids))
+
+
+def _plain_solid(solid: Solid) -> dict[str, Any]:
+    return {**vars(solid), "vertices": solid.vertices.tolist()}
 
 
 def slope_and_azimuth(solid: Solid, face: int) -> tuple[float, float]:

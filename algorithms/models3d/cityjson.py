@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator
 from typing import Any
 
 import numpy as np
@@ -26,45 +26,57 @@ _SURFACES = {ROOF: "RoofSurface", WALL: "WallSurface", GROUND: "GroundSurface"}
 _DECIMALS = 3
 
 
-def cityjson_pieces(models: Sequence[NamedModel], called: str, frame: MapFrame) -> Iterator[str]:
-    """Yield the text of a CityJSON file, or, for CityJSONSeq, its lines.
+def cityjson_pieces(models: Collection[NamedModel], called: str, frame: MapFrame) -> Iterator[str]:
+    """Yield the text of a CityJSON file, or, for CityJSONSeq, its lines; CityJSON has all vertices in memory.
 
     References
     ----------
     CityJSON Specifications 2.0.1, sections 2 to 6; CityJSONSeq, RFC 8142 without record separators.
     """
-    mapped = [[frame.to_map(solid.vertices) for solid in _solids(one)] for one in models]
-    every = np.concatenate([np.zeros((0, 3)), *(places for of_one in mapped for places in of_one)])
-    low, high = (every.min(axis=0), every.max(axis=0)) if len(every) else (np.zeros(3), np.zeros(3))
+    low, high = _extent(models, frame)
     translate = np.floor(low)
-    head = _head(low, high, translate, frame.crs, bool(len(every)))
-    names = unique_names([one.name for one in models])
+    head = _head(low, high, translate, frame.crs, len(models) > 0)
+    names = unique_names(one.name for one in models)
     if called == CITYJSON_SEQ:
         yield _dumped({**head, "CityObjects": {}, "vertices": []}) + "\n"
-        for one, name, places in zip(models, names, mapped):
-            vertices = _Vertices(translate)
-            feature = {"type": "CityJSONFeature", "id": name, "CityObjects": {name: _building(one, places, vertices)}}
+        for one, name in zip(models, names):
+            vertices = _Vertices(translate, frame)
+            feature = {"type": "CityJSONFeature", "id": name, "CityObjects": {name: _building(one, vertices)}}
             yield _dumped({**feature, "vertices": vertices.rows}) + "\n"
         return
-    vertices = _Vertices(translate)
+    vertices = _Vertices(translate, frame)
     yield _dumped(head)[:-1] + ',"CityObjects":{'
-    for number, (one, name, places) in enumerate(zip(models, names, mapped)):
-        yield ("," if number else "") + f"\n{json.dumps(name)}:{_dumped(_building(one, places, vertices))}"
+    for number, (one, name) in enumerate(zip(models, names)):
+        yield ("," if number else "") + f"\n{json.dumps(name)}:{_dumped(_building(one, vertices))}"
     yield '\n},"vertices":' + _dumped(vertices.rows) + "}\n"
 
 
-def unique_names(names: Sequence[str]) -> list[str]:
-    """Return names with a number behind those that came before: parts of one footprint share a name."""
+def _extent(models: Iterable[NamedModel], frame: MapFrame) -> tuple[np.ndarray, np.ndarray]:
+    """Return the least and greatest coordinates of all models, in map units; 0 without any."""
+    ends = [(places.min(axis=0), places.max(axis=0)) for one in models for places in _places(one, frame)]
+    if not ends:
+        return np.zeros(3), np.zeros(3)
+    low, high = zip(*ends)
+    return np.min(low, axis=0), np.max(high, axis=0)
+
+
+def _places(one: NamedModel, frame: MapFrame) -> Iterator[np.ndarray]:
+    """Yield the vertices of the solids of a model, in map units."""
+    for solids in one.model.solids.values():
+        for solid in solids:
+            yield frame.to_map(solid.vertices)
+
+
+def unique_names(names: Iterable[str]) -> Iterator[str]:
+    """Yield names with a number behind those that came before: parts of one footprint share a name."""
     taken: set[str] = set()
-    unique = []
     for name in names:
         free, number = name, 1
         while free in taken:
             number += 1
             free = f"{name}-{number}"
         taken.add(free)
-        unique.append(free)
-    return unique
+        yield free
 
 
 def _head(low: np.ndarray, high: np.ndarray, translate: np.ndarray, crs: str, is_filled: bool) -> dict[str, Any]:
@@ -85,15 +97,15 @@ def _head(low: np.ndarray, high: np.ndarray, translate: np.ndarray, crs: str, is
 class _Vertices:
     """The vertices of a file or feature, each place once."""
 
-    def __init__(self, translate: np.ndarray) -> None:
-        self.translate = translate
+    def __init__(self, translate: np.ndarray, frame: MapFrame) -> None:
+        self.translate, self.frame = translate, frame
         self.rows: list[list[int]] = []
         self._number: dict[tuple[int, ...], int] = {}
 
-    def numbers(self, places: np.ndarray) -> list[int]:
-        """Return the numbers of places (n, 3), map units; new ones are added."""
+    def numbers(self, local: np.ndarray) -> list[int]:
+        """Return the numbers of places (n, 3), local m; new ones are added."""
         found = []
-        for row in np.rint((places - self.translate) / _SCALE).astype(np.int64).tolist():
+        for row in np.rint((self.frame.to_map(local) - self.translate) / _SCALE).astype(np.int64).tolist():
             key = tuple(row)
             if key not in self._number:
                 self._number[key] = len(self.rows)
@@ -102,16 +114,11 @@ class _Vertices:
         return found
 
 
-def _solids(one: NamedModel) -> list[Solid]:
-    return [solid for solids in one.model.solids.values() for solid in solids]
-
-
-def _building(one: NamedModel, places: list[np.ndarray], vertices: _Vertices) -> dict[str, Any]:
+def _building(one: NamedModel, vertices: _Vertices) -> dict[str, Any]:
     """Return the city object of a building with a geometry for each level of detail."""
-    left = iter(places)
     geometry = []
     for level, solids in one.model.solids.items():
-        parts = [_shell(one, solid, vertices.numbers(next(left)), level == one.model.level) for solid in solids]
+        parts = [_shell(one, solid, vertices.numbers(solid.vertices), level == one.model.level) for solid in solids]
         surfaces = [surface for _, of_part in parts for surface in of_part]
         first = np.cumsum([0, *(len(of_part) for _, of_part in parts)]).tolist()
         values = [[list(range(start, end))] for start, end in zip(first, first[1:])]

@@ -78,8 +78,8 @@ _CLOSE = 0.01
         Layer("roofs", "Roofs", "Polygon", ROOF_FIELDS, style="model_roofs"),
     ),
     files=(
-        TextFile("cityjson", "CityJSON", cityjson.FORMATS),
-        TextFile("obj", "Wavefront OBJ", wavefront.FORMATS),
+        TextFile("cityjson", "CityJSON", cityjson.FORMATS, cityjson.cityjson_pieces, NamedModel, "footprints"),
+        TextFile("obj", "Wavefront OBJ", wavefront.FORMATS, wavefront.obj_pieces, NamedModel, "footprints"),
     ),
 )
 def reconstruct_roofs(
@@ -207,7 +207,7 @@ def reconstruct_roofs(
     )
     models = _modelled(building, ground, outlines, settings, monitor)
     layers = _building_layer(models), _face_layer(models, WALL), _face_layer(models, ROOF)
-    return *layers, _file(models, cityjson.cityjson_pieces), _file(models, wavefront.obj_pieces)
+    return *layers, FileContent(models, cityjson.cityjson_pieces), FileContent(models, wavefront.obj_pieces)
 
 
 @dataclass(frozen=True)
@@ -338,8 +338,3 @@ def _layer(geometries: list, rows: list[dict[str, Any]], fields: tuple) -> Layer
     return LayerFeatures(
         geometries, {"id": list(range(1, len(rows) + 1)), **{name: [row[name] for row in rows] for name in names}}
     )
-
-
-def _file(models: list[NamedModel], pieces: Callable) -> FileContent:
-    """Return the content of a file of all models."""
-    return FileContent(lambda called, frame: pieces(models, called, frame))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator
 
 import numpy as np
 
@@ -20,7 +20,7 @@ FORMATS = {OBJ: (".obj",)}
 _ROUND = 1000.0
 
 
-def obj_pieces(models: Sequence[NamedModel], called: str, frame: MapFrame) -> Iterator[str]:
+def obj_pieces(models: Collection[NamedModel], called: str, frame: MapFrame) -> Iterator[str]:
     """Yield the text of an OBJ file: an object per building, a group per kind of face.
 
     Notes
@@ -30,12 +30,12 @@ def obj_pieces(models: Sequence[NamedModel], called: str, frame: MapFrame) -> It
     """
     offset = np.zeros(3)
     if models:
-        first = frame.to_map(models[0].model.best[0].vertices[:1])[0]
+        first = frame.to_map(next(iter(models)).model.best[0].vertices[:1])[0]
         offset[:2] = np.floor(first[:2] / _ROUND) * _ROUND
     yield f"# Buildings at the best level of detail of each, {frame.crs or 'no CRS'}\n"
     yield f"# offset {offset[0]:.0f} {offset[1]:.0f} 0\n"
     number = 1
-    for one, name in zip(models, unique_names([one.name for one in models])):
+    for one, name in zip(models, unique_names(one.name for one in models)):
         yield "o building_" + re.sub(r"[^\w.-]+", "_", name) + "\n"
         for solid in one.model.best:
             places = frame.to_map(solid.vertices) - offset

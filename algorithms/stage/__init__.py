@@ -34,6 +34,7 @@ from .declaration import DIMENSION, SAMPLING, VALUES, Stage, stage
 from .inputs_outputs import (
     Field,
     FileContent,
+    FileItem,
     InputLayer,
     Layer,
     LayerFeatures,
@@ -56,6 +57,7 @@ __all__ = [
     "LayerFeatures",
     "Field",
     "FileContent",
+    "FileItem",
     "MapFrame",
     "TextFile",
     "Layer",

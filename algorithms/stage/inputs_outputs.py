@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Callable, Optional
+from typing import Any, Callable, Optional, Protocol
 
 import numpy as np
 
@@ -15,7 +15,7 @@ class Field:
     """One attribute of a layer that a stage makes (``type`` is int, float or str).
 
     Values with an ``axis`` (0 east, 1 north) are positions: in local meters from the stage, in map units in the layer.
-    ``of`` is the layer of the stage whose ``id`` a field holds: what it belongs to.
+    ``of`` is the layer, made by the stage or given to it, whose ``id`` a field holds: what it belongs to.
     """
 
     name: str
@@ -156,16 +156,44 @@ class RasterSurface:
 
 
 @dataclass(frozen=True)
+class MapFrame:
+    """Where local meters are on the map: what turns them (m, 3) into coordinates, and the CRS ("EPSG:28992" or "")."""
+
+    to_map: Callable[[np.ndarray], np.ndarray]
+    crs: str = ""
+
+
+class FileItem(Protocol):
+    """One item of a :class:`TextFile`, which can be kept as JSON."""
+
+    @property
+    def name(self) -> str:
+        """What it is called: the ``id`` of the feature that it belongs to."""
+
+    def record(self) -> dict[str, Any]:
+        """Return it as plain values."""
+
+    @classmethod
+    def of_record(cls, record: dict[str, Any], name: str) -> Any:
+        """Return the item of plain values, under a name."""
+
+
+@dataclass(frozen=True)
 class TextFile:
     """A text file that a stage makes, in a format that its name tells.
 
     ``name`` becomes the output's name (``CITYJSON``); ``formats`` are the formats by what they are called, each with
-    the endings of its files, the preferred one first.
+    the endings of its files, the preferred one first. ``write`` returns the text, in parts, of any number of items in
+    a format and for a map; it goes through the items as often as it likes, and keeps none. ``item`` is what they are,
+    a class of :class:`FileItem`, and ``of`` the layer, made by the stage or given to it, whose ``id`` is their name.
     """
 
     name: str
     title: str
     formats: Mapping[str, tuple[str, ...]]
+    write: Callable[[Collection[Any], str, MapFrame], Iterator[str]]
+    item: type[FileItem]
+    of: str
 
     def format_of(self, file_name: str) -> str:
         """Return the format that a file's name tells.
@@ -183,18 +211,15 @@ class TextFile:
 
 
 @dataclass(frozen=True)
-class MapFrame:
-    """Where local meters are on the map: what turns them (m, 3) into coordinates, and the CRS ("EPSG:28992" or "")."""
-
-    to_map: Callable[[np.ndarray], np.ndarray]
-    crs: str = ""
-
-
-@dataclass(frozen=True)
 class FileContent:
-    """The content of a :class:`TextFile`: ``pieces`` returns its text, in parts, in a format and for a map."""
+    """The content of a :class:`TextFile`: its items, and what writes them."""
 
-    pieces: Callable[[str, MapFrame], Iterator[str]]
+    items: Collection[Any]
+    write: Callable[[Collection[Any], str, MapFrame], Iterator[str]]
+
+    def pieces(self, called: str, frame: MapFrame) -> Iterator[str]:
+        """Return the text, in parts, in a format and for a map."""
+        return self.write(self.items, called, frame)
 
 
 @dataclass(frozen=True)

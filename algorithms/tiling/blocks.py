@@ -17,7 +17,7 @@ from ..run import Results, run_pipeline
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Cancelled, LayerFeatures, Monitor, RasterSurface
 from .survey import Survey, Window
-from .tiled_steps import in_blocks, owners
+from .tiled_steps import files_of, in_blocks, owners
 
 # Dimensions that number what points belong to: each block has numbers of its own, which are joined afterwards.
 NUMBERED = ("segment_id", "cluster_id")
@@ -108,6 +108,8 @@ class BlockResult:
         are counted from the survey's origin, northward and eastward.
     layers : dict of str to LayerFeatures
         Features that have a part in the block, in meters from the survey's origin.
+    items : dict of str to list
+        Of each text file the records of its items that belong to these features, with their names in the block.
     messages : list of str
         Warnings, each once.
     tries : ndarray of shape (k, 4)
@@ -126,6 +128,7 @@ class BlockResult:
     rasters: dict[str, np.ndarray] = field(default_factory=dict)
     lattices: dict[str, np.ndarray] = field(default_factory=dict)
     layers: dict[str, LayerFeatures] = field(default_factory=dict)
+    items: dict[str, list[tuple[str, dict[str, Any]]]] = field(default_factory=dict)
     messages: list[str] = field(default_factory=list)
     tries: np.ndarray = field(default_factory=lambda: np.zeros((0, 4)))
 
@@ -136,6 +139,7 @@ class BlockResult:
             arrays.update({f"{kind}.{name}": values for name, values in getattr(self, kind).items()})
         for name, features in self.layers.items():
             arrays.update({f"layer.{name}.{key}": values for key, values in _flat(features).items()})
+        arrays.update({f"items.{name}": _text(items) for name, items in self.items.items()})
         arrays["messages"] = _text(self.messages)
         with replacing(path) as stream:
             np.savez(stream, **arrays)
@@ -172,6 +176,12 @@ class BlockResult:
                 for kind in ("inside", "beside")
             ]
         return kinds[0], kinds[1]
+
+    @classmethod
+    def items_of(cls, path: Path, name: str) -> list[tuple[str, dict[str, Any]]]:
+        """Return the items of one text file in a file of :meth:`write`, none where the block has no points."""
+        with np.load(path, allow_pickle=False) as stored:
+            return json.loads(bytes(stored[f"items.{name}"])) if f"items.{name}" in stored.files else []
 
     @classmethod
     def raster(cls, path: Path, name: str) -> np.ndarray:
@@ -263,6 +273,9 @@ def _run(task: BlockTask, window: Window, box: np.ndarray, monitor: Monitor) -> 
     result.dimensions = {name: of_all[core] for name, of_all in values.items()}
     _number(result, window, values, stays, places, task.block)
     is_cut = _keep_layers(result, pipeline, made, task, box)
+    for name, (_, of) in files_of(pipeline).items():
+        kept = set(_names(result.layers[of].columns["id"]))
+        result.items[name] = [(one.name, one.record()) for one in made.files[name].items if one.name in kept]
     for name, surface in made.rasters.items():
         result.rasters[name], result.lattices[name] = _cropped(surface, task.block.box - task.survey.origin[:2])
     result.messages = list(dict.fromkeys(monitor.warnings))
@@ -297,13 +310,18 @@ def _keep_layers(result: BlockResult, pipeline: Pipeline, made: Results, task: B
         features = made.layers[name]
         if name in owner:
             column, of = owner[name]
-            kept = np.isin(np.asarray(features.columns[column]), np.asarray(result.layers[of].columns["id"]))
+            kept = np.isin(_names(features.columns[column]), _names(result.layers[of].columns["id"]))
         else:
             boxes = feature_boxes(features) + task.survey.origin[:2]
             kept = (boxes[:, 0] < block[1]).all(axis=1) & (boxes[:, 1] >= block[0]).all(axis=1)
             is_cut |= bool((kept & _cut_off(boxes, box, task.survey.box)).any())
         result.layers[name] = take_features(features, np.flatnonzero(kept))
     return is_cut
+
+
+def _names(ids: Any) -> np.ndarray:
+    """Return numbers or names of features (m,) as text."""
+    return np.asarray(ids).astype(str)
 
 
 def _cropped(surface: RasterSurface, box: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -163,13 +163,19 @@ def join_belonging(
     if not len(features):
         return features
     of_block = np.repeat(np.arange(len(layers)), [len(layer) for layer in layers])
-    becomes = {tuple(one): number for number, one in enumerate(kept.tolist(), 1)}
-    now = np.array([becomes.get(one, 0) for one in zip(of_block.tolist(), features.columns[column])], np.int64)
+    becomes = new_names(kept)
+    owner = features.columns[column]
+    now = np.array([becomes.get((block, str(one)), 0) for block, one in zip(of_block.tolist(), owner)], np.int64)
     rows = np.flatnonzero(now)
     rows = rows[np.argsort(now[rows], kind="stable")]
     joined = _numbered(features, rows)
-    joined.columns[column] = now[rows].tolist()
+    joined.columns[column] = [type(owner[0])(number) for number in now[rows].tolist()]
     return joined
+
+
+def new_names(kept: np.ndarray) -> dict[tuple[int, str], int]:
+    """Return what features are called now by their block and what they were called there, of ``kept`` (m, 2)."""
+    return {(block, str(one)): number for number, (block, one) in enumerate(kept.tolist(), 1)}
 
 
 def _numbered(features: LayerFeatures, rows: np.ndarray) -> LayerFeatures:

@@ -25,13 +25,14 @@ from ..cloud.units import Resolver, Units
 from ..pipeline import REPORT, Pipeline
 from ..run import counted, has_several_returns, run_pipeline, run_stage
 from ..sampling.cloud_sampling import CloudSampling
-from ..stage import LayerFeatures, Monitor, Report
+from ..stage import FileContent, LayerFeatures, Monitor, Report
 from .blocks import REFERRING, Block, BlockResult, BlockTask, StoppableMonitor, work_on_block
 from .cutting import cut_into_tiles
+from .joined_files import join_files
 from .joining import join_belonging, join_features, join_numbers
 from .mosaics import RasterMosaic, join_rasters
 from .survey import Source, Survey, boxes_meet, check_folder, open_survey
-from .tiled_steps import afterwards, in_blocks, owners, part_of, preparing, tunables_of, why_whole
+from .tiled_steps import afterwards, in_blocks, made_by, owners, part_of, preparing, tunables_of, why_whole
 from .workers import Workers, run_all
 
 # A window has at most about this many points, so that a worker needs some 2 GB.
@@ -55,9 +56,10 @@ _CUT, _SAMPLED, _WORKED, _JOINED = 0.05, 0.1, 0.88, 0.9
 # More blocks than this, and than one for so many points: a point far off makes the extent what it is not.
 _MANY_BLOCKS, _POINTS_PER_BLOCK = 10_000, 100
 
-# What finds the layers that a composite is given, and what takes the rasters that it makes.
+# What finds the layers that a composite is given, and what takes the rasters and text files that it makes.
 FindLayers = Callable[[Survey], dict[str, Optional[LayerFeatures]]]
 TakeRaster = Callable[[Survey, RasterMosaic], None]
+TakeFile = Callable[[Survey, str, FileContent], None]
 
 # What a run keeps beside the tiles until it is complete.
 _WORK = ".lidar-buildings"
@@ -112,6 +114,7 @@ def run_in_tiles(
     extent: Optional[np.ndarray] = None,
     find_layers: Optional[FindLayers] = None,
     take_raster: Optional[TakeRaster] = None,
+    take_file: Optional[TakeFile] = None,
     **tunables: Any,
 ) -> TilesOutcome:
     """Run a composite on a survey; write its classified tiles to a folder and return its layers.
@@ -150,6 +153,8 @@ def run_in_tiles(
         Is given the survey, and returns by name the layers that the composite is given, in meters from its origin.
     take_raster : callable, optional
         Is given the survey and each raster, while the parts of it are there.
+    take_file : callable, optional
+        Is given the survey, and name and content of each text file, while the parts of it are there.
     **tunables
         Of the composite.
 
@@ -167,7 +172,7 @@ def run_in_tiles(
     check_folder(folder, survey)
     with _work_folder(folder) as work:
         run = _Run(pipeline, survey, folder, work, monitor, workers, tunables, compressed, crs_units)
-        run.find_layers, run.take_raster = find_layers, take_raster
+        run.find_layers, run.take_raster, run.take_file = find_layers, take_raster, take_file
         outcome = run.all(block_side, largest_file)
     if not outcome.failures:
         shutil.rmtree(work, ignore_errors=True)
@@ -229,6 +234,7 @@ class _Run:
         self.stop = work / "stop"
         self.find_layers: Optional[FindLayers] = None
         self.take_raster: Optional[TakeRaster] = None
+        self.take_file: Optional[TakeFile] = None
 
     def all(self, block_side: Optional[float], largest_file: int) -> TilesOutcome:
         """Sample, work on the blocks, write the tiles."""
@@ -251,11 +257,14 @@ class _Run:
             places = [block for block, _ in done]
             numbers = join_numbers(places, found, lambda at: BlockResult.edges(done[at][1]))
             joining = self.monitor.part(_WORKED, _JOINED)
-            outcome.layers = self._layers(places, found, numbers, joining)
+            outcome.layers, kept = self._layers(places, found, numbers, joining)
             self._run_afterwards(outcome)
             if self.take_raster:
                 for mosaic in join_rasters([path for _, path in done], found):
                     self.take_raster(self.survey, mosaic)
+            if self.take_file:
+                for name, content in join_files(self.pipeline, [path for _, path in done], kept).items():
+                    self.take_file(self.survey, name, content)
             self._warn_of_blocks(found)
             self._write_tiles(executor, done, numbers, [blocks[number] for number in failed], outcome)
         if not outcome.failures:
@@ -387,8 +396,8 @@ class _Run:
 
     def _layers(
         self, blocks: list[Block], found: list[BlockResult], numbers: list[dict[str, np.ndarray]], monitor: Monitor
-    ) -> dict[str, LayerFeatures]:
-        """Return each layer of the composite, of all blocks together."""
+    ) -> tuple[dict[str, LayerFeatures], dict[str, np.ndarray]]:
+        """Return each layer of the composite, of all blocks together, and block and number of what was kept."""
         names = list(dict.fromkeys(name for result in found for name in result.layers))
         layers: dict[str, LayerFeatures] = {}
         kept: dict[str, np.ndarray] = {}
@@ -406,7 +415,8 @@ class _Run:
             layers[name], kept[name] = join_features(
                 [blocks[at] for at in have], of_blocks, clusters, self.survey.origin, part
             )
-        return {name: layers[name] for name in names}
+        kept = {name: np.column_stack([np.array(have, np.int64)[one[:, 0]], one[:, 1]]) for name, one in kept.items()}
+        return {name: layers[name] for name in names}, kept
 
     def _run_afterwards(self, outcome: TilesOutcome) -> None:
         """Run the steps that read layers alone on the layers of the whole survey."""
@@ -419,7 +429,7 @@ class _Run:
         for step in steps:
             monitor = self.monitor.part(_JOINED, _JOINED, f"{step.name}_")
             layers = {
-                one.name: outcome.layers[names[_made_by(step.layers[one.name])]]
+                one.name: outcome.layers[names[made_by(step.layers[one.name])]]
                 if one.name in step.layers
                 else given.get(one.name)
                 for one in step.stage.input_layers
@@ -575,12 +585,6 @@ def _sampling_of(clouds: list[Cloud]) -> CloudSampling:
     sampling = CloudSampling(lambda: together, single_returns=not any(has_several_returns(cloud) for cloud in clouds))
     # The points are left behind, as on the way to another process.
     return pickle.loads(pickle.dumps(sampling))
-
-
-def _made_by(layer: str) -> tuple[str, str]:
-    """Return the step and the name of a layer that another step reads, "walls.footprints"."""
-    step, name = layer.split(".")
-    return step, name
 
 
 def _side(density: float, halo: float) -> float:

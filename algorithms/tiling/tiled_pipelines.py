@@ -9,7 +9,7 @@ from typing import Optional, Union
 from ..help import output_text, paragraphs, pipeline_help, written_by
 from ..pipeline import REPORT, Output, Pipeline
 from ..pipelines import PIPELINES
-from ..stage import Layer, Raster
+from ..stage import Layer, Raster, TextFile
 from .run_in_tiles import can_be_tiled
 from .tiled_steps import afterwards
 
@@ -84,13 +84,18 @@ class TiledPipeline:
         return [output for output in self.pipeline.outputs if _is_one(output, output.step.stage.rasters)]
 
     @property
+    def files(self) -> list[Output]:
+        """The outputs that are text files."""
+        return [output for output in self.pipeline.outputs if _is_one(output, output.step.stage.files)]
+
+    @property
     def report(self) -> Optional[Output]:
         """The report of the steps that read the layers of the whole survey, None without such steps."""
         steps = afterwards(self.pipeline)
         return next((one for one in self.pipeline.outputs if one.step in steps and one.of == REPORT), None)
 
 
-def _is_one(output: Output, declared: Iterable[Union[Layer, Raster]]) -> bool:
+def _is_one(output: Output, declared: Iterable[Union[Layer, Raster, TextFile]]) -> bool:
     return output.of in [one.name for one in declared]
 
 
@@ -138,7 +143,7 @@ TILED_PIPELINES = {
 
 def tiled_pipeline_help(tiled: TiledPipeline) -> str:
     """Return what a composite does in tiles, and then what it does, as HTML that QGIS's help pane shows."""
-    made = [output_text(tiled.pipeline, output) for output in (*tiled.layers, *tiled.rasters)]
+    made = [output_text(tiled.pipeline, output) for output in (*tiled.layers, *tiled.rasters, *tiled.files)]
     if tiled.report:
         made.append(output_text(tiled.pipeline, tiled.report))
     tiles = (

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..pipeline import Pipeline, Step
+from ..stage import TextFile
 
 # Steps of this group at the head of a chain decide which points there are and which of them are noise.
 _PREPARATION = "Preparation"
@@ -53,8 +54,33 @@ def owners(pipeline: Pipeline) -> dict[str, tuple[str, str]]:
     for step in pipeline.steps:
         for layer in step.stage.layers:
             for field in (field for field in layer.fields if field.of):
-                found[names[step.name, layer.name]] = field.name, names[step.name, field.of]
+                found[names[step.name, layer.name]] = field.name, _named(names, step, field.of)
     return found
+
+
+def files_of(pipeline: Pipeline) -> dict[str, tuple[TextFile, str]]:
+    """Return for each text file of a composite its declaration, and the layer whose features its items are of.
+
+    Files and layers go by the composite's names.
+    """
+    names = {(output.step.name, output.of): output.name for output in pipeline.outputs}
+    found = {}
+    for step in pipeline.steps:
+        for file in step.stage.files:
+            name = names[step.name, file.name]
+            found[name] = replace(file, name=name), _named(names, step, file.of)
+    return found
+
+
+def _named(names: dict[tuple[str, str], str], step: Step, layer: str) -> str:
+    """Return what the composite calls a layer that a step makes, or is given by an earlier one."""
+    return names[made_by(step.layers[layer]) if layer in step.layers else (step.name, layer)]
+
+
+def made_by(layer: str) -> tuple[str, str]:
+    """Return the step and the name of a layer that another step reads, "walls.footprints"."""
+    step, name = layer.split(".")
+    return step, name
 
 
 def why_whole(pipeline: Pipeline) -> str:
@@ -69,8 +95,6 @@ def why_whole(pipeline: Pipeline) -> str:
             return f"{title} merges clouds"
         if stage.creates or step.cloud:
             return f"{title} works on another cloud than the steps before it"
-        if stage.files:
-            return f"{title} writes a text file of the whole"
         if any(one.name in given and one.name not in step.layers for one in stage.input_layers):
             return f"{title} reads points and a layer that it is given"
         if stage.reach == np.inf:

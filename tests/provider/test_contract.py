@@ -84,7 +84,7 @@ IDS = {
     "segmentfacadelines",
     "reconstructgables",
 }
-TILED_IDS = {"detectbuildingsintiles", "detectbuildings2019intiles", "mapfootprintsintiles"}
+TILED_IDS = {"detectbuildingsintiles", "detectbuildings2019intiles", "mapfootprintsintiles", "modelbuildingsintiles"}
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints", "modelbuildings"}
 PIPELINE_IDS |= {"modelfacades", "modelindustry", "modelterrain"}
 ALL = {**STAGES, **TOYS}

@@ -1,0 +1,57 @@
+"""Text files of a survey, of what its blocks have kept for them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..pipeline import Pipeline
+from ..stage import FileContent, FileItem
+from .blocks import BlockResult
+from .joining import new_names
+from .tiled_steps import files_of
+
+
+def join_files(pipeline: Pipeline, results: list[Path], kept: dict[str, np.ndarray]) -> dict[str, FileContent]:
+    """Return the text files of a composite, by its names: each item once, block by block.
+
+    Parameters
+    ----------
+    pipeline : Pipeline
+        The composite.
+    results : list of Path
+        Files of :meth:`.BlockResult.write`, which stay until the text is written.
+    kept : dict of str to ndarray of shape (m, 2), int64
+        Of each layer, from :func:`.join_features`: position among ``results`` and number of the features that stay.
+    """
+    return {
+        name: FileContent(_Items(results, name, file.item, new_names(kept[of])), file.write)
+        for name, (file, of) in files_of(pipeline).items()
+        if of in kept
+    }
+
+
+@dataclass(frozen=True)
+class _Items(Collection):
+    """The items of a text file under the names of the survey, those of one block in memory at a time."""
+
+    results: list[Path]
+    file: str
+    item: type[FileItem]
+    becomes: dict[tuple[int, str], int]
+
+    def __iter__(self) -> Iterator[Any]:
+        for block, path in enumerate(self.results):
+            for name, record in BlockResult.items_of(path, self.file):
+                if (block, name) in self.becomes:
+                    yield self.item.of_record(record, str(self.becomes[block, name]))
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+    def __contains__(self, item: object) -> bool:
+        return any(item == one for one in self)
