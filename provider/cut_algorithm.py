@@ -18,6 +18,7 @@ from qgis.core import (
 )
 
 from ..algorithms.tiling.cutting import cut_into_tiles
+from ..algorithms.tiling.settings import CUT_SETTINGS
 from ..algorithms.tiling.survey import crs_of_survey, files_of_survey, open_survey
 from ..algorithms.tiling.tiled_pipelines import CUT_INTO_TILES, survey_tool_help
 from .clouds import SurveyParameter, survey_paths
@@ -26,7 +27,7 @@ from .declared import DeclaredAlgorithm
 from .dependencies import missing_sentence
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, warn_unknown_parameters
-from .inputs import INPUT, OUTPUT, extent_box, extent_parameter, with_help
+from .inputs import INPUT, OUTPUT, extent_box, extent_parameter, with_help, with_setting
 from .outputs import target_path
 from .surveys import VPC, WGS84, check_vpc, write_survey
 
@@ -48,15 +49,13 @@ class CutAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
 
     def initAlgorithm(self, configuration: Optional[dict] = None) -> None:  # noqa: N802
         """Declare the survey, the size of tiles, and the folder."""
-        survey = SurveyParameter(INPUT, "Survey")
-        self.addParameter(with_help(survey, "A folder of .las and .laz files, a .vpc file, or any number of files."))
+        self.addParameter(with_setting(SurveyParameter(INPUT, ""), CUT_SETTINGS))
         number = Qgis.ProcessingNumberParameterType.Double
-        side = QgsProcessingParameterNumber(SIDE, "Side of a tile (m)", number, 500.0, False, 1.0, 100_000.0)
+        side = QgsProcessingParameterNumber(SIDE, "", number, 500.0, False, 1.0, 100_000.0)
         side.setMetadata({"widget_wrapper": {"decimals": 1}})
-        self.addParameter(with_help(side, "Tiles are squares of this side."))
+        self.addParameter(with_setting(side, CUT_SETTINGS))
         self.addParameter(extent_parameter())
-        compressed = QgsProcessingParameterBoolean(COMPRESSED, "Write LAZ", True)
-        self.addParameter(with_help(compressed, "Tiles are compressed (.laz); otherwise they are .las files."))
+        self.addParameter(with_setting(QgsProcessingParameterBoolean(COMPRESSED, "", True), CUT_SETTINGS))
         folder = QgsProcessingParameterFolderDestination(OUTPUT, "Folder of the tiles")
         self.addParameter(with_help(folder, "It is made where it is missing."))
         self.addOutput(QgsProcessingOutputFile(VPC, "Virtual point cloud over the tiles"))

@@ -17,6 +17,7 @@ from qgis.core import (
 
 from ..algorithms.cloud.dimensions import DIMENSIONS
 from ..algorithms.stage import Stage
+from ..algorithms.tiling.settings import SETTINGS, Setting
 from .clouds import CloudParameter, CloudsParameter, cloud_path, cloud_paths
 from .crs import crs_of
 from .feedback import is_step
@@ -29,6 +30,15 @@ def with_help(definition: QgsProcessingParameterDefinition, text: str) -> QgsPro
     """Return the parameter with its tooltip."""
     definition.setHelp(text)
     return definition
+
+
+def with_setting(
+    definition: QgsProcessingParameterDefinition, settings: dict[str, Setting]
+) -> QgsProcessingParameterDefinition:
+    """Return the parameter with title and tooltip of its setting."""
+    setting = settings[definition.name()]
+    definition.setDescription(setting.title)
+    return with_help(definition, setting.help)
 
 
 def input_parameter(several: bool) -> QgsProcessingParameterDefinition:
@@ -49,8 +59,7 @@ def input_paths(
 
 def extent_parameter() -> QgsProcessingParameterDefinition:
     """Return the parameter of the part of the cloud that is worked on."""
-    what = "Only points within are read: to try parameters on a part of the cloud first. Empty: all points."
-    return with_help(QgsProcessingParameterExtent(EXTENT, "Extent (empty = the whole cloud)", optional=True), what)
+    return with_setting(QgsProcessingParameterExtent(EXTENT, "", optional=True), SETTINGS)
 
 
 def extent_box(

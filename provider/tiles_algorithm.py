@@ -27,6 +27,7 @@ from ..algorithms.pipeline import Output
 from ..algorithms.stage import FileContent, LayerFeatures, Raster
 from ..algorithms.tiling.mosaics import RasterMosaic
 from ..algorithms.tiling.run_in_tiles import TilesOutcome, run_in_tiles
+from ..algorithms.tiling.settings import SETTINGS
 from ..algorithms.tiling.survey import Survey, crs_of_survey, files_of_survey
 from ..algorithms.tiling.tiled_pipelines import TiledPipeline, tiled_pipeline_help
 from ..algorithms.tiling.tiled_steps import files_of
@@ -38,7 +39,7 @@ from .dependencies import missing_sentence
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, warn_unknown_parameters
 from .input_layers import find_input_layer, input_layer_files, input_layer_parameter, read_input_layer
-from .inputs import INPUT, OUTPUT, REPORT, extent_box, extent_parameter, with_help
+from .inputs import INPUT, OUTPUT, REPORT, extent_box, extent_parameter, with_help, with_setting
 from .layer_outputs import UNWANTED, write_layer
 from .models import pipeline_parameters
 from .outputs import all_in_place, check_targets, target_path
@@ -85,8 +86,7 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
 
     def initAlgorithm(self, configuration: Optional[dict] = None) -> None:  # noqa: N802
         """Declare the survey, the composite's parameters, how it is worked on, and the outputs."""
-        survey = SurveyParameter(INPUT, "Survey")
-        self.addParameter(with_help(survey, "A folder of .las and .laz files, a .vpc file, or any number of files."))
+        self.addParameter(with_setting(SurveyParameter(INPUT, ""), SETTINGS))
         for definition in pipeline_parameters(self.tiled.pipeline).values():
             self.addParameter(definition)
         for input_layer in self.tiled.pipeline.input_layers.values():
@@ -305,33 +305,12 @@ def _work_parameters() -> list[QgsProcessingParameterDefinition]:
     """Return the parameters of how a survey is worked on."""
     number = Qgis.ProcessingNumberParameterType
     made = [
-        with_help(
-            QgsProcessingParameterNumber(
-                BLOCK_SIDE, "Side of a block (m, empty = automatic)", number.Double, None, True, 20.0, 10_000.0
-            ),
-            "Larger blocks take more memory and less time, as less of what surrounds them is worked on twice. Empty: "
-            "the largest multiple of 50 m, from 100 to 1600 m, that has at most 6 million points with those around it.",
-        ),
-        with_help(
-            QgsProcessingParameterNumber(
-                PROCESSES, "Processes (empty = one for each core)", number.Integer, None, True, 1, 512
-            ),
-            "How many blocks are worked on at once; each takes about 2 GB of memory.",
-        ),
-        with_help(
-            QgsProcessingParameterString(SCHEDULER, "Address of a Dask scheduler", "", False, True),
-            "For example tcp://head-node:8786 or tls://head-node:8786; empty: processes of this machine. The workers "
-            "must see the input and the output folder under the same paths.",
-        ),
-        with_help(
-            QgsProcessingParameterString(CERTIFICATES, "Certificates for tls", "", False, True),
-            "Three files of PEM, with semicolons between: certificate authority; certificate; key.",
-        ),
-        with_help(
-            QgsProcessingParameterBoolean(COMPRESSED, "Write LAZ", True),
-            "Tiles are compressed (.laz); otherwise they are .las files.",
-        ),
+        QgsProcessingParameterNumber(BLOCK_SIDE, "", number.Double, None, True, 20.0, 10_000.0),
+        QgsProcessingParameterNumber(PROCESSES, "", number.Integer, None, True, 1, 512),
+        QgsProcessingParameterString(SCHEDULER, "", "", False, True),
+        QgsProcessingParameterString(CERTIFICATES, "", "", False, True),
+        QgsProcessingParameterBoolean(COMPRESSED, "", True),
     ]
     for definition in made:
         definition.setFlags(definition.flags() | Qgis.ProcessingParameterFlag.Advanced)
-    return made
+    return [with_setting(definition, SETTINGS) for definition in made]

@@ -11,6 +11,7 @@ from ..pipeline import REPORT, Output, Pipeline
 from ..pipelines import PIPELINES
 from ..stage import Layer, Raster, TextFile
 from .run_in_tiles import can_be_tiled
+from .settings import CUT_SETTINGS, SETTINGS, Setting
 from .tiled_steps import afterwards
 
 # The group of the toolbox.
@@ -131,9 +132,15 @@ CUT_INTO_TILES = SurveyTool(
 )
 
 
+def settings_help(settings: dict[str, Setting]) -> str:
+    """Return a list of settings, as HTML."""
+    rows = "\n".join(f"<li>{setting.text()}</li>" for setting in settings.values())
+    return f"<h3>Parameters: Survey</h3>\n<ul>\n{rows}\n</ul>"
+
+
 def survey_tool_help(tool: SurveyTool) -> str:
     """Return what a tool does, as HTML that QGIS's help pane shows."""
-    return "\n".join([paragraphs(tool.summary), paragraphs(tool.description)])
+    return "\n".join([paragraphs(tool.summary), paragraphs(tool.description), settings_help(CUT_SETTINGS)])
 
 
 TILED_PIPELINES = {
@@ -154,4 +161,5 @@ def tiled_pipeline_help(tiled: TiledPipeline) -> str:
         "<b>TILES, BLOCKS, POINTS, FAILURES</b>: how many tiles were written, blocks and points worked on, failed."
     )
     of_composite = pipeline_help(tiled.pipeline, [tiles, *made, numbers])
-    return "\n".join([paragraphs(tiled.summary), paragraphs(_DESCRIPTION), of_composite])
+    parts = [paragraphs(tiled.summary), paragraphs(_DESCRIPTION), settings_help(SETTINGS), of_composite]
+    return "\n".join(parts)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import re
 from pathlib import Path
 
@@ -221,6 +222,15 @@ def test_help_of_tiled_composites_tells_their_own_outputs(tiled, provider):
     text = algorithm.shortHelpString().split("<h3>Outputs</h3>")[1].split("<h3>")[0]
     told = {name for names in re.findall("<b>([A-Z_, ]+)</b>", text) for name in names.split(", ")}
     assert told == {definition.name() for definition in algorithm.outputDefinitions()} - {"VPC"}
+
+
+@pytest.mark.parametrize("name", sorted({*TILED_IDS, CUT_INTO_TILES.id}))
+def test_help_of_surveys_tells_every_setting(name, provider):
+    algorithm = provider.algorithm(name)
+    text = html.unescape(algorithm.shortHelpString())
+    for definition in algorithm.parameterDefinitions():
+        if not definition.isDestination():
+            assert definition.help().split(". ")[0].rstrip(".") in text, definition.name()
 
 
 @pytest.mark.parametrize("name", PIPELINES)

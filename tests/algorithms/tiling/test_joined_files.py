@@ -56,6 +56,12 @@ def survey(cloud, tmp_path_factory):
     return outcome, texts
 
 
+@pytest.fixture(scope="module")
+def whole(cloud):
+    """What came of the cloud at once."""
+    return run_pipeline(MODEL, cloud.copy())
+
+
 def test_every_building_is_modelled_once_and_valid(survey):
     outcome, texts = survey
     assert not outcome.failures
@@ -99,18 +105,17 @@ def test_all_formats_have_all_buildings(survey):
     assert texts["Wavefront OBJ"].count("\no building_") == 3
 
 
-def test_models_are_those_of_the_whole_cloud(survey, cloud):
+def test_models_are_those_of_the_whole_cloud(survey, whole):
     outcome, _ = survey
-    made = run_pipeline(MODEL, cloud.copy())
     for layer in ("buildings", "roofs"):
-        assert len(made.layers[layer]) == len(outcome.layers[layer])
+        assert len(whole.layers[layer]) == len(outcome.layers[layer])
     for column, within in (("volume", 0.02), ("ridge_height", 0.01), ("roof_area", 0.02)):
-        of_whole = sorted(made.layers["buildings"].columns[column])
+        of_whole = sorted(whole.layers["buildings"].columns[column])
         np.testing.assert_allclose(sorted(outcome.layers["buildings"].columns[column]), of_whole, rtol=within)
 
 
-def test_models_are_kept_as_text_to_the_last_bit(cloud):
-    content = run_pipeline(MODEL, cloud.copy()).files["cityjson"]
+def test_models_are_kept_as_text_to_the_last_bit(whole):
+    content = whole.files["cityjson"]
     kept = [NamedModel.of_record(json.loads(json.dumps(one.record())), one.name) for one in content.items]
     frame = MapFrame(np.asarray)
     for called in ("CityJSON", "CityJSONSeq"):

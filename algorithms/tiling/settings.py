@@ -1,0 +1,70 @@
+"""What users set of a survey beside the parameters of the composite: titles and help of the dialog and the pages."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Setting:
+    """One setting: its name on the command line, its title in the dialog, and what it is for."""
+
+    name: str
+    title: str
+    help: str
+
+    def text(self) -> str:
+        """Return it as HTML, as the parameters of a composite are."""
+        return f"<b>{html.escape(self.title)}</b> ({self.name}): {html.escape(self.help)}"
+
+
+def by_name(settings: Iterable[Setting]) -> dict[str, Setting]:
+    """Return settings by their names."""
+    return {setting.name: setting for setting in settings}
+
+
+_INPUT = Setting("INPUT", "Survey", "A folder of .las and .laz files, a .vpc file, or any number of files.")
+_EXTENT = Setting(
+    "EXTENT",
+    "Extent (empty = the whole cloud)",
+    "Only points within are read: to try parameters on a part of the cloud first. Empty: all points.",
+)
+_COMPRESSED = Setting("COMPRESSED", "Write LAZ", "Tiles are compressed (.laz); otherwise they are .las files.")
+
+# Of a composite in tiles.
+SETTINGS = by_name(
+    (
+        _INPUT,
+        _EXTENT,
+        Setting(
+            "BLOCK_SIDE",
+            "Side of a block (m, empty = automatic)",
+            "Larger blocks take more memory and less time, as less of what surrounds them is worked on twice. Empty: "
+            "the largest multiple of 50 m, from 100 to 1600 m, that has at most 6 million points with those around it.",
+        ),
+        Setting(
+            "PROCESSES",
+            "Processes (empty = one for each core)",
+            "How many blocks are worked on at once; each takes about 2 GB of memory.",
+        ),
+        Setting(
+            "SCHEDULER",
+            "Address of a Dask scheduler",
+            "For example tcp://head-node:8786 or tls://head-node:8786; empty: processes of this machine. The workers "
+            "must see the input and the output folder under the same paths.",
+        ),
+        Setting(
+            "CERTIFICATES",
+            "Certificates for tls",
+            "Three files of PEM, with semicolons between: certificate authority; certificate; key.",
+        ),
+        _COMPRESSED,
+    )
+)
+
+# Of the tool that cuts.
+CUT_SETTINGS = by_name(
+    (_INPUT, Setting("SIDE", "Side of a tile (m)", "Tiles are squares of this side."), _EXTENT, _COMPRESSED)
+)
