@@ -106,5 +106,5 @@ def export_for_roofer(
         points.append(int(inside_rings(xyz[building, :2], plan[i]).sum()))
         monitor.progress((number + 1) / len(sound))
     names = feature_names(footprints)
-    columns = {"identificatie": unique_names([names[i] for i in sound]), "points": points}
+    columns = {"identificatie": list(unique_names(names[i] for i in sound)), "points": points}
     return np.flatnonzero(is_near & wanted), LayerFeatures([plan[i] for i in sound], columns)

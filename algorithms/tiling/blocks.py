@@ -32,7 +32,7 @@ _BESIDE = 4.0
 # A feature that comes this close (m) to the edge of the window may have been cut off by it.
 _CUT = 1.0
 
-# A window is enlarged for features that it cuts off, to at most this many times its halo on each side.
+# A window is enlarged where it cuts off features, to at most this many times its halo on a side.
 _MOST_HALOS = 8
 
 # A window of fewer points is enlarged, too: stages refuse two points, of a bird over water say, as no surface.
@@ -113,8 +113,8 @@ class BlockResult:
     messages : list of str
         Warnings, each once.
     tries : ndarray of shape (k, 4)
-        What each window that was tried cost: what lay around the block (m), points, and processor time for reading and
-        for the chain (s).
+        What each window that was tried cost: what lay around the block at most (m), points, and processor time for
+        reading and for the chain (s).
     """
 
     source: np.ndarray
@@ -209,31 +209,35 @@ class StoppableMonitor(Monitor):
 def work_on_block(task: BlockTask) -> Path:
     """Run the chain on a block and its surroundings; return the file of what came of it.
 
-    The window is enlarged where it cuts off a feature that has a part in the block, or holds hardly any points.
+    The window is enlarged on the sides on which it cuts off a feature that has a part in the block, or on all sides
+    where it holds hardly any points.
 
     Raises
     ------
     ValueError
         If a file can't be read or the chain refuses the points.
     """
-    monitor, halo, most = StoppableMonitor(task.stop), task.halo, _MOST_HALOS * task.halo
+    monitor, most = StoppableMonitor(task.stop), _MOST_HALOS * task.halo
+    # West and south, east and north of the block, m.
+    margin = np.full((2, 2), task.halo)
     tries = []
     while True:
-        box = task.block.box + np.array([[-halo], [halo]])
+        box = task.block.box + margin * [[-1], [1]]
         start = time.process_time()
         window = _window(task, box, monitor)
         read = time.process_time()
         if window is None:
             result = BlockResult(np.zeros(0, np.int32), np.zeros(0, np.int64))
             break
-        if len(window.cloud) < _FEWEST_POINTS and halo < most:
-            halo *= 2
+        if len(window.cloud) < _FEWEST_POINTS and margin.max() < most:
+            margin *= 2
             continue
-        result, is_cut = _run(task, window, box, monitor)
-        tries.append((halo, len(window.cloud), read - start, time.process_time() - read))
-        if not is_cut or halo >= most:
+        result, cuts = _run(task, window, box, monitor)
+        tries.append((margin.max(), len(window.cloud), read - start, time.process_time() - read))
+        cuts &= margin < most
+        if not cuts.any():
             break
-        halo *= 2
+        margin[cuts] *= 2
     result.tries = np.array(tries).reshape(-1, 4)
     result.write(task.result)
     return task.result
@@ -259,8 +263,8 @@ def _inside(places: np.ndarray, box: np.ndarray) -> np.ndarray:
     return ((places >= box[0]) & (places < box[1])).all(axis=1)
 
 
-def _run(task: BlockTask, window: Window, box: np.ndarray, monitor: Monitor) -> tuple[BlockResult, bool]:
-    """Run the chain on a window; return what came of the block, and whether a feature of it was cut off."""
+def _run(task: BlockTask, window: Window, box: np.ndarray, monitor: Monitor) -> tuple[BlockResult, np.ndarray]:
+    """Run the chain on a window; return what came of the block, and on which sides (2, 2) a feature was cut off."""
     pipeline = in_blocks(PIPELINES[task.pipeline])
     places = _places(task.survey, window)
     made = run_pipeline(pipeline, window.cloud, monitor, kept=(), samplings=task.samplings, **task.tunables)
@@ -272,14 +276,14 @@ def _run(task: BlockTask, window: Window, box: np.ndarray, monitor: Monitor) -> 
     )
     result.dimensions = {name: of_all[core] for name, of_all in values.items()}
     _number(result, window, values, stays, places, task.block)
-    is_cut = _keep_layers(result, pipeline, made, task, box)
+    cuts = _keep_layers(result, pipeline, made, task, box)
     for name, (_, of) in files_of(pipeline).items():
         kept = set(_names(result.layers[of].columns["id"]))
         result.items[name] = [(one.name, one.record()) for one in made.files[name].items if one.name in kept]
     for name, surface in made.rasters.items():
         result.rasters[name], result.lattices[name] = _cropped(surface, task.block.box - task.survey.origin[:2])
     result.messages = list(dict.fromkeys(monitor.warnings))
-    return result, is_cut
+    return result, cuts
 
 
 def _left(window: Window, made: Results) -> tuple[np.ndarray, np.ndarray]:
@@ -302,10 +306,12 @@ def _written(pipeline: Pipeline, made: Results, point: np.ndarray, origin: np.nd
     return values
 
 
-def _keep_layers(result: BlockResult, pipeline: Pipeline, made: Results, task: BlockTask, box: np.ndarray) -> bool:
-    """Keep features that have a part in the block, and what belongs to them; return whether one was cut off."""
+def _keep_layers(
+    result: BlockResult, pipeline: Pipeline, made: Results, task: BlockTask, box: np.ndarray
+) -> np.ndarray:
+    """Keep features that have a part in the block, and what belongs to them; return on which sides one was cut off."""
     block, owner = task.block.box, owners(pipeline)
-    is_cut = False
+    cuts = np.zeros((2, 2), bool)
     for name in sorted(made.layers, key=lambda name: name in owner):
         features = made.layers[name]
         if name in owner:
@@ -314,9 +320,9 @@ def _keep_layers(result: BlockResult, pipeline: Pipeline, made: Results, task: B
         else:
             boxes = feature_boxes(features) + task.survey.origin[:2]
             kept = (boxes[:, 0] < block[1]).all(axis=1) & (boxes[:, 1] >= block[0]).all(axis=1)
-            is_cut |= bool((kept & _cut_off(boxes, box, task.survey.box)).any())
+            cuts |= _cut_off(boxes[kept], box, task.survey.box)
         result.layers[name] = take_features(features, np.flatnonzero(kept))
-    return is_cut
+    return cuts
 
 
 def _names(ids: Any) -> np.ndarray:
@@ -360,10 +366,10 @@ def _number(
 
 
 def _cut_off(boxes: np.ndarray, window: np.ndarray, survey: np.ndarray) -> np.ndarray:
-    """Return which features (n,), by their boxes, reach the edge of the window; where the survey ends there is none."""
+    """Return which sides (2, 2) of the window features reach, by their boxes; where the survey ends there is none."""
     low = (boxes[:, 0] < window[0] + _CUT) & (window[0] > survey[0])
     high = (boxes[:, 1] > window[1] - _CUT) & (window[1] < survey[1])
-    return (low | high).any(axis=1)
+    return np.array([low.any(axis=0), high.any(axis=0)])
 
 
 def feature_boxes(features: LayerFeatures) -> np.ndarray:

@@ -35,8 +35,9 @@ from .survey import Source, Survey, boxes_meet, check_folder, open_survey
 from .tiled_steps import afterwards, in_blocks, made_by, owners, part_of, preparing, tunables_of, why_whole
 from .workers import Workers, run_all
 
-# A window has at most about this many points, so that a worker needs some 2 GB.
-_MOST_POINTS = 6_000_000
+# A window has at most about this many points, so that a worker needs 1.8 GB (340 bytes per point), and two of them, one
+# with a window that was enlarged, less than 4 GB with the main process.
+_MOST_POINTS = 5_300_000
 
 # Sides of blocks are multiples of the step from the least to the greatest, m; smaller ones would work mostly on what
 # lies around them.
