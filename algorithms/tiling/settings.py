@@ -42,7 +42,8 @@ SETTINGS = by_name(
             "BLOCK_SIDE",
             "Side of a block (m, empty = automatic)",
             "Larger blocks take more memory and less time, as less of what surrounds them is worked on twice. Empty: "
-            "the largest multiple of 50 m, from 100 to 1600 m, that has at most 5.3 million points with those around it.",
+            "the largest multiple of 50 m, from 100 to 1600 m, that has at most 5.3 million points with those around "
+            "it.",
         ),
         Setting(
             "PROCESSES",
