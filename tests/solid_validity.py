@@ -12,7 +12,7 @@ def assert_valid_solid(vertices, faces):
     """Fail unless faces (lists of open rings of vertex numbers) are one closed, oriented, plane two-manifold."""
     vertices = np.asarray(vertices, float)
     assert_edges_are_shared(faces)
-    assert_vertices_have_one_umbrella(faces)
+    assert_vertices_have_one_umbrella(vertices, faces)
     for rings in faces:
         assert_plane_and_simple(vertices, rings)
     assert signed_volume(vertices, faces) > 0, "the faces look inward"
@@ -29,18 +29,46 @@ def assert_edges_are_shared(faces):
     assert {(b, a) for a, b in edges} == set(edges), "the surface is open"
 
 
-def assert_vertices_have_one_umbrella(faces):
+def assert_vertices_have_one_umbrella(vertices, faces):
     """The faces around each vertex follow each other in one ring."""
     following = {}
-    for ring in itertools.chain.from_iterable(faces):
-        for before, here, after in zip([ring[-1], *ring], ring, [*ring[1:], ring[0]]):
-            following.setdefault(here, {})[after] = before
+    for rings in faces:
+        for here, sectors in sectors_of(vertices, rings).items():
+            following.setdefault(here, {}).update(sectors)
     for here, ways in following.items():
         start = next(iter(ways))
         count, way = 1, ways[start]
         while way != start:
             way, count = ways[way], count + 1
         assert count == len(ways), f"faces touch in vertex {here} only"
+
+
+def sectors_of(vertices, rings):
+    """Return for each vertex of a face the ends of the edges that bound it there, counterclockwise from the next one.
+
+    Where two rings touch in a vertex, or a ring comes twice, the face has two sectors there; each goes from the next
+    vertex of one passage counterclockwise to the nearest vertex before, which may be that of the other passage.
+    """
+    passages = {}
+    for ring in rings:
+        for before, here, after in zip([ring[-1], *ring], ring, [*ring[1:], ring[0]]):
+            passages.setdefault(here, []).append((after, before))
+    normal = sum(newell(vertices[ring]) for ring in rings)
+    axis = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
+    axes = np.column_stack(
+        [axis / np.linalg.norm(axis), np.cross(normal, axis) / np.linalg.norm(np.cross(normal, axis))]
+    )
+    found = {}
+    for here, ends in passages.items():
+        if len(ends) == 1:
+            found[here] = dict(ends)
+            continue
+        angle = {v: np.arctan2(*((vertices[v] - vertices[here]) @ axes)[::-1]) for pair in ends for v in pair}
+        found[here] = {
+            after: min((before for _, before in ends), key=lambda before: (angle[before] - angle[after]) % (2 * np.pi))
+            for after, _ in ends
+        }
+    return found
 
 
 def newell(corners):
