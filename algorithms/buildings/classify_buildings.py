@@ -12,8 +12,8 @@ from ..neighborhoods.wide_in_plan import Wide
 from ..params import MinBuildingArea, PointDensity, PointSource, nearest_points
 from ..sampling.cloud_sampling import CloudSampling
 from ..sampling.surface_noise import plane_roughness
-from ..stage import Param, stage
-from .cluster_decisions import decide_by_entropy, no_clusters, written_to_points
+from ..stage import Monitor, Param, stage
+from .cluster_decisions import Decisions, decide_by_entropy, no_clusters, written_to_points
 from .cluster_entropies import cluster_entropies
 from .cluster_evidence import ClusterEvidence, with_penetration, with_surroundings
 from .cluster_report import MEASURES, Clusters, build_report
@@ -179,12 +179,8 @@ def classify_buildings(
     monitor.progress(0.94)
     decided = by_entropy
     if sampling.is_closed_surface(source):
-        is_surface = (
-            entropies.share_of(segment_id > 0) if segment_id is not None else by_entropy.is_building.astype(float)
-        )
-        is_green, green_from = green_clusters((red, green, blue), group, len(numbers))
-        monitor.resolved(matched_images=True, plant_greenness=green_from)
-        decided = decide_in_images(is_surface, is_green, evidence, min_share_around)
+        surface = by_entropy.is_building.astype(float) if segment_id is None else entropies.share_of(segment_id > 0)
+        decided = _decided_in_images(surface, (red, green, blue), evidence, min_share_around, monitor)
     elif split.separates:
         decided = with_penetration(by_entropy, through, max_penetration, evidence)
         monitor.progress(0.98)
@@ -194,6 +190,19 @@ def classify_buildings(
     # 3. All points of a cluster are the same.
     report = build_report(Clusters(entropies.means, decided.reasons, split, through, max_penetration))
     return written_to_points(classification, reason, entropies, decided, min_area * density, report)
+
+
+def _decided_in_images(
+    surface_share: np.ndarray,
+    colors: tuple[Optional[np.ndarray], ...],
+    evidence: ClusterEvidence,
+    min_share: float,
+    monitor: Monitor,
+) -> Decisions:
+    """Return what :func:`.decide_in_images` does, with the greenness of the scene."""
+    is_green, green_from = green_clusters(colors, evidence.group, len(evidence.numbers))
+    monitor.resolved(matched_images=True, plant_greenness=green_from)
+    return decide_in_images(surface_share, is_green, evidence, min_share)
 
 
 def _surface_neighborhood(sampling: CloudSampling, density: float) -> Union[Nearest, Wide]:
