@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Optional
 
 import numpy as np
@@ -139,6 +139,11 @@ class Found:
     def ends(self) -> np.ndarray:
         """The ends of the axis (2, 3), m."""
         return self.cylinder.center + np.outer([self.low, self.high], self.cylinder.axis)
+
+    def moved(self, x: float) -> Found:
+        """Return the cylinder moved along x (m)."""
+        cylinder = replace(self.cylinder, center=self.cylinder.center + [x, 0.0, 0.0])
+        return replace(self, cylinder=cylinder)
 
 
 class CylinderSearch:

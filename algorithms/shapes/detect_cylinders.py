@@ -5,9 +5,12 @@ from __future__ import annotations
 import math
 from typing import Annotated, Optional
 
+import numpy as np
+
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
 from .cylinder_search import LEAST_POINTS, CylinderSearch, Found
+from .joined_cylinders import joined
 from .search_settings import MaxRadius, MinRadius, ShapeTolerance
 from .searched_points import WHOLE_CLOUD, SearchIn, Shape, Surroundings, search_shapes
 from .surface_normals import NormalPoints
@@ -53,6 +56,17 @@ def detect_cylinders(
     min_points: Annotated[
         int, Param("Minimum points", "Points of the smallest cylinder.", low=LEAST_POINTS, high=1_000_000)
     ] = 40,
+    max_gap: Annotated[
+        float,
+        Param(
+            "Maximum gap",
+            "Longest part of an axis without points, behind a flange or in the shadow of another object, across which "
+            "pieces of one radius in one line are put together; 0 leaves them apart. An end cap always parts them.",
+            unit="m",
+            low=0,
+            high=100,
+        ),
+    ] = 1.0,
     search_in: SearchIn = WHOLE_CLOUD,
     n_neighbors: NormalPoints = None,
     sampling: Optional[CloudSampling] = None,
@@ -64,7 +78,8 @@ def detect_cylinders(
     most of it gives the direction of an axis. The points of this circle are projected along the axis, and each votes
     along its normal, to both sides, for the center of a circle of every radius. The best circle is fitted by least
     squares, grown along its axis, and kept if its points look like a cylinder: close to it, spread over enough of its
-    circumference, without a bend, and with nothing inside.
+    circumference, without a bend, and with nothing inside. Pieces of one pipe that a flange or the shadow of another
+    object parts are put together, if one cylinder lies as close to the points of each as the cylinder of its own.
 
     Parameters
     ----------
@@ -100,6 +115,7 @@ def detect_cylinders(
     normals, so that planes don't decide the direction. A cylinder is at least 1.5 diameters long, or one meter if its
     diameter is larger, and 0.3 diameters in any case: shorter pieces can't be told from elbows and spheres. A bend, a
     cone or a bulge shows in the distances of the points from the cylinder, which must not follow their position on it.
+    The paper does not put pieces together; here they are also where they lie in different segments.
 
     References
     ----------
@@ -110,9 +126,13 @@ def detect_cylinders(
     """
 
     def search(around: Surroundings, low: float, high: float, monitor: Monitor) -> list[Found]:
-        return CylinderSearch(
+        found = CylinderSearch(
             around.xyz, around.normals, around.noise, around.tolerance, around.spacing, min_seen, min_points
         ).find(low, high, monitor)
+        # Segments are searched apart from each other; pieces of one pipe lie in several.
+        places = around.xyz - np.column_stack([around.shift, np.zeros((len(around.shift), 2))])
+        apart = [one.moved(-around.shift[one.points[0]]) for one in found]
+        return joined(apart, places, around.noise, around.spacing, max_gap)
 
     found = search_shapes(
         (xyz, classification, segment_id, shape),
@@ -128,7 +148,7 @@ def detect_cylinders(
     )
     ones = found.shapes
     axes = LayerFeatures(
-        [found.points.in_place(one.ends, int(one.points[0])) for one in ones],
+        [one.ends + found.points.origin for one in ones],
         {
             "id": found.numbers,
             "radius": [one.cylinder.radius for one in ones],

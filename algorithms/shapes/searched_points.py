@@ -190,6 +190,8 @@ class Surroundings:
         Distance within which a point lies on a surface, m.
     spacing : float
         Distance between points on surfaces, m.
+    shift : ndarray of shape (k,)
+        How far each point was moved along x, m, as segments are searched apart.
     """
 
     xyz: np.ndarray
@@ -197,6 +199,7 @@ class Surroundings:
     noise: float
     tolerance: float
     spacing: float
+    shift: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -268,7 +271,9 @@ def search_shapes(
     label, found = np.zeros(len(points.rows), np.int64), []
     if len(points.rows):
         # A tolerance that is set tells the noise, too.
-        around = Surroundings(points.xyz, normals[points.rows], max(noise, tolerance / 3), tolerance, spacing)
+        around = Surroundings(
+            points.xyz, normals[points.rows], max(noise, tolerance / 3), tolerance, spacing, points.shift
+        )
         found = search(around, min_radius, max_radius, monitor.part(0.2, 1))
     for number, one in enumerate(found, start=1):
         label[one.points] = number

@@ -129,7 +129,17 @@ def plant(part: float) -> list[Table]:
     assert made_of.cloud is not None
     result = compared(true_id, true_axes, made_of.cloud.get("segment_id"), made_of.layers["axes"])
     is_pipe = np.array(true_axes.columns["kind"]) == "pipe"
-    columns = ("found", "of", "invented", "radius off by (median), %", "by (95 %), %", "points", "s", "cpu s")
+    columns = (
+        "found",
+        "of",
+        "invented",
+        "pieces too many",
+        "radius off by (median), %",
+        "by (95 %), %",
+        "points",
+        "s",
+        "cpu s",
+    )
     table = Table("plant", "what", *columns)
     errors = (100 * np.percentile(result.error, [50, 95])).tolist() if len(result.error) else [None, None]
     table.add(
@@ -137,14 +147,15 @@ def plant(part: float) -> list[Table]:
         int(result.is_found[is_pipe].sum()),
         int(is_pipe.sum()),
         len(result.invented),
+        len(made_of.layers["axes"]) - len(result.invented) - int(result.is_found.sum()),
         *errors,
         len(xyz),
         took,
         took_cpu,
         digits=2,
     )
-    table.add("tanks", int(result.is_found[~is_pipe].sum()), int((~is_pipe).sum()), *[None] * 6)
-    table.add("spheres", *_spheres_found(true_centers, made_of.layers["centers"]), *[None] * 5)
+    table.add("tanks", int(result.is_found[~is_pipe].sum()), int((~is_pipe).sum()), *[None] * 7)
+    table.add("spheres", *_spheres_found(true_centers, made_of.layers["centers"]), *[None] * 6)
     return [table]
 
 

@@ -90,10 +90,10 @@ def test_a_pipe_of_any_length_is_one(axis, rng):
 
 
 def test_segments_are_searched_one_by_one(rng):
-    """A pipe cut into two segments by hand is two cylinders; what has a shape is left alone."""
+    """A pipe cut into two segments by hand is two cylinders with no gap allowed; what has a shape is left alone."""
     xyz = pipe(rng, 0.1, 2.0, 0.02, 0.002, (1, 0, 0))
     segment_id = np.where(xyz[:, 0] < 0, 3, 5).astype(np.int32)
-    ids, shape, axes = detect(xyz, segment_id=segment_id, max_radius=0.4, search_in="each segment")
+    ids, shape, axes = detect(xyz, segment_id=segment_id, max_radius=0.4, max_gap=0, search_in="each segment")
     assert sorted(axes.columns["id"]) == [6, 7]
     for line in axes.geometries:
         assert np.abs(line).max() < 1.1, "axes lie where the points are"
@@ -102,6 +102,50 @@ def test_segments_are_searched_one_by_one(rng):
     assert (ids[segment_id == 3] == 3).all()
     assert (shapes[segment_id == 3] == 1).all()
     assert len(axes) == 1
+
+
+def parted(rng, gap, *, offset=0.0, second_radius=0.1, lean=0.0):
+    """Return points (n, 3) of two pipes along x, of 2 m and 1.5 m, ``gap`` (m) apart, and the segment (n,) of each.
+
+    The second one lies ``offset`` (m) beside the line of the first and leans from it.
+    """
+    one = pipe(rng, 0.1, 2.0, 0.02, 0.002, (1, 0, 0)) - [1.0 + gap / 2, 0, 0]
+    two = pipe(rng, second_radius, 1.5, 0.02, 0.002, (1, lean, 0)) + [0.75 + gap / 2, offset + lean * 0.75, 0]
+    return np.concatenate([one, two]), np.repeat(np.int32([3, 5]), [len(one), len(two)])
+
+
+@pytest.mark.parametrize("search_in", ["whole cloud", "each segment"])
+def test_pieces_of_one_pipe_are_one_cylinder(rng, search_in):
+    xyz, segment_id = parted(rng, 0.6)
+    ids, _, axes = detect(xyz, segment_id=segment_id, max_radius=0.4, search_in=search_in)
+    assert len(axes) == 1
+    line = axes.geometries[0]
+    assert np.sort(line[:, 0]) == pytest.approx([-2.3, 1.8], abs=0.05)
+    assert np.abs(line[:, 1:]).max() < 0.001
+    assert axes.columns["radius"] == pytest.approx([0.1], abs=0.0005)
+    assert axes.columns["length"] == pytest.approx([4.1], abs=0.1)
+    assert axes.columns["rms"] == pytest.approx([0.002], rel=0.1)
+    assert axes.columns["points"] == [(ids == axes.columns["id"][0]).sum()]
+    assert axes.columns["points"][0] > 0.95 * len(xyz)
+    assert axes.columns["seen"] == pytest.approx([0.6], abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("gap", "other"),
+    [(1.5, {}), (0.6, {"offset": 0.006}), (0.6, {"second_radius": 0.106}), (0.6, {"lean": 0.02})],
+    ids=["far apart", "beside the line", "wider", "at an angle"],
+)
+def test_two_pipes_stay_two(rng, gap, other):
+    """Offset, radius and angle differ by little more than the noise of 2 mm."""
+    assert len(detect(parted(rng, gap, **other)[0], max_radius=0.4)[2]) == 2
+
+
+def test_an_end_cap_parts_two_pipes(rng):
+    xyz, _ = parted(rng, 0.6)
+    turn, reach = rng.uniform(0, 2 * np.pi, 80), 0.1 * np.sqrt(rng.uniform(0, 1, 80))
+    cap = np.column_stack([np.full(80, -0.3), reach * np.cos(turn), reach * np.sin(turn)])
+    cap[:, 0] += rng.normal(0, 0.002, 80)
+    assert len(detect(np.concatenate([xyz, cap]), max_radius=0.4)[2]) == 2
 
 
 def test_place_and_order_do_not_matter(rng):

@@ -1,0 +1,140 @@
+"""Pieces of one cylinder, parted by a flange or by the shadow of another object, put together again."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Optional
+
+import numpy as np
+
+from .cylinder_fits import SECTORS, Cylinder, fit_cylinder
+from .cylinder_search import Found
+
+# Largest deviation (standard deviations of the noise) of the points of a piece from the cylinder of all pieces, beyond
+# that from their own: a third of what a bend of one cylinder may explain, as the gap hides how the pieces go on. Pipes
+# of 2 m with noise of 2 mm that lie 6 mm beside each other exceed it.
+_MOST_APART = 0.2
+
+# Largest ratio of the radii of two pieces, and largest angle (°) between their axes: wide bounds that spare fits.
+_RADII, _ANGLE = 1.15, 8.0
+
+# Largest distance (radii) of the facing end of a piece from the axis of the other: a wide bound, too.
+_BESIDE = 0.5
+
+# Radius (share of that of the cylinder) within which an end cap is looked for: clear of points of the wall.
+_CAP_RADIUS = 0.7
+
+# Least share of the points of an end cap, of those that its area would have, that part two cylinders.
+_CAP_SHARE = 0.3
+
+# Least share of the points of an even spread that a sector of the circumference has where it is seen.
+_STRAY = 0.3
+
+
+def joined(found: list[Found], xyz: np.ndarray, noise: float, spacing: float, max_gap: float) -> list[Found]:
+    """Return cylinders, those that are pieces of one put together, closest pieces first.
+
+    Parameters
+    ----------
+    found : list of Found
+        Cylinders, in the coordinates of ``xyz``.
+    xyz : ndarray of shape (n, 3)
+        All points, m.
+    noise, spacing : float
+        Standard deviation across smooth surfaces and distance between points on them, m.
+    max_gap : float
+        Longest part (m) of the axis without points that is bridged.
+    """
+    left: dict[int, Found] = dict(enumerate(found))
+    refused: set[tuple[int, int]] = set()
+    number = len(found)
+    while max_gap > 0 and len(left) > 1:
+        pair = _closest(left, max_gap, refused)
+        if pair is None:
+            break
+        one = _as_one(left[pair[0]], left[pair[1]], xyz, noise, spacing)
+        if one is None:
+            refused.add(pair)
+        else:
+            del left[pair[0]], left[pair[1]]
+            # A new number: pairs with it have not been refused yet.
+            left[number] = one
+            number += 1
+    return list(left.values())
+
+
+def _closest(left: dict[int, Found], max_gap: float, refused: set[tuple[int, int]]) -> Optional[tuple[int, int]]:
+    """Return the numbers of the two pieces, roughly in one line and of one radius, with the least gap between them."""
+    numbers = np.array(list(left))
+    ones = list(left.values())
+    radius = np.array([one.cylinder.radius for one in ones])
+    axis = np.array([one.cylinder.axis for one in ones])
+    ends = np.array([one.ends for one in ones])
+    # Where the ends (j) of each piece lie along the axis of each other piece (i), and how far beside it.
+    offset = ends[None] - ends[:, None, :1]
+    along = np.einsum("ijkx,ix->ijk", offset, axis)
+    beside = np.sqrt(np.maximum((offset**2).sum(axis=3) - along**2, 0))
+    length = np.array([one.high - one.low for one in ones])
+    gap = np.maximum(along.min(axis=2) - length[:, None], -along.max(axis=2))
+    facing = beside.min(axis=2)
+    is_pair = (gap <= max_gap) & (max_gap >= gap.T) & (facing <= _BESIDE * radius[:, None])
+    is_pair &= np.abs(axis @ axis.T) >= np.cos(np.radians(_ANGLE))
+    is_pair &= np.abs(np.log(radius[:, None] / radius)) <= np.log(_RADII)
+    is_pair &= is_pair.T
+    first, second = np.nonzero(np.triu(is_pair, 1))
+    for k in np.argsort(gap[first, second], kind="stable"):
+        pair = int(numbers[first[k]]), int(numbers[second[k]])
+        if pair not in refused:
+            return pair
+    return None
+
+
+def _as_one(one: Found, other: Found, xyz: np.ndarray, noise: float, spacing: float) -> Optional[Found]:
+    """Return the cylinder of two pieces, None where the points of one of them or an end cap contradict it.
+
+    The cylinder with the least squares on the points of both must be as close to the points of each as the cylinder of
+    its own, but for chance: five unknowns of k points explain 5 / k of the variance. So radius, offset and direction
+    are compared at once, each as precisely as the lengths and the arcs of the pieces tell it.
+    """
+    points = np.sort(np.concatenate([one.points, other.points]))
+    longer = one if len(one.points) >= len(other.points) else other
+    cylinder = fit_cylinder(xyz[points], longer.cylinder)
+    for piece in (one, other):
+        distance = cylinder.local(xyz[piece.points])[1] - cylinder.radius
+        more = float((distance**2).mean()) - piece.rms**2
+        by_chance = 2 * 5 * piece.rms**2 / len(piece.points)
+        if more > (_MOST_APART * noise) ** 2 + by_chance:
+            return None
+    along, distance, _ = cylinder.local(xyz[points])
+    ends = [np.sort((piece.ends - cylinder.center) @ cylinder.axis) for piece in (one, other)]
+    ends.sort(key=lambda pair: float(pair[0]))
+    found = Found(cylinder, float(along.min()), float(along.max()), points, 0.0, 0.0)
+    if _is_capped(found, float(ends[0][1]), float(ends[1][0]), xyz, spacing):
+        return None
+    rms = float(np.sqrt(((distance - cylinder.radius) ** 2).mean()))
+    return replace(found, rms=rms, seen=_seen(cylinder, (one, other), xyz, spacing))
+
+
+def _seen(cylinder: Cylinder, pieces: tuple[Found, Found], xyz: np.ndarray, spacing: float) -> float:
+    """Return the share of the circumference on which one of the pieces has points, stray ones aside."""
+    sectors = int(np.clip(2 * np.pi * cylinder.radius / (2 * spacing), 8, SECTORS))
+    is_seen = np.zeros(sectors, bool)
+    for piece in pieces:
+        angle = cylinder.angle(cylinder.local(xyz[piece.points])[2])
+        sector = np.minimum(((angle / (2 * np.pi) + 0.5) * sectors).astype(np.int64), sectors - 1)
+        even = len(piece.points) / (sectors * piece.seen)
+        is_seen |= np.bincount(sector, minlength=sectors) >= _STRAY * even
+    return float(is_seen.mean())
+
+
+def _is_capped(found: Found, first: float, last: float, xyz: np.ndarray, spacing: float) -> bool:
+    """Return whether an end cap lies inside a cylinder between two places along its axis (m from its center)."""
+    cylinder = found.cylinder
+    low, high = min(first, last) - cylinder.radius, max(first, last) + cylinder.radius
+    corners = cylinder.center + np.outer([low, high], cylinder.axis)
+    reach = cylinder.radius
+    near = ((xyz >= corners.min(axis=0) - reach) & (xyz <= corners.max(axis=0) + reach)).all(axis=1)
+    along, distance, _ = cylinder.local(xyz[near])
+    inside = (along >= low) & (along <= high) & (distance <= _CAP_RADIUS * cylinder.radius)
+    expected = np.pi * (_CAP_RADIUS * cylinder.radius / spacing) ** 2
+    return bool(inside.sum() > max(_CAP_SHARE * expected, 3))
