@@ -147,8 +147,8 @@ def local_planes(
     monitor : Monitor
         Receives progress.
     """
-    # Cells cut at their middle are built in half the time of balanced ones.
-    n, tree = len(xyz), spatial.cKDTree(xyz, _LEAF, balanced_tree=False)
+    # Balanced: of points at the same distance it hardly depends on their order which are found.
+    n, tree = len(xyz), spatial.cKDTree(xyz, _LEAF)
     # Points at the radius itself are near, however coordinates are rounded.
     count, reach = min(count, n), radius * (1 + 1e-7)
     planes = LocalPlanes(
