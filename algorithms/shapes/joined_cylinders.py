@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import heapq
 from dataclasses import replace
 from typing import Optional
 
 import numpy as np
 
+from ..packages import spatial
 from .cylinder_fits import SECTORS, Cylinder, fit_cylinder
 from .cylinder_search import Found
 
@@ -39,54 +41,75 @@ def joined(found: list[Found], xyz: np.ndarray, noise: float, spacing: float, ma
     found : list of Found
         Cylinders, in the coordinates of ``xyz``.
     xyz : ndarray of shape (n, 3)
-        All points, m.
+        All points, m, sorted by elevation.
     noise, spacing : float
         Standard deviation across smooth surfaces and distance between points on them, m.
     max_gap : float
         Longest part (m) of the axis without points that is bridged.
     """
+    if max_gap <= 0 or len(found) < 2:
+        return found
     left: dict[int, Found] = dict(enumerate(found))
-    refused: set[tuple[int, int]] = set()
+    beside = _neighbors(found, max_gap)
+    pairs = [(one, other) for one, others in beside.items() for other in others if one < other]
+    waiting = [(gap, *pair) for pair in pairs if (gap := _gap(*(left[one] for one in pair))) <= max_gap]
+    heapq.heapify(waiting)
     number = len(found)
-    while max_gap > 0 and len(left) > 1:
-        pair = _closest(left, max_gap, refused)
-        if pair is None:
-            break
-        one = _as_one(left[pair[0]], left[pair[1]], xyz, noise, spacing)
-        if one is None:
-            refused.add(pair)
-        else:
-            del left[pair[0]], left[pair[1]]
-            # A new number: pairs with it have not been refused yet.
-            left[number] = one
-            number += 1
+    while waiting:
+        _, one, other = heapq.heappop(waiting)
+        if one not in left or other not in left:
+            continue
+        whole = _as_one(left[one], left[other], xyz, noise, spacing)
+        if whole is None:
+            continue
+        beside[number] = (beside[one] | beside[other]) - {one, other}
+        for near in beside[number]:
+            beside[near].add(number)
+            if near in left and (gap := _gap(left[near], whole)) <= max_gap:
+                heapq.heappush(waiting, (gap, near, number))
+        del left[one], left[other]
+        left[number] = whole
+        number += 1
     return list(left.values())
 
 
-def _closest(left: dict[int, Found], max_gap: float, refused: set[tuple[int, int]]) -> Optional[tuple[int, int]]:
-    """Return the numbers of the two pieces, roughly in one line and of one radius, with the least gap between them."""
-    numbers = np.array(list(left))
-    ones = list(left.values())
-    radius = np.array([one.cylinder.radius for one in ones])
-    axis = np.array([one.cylinder.axis for one in ones])
-    ends = np.array([one.ends for one in ones])
-    # Where the ends (j) of each piece lie along the axis of each other piece (i), and how far beside it.
-    offset = ends[None] - ends[:, None, :1]
-    along = np.einsum("ijkx,ix->ijk", offset, axis)
-    beside = np.sqrt(np.maximum((offset**2).sum(axis=3) - along**2, 0))
-    length = np.array([one.high - one.low for one in ones])
-    gap = np.maximum(along.min(axis=2) - length[:, None], -along.max(axis=2))
-    facing = beside.min(axis=2)
-    is_pair = (gap <= max_gap) & (max_gap >= gap.T) & (facing <= _BESIDE * radius[:, None])
-    is_pair &= np.abs(axis @ axis.T) >= np.cos(np.radians(_ANGLE))
-    is_pair &= np.abs(np.log(radius[:, None] / radius)) <= np.log(_RADII)
-    is_pair &= is_pair.T
-    first, second = np.nonzero(np.triu(is_pair, 1))
-    for k in np.argsort(gap[first, second], kind="stable"):
-        pair = int(numbers[first[k]]), int(numbers[second[k]])
-        if pair not in refused:
-            return pair
-    return None
+def _neighbors(found: list[Found], max_gap: float) -> dict[int, set[int]]:
+    """Return for each cylinder the numbers of those whose axes come as close as pieces of one do."""
+    # Places along each axis, its ends among them, at most the gap apart.
+    places, of = [], []
+    for number, one in enumerate(found):
+        count = int(np.ceil((one.high - one.low) / max_gap)) + 1
+        places.append(np.linspace(*one.ends, count))
+        of += [number] * count
+    owner, every = np.array(of), np.concatenate(places)
+    reach = max_gap + _BESIDE * np.array([one.cylinder.radius for one in found])[owner]
+    near = spatial.cKDTree(every).query_ball_point(every, reach)
+    beside: dict[int, set[int]] = {number: set() for number in range(len(found))}
+    for number, others in zip(of, near):
+        for other in owner[others].tolist():
+            if other != number:
+                beside[number].add(other)
+                beside[other].add(number)
+    return beside
+
+
+def _gap(one: Found, other: Found) -> float:
+    """Return the gap (m) between two pieces roughly in one line and of one radius, negative where they overlap.
+
+    It is infinite where they are not.
+    """
+    a, b = one.cylinder, other.cylinder
+    if abs(np.log(a.radius / b.radius)) > np.log(_RADII) or abs(a.axis @ b.axis) < np.cos(np.radians(_ANGLE)):
+        return np.inf
+    gaps = []
+    for piece, of_other in ((one, other), (other, one)):
+        offset = of_other.ends - piece.ends[0]
+        along = offset @ piece.cylinder.axis
+        beside = np.sqrt(np.maximum((offset**2).sum(axis=1) - along**2, 0))
+        if beside.min() > _BESIDE * piece.cylinder.radius:
+            return np.inf
+        gaps.append(max(along.min() - (piece.high - piece.low), -along.max()))
+    return float(max(gaps))
 
 
 def _as_one(one: Found, other: Found, xyz: np.ndarray, noise: float, spacing: float) -> Optional[Found]:
@@ -132,9 +155,9 @@ def _is_capped(found: Found, first: float, last: float, xyz: np.ndarray, spacing
     cylinder = found.cylinder
     low, high = min(first, last) - cylinder.radius, max(first, last) + cylinder.radius
     corners = cylinder.center + np.outer([low, high], cylinder.axis)
-    reach = cylinder.radius
-    near = ((xyz >= corners.min(axis=0) - reach) & (xyz <= corners.max(axis=0) + reach)).all(axis=1)
-    along, distance, _ = cylinder.local(xyz[near])
+    lowest, highest = corners.min(axis=0) - cylinder.radius, corners.max(axis=0) + cylinder.radius
+    near = xyz[np.searchsorted(xyz[:, 2], lowest[2]) : np.searchsorted(xyz[:, 2], highest[2], side="right")]
+    along, distance, _ = cylinder.local(near[((near >= lowest) & (near <= highest)).all(axis=1)])
     inside = (along >= low) & (along <= high) & (distance <= _CAP_RADIUS * cylinder.radius)
     expected = np.pi * (_CAP_RADIUS * cylinder.radius / spacing) ** 2
     return bool(inside.sum() > max(_CAP_SHARE * expected, 3))
