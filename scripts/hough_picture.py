@@ -119,7 +119,7 @@ def drawn(curves: dict[str, tuple[str, list[float]]]) -> QImage:
         painter.setPen(QPen(QColor(color), 3))
         places = [QPointF(left + i * step, area.bottom() - v / 100 * area.height()) for i, v in enumerate(shares)]
         painter.drawPolyline(QPolygonF(places))
-        painter.drawText(QPointF(left + 0.3 * area.width(), area.bottom() - 40 + 20 * row), name)
+        painter.drawText(QPointF(left + 0.03 * area.width(), area.bottom() - 40 + 20 * row), name)
     painter.end()
     return image
 
