@@ -132,8 +132,11 @@ def tunable_values(
     parameters: dict,
     context: QgsProcessingContext,
     named: Optional[dict[str, str]] = None,
+    defaults: Optional[dict[str, Any]] = None,
 ) -> dict[str, Any]:
-    """Return the values of a stage's tunables in ``parameters``, checked; ``named`` gives other parameters' names.
+    """Return the values of a stage's tunables in ``parameters``, checked.
+
+    ``named`` gives other parameters' names; ``defaults`` are those of a step, which take the place of the stage's own.
 
     Raises
     ------
@@ -141,19 +144,27 @@ def tunable_values(
         In the words of the core, when a value is of the wrong kind or out of bounds; it names the parameter.
     """
     names = named or {name: parameter_name(tunable) for name, tunable in stage.tunables.items()}
+    defaults = {name: tunable.default for name, tunable in stage.tunables.items()} | (defaults or {})
     return {
-        name: tunable.check(_value(algorithm, tunable, names[name], parameters, context), names[name])
+        name: tunable.check(
+            _value(algorithm, tunable, names[name], parameters, context)
+            if _is_given(parameters.get(names[name]))
+            else defaults[name],
+            names[name],
+        )
         for name, tunable in stage.tunables.items()
     }
+
+
+def _is_given(raw: Any) -> bool:
+    """Whether a parameter has a value: QGIS passes an empty number as None, as NULL or as empty text."""
+    return not (raw is None or raw == "" or (hasattr(raw, "isNull") and raw.isNull()))
 
 
 def _value(
     algorithm: QgsProcessingAlgorithm, tunable: Tunable, name: str, parameters: dict, context: QgsProcessingContext
 ) -> Any:
-    raw = parameters.get(name)
-    # QGIS passes an empty number as None, as NULL or as empty text.
-    if raw is None or raw == "" or (hasattr(raw, "isNull") and raw.isNull()):
-        return tunable.default
+    raw = parameters[name]
     if tunable.type is tuple:
         words = (
             raw if isinstance(raw, (list, tuple)) else algorithm.parameterAsString(parameters, name, context).split(",")

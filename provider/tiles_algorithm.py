@@ -150,7 +150,8 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         for step in pipeline.steps:
             named = {name: pipeline.parameter(step, name) for name in step.stage.tunables}
             shown = {name: composite.upper() for name, composite in named.items()}
-            for name, value in tunable_values(self, step.stage, parameters, context, shown).items():
+            given = tunable_values(self, step.stage, parameters, context, shown, step.tunables)
+            for name, value in given.items():
                 values[named[name]] = value
         return values
 

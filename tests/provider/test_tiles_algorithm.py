@@ -63,6 +63,22 @@ def test_a_folder_becomes_tiles_a_virtual_point_cloud_and_one_layer(algorithm, c
     assert (whole.get("classification") == 6).sum() > 400
 
 
+def test_what_is_not_set_is_what_the_steps_have(provider, context):
+    """Steps have values of their own where the stages have others: no bridges, planes from 1.5 m on."""
+    for name, parameter, value in (
+        ("detectbuildingsintiles", "bridges_max_width", 0.0),
+        ("mapfootprintsintiles", "planes_min_height", 1.5),
+    ):
+        algorithm = provider.algorithm(name).create()
+        for empty in ({}, {parameter.upper(): None}):
+            assert algorithm._tunables(empty, context)[parameter] == value
+        pipeline = algorithm.tiled.pipeline
+        assert pipeline.by_step(algorithm._tunables({}, context)) == [
+            (step, {name: step.stage.check(of_step)[name] for name in step.stage.tunables})
+            for step, of_step in pipeline.by_step({})
+        ]
+
+
 def test_the_virtual_point_cloud_lies_where_it_is_on_earth(algorithm, context, log, folder, tmp_path):
     given = {"INPUT": [str(folder / "west.laz")], "OUTPUT": str(tmp_path / "tiles"), **QUICKLY}
     results, succeeded = algorithm.run(given, context, log)
