@@ -135,7 +135,8 @@ _PIPELINES = (
             "than others, describes the neighborhood of each point, and sorts points by the largest of linearity, "
             "planarity and scattering: wires and edges, ground and walls, crowns and bushes. The features stay in the "
             "cloud. The neighborhood of 50 points gives smooth results on noisy scans; 'optimal' chooses a number for "
-            "each point and keeps more detail. Of a single cloud, start with 'Downsample to voxels'."
+            "each point and keeps more detail. Of a single cloud, start with 'Downsample to voxels'. The clouds are of "
+            "one place; the tiles of a survey, of different places, are not merged."
         ),
         references=(
             "Weinmann, M., Müller, M. S., Hillemann, M., Reydel, N., Hinz, S., Jutzi, B., 2017. Point cloud analysis "
@@ -202,7 +203,8 @@ _PIPELINES = (
             "Vertical planes are found among the points. Each gets a boundary in its plane, and neighbors a common "
             "border on the intersection line of their planes. What lies behind a wall and is enclosed by it is a "
             "window or a door: a hole of the facade, and a feature with its size and position. Nothing has to be set; "
-            "ground and noise are left out where they are classified."
+            "ground and noise are left out where they are classified. Planes are looked for in the whole cloud; a long drive is "
+            "cut by streets first, with 'Clip cloud'."
         ),
         references=(
             "Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on "
@@ -229,7 +231,9 @@ _PIPELINES = (
             "that are higher than what lies around them are objects, the others bare earth, of which bridges and "
             "fly-overs, raised on both sides and joined at both ends, become bridge deck (17). The rasters are made of "
             "what is left. Large halls are removed whole. In towns and forests, where walls and leaves join roofs and "
-            "crowns to the terrain, 'Classify ground points (TIN)' before 'Classify bridges' errs less."
+            "crowns to the terrain, 'Classify ground points (TIN)' before 'Classify bridges' errs less. Segments of the "
+            "bare earth run through the whole cloud, so that it is not run in tiles: 'Detect buildings, in tiles' finds "
+            "the ground of a survey."
         ),
         references=_VOSSELMAN,
         steps=(
@@ -250,7 +254,8 @@ _PIPELINES = (
         description=(
             "The cloud is divided into smooth surfaces: connected pipes with their elbows, a tank, a plate. In each of "
             "them, cylinders are found first, since a strip of a tank would pass for a plane, then spheres and planes "
-            "among the points that have no shape yet. Points of a surface without a shape keep its SegmentID."
+            "among the points that have no shape yet. Points of a surface without a shape keep its SegmentID. Pipes go on "
+            "as far as they like, so that it is not run in tiles; a large plant is cut by units first, with 'Clip cloud'."
         ),
         references=_VOSSELMAN,
         steps=(
