@@ -202,9 +202,9 @@ _PIPELINES = (
         description=(
             "Vertical planes are found among the points. Each gets a boundary in its plane, and neighbors a common "
             "border on the intersection line of their planes. What lies behind a wall and is enclosed by it is a "
-            "window or a door: a hole of the facade, and a feature with its size and position. Nothing has to be set; "
-            "ground and noise are left out where they are classified. Planes are looked for in the whole cloud; a long drive is "
-            "cut by streets first, with 'Clip cloud'."
+            "window or a door: a hole of the facade, and a feature with its size and position. Nothing has to be "
+            "set; ground and noise are left out where they are classified. Planes are looked for in the whole cloud; "
+            "a long drive is cut by streets first, with 'Clip cloud'."
         ),
         references=(
             "Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on "
@@ -227,13 +227,13 @@ _PIPELINES = (
         tags="terrain,bare earth,DTM,DEM,bridge,fly-over,segments,scan line,filter,Sithole,Vosselman",
         summary="Model the bare earth without objects and bridges: classified points and rasters, by segments.",
         description=(
-            "Noise first; then pieces of artificial scan lines in several directions are merged to segments. Segments "
-            "that are higher than what lies around them are objects, the others bare earth, of which bridges and "
-            "fly-overs, raised on both sides and joined at both ends, become bridge deck (17). The rasters are made of "
-            "what is left. Large halls are removed whole. In towns and forests, where walls and leaves join roofs and "
-            "crowns to the terrain, 'Classify ground points (TIN)' before 'Classify bridges' errs less. Segments of the "
-            "bare earth run through the whole cloud, so that it is not run in tiles: 'Detect buildings, in tiles' finds "
-            "the ground of a survey."
+            "Noise first; then pieces of artificial scan lines in several directions are merged to segments. "
+            "Segments that are higher than what lies around them are objects, the others bare earth, of which "
+            "bridges and fly-overs, raised on both sides and joined at both ends, become bridge deck (17). The "
+            "rasters are made of what is left. Large halls are removed whole. In towns and forests, where walls and "
+            "leaves join roofs and crowns to the terrain, 'Classify ground points (TIN)' before 'Classify bridges' "
+            "errs less. Segments of the bare earth run through the whole cloud, so that it is not run in tiles: "
+            "'Detect buildings, in tiles' finds the ground of a survey."
         ),
         references=_VOSSELMAN,
         steps=(
@@ -252,10 +252,11 @@ _PIPELINES = (
         tags="industry,plant,pipe,tank,vessel,cylinder,sphere,plane,as-built,terrestrial,laser scanner,Vosselman",
         summary="Model pipes, tanks, spheres and planes of a scanned plant: axes, centers and polygons with heights.",
         description=(
-            "The cloud is divided into smooth surfaces: connected pipes with their elbows, a tank, a plate. In each of "
-            "them, cylinders are found first, since a strip of a tank would pass for a plane, then spheres and planes "
-            "among the points that have no shape yet. Points of a surface without a shape keep its SegmentID. Pipes go on "
-            "as far as they like, so that it is not run in tiles; a large plant is cut by units first, with 'Clip cloud'."
+            "The cloud is divided into smooth surfaces: connected pipes with their elbows, a tank, a plate. In each "
+            "of them, cylinders are found first, since a strip of a tank would pass for a plane, then spheres and "
+            "planes among the points that have no shape yet. Points of a surface without a shape keep its SegmentID. "
+            "Pipes go on as far as they like, so that it is not run in tiles; a large plant is cut by units first, "
+            "with 'Clip cloud'."
         ),
         references=_VOSSELMAN,
         steps=(
