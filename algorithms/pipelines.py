@@ -233,7 +233,7 @@ _PIPELINES = (
             "rasters are made of what is left. Large halls are removed whole. In towns and forests, where walls and "
             "leaves join roofs and crowns to the terrain, 'Classify ground points (TIN)' before 'Classify bridges' "
             "errs less. Segments of the bare earth run through the whole cloud, so that it is not run in tiles: "
-            "'Detect buildings, in tiles' finds the ground of a survey."
+            "'Detect buildings' in tiles finds the ground of a survey."
         ),
         references=_VOSSELMAN,
         steps=(
