@@ -14,7 +14,6 @@ from ..packages import spatial
 from ..sampling.cloud_sampling import CloudSampling
 from ..sampling.density import point_spacing
 from ..stage import (
-    FileContent,
     InputLayer,
     Layer,
     LayerFeatures,
@@ -167,8 +166,8 @@ def reconstruct_roofs(
         The ground of each building, at its height, with what is known of the model.
     walls, roofs : LayerFeatures
         The other faces of the best level of each building, as polygons with heights.
-    cityjson, obj : FileContent
-        The same in one file: CityJSON 2.0 or CityJSONSeq with all levels and semantic surfaces, and Wavefront OBJ.
+    cityjson, obj : list of NamedModel
+        The same for one file: CityJSON 2.0 or CityJSONSeq with all levels and semantic surfaces, and Wavefront OBJ.
 
     Raises
     ------
@@ -207,7 +206,7 @@ def reconstruct_roofs(
     )
     models = _modelled(building, ground, outlines, settings, monitor)
     layers = _building_layer(models), _face_layer(models, WALL), _face_layer(models, ROOF)
-    return *layers, FileContent(models, cityjson.cityjson_pieces), FileContent(models, wavefront.obj_pieces)
+    return *layers, models, models
 
 
 @dataclass(frozen=True)

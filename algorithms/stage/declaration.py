@@ -10,7 +10,7 @@ from typing import Any, Callable, Union
 
 from .arguments import REFERENCE_PREFIX, check_arrays
 from .docstrings import before_first_section, sections, with_tunables
-from .inputs_outputs import InputLayer, Layer, Measure, Raster, StageResults, TextFile, given_layers
+from .inputs_outputs import FileContent, InputLayer, Layer, Measure, Raster, StageResults, TextFile, given_layers
 from .monitor import Monitor
 from .tunables import Tunable
 
@@ -116,7 +116,7 @@ class Stage:
             dimensions={name: results.pop(0) for name in self.creates or self.writes},
             layers={layer.name: results.pop(0) for layer in self.layers},
             rasters={raster.name: results.pop(0) for raster in self.rasters},
-            files={file.name: results.pop(0) for file in self.files},
+            files={file.name: FileContent(results.pop(0), file.write) for file in self.files},
             report=results.pop(0) if self.measures else None,
         )
 
@@ -144,7 +144,7 @@ def stage(
     one array per name in ``writes`` (length n, with ``selects`` m, with ``merges`` that of all
     clouds together; None for one that the user did not ask for) or ``creates`` (a new
     cloud of any length), one :class:`LayerFeatures` per layer, one :class:`RasterSurface` per raster,
-    one :class:`FileContent` per file, and a :class:`Report` when there are measures. A stage
+    the items of each file, and a :class:`Report` when there are measures. A stage
     that merges and writes nothing returns None for the cloud that it makes. The decorated function checks its arrays
     and tunables on every call and carries its :class:`Stage` as ``function.stage``.
 

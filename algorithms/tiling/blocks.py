@@ -109,7 +109,8 @@ class BlockResult:
     layers : dict of str to LayerFeatures
         Features that have a part in the block, in meters from the survey's origin.
     items : dict of str to list
-        Of each text file the records of its items that belong to these features, with their names in the block.
+        Of text files the records of items that belong to these features, with their names in the block, by their class:
+        files of one stage are written of the same items.
     messages : list of str
         Warnings, each once.
     tries : ndarray of shape (k, 4)
@@ -139,7 +140,7 @@ class BlockResult:
             arrays.update({f"{kind}.{name}": values for name, values in getattr(self, kind).items()})
         for name, features in self.layers.items():
             arrays.update({f"layer.{name}.{key}": values for key, values in _flat(features).items()})
-        arrays.update({f"items.{name}": _text(items) for name, items in self.items.items()})
+        arrays.update({f"items.{kind}": _text(items) for kind, items in self.items.items()})
         arrays["messages"] = _text(self.messages)
         with replacing(path) as stream:
             np.savez(stream, **arrays)
@@ -178,10 +179,10 @@ class BlockResult:
         return kinds[0], kinds[1]
 
     @classmethod
-    def items_of(cls, path: Path, name: str) -> list[tuple[str, dict[str, Any]]]:
-        """Return the items of one text file in a file of :meth:`write`, none where the block has no points."""
+    def items_of(cls, path: Path, kind: str) -> list[tuple[str, dict[str, Any]]]:
+        """Return the items of one class in a file of :meth:`write`, none where the block has no points."""
         with np.load(path, allow_pickle=False) as stored:
-            return json.loads(bytes(stored[f"items.{name}"])) if f"items.{name}" in stored.files else []
+            return json.loads(bytes(stored[f"items.{kind}"])) if f"items.{kind}" in stored.files else []
 
     @classmethod
     def raster(cls, path: Path, name: str) -> np.ndarray:
@@ -277,9 +278,11 @@ def _run(task: BlockTask, window: Window, box: np.ndarray, monitor: Monitor) -> 
     result.dimensions = {name: of_all[core] for name, of_all in values.items()}
     _number(result, window, values, stays, places, task.block)
     cuts = _keep_layers(result, pipeline, made, task, box)
-    for name, (_, of) in files_of(pipeline).items():
+    for name, (file, of) in files_of(pipeline).items():
         kept = set(_names(result.layers[of].columns["id"]))
-        result.items[name] = [(one.name, one.record()) for one in made.files[name].items if one.name in kept]
+        if file.item.__name__ not in result.items:
+            items = made.files[name].items
+            result.items[file.item.__name__] = [(one.name, one.record()) for one in items if one.name in kept]
     for name, surface in made.rasters.items():
         result.rasters[name], result.lattices[name] = _cropped(surface, task.block.box - task.survey.origin[:2])
     result.messages = list(dict.fromkeys(monitor.warnings))

@@ -29,7 +29,7 @@ def join_files(pipeline: Pipeline, results: list[Path], kept: dict[str, np.ndarr
         Of each layer, from :func:`.join_features`: position among ``results`` and number of the features that stay.
     """
     return {
-        name: FileContent(_Items(results, name, file.item, new_names(kept[of])), file.write)
+        name: FileContent(_Items(results, file.item, new_names(kept[of])), file.write)
         for name, (file, of) in files_of(pipeline).items()
         if of in kept
     }
@@ -40,13 +40,12 @@ class _Items(Collection):
     """The items of a text file under the names of the survey, those of one block in memory at a time."""
 
     results: list[Path]
-    file: str
     item: type[FileItem]
     becomes: dict[tuple[int, str], int]
 
     def __iter__(self) -> Iterator[Any]:
         for block, path in enumerate(self.results):
-            for name, record in BlockResult.items_of(path, self.file):
+            for name, record in BlockResult.items_of(path, self.item.__name__):
                 if (block, name) in self.becomes:
                     yield self.item.of_record(record, str(self.becomes[block, name]))
 

@@ -113,6 +113,30 @@ def test_blocks_say_what_the_whole_cloud_says(points, whole):
     assert (classes_by_time(whole)[1] == cloud.get("classification")).mean() > 0.99
 
 
+def test_a_window_grows_on_the_side_that_cuts_off_a_house_alone(tmp_path, monkeypatch):
+    rng = np.random.default_rng(5)
+    plan = rng.uniform(0, SIZE, (SIZE * SIZE * 4, 2))
+    # From 2 m west of an edge between blocks to 32 m east of it.
+    under = ((plan > [28, 12]) & (plan < [62, 22])).all(axis=1)
+    ground = np.column_stack([plan, rng.normal(0, 0.02, len(plan))])[~under]
+    xyz = np.round(np.concatenate([ground, roof(rng, 28, 12, 34, 10, 5.0, density=4.0)]) + CORNER, 3)
+    asked = []
+    window = Survey.window
+
+    def listened(self, box, monitor=None):
+        asked.append(box)
+        return window(self, box, monitor)
+
+    monkeypatch.setattr(Survey, "window", listened)
+    monkeypatch.setattr(Pipeline, "reach", lambda self, tunables: 8.0)
+    outcome = run(tiles_of(tmp_path, xyz, np.arange(len(xyz)) * 1e-5, np.ones(len(xyz), bool)), tmp_path / "result")
+    assert len(outcome.layers["footprints"]) == 1
+    west = np.array([[600_000.0, 5_000_000.0], [600_040.0, 5_000_040.0]])
+    margins = [np.abs(box - west) for box in asked if (box[0] <= west[0]).all() and (box[0] >= west[0] - 8).all()]
+    assert [margin[1, 0] for margin in margins if margin[1, 1] < 9] == [8, 16, 32, 64]
+    assert all((margin.ravel()[[0, 1, 3]] == 8).all() for margin in margins if margin[1, 0] < 65)
+
+
 def cuts(xyz):
     """Return ways to cut the survey into tiles: 9, and irregular ones that overlap by 15 m."""
     x, y = (xyz - CORNER)[:, :2].T
