@@ -23,7 +23,7 @@ CAPTIONS = {
     "computefeatures": "Planarity from blue, low in crowns and at edges, to red, high on roofs and ground.",
     "classifydimensionality": "Points by what they lie on: lines, surfaces or volumes.",
     "segmentregions": "Regions of neighboring points above the ground, each in a color of its own.",
-    "segmentroofs": "Roof surfaces in a color each; what is no roof is gray.",
+    "segmentroofs": "Roof surfaces in a color each; all other points are gray.",
     "segmentclusters": "Clusters of points above the ground, each in a color of its own.",
     "segmentsurfaces": _SEGMENTS,
     "segmentscanlines": _SEGMENTS,

@@ -201,7 +201,7 @@ _PIPELINES = (
         summary="Turn a street or terrestrial scan into facades with windows and doors, as polygons in space.",
         description=(
             "Vertical planes are found among the points. Each gets a boundary in its plane, and neighbors a common "
-            "border on the intersection line of their planes. What lies behind a wall and is enclosed by it is a "
+            "border on the intersection line of their planes. An enclosed area with points behind the wall is a "
             "window or a door: a hole of the facade, and a feature with its size and position. Nothing has to be "
             "set; ground and noise are left out where they are classified. Planes are looked for in the whole cloud; "
             "a long drive is cut by streets first, with 'Clip cloud'."
@@ -228,7 +228,7 @@ _PIPELINES = (
         summary="Model the bare earth without objects and bridges: classified points and rasters, by segments.",
         description=(
             "Noise first; then pieces of artificial scan lines in several directions are merged to segments. "
-            "Segments that are higher than what lies around them are objects, the others bare earth, of which "
+            "Segments that are higher than their surroundings are objects, the others bare earth, of which "
             "bridges and fly-overs, raised on both sides and joined at both ends, become bridge deck (17). The "
             "rasters are made of what is left. Large halls are removed whole. In towns and forests, where walls and "
             "leaves join roofs and crowns to the terrain, 'Classify ground points (TIN)' before 'Classify bridges' "

@@ -27,7 +27,7 @@ _POINTS_PER_PLANE = 1.5
 _POINTS_PER_PLANE_ON_LINES = 1.75
 
 
-# Neighborhoods, and what stands around a cluster (m).
+# Reach of neighborhoods, and of the surroundings of a cluster (m).
 _REACH = 5.0
 
 
@@ -101,7 +101,7 @@ def classify_buildings(
     reason : ndarray of shape (n,), uint8, optional
         Reasons that the segmentation gave to points outside clusters, which they keep.
     segment_id : ndarray of shape (n,), int32, optional
-        Roof surfaces, 0 is none; in matched images they are held against crowns, by entropy where they are missing.
+        Roof surfaces, 0 is none; in matched images they tell roofs from crowns; without them entropy does.
     red, green, blue : ndarray of shape (n,), uint16, optional
         Color, used in matched images where given.
 
@@ -143,7 +143,7 @@ def classify_buildings(
     the beam seems to penetrate: those of the minimum area are buildings if half of the points around belong to others.
 
     In clouds of matched images, crowns are as closed as roofs, and penetration tells nothing. There, roof surfaces are
-    buildings, planar over a meter, if the minimum share of what stands around them are such surfaces; small ones
+    buildings, planar over a meter, if the minimum share of the points around them lie on such surfaces; small ones
     that are as green as plants are none. What is green is set by the scene: the threshold that parts the
     normalized excess green of all its points in two kinds best, if these are apart by 0.1 or more. Shadow hardly
     changes it.

@@ -1,4 +1,4 @@
-"""Whole buildings from their roofs: gaps, edges, what stands on the roof, and the walls below."""
+"""Whole buildings from their roofs: gaps, edges, structures on the roof, and the walls below."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ _WALL_REACH = 1.0
 # Smallest patch of cells beside a building that may be a crown: walls are narrower.
 _CROWN = np.ones((2, 2), bool)
 
-# Least share of the points of a crown that the beam passed; what a crown touches is no wall.
+# Least share of the points of a crown that the beam passed; points beside a crown are not added as wall.
 _PASSED = 0.5
 
 # Side (cells) of the square in which this share is measured.
@@ -177,9 +177,9 @@ def complete_buildings(
     cluster_id : ndarray of shape (n,), int32
         Buildings from 1, from the south-west northward; 0 is none.
     confidence : ndarray of shape (n,), float32, or None
-        Of what is added to a building the mean of its roofs, of roofs that are none at most 0.5; None where not given.
+        Points added to a building get the mean of its roofs, rejected roofs at most 0.5; None where not given.
     reason : ndarray of shape (n,), uint8, or None
-        The same for what is added and what is no building; None where not given.
+        The same for added points and rejected roofs; None where not given.
 
     Raises
     ------
@@ -269,7 +269,7 @@ class _Roofs:
     ) -> _Roofs:
         """Tell roofs, noise and bridge decks by the classes of points."""
         is_roof, is_noise = classification == PointClass.BUILDING, np.isin(classification, NOISE)
-        # What lies on a bridge deck stands on no ground, and is no wall.
+        # Points on a bridge deck have no ground below them and are no walls.
         may_stand = ~is_noise & (classification != PointClass.BRIDGE_DECK)
         on_surface = None if segment_id is None else is_roof & (segment_id > 0)
         return cls(xyz, height, is_roof, is_noise, may_stand, on_surface, segment_id)
@@ -288,7 +288,7 @@ class _Extents:
     building : ndarray of shape (rows, columns), int32
         Number of the building that covers each cell, 0 is none.
     refused : ndarray of shape (rows, columns), uint8
-        Why what covers a cell is no building.
+        Reason why the roof over a cell was rejected.
     top : ndarray of shape (rows, columns)
         Elevation of the roof in each cell or the nearest one with a roof, m.
     raised : ndarray of shape (n,), bool
@@ -350,7 +350,7 @@ def _explained(
     cluster_id: np.ndarray,
     refusal: np.ndarray,
 ) -> tuple[Optional[np.ndarray], Optional[np.ndarray]]:
-    """Return confidence and reason of what was added to buildings and of roofs that are no building after all."""
+    """Return confidence and reason of points added to buildings and of rejected roofs."""
     is_added, is_dropped = (cluster_id > 0) & ~is_roof, (cluster_id == 0) & is_roof
     if reason is not None:
         reason = np.where(is_added, Reason.ATTACHED, np.where(is_dropped, refusal, reason)).astype(np.uint8)
@@ -371,7 +371,7 @@ def _may_be_bush(height: np.ndarray, roof: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class _Points:
-    """All points (n,), as they are held against buildings.
+    """All points (n,), as they are compared with buildings.
 
     Attributes
     ----------
@@ -415,7 +415,7 @@ class _Columns:
         may_be_plant = _may_be_bush(points.height, points.height - above)
         if points.goes_on is not None:
             may_be_plant |= self.is_beside_crown(points.cell, points.raised, points.goes_on)[points.cell]
-        # What stands between a roof and the next higher one is the wall of the higher.
+        # Points between a roof and the next higher one are the wall of the higher one.
         is_wall = points.raised & (points.elevation <= self.highest[points.cell]) & (inside | ~may_be_plant)
         owner = np.where(inside, self.building[points.cell], self.beside[points.cell])
         return np.where((inside & (above <= clearance)) | is_chimney | is_wall, owner, 0).astype(np.int32)

@@ -25,10 +25,10 @@ _HALF = 0.5
 # Smeared walls fall by this much (m per m) or more.
 _STEEP = 1.0
 
-# Beyond the edge of the roof, what lies lower than this (m) is ground, kerbs and low plants and no wall.
+# Points beyond the edge of the roof lower than this (m) are ground, kerbs and low plants.
 FOOT = 0.3
 
-# What rises above the roof by more than this (m) is no edge of it but a crown or a higher wall.
+# Points more than this (m) above the roof are of a crown or a higher wall, not of its edge.
 _ABOVE = 1.0
 
 # Least and largest width (m) of vans and cars, smeared edges included; buses are wider.
@@ -107,7 +107,7 @@ class RoofExtent:
     def covered(self, min_width: float, gap: float) -> np.ndarray:
         """Return the cells (rows, columns) that roofs cover.
 
-        What is narrower than ``min_width`` (m) is left out; what is no wider than ``gap`` (m) between roofs is closed.
+        Parts narrower than ``min_width`` (m) are left out; gaps of at most ``gap`` (m) between roofs are closed.
         """
         raised = self.surface.height >= _RAISED
         closed = self.is_roof
@@ -120,7 +120,7 @@ class RoofExtent:
         return self._to_edges(wide)
 
     def _to_edges(self, core: np.ndarray) -> np.ndarray:
-        """Return roofs with what lies beside them within reach and has at least half of their height."""
+        """Return roofs with the points beside them within reach that have at least half of their height."""
         if not core.any():
             return core
         nearest = ndimage.distance_transform_edt(~core, return_distances=False, return_indices=True)

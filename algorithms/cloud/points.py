@@ -25,7 +25,7 @@ _NAMED = 5
 
 
 def open_header(path: Path) -> Header:
-    """Return the header of a file that has points, its number of points held against the size of the file.
+    """Return the header of a file that has points, after its number of points was compared with the size of the file.
 
     Raises
     ------

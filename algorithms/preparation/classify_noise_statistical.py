@@ -85,7 +85,7 @@ def classify_noise_statistical(
 
     With isolated points, both are mended. A point must then be farther than 4.8 m (7 point spacings on sparse clouds)
     from its nearest one, too, so that facades and crowns keep their sparse parts. And noise is what no chain of points
-    half as far apart ties to the scene, and what lies under the ground: the height histogram's stage finds these in the
+    half as far apart ties to the scene, and points under the ground: the height histogram's stage finds these in the
     same way, and its notes say what stays. Since only points with nothing around them can be noise by their distance
     then, neighbors are looked up for those in voxels with few points, and of the others of large clouds for a sample of
     200,000, which stands for all in mean and standard deviation.

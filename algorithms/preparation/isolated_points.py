@@ -1,4 +1,4 @@
-"""Points that belong to nothing: what hangs in the air over the scene, and what lies under its ground.
+"""Isolated points: those in the air over the scene, and those under its ground.
 
 Both are told by what can't be rather than by numbers of points: nothing solid hangs free in the air, and the laser
 doesn't see through the ground. Among all points of a column of air, those of a plume or a flock are few, since most
@@ -147,7 +147,7 @@ def add_isolated(points: np.ndarray, is_low: np.ndarray, is_high: np.ndarray, sp
     points : ndarray of shape (n, 3)
         Coordinates (m).
     is_low, is_high : ndarray of shape (n,), bool
-        What is noise already, and not looked at.
+        Points that are noise already; they are not looked at.
     spacing : float
         Point spacing (m).
     monitor : Monitor

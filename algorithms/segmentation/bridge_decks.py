@@ -23,9 +23,12 @@ _LEAST_DIRECTIONS = 2
 # Points below a piece, as a share of its points: beams pass through crowns, and not through decks but at their sides.
 _MOST_BELOW = 0.15
 
-# Beams up to 30° off the vertical show what lies under the edges of a deck, to this multiple of its depth, at most this
-# share of the width on each side.
-_SLANT, _MOST_SHOWN = 0.58, 0.25
+# Width of the strip under each edge of a deck in which points may lie (times its height above them): beams are up to
+# 30° off the vertical.
+_SLANT = 0.58
+
+# Largest width of this strip (share of the deck's width).
+_MOST_SHOWN = 0.25
 
 # Deviation of a piece from a straight line (root mean square, m): crown, camber and railings of a deck.
 _MOST_ROUGH = 0.25
@@ -46,7 +49,7 @@ _AHEAD, _ROAD = (1.5, 2.5, 3.5), 0.1
 # Share of the width of an end ahead of which there is such ground: more than half, but for what trees hide.
 _LEAST_AHEAD = 0.5
 
-# Share of the ground in what hangs together beside a deck, from which it is terrain: roofs and crowns hold hardly any.
+# Share of ground points in a connected part beside a deck, from which it is terrain: roofs and crowns hold hardly any.
 _LEAST_GROUND = 0.2
 
 # Each end is this share of the length of a deck.
@@ -89,7 +92,7 @@ class Decks:
     Attributes
     ----------
     min_height : float
-        Height above what lies beside it, m.
+        Height above the terrain beside it, m.
     max_width, min_area : float
         Widest section (m) and least area (m²).
     reach : float
@@ -141,7 +144,7 @@ class Decks:
         around = _Around(xyz[terrain[eastward]], size[eastward], 1.5 * self.reach)
         ground_tree = spatial.cKDTree(xyz[terrain[is_terrain[terrain]]] * self._stretch)
         for rows in self._large(xyz, candidates, part):
-            # The tip of a pier is no terrain that it leads to.
+            # The tip of a pier does not count as terrain that a deck leads to.
             large = around.of(xyz[rows], _LEAST_TERRAIN * len(rows))
             angle = np.angle(across[rows].sum()) / 2 + np.pi / 2
             axis = np.array([np.cos(angle), np.sin(angle)])
@@ -276,7 +279,7 @@ class Decks:
 class _Around:
     """Terrain (n, 3) from west to east, how many points hang together with each (n,), and how far to look (m).
 
-    A tree of what lies around a deck is made in a fraction of the time of one of the whole terrain.
+    A tree of the points around a deck is made in a fraction of the time of one of the whole terrain.
     """
 
     xyz: np.ndarray

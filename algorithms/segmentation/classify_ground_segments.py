@@ -61,7 +61,7 @@ def classify_ground_segments(
 ):
     """Tell bare earth from objects by how segments end, then bridges from bare earth.
 
-    Segments that are higher than what lies around them are objects, the others bare earth; bridges and fly-overs,
+    Segments that are higher than their surroundings are objects, the others bare earth; bridges and fly-overs,
     which go on into the terrain at their ends, belong to its segments. On lines in eight directions a bridge is raised
     on both sides. Such parts become bridge deck (17) if they are opaque and smooth, large enough, and joined to the
     terrain at both ends. Run 'Segment scan lines' first, and in towns and forests 'Classify ground points (TIN)', too.

@@ -1,4 +1,4 @@
-"""Where groups of points lie in plan: their area, what lies beside them, and whether the beam passes through them."""
+"""Where groups of points lie in plan: their area, their surroundings, and whether the beam passes through them."""
 
 from __future__ import annotations
 
@@ -159,7 +159,7 @@ def grow_to_adjacent_clusters(
 
 
 def share_around(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray) -> np.ndarray:
-    """Return how much of what stands around each group of points belongs to the chosen groups.
+    """Return which share of the points around each group of points belongs to the chosen groups.
 
     Parameters
     ----------

@@ -33,7 +33,7 @@ _LOWEST = 2.0
 # surface; cars are told from them by their shape.
 _LOWEST_IN_IMAGES = 1.2
 
-# In matched images, what stands lower than this (m) is no part of a cluster: as low as the lowest roof's edge.
+# In matched images, points lower than this (m) are in no cluster: the edge of the lowest roof is as low.
 _RAISED_IN_IMAGES = 1.0
 
 # Radius (m) of the neighborhoods that planes are fitted to in matched images: crowns are smooth over less.
@@ -59,7 +59,7 @@ _LOW = 0.5
 # With fewer points per square meter than this, planes reach farther than half a meter.
 _DENSE = 10.0
 
-# Points are held against planes of neighbors, and these are off by this share of the point spacing beyond.
+# Additional deviation (point spacings) of points from the planes of their neighbors, to which they are compared.
 _FARTHER = 0.1164
 
 # Roofs with tiles, ribs and gravel are no rougher than this (m); crops and crowns are, smooth spots of them apart.
@@ -78,7 +78,7 @@ _SMOOTH_SHARE = 0.3
 # Area (m²) from which a smooth surface is a roof by itself: crops have smaller smooth spots.
 _LARGE = 10.0
 
-# What surrounds a cluster decides on it; the clusters themselves may be of any size (m).
+# Reach (m) of the surroundings that decide on a cluster; clusters themselves may be of any size.
 _REACH = 5.0
 
 
@@ -132,7 +132,7 @@ def segment_roofs(
 
     A roof surface is a patch on which neighbors share a plane, that is large and high enough and does not go on
     into the ground as bridges and slopes do; a deck with a narrow ramp is parted from it. Surfaces rougher than roofs
-    are, smooth spots of crops and crowns, are none unless they hang together with smoother ones. What is left above
+    are, smooth spots of crops and crowns, count only where they are connected to smoother ones. What is left above
     the ground (crowns, hedges, wires, roof edges) is clustered by distance, so that both kinds can be told apart by
     their entropy afterwards.
 
@@ -141,7 +141,7 @@ def segment_roofs(
     xyz : ndarray of shape (n, 3), float64
         Coordinates, m.
     classification : ndarray of shape (n,), uint8
-        ASPRS classes; noise (7, 18), bridge decks (17) and what stands on these, to 4.5 m, is left out.
+        ASPRS classes; noise (7, 18), bridge decks (17) and points up to 4.5 m above these are left out.
     height_above_ground : ndarray of shape (n,), float32
         Heights, m.
 

@@ -321,7 +321,7 @@ class CylinderSearch:
         return (np.abs(distance - cylinder.radius) <= tolerance) & (facing >= np.cos(np.radians(_NORMAL_ANGLE)))
 
     def _grown(self, rows: np.ndarray, cylinder: Cylinder, seed: np.ndarray) -> Optional[Found]:
-        """Return the cylinder that a seed grows to along its axis, None where it is none after all."""
+        """Return the cylinder that a seed grows to along its axis, None where its points do not fit a cylinder."""
         along = cylinder.local(self.xyz[seed])[0]
         ends = cylinder.center + np.outer([along.min(), along.max()], cylinder.axis)
         thinned = max(self.spacing, 0.15 * cylinder.radius)

@@ -99,7 +99,7 @@ def classify_ground_tin(
             unit="m",
             low=1,
             high=1000,
-            automatic="60 m, and any size for what stands free of the terrain on nearly all sides; or as the terrain "
+            automatic="60 m, and any size for segments that are free-standing on nearly all sides; or as the terrain "
             "says.",
         ),
     ] = None,

@@ -28,7 +28,7 @@ _PIT_SHARE = 0.1
 # Cells are looked at one by one up to so far, and in as many steps beyond.
 _PIT_STEPS = 10
 
-# Without a largest building given, windows go up to this size (m); larger halls stand free.
+# Without a largest building given, windows go up to this size (m); larger halls are found as free-standing segments.
 USUAL_BUILDING = 60.0
 
 # Directions (°) of the three grids of cells that decide together: which points share a cell decides on single bushes
@@ -102,7 +102,7 @@ def seeds_by_opening(
     cell_size : float
         Cell of the surface, m.
     max_building_size : float, optional
-        Least extent of the largest building, m: the last window. None is 60 m, and any size for what stands free.
+        Least extent of the largest building, m: the last window. None is 60 m, and any size for free-standing segments.
     monitor : Monitor
         Receives progress.
     spacing : float
@@ -115,7 +115,7 @@ def seeds_by_opening(
     seeds : ndarray of shape (m,), int64
         Indices of the seeds.
     stands_free : ndarray of shape (n,), bool
-        Points of what stands free, or over it: no terrain.
+        Points of free-standing segments, or above them: no terrain.
     size : float
         Least extent of the largest building that was looked for or found, m.
 
@@ -164,9 +164,9 @@ class _View:
     says_terrain : ndarray of shape (n,), int8
         1 for points on or below the lowest surface where it is terrain, 0 over it, -1 where it is an object.
     stands_free : ndarray of shape (n,), bool
-        Which points lie where it stands free, or over that.
+        Which points lie on a free-standing segment, or above one.
     size : float
-        Shorter side (m) of the largest that stands free.
+        Shorter side (m) of the largest free-standing segment.
     slope : ndarray of shape (n,), float64
         Slope of the terrain (rise over run) at each point.
     """

@@ -14,7 +14,7 @@ _CELL_SPACINGS = 1.5
 # Least side of these cells (m).
 _LEAST_CELL = 0.5
 
-# What is narrower than this (m) is an object: a shed of 3 m with walls that are smeared over 0.7 m to both sides.
+# Raised surfaces narrower than this (m) are objects: a shed of 3 m with walls smeared over 0.7 m to both sides.
 _WIDTH = 4.5
 
 # Height (m) above the opened surface from which on points are of objects.

@@ -34,7 +34,7 @@ def bent_roofs(
     """Return the smooth surface (n,), int32, from 1, that each point is of; 0 is none.
 
     Surfaces are smooth where neighbors share a plane, however they bend on the whole. Smooth spots of crowns, which lie
-    amid what is rough, are none. Only raised objects with a roof that is known already, and what lies close around
+    amid what is rough, are none. Only raised objects with a roof that is known already, and points close around
     them, are looked at.
 
     Parameters

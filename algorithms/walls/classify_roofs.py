@@ -76,7 +76,7 @@ def classify_roofs(
     Returns
     -------
     classification : ndarray of shape (n,), uint8
-        Roofs get 6; what was 6 and is none becomes 1.
+        Roofs get 6; points of class 6 on no roof become 1.
     cluster_id : ndarray of shape (n,), int32
         Buildings from 1, from west to east; 0 is none.
 

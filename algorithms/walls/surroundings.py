@@ -1,4 +1,4 @@
-"""What lies beside a roof and in its holes: other roofs, and ground that is seen."""
+"""Points beside a roof and in its holes: other roofs, and ground that is seen."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ _ROOM = 2.0
 
 # The outline of least cost is taken. All costs are in meters of wall without points.
 
-# Cost of a square meter in the outline that is no roof.
+# Cost of a square meter of the outline without roof points.
 _OUTSIDE = 5.0
 
 # Distance (m) beyond the roof within which this costs nothing: noise and the uneven edge of the roof.

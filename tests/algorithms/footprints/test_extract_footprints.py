@@ -66,7 +66,7 @@ def test_village(village, regularize):
 
 
 def test_the_reason_is_that_of_most_roof_points(village):
-    """What was added to a building says nothing of why it is one, and numbers of others are no reasons of ours."""
+    """Points added to a building give no reason for it, and codes of other programs are not taken for reasons."""
     house = np.flatnonzero(village["cluster_id"] == 3)
     village["reason"][house] = Reason.ATTACHED
     village["reason"][house[:5]], village["reason"][house[5:8]] = Reason.SOLID, Reason.PLANE

@@ -1,4 +1,4 @@
-"""Cylinders whose axes and radii are known, and things that are none."""
+"""Cylinders whose axes and radii are known, and objects that are not cylinders."""
 
 import numpy as np
 import pytest
