@@ -203,8 +203,7 @@ _PIPELINES = (
             "Vertical planes are found among the points. Each gets a boundary in its plane, and neighbors a common "
             "border on the intersection line of their planes. An enclosed area with points behind the wall is a "
             "window or a door: a hole of the facade, and a feature with its size and position. Nothing has to be "
-            "set; ground and noise are left out where they are classified. Planes are looked for in the whole cloud; "
-            "a long drive is cut by streets first, with 'Clip cloud'."
+            "set; ground and noise are left out where they are classified."
         ),
         references=(
             "Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on "

@@ -30,8 +30,15 @@ _ON_PLANE = 3.0
 
 _MOMENTS = ("count", "center", "covariance")
 
+# Facades decide on each other as far as this (m) around a corner: where the border lies, and which side is outside.
+AROUND_CORNER = 5.0
+
+# Points up to 10 m before a facade (m) tell from which side it was seen, and so they do for its neighbors, which decide
+# on it, too. Its own points, which lie as far off as it is long, are not counted in.
+_AROUND = 20.0
+
 FACADE_FIELDS = (
-    Field("id", int, "SegmentID of its points"),
+    Field("id", int, "SegmentID of its points", numbers="segment_id"),
     Field("area", float, "Area of the polygon, openings left out", "m²"),
     Field("height", float, "Height from the lowest to the highest corner", "m"),
     Field("base", float, "Elevation of the lowest corner", "m"),
@@ -54,9 +61,18 @@ FACADE_FIELDS = (
     group="Facades",
     tags="facade,wall,street,mobile mapping,terrestrial,TIN,convex hull,boundary,polygon,3D,Peng",
     writes=("segment_id",),
-    layers=(Layer("facades", "Facades", "Polygon", FACADE_FIELDS, style="facades"),),
-    # A facade is as long as it is: its plane and boundary depend on all of its points.
-    reach=np.inf,
+    layers=(
+        Layer(
+            "facades",
+            "Facades",
+            "Polygon",
+            FACADE_FIELDS,
+            style="facades",
+            deviation="rms",
+            around=AROUND_CORNER,
+        ),
+    ),
+    reach=_AROUND,
 )
 def extract_facades(
     xyz,

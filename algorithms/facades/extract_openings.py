@@ -12,7 +12,7 @@ from ..packages import spatial
 from ..params import Boundary, CompleteFacades, CornerDistance, EdgeFactor, FacadeGap, FacadeTilt
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
 from .common_borders import with_common_borders
-from .extract_facades import FACADE_FIELDS
+from .extract_facades import AROUND_CORNER, FACADE_FIELDS
 from .facade_frame import thinned
 from .facade_outline import longest_edge
 from .facade_surfaces import Facade, facade_features, surfaces_of
@@ -33,7 +33,7 @@ _INSIDE = 0.01
 
 OPENING_FIELDS = (
     Field("id", int, "Number of the opening, from 1"),
-    Field("facade", int, "Number of its facade"),
+    Field("facade", int, "Number of its facade", of="facades"),
     Field("kind", str, "window or door"),
     Field("row", int, "Row on the facade, from 1 at the bottom"),
     Field("place", int, "Place in the row, from 1 at the left, seen from outside"),
@@ -53,11 +53,18 @@ OPENING_FIELDS = (
     group="Facades",
     tags="window,door,opening,facade,wall,shop front,glass,mobile mapping,terrestrial,Peng",
     layers=(
-        Layer("facades", "Facades with openings", "Polygon", FACADE_FIELDS, style="facades"),
+        Layer(
+            "facades",
+            "Facades with openings",
+            "Polygon",
+            FACADE_FIELDS,
+            style="facades",
+            deviation="rms",
+            around=AROUND_CORNER,
+        ),
         Layer("openings", "Windows and doors", "Polygon", OPENING_FIELDS, style="openings"),
     ),
-    # A facade is as long as it is: its plane and boundary depend on all of its points.
-    reach=np.inf,
+    reach=lambda tunables: max(tunables["max_depth"], _GROUND_REACH),
 )
 def extract_openings(
     xyz,

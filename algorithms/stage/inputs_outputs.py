@@ -16,6 +16,7 @@ class Field:
 
     Values with an ``axis`` (0 east, 1 north) are positions: in local meters from the stage, in map units in the layer.
     ``of`` is the layer, made by the stage or given to it, whose ``id`` a field holds: what it belongs to.
+    ``numbers`` is the dimension by which points refer to the feature, with the values of this field.
     """
 
     name: str
@@ -24,6 +25,7 @@ class Field:
     unit: str = ""
     axis: Optional[int] = None
     of: str = ""
+    numbers: str = ""
 
 
 @dataclass(frozen=True)
@@ -33,6 +35,10 @@ class Layer:
     ``name`` becomes the output's name (``FOOTPRINTS``), ``geometry`` is
     ``"Polygon"``, ``"LineString"`` or ``"Point"``, ``style`` the stem of a file in
     ``resources/styles``.
+
+    The rest tells what becomes of features where a cloud is worked on in overlapping parts. ``deviation`` is the field
+    with the root mean square distance of points from the plane of a polygon, for planes in space, which may be upright
+    or lie above one another. ``around`` is how far beyond a feature points decide on it, m.
     """
 
     name: str
@@ -40,6 +46,13 @@ class Layer:
     geometry: str
     fields: tuple[Field, ...]
     style: str = ""
+    deviation: str = ""
+    around: float = 1.0
+
+    @property
+    def numbers(self) -> str:
+        """The dimension by which points refer to the features, "" where they don't."""
+        return next((field.numbers for field in self.fields if field.numbers), "")
 
 
 @dataclass(frozen=True)

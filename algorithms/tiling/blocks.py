@@ -17,7 +17,7 @@ from ..run import Results, run_pipeline
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Cancelled, LayerFeatures, Monitor, RasterSurface
 from .survey import Survey, Window
-from .tiled_steps import files_of, in_blocks, owners
+from .tiled_steps import files_of, in_blocks, layers_of, owners
 
 # Dimensions that number what points belong to: each block has numbers of its own, which are joined afterwards.
 NUMBERED = ("segment_id", "cluster_id")
@@ -28,9 +28,6 @@ REFERRING = {"wall_of": "cluster_id"}
 # Points up to this far (m) outside a block tell which of its segments go on in the next one. Points of one segment are
 # closer together in any cloud that the methods are for (0.1 points/m² and more).
 _BESIDE = 4.0
-
-# A feature that comes this close (m) to the edge of the window may have been cut off by it.
-_CUT = 1.0
 
 # A window is enlarged where it cuts off features, to at most this many times its halo on a side.
 _MOST_HALOS = 8
@@ -313,7 +310,7 @@ def _keep_layers(
     result: BlockResult, pipeline: Pipeline, made: Results, task: BlockTask, box: np.ndarray
 ) -> np.ndarray:
     """Keep features that have a part in the block, and what belongs to them; return on which sides one was cut off."""
-    block, owner = task.block.box, owners(pipeline)
+    block, owner, declared = task.block.box, owners(pipeline), layers_of(pipeline)
     cuts = np.zeros((2, 2), bool)
     for name in sorted(made.layers, key=lambda name: name in owner):
         features = made.layers[name]
@@ -323,7 +320,9 @@ def _keep_layers(
         else:
             boxes = feature_boxes(features) + task.survey.origin[:2]
             kept = (boxes[:, 0] < block[1]).all(axis=1) & (boxes[:, 1] >= block[0]).all(axis=1)
-            cuts |= _cut_off(boxes[kept], box, task.survey.box)
+            if declared[name].numbers:
+                kept |= np.isin(features.columns["id"], result.used[declared[name].numbers])
+            cuts |= _cut_off(boxes[kept], box, task.survey.box, declared[name].around)
         result.layers[name] = take_features(features, np.flatnonzero(kept))
     return cuts
 
@@ -368,10 +367,13 @@ def _number(
         result.most[name] = records[near, 2].max(initial=0, keepdims=True)
 
 
-def _cut_off(boxes: np.ndarray, window: np.ndarray, survey: np.ndarray) -> np.ndarray:
-    """Return which sides (2, 2) of the window features reach, by their boxes; where the survey ends there is none."""
-    low = (boxes[:, 0] < window[0] + _CUT) & (window[0] > survey[0])
-    high = (boxes[:, 1] > window[1] - _CUT) & (window[1] < survey[1])
+def _cut_off(boxes: np.ndarray, window: np.ndarray, survey: np.ndarray, around: float) -> np.ndarray:
+    """Return which sides (2, 2) of the window may have cut off what features are, by their boxes and what lies around.
+
+    Where the survey ends there is none.
+    """
+    low = (boxes[:, 0] < window[0] + around) & (window[0] > survey[0])
+    high = (boxes[:, 1] > window[1] - around) & (window[1] < survey[1])
     return np.array([low.any(axis=0), high.any(axis=0)])
 
 

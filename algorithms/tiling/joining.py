@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any, Callable
+from typing import Any, Callable, Optional
 
 import numpy as np
 
 from ..geometry.grid import find_cells
 from ..geometry.groups import components
-from ..geometry.polygon_overlap import as_polygons, meeting_boxes, shared_areas
-from ..stage import LayerFeatures, Monitor
+from ..pipeline import Pipeline
+from ..stage import Layer, LayerFeatures, Monitor
 from .blocks import NUMBERED, Block, BlockResult, feature_boxes
-
-# Two features of different blocks are the same one if they share more than this part of the smaller one.
-_SAME = 0.5
+from .same_features import leaders
+from .tiled_steps import layers_of
 
 # The neighbors of a block that come after it, by columns and rows, and of how many blocks the edges stay in memory.
 _FORWARD = ((1, 0), (-1, 1), (0, 1), (1, 1))
@@ -28,7 +27,12 @@ _ID, _CLUSTER = "id", "cluster_id"
 Edges = Callable[[int], tuple[dict[str, np.ndarray], dict[str, np.ndarray]]]
 
 
-def join_numbers(blocks: list[Block], results: list[BlockResult], edges: Edges) -> list[dict[str, np.ndarray]]:
+def join_numbers(
+    blocks: list[Block],
+    results: list[BlockResult],
+    edges: Edges,
+    features: Optional[dict[str, list[np.ndarray]]] = None,
+) -> list[dict[str, np.ndarray]]:
     """Return for each block and numbered dimension what its numbers become: an array that they are positions in.
 
     A segment of one block and a segment of another are one if a record just outside the first block has the number of
@@ -43,24 +47,65 @@ def join_numbers(blocks: list[Block], results: list[BlockResult], edges: Edges) 
         What was found in them; their edges are not asked for.
     edges : callable
         As ``edges`` of :class:`.BlockResult`. Memory: those of a few blocks at a time.
+    features : dict of str to list of ndarray, optional
+        For each dimension by which points refer to features the numbers of these in each block; they become 0, since
+        features are told to be the same by their geometry.
     """
     joined: list[dict[str, np.ndarray]] = [{} for _ in results]
     links = _links(blocks, edges)
     for name in NUMBERED:
-        most = [_largest(one, name) for one in results]
+        of_features = (features or {}).get(name, [np.zeros(0, np.int64)] * len(results))
+        most = [max(_largest(one, name), int(own.max(initial=0))) for one, own in zip(results, of_features)]
         first = np.concatenate([[0], np.cumsum(most)])
         found = [np.zeros((0, 2), np.int64)]
         found += [pairs + [first[one] - 1, first[other] - 1] for one, other, of, pairs in links if of == name]
-        one_end, other_end = np.concatenate(found).T
+        ends = np.concatenate(found)
+        is_feature = np.zeros(int(first[-1]), bool)
+        for start, own in zip(first, of_features):
+            is_feature[start + own - 1] = True
+        one_end, other_end = ends[~is_feature[ends].any(axis=1)].T
         _, group = components(one_end, other_end, int(first[-1]))
-        used = [start + one.used[name] - 1 for one, start in zip(results, first) if name in one.used]
+        parts = [start + one.used[name] - 1 for one, start in zip(results, first) if name in one.used]
+        used = np.concatenate([np.zeros(0, np.int64), *parts])
         # Numbers in the order of the blocks, as those of one cloud are in that of its points.
-        distinct, at = np.unique(group[np.concatenate([np.zeros(0, np.int64), *used])], return_index=True)
+        distinct, at = np.unique(group[used[~is_feature[used]]], return_index=True)
         final = np.zeros(len(group) + 1, np.int32)
         final[distinct[np.argsort(at)]] = np.arange(1, len(distinct) + 1, dtype=np.int32)
         for become, start, count in zip(joined, first, most):
             become[name] = np.concatenate([np.zeros(1, np.int32), final[group[start : start + count]]])
     return joined
+
+
+def feature_numbers(pipeline: Pipeline, results: list[BlockResult]) -> dict[str, list[np.ndarray]]:
+    """Return for each dimension by which points refer to features the numbers (k,) that these have in each block."""
+    found: dict[str, list[np.ndarray]] = {}
+    for name, layer in layers_of(pipeline).items():
+        if layer.numbers:
+            before = found.get(layer.numbers, [np.zeros(0, np.int64)] * len(results))
+            own = [
+                np.asarray(one.layers[name].columns[_ID], np.int64) if one.layers else before[0][:0] for one in results
+            ]
+            found[layer.numbers] = [np.union1d(*both) for both in zip(before, own)]
+    return found
+
+
+def refer_to_features(numbers: list[dict[str, np.ndarray]], name: str, known: dict[tuple[int, int], int]) -> None:
+    """Give the points of features, in place, the numbers that these have now; those of other segments follow.
+
+    Parameters
+    ----------
+    numbers : list of dict
+        From :func:`join_numbers`.
+    name : str
+        The dimension.
+    known : dict of (int, int) to int
+        Numbers of features by the position of the block and their number in it, from :func:`join_features`.
+    """
+    count = max(known.values(), default=0)
+    for of_block in numbers:
+        of_block[name] = np.where(of_block[name] > 0, of_block[name] + count, 0).astype(np.int32)
+    for (block, number), now in known.items():
+        numbers[block][name][number] = now
 
 
 def _largest(result: BlockResult, name: str) -> int:
@@ -103,7 +148,13 @@ def _record_keys(source: np.ndarray, position: np.ndarray) -> np.ndarray:
 
 
 def join_features(
-    blocks: list[Block], layers: list[LayerFeatures], numbers: list[np.ndarray], origin: np.ndarray, monitor: Monitor
+    blocks: list[Block],
+    layers: list[LayerFeatures],
+    numbers: list[np.ndarray],
+    origin: np.ndarray,
+    monitor: Monitor,
+    declared: Layer,
+    known: Optional[dict[tuple[int, int], int]] = None,
 ) -> tuple[LayerFeatures, np.ndarray]:
     """Return the features of all blocks, each once, numbered from north-west to south-east, and which they were.
 
@@ -119,28 +170,54 @@ def join_features(
         Of the survey, m.
     monitor : Monitor
         Receives progress.
+    declared : Layer
+        How the stage declares them.
+    known : dict of (int, int) to int, optional
+        Where points refer to the features: what numbers are now that features of other layers had, by the position of
+        the block and the number in it. Such a feature is called the same here; the numbers of others follow, and all
+        are added.
 
     Returns
     -------
     features : LayerFeatures
         Of the survey.
-    kept : ndarray of shape (m, 2), int64
-        For each of them its position among ``blocks``, and its number in that block.
+    kept : ndarray of shape (m, 3), int64
+        For each of them its position among ``blocks``, its number in that block, and its number now.
     """
     features = _all(layers, numbers)
     if not len(features):
-        return features, np.zeros((0, 2), np.int64)
+        return features, np.zeros((0, 3), np.int64)
     of_block = np.repeat(np.arange(len(blocks)), [len(layer) for layer in layers])
     boxes = feature_boxes(features)
     middle = boxes.mean(axis=1) + origin[:2]
     own = np.array([block.box for block in blocks])[of_block]
     is_own = ((middle >= own[:, 0]) & (middle < own[:, 1])).all(axis=1)
-    is_polygon = isinstance(features.geometries[0], list)
-    is_kept = _once(features, of_block, is_own, monitor) if is_polygon else is_own
-    rows = np.flatnonzero(is_kept)
-    rows = rows[np.lexsort([boxes[rows, 0, 0], -boxes[rows, 1, 1]])]
-    own_id = np.asarray(features.columns.get(_ID, np.zeros(len(features))), np.int64)[rows]
-    return _numbered(features, rows), np.column_stack([of_block[rows], own_id])
+    leader = leaders(features, declared, of_block, is_own, monitor)
+    own_id = np.asarray(features.columns.get(_ID, np.zeros(len(features))), np.int64)
+    known = {} if known is None else known
+    called = _called(list(zip(of_block.tolist(), own_id.tolist())), leader, boxes, known)
+    rows = np.flatnonzero(called)
+    rows = rows[np.argsort(called[rows])]
+    return _numbered(features, rows, called[rows]), np.column_stack([of_block[rows], own_id[rows], called[rows]])
+
+
+def _called(
+    keys: list[tuple[int, int]], leader: np.ndarray, boxes: np.ndarray, known: dict[tuple[int, int], int]
+) -> np.ndarray:
+    """Return the number of each feature (n,) that stays, 0 for the others; add the numbers of all to the known ones."""
+    stays = np.flatnonzero(leader == np.arange(len(leader)))
+    called = np.zeros(len(leader), np.int64)
+    called[stays] = [known.get(keys[row], 0) for row in stays]
+    # Features that another layer took for one: the first of them stays.
+    again = np.setdiff1d(stays[called[stays] > 0], stays[np.unique(called[stays], return_index=True)[1]])
+    new = stays[called[stays] == 0]
+    new = new[np.lexsort([boxes[new, 0, 0], -boxes[new, 1, 1]])]
+    called[new] = max(known.values(), default=0) + np.arange(1, len(new) + 1)
+    for row, one in enumerate(leader.tolist()):
+        if one >= 0:
+            known.setdefault(keys[row], int(called[one]))
+    called[again] = 0
+    return called
 
 
 def join_belonging(
@@ -156,7 +233,7 @@ def join_belonging(
         What the cluster numbers of each block become.
     column : str
         The field that tells what a feature belongs to.
-    kept : ndarray of shape (m, 2), int64
+    kept : ndarray of shape (m, 3), int64
         From :func:`join_features` of the other layer.
     """
     features = _all(layers, numbers)
@@ -168,21 +245,21 @@ def join_belonging(
     now = np.array([becomes.get((block, str(one)), 0) for block, one in zip(of_block.tolist(), owner)], np.int64)
     rows = np.flatnonzero(now)
     rows = rows[np.argsort(now[rows], kind="stable")]
-    joined = _numbered(features, rows)
+    joined = _numbered(features, rows, np.arange(1, len(rows) + 1))
     joined.columns[column] = [type(owner[0])(number) for number in now[rows].tolist()]
     return joined
 
 
 def new_names(kept: np.ndarray) -> dict[tuple[int, str], int]:
-    """Return what features are called now by their block and what they were called there, of ``kept`` (m, 2)."""
-    return {(block, str(one)): number for number, (block, one) in enumerate(kept.tolist(), 1)}
+    """Return what features are called now by their block and what they were called there, of ``kept`` (m, 3)."""
+    return {(block, str(one)): number for block, one, number in kept.tolist()}
 
 
-def _numbered(features: LayerFeatures, rows: np.ndarray) -> LayerFeatures:
-    """Return some features by their positions (m,), numbered anew."""
+def _numbered(features: LayerFeatures, rows: np.ndarray, called: np.ndarray) -> LayerFeatures:
+    """Return some features by their positions (m,), with their numbers (m,) now."""
     columns = {name: [values[row] for row in rows] for name, values in features.columns.items()}
     if _ID in columns:
-        columns[_ID] = list(range(1, len(rows) + 1))
+        columns[_ID] = called.tolist()
     return LayerFeatures([features.geometries[row] for row in rows], columns)
 
 
@@ -195,27 +272,3 @@ def _all(layers: list[LayerFeatures], numbers: list[np.ndarray]) -> LayerFeature
             final = [int(becomes[value]) for value in values] if name == _CLUSTER and len(becomes) else list(values)
             columns.setdefault(name, []).extend(final)
     return LayerFeatures(geometries, columns)
-
-
-def _once(features: LayerFeatures, of_block: np.ndarray, is_own: np.ndarray, monitor: Monitor) -> np.ndarray:
-    """Return which polygons (n,) stay where several blocks have found the same one.
-
-    That of the block that its middle lies in stays; where none or several claim it, the largest.
-    """
-    polygons = as_polygons(features.geometries)
-    area = np.abs(polygons.area)
-    one, other = meeting_boxes(polygons.box, polygons.box)
-    of_two = of_block[one] != of_block[other]
-    one, other = one[of_two], other[of_two]
-    shared = shared_areas(polygons, polygons, one, other, monitor)
-    is_same = shared > _SAME * np.minimum(area[one], area[other])
-    one, other = one[is_same], other[is_same]
-    # Best first: the own block's, then the largest; a polygon stays if none that is better stays beside it.
-    rank = np.empty(len(area), np.int64)
-    rank[np.lexsort([np.arange(len(area)), -area, ~is_own])] = np.arange(len(area))
-    is_kept = np.ones(len(area), bool)
-    order = np.argsort(rank[one], kind="stable")
-    for better, worse in zip(one[order], other[order]):
-        if rank[better] < rank[worse] and is_kept[better]:
-            is_kept[worse] = False
-    return is_kept

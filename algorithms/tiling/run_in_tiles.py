@@ -29,10 +29,20 @@ from ..stage import FileContent, LayerFeatures, Monitor, Report
 from .blocks import REFERRING, Block, BlockResult, BlockTask, StoppableMonitor, work_on_block
 from .cutting import cut_into_tiles
 from .joined_files import join_files
-from .joining import join_belonging, join_features, join_numbers
+from .joining import feature_numbers, join_belonging, join_features, join_numbers, refer_to_features
 from .mosaics import RasterMosaic, join_rasters
 from .survey import Source, Survey, boxes_meet, check_folder, open_survey
-from .tiled_steps import afterwards, in_blocks, made_by, owners, part_of, preparing, tunables_of, why_whole
+from .tiled_steps import (
+    afterwards,
+    in_blocks,
+    layers_of,
+    made_by,
+    owners,
+    part_of,
+    preparing,
+    tunables_of,
+    why_whole,
+)
 from .workers import Workers, run_all
 
 # A window has at most about this many points, so that a worker needs 1.8 GB (340 bytes per point), and two of them, one
@@ -256,7 +266,9 @@ class _Run:
             found = [BlockResult.read(path, with_points=False) for _, path in done]
             outcome.tries = np.concatenate([outcome.tries, *(one.tries for one in found)])
             places = [block for block, _ in done]
-            numbers = join_numbers(places, found, lambda at: BlockResult.edges(done[at][1]))
+            numbers = join_numbers(
+                places, found, lambda at: BlockResult.edges(done[at][1]), feature_numbers(self.pipeline, found)
+            )
             joining = self.monitor.part(_WORKED, _JOINED)
             outcome.layers, kept = self._layers(places, found, numbers, joining)
             self._run_afterwards(outcome)
@@ -402,21 +414,28 @@ class _Run:
         names = list(dict.fromkeys(name for result in found for name in result.layers))
         layers: dict[str, LayerFeatures] = {}
         kept: dict[str, np.ndarray] = {}
-        owner = owners(self.pipeline)
-        # A block without points has no layers, any other one has all of them.
-        have = [at for at, result in enumerate(found) if result.layers]
-        clusters = [numbers[at].get("cluster_id", np.zeros(0, np.int32)) for at in have]
+        owner, declared = owners(self.pipeline), layers_of(self.pipeline)
+        clusters = [of_block.get("cluster_id", np.zeros(0, np.int32)) for of_block in numbers]
+        known: dict[str, dict[tuple[int, int], int]] = {one.numbers: {} for one in declared.values() if one.numbers}
         for number, name in enumerate(sorted(names, key=lambda name: name in owner)):
             part = monitor.part(number / len(names), (number + 1) / len(names))
-            of_blocks = [found[at].layers[name] for at in have]
+            # A block without points has no layers, any other one has all of them.
+            of_blocks = [result.layers.get(name, LayerFeatures([], {})) for result in found]
             if name in owner:
                 column, of = owner[name]
                 layers[name] = join_belonging(of_blocks, clusters, column, kept[of])
                 continue
             layers[name], kept[name] = join_features(
-                [blocks[at] for at in have], of_blocks, clusters, self.survey.origin, part
+                blocks,
+                of_blocks,
+                clusters,
+                self.survey.origin,
+                part,
+                declared[name],
+                known.get(declared[name].numbers),
             )
-        kept = {name: np.column_stack([np.array(have, np.int64)[one[:, 0]], one[:, 1]]) for name, one in kept.items()}
+        for dimension, of_features in known.items():
+            refer_to_features(numbers, dimension, of_features)
         return {name: layers[name] for name in names}, kept
 
     def _run_afterwards(self, outcome: TilesOutcome) -> None:

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..pipeline import Pipeline, Step
-from ..stage import TextFile
+from ..stage import Layer, TextFile
 
 # Steps of this group at the head of a chain decide which points there are and which of them are noise.
 _PREPARATION = "Preparation"
@@ -56,6 +56,13 @@ def owners(pipeline: Pipeline) -> dict[str, tuple[str, str]]:
             for field in (field for field in layer.fields if field.of):
                 found[names[step.name, layer.name]] = field.name, _named(names, step, field.of)
     return found
+
+
+def layers_of(pipeline: Pipeline) -> dict[str, Layer]:
+    """Return for each layer of a composite, by its names, how the stage declares it."""
+    declared = {(step.name, layer.name): layer for step in pipeline.steps for layer in step.stage.layers}
+    found = {output.name: declared.get((output.step.name, output.of)) for output in pipeline.outputs}
+    return {name: layer for name, layer in found.items() if layer is not None}
 
 
 def files_of(pipeline: Pipeline) -> dict[str, tuple[TextFile, str]]:

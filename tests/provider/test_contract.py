@@ -85,7 +85,13 @@ IDS = {
     "segmentfacadelines",
     "reconstructgables",
 }
-TILED_IDS = {"detectbuildingsintiles", "detectbuildings2019intiles", "mapfootprintsintiles", "modelbuildingsintiles"}
+TILED_IDS = {
+    "detectbuildingsintiles",
+    "detectbuildings2019intiles",
+    "mapfootprintsintiles",
+    "modelbuildingsintiles",
+    "modelfacadesintiles",
+}
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints", "modelbuildings"}
 PIPELINE_IDS |= {"modelfacades", "modelindustry", "modelterrain"}
 ALL = {**STAGES, **TOYS}

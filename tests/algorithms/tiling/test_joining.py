@@ -2,9 +2,11 @@
 
 import numpy as np
 
-from lidar_buildings.algorithms.stage import LayerFeatures, Monitor
+from lidar_buildings.algorithms.stage import Layer, LayerFeatures, Monitor
 from lidar_buildings.algorithms.tiling.blocks import Block, BlockResult
 from lidar_buildings.algorithms.tiling.joining import join_features, join_numbers
+
+FOOTPRINTS = Layer("footprints", "Footprints", "Polygon", ())
 
 
 def result(used, inside=(), beside=(), features=None):
@@ -43,7 +45,9 @@ def test_a_feature_whose_points_are_all_in_other_blocks_is_no_error():
     (numbers,) = joined(first)
     assert numbers["cluster_id"].tolist() == [0, 1, *[0] * 8]
     blocks = [Block(0, 0, 10.0)]
-    found, _ = join_features(blocks, [first.layers["footprints"]], [numbers["cluster_id"]], np.zeros(3), Monitor())
+    found, _ = join_features(
+        blocks, [first.layers["footprints"]], [numbers["cluster_id"]], np.zeros(3), Monitor(), FOOTPRINTS
+    )
     assert found.columns == {"id": [1], "cluster_id": [0]}
 
 
@@ -51,10 +55,10 @@ def test_of_a_feature_that_two_blocks_found_that_of_its_middle_stays():
     blocks = [Block(0, 0, 10.0), Block(1, 0, 10.0)]
     layers = [square(7, 2, 5, 1), square(7.1, 2, 5, 1)]
     numbers = [np.array([0, 1]), np.array([0, 2])]
-    found, _ = join_features(blocks, layers, numbers, np.zeros(3), Monitor())
+    found, _ = join_features(blocks, layers, numbers, np.zeros(3), Monitor(), FOOTPRINTS)
     assert len(found) == 1
     assert found.geometries[0][0][0].tolist() == [7, 2]
     # Where the block of the middle has not found it, the other's stays; two that share little are two.
-    assert len(join_features(blocks[1:], layers[1:], numbers[1:], np.zeros(3), Monitor())[0]) == 1
+    assert len(join_features(blocks[1:], layers[1:], numbers[1:], np.zeros(3), Monitor(), FOOTPRINTS)[0]) == 1
     apart = [square(7, 2, 5, 1), square(11, 2, 5, 1)]
-    assert len(join_features(blocks, apart, numbers, np.zeros(3), Monitor())[0]) == 2
+    assert len(join_features(blocks, apart, numbers, np.zeros(3), Monitor(), FOOTPRINTS)[0]) == 2

@@ -402,7 +402,6 @@ def test_an_extent_without_points_is_refused(tmp_path, points):
     ("name", "why"),
     [
         ("interpret_structure", "'Merge point clouds' merges clouds"),
-        ("model_facades", "'Extract facades' is decided by the whole cloud"),
         ("model_industry", "'Detect cylinders' is decided by the whole cloud"),
         ("model_terrain", "is decided by the whole cloud"),
     ],
