@@ -254,8 +254,6 @@ _PIPELINES = (
             "The cloud is divided into smooth surfaces: connected pipes with their elbows, a tank, a plate. In each "
             "of them, cylinders are found first, since a strip of a tank would pass for a plane, then spheres and "
             "planes among the points that have no shape yet. Points of a surface without a shape keep its SegmentID. "
-            "Pipes go on as far as they like, so that it is not run in tiles; a large plant is cut by units first, "
-            "with 'Clip cloud'."
         ),
         references=_VOSSELMAN,
         steps=(

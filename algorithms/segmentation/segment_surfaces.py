@@ -32,11 +32,18 @@ _WITHIN = 3.0
 _SMOOTH = 1.55
 
 
+# Neighborhoods decide on neighborhoods beside them (radii), and a radius (m) that automatic ones seldom exceed: that of
+# 36 points per m².
+_GROWTH, _WIDE_RADIUS = 4.0, 0.5
+
+
 @stage(
     "Segment surfaces",
     group="Segmentation",
     tags="surface growing,region growing,plane growing,smooth,normals,Hough,planes,segmentation",
     writes=("segment_id",),
+    # Which points beside each other are of one surface; it goes on as far as it likes.
+    reach=lambda tunables: _GROWTH * (tunables["radius"] or _WIDE_RADIUS),
 )
 def segment_surfaces(
     xyz,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, Optional
 
 import numpy as np
@@ -11,12 +10,13 @@ from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
 from .cylinder_search import LEAST_POINTS, CylinderSearch, Found
 from .joined_cylinders import joined
-from .search_settings import MaxRadius, MinRadius, ShapeTolerance
+from .joined_pieces import whole_axis
+from .search_settings import MaxRadius, MinRadius, ShapeTolerance, reach_of_radius
 from .searched_points import WHOLE_CLOUD, SearchIn, Shape, Surroundings, search_shapes
 from .surface_normals import NormalPoints
 
 _FIELDS = (
-    Field("id", int, "number of the cylinder, as SegmentID of its points"),
+    Field("id", int, "number of the cylinder, as SegmentID of its points", numbers="segment_id"),
     Field("radius", float, "radius", "m"),
     Field("length", float, "length of the axis", "m"),
     Field("points", int, "points on the cylinder"),
@@ -30,9 +30,8 @@ _FIELDS = (
     group="Shapes",
     tags="cylinder,pipe,tank,column,pole,Hough,Gaussian sphere,industry,as-built",
     writes=("segment_id", "shape"),
-    # Shapes go on as far as they like: a part of a cloud does not tell where one ends.
-    reach=math.inf,
-    layers=(Layer("axes", "Axes of cylinders", "LineString", _FIELDS),),
+    reach=lambda tunables: reach_of_radius(tunables["max_radius"]) + tunables["max_gap"],
+    layers=(Layer("axes", "Axes of cylinders", "LineString", _FIELDS, radius="radius", whole=whole_axis),),
 )
 def detect_cylinders(
     xyz,

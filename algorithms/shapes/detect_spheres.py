@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, Optional
 
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
-from .search_settings import MaxRadius, MinRadius, ShapeTolerance
+from .search_settings import MaxRadius, MinRadius, ShapeTolerance, reach_of_radius
 from .searched_points import WHOLE_CLOUD, SearchIn, Shape, Surroundings, search_shapes
 from .sphere_search import LEAST_POINTS, FoundSphere, SphereSearch
 from .surface_normals import NormalPoints
@@ -15,7 +14,7 @@ from .surface_normals import NormalPoints
 METHODS = ("center first", "four dimensions")
 
 _FIELDS = (
-    Field("id", int, "number of the sphere, as SegmentID of its points"),
+    Field("id", int, "number of the sphere, as SegmentID of its points", numbers="segment_id"),
     Field("radius", float, "radius", "m"),
     Field("points", int, "points on the sphere"),
     Field("rms", float, "root mean square distance of the points from the sphere", "m"),
@@ -28,9 +27,8 @@ _FIELDS = (
     group="Shapes",
     tags="sphere,ball,vessel,dome,target,Hough,industry,as-built",
     writes=("segment_id", "shape"),
-    # Shapes go on as far as they like: a part of a cloud does not tell where one ends.
-    reach=math.inf,
-    layers=(Layer("centers", "Centers of spheres", "Point", _FIELDS),),
+    reach=lambda tunables: reach_of_radius(tunables["max_radius"]),
+    layers=(Layer("centers", "Centers of spheres", "Point", _FIELDS, radius="radius"),),
 )
 def detect_spheres(
     xyz,

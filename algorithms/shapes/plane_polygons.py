@@ -13,7 +13,7 @@ from ..segmentation.least_squares_planes import planes_of
 from ..stage import Field, LayerFeatures
 
 PLANE_FIELDS = (
-    Field("id", int, "number of the plane, as SegmentID of its points"),
+    Field("id", int, "number of the plane, as SegmentID of its points", numbers="segment_id"),
     Field("points", int, "points on the plane"),
     Field("slope", float, "slope of the plane: 0 is level, 90 a wall", "°"),
     Field("aspect", float, "direction that the plane faces, clockwise from north; empty where it is level", "°"),

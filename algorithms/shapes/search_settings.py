@@ -19,6 +19,12 @@ _RADIUS_DEVIATIONS = 6.0
 # Largest radius (m) that is searched for with nothing set: tanks have up to 20 m, and time goes with what is wider.
 _LARGEST_RADIUS = 20.0
 
+# How far around a point of a shape is looked (of its radius) where a cloud is worked on in parts.
+_REACH = 0.5
+
+# Least ratio of the largest radius to the least, with nothing set.
+_LEAST_RANGE = 2.0
+
 # Largest radius as a share of the longest side of the cloud: wider ones are seen on less than a third of their arc.
 _SHARE_OF_EXTENT = 0.5
 
@@ -42,7 +48,7 @@ MaxRadius = Annotated[
         unit="m",
         low=0.001,
         high=1000,
-        automatic="20 m, but no more than half of the longest side of the cloud.",
+        automatic="20 m, but no more than half of the longest side of the cloud, and at least twice the minimum.",
     ),
 ]
 
@@ -61,6 +67,15 @@ ShapeTolerance = Annotated[
 ]
 
 
+def reach_of_radius(max_radius: Optional[float]) -> float:
+    """Return how far (m) from a point of a shape others decide on it, for the largest radius (m), None if automatic.
+
+    Half a radius from a point of a cylinder lies a third of its circumference at least, and of a sphere a quarter of
+    its area: more than it takes to find it.
+    """
+    return _REACH * (_LARGEST_RADIUS if max_radius is None else max_radius)
+
+
 def point_noise(sampling: CloudSampling) -> float:
     """Return the standard deviation of points across the surface of a shape, m."""
     return float(np.hypot(sampling.scan_noise, ROUGHNESS_OF_SPACING / np.sqrt(sampling.surface_density)))
@@ -77,8 +92,10 @@ def check_radii(
         If it is empty.
     """
     low = max(_RADIUS_SPACINGS * spacing, _RADIUS_DEVIATIONS * noise) if min_radius is None else min_radius
+    extent = float(np.ptp(xyz, axis=0).max())
+    # A part of a cloud may hold few points, which are no mistake of anybody.
     high = (
-        min(_LARGEST_RADIUS, _SHARE_OF_EXTENT * float(np.ptp(xyz, axis=0).max())) if max_radius is None else max_radius
+        max(min(_LARGEST_RADIUS, _SHARE_OF_EXTENT * extent), _LEAST_RANGE * low) if max_radius is None else max_radius
     )
     if low >= high:
         raise ValueError(

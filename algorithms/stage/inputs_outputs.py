@@ -38,7 +38,9 @@ class Layer:
 
     The rest tells what becomes of features where a cloud is worked on in overlapping parts. ``deviation`` is the field
     with the root mean square distance of points from the plane of a polygon, for planes in space, which may be upright
-    or lie above one another. ``around`` is how far beyond a feature points decide on it, m.
+    or lie above one another. ``radius`` is the field with the distance (m) of the points from a line or a point in
+    space. ``around`` is how far beyond a feature points decide on it, m. ``whole``, where pieces of a long feature can
+    be put together, is given the pieces, the largest first, and the number of their points, and returns one feature.
     """
 
     name: str
@@ -47,7 +49,9 @@ class Layer:
     fields: tuple[Field, ...]
     style: str = ""
     deviation: str = ""
+    radius: str = ""
     around: float = 1.0
+    whole: Optional[Callable[[LayerFeatures, int], LayerFeatures]] = None
 
     @property
     def numbers(self) -> str:

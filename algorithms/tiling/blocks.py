@@ -32,6 +32,9 @@ _BESIDE = 4.0
 # A window is enlarged where it cuts off features, to at most this many times its halo on a side.
 _MOST_HALOS = 8
 
+# Features that can be put together from pieces are left in pieces where they are longer than so many halos.
+_PIECE_HALOS = 2
+
 # A window of fewer points is enlarged, too: stages refuse two points, of a bird over water say, as no surface.
 _FEWEST_POINTS = 20
 
@@ -40,7 +43,7 @@ _BETWEEN_LOOKS = 0.5
 
 
 # Arrays of a result that are kept by the names of dimensions.
-_KINDS = ("dimensions", "used", "most", "inside", "beside", "rasters", "lattices")
+_KINDS = ("dimensions", "used", "counts", "most", "inside", "beside", "rasters", "lattices")
 
 # Those of them that grow with the points of a block: what is known of all blocks at once has none of them.
 _LARGE = ("dimensions", "inside", "beside", "rasters")
@@ -94,6 +97,8 @@ class BlockResult:
         What the chain wrote; coordinates in meters from the zero of the map.
     used : dict of str to ndarray of shape (k,), int64
         For each numbered dimension the numbers that records of the block have, ascending.
+    counts : dict of str to ndarray of shape (k,), int64
+        For each of them how many points of the block have it.
     most : dict of str to ndarray of shape (1,), int64
         For each numbered dimension the largest number that is used in the next two.
     inside, beside : dict of str to ndarray of shape (m, 3), int64
@@ -120,6 +125,7 @@ class BlockResult:
     stays: np.ndarray = field(default_factory=lambda: np.zeros(0, bool))
     dimensions: dict[str, np.ndarray] = field(default_factory=dict)
     used: dict[str, np.ndarray] = field(default_factory=dict)
+    counts: dict[str, np.ndarray] = field(default_factory=dict)
     most: dict[str, np.ndarray] = field(default_factory=dict)
     inside: dict[str, np.ndarray] = field(default_factory=dict)
     beside: dict[str, np.ndarray] = field(default_factory=dict)
@@ -318,11 +324,14 @@ def _keep_layers(
             column, of = owner[name]
             kept = np.isin(_names(features.columns[column]), _names(result.layers[of].columns["id"]))
         else:
-            boxes = feature_boxes(features) + task.survey.origin[:2]
+            boxes = feature_boxes(features, declared[name].radius) + task.survey.origin[:2]
             kept = (boxes[:, 0] < block[1]).all(axis=1) & (boxes[:, 1] >= block[0]).all(axis=1)
             if declared[name].numbers:
                 kept |= np.isin(features.columns["id"], result.used[declared[name].numbers])
-            cuts |= _cut_off(boxes[kept], box, task.survey.box, declared[name].around)
+            grows = kept
+            if declared[name].whole:
+                grows = kept & (np.ptp(boxes, axis=1).max(axis=1) < _PIECE_HALOS * task.halo)
+            cuts |= _cut_off(boxes[grows], box, task.survey.box, declared[name].around)
         result.layers[name] = take_features(features, np.flatnonzero(kept))
     return cuts
 
@@ -362,6 +371,10 @@ def _number(
         others = [values[one][core & stays] for one, of in REFERRING.items() if of == name and one in values]
         records = np.column_stack([window.source, window.position, number])
         result.used[name] = np.setdiff1d(np.concatenate([number[core], *others]), [0]).astype(np.int64)
+        # A point that two overlapping tiles have counts once.
+        of_points = number[core][np.unique(window.point[core], return_index=True)[1]]
+        count = np.bincount(of_points, minlength=int(result.used[name].max(initial=0)) + 1)
+        result.counts[name] = count[result.used[name]]
         result.inside[name] = records[near & core & (number > 0)]
         result.beside[name] = records[near & ~core & (number > 0)]
         result.most[name] = records[near, 2].max(initial=0, keepdims=True)
@@ -377,12 +390,17 @@ def _cut_off(boxes: np.ndarray, window: np.ndarray, survey: np.ndarray, around: 
     return np.array([low.any(axis=0), high.any(axis=0)])
 
 
-def feature_boxes(features: LayerFeatures) -> np.ndarray:
-    """Return the least and greatest easting and northing (n, 2, 2) of each feature."""
+def feature_boxes(features: LayerFeatures, radius: str = "") -> np.ndarray:
+    """Return the least and greatest easting and northing (n, 2, 2) of each feature.
+
+    ``radius`` is the field that tells how far (m) its points lie off its geometry, "" where they lie on it.
+    """
     boxes = np.zeros((len(features), 2, 2))
     for row, geometry in enumerate(features.geometries):
         plan = np.reshape(_vertices(geometry)[:, :2], (-1, 2))
         boxes[row] = plan.min(axis=0), plan.max(axis=0)
+    if radius and len(features):
+        boxes += np.asarray(features.columns[radius], float)[:, None, None] * [[-1], [1]]
     return boxes
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any, Callable, Optional
 
@@ -11,7 +12,7 @@ from ..geometry.grid import find_cells
 from ..geometry.groups import components
 from ..pipeline import Pipeline
 from ..stage import Layer, LayerFeatures, Monitor
-from .blocks import NUMBERED, Block, BlockResult, feature_boxes
+from .blocks import NUMBERED, Block, BlockResult, feature_boxes, take_features
 from .same_features import leaders
 from .tiled_steps import layers_of
 
@@ -21,6 +22,8 @@ _EDGES_KEPT = 8
 
 # The number of a feature in its layer, and what numbers the cluster that it is the outline of.
 _ID, _CLUSTER = "id", "cluster_id"
+
+_NONE = np.zeros(0, np.int64)
 
 
 # What gives the records inside and beside the edges of a block, by its position.
@@ -54,7 +57,7 @@ def join_numbers(
     joined: list[dict[str, np.ndarray]] = [{} for _ in results]
     links = _links(blocks, edges)
     for name in NUMBERED:
-        of_features = (features or {}).get(name, [np.zeros(0, np.int64)] * len(results))
+        of_features = (features or {}).get(name, [_NONE] * len(results))
         most = [max(_largest(one, name), int(own.max(initial=0))) for one, own in zip(results, of_features)]
         first = np.concatenate([[0], np.cumsum(most)])
         found = [np.zeros((0, 2), np.int64)]
@@ -66,7 +69,7 @@ def join_numbers(
         one_end, other_end = ends[~is_feature[ends].any(axis=1)].T
         _, group = components(one_end, other_end, int(first[-1]))
         parts = [start + one.used[name] - 1 for one, start in zip(results, first) if name in one.used]
-        used = np.concatenate([np.zeros(0, np.int64), *parts])
+        used = np.concatenate([_NONE, *parts])
         # Numbers in the order of the blocks, as those of one cloud are in that of its points.
         distinct, at = np.unique(group[used[~is_feature[used]]], return_index=True)
         final = np.zeros(len(group) + 1, np.int32)
@@ -81,7 +84,7 @@ def feature_numbers(pipeline: Pipeline, results: list[BlockResult]) -> dict[str,
     found: dict[str, list[np.ndarray]] = {}
     for name, layer in layers_of(pipeline).items():
         if layer.numbers:
-            before = found.get(layer.numbers, [np.zeros(0, np.int64)] * len(results))
+            before = found.get(layer.numbers, [_NONE] * len(results))
             own = [
                 np.asarray(one.layers[name].columns[_ID], np.int64) if one.layers else before[0][:0] for one in results
             ]
@@ -147,6 +150,32 @@ def _record_keys(source: np.ndarray, position: np.ndarray) -> np.ndarray:
     return (source.astype(np.int64) << 40) | position.astype(np.int64)
 
 
+@dataclass
+class References:
+    """How points refer to features by a dimension: the numbers of features are those of their points.
+
+    Attributes
+    ----------
+    counts : list of dict of int to int
+        Of each block how many of its points have each number there.
+    known : dict of (int, int) to int
+        What numbers of features are now, by the position of the block and the number in it.
+    """
+
+    counts: list[dict[int, int]]
+    known: dict[tuple[int, int], int] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, results: list[BlockResult], name: str) -> References:
+        """Return what points of blocks refer to by a dimension, before any number is known."""
+        kinds = [(one.used.get(name, _NONE), one.counts.get(name, _NONE)) for one in results]
+        return cls([dict(zip(used.tolist(), counts.tolist())) for used, counts in kinds])
+
+    def count_of(self, key: tuple[int, int]) -> int:
+        """Return how many points of a block, by its position, have a number there."""
+        return self.counts[key[0]].get(key[1], 0)
+
+
 def join_features(
     blocks: list[Block],
     layers: list[LayerFeatures],
@@ -154,7 +183,7 @@ def join_features(
     origin: np.ndarray,
     monitor: Monitor,
     declared: Layer,
-    known: Optional[dict[tuple[int, int], int]] = None,
+    references: Optional[References] = None,
 ) -> tuple[LayerFeatures, np.ndarray]:
     """Return the features of all blocks, each once, numbered from north-west to south-east, and which they were.
 
@@ -172,10 +201,9 @@ def join_features(
         Receives progress.
     declared : Layer
         How the stage declares them.
-    known : dict of (int, int) to int, optional
-        Where points refer to the features: what numbers are now that features of other layers had, by the position of
-        the block and the number in it. Such a feature is called the same here; the numbers of others follow, and all
-        are added.
+    references : References, optional
+        Where points refer to the features. One that has a number in another layer is called the same here; the numbers
+        of others follow, and all are added.
 
     Returns
     -------
@@ -188,17 +216,36 @@ def join_features(
     if not len(features):
         return features, np.zeros((0, 3), np.int64)
     of_block = np.repeat(np.arange(len(blocks)), [len(layer) for layer in layers])
-    boxes = feature_boxes(features)
+    boxes = feature_boxes(features, declared.radius)
     middle = boxes.mean(axis=1) + origin[:2]
     own = np.array([block.box for block in blocks])[of_block]
     is_own = ((middle >= own[:, 0]) & (middle < own[:, 1])).all(axis=1)
     leader = leaders(features, declared, of_block, is_own, monitor)
     own_id = np.asarray(features.columns.get(_ID, np.zeros(len(features))), np.int64)
-    known = {} if known is None else known
-    called = _called(list(zip(of_block.tolist(), own_id.tolist())), leader, boxes, known)
+    references = references or References([])
+    keys = list(zip(of_block.tolist(), own_id.tolist()))
+    called = _called(keys, leader, boxes, references.known)
     rows = np.flatnonzero(called)
     rows = rows[np.argsort(called[rows])]
+    if declared.whole:
+        _put_together(features, declared.whole, leader, [references.count_of(key) for key in keys])
     return _numbered(features, rows, called[rows]), np.column_stack([of_block[rows], own_id[rows], called[rows]])
+
+
+def _put_together(
+    features: LayerFeatures, whole: Callable[[LayerFeatures, int], LayerFeatures], leader: np.ndarray, counts: list[int]
+) -> None:
+    """Make the whole of the pieces of features, in place, of those that stay for several."""
+    points = np.bincount(leader, counts, len(leader)).astype(np.int64)
+    order = np.argsort(leader, kind="stable")
+    for pieces in np.split(order, np.flatnonzero(np.diff(leader[order])) + 1):
+        if len(pieces) > 1:
+            row = int(leader[pieces[0]])
+            best_first = np.concatenate([[row], pieces[pieces != row]])
+            one = whole(take_features(features, best_first), int(points[row]))
+            features.geometries[row] = one.geometries[0]
+            for name, values in one.columns.items():
+                features.columns[name][row] = values[0]
 
 
 def _called(

@@ -29,7 +29,7 @@ from ..stage import FileContent, LayerFeatures, Monitor, Report
 from .blocks import REFERRING, Block, BlockResult, BlockTask, StoppableMonitor, work_on_block
 from .cutting import cut_into_tiles
 from .joined_files import join_files
-from .joining import feature_numbers, join_belonging, join_features, join_numbers, refer_to_features
+from .joining import References, feature_numbers, join_belonging, join_features, join_numbers, refer_to_features
 from .mosaics import RasterMosaic, join_rasters
 from .survey import Source, Survey, boxes_meet, check_folder, open_survey
 from .tiled_steps import (
@@ -52,6 +52,10 @@ _MOST_POINTS = 5_300_000
 # Sides of blocks are multiples of the step from the least to the greatest, m; smaller ones would work mostly on what
 # lies around them.
 _SIDE_STEP, _LEAST_SIDE, _MOST_SIDE = 50.0, 100.0, 1600.0
+
+# In dense clouds sides are multiples of a smaller step (m), down to so many times what lies around on one side: a
+# seventh of the window is the block's then.
+_DENSE_STEP, _LEAST_HALOS = 10.0, 1.25
 
 # A file of more points is cut first: read again for each of its blocks it would be read too often.
 _LARGEST_FILE = 25_000_000
@@ -150,7 +154,8 @@ def run_in_tiles(
     workers : Workers, optional
         Processes of this machine, one for each core, where nothing is given.
     block_side : float, optional
-        Side of a block, m; None is the largest multiple of 50 m from 100 to 1600 m with room for its points.
+        Side of a block, m; None is the largest multiple of 50 m from 100 to 1600 m with room for its points, of 10 m
+        where none has.
     compressed : bool
         Tiles as LAZ, or as LAS.
     crs_units : callable, optional
@@ -416,7 +421,7 @@ class _Run:
         kept: dict[str, np.ndarray] = {}
         owner, declared = owners(self.pipeline), layers_of(self.pipeline)
         clusters = [of_block.get("cluster_id", np.zeros(0, np.int32)) for of_block in numbers]
-        known: dict[str, dict[tuple[int, int], int]] = {one.numbers: {} for one in declared.values() if one.numbers}
+        references = {one.numbers: References.of(found, one.numbers) for one in declared.values() if one.numbers}
         for number, name in enumerate(sorted(names, key=lambda name: name in owner)):
             part = monitor.part(number / len(names), (number + 1) / len(names))
             # A block without points has no layers, any other one has all of them.
@@ -432,10 +437,10 @@ class _Run:
                 self.survey.origin,
                 part,
                 declared[name],
-                known.get(declared[name].numbers),
+                references.get(declared[name].numbers),
             )
-        for dimension, of_features in known.items():
-            refer_to_features(numbers, dimension, of_features)
+        for dimension, of_features in references.items():
+            refer_to_features(numbers, dimension, of_features.known)
         return {name: layers[name] for name in names}, kept
 
     def _run_afterwards(self, outcome: TilesOutcome) -> None:
@@ -609,8 +614,11 @@ def _sampling_of(clouds: list[Cloud]) -> CloudSampling:
 
 def _side(density: float, halo: float) -> float:
     """Return the largest side of a block, m, whose window has room for its points."""
-    side = np.floor((np.sqrt(_MOST_POINTS / density) - 2 * halo) / _SIDE_STEP) * _SIDE_STEP
-    return float(np.clip(side, _LEAST_SIDE, _MOST_SIDE))
+    fits = np.sqrt(_MOST_POINTS / density) - 2 * halo
+    if fits >= _LEAST_SIDE:
+        return float(min(np.floor(fits / _SIDE_STEP) * _SIDE_STEP, _MOST_SIDE))
+    least = max(np.ceil(_LEAST_HALOS * halo / _DENSE_STEP), 1.0) * _DENSE_STEP
+    return float(min(max(np.floor(fits / _DENSE_STEP) * _DENSE_STEP, least), _LEAST_SIDE))
 
 
 def _blocks(survey: Survey, side: float) -> list[Block]:

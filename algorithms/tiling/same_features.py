@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..geometry.groups import components
 from ..geometry.polygon_overlap import as_polygons, meeting_boxes, shared_areas
 from ..stage import Layer, LayerFeatures, Monitor
 from .blocks import feature_boxes
@@ -11,9 +12,17 @@ from .blocks import feature_boxes
 # Two features of different blocks are the same one if they share more than this part of the smaller one.
 _SAME = 0.5
 
+# Pieces of one feature share what lies around the edge between their blocks: more than this part of the smaller one, or
+# than this length or area (m, m²), which what merely touches does not.
+_PIECES, _SHARED = 0.1, 1.0
+
 # Largest distance between planes in space that are the same one: so many root mean square distances of their points,
 # and this (m), for planes of points without noise.
 _DEVIATIONS, _LEAST = 3.0, 0.005
+
+# Largest distance between axes or centers that are the same one, and largest difference of their radii (of the smaller
+# radius): what has the same points differs by less, and pipes in insulation or beside each other by more.
+_OFF = 0.2
 
 
 def leaders(
@@ -22,7 +31,8 @@ def leaders(
     """Return for each feature (n,) the one that stays in its place, itself where it stays; -1 where none does.
 
     Of features of different blocks that are the same one, that of the block that its middle lies in stays; where none
-    or several claim it, the largest. Of points and lines, those of the block of their middle stay.
+    or several claim it, the largest. Of pieces of one feature the largest stays for all. Lines and points of which no
+    radius is known stay where their middle lies.
 
     Parameters
     ----------
@@ -37,25 +47,38 @@ def leaders(
     monitor : Monitor
         Receives progress.
     """
-    if layer.geometry != "Polygon":
+    if layer.geometry != "Polygon" and not layer.radius:
         return np.where(is_own, np.arange(len(features)), -1)
-    boxes = feature_boxes(features)
+    boxes = feature_boxes(features, layer.radius)
     if layer.deviation:
         boxes += _tolerance(features, layer)[:, None, None] * [[-1], [1]]
     one, other = meeting_boxes(boxes, boxes)
     of_two = (of_block[one] != of_block[other]) & (one < other)
     one, other = one[of_two], other[of_two]
-    if layer.deviation:
-        size, shared = _shared_in_space(features, layer, one, other, monitor)
-    else:
-        polygons = as_polygons(features.geometries)
-        size, shared = np.abs(polygons.area), shared_areas(polygons, polygons, one, other, monitor)
+    size, shared = _sizes(features, layer, one, other, monitor)
     share = shared / np.maximum(np.minimum(size[one], size[other]), 1e-12)
+    if layer.whole:
+        is_piece = (share > _PIECES) | (shared > _SHARED)
+        return _largest(size, components(one[is_piece], other[is_piece], len(size))[1])
     is_same = share > _SAME
-    return _led(one[is_same], other[is_same], share[is_same], ranks(size, is_own))
+    return _led(one[is_same], other[is_same], share[is_same], _ranks(size, is_own))
 
 
-def ranks(size: np.ndarray, is_own: np.ndarray) -> np.ndarray:
+def _sizes(
+    features: LayerFeatures, layer: Layer, one: np.ndarray, other: np.ndarray, monitor: Monitor
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the size (n,) of each feature (m², m, or 1), and what pairs (k,) share of it."""
+    if layer.geometry == "Point":
+        return np.ones(len(features)), _same_spheres(features, layer, one, other).astype(float)
+    if layer.geometry == "LineString":
+        return _shared_lines(features, layer, one, other)
+    if layer.deviation:
+        return _shared_in_space(features, layer, one, other, monitor)
+    polygons = as_polygons(features.geometries)
+    return np.abs(polygons.area), shared_areas(polygons, polygons, one, other, monitor)
+
+
+def _ranks(size: np.ndarray, is_own: np.ndarray) -> np.ndarray:
     """Return the rank (n,) of each feature, 0 for the best: those of the own block first, then the largest."""
     rank = np.empty(len(size), np.int64)
     rank[np.lexsort([np.arange(len(size)), -size, ~is_own])] = np.arange(len(size))
@@ -75,6 +98,48 @@ def _led(one: np.ndarray, other: np.ndarray, share: np.ndarray, rank: np.ndarray
         if leader[better[at]] == better[at] and share[at] > most[worse[at]]:
             leader[worse[at]], most[worse[at]] = better[at], share[at]
     return leader
+
+
+def _largest(size: np.ndarray, group: np.ndarray) -> np.ndarray:
+    """Return for each feature (n,) the largest of its group."""
+    best = np.lexsort([np.arange(len(size)), -size, group])
+    first = best[np.unique(group[best], return_index=True)[1]]
+    return first[group]
+
+
+def _same_spheres(features: LayerFeatures, layer: Layer, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Return of which pairs (k,) centers and radii agree."""
+    center, radius = np.reshape(features.geometries, (-1, 3)), _radius(features, layer)
+    near = _OFF * np.minimum(radius[one], radius[other])
+    off = np.linalg.norm(center[one] - center[other], axis=1)
+    return (off < near) & (np.abs(radius[one] - radius[other]) < near)
+
+
+def _shared_lines(
+    features: LayerFeatures, layer: Layer, one: np.ndarray, other: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the length (n,) of each axis, and what pairs (k,) share of one axis with one radius (m)."""
+    start, end = np.moveaxis(np.reshape([line[[0, -1]] for line in features.geometries], (-1, 2, 3)), 1, 0)
+    length, radius = np.linalg.norm(end - start, axis=1), _radius(features, layer)
+    is_longer = length[one] >= length[other]
+    long, short = np.where(is_longer, one, other), np.where(is_longer, other, one)
+    way = (end[long] - start[long]) / np.maximum(length[long], 1e-12)[:, None]
+    places = np.stack([start[short] - start[long], end[short] - start[long]], axis=1)
+    along = np.einsum("kej,kj->ke", places, way)
+    shared = np.minimum(along.max(axis=1), length[long]) - np.maximum(along.min(axis=1), 0.0)
+    # Only where both are they must be at one place: an axis that is extended is less precise.
+    step = np.diff(along, axis=1)[:, 0]
+    near = _OFF * np.minimum(radius[one], radius[other])
+    is_one = np.abs(radius[one] - radius[other]) < near
+    for low_or_high in (np.maximum(along.min(axis=1), 0.0), np.minimum(along.max(axis=1), length[long])):
+        part = np.clip((low_or_high - along[:, 0]) / np.where(step == 0, 1.0, step), 0.0, 1.0)
+        place = places[:, 0] + part[:, None] * (places[:, 1] - places[:, 0])
+        is_one &= np.linalg.norm(place - low_or_high[:, None] * way, axis=1) < near
+    return length, np.where(is_one, np.maximum(shared, 0.0), 0.0)
+
+
+def _radius(features: LayerFeatures, layer: Layer) -> np.ndarray:
+    return np.asarray(features.columns[layer.radius], float)
 
 
 def _shared_in_space(
@@ -122,7 +187,7 @@ def _off(rings: list, normal: np.ndarray, others: list) -> float:
 
 def _axes(normal: np.ndarray) -> np.ndarray:
     """Return two unit vectors (2, 3) that span the plane of a normal."""
-    steepest = np.eye(3)[np.argmin(np.abs(normal))]
-    first = np.cross(normal, steepest)
+    least = np.eye(3)[np.argmin(np.abs(normal))]
+    first = np.cross(normal, least)
     first /= np.linalg.norm(first)
     return np.stack([first, np.cross(normal, first)])

@@ -91,6 +91,7 @@ TILED_IDS = {
     "mapfootprintsintiles",
     "modelbuildingsintiles",
     "modelfacadesintiles",
+    "modelindustryintiles",
 }
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints", "modelbuildings"}
 PIPELINE_IDS |= {"modelfacades", "modelindustry", "modelterrain"}

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling
 from lidar_buildings.algorithms.shapes.cylinder_fits import Cylinder, bends, fit_cylinder, fit_sphere
 from lidar_buildings.algorithms.shapes.detect_cylinders import detect_cylinders
 from lidar_buildings.algorithms.stage import Monitor
@@ -190,6 +191,13 @@ def test_bends_show_in_the_residuals(rng):
     waist = straight.copy()
     waist[:, :2] *= 1 + 0.2 * waist[:, 2:] ** 2
     assert bends(fit_cylinder(waist, start), waist) > 0.0005
+
+
+def test_a_small_part_of_a_cloud_is_no_mistake(rng):
+    """Half of its extent is less than the least radius that the sampling of the whole allows: a block was refused."""
+    few = rng.uniform(0, 0.05, (30, 3))
+    sampling = CloudSampling.of(pipe(rng, 0.3, 2.0, 0.1, 0.005, (1, 0, 0)))
+    assert not detect_cylinders(few, np.ones(30, np.uint8), sampling=sampling)[0].any()
 
 
 def test_an_empty_range_of_radii_is_refused(rng):

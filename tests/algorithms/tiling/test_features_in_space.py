@@ -9,7 +9,7 @@ from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.run import run_pipeline
 from lidar_buildings.algorithms.stage import Field, Layer, LayerFeatures, Monitor
 from lidar_buildings.algorithms.tiling.blocks import Block
-from lidar_buildings.algorithms.tiling.joining import join_features, refer_to_features
+from lidar_buildings.algorithms.tiling.joining import References, join_features, refer_to_features
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
 from lidar_buildings.algorithms.tiling.workers import Workers
 from lidar_buildings.tests.facades import street_floor, wall
@@ -140,7 +140,8 @@ def joined(*layers, declared=PLANES, known=None):
     ]
     blocks = [Block(column, 0, 10.0) for column in range(len(layers))]
     none = [np.zeros(0, np.int32)] * len(layers)
-    return join_features(blocks, made, none, np.zeros(3), Monitor(), declared, known)
+    references = References([{}] * len(layers), {} if known is None else known)
+    return join_features(blocks, made, none, np.zeros(3), Monitor(), declared, references)
 
 
 def test_walls_that_two_blocks_found_are_told_in_space():

@@ -391,6 +391,15 @@ def test_an_extent_takes_a_part_of_the_survey(tmp_path, points, largest):
     assert ((classes[at] == 6) == points[2][inside]).mean() > 0.98
 
 
+@pytest.mark.parametrize(
+    ("density", "halo", "side"),
+    [(7.7, 80.0, 650), (100, 80, 100), (0.01, 80, 1600), (400, 26, 60), (20_000, 26, 40), (1e6, 0, 10)],
+)
+def test_blocks_have_room_for_their_points(density, halo, side):
+    """In a dense plant, where little is looked at around a block, it is smaller than 100 m."""
+    assert module._side(density, halo) == side
+
+
 def test_an_extent_without_points_is_refused(tmp_path, points):
     xyz, times, _ = points
     tiles = tiles_of(tmp_path, xyz, times, np.ones(len(xyz), bool))
@@ -402,7 +411,6 @@ def test_an_extent_without_points_is_refused(tmp_path, points):
     ("name", "why"),
     [
         ("interpret_structure", "'Merge point clouds' merges clouds"),
-        ("model_industry", "'Detect cylinders' is decided by the whole cloud"),
         ("model_terrain", "is decided by the whole cloud"),
     ],
 )

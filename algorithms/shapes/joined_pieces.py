@@ -1,0 +1,110 @@
+"""Pieces of one shape, found in overlapping parts of a cloud, put together to one feature."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..geometry.cell_outlines import outline_cells
+from ..geometry.grid import connected_cells, grid_over
+from ..geometry.line_segments import is_valid
+from ..geometry.points_in_polygons import are_in_polygons
+from ..geometry.polygon_overlap import as_polygons, shared_areas
+from ..geometry.polylines import simplify_ring
+from ..geometry.rings import signed_area
+from ..stage import LayerFeatures, Monitor
+
+# A piece that lies in the largest one but for this part of it adds nothing.
+_WITHIN = 0.95
+
+# The outline of several pieces of a plane is drawn of cells of the first size (m), larger ones where there would be
+# more than so many.
+_CELL, _MOST_CELLS = 0.1, 2_000_000
+
+
+def whole_axis(pieces: LayerFeatures, points: int) -> LayerFeatures:
+    """Return the cylinder that pieces with overlapping axes are of, from the farthest end to the farthest end.
+
+    Parameters
+    ----------
+    pieces : LayerFeatures
+        Axes (2, 3) of cylinders, m, and their fields, the longest first.
+    points : int
+        Points of all of them.
+    """
+    line = np.asarray(pieces.geometries[0])
+    way = (line[1] - line[0]) / max(float(np.linalg.norm(line[1] - line[0])), 1e-12)
+    ends = np.concatenate(pieces.geometries)
+    along = (ends - line[0]) @ way
+    axis = np.stack([ends[np.argmin(along)], ends[np.argmax(along)]])
+    columns = _of_first(pieces, points)
+    columns["length"] = [float(np.linalg.norm(axis[1] - axis[0]))]
+    columns["radius"] = [_mean(pieces, "radius")]
+    columns["seen"] = [float(max(pieces.columns["seen"]))]
+    return LayerFeatures([axis], columns)
+
+
+def whole_plane(pieces: LayerFeatures, points: int) -> LayerFeatures:
+    """Return the plane that pieces which overlap in it are of, with the outline around all of them.
+
+    Where no piece goes beyond the largest, its polygon stays as it is; else the outline is drawn of cells of 0.1 m.
+
+    Parameters
+    ----------
+    pieces : LayerFeatures
+        Polygons with heights, m, and their fields, the largest first.
+    points : int
+        Points of all of them.
+    """
+    first, second, start = _frame(pieces.geometries[0])
+    axes = np.stack([first, second])
+    flat = [[(ring - start) @ axes.T for ring in rings] for rings in pieces.geometries]
+    polygons = as_polygons(flat)
+    rest = np.arange(1, len(flat))
+    shared = shared_areas(polygons, polygons, np.zeros(len(rest), np.int64), rest, Monitor())
+    columns = _of_first(pieces, points)
+    if (shared >= _WITHIN * np.abs(polygons.area[1:])).all():
+        return LayerFeatures(pieces.geometries[:1], columns)
+    rings = _outline(flat)
+    columns["area"] = [sum(signed_area(ring) for ring in rings)]
+    return LayerFeatures([[start + ring @ axes for ring in rings]], columns)
+
+
+def _of_first(pieces: LayerFeatures, points: int) -> dict[str, list]:
+    """Return the fields of the largest piece, with the number of points and the deviation of all."""
+    columns = {name: [values[0]] for name, values in pieces.columns.items()}
+    columns["rms"] = [float(np.sqrt(_mean(pieces, "rms", 2)))]
+    columns["points"] = [points]
+    return columns
+
+
+def _mean(pieces: LayerFeatures, name: str, power: int = 1) -> float:
+    """Return the mean of a field's power, pieces weighted by their points."""
+    return float(np.average(np.asarray(pieces.columns[name], float) ** power, weights=pieces.columns["points"]))
+
+
+def _frame(rings: list) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return two unit vectors along the plane of a polygon, counterclockwise as its ring, and a point of it."""
+    start = rings[0][:-1].mean(axis=0)
+    flat = rings[0] - start
+    normal = np.cross(flat[:-1], flat[1:]).sum(axis=0)
+    normal /= max(float(np.linalg.norm(normal)), 1e-12)
+    first = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
+    first /= np.linalg.norm(first)
+    return first, np.cross(normal, first), start
+
+
+def _outline(flat: list) -> list[np.ndarray]:
+    """Return the rings (m, 2) around the largest group of cells whose middles lie in polygons, simplified by a cell."""
+    polygons = as_polygons(flat)
+    low, high = polygons.box[:, 0].min(axis=0), polygons.box[:, 1].max(axis=0)
+    cell = max(_CELL, float(np.sqrt(np.prod(high - low) / _MOST_CELLS)))
+    grid = grid_over(np.stack([low, high]), cell)
+    every = np.arange(grid.rows * grid.columns)
+    cells = every[are_in_polygons(grid.center(every), polygons, Monitor())]
+    count, group = connected_cells(grid, cells)
+    cells = cells[group == np.argmax(np.bincount(group, minlength=count))]
+    rings = outline_cells(grid, cells, np.zeros(len(cells), np.int64))[0]
+    simple = [simplify_ring(ring, cell) for ring in rings]
+    simple = [ring for ring in simple if len(ring) >= 4 and abs(signed_area(ring)) > cell**2]
+    is_sound = bool(simple) and signed_area(simple[0]) > 0 and all(signed_area(hole) < 0 for hole in simple[1:])
+    return simple if is_sound and is_valid(simple) else rings
