@@ -43,7 +43,7 @@ _BETWEEN_LOOKS = 0.5
 
 
 # Arrays of a result that are kept by the names of dimensions.
-_KINDS = ("dimensions", "used", "counts", "most", "inside", "beside", "rasters", "lattices")
+_KINDS = ("dimensions", "used", "counts", "most", "inside", "beside", "rasters", "lattices", "pieces")
 
 # Those of them that grow with the points of a block: what is known of all blocks at once has none of them.
 _LARGE = ("dimensions", "inside", "beside", "rasters")
@@ -110,6 +110,8 @@ class BlockResult:
         are counted from the survey's origin, northward and eastward.
     layers : dict of str to LayerFeatures
         Features that have a part in the block, in meters from the survey's origin.
+    pieces : dict of str to ndarray of shape (n,), bool
+        Of layers whose features can be put together from pieces which of them the edge of the window may have cut off.
     items : dict of str to list
         Of text files the records of items that belong to these features, with their names in the block, by their class:
         files of one stage are written of the same items.
@@ -132,6 +134,7 @@ class BlockResult:
     rasters: dict[str, np.ndarray] = field(default_factory=dict)
     lattices: dict[str, np.ndarray] = field(default_factory=dict)
     layers: dict[str, LayerFeatures] = field(default_factory=dict)
+    pieces: dict[str, np.ndarray] = field(default_factory=dict)
     items: dict[str, list[tuple[str, dict[str, Any]]]] = field(default_factory=dict)
     messages: list[str] = field(default_factory=list)
     tries: np.ndarray = field(default_factory=lambda: np.zeros((0, 4)))
@@ -328,10 +331,12 @@ def _keep_layers(
             kept = (boxes[:, 0] < block[1]).all(axis=1) & (boxes[:, 1] >= block[0]).all(axis=1)
             if declared[name].numbers:
                 kept |= np.isin(features.columns["id"], result.used[declared[name].numbers])
+            is_cut = _cut_off(boxes, box, task.survey.box, declared[name].around)
             grows = kept
             if declared[name].whole:
                 grows = kept & (np.ptp(boxes, axis=1).max(axis=1) < _PIECE_HALOS * task.halo)
-            cuts |= _cut_off(boxes[grows], box, task.survey.box, declared[name].around)
+                result.pieces[name] = is_cut.any(axis=(1, 2))[kept]
+            cuts |= is_cut[grows].any(axis=0)
         result.layers[name] = take_features(features, np.flatnonzero(kept))
     return cuts
 
@@ -381,13 +386,13 @@ def _number(
 
 
 def _cut_off(boxes: np.ndarray, window: np.ndarray, survey: np.ndarray, around: float) -> np.ndarray:
-    """Return which sides (2, 2) of the window may have cut off what features are, by their boxes and what lies around.
+    """Return for features which sides (n, 2, 2) of the window may cut them off, by their boxes and what lies around.
 
     Where the survey ends there is none.
     """
     low = (boxes[:, 0] < window[0] + around) & (window[0] > survey[0])
     high = (boxes[:, 1] > window[1] - around) & (window[1] < survey[1])
-    return np.array([low.any(axis=0), high.any(axis=0)])
+    return np.stack([low, high], axis=1)
 
 
 def feature_boxes(features: LayerFeatures, radius: str = "") -> np.ndarray:

@@ -184,6 +184,7 @@ def join_features(
     monitor: Monitor,
     declared: Layer,
     references: Optional[References] = None,
+    pieces: Optional[list[np.ndarray]] = None,
 ) -> tuple[LayerFeatures, np.ndarray]:
     """Return the features of all blocks, each once, numbered from north-west to south-east, and which they were.
 
@@ -204,6 +205,8 @@ def join_features(
     references : References, optional
         Where points refer to the features. One that has a number in another layer is called the same here; the numbers
         of others follow, and all are added.
+    pieces : list of ndarray, optional
+        Where pieces can be put together, which of the features of each block may have been cut off.
 
     Returns
     -------
@@ -220,14 +223,16 @@ def join_features(
     middle = boxes.mean(axis=1) + origin[:2]
     own = np.array([block.box for block in blocks])[of_block]
     is_own = ((middle >= own[:, 0]) & (middle < own[:, 1])).all(axis=1)
-    leader = leaders(features, declared, of_block, is_own, monitor)
+    is_piece = np.concatenate(pieces) if declared.whole and pieces is not None else None
+    leader = leaders(features, declared, of_block, is_own, monitor, is_piece)
     own_id = np.asarray(features.columns.get(_ID, np.zeros(len(features))), np.int64)
     references = references or References([])
     keys = list(zip(of_block.tolist(), own_id.tolist()))
     called = _called(keys, leader, boxes, references.known)
     rows = np.flatnonzero(called)
     rows = rows[np.argsort(called[rows])]
-    if declared.whole:
+    if declared.whole and is_piece is not None:
+        leader = np.where(is_piece[leader], leader, np.arange(len(leader)))
         _put_together(features, declared.whole, leader, [references.count_of(key) for key in keys])
     return _numbered(features, rows, called[rows]), np.column_stack([of_block[rows], own_id[rows], called[rows]])
 
@@ -238,10 +243,10 @@ def _put_together(
     """Make the whole of the pieces of features, in place, of those that stay for several."""
     points = np.bincount(leader, counts, len(leader)).astype(np.int64)
     order = np.argsort(leader, kind="stable")
-    for pieces in np.split(order, np.flatnonzero(np.diff(leader[order])) + 1):
-        if len(pieces) > 1:
-            row = int(leader[pieces[0]])
-            best_first = np.concatenate([[row], pieces[pieces != row]])
+    for group in np.split(order, np.flatnonzero(np.diff(leader[order])) + 1):
+        if len(group) > 1:
+            row = int(leader[group[0]])
+            best_first = np.concatenate([[row], group[group != row]])
             one = whole(take_features(features, best_first), int(points[row]))
             features.geometries[row] = one.geometries[0]
             for name, values in one.columns.items():

@@ -438,6 +438,7 @@ class _Run:
                 part,
                 declared[name],
                 references.get(declared[name].numbers),
+                [result.pieces.get(name, np.zeros(0, bool)) for result in found] if declared[name].whole else None,
             )
         for dimension, of_features in references.items():
             refer_to_features(numbers, dimension, of_features.known)

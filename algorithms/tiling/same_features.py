@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Optional
+
 import numpy as np
 
 from ..geometry.groups import components
@@ -26,13 +28,18 @@ _OFF = 0.2
 
 
 def leaders(
-    features: LayerFeatures, layer: Layer, of_block: np.ndarray, is_own: np.ndarray, monitor: Monitor
+    features: LayerFeatures,
+    layer: Layer,
+    of_block: np.ndarray,
+    is_own: np.ndarray,
+    monitor: Monitor,
+    is_piece: Optional[np.ndarray] = None,
 ) -> np.ndarray:
     """Return for each feature (n,) the one that stays in its place, itself where it stays; -1 where none does.
 
     Of features of different blocks that are the same one, that of the block that its middle lies in stays; where none
-    or several claim it, the largest. Of pieces of one feature the largest stays for all. Lines and points of which no
-    radius is known stay where their middle lies.
+    or several claim it, the largest. Pieces of one feature give way to it where a block has seen all of it; else the
+    largest piece stays for all. Lines and points of which no radius is known stay where their middle lies.
 
     Parameters
     ----------
@@ -46,6 +53,8 @@ def leaders(
         Whether its middle lies in this block.
     monitor : Monitor
         Receives progress.
+    is_piece : ndarray of shape (n,), bool, optional
+        Which may have been cut off, where pieces can be put together.
     """
     if layer.geometry != "Polygon" and not layer.radius:
         return np.where(is_own, np.arange(len(features)), -1)
@@ -57,11 +66,16 @@ def leaders(
     one, other = one[of_two], other[of_two]
     size, shared = _sizes(features, layer, one, other, monitor)
     share = shared / np.maximum(np.minimum(size[one], size[other]), 1e-12)
-    if layer.whole:
-        is_piece = (share > _PIECES) | (shared > _SHARED)
-        return _largest(size, components(one[is_piece], other[is_piece], len(size))[1])
     is_same = share > _SAME
-    return _led(one[is_same], other[is_same], share[is_same], _ranks(size, is_own))
+    if is_piece is None:
+        return _led(one[is_same], other[is_same], share[is_same], _ranks(size, is_own))
+    are_pieces = is_piece[one] & is_piece[other]
+    is_same &= ~are_pieces
+    leader = _led(one[is_same], other[is_same], share[is_same], _ranks(size, is_own, is_piece))
+    stays = leader == np.arange(len(leader))
+    meet = are_pieces & stays[one] & stays[other] & ((share > _PIECES) | (shared > _SHARED))
+    largest = _largest(size, components(one[meet], other[meet], len(size))[1])
+    return np.where(stays, largest, leader)
 
 
 def _sizes(
@@ -78,10 +92,11 @@ def _sizes(
     return np.abs(polygons.area), shared_areas(polygons, polygons, one, other, monitor)
 
 
-def _ranks(size: np.ndarray, is_own: np.ndarray) -> np.ndarray:
-    """Return the rank (n,) of each feature, 0 for the best: those of the own block first, then the largest."""
+def _ranks(size: np.ndarray, is_own: np.ndarray, is_piece: Optional[np.ndarray] = None) -> np.ndarray:
+    """Return the rank (n,) of each feature, 0 for the best: no pieces, those of the own block, then the largest."""
+    is_piece = np.zeros(len(size), bool) if is_piece is None else is_piece
     rank = np.empty(len(size), np.int64)
-    rank[np.lexsort([np.arange(len(size)), -size, ~is_own])] = np.arange(len(size))
+    rank[np.lexsort([np.arange(len(size)), -size, ~is_own, is_piece])] = np.arange(len(size))
     return rank
 
 

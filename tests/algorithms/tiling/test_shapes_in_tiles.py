@@ -134,19 +134,25 @@ AXES = {layer.name: layer for step in INDUSTRY.steps for layer in step.stage.lay
 
 
 def joined(layer, *layers):
-    """Join what blocks of 10 m beside each other found: (geometry, radius) each."""
-    made, counts = [], []
-    for one in layers:
+    """Join what blocks of 10 m beside each other found: (geometry, radius) each, cut off where windows end, at 3 m."""
+    made, counts, pieces = [], [], []
+    for at, one in enumerate(layers):
         number = list(range(1, len(one) + 1))
         columns = {"id": number, "radius": [radius for _, radius in one], "points": [100] * len(one)}
         columns.update(length=[np.ptp(g[:, 0]) if g.ndim > 1 else 0.0 for g, _ in one])
         columns.update(rms=[0.002] * len(one), seen=[0.5] * len(one))
         made.append(LayerFeatures([geometry for geometry, _ in one], columns))
         counts.append(dict.fromkeys(number, 60))
+        ends = [(np.atleast_2d(g)[:, 0].min(), np.atleast_2d(g)[:, 0].max()) for g, _ in one]
+        pieces.append(np.array([(low <= 10 * at - 3) | (high >= 10 * at + 13) for low, high in ends]))
     blocks = [Block(column, 0, 10.0) for column in range(len(layers))]
     none = [np.zeros(0, np.int32)] * len(layers)
     references = References(counts)
-    return join_features(blocks, made, none, np.zeros(3), Monitor(), AXES[layer], references)[0], references.known
+    kind = AXES[layer]
+    found, _ = join_features(
+        blocks, made, none, np.zeros(3), Monitor(), kind, references, pieces if kind.whole else None
+    )
+    return found, references.known
 
 
 def axis(west, east, y, z=2.0):
@@ -166,6 +172,16 @@ def test_pieces_of_a_pipe_become_one_and_pipes_beside_each_other_do_not():
     np.testing.assert_allclose(axes.geometries[long], axis(0, 28, 5.0))
     assert known[0, 1] == known[1, 1] == known[2, 1]
     assert len(set(known.values())) == 4
+
+
+def test_pipes_that_were_seen_whole_stay_as_they_are():
+    """Two of one line with a gap of 0.2 m, which another block has not seen; a piece of one gives way to the whole."""
+    one = [(axis(2, 6, 5.0), 0.1), (axis(6.2, 9, 5.0), 0.1), (axis(7.5, 13, 2.0), 0.1)]
+    two = [(axis(2.5, 8.5, 5.0), 0.1), (axis(7.5, 14, 2.001), 0.1)]
+    axes, known = joined("axes", one, two)
+    assert sorted(axes.columns["length"]) == pytest.approx([2.8, 4, 6.5])
+    assert known[0, 3] == known[1, 2]
+    assert known[1, 1] == known[0, 1] != known[0, 2]
 
 
 def test_a_sphere_that_two_blocks_found_comes_once():
