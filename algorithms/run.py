@@ -14,6 +14,7 @@ import numpy as np
 from .cloud.cloud import Cloud, create_cloud
 from .cloud.dimensions import DIMENSIONS
 from .cloud.merging import merge_records
+from .geometry.grid import plan_box
 from .memory import return_freed
 from .pipeline import CLOUD, REPORT, Pipeline, Step
 from .sampling.cloud_sampling import CloudSampling, without_noise
@@ -99,10 +100,14 @@ def run_stage(
     return Outcome(result, made.layers, made.report, made.rasters, made.files, made.selected)
 
 
-def sampling_of(cloud: Cloud) -> CloudSampling:
-    """Return how those points of a cloud were sampled that are now neither withheld nor noise."""
+def sampling_of(cloud: Cloud, corner: Optional[np.ndarray] = None) -> CloudSampling:
+    """Return how those points of a cloud were sampled that are now neither withheld nor noise.
+
+    Cells begin at the ``corner`` (2,), m; None is that of the cloud.
+    """
     used = counted(cloud)
-    return CloudSampling(lambda: cloud.get("xyz")[used], single_returns=not has_several_returns(cloud))
+    corner = plan_box(cloud.get("xyz"))[0] if corner is None else corner
+    return CloudSampling(lambda: cloud.get("xyz")[used], not has_several_returns(cloud), corner)
 
 
 def has_several_returns(cloud: Cloud) -> bool:
@@ -144,6 +149,8 @@ class _RunSampling:
         self.given = given.get("") if isinstance(cloud, Cloud) else None
         self.points = cloud.points if isinstance(cloud, Cloud) else None
         self.counted: Optional[np.ndarray] = None
+        # Points that a step leaves out do not move the cells of the next ones.
+        self.corner = plan_box(cloud.get("xyz"))[0] if isinstance(cloud, Cloud) and self.given is None else None
 
     def after(self, step: Step, cloud: Any) -> None:
         """Take the sampling that is given for what a step made, if one is."""
@@ -158,7 +165,8 @@ class _RunSampling:
         used = counted(cloud)
         if self.own is None or not is_same or not np.array_equal(used, self.counted):
             self.log()
-            self.given, self.own, self.points, self.counted = None, sampling_of(cloud), cloud.points, used
+            self.own = sampling_of(cloud, self.corner)
+            self.given, self.points, self.counted = None, cloud.points, used
         return self.own
 
     def log(self) -> None:

@@ -157,6 +157,7 @@ def classify_buildings(
     entropy and the k-means concept, section 2.4.
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
+    xyz = sampling.from_corner(xyz)
     density = sampling.effective_density if density is None else density
     around = _surface_neighborhood(sampling, density) if n_neighbors is None else Nearest(n_neighbors)
     monitor.resolved(density=density, n_neighbors=around.count)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
 from ..cloud.reasons import Reason
-from ..geometry.grid import refuse_sparse
+from ..geometry.grid import raster_cells, refuse_sparse
 from ..packages import ndimage
 from ..params import MinBuildingArea, PointDensity, PointSource
 from ..sampling.cloud_sampling import CloudSampling
@@ -197,6 +197,7 @@ def complete_buildings(
     entropy and the k-means concept, section 4 (critical regions).
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
+    xyz = sampling.from_corner(xyz)
     density = sampling.effective_density if density is None else density
     spacing = 1 / np.sqrt(density)
     in_images = sampling.is_closed_surface(source)
@@ -307,7 +308,7 @@ def _extents_in_scan(roofs: _Roofs, limits: _Limits) -> _Extents:
     """Return where buildings are in a laser scan: in cells with roof points, gaps closed where no ground shows."""
     cell_size = max(_LEAST_CELL, _CELL_SPACINGS / np.sqrt(limits.density))
     refuse_sparse(roofs.xyz, cell_size)
-    cell = _cells(roofs.xyz, cell_size, margin=limits.gap)
+    cell = raster_cells(roofs.xyz, cell_size, int(np.ceil(limits.gap / cell_size)) + 2)
     raised = (roofs.height >= _WALL_FOOT) & roofs.may_stand
     # Multipath through a skylight is no ground that shows in it.
     covered = _covered(cell, roofs.is_roof, ~raised & ~roofs.is_noise, limits.gap, cell_size)
@@ -443,13 +444,6 @@ class _Columns:
         )
         crown = ndimage.binary_opening(standing > 0, _CROWN) & (passed_around > _PASSED * around)
         return ndimage.binary_dilation(crown, _EIGHT)
-
-
-def _cells(xyz: np.ndarray, cell_size: float, margin: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return row and column (n,) of each point's cell, with room for ``margin`` (m) around."""
-    low = xyz[:, :2].min(axis=0) - margin - 2 * cell_size
-    column, row = np.floor((xyz[:, :2] - low) / cell_size).astype(np.int64).T
-    return row, column
 
 
 def _covered(

@@ -93,4 +93,4 @@ def _ring(grid: Grid, start: np.ndarray, direction: np.ndarray, is_crowded: np.n
     neck = _NECK * is_crowded[turned, None]
     vertices = np.stack([corner - neck * before, corner + neck * after], axis=1).reshape(-1, 2)
     vertices = vertices[np.column_stack([np.ones(len(turned), bool), is_crowded[turned]]).ravel()]
-    return np.concatenate([vertices, vertices[:1]]) * grid.size + grid.origin
+    return np.concatenate([vertices, vertices[:1]]) * grid.size + grid.corner

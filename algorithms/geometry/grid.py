@@ -18,27 +18,36 @@ _TABLE = 4
 
 @dataclass(frozen=True)
 class Grid:
-    """Cells of ``size`` (m) from ``origin``, ``rows`` of them northward and ``columns`` eastward.
+    """Cells of ``size`` (m), ``rows`` of them northward and ``columns`` eastward.
 
-    A cell's number is ``row * columns + column``. An empty border of one cell keeps the
-    neighbors of the outermost cells apart, so that numbers can be compared by their differences.
+    They are those of a lattice from ``origin``, from column and row ``first`` of it on. A cell's number is
+    ``row * columns + column``. An empty border of one cell keeps the neighbors of the outermost cells apart, so that
+    numbers can be compared by their differences.
     """
 
     origin: tuple[float, float]
     size: float
     rows: int
     columns: int
+    first: tuple[int, int] = (0, 0)
+
+    @property
+    def corner(self) -> np.ndarray:
+        """Easting and northing (2,) of the south-western corner, m, of the first cell within the border."""
+        return np.array(self.origin) + np.array(self.first) * self.size
 
     def number(self, xyz: np.ndarray) -> np.ndarray:
         """Return the cell number (n,), int64, of points inside the grid."""
-        column = np.floor((xyz[:, 0] - self.origin[0]) / self.size).astype(np.int64) + 1
-        row = np.floor((xyz[:, 1] - self.origin[1]) / self.size).astype(np.int64) + 1
+        column, row = (
+            np.floor((xyz[:, axis] - self.origin[axis]) / self.size).astype(np.int64) + (1 - self.first[axis])
+            for axis in (0, 1)
+        )
         return row * self.columns + column
 
     def center(self, number: np.ndarray) -> np.ndarray:
         """Return easting and northing (m, 2) of the middle of cells."""
         row, column = np.divmod(number, self.columns)
-        return np.column_stack([column - 0.5, row - 0.5]) * self.size + self.origin
+        return np.column_stack([column - 0.5, row - 0.5]) * self.size + self.corner
 
     @property
     def around(self) -> tuple[int, ...]:
@@ -51,6 +60,30 @@ def grid_over(xyz: np.ndarray, size: float) -> Grid:
     low, high = plan_box(xyz)
     columns, rows = (np.floor((high - low) / size).astype(np.int64) + 3).tolist()
     return Grid((float(low[0]), float(low[1])), size, rows, columns)
+
+
+def fixed_grid_over(xyz: np.ndarray, size: float) -> Grid:
+    """Return the grid of those cells of ``size`` (m) at multiples of it that points lie in.
+
+    A part of a cloud has the cells of the whole, so that what is found does not depend on where a cloud was cut. Places
+    are to be measured from the corner of the whole, see :meth:`.CloudSampling.from_corner`.
+    """
+    (west, south), (east, north) = lattice(plan_box(xyz), size).tolist()
+    return Grid((0.0, 0.0), size, north - south + 3, east - west + 3, (west, south))
+
+
+def raster_cells(xyz: np.ndarray, size: float, margin: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return row and column (n,), int64, of each point's cell in a raster with ``margin`` empty cells around.
+
+    The cells are those of :func:`fixed_grid_over`.
+    """
+    column, row = (number - (number.min() - margin) for number in (lattice(xyz[:, axis], size) for axis in (0, 1)))
+    return row, column
+
+
+def lattice(values: np.ndarray, size: float) -> np.ndarray:
+    """Return the number, int64, of the interval of ``size`` (m) from zero that each coordinate (m) lies in."""
+    return np.floor(values / size).astype(np.int64)
 
 
 def plan_box(xyz: np.ndarray) -> np.ndarray:

@@ -7,7 +7,7 @@ from typing import Annotated, Optional
 import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
-from ..geometry.grid import Grid, grid_over, plan_box
+from ..geometry.grid import Grid, fixed_grid_over, lattice, plan_box
 from ..packages import spatial
 from ..params import IsolatedPoints, MinFrequency
 from ..sampling.cloud_sampling import CloudSampling
@@ -122,6 +122,7 @@ def classify_noise_histogram(
     Santos et al. (2019), Building detection from LiDAR data using entropy and the k-means concept, section 2.1.
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
+    xyz = sampling.from_corner(xyz)
     made = classification.astype(np.uint8)
     used = np.flatnonzero(~np.isin(made, NOISE))
     if not len(used) or not np.ptp(plan_box(xyz[used]), axis=0).any():
@@ -173,9 +174,10 @@ def _beyond_scene(
 
     None where no bin has enough points to tell the scene.
     """
-    grid = grid_over(points, cell_size)
+    grid = fixed_grid_over(points, cell_size)
     cell = grid.number(points)
-    level = np.floor((points[:, 2] - points[:, 2].min()) / bin_height).astype(np.int64)
+    level = lattice(points[:, 2], bin_height)
+    level -= level.min()
     histogram = pooled_histogram(grid, cell, level)
     monitor.progress(0.6)
     clearance = max_clearance / bin_height

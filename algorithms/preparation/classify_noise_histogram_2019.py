@@ -7,7 +7,7 @@ from typing import Annotated, Optional
 import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
-from ..geometry.grid import Grid, grid_over, plan_box
+from ..geometry.grid import Grid, fixed_grid_over, lattice, plan_box
 from ..params import MinFrequency
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Param, stage
@@ -96,20 +96,23 @@ def classify_noise_histogram_2019(
     Carrilho et al. (2018), Statistical outlier detection method for airborne LiDAR data.
     Santos et al. (2019), Building detection from LiDAR data using entropy and the k-means concept, section 2.1.
     """
+    sampling = sampling or CloudSampling.of(xyz, classification)
+    xyz = sampling.from_corner(xyz)
     classes = classification.astype(np.uint8)
     used = np.flatnonzero(~np.isin(classes, NOISE))
     if not len(used) or not np.ptp(plan_box(xyz[used]), axis=0).any():
         monitor.warn("No noise was looked for: the points that are not noise already have no extent in plan.")
         return classes
     points = xyz[used]
-    spacing = (sampling or CloudSampling.of(xyz, classification)).spacing
+    spacing = sampling.spacing
     cell_size = float(np.sqrt(_POINTS_PER_CELL)) * spacing if cell_size is None else cell_size
     bin_height = max(_MIN_BIN_HEIGHT, _BIN_SPACINGS * spacing) if bin_height is None else bin_height
     monitor.resolved(cell_size=cell_size, bin_height=bin_height)
 
-    grid = grid_over(points, cell_size)
+    grid = fixed_grid_over(points, cell_size)
     cell = grid.number(points)
-    level = np.floor((points[:, 2] - points[:, 2].min()) / bin_height).astype(np.int64)
+    level = lattice(points[:, 2], bin_height)
+    level -= level.min()
     monitor.progress(0.3)
     cells, low, high = _bodies(grid, cell, level, min_frequency)
     if not len(cells):

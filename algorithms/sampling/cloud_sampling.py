@@ -49,6 +49,8 @@ class CloudSampling:
         Returns the coordinates (n, 3), m, n >= 1, of the points that it is measured on.
     single_returns : bool
         Whether no pulse is known to have more than one return. Clouds matched from images never have.
+    corner : ndarray of shape (2,), optional
+        Least easting and northing of the whole, m, where cells begin; that of ``points``, unless given.
 
     Examples
     --------
@@ -58,9 +60,13 @@ class CloudSampling:
     (1.0, 0.01)
     """
 
-    def __init__(self, points: Callable[[], np.ndarray], single_returns: bool = False) -> None:
+    def __init__(
+        self, points: Callable[[], np.ndarray], single_returns: bool = False, corner: Optional[np.ndarray] = None
+    ) -> None:
         self._points = points
         self.single_returns = single_returns
+        if corner is not None:
+            self.corner = corner
 
     @classmethod
     def of(cls, xyz: np.ndarray, classification: Optional[np.ndarray] = None) -> CloudSampling:
@@ -68,7 +74,16 @@ class CloudSampling:
         if classification is None:
             return cls(lambda: xyz)
         counted = without_noise(classification)
-        return cls(lambda: xyz[counted])
+        return cls(lambda: xyz[counted], corner=plan_box(xyz)[0])
+
+    @cached_property
+    def corner(self) -> np.ndarray:
+        """Least easting and northing (2,) of the cloud, or of the survey that it is a part of, m."""
+        return plan_box(self._points())[0]
+
+    def from_corner(self, xyz: np.ndarray) -> np.ndarray:
+        """Return points (n, 3), m, with easting and northing from the corner, where the cells of all stages begin."""
+        return xyz - np.append(self.corner, 0.0)
 
     @cached_property
     def density(self) -> float:
@@ -150,7 +165,7 @@ class CloudSampling:
     def __getstate__(self) -> dict[str, Any]:
         """Return all measures, for another process: the points stay where they are."""
         measures = {name: getattr(self, name) for name in (*_MEASURES, "_surfaces")}
-        return {**measures, "single_returns": self.single_returns, "_points": None}
+        return {**measures, "single_returns": self.single_returns, "corner": self.corner, "_points": None}
 
 
 def without_noise(classification: np.ndarray) -> np.ndarray:

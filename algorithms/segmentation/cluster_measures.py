@@ -7,7 +7,7 @@ from typing import Optional
 
 import numpy as np
 
-from ..geometry.grid import Grid, connected_cells, distinct, find_cells, grid_over
+from ..geometry.grid import Grid, connected_cells, distinct, find_cells, fixed_grid_over, lattice
 
 # Side (point spacings) of the cells in which areas, and points beneath a group, are counted.
 _CELL_SPACINGS = 1.5
@@ -177,7 +177,8 @@ def share_around(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray) -> np.n
     member = np.flatnonzero(group >= 0)
     owner = group[member]
     # With an empty border the numbers of boxes next to one another differ by the same steps everywhere.
-    box = np.floor((xyz[member] - xyz[member].min(axis=0)) / _BOX).astype(np.int64) + 1
+    box = lattice(xyz[member], _BOX)
+    box += 1 - box.min(axis=0)
     shape = tuple((box.max(axis=0) + 2).tolist())
     boxes, which = distinct(np.ravel_multi_index(tuple(box.T), shape))
     own, whole = (np.bincount(which, weight, len(boxes)) for weight in (chosen[owner], None))
@@ -218,7 +219,7 @@ def share_joined(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray, density
 
 def _occupied(xyz: np.ndarray, group: np.ndarray, density: float) -> tuple[Grid, np.ndarray, np.ndarray]:
     """Return the grid that area is counted in, and group and cell of each cell of a group (m,), sorted by groups."""
-    grid = grid_over(xyz, _cell_size(density))
+    grid = fixed_grid_over(xyz, _cell_size(density))
     member = group >= 0
     # Numbers of occupied cells are small, those of cells between far points times the groups may be too large.
     cells, which = distinct(grid.number(xyz)[member])
@@ -228,7 +229,7 @@ def _occupied(xyz: np.ndarray, group: np.ndarray, density: float) -> tuple[Grid,
 
 def _columns(xyz: np.ndarray, group: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the group of each cell of ``size`` (m) of a group, its points there, and the points well beneath them."""
-    cell, member, count = distinct(grid_over(xyz, size).number(xyz))[1], group >= 0, int(group.max()) + 1
+    cell, member, count = distinct(fixed_grid_over(xyz, size).number(xyz))[1], group >= 0, int(group.max()) + 1
     # Sorted by cells, so that the groups in a point's cell are found by searching.
     pairs, which = distinct(cell[member].astype(np.int64) * count + group[member])
     where, owner = np.divmod(pairs, count)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..geometry.grid import Grid, connected_cells, distinct, find_cells, grid_over
+from ..geometry.grid import Grid, connected_cells, distinct, find_cells, fixed_grid_over
 from ..geometry.groups import members
 from ..packages import ndimage
 
@@ -56,7 +56,7 @@ def part_decks(
     member = np.flatnonzero((patch >= 0) & is_high[patch + 1])
     if not len(member):
         return deck
-    grid = grid_over(xyz, max(_LEAST_CELL, _CELL_SPACINGS / np.sqrt(density)))
+    grid = fixed_grid_over(xyz, max(_LEAST_CELL, _CELL_SPACINGS / np.sqrt(density)))
     # One copy of the grid for each patch: its empty border keeps them apart.
     cells, which = distinct(patch[member].astype(np.int64) * (grid.rows * grid.columns) + grid.number(xyz[member]))
     # The highest point of a cell: at the edge of a deck it is the deck's.

@@ -169,6 +169,7 @@ def segment_roofs(
     entropy and the k-means concept, section 4. Sampath, A., Shan, J., 2007, as in "Segment regions".
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
+    xyz = sampling.from_corner(xyz)
     density = sampling.effective_density if density is None else density
     noise = sampling.noise if noise is None else noise
     in_images = sampling.is_closed_surface(source)

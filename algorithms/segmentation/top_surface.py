@@ -6,7 +6,7 @@ from itertools import product
 
 import numpy as np
 
-from ..geometry.grid import grid_over, refuse_sparse
+from ..geometry.grid import fixed_grid_over, raster_cells, refuse_sparse
 from ..packages import ndimage
 
 # Cells hold a point nearly everywhere: this many point spacings, and no less than a quarter of a meter.
@@ -48,9 +48,7 @@ class TopSurface:
         self.size = max(_LEAST_CELL, _CELL_SPACINGS / float(np.sqrt(density)))
         refuse_sparse(xyz, self.size)
         margin = 4
-        low = xyz[:, :2].min(axis=0) - margin * self.size
-        column, row = np.floor((xyz[:, :2] - low) / self.size).astype(np.int64).T
-        self.cell = row, column
+        self.cell = row, column = raster_cells(xyz, self.size, margin)
         shape = (int(row.max()) + margin + 1, int(column.max()) + margin + 1)
         self.elevation, self.height = np.full((2, *shape), -np.inf)
         np.maximum.at(self.elevation, (row[counted], column[counted]), xyz[counted, 2])
@@ -104,7 +102,7 @@ def highest_of_cells(xyz: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarr
 
     Of points equally high the one farthest to the east counts, so that their order in the file does not matter.
     """
-    number = grid_over(xyz, size).number(xyz)
+    number = fixed_grid_over(xyz, size).number(xyz)
     order = np.lexsort((xyz[:, 1], xyz[:, 0], xyz[:, 2], number))
     is_last = np.append(number[order][1:] != number[order][:-1], True)
     under = np.empty(len(xyz), np.int64)

@@ -6,7 +6,7 @@ from typing import Annotated, Optional
 
 import numpy as np
 
-from ..geometry.grid import distinct, grid_over
+from ..geometry.grid import distinct, fixed_grid_over
 from ..params import PointSource
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Param, stage
@@ -241,6 +241,7 @@ def classify_ground_tin(
     Photogrammetry and Remote Sensing 33 (B4), 110-117.
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
+    xyz = sampling.from_corner(xyz)
     usable, spacing = usable_points(xyz, classification), sampling.spacing
     usable = in_plan_order(xyz, usable, spacing)
     points, last = xyz[usable], last_returns(return_number, number_of_returns, usable)
@@ -308,7 +309,7 @@ def _sweep(
         return surface.within(distance), distance
     roughness = surface_roughness(surface.nodes, least)
     distance = min(_SWEEP_DEVIATIONS * roughness, _SWEEP_NOISE * roughness + _SWEEP_BEND * scale)
-    square = distinct(grid_over(surface.points, _REGION * spacing).number(surface.points))[1]
+    square = distinct(fixed_grid_over(surface.points, _REGION * spacing).number(surface.points))[1]
     return surface.within(distance) | _of_higher_strips(surface.above(), square, distance), distance
 
 

@@ -167,6 +167,7 @@ def classify_ground_tin_2000(
     Photogrammetry and Remote Sensing 33 (B4), 110-117.
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
+    xyz = sampling.from_corner(xyz)
     usable, spacing = usable_points(xyz, classification), sampling.spacing
     usable = in_plan_order(xyz, usable, spacing)
     points, last = xyz[usable], last_returns(return_number, number_of_returns, usable)

@@ -7,7 +7,7 @@ from typing import Optional
 
 import numpy as np
 
-from ..geometry.grid import plan_box, refuse_sparse, turned_in_plan
+from ..geometry.grid import lattice, plan_box, refuse_sparse, turned_in_plan
 from ..geometry.raster_opening import open_surface
 from ..packages import ndimage
 from ..stage import Monitor
@@ -65,10 +65,10 @@ class Lowest:
 
 
 def lowest_points(xyz: np.ndarray, cell_size: float) -> Lowest:
-    """Return the lowest point of each square cell of ``cell_size`` (m)."""
+    """Return the lowest point of each square cell of ``cell_size`` (m), at multiples of it."""
     x, y, z = xyz.T
-    origin = plan_box(xyz)[0]
-    row, column = (np.floor((axis - start) / cell_size).astype(np.int32) for axis, start in zip((x, y), origin))
+    first = lattice(plan_box(xyz)[0], cell_size)
+    row, column = ((lattice(axis, cell_size) - start).astype(np.int32) for axis, start in zip((x, y), first))
     shape = int(row.max()) + 1, int(column.max()) + 1
     cell = np.ravel_multi_index((row, column), shape)
     least = np.full(shape, np.inf)
@@ -78,7 +78,7 @@ def lowest_points(xyz: np.ndarray, cell_size: float) -> Lowest:
     as_low = as_low[np.lexsort((-y[as_low], -x[as_low]))]
     index = np.full(shape, -1, np.int64)
     index.ravel()[cell[as_low]] = as_low
-    return Lowest(index, origin, cell_size, cell)
+    return Lowest(index, first * cell_size, cell_size, cell)
 
 
 def seeds_by_opening(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..geometry.grid import refuse_sparse
+from ..geometry.grid import raster_cells, refuse_sparse
 from ..geometry.raster_opening import open_surface
 from ..packages import ndimage
 
@@ -57,8 +57,7 @@ def on_smeared_objects(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -
     size = max(_LEAST_CELL, _CELL_SPACINGS * spacing)
     refuse_sparse(xyz, size)
     radius = max(1, round(_WIDTH / 2 / size))
-    low = xyz[:, :2].min(axis=0) - (radius + 1) * size
-    column, row = np.floor((xyz[:, :2] - low) / size).astype(np.int64).T
+    row, column = raster_cells(xyz, size, radius + 1)
     lowest = np.full((row.max() + radius + 2, column.max() + radius + 2), np.inf)
     np.minimum.at(lowest, (row[is_ground], column[is_ground]), xyz[is_ground, 2])
     has_ground, is_occupied = np.isfinite(lowest), np.zeros(lowest.shape, bool)

@@ -304,7 +304,8 @@ class _Run:
             clouds, _ = _sampled(survey, _squares_around(places, _sample_side(survey)), monitor.part(1.0, 1.0))
         if not clouds:
             raise ValueError("The survey has no points within the extent; choose another extent.")
-        samplings = {"": _sampling_of(clouds)}
+        corner = survey.box[0] - survey.origin[:2]
+        samplings = {"": _sampling_of(clouds, corner)}
         pipeline = in_blocks(self.pipeline)
         for step in preparing(pipeline):
             one = part_of(pipeline, [step])
@@ -312,7 +313,7 @@ class _Run:
             given = tunables_of(one, self.tunables)
             made = [run_pipeline(one, cloud, kept=(), samplings={"": before}, **given).cloud for cloud in clouds]
             clouds = [cloud for cloud in made if cloud is not None]
-            samplings[step.name] = _sampling_of(clouds)
+            samplings[step.name] = _sampling_of(clouds, corner)
         return samplings
 
     def _cut_large_files(self, side: float, largest_file: int) -> None:
@@ -605,10 +606,10 @@ def _sampled(survey: Survey, boxes: list[np.ndarray], monitor: Monitor) -> tuple
     return found, survey
 
 
-def _sampling_of(clouds: list[Cloud]) -> CloudSampling:
-    """Return how several parts of a survey were sampled, all measures taken."""
+def _sampling_of(clouds: list[Cloud], corner: np.ndarray) -> CloudSampling:
+    """Return how several parts of a survey with a south-western ``corner`` (2,) were sampled, all measures taken."""
     together = np.concatenate([cloud.get("xyz")[counted(cloud)] for cloud in clouds])
-    sampling = CloudSampling(lambda: together, single_returns=not any(has_several_returns(cloud) for cloud in clouds))
+    sampling = CloudSampling(lambda: together, not any(has_several_returns(cloud) for cloud in clouds), corner)
     # The points are left behind, as on the way to another process.
     return pickle.loads(pickle.dumps(sampling))
 
