@@ -106,8 +106,14 @@ def sampling_of(cloud: Cloud, corner: Optional[np.ndarray] = None) -> CloudSampl
     Cells begin at the ``corner`` (2,), m; None is that of the cloud.
     """
     used = counted(cloud)
-    corner = plan_box(cloud.get("xyz"))[0] if corner is None else corner
+    corner = _corner(cloud) if corner is None else corner
     return CloudSampling(lambda: cloud.get("xyz")[used], not has_several_returns(cloud), corner)
+
+
+def _corner(cloud: Cloud) -> np.ndarray:
+    """Return the least easting and northing (2,) of the points of a cloud that are not withheld, m."""
+    withheld, xyz = cloud.withheld, cloud.get("xyz")
+    return plan_box(xyz if withheld.all() else xyz[~withheld])[0]
 
 
 def has_several_returns(cloud: Cloud) -> bool:
@@ -150,7 +156,7 @@ class _RunSampling:
         self.points = cloud.points if isinstance(cloud, Cloud) else None
         self.counted: Optional[np.ndarray] = None
         # Points that a step leaves out do not move the cells of the next ones.
-        self.corner = plan_box(cloud.get("xyz"))[0] if isinstance(cloud, Cloud) and self.given is None else None
+        self.corner = _corner(cloud) if isinstance(cloud, Cloud) and self.given is None else None
 
     def after(self, step: Step, cloud: Any) -> None:
         """Take the sampling that is given for what a step made, if one is."""
