@@ -40,7 +40,8 @@ class Layer:
     with the root mean square distance of points from the plane of a polygon, for planes in space, which may be upright
     or lie above one another. ``radius`` is the field with the distance (m) of the points from a line or a point in
     space. ``around`` is how far beyond a feature points decide on it, m. ``whole``, where pieces of a long feature can
-    be put together, is given the pieces, the largest first, and the number of their points, and returns one feature.
+    be put together, is given the pieces, the largest first, and the number of their points, and returns one feature;
+    points must refer to it (``numbers`` of a field).
     """
 
     name: str
@@ -52,6 +53,13 @@ class Layer:
     radius: str = ""
     around: float = 1.0
     whole: Optional[Callable[[LayerFeatures, int], LayerFeatures]] = None
+
+    def __post_init__(self) -> None:
+        """Refuse fields that it does not have."""
+        names = {"", *(field.name for field in self.fields)}
+        absent = [name for name in (self.deviation, self.radius) if name not in names]
+        if absent:
+            raise TypeError(f"The layer {self.name} has no field {absent[0]!r}.")
 
     @property
     def numbers(self) -> str:
