@@ -32,6 +32,9 @@ class Boxes:
         Points (m), n >= 1.
     side : float or ndarray of shape (3,)
         Sides of a box, m.
+    from_zero : bool
+        Whether boxes are at multiples of their sides, so that a part of a cloud has those of the whole; else they begin
+        at the least coordinates of the points.
 
     Attributes
     ----------
@@ -48,8 +51,10 @@ class Boxes:
         If the points are spread so far that there are more boxes than numbers.
     """
 
-    def __init__(self, xyz: np.ndarray, side) -> None:
-        box = np.floor((xyz - xyz.min(axis=0)) / side).astype(np.int64)
+    def __init__(self, xyz: np.ndarray, side, from_zero: bool = False) -> None:
+        start = np.floor(xyz.min(axis=0) / side) * side if from_zero else xyz.min(axis=0)
+        box = np.floor((xyz - start) / side).astype(np.int64)
+        box -= box.min(axis=0)
         # Room on all sides keeps neighbors from wrapping around.
         self.shape = box.max(axis=0) + 2 * _REACH + 1
         if math.prod(self.shape.tolist()) > _MOST_BOXES:

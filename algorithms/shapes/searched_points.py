@@ -87,6 +87,7 @@ def searched_points(
     shape: Optional[np.ndarray],
     search_in: str,
     side: float,
+    corner: Optional[np.ndarray] = None,
 ) -> SearchedPoints:
     """Return the points that are neither ground, water nor noise, and belong to what is searched.
 
@@ -100,6 +101,9 @@ def searched_points(
         One of ``SEARCHES``.
     side : float
         Side of the largest window (m).
+    corner : ndarray of shape (2,), optional
+        Where windows begin in plan (m): coordinates are then from a corner of a window, and segments are moved apart by
+        whole windows, so that a part of a cloud has the windows of the whole. Zero is in the middle of their height.
 
     Raises
     ------
@@ -115,7 +119,10 @@ def searched_points(
                 "Searching in each segment needs SegmentID; run a segmentation first, or search the whole cloud."
             )
         rows = rows[segment_id[rows] > 0]
-    origin = xyz.min(axis=0)
+    origin, apart = xyz.min(axis=0), np.ptp(xyz[:, 0]) + _SIDES_APART * side
+    if corner is not None:
+        start = np.append(corner, side / 2)
+        origin, apart = start + np.floor((origin - start) / side) * side, np.ceil(apart / side + 1) * side
     places = xyz[rows] - origin
     order = np.lexsort(places.T)
     rows, places = rows[order], places[order]
@@ -123,7 +130,7 @@ def searched_points(
     if search_in == EACH_SEGMENT and segment_id is not None and len(rows):
         # Numbers of segments follow the first points in this order, as the order of the cloud must not matter.
         number = by_first_point(segment_id[rows])
-        shift = number * (np.ptp(xyz[:, 0]) + _SIDES_APART * side)
+        shift = number * apart
         places[:, 0] += shift
     return SearchedPoints(rows, places, shift, origin)
 

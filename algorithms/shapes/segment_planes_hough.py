@@ -222,7 +222,7 @@ def segment_planes_hough(
         monitor.resolved(n_neighbors=n_neighbors)
     else:
         n_neighbors = None
-    points = searched_points(xyz, classification, segment_id, shape, search_in, window_size)
+    points = searched_points(xyz, classification, segment_id, shape, search_in, window_size, sampling.corner)
     search = _Search(window_size, tolerance, distance_bin, slope_bin, n_neighbors)
     plane = search.planes(xyz, points, monitor.part(0, 0.8))
     label = _surfaces(points.xyz, plane, max_gap, min_area * sampling.surface_density, monitor.part(0.8, 1))
@@ -247,7 +247,7 @@ class _Search:
         plane = np.full(len(points.rows), -1, np.int64)
         if not len(plane):
             return plane
-        boxes = Boxes(points.xyz, self.window_size)
+        boxes = Boxes(points.xyz, self.window_size, from_zero=True)
         normals = self._normals(xyz, points, boxes, monitor.part(0, 0.375))
         slope = float(np.tan(np.radians(self.slope_bin)))
         hough = HoughPlanes(boxes, self.window_size, self.tolerance, self.distance_bin, slope, normals, _MOST_ANGLE)
