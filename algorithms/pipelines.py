@@ -135,8 +135,9 @@ _PIPELINES = (
             "than others, describes the neighborhood of each point, and sorts points by the largest of linearity, "
             "planarity and scattering: wires and edges, ground and walls, crowns and bushes. The features stay in the "
             "cloud. The neighborhood of 50 points gives smooth results on noisy scans; 'optimal' chooses a number for "
-            "each point and keeps more detail. Of a single cloud, start with 'Downsample to voxels'. The clouds are of "
-            "one place; the tiles of a survey, of different places, are not merged."
+            "each point and keeps more detail. Of a single cloud, start with 'Downsample to voxels'. In tiles, the "
+            "files of a survey are one cloud, also where they overlap: they are not moved, and points keep the "
+            "numbers of their sources."
         ),
         references=(
             "Weinmann, M., Müller, M. S., Hillemann, M., Reydel, N., Hinz, S., Jutzi, B., 2017. Point cloud analysis "
@@ -231,8 +232,7 @@ _PIPELINES = (
             "bridges and fly-overs, raised on both sides and joined at both ends, become bridge deck (17). The "
             "rasters are made of what is left. Large halls are removed whole. In towns and forests, where walls and "
             "leaves join roofs and crowns to the terrain, 'Classify ground points (TIN)' before 'Classify bridges' "
-            "errs less. Segments of the bare earth run through the whole cloud, so that it is not run in tiles: "
-            "'Detect buildings' in tiles finds the ground of a survey."
+            "errs less."
         ),
         references=_VOSSELMAN,
         steps=(

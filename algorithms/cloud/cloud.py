@@ -18,6 +18,10 @@ from .wording import shown
 
 _ORIGIN_STEP = 1000.0
 _NEW_SCALE = 0.001
+
+# Steps of the scale by which the sum of large coordinates may miss a half.
+_HALF = 1e-4
+
 _LARGEST_INT = 2**31 - 1
 
 
@@ -147,7 +151,8 @@ class Cloud:
         for i, axis in enumerate("XYZ"):
             steps = xyz[:, i] + (self.origin[i] - self.header.offset[i] * self.units.factors[i])
             steps /= step[i]
-            np.rint(steps, out=steps)
+            # Halves go up, as the center of two points often is one: to the even step, they would go by the offset.
+            np.floor(steps + (0.5 + _HALF), out=steps)
             if not max(steps.max(), -steps.min()) <= _LARGEST_INT:
                 raise ValueError(
                     f"Points are moved too far for the file, which reaches {_LARGEST_INT * abs(step[i]):.0f} m from "

@@ -95,6 +95,7 @@ def classify_noise_statistical(
     Rusu et al. (2008), Towards 3D point cloud based object maps for household environments.
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
+    xyz = sampling.from_corner(xyz)
     made = classification.astype(np.uint8)
     used = np.flatnonzero(~np.isin(made, NOISE))
     points = xyz[used]

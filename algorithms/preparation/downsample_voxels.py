@@ -61,6 +61,7 @@ class _Sorted:
     tags="thin,decimate,subsample,reduce,voxel grid,center of gravity,centroid,even density",
     writes=("xyz", "classification", "voxel_count"),
     selects=True,
+    reach=lambda tunables: tunables["voxel_size"],
 )
 def downsample_voxels(
     xyz,

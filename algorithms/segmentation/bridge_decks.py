@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..geometry.components import connect
-from ..geometry.grid import distinct, find_cells, grid_over
+from ..geometry.grid import distinct, find_cells, fixed_grid_over
 from ..geometry.groups import items, run_starts
 from ..packages import spatial
 from ..stage import Monitor
@@ -206,7 +206,7 @@ class Decks:
 
     def _large(self, xyz: np.ndarray, candidates: np.ndarray, part: np.ndarray):
         """Yield the rows of parts that are large enough."""
-        grid = grid_over(xyz[candidates], self.reach / 2)
+        grid = fixed_grid_over(xyz[candidates], self.reach / 2)
         cells = distinct(part.astype(np.int64) * (grid.rows * grid.columns) + grid.number(xyz[candidates]))[0]
         area = np.bincount(cells // (grid.rows * grid.columns)) * grid.size**2
         is_large = (area >= self.min_area)[part]
@@ -267,7 +267,7 @@ class Decks:
 
     def _with_edges(self, xyz: np.ndarray, rows: np.ndarray, others: np.ndarray) -> np.ndarray:
         """Return a deck with the points in its cells that lie at its height, such as those at its edges."""
-        grid = grid_over(xyz[np.concatenate([rows, others])], self.reach / 2)
+        grid = fixed_grid_over(xyz[np.concatenate([rows, others])], self.reach / 2)
         cells, which = distinct(grid.number(xyz[rows]))
         level = np.bincount(which, xyz[rows, 2]) / np.bincount(which)
         place, found = find_cells(cells, grid.number(xyz[others]))

@@ -87,7 +87,7 @@ def classify_bridges(
     noise = sampling.noise if noise is None else noise
     monitor.resolved(density=density, noise=noise)
     used = not_noise(classification)
-    points = xyz[used] - xyz[used].min(axis=0)
+    points = sampling.from_corner(xyz[used])
     may_be_deck = ~np.isin(classification[used], _NO_DECK)
     spacing = 1 / float(np.sqrt(density))
     decks = Decks.of(min_height, max_width, min_bridge_area, spacing, noise)

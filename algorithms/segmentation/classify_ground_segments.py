@@ -8,7 +8,7 @@ from typing import Annotated, Optional
 import numpy as np
 
 from ..cloud.asprs import PointClass
-from ..geometry.grid import distinct, find_cells, grid_over
+from ..geometry.grid import distinct, find_cells, fixed_grid_over
 from ..params import BridgeArea, BridgeHeight, BridgeWidth, PointDensity, SurfaceNoise
 from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..stage import Param, stage
@@ -28,8 +28,9 @@ _SLOPE, _NOISE_STEP = 30.0, 4.0
     group="Terrain",
     tags="ground,bare earth,DTM,bridge,fly-over,bridge deck,segments,filter,Sithole,Vosselman",
     writes=("classification",),
-    # Segments of the bare earth run through the whole cloud, and those of objects are up to hundreds of meters wide.
-    reach=math.inf,
+    # Of a square object that a window cuts off in the middle, half of the border is seen and tells it by its steps. A
+    # segment of the bare earth that is cut off has no steps, however far it goes on.
+    reach=lambda tunables: max(math.sqrt(tunables["max_object_area"]) / 2, 2 * tunables["max_width"]),
 )
 def classify_ground_segments(
     xyz,
@@ -104,7 +105,7 @@ def classify_ground_segments(
     used = not_noise(classification)
     if not len(used):
         return classification.astype(np.uint8)
-    points, segment = xyz[used] - xyz[used].min(axis=0), segment_id[used]
+    points, segment = sampling.from_corner(xyz[used]), segment_id[used]
 
     is_earth = _bare_earth(points, segment, cell, min_height, min_area, max_object_area)
     monitor.progress(0.2)
@@ -133,7 +134,7 @@ def _bare_earth(
     points: np.ndarray, segment: np.ndarray, cell: float, min_height: float, min_area: float, max_object_area: float
 ) -> np.ndarray:
     """Return which points (n,) are of segments that are large enough and not raised along most of their border."""
-    grid = grid_over(points, cell)
+    grid = fixed_grid_over(points, cell)
     room = grid.rows * grid.columns
     cells, which = distinct(grid.number(points))
     low = np.full(len(cells), np.inf)
@@ -163,7 +164,7 @@ def _bare_earth(
 
 def _is_low(points: np.ndarray, cell: float, step: float) -> np.ndarray:
     """Return which points (n,) are no higher over the lowest of their cell than terrain rises in it."""
-    which = distinct(grid_over(points, cell).number(points))[1] if len(points) else np.zeros(0, int)
+    which = distinct(fixed_grid_over(points, cell).number(points))[1] if len(points) else np.zeros(0, int)
     low = np.full(int(which.max(initial=-1)) + 1, np.inf)
     np.minimum.at(low, which, points[:, 2])
     rises = float(np.tan(np.radians(_SLOPE))) * np.sqrt(2) * cell

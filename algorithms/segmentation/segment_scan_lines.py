@@ -24,12 +24,17 @@ _DISTANCE_SPACINGS = 9.0
 # Difference in height that is noise (standard deviations).
 _NOISE_STEP = 4.0
 
+# Points of one piece are closer to one another than this in clouds of 3.3 points per square meter and more (m). A piece
+# that a window cuts off is joined with what it is in the next one.
+_REACH = 5.0
+
 
 @stage(
     "Segment scan lines",
     group="Segmentation",
     tags="scan line,profile,slices,split and merge,region growing,segmentation,Sithole,Vosselman",
     writes=("segment_id",),
+    reach=_REACH,
 )
 def segment_scan_lines(
     xyz,
@@ -148,7 +153,7 @@ def segment_scan_lines(
     used = not_noise(classification)
     if not len(used):
         return np.zeros(len(xyz), np.int32)
-    points = xyz[used] - xyz[used].min(axis=0)
+    points = sampling.from_corner(xyz[used])
     slope = np.inf if max_slope == 90 else float(np.tan(np.radians(max_slope)))
     near = NearPoints(distance, slope, max_step)
 

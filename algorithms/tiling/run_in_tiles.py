@@ -304,7 +304,7 @@ class _Run:
             clouds, _ = _sampled(survey, _squares_around(places, _sample_side(survey)), monitor.part(1.0, 1.0))
         if not clouds:
             raise ValueError("The survey has no points within the extent; choose another extent.")
-        corner = survey.box[0] - survey.origin[:2]
+        corner = self.survey.corner
         samplings = {"": _sampling_of(clouds, corner)}
         pipeline = in_blocks(self.pipeline)
         for step in preparing(pipeline):
@@ -379,7 +379,7 @@ class _Run:
             block.name,
             block.side,
             halo,
-            {name: str(sampling) for name, sampling in samplings.items()},
+            {name: (str(sampling), sampling.corner.tolist()) for name, sampling in samplings.items()},
             str(self.survey.extent),
         )
         part = Survey(

@@ -102,6 +102,12 @@ class Survey:
         """Least and greatest easting and northing (2, 2) of all files, m, as their headers tell."""
         return np.array([self.boxes[:, 0].min(axis=0), self.boxes[:, 1].max(axis=0)])
 
+    @property
+    def corner(self) -> np.ndarray:
+        """Least easting and northing (2,) of the files, m from ``origin``, also where only an extent is read."""
+        corners = [source.header.low[:2] * self.units.horizontal for source in self.sources]
+        return np.min(corners, axis=0) - self.origin[:2]
+
     @cached_property
     def boxes(self) -> np.ndarray:
         """Boxes (m, 2, 2) of the files, m."""

@@ -12,7 +12,7 @@ from ..pipelines import PIPELINES
 from ..stage import Layer, Raster, TextFile
 from .run_in_tiles import can_be_tiled
 from .settings import CUT_SETTINGS, SETTINGS, Setting
-from .tiled_steps import afterwards
+from .tiled_steps import afterwards, of_survey
 
 # The group of the toolbox.
 _GROUP = "Surveys in tiles"
@@ -145,7 +145,7 @@ def survey_tool_help(tool: SurveyTool) -> str:
 
 
 TILED_PIPELINES = {
-    tiled.name: tiled for tiled in (TiledPipeline(one) for one in PIPELINES.values() if can_be_tiled(one))
+    tiled.name: tiled for tiled in (TiledPipeline(of_survey(one)) for one in PIPELINES.values() if can_be_tiled(one))
 }
 
 

@@ -14,9 +14,20 @@ from ..stage import Layer, TextFile
 _PREPARATION = "Preparation"
 
 
+def of_survey(pipeline: Pipeline) -> Pipeline:
+    """Return a composite without the steps that merge clouds: the files of a survey are one cloud."""
+    merging = [step for step in pipeline.steps if step.stage.merges]
+    of_them = {name for name, (step, _) in pipeline.parameters.items() if step in merging}
+    return replace(
+        pipeline,
+        steps=tuple(step for step in pipeline.steps if step not in merging),
+        shown=tuple(name for name in pipeline.shown if name not in of_them),
+    )
+
+
 def in_blocks(pipeline: Pipeline) -> Pipeline:
     """Return the part of a composite that works on points: it is run on each block."""
-    return part_of(pipeline, [step for step in pipeline.steps if step.stage.reads_cloud])
+    return part_of(pipeline, [step for step in of_survey(pipeline).steps if step.stage.reads_cloud])
 
 
 def part_of(pipeline: Pipeline, steps: Iterable[Step]) -> Pipeline:
@@ -98,9 +109,7 @@ def why_whole(pipeline: Pipeline) -> str:
     given = pipeline.input_layers
     for step in steps:
         stage, title = step.stage, f"'{step.stage.title}'"
-        if stage.merges:
-            return f"{title} merges clouds"
-        if stage.creates or step.cloud:
+        if step.cloud:
             return f"{title} works on another cloud than the steps before it"
         if any(one.name in given and one.name not in step.layers for one in stage.input_layers):
             return f"{title} reads points and a layer that it is given"

@@ -86,6 +86,8 @@ IDS = {
     "reconstructgables",
 }
 TILED_IDS = {
+    "interpretstructureintiles",
+    "modelterrainintiles",
     "detectbuildingsintiles",
     "detectbuildings2019intiles",
     "mapfootprintsintiles",

@@ -28,7 +28,7 @@ def test_pieces_and_their_merging_by_brute_force(rng):
     piece_sets = []
     for degrees in (0, 90):
         across = xyz[:, 1] if degrees == 0 else -xyz[:, 0]
-        line = np.floor((across - across.min()) / 0.6)
+        line = np.floor((across + 0.3) / 0.6)
         steps = xyz[:, None] - xyz
         apart, height = np.hypot(steps[..., 0], steps[..., 1]), np.abs(steps[..., 2])
         joined = (line[:, None] == line) & (np.hypot(apart, height) <= 1.1) & (height <= 0.1 + 0.5 * apart)

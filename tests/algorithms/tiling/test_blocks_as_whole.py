@@ -1,0 +1,94 @@
+"""Composites whose steps look far give in blocks what they give of the whole cloud, point by point."""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
+from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.run import run_pipeline
+from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
+from lidar_buildings.algorithms.tiling.tiled_steps import of_survey
+from lidar_buildings.algorithms.tiling.workers import Workers
+from lidar_buildings.tests.builders import crown, roof
+from lidar_buildings.tests.monitors import Listening
+
+CORNER = np.array([600_010.0, 5_000_010.0, 3.0])
+SIZE = 90.0
+
+
+@pytest.fixture(scope="module")
+def cloud():
+    """A slope with a step, two houses and a crown on 90 m by 90 m; edges of blocks of 40 m go through both houses."""
+    rng = np.random.default_rng(8)
+    plan = rng.uniform(0, SIZE, (int(2 * SIZE**2), 2))
+    under = ((plan > [24, 20]) & (plan < [40, 35])).all(axis=1) | ((plan > [60, 58]) & (plan < [80, 74])).all(axis=1)
+    ground = np.column_stack([plan, 0.05 * plan[:, 0] + 3.0 * (plan[:, 1] > 45) + rng.normal(0, 0.02, len(plan))])
+    houses = [roof(rng, 24, 20, 16, 15, 9.0, density=2.0), roof(rng, 60, 58, 20, 16, 14.0, density=2.0)]
+    xyz = np.concatenate([ground[~under], *houses, crown(rng, 15, 70)])
+    xyz = np.round(xyz[rng.permutation(len(xyz))] + CORNER, 3)
+    return create_cloud({"xyz": xyz, "gps_time": np.arange(len(xyz)) * 1e-5}, "EPSG:28992")
+
+
+def tiles_of(cloud, folder):
+    """Write three tiles that are no rectangles; return their paths."""
+    x, y = cloud.get("xyz")[:, :2].T - cloud.get("xyz")[:, :2].min(axis=0)[:, None]
+    parts = (x + y < 70, (x + y >= 70) & (y > 50), (x + y >= 70) & (y <= 50))
+    paths = [folder / f"{number}.las" for number in range(len(parts))]
+    for path, part in zip(paths, parts):
+        write_cloud(cloud.take(np.flatnonzero(part)), path)
+    return paths
+
+
+def in_order(clouds, *names):
+    """Return values of all points of clouds by their times; coordinates from the zero of the map."""
+    order = np.argsort(np.concatenate([one.get("gps_time") for one in clouds]), kind="stable")
+    return [
+        np.concatenate([one.get(name) + (one.origin if name == "xyz" else 0) for one in clouds])[order]
+        for name in names
+    ]
+
+
+@pytest.mark.parametrize(
+    ("name", "tunables", "dimensions"),
+    [
+        (
+            "interpret_structure",
+            {"voxels_voxel_size": 0.5, "features_n_neighbors": 20},
+            ("xyz", "voxel_count", "dimensionality", "linearity"),
+        ),
+        ("model_terrain", {"ground_max_object_area": 1_000.0, "ground_max_width": 10.0}, ("xyz", "classification")),
+    ],
+)
+def test_blocks_give_what_the_whole_cloud_gives(cloud, tmp_path, name, tunables, dimensions):
+    expected = run_pipeline(of_survey(PIPELINES[name]), cloud.copy(), kept=(), **tunables).cloud
+    (tmp_path / "tiles").mkdir()
+    monitor = Listening()
+    made = run_in_tiles(
+        PIPELINES[name],
+        tiles_of(cloud, tmp_path / "tiles"),
+        tmp_path / "out",
+        monitor,
+        workers=Workers(processes=1),
+        block_side=40.0,
+        compressed=False,
+        **tunables,
+    )
+    assert made.blocks == 9
+    assert not made.failures
+    tiles = [read_cloud(path) for path in made.tiles]
+    names = ("gps_time", *dimensions)
+    for dimension, found, whole in zip(names, in_order(tiles, *names), in_order([expected], *names)):
+        same = np.isclose(found, whole, rtol=0, atol=2e-3 if dimension == "xyz" else 1e-6)
+        # Centers of two points lie between two millimeters, and either is written: rarely another point is the 20th
+        # nearest then.
+        assert same.mean() >= (0.9995 if dimension in ("dimensionality", "linearity") else 1.0), dimension
+
+
+def test_merging_is_no_part_of_a_survey():
+    """The files are one cloud: what is asked for the merging is not asked for in tiles."""
+    pipeline = of_survey(PIPELINES["interpret_structure"])
+    assert not pipeline.merges
+    assert [step.name for step in pipeline.steps] == ["voxels", "features", "structure"]
+    assert not [name for name in pipeline.parameters if name.startswith("merge")]
+    assert "voxels_voxel_size" in pipeline.shown
