@@ -260,7 +260,7 @@ class _Run:
         sampling = samplings[""]
         side = block_side or _side(sampling.density, halo)
         self.monitor.resolved(sampling=sampling)
-        self.monitor.inform(f"Blocks of {side:g} m, each worked on with {halo:g} m around it.")
+        self.monitor.inform(f"Blocks of {side:g} m, each worked on with {halo:.4g} m around it.")
         self._cut_large_files(side, largest_file)
         outcome = TilesOutcome(self.survey, [], sampling=sampling, points=len(self.survey))
         with self.workers.open() as executor:

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Measure surveys in tiles: ``surveys.py run|workers|tiles|cost [options]``.
+"""Measure surveys in tiles: ``surveys.py run|workers|tiles|cost|agree [options]``.
 
 ``run`` makes a survey of ``--millions`` of points, a real tile repeated with shifts and cut into tiles of 500 m, and
 detects its buildings with ``--processes``: seconds, points per second, the memory of all processes together, and what
 the blocks took. ``workers`` compares two workers with one on the same survey. ``tiles`` cuts one survey into few and
 into many tiles: memory must not grow with their number. ``cost`` tells from the block times of the last ``run`` what a
 survey of ``--tiles`` tiles of 1 km² costs on 1, 16 and 200 cores, by a simulation of workers that share one storage.
+``agree`` compares the classes of real clouds in blocks with those of each at once.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ import tempfile
 import threading
 import time
 from dataclasses import dataclass, replace
+from itertools import product
 from pathlib import Path
 from typing import Any, Optional
 
@@ -35,12 +37,15 @@ if not importlib.util.find_spec(PACKAGE):
 
 import numpy as np  # noqa: E402
 
+from lidar_buildings.algorithms.cloud.cloud import Cloud  # noqa: E402
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud  # noqa: E402
 from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
+from lidar_buildings.algorithms.run import run_pipeline  # noqa: E402
 from lidar_buildings.algorithms.stage import Monitor  # noqa: E402
 from lidar_buildings.algorithms.tiling.cutting import cut_into_tiles  # noqa: E402
 from lidar_buildings.algorithms.tiling.run_in_tiles import _MOST_POINTS, run_in_tiles  # noqa: E402
 from lidar_buildings.algorithms.tiling.survey import open_survey  # noqa: E402
+from lidar_buildings.algorithms.tiling.tiled_steps import of_survey  # noqa: E402
 from lidar_buildings.algorithms.tiling.workers import Workers  # noqa: E402
 from lidar_buildings.tests.benchmarks.results import FOLDER, Table  # noqa: E402
 
@@ -274,10 +279,53 @@ def cost(n_tiles: int, seed: int = 0) -> list[Table]:
     return [table]
 
 
+# Clouds, and the side of their blocks (m): some four to nine of them.
+_AGREEING = {
+    "buildings/ahn3-delft-4": 150.0,
+    "buildings/ahn3-delft": 150.0,
+    "ground/samp11": 150.0,
+    "ground/samp53": 150.0,
+}
+
+# Composites whose points are compared, with the dimension that tells what they are.
+_COMPARED = {
+    "detect_buildings": "classification",
+    "model_terrain": "classification",
+    "interpret_structure": "dimensionality",
+}
+
+
+def agree(folder: Path) -> list[Table]:
+    """Compare the points of clouds in blocks with those of each cloud at once."""
+    table = Table(
+        "survey_agreement", "composite", "cloud", "blocks", "points", "same, %", "same as building, %", texts=2
+    )
+    for (name, dimension), (cloud_name, side) in product(_COMPARED.items(), _AGREEING.items()):
+        if name == "detect_buildings" and cloud_name.startswith("ground"):
+            continue
+        path = TILE.parents[1] / f"{cloud_name}.laz"
+        whole = run_pipeline(of_survey(PIPELINES[name]), read_cloud(path), kept=()).cloud
+        target = folder / f"{name}-{path.stem}"
+        made = run_in_tiles(PIPELINES[name], [path], target, block_side=side, compressed=False)
+        tile = read_cloud(made.tiles[0])
+        values = [_in_plan_order(one, dimension) for one in (whole, tile)]
+        same, building = ((values[0] == values[1]).mean(), ((values[0] == 6) == (values[1] == 6)).mean())
+        table.add(name, path.stem, made.blocks, len(tile), 100 * same, 100 * building, digits=3)
+        shutil.rmtree(target)
+    return [table]
+
+
+def _in_plan_order(cloud: Cloud, dimension: str) -> np.ndarray:
+    """Return the values of points in the order of their coordinates and returns."""
+    keys = [np.rint(axis * 1000) for axis in cloud.get("xyz").T]
+    keys += [cloud.get(name) for name in ("return_number", "gps_time") if cloud.has(name)]
+    return cloud.get(dimension)[np.lexsort(keys[::-1])]
+
+
 def main() -> None:
     """Run what the command line names, and write its tables."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("what", choices=["run", "workers", "tiles", "cost"])
+    parser.add_argument("what", choices=["run", "workers", "tiles", "cost", "agree"])
     parser.add_argument("--millions", type=float, default=10.0, help="points of the survey")
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--tiles", type=int, default=10_000, help="tiles of the survey whose cost is told")
@@ -287,7 +335,9 @@ def main() -> None:
         made = cost(given.tiles)
     else:
         with tempfile.TemporaryDirectory(prefix="surveys-") as folder:
-            if given.what == "run":
+            if given.what == "agree":
+                made = agree(Path(folder))
+            elif given.what == "run":
                 made = run(Path(folder), given.millions, given.processes)
             else:
                 made = (workers if given.what == "workers" else tiles)(Path(folder), given.millions)
