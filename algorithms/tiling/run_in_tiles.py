@@ -18,15 +18,16 @@ from typing import Any, Callable, Optional, Union
 import numpy as np
 
 from ..cloud.cloud import Cloud
-from ..cloud.files import read_cloud, readable, write_cloud
+from ..cloud.copc_index import has_index
+from ..cloud.files import readable
 from ..cloud.outputs import LAS, LAZ, locked_folder, stem_of
 from ..cloud.points import open_header
-from ..cloud.units import Resolver, Units
+from ..cloud.units import Resolver
 from ..pipeline import REPORT, Pipeline
 from ..run import counted, has_several_returns, run_pipeline, run_stage
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import FileContent, LayerFeatures, Monitor, Report
-from .blocks import REFERRING, Block, BlockResult, BlockTask, StoppableMonitor, work_on_block
+from .blocks import Block, BlockResult, BlockTask, work_on_block
 from .cutting import cut_into_tiles
 from .joined_files import join_files
 from .joining import References, feature_numbers, join_belonging, join_features, join_numbers, refer_to_features
@@ -43,6 +44,7 @@ from .tiled_steps import (
     tunables_of,
     why_whole,
 )
+from .tiles import TileTask, points_outside, rows_of, write_tile
 from .workers import Workers, run_all
 
 # A window has at most about this many points, so that a worker needs 1.8 GB (340 bytes per point), and two of them, one
@@ -101,20 +103,6 @@ class TilesOutcome:
     tries: np.ndarray = field(default_factory=lambda: np.zeros((0, 4)))
 
 
-@dataclass(frozen=True)
-class _TileTask:
-    """A tile of the output: the file that it is made of, and the blocks that have its points."""
-
-    source: Path
-    number: int
-    target: Path
-    results: tuple[Path, ...]
-    becomes: tuple[Path, ...]
-    stop: Path
-    units: Units
-    extent: Optional[np.ndarray] = None
-
-
 def run_in_tiles(
     pipeline: Pipeline,
     paths: Iterable[Union[str, Path]],
@@ -146,7 +134,8 @@ def run_in_tiles(
         A composite that works on one cloud and keeps its points.
     paths : iterable of str or Path
         Files, virtual point clouds or folders. Each file becomes a tile of the same name; a file of more than
-        ``largest_file`` points becomes tiles of the size of a block.
+        ``largest_file`` points becomes tiles of the size of a block: it is cut by its index where it is a COPC file,
+        else into pieces that lie uncompressed beside the tiles while they are worked on.
     folder : str or Path
         Where the tiles go; it is made where it is missing.
     monitor : Monitor, optional
@@ -248,6 +237,8 @@ class _Run:
         self.monitor, self.workers, self.tunables = monitor, workers, tunables
         self.suffix = LAZ if compressed else LAS
         self.stop = work / "stop"
+        # Large files that are cut by their index.
+        self.by_index: list[Path] = []
         self.find_layers: Optional[FindLayers] = None
         self.take_raster: Optional[TakeRaster] = None
         self.take_file: Optional[TakeFile] = None
@@ -317,8 +308,13 @@ class _Run:
         return samplings
 
     def _cut_large_files(self, side: float, largest_file: int) -> None:
-        """Cut files that are too large to be read once for each of their blocks, and take the pieces in their place."""
+        """Cut files that are too large to be read once for each of their blocks, and take the pieces in their place.
+
+        Of a COPC file each block reads what it needs.
+        """
         large = [source for source in self.survey.sources if source.header.count > largest_file]
+        self.by_index = [source.path for source in large if has_index(source.header)]
+        large = [source for source in large if source.path not in self.by_index]
         if not large:
             return
         pieces = self.work / "pieces"
@@ -472,6 +468,24 @@ class _Run:
         for sentence, given in Counter(one for result in found for one in result.messages).items():
             self.monitor.warn(sentence if given == count else f"In {given} of {count} blocks: {sentence}")
 
+    def _pieces(self, number: int, stem: str, blocks: list[tuple[Block, Path, Path]]) -> list[TileTask]:
+        """Return the tiles that a file becomes which is cut by its index: one for each block, result and numbers."""
+        path, extent, units = self.survey.sources[number].path, self.survey.extent, self.survey.units
+        return [
+            TileTask(
+                path,
+                number,
+                self.folder / f"{stem}_{block.name}{self.suffix}",
+                (result,),
+                (numbers,),
+                self.stop,
+                units,
+                extent,
+                block.box,
+            )
+            for block, result, numbers in blocks
+        ]
+
     def _write_tiles(
         self,
         executor: Any,
@@ -489,14 +503,20 @@ class _Run:
         stems = _unique_stems(self.survey.sources)
         boxes, lost = (_boxes(some) for some in ([block for block, _ in done], failed))
         for number, (source, stem) in enumerate(zip(self.survey.sources, stems)):
-            target = self.folder / f"{stem}{self.suffix}"
+            near = np.flatnonzero(boxes_meet(boxes, source.box))
+            extent, units = self.survey.extent, self.survey.units
+            if source.path in self.by_index:
+                tasks += self._pieces(number, stem, [(*done[at], becomes[at]) for at in near])
+                worked_on = sum(len(rows_of(done[at][1], number)) for at in near)
+                if worked_on < source.header.count and extent is None and not boxes_meet(lost, source.box).any():
+                    outcome.failures.append(points_outside(source.path, source.header.count - worked_on))
+                continue
             if boxes_meet(lost, source.box).any():
                 outcome.failures.append(f"{source.path.name} is not written, as a block of it failed.")
                 continue
-            near = np.flatnonzero(boxes_meet(boxes, source.box))
+            target = self.folder / f"{stem}{self.suffix}"
             parts, final = tuple(done[at][1] for at in near), tuple(becomes[at] for at in near)
-            extent, units = self.survey.extent, self.survey.units
-            tasks.append(_TileTask(source.path, number, target, parts, final, self.stop, units, extent))
+            tasks.append(TileTask(source.path, number, target, parts, final, self.stop, units, extent))
         results, errors = run_all(
             executor, write_tile, tasks, self.stop, self.monitor.part(_JOINED, 1.0), lambda _: None
         )
@@ -504,67 +524,6 @@ class _Run:
         if self.survey.extent is not None:
             outcome.points = sum(open_header(tile).count for tile in outcome.tiles)
         outcome.failures += [f"{tasks[at].source.name}: {why}" for at, why in sorted(errors.items())]
-
-
-def write_tile(task: _TileTask) -> Optional[Path]:
-    """Write a tile with what its blocks found; return it, None where the extent of the survey holds none of its points.
-
-    Raises
-    ------
-    ValueError
-        If a file can't be read or written.
-    """
-    position = None if task.extent is None else _positions(task)
-    if position is not None and not len(position):
-        return None
-    monitor = StoppableMonitor(task.stop)
-    cloud = read_cloud(task.source, monitor, box=task.extent)
-    # A worker has no database to look units up in.
-    cloud.units = task.units
-    stays = np.ones(len(cloud), bool)
-    values: dict[str, np.ndarray] = {}
-    worked_on = 0
-    for path, numbers in zip(task.results, task.becomes):
-        result = BlockResult.read(path)
-        rows = np.flatnonzero(result.source == task.number)
-        if not len(rows):
-            continue
-        worked_on += len(rows)
-        own = result.position[rows] if position is None else np.searchsorted(position, result.position[rows])
-        if len(result.stays):
-            stays[own] = result.stays[rows]
-        with np.load(numbers, allow_pickle=False) as final:
-            for name, of_block in result.dimensions.items():
-                number = REFERRING.get(name, name)
-                found = of_block[rows]
-                if number in final.files:
-                    # What no block keeps has no number.
-                    found = final[number][np.where(found < len(final[number]), found, 0)]
-                whole = values.setdefault(name, np.zeros((len(cloud), *found.shape[1:]), found.dtype))
-                whole[own] = found
-    if worked_on < len(cloud):
-        # Which blocks and files have to do with each other is told by the bounds in the headers.
-        raise ValueError(
-            f"{task.source.name} has {len(cloud) - worked_on} points outside the bounds in its header; repair its "
-            "header first."
-        )
-    rows = np.flatnonzero(stays)
-    if not len(rows):
-        return None
-    cloud = cloud if len(rows) == len(cloud) else cloud.take(rows)
-    for name, whole in values.items():
-        cloud.set(name, whole[rows] - cloud.origin if name == "xyz" else whole[rows])
-    write_cloud(cloud, task.target, monitor)
-    return task.target
-
-
-def _positions(task: _TileTask) -> np.ndarray:
-    """Return the places (n,) in a file of its points within the extent, ascending: every one is in one block."""
-    found = [np.zeros(0, np.int64)]
-    for path in task.results:
-        with np.load(path, allow_pickle=False) as stored:
-            found.append(stored["position"][stored["source"] == task.number])
-    return np.sort(np.concatenate(found))
 
 
 def _sample_side(survey: Survey) -> float:

@@ -16,6 +16,7 @@ from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.algorithms.tiling import run_in_tiles as module
 from lidar_buildings.algorithms.tiling.run_in_tiles import can_be_tiled, run_in_tiles
 from lidar_buildings.algorithms.tiling.survey import Survey
+from lidar_buildings.algorithms.tiling.tiles import rows_of
 from lidar_buildings.algorithms.tiling.workers import Workers
 from lidar_buildings.tests.builders import crown, roof
 from lidar_buildings.tests.monitors import Listening
@@ -171,6 +172,36 @@ def test_a_file_too_large_to_be_read_at_once_is_cut_first(points, tmp_path):
     for found, wanted in zip(classes_by_time(outcome), classes_by_time(expected)):
         np.testing.assert_array_equal(found, wanted)
     assert sorted(p.name for p in (tmp_path / "result").iterdir()) == sorted(p.name for p in outcome.tiles)
+
+
+@pytest.mark.parametrize("extent", [None, np.array([[4.0, 20.0], [30.0, 60.0]]) + CORNER[:2]])
+def test_a_large_copc_file_is_cut_by_its_index(points, tmp_path, monkeypatch, extent):
+    """Nothing of it is written before the tiles are; these are those of a file that is cut into pieces."""
+    xyz, times, _ = points
+    (path,) = tiles_of(tmp_path, xyz, times, np.ones(len(xyz), bool))
+    copc = tmp_path / "town.copc.laz"
+    write_cloud(read_cloud(path), copc)
+    expected = run([path], tmp_path / "expected", pipeline=QUICK, extent=extent, largest_file=1000)
+    monkeypatch.setattr(module, "cut_into_tiles", None)
+    outcome = run([copc], tmp_path / "result", pipeline=QUICK, extent=extent, largest_file=1000)
+    assert not outcome.failures
+    assert outcome.points == expected.points
+    names = [tile.name.replace("town", "tile0") for tile in outcome.tiles]
+    assert sorted(names) == sorted(tile.name for tile in expected.tiles)
+    for found, wanted in zip(classes_by_time(outcome), classes_by_time(expected)):
+        np.testing.assert_array_equal(found, wanted)
+    assert sorted(p.name for p in (tmp_path / "result").iterdir()) == sorted(p.name for p in outcome.tiles)
+
+
+def test_points_of_a_large_copc_file_that_no_block_has_are_told(points, tmp_path, monkeypatch):
+    xyz, times, _ = points
+    copc = tmp_path / "town.copc.laz"
+    write_cloud(create_cloud({"xyz": xyz, "gps_time": times}, "EPSG:28992"), copc)
+    monkeypatch.setattr(module, "rows_of", lambda result, number: rows_of(result, number)[3:])
+    outcome = run([copc], tmp_path / "result", pipeline=QUICK, largest_file=1000)
+    assert outcome.failures == [
+        "town.copc.laz has 12 points outside the bounds in its header; repair its header first."
+    ]
 
 
 def test_large_files_of_similar_names_keep_all_their_points(points, tmp_path):

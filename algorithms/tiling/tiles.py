@@ -1,0 +1,125 @@
+"""The tiles of a survey's output: the points of a file, or of a piece of it, with what the blocks found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Optional
+
+import numpy as np
+
+from ..cloud.cloud import Cloud
+from ..cloud.files import read_cloud, readable, write_cloud
+from ..cloud.header import COPC_HIERARCHY, COPC_INFO, LASZIP
+from ..cloud.points import chunks_near, open_header
+from ..cloud.units import Units
+from ..stage import Monitor
+from .blocks import REFERRING, BlockResult, StoppableMonitor
+
+
+@dataclass(frozen=True)
+class TileTask:
+    """A tile of the output: the file that it is made of, and the blocks that have its points.
+
+    ``piece`` is the box (2, 2), m, of the part of the file that becomes this tile, upper edges excluded; None is all.
+    """
+
+    source: Path
+    number: int
+    target: Path
+    results: tuple[Path, ...]
+    becomes: tuple[Path, ...]
+    stop: Path
+    units: Units
+    extent: Optional[np.ndarray] = None
+    piece: Optional[np.ndarray] = None
+
+
+def points_outside(path: Path, count: int) -> str:
+    """Return what is said of a file with so many points that no block has."""
+    # Which blocks and files have to do with each other is told by the bounds in the headers.
+    return f"{path.name} has {count} points outside the bounds in its header; repair its header first."
+
+
+def rows_of(result: Path, number: int) -> np.ndarray:
+    """Return the rows (n,) of the records of a file in what came of a block."""
+    with np.load(result, allow_pickle=False) as stored:
+        return np.flatnonzero(stored["source"] == number)
+
+
+def write_tile(task: TileTask) -> Optional[Path]:
+    """Write a tile with what its blocks found; return it, None where the extent of the survey holds none of its points.
+
+    Raises
+    ------
+    ValueError
+        If a file can't be read or written.
+    """
+    position = None if task.extent is None and task.piece is None else _positions(task)
+    if position is not None and not len(position):
+        return None
+    monitor = StoppableMonitor(task.stop)
+    cloud = _points_of(task, position, monitor)
+    stays, values, worked_on = _found(task, position, len(cloud))
+    if worked_on < len(cloud):
+        raise ValueError(points_outside(task.source, len(cloud) - worked_on))
+    rows = np.flatnonzero(stays)
+    if not len(rows):
+        return None
+    cloud = cloud if len(rows) == len(cloud) else cloud.take(rows)
+    for name, whole in values.items():
+        cloud.set(name, whole[rows] - cloud.origin if name == "xyz" else whole[rows])
+    write_cloud(cloud, task.target, monitor)
+    return task.target
+
+
+def _found(task: TileTask, position: Optional[np.ndarray], count: int) -> tuple[np.ndarray, dict[str, np.ndarray], int]:
+    """Return which points (n,) of a tile stay, what blocks wrote for them, and how many of them blocks have."""
+    stays = np.ones(count, bool)
+    values: dict[str, np.ndarray] = {}
+    worked_on = 0
+    for path, numbers in zip(task.results, task.becomes):
+        result = BlockResult.read(path)
+        rows = np.flatnonzero(result.source == task.number)
+        if not len(rows):
+            continue
+        worked_on += len(rows)
+        own = result.position[rows] if position is None else np.searchsorted(position, result.position[rows])
+        if len(result.stays):
+            stays[own] = result.stays[rows]
+        with np.load(numbers, allow_pickle=False) as final:
+            for name, of_block in result.dimensions.items():
+                number = REFERRING.get(name, name)
+                found = of_block[rows]
+                if number in final.files:
+                    # What no block keeps has no number.
+                    found = final[number][np.where(found < len(final[number]), found, 0)]
+                whole = values.setdefault(name, np.zeros((count, *found.shape[1:]), found.dtype))
+                whole[own] = found
+    return stays, values, worked_on
+
+
+def _points_of(task: TileTask, position: Optional[np.ndarray], monitor: Monitor) -> Cloud:
+    """Return the points of a file that a tile is made of, in its order; of a piece those at ``position`` (n,)."""
+    if task.piece is None or position is None:
+        cloud = read_cloud(task.source, monitor, box=task.extent)
+        # A worker has no database to look units up in.
+        cloud.units = task.units
+        return cloud
+    header = open_header(task.source)
+    found = [np.empty(0, header.layout.dtype)]
+    with readable(task.source):
+        for start, records in chunks_near(task.source, header, task.piece / task.units.horizontal, monitor):
+            first, end = np.searchsorted(position, [start, start + len(records)])
+            found.append(records[position[first:end] - start])
+    header = replace(header.without(LASZIP, COPC_INFO, COPC_HIERARCHY), count=len(position))
+    return Cloud(header, np.concatenate(found), task.units, [task.source])
+
+
+def _positions(task: TileTask) -> np.ndarray:
+    """Return the places (n,) in a file of its points within the extent, ascending: every one is in one block."""
+    found = [np.zeros(0, np.int64)]
+    for path in task.results:
+        with np.load(path, allow_pickle=False) as stored:
+            found.append(stored["position"][stored["source"] == task.number])
+    return np.sort(np.concatenate(found))
