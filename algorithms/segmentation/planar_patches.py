@@ -90,6 +90,8 @@ def segment_patches(
     points = np.column_stack([xyz - xyz[0], np.full(len(xyz), -1.0)])
     del xyz
     plane = _smoothest_plane(points, planes, ON_PLANE * off_plane, monitor.part(0.6, 0.8))
+    # Links take memory of their own: the other neighbors have done their part.
+    planes.neighbors = _linked_neighbors(planes.neighbors)
     on_surface = (planes.deviation[plane] <= _SMOOTH * off_plane) & (plane >= 0)
     on_surface &= planes.planes[plane, 2] >= np.sin(np.radians(90 - max_slope))
     # Three of its points make a plane and tell nothing of how far others lie off it. Wide neighborhoods hold more
@@ -157,6 +159,13 @@ def _smoothest_plane(points: np.ndarray, planes: _PointPlanes, reach: float, mon
     return found
 
 
+def _linked_neighbors(neighbors: np.ndarray) -> np.ndarray:
+    """Return those of the neighbors (n, k) of points, nearest first, that links are looked for among."""
+    # Spread over the ranks, so that links cross from one scan line to the next.
+    ranks = np.unique(np.linspace(1, neighbors.shape[1] - 1, _LINKS - 1).astype(int))
+    return neighbors[:, ranks]
+
+
 def _links(
     points: np.ndarray, planes: _PointPlanes, plane: np.ndarray, on_surface: np.ndarray, reach: float, monitor: Monitor
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -164,13 +173,11 @@ def _links(
 
     One surface is within ``reach`` (m) of both points.
     """
-    # Spread over the ranks, so that links cross from one scan line to the next.
-    ranks = np.unique(np.linspace(1, planes.neighbors.shape[1] - 1, _LINKS - 1).astype(int))
     n_links = np.zeros(len(plane) + 1, np.int64)
     there: list[np.ndarray] = [np.empty(0, np.int32)] * -(-len(plane) // _CHUNK)
 
     def work(rows: np.ndarray) -> None:
-        neighbors = planes.neighbors[rows[:, None], ranks]
+        neighbors = planes.neighbors[rows]
         is_link = on_surface[rows, None] & on_surface[neighbors]
         # One plane holds both, mostly.
         apart = np.nonzero(is_link & (plane[neighbors] != plane[rows, None]))
