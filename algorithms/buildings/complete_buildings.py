@@ -15,6 +15,7 @@ from ..params import MinBuildingArea, PointDensity, PointSource
 from ..sampling.cloud_sampling import CloudSampling
 from ..segmentation.top_surface import TopSurface
 from ..stage import Param, stage
+from .agreed_buildings import agreed
 from .roof_extent import FOOT, GAP, RoofExtent, amid_rough, without_vehicles
 
 # Side of the cells (point spacings): where a roof was seen, they hold at least a point.
@@ -22,6 +23,11 @@ _CELL_SPACINGS = 1.2
 
 # Least side of the cells (m).
 _LEAST_CELL = 0.5
+
+# Positions of the cells of a laser scan (parts of their side), of which most decide: which bushes and ends of walls
+# beside the eaves share a cell with the roof is chance. With positions at thirds of a diagonal cells at the corners of
+# thinly scanned roofs hold no point in two of three, and walls below them are lost.
+_POSITIONS = ((0.0, 0.0), (0.5, 0.0), (0.0, 0.5))
 
 # Points lower than this stand on the ground (kerbs, plants, steps) and are no wall, m.
 _WALL_FOOT = 0.5
@@ -189,7 +195,8 @@ def complete_buildings(
     Notes
     -----
     This stage is no part of the published method, whose clusters are roofs and lose what is not planar or not
-    connected with them.
+    connected with them. In laser scans the cells are laid in three positions, and a point is of a building where two of
+    them say so, so that less depends on where cells fall.
 
     References
     ----------
@@ -211,17 +218,20 @@ def complete_buildings(
 
     roofs = _Roofs.of(xyz, height_above_ground, classification, segment_id)
     limits = _Limits(gap, density, min_area, min_width, min_roof_share)
-    extents = _extents_in_images(roofs, limits) if in_images else _extents_in_scan(roofs, limits)
-    columns = _Columns(extents.building, extents.top, extents.cell_size)
-    monitor.progress(0.6)
-
     has_returns = return_number is not None and number_of_returns is not None
     goes_on = return_number < number_of_returns if has_returns else None
-    points = _Points(extents.cell, xyz[:, 2], height_above_ground, extents.raised, goes_on)
-    cluster_id = columns.owners(points, roof_clearance, structure_height)
+    positions = _POSITIONS[:1] if in_images else _POSITIONS
+    owners, refusal, place = [], np.zeros(len(xyz), np.uint8), np.zeros(0, np.int64)
+    for done, position in enumerate(positions, start=1):
+        extents = _extents_in_images(roofs, limits) if in_images else _extents_in_scan(roofs, limits, position)
+        columns = _Columns(extents.building, extents.top, extents.cell_size)
+        points = _Points(extents.cell, xyz[:, 2], height_above_ground, extents.raised, goes_on)
+        owners.append(columns.owners(points, roof_clearance, structure_height))
+        place = place if len(place) else np.ravel_multi_index(extents.cell, extents.building.shape)
+        refusal = np.where(refusal > 0, refusal, extents.refusal(owners[-1]))
+        monitor.progress(done / len(positions))
+    cluster_id = agreed(owners, place)
     result[cluster_id > 0] = PointClass.BUILDING
-    monitor.progress(1.0)
-    refusal = np.where(extents.building[extents.cell] > 0, Reason.TOO_LOW, extents.refused[extents.cell])
     return result.astype(np.uint8), cluster_id, *_explained(confidence, reason, is_roof, cluster_id, refusal)
 
 
@@ -303,12 +313,21 @@ class _Extents:
     top: np.ndarray
     raised: np.ndarray
 
+    def refusal(self, owner: np.ndarray) -> np.ndarray:
+        """Return why points (n,) are of no building, as :class:`~..cloud.reasons.Reason`; 0 for points of one."""
+        why = np.where(self.building[self.cell] > 0, np.uint8(Reason.TOO_LOW), self.refused[self.cell])
+        return np.where(owner > 0, np.uint8(0), why)
 
-def _extents_in_scan(roofs: _Roofs, limits: _Limits) -> _Extents:
-    """Return where buildings are in a laser scan: in cells with roof points, gaps closed where no ground shows."""
+
+def _extents_in_scan(roofs: _Roofs, limits: _Limits, position: tuple[float, float]) -> _Extents:
+    """Return where buildings are in a laser scan: in cells with roof points, gaps closed where no ground shows.
+
+    Cells are moved by ``position``, in parts of their side.
+    """
     cell_size = max(_LEAST_CELL, _CELL_SPACINGS / np.sqrt(limits.density))
     refuse_sparse(roofs.xyz, cell_size)
-    cell = raster_cells(roofs.xyz, cell_size, int(np.ceil(limits.gap / cell_size)) + 2)
+    margin = int(np.ceil(limits.gap / cell_size)) + 2
+    cell = raster_cells(roofs.xyz[:, :2] + np.array(position) * cell_size, cell_size, margin)
     raised = (roofs.height >= _WALL_FOOT) & roofs.may_stand
     # Multipath through a skylight is no ground that shows in it.
     covered = _covered(cell, roofs.is_roof, ~raised & ~roofs.is_noise, limits.gap, cell_size)

@@ -35,6 +35,9 @@ USUAL_BUILDING = 60.0
 # and roofs.
 _TURNS = (0.0, 30.0, 60.0)
 
+# Where the cells of each direction begin (parts of their side): no edges of cells meet on a whole side.
+_POSITIONS = ((0.0, 0.0), (1 / 3, 2 / 3), (2 / 3, 1 / 3))
+
 # Largest area of the box of a turned cloud (times its own box): that of a narrow strip is larger and hardly filled.
 _MOST_TURNED = 2.5
 
@@ -137,7 +140,8 @@ def seeds_by_opening(
     angles = _TURNS if _is_compact(box) else _TURNS[:1]
 
     def view(number: int, slope: Optional[np.ndarray], part: Monitor) -> _View:
-        cells = _Cells(turned_in_plan(xyz, angles[number]), box, angles[number], cell_size, spacing, low_uphill)
+        places = turned_in_plan(xyz, angles[number]) + np.array([*_POSITIONS[number], 0.0]) * cell_size
+        cells = _Cells(places, box, angles[number], cell_size, spacing, low_uphill)
         return _view(cells, max_building_size, slope, part)
 
     first = view(0, None, monitor.part(0, 1 / len(angles)))

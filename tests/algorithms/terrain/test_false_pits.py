@@ -113,10 +113,7 @@ def test_a_surface_without_pits_has_none(rng):
 
 @pytest.mark.parametrize(("density", "slope"), [(4.0, 15.0), (12.0, 3.0)])
 def test_a_town_with_groups_and_pits(density, slope):
-    """Aimed at: four fifths of the points under the ground at a correctness of nine tenths; true pits stay.
-
-    Of seven seeds, one or two lose two to five of 750 points of pits, by where cells fall.
-    """
+    """Aimed at: four fifths of the points under the ground at a correctness of nine tenths; true pits stay."""
     town = scene(density=density, slope=slope, groups=25, size=120.0, seed=11)
     found = run_stage(STAGES["classify_ground_tin"], town.cloud, find_multipath=True).cloud.get("classification")
     is_low, is_group = found == 7, town.group > 0
@@ -125,4 +122,4 @@ def test_a_town_with_groups_and_pits(density, slope):
     assert (found[is_group] == 2).mean() < 0.15
     seen = [number for number in np.unique(town.pit[town.pit > 0]) if (town.pit == number).sum() >= 8]
     assert len(seen) > 5
-    assert is_low[np.isin(town.pit, seen)].mean() < 0.01
+    assert not is_low[np.isin(town.pit, seen)].any()

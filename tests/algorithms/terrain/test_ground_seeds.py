@@ -4,10 +4,24 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.geometry.grid import turned_in_plan
+from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.algorithms.terrain import ground_seeds as module
-from lidar_buildings.algorithms.terrain.ground_seeds import _View, lowest_points, seeds_by_lowest, seeds_by_opening
+from lidar_buildings.algorithms.terrain.ground_seeds import _View, seeds_by_lowest
 from lidar_buildings.tests.monitors import Listening
+
+
+def from_corner(xyz):
+    """Return points measured from the corner of the cloud, where stages have the cells begin."""
+    return CloudSampling.of(xyz).from_corner(xyz)
+
+
+def seeds_by_opening(xyz, *arguments, **options):
+    return module.seeds_by_opening(from_corner(xyz), *arguments, **options)
+
+
+def lowest_points(xyz, cell_size):
+    return module.lowest_points(from_corner(xyz), cell_size)
 
 
 def even(width, depth, step=0.7):
@@ -29,9 +43,8 @@ def test_lowest_points_one_by_one(rng):
     xyz = rng.uniform([5, -3, 0], [25, 9, 4], (500, 3))
     lowest = lowest_points(xyz, 1.7)
     expected = {}
-    west, south = np.floor(xyz[:, :2].min(axis=0) / 1.7)
     for i, (x, y, z) in enumerate(xyz):
-        cell = (int(x // 1.7 - west), int(y // 1.7 - south))
+        cell = (int((x - xyz[:, 0].min()) / 1.7), int((y - xyz[:, 1].min()) / 1.7))
         if cell not in expected or z < xyz[expected[cell], 2]:
             expected[cell] = i
     found = {tuple(cell): lowest.index[tuple(cell)] for cell in np.argwhere(lowest.index >= 0).tolist()}
@@ -207,16 +220,11 @@ def test_a_low_wing_along_a_hall_is_no_terrain(rng):
 
 
 def test_a_flat_hill_as_large_as_a_hall_is_terrain(rng):
-    """Most of it wherever the cells fall."""
     xyz, is_top = scene_with_plateau(rng, bank=15.0)
-    found = []
-    for shift in rng.uniform(0, 1.4, (7, 2)):
-        seeds, stands_free, size = seeds_by_opening(xyz + np.append(shift, 0.0), 1.4, None, Monitor())
-        assert not stands_free.any()
-        assert size == 60.0
-        found.append(is_top[seeds].mean() * len(seeds) / is_top.sum())
-    assert min(found) > 0.6
-    assert np.mean(found) > 0.75
+    seeds, stands_free, size = seeds_by_opening(xyz, 1.4, None, Monitor())
+    assert not stands_free.any()
+    assert size == 60.0
+    assert is_top[seeds].sum() > 0.9 * is_top.sum()
 
 
 def test_a_low_house_with_a_large_roof_on_a_slope_is_no_bank(rng):
@@ -267,19 +275,15 @@ def test_a_lane_between_two_houses_on_a_pier_is_terrain(rng):
     assert not (z > 4.0)[seeds].any()
 
 
-@pytest.mark.parametrize(("slope", "least"), [(0.8, 0.4), (1.0, 0.4), (1.1, 0.15)])
-def test_banks_as_steep_as_soil_lies_are_terrain_on_both_sides(slope, least, rng):
+@pytest.mark.parametrize("slope", [0.8, 1.0, 1.1])
+def test_banks_as_steep_as_soil_lies_are_terrain_on_both_sides(slope, rng):
     """However unevenly the lowest points lie in their cells: eaves are no steeper than their flanks look there."""
     plan = even(90, 90) + rng.uniform(-0.35, 0.35, (len(even(90, 90)), 2))
     across, along = np.abs(plan - 45).T
     bank = slope * np.clip(np.minimum(4 - across, 20 - along), 0, None)
-    xyz = np.column_stack([plan, bank + rng.normal(0, 0.02, len(plan))])
-    found = []
-    for shift in rng.uniform(0, 1.0, (7, 2)):
-        seeds, *_ = seeds_by_opening(xyz + np.append(shift, 0.0), 1.0, None, Monitor())
-        found.append((bank[seeds] > 1).sum() / (bank > 1).sum())
-    # One of the two points of a cell is a seed. Where the cells fall decides on parts of the steepest bank.
-    assert np.median(found) > least
+    seeds, *_ = seeds_by_opening(np.column_stack([plan, bank + rng.normal(0, 0.02, len(plan))]), 1.0, None, Monitor())
+    # One of the two points of a cell is a seed.
+    assert (bank[seeds] > 1).sum() > 0.4 * (bank > 1).sum()
 
 
 def test_a_house_on_a_dike_stays_an_object_where_the_dike_comes_back(rng):
