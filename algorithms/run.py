@@ -300,7 +300,7 @@ def run_pipeline(
 
     How the cloud was sampled is measured once for all steps, and again where a step has changed the points that it is
     measured on: those that are neither withheld nor noise. ``samplings`` are measured before, on the survey that the
-    cloud is a part of: of what is given by the name "", of what steps make by their names.
+    cloud is a part of: those of the given cloud by the name "", those of clouds that steps make by the steps' names.
 
     Raises
     ------
@@ -310,7 +310,7 @@ def run_pipeline(
     monitor = monitor or Monitor()
     chosen = {step.name: of_step for step, of_step in pipeline.by_step(tunables)}
     given = given_layers(pipeline.name, pipeline.input_layers.values(), input_layers or {})
-    # Later steps change the cloud that they work on: what is wanted as it was is copied when it is made.
+    # Later steps change the cloud that they work on: a cloud that is kept as it was is copied when it is made.
     wanted = {*(pipeline.kept if kept is None else kept), *(step.cloud for step in pipeline.steps)}
     copies: dict[str, Cloud] = {}
     outcomes: dict[str, Outcome] = {}

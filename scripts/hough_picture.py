@@ -48,7 +48,7 @@ ROOM = (52, 20, 20, 50)  # pixels left of, above, right of and below the axes
 
 
 def clutter(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """Return points (n, 3) of planes in random directions among scattered ones, and the plane of each, -1 is none."""
+    """Return points (n, 3) of planes in random directions among scattered ones, and the plane of each, or -1."""
     parts = []
     for number in range(COUNT):
         center = np.array([number % 3, number // 3, 0.0]) * 3 * SIDE

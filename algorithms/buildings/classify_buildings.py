@@ -101,7 +101,7 @@ def classify_buildings(
     reason : ndarray of shape (n,), uint8, optional
         Reasons that the segmentation gave to points outside clusters, which they keep.
     segment_id : ndarray of shape (n,), int32, optional
-        Roof surfaces, 0 is none; in matched images they tell roofs from crowns; without them entropy does.
+        Roof surfaces; 0 where there is none. In matched images they tell roofs from crowns; without them entropy does.
     red, green, blue : ndarray of shape (n,), uint16, optional
         Color, used in matched images where given.
 
@@ -144,8 +144,8 @@ def classify_buildings(
 
     In clouds of matched images, crowns are as closed as roofs, and penetration tells nothing. There, roof surfaces are
     buildings, planar over a meter, if the minimum share of the points around them lie on such surfaces; small ones
-    that are as green as plants are none. What is green is set by the scene: the threshold that parts the
-    normalized excess green of all its points in two kinds best, if these are apart by 0.1 or more. Shadow hardly
+    that are as green as plants are refused. The threshold of greenness comes from the scene: it separates the
+    normalized excess green of all its points best into two kinds, if their means differ by 0.1 or more. Shadow hardly
     changes it.
 
     Confidence above 0.5 grows with the size of the cluster, to half at twice the points of the smallest building, as

@@ -32,7 +32,7 @@ _POSITIONS = ((0.0, 0.0), (0.5, 0.0), (0.0, 0.5))
 # Points lower than this stand on the ground (kerbs, plants, steps) and are no wall, m.
 _WALL_FOOT = 0.5
 
-# Points so far above and below the roof of a building are looked for on its surfaces, m.
+# Largest vertical distance (m) from the roof of a building at which points are compared with its surfaces.
 _AT_ROOF = 1.0
 
 # Largest gap that is closed (point spacings).
@@ -129,7 +129,7 @@ def complete_buildings(
         float,
         Param(
             "Minimum building width",
-            "What is narrower everywhere is a wall, a railing or a wire and no building.",
+            "Objects that are narrower everywhere are walls, railings or wires and not buildings.",
             unit="m",
             low=0,
             high=100,
@@ -172,7 +172,7 @@ def complete_buildings(
     reason : ndarray of shape (n,), uint8, optional
         Why the roofs are buildings, see :class:`~..cloud.reasons.Reason`.
     segment_id : ndarray of shape (n,), int32, optional
-        Roof surfaces, 0 is none; without it their share is not looked at.
+        Roof surfaces; 0 where there is none. Without it the share of roof surfaces is not examined.
     return_number, number_of_returns : ndarray of shape (n,), uint8, optional
         Without them crowns are not looked for.
 
@@ -181,7 +181,7 @@ def complete_buildings(
     classification : ndarray of shape (n,), uint8
         Buildings 6; roofs of less than the minimum area, width or share of roof surfaces become 1.
     cluster_id : ndarray of shape (n,), int32
-        Buildings from 1, from the south-west northward; 0 is none.
+        Buildings from 1, from the south-west northward; 0 where there is none.
     confidence : ndarray of shape (n,), float32, or None
         Points added to a building get the mean of its roofs, rejected roofs at most 0.5; None where not given.
     reason : ndarray of shape (n,), uint8, or None
@@ -194,7 +194,7 @@ def complete_buildings(
 
     Notes
     -----
-    This stage is no part of the published method, whose clusters are roofs and lose what is not planar or not
+    This stage is not part of the published method, whose clusters are roofs and lose points that are not planar or not
     connected with them. In laser scans the cells are laid in three positions, and a point is of a building where two of
     them say so, so that less depends on where cells fall.
 
@@ -237,7 +237,7 @@ def complete_buildings(
 
 @dataclass(frozen=True)
 class _Limits:
-    """What is asked of a building: gap that is closed (m), points per m², least area (m²), width (m) and roof share."""
+    """Requirements of a building: gap that is closed (m), points per m², least area (m²), width (m) and roof share."""
 
     gap: float
     density: float
@@ -263,7 +263,7 @@ class _Roofs:
     on_surface : ndarray of shape (n,), bool, optional
         Points of roofs on a roof surface; None where these are not known.
     segment_id : ndarray of shape (n,), int32, optional
-        Roof surfaces, 0 is none.
+        Roof surfaces; 0 where there is none.
     """
 
     xyz: np.ndarray
@@ -297,7 +297,7 @@ class _Extents:
     cell_size : float
         Their size, m.
     building : ndarray of shape (rows, columns), int32
-        Number of the building that covers each cell, 0 is none.
+        Number of the building that covers each cell; 0 where there is none.
     refused : ndarray of shape (rows, columns), uint8
         Reason why the roof over a cell was rejected.
     top : ndarray of shape (rows, columns)
@@ -424,7 +424,7 @@ class _Columns:
         self.beside = np.where(building > 0, 0, beside)
 
     def owners(self, points: _Points, clearance: float, structure_height: float) -> np.ndarray:
-        """Return the building (n,), int32, that each point belongs to; 0 is none.
+        """Return the building (n,), int32, that each point belongs to; 0 where there is none.
 
         Points up to the clearance (m) above the roof do, those up to the height of structures (m) where they are few.
         """

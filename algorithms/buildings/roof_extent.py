@@ -1,4 +1,4 @@
-"""Where roofs end in clouds of matched images, whose edges are rounded, and what is of the size of vehicles."""
+"""Where roofs end in clouds of matched images, whose edges are rounded, and objects of the size of vehicles."""
 
 from __future__ import annotations
 
@@ -68,14 +68,14 @@ _AT_HEIGHT_SHARE = 0.3
 
 
 def amid_rough(surface: TopSurface, xyz: np.ndarray, segment_id: np.ndarray) -> np.ndarray:
-    """Return which points (n,) are of roof surfaces that lie amid what is rough.
+    """Return which points (n,) are of roof surfaces that rough points surround.
 
     Parameters
     ----------
     surface : TopSurface
         The surface of the points ``xyz`` (n, 3), m, seen from above.
     segment_id : ndarray of shape (n,), int32
-        Roof surfaces from 1; 0 is none.
+        Roof surfaces from 1; 0 where there is none.
     """
     on_top = np.flatnonzero((segment_id > 0) & surface.on_top(xyz))
     row, column = surface.cell[0][on_top], surface.cell[1][on_top]

@@ -30,11 +30,11 @@ _ON_PLANE = 3.0
 
 _MOMENTS = ("count", "center", "covariance")
 
-# Facades decide on each other as far as this (m) around a corner: where the border lies, and which side is outside.
+# Distance (m) from a corner within which the border of a facade, and its outer side, depend on the facade beside it.
 AROUND_CORNER = 5.0
 
-# Points up to 10 m before a facade (m) tell from which side it was seen, and so they do for its neighbors, which decide
-# on it, too. Its own points, which lie as far off as it is long, are not counted in.
+# Points up to 10 m before a facade tell from which side it was seen, and as many before the facades beside it, on
+# which its border depends. The length of the facade itself is not included (m).
 _AROUND = 20.0
 
 FACADE_FIELDS = (
@@ -134,7 +134,7 @@ def extract_facades(
     Returns
     -------
     segment_id : ndarray of shape (n,), int32
-        Facades from 1, from west to east; 0 is none.
+        Facades from 1, from west to east; 0 where there is none.
     facades : LayerFeatures
         Polygons with Z, counterclockwise seen from outside, with the fields above.
 
@@ -188,7 +188,7 @@ def extract_facades(
         complete=complete,
         monitor=monitor.part(0.65, 0.95),
     )
-    # The area that was seen: a post, and what stands beside its foot, have a boundary of more.
+    # The area that was seen: the boundary of a post and of objects at its foot has a larger one.
     facades = [each for each in facades if min(each.area, each.seen_area) >= min_area and each.height >= min_height]
     facades = _numbered(facades)
     if corner_distance:
@@ -208,7 +208,7 @@ def _steep_planes(
     sampling: CloudSampling,
     monitor: Monitor,
 ) -> np.ndarray:
-    """Return the steep planes (n,) from 1 of points that stand above one another; 0 is none."""
+    """Return the steep planes (n,) from 1 of points that stand above one another; 0 where there is none."""
     plane = np.zeros(len(xyz), np.int64)
     rows = np.flatnonzero(_is_stacked(xyz, min_height))
     if len(rows):

@@ -103,7 +103,7 @@ def extract_openings(
     xyz : ndarray of shape (n, 3), float64
         Coordinates, m.
     segment_id : ndarray of shape (n,), int32
-        Facades from 1, as "Extract facades" finds them; 0 is none. Segments that are not steep are left out.
+        Facades from 1, as "Extract facades" finds them; 0 where there is none. Only steep segments are used.
 
     Returns
     -------
@@ -186,7 +186,7 @@ def _ground_near(xyz: np.ndarray) -> Callable[[np.ndarray], float]:
 
 
 def _near(facade: Facade, xyz: np.ndarray, max_depth: float) -> np.ndarray:
-    """Return the points in the box around a facade and what is behind it."""
+    """Return the points in the box around a facade and the room behind it."""
     corners = facade.rings[0]
     low, high = corners.min(axis=0) - max_depth, corners.max(axis=0) + max_depth
     inside = np.ones(len(xyz), bool)

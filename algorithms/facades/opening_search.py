@@ -128,7 +128,7 @@ class Raster:
         return mask
 
     def groups(self) -> tuple[np.ndarray, int]:
-        """Return the group from 1 of each cell with something behind the wall, and how many; 0 is none.
+        """Return the group from 1 of each cell with something behind the wall, and how many; 0 where there is none.
 
         Cells are of one group if they are near each other with no wall between them.
         """

@@ -48,7 +48,7 @@ class Boxes:
     Raises
     ------
     ValueError
-        If the points are spread so far that there are more boxes than numbers.
+        If there are more boxes than 64-bit numbers, as the points are spread too far.
     """
 
     def __init__(self, xyz: np.ndarray, side, from_zero: bool = False) -> None:
@@ -115,7 +115,7 @@ class Boxes:
     ) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
         """Yield chunks of (pair of boxes, point, point of ``other``) over all points of the pairs of boxes.
 
-        Points are counted in the order of the boxes; with ``most``, only so many of each box are taken.
+        Points are counted in the order of the boxes; ``most`` is the largest number taken of each box.
         """
         own, others = self.size[here], other.size[there]
         if most is not None:
@@ -191,7 +191,7 @@ def _joined(component: np.ndarray, here: np.ndarray, there: np.ndarray) -> np.nd
 
 
 def by_first_point(component: np.ndarray) -> np.ndarray:
-    """Renumber components (n,) from 0 in the order of their first points, int32; negative numbers are none, now -1."""
+    """Renumber components (n,) from 0 in the order of their first points, int32; negative numbers become -1."""
     number, first, inverse = np.unique(component, return_index=True, return_inverse=True)
     negative = int(np.searchsorted(number, 0))
     rank = np.full(len(first), -1, np.int32)

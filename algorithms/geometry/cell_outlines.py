@@ -10,7 +10,7 @@ from .rings import signed_area
 # Directions of a cell's sides, counterclockwise around it: the south side runs east, the east side north, …
 _EAST, _NORTH, _WEST, _SOUTH = range(4)
 
-# Where two cells touch by a corner only, they are joined by a neck: so much of a side is cut off beside it.
+# Cells that touch by a corner only are joined by a neck. Part of a side that is cut off beside it.
 _NECK = 0.1
 
 

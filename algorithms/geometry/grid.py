@@ -12,7 +12,7 @@ from .groups import components
 # A raster larger than this, in cells and in cells for each point, is a mistake in the coordinates.
 _MOST_CELLS, _MOST_CELLS_PER_POINT = 10_000_000, 20
 
-# A table so many times as long as the numbers in it takes less memory and time than sorting them.
+# Longest table, in multiples of the count of numbers in it, that takes less memory and time than sorting them.
 _TABLE = 4
 
 
@@ -65,7 +65,7 @@ def grid_over(xyz: np.ndarray, size: float) -> Grid:
 def fixed_grid_over(xyz: np.ndarray, size: float) -> Grid:
     """Return the grid of those cells of ``size`` (m) at multiples of it that points lie in.
 
-    A part of a cloud has the cells of the whole, so that what is found does not depend on where a cloud was cut. Places
+    A part of a cloud has the cells of the whole, so that results do not depend on where a cloud was cut. Places
     are to be measured from the corner of the whole, see :meth:`.CloudSampling.from_corner`.
     """
     (west, south), (east, north) = lattice(plan_box(xyz), size).tolist()
@@ -127,11 +127,11 @@ def distinct(numbers: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 class SparsePointsError(ValueError):
-    """Points lie so far apart that a raster of cells over them would hold next to nothing."""
+    """Points lie too far apart for a raster of cells over them."""
 
 
 def refuse_sparse(xyz: np.ndarray, size: float, most_cells: int = _MOST_CELLS) -> None:
-    """Refuse points that lie so far apart that a raster of cells over them would hold next to nothing.
+    """Refuse points that lie too far apart for a raster of cells, which would be nearly empty.
 
     Parameters
     ----------

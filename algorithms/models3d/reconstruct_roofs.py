@@ -49,7 +49,8 @@ from .solids import ROOF, WALL
 # Fewer points than this over a footprint show no roof.
 _LEAST_POINTS = 4
 
-# The ground of a building is this percentile of the ground points nearest to its outline, taken every so many meters.
+# The ground of a building is this percentile of the ground points nearest to places along its outline, and the distance
+# between these places (m).
 _GROUND_PERCENTILE, _GROUND_STEP = 5.0, 2.0
 
 # Footprints without a model that a warning names.
@@ -163,7 +164,7 @@ def reconstruct_roofs(
     Returns
     -------
     buildings : LayerFeatures
-        The ground of each building, at its height, with what is known of the model.
+        The ground of each building, at its height, with the attributes of the model.
     walls, roofs : LayerFeatures
         The other faces of the best level of each building, as polygons with heights.
     cityjson, obj : list of NamedModel
@@ -308,7 +309,7 @@ def _ground_heights(ground: np.ndarray) -> Callable[[list], float]:
 
 
 def _along(ring: np.ndarray) -> np.ndarray:
-    """Return places (k, 2) along a ring, its vertices and what is needed between them."""
+    """Return places (k, 2) along a ring, its vertices and as many as needed between them."""
     parts = []
     for start, end in zip(ring[:-1], ring[1:]):
         count = max(1, int(np.ceil(np.hypot(*(end - start)) / _GROUND_STEP)))

@@ -21,8 +21,8 @@ _POINTS_PER_CELL = 450
 # Empty bins that part noise from the body: a chimney, a treetop or a rock face leaves no such gap.
 _GAP_BINS = 2
 
-# So many points close together are a thing, be it as thin as the head of a lamp; birds and stray returns come alone.
-# Close is so many point spacings, and a meter at least.
+# Number of points close together that are an object, even one as small as the head of a lamp: birds and stray returns
+# are single points. Close: within this many point spacings, and a meter at least.
 _GROUP_SIZE, _GROUP_SPACINGS = 3, 3.0
 
 

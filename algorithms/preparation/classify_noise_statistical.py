@@ -15,7 +15,7 @@ from ..stage import Monitor, Param, stage
 from ..threads import n_threads
 from .isolated_points import add_isolated, link_length
 
-# Points asked for at once, so that progress is told and the neighbors of only so many are held.
+# Points of a chunk: progress is shown after each, and only its neighbors are held in memory.
 _CHUNK = 100_000
 
 # Of points with many others around them, about as many as this are enough for the mean and the standard deviation of

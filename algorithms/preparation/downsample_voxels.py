@@ -14,7 +14,7 @@ from ..geometry.sparse_voxels import TOUCH, voxel_index
 from ..stage import Monitor, Param, stage
 from ..threads import in_chunks
 
-# Points worked on at once: what is gathered for them stays in the processor's cache.
+# Points of a chunk: values gathered for them stay in the processor's cache.
 _CHUNK = 50_000
 
 # Places inside a voxel are whole numbers of this fraction of its side, so that sums don't depend on the order.
@@ -237,7 +237,7 @@ def _nearest(
     which : ndarray of shape (m,)
         Voxel of each point.
     touch : float
-        Points that are so much (steps) farther away than the nearest are as near: only rounding tells them apart.
+        Difference of distances (steps) below which points are equally near: it comes from rounding.
     times : tuple
         Further dimensions (n,) of the cloud, or None, by which points at one place are told apart.
     rows : ndarray of shape (m,)

@@ -1,8 +1,8 @@
 """Isolated points: those in the air over the scene, and those under its ground.
 
-Both are told by what can't be rather than by numbers of points: nothing solid hangs free in the air, and the laser
-doesn't see through the ground. Among all points of a column of air, those of a plume or a flock are few, since most
-pulses pass it; those of a roof or a crown are most, whether or not what carries it was seen.
+Both are recognized by physics rather than by numbers of points: solid objects are supported from below, and a laser
+pulse does not pass the ground. The points of a plume or a flock are few among all points of a column of air, since most
+pulses pass it; those of a roof or a crown are most of them, whether or not its walls or its trunk were seen.
 """
 
 from __future__ import annotations

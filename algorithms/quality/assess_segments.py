@@ -69,11 +69,11 @@ def assess_segments(
     xyz : ndarray of shape (n, 3)
         Coordinates (m) of the input.
     segment_id : ndarray of shape (n,)
-        Segments of the input; 0 is none.
+        Segments of the input; 0 where there is none.
     reference_xyz : ndarray of shape (m, 3)
         Coordinates (m) of the reference: the same points in any order, perhaps with others.
     reference_segment_id : ndarray of shape (m,)
-        True segments; 0 is none.
+        True segments; 0 where there is none.
 
     Returns
     -------
@@ -144,7 +144,7 @@ def match_segments(found: np.ndarray, true: np.ndarray, min_overlap: float) -> M
     Parameters
     ----------
     found, true : ndarray of shape (n,), int64
-        Segments of points from 1 without gaps, of the input and of the reference; 0 is none.
+        Segments of points from 1 without gaps, of the input and of the reference; 0 where there is none.
     min_overlap : float
         Share of points, more than 0.5.
     """

@@ -16,7 +16,7 @@ from .density import effective_density, point_density
 from .height_resolution import height_resolution, rounding_deviation
 from .surface_noise import SurfaceSample, plane_roughness
 
-# What is measured, with its name and unit in the log.
+# Measurements, each with its name and unit in the log.
 _MEASURES = {
     "density": ("density", "points/m²"),
     "effective_density": ("effective density", "points/m²"),
@@ -154,11 +154,11 @@ class CloudSampling:
 
     @property
     def measured(self) -> dict[str, float]:
-        """What was measured so far, by name."""
+        """Measurements made so far, by name."""
         return {name: self.__dict__[name] for name in _MEASURES if name in self.__dict__}
 
     def __str__(self) -> str:
-        """Return what was measured so far, as the log shows it."""
+        """Return the measurements made so far, as the log shows them."""
         labeled = ((*_MEASURES[name], value) for name, value in self.measured.items())
         return ", ".join(f"{label} {value:.4g} {unit}".rstrip() for label, unit, value in labeled)
 

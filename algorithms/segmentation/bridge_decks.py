@@ -36,14 +36,14 @@ _MOST_ROUGH = 0.25
 # A deck goes on into the terrain where heights differ by no more (m).
 _SAME_LEVEL = 0.5
 
-# Ground this high over a deck (m) is none: a filter took cars for it.
+# Ground points this high over a deck (m) are cars that a filter took for ground.
 ABOVE_DECK = 0.5
 
 # Terrain at an end of a deck has at least this many times its points.
 _LEAST_TERRAIN = 0.5
 
-# Ground that a deck leads to is looked for so many reaches ahead of its ends, and may rise or fall on the way as a road
-# does.
+# Ground that a deck leads to is looked for at these distances (reaches) ahead of its ends, with at most the slope of a
+# road between them.
 _AHEAD, _ROAD = (1.5, 2.5, 3.5), 0.1
 
 # Share of the width of an end ahead of which there is such ground: more than half, but for what trees hide.
@@ -225,7 +225,7 @@ class Decks:
         way = others[nearest[near]] - deck[near]
         ahead = way[:, :2] @ axis
         aside = way[:, 0] * axis[1] - way[:, 1] * axis[0]
-        # Terrain beside a deck is none that it leads to.
+        # Terrain beside a deck is not ahead of its ends.
         is_next = (np.abs(way[:, 2]) <= _SAME_LEVEL) & (np.abs(ahead) >= np.abs(aside))
         low, high = along.min() + _END * np.ptp(along), along.max() - _END * np.ptp(along)
         across = deck[:, 0] * axis[1] - deck[:, 1] * axis[0]

@@ -18,8 +18,8 @@ from .bridge_decks import ABOVE_DECK, Decks, cell_size
 # A segment is an object if it is raised along at least this share of its border, that of the cloud included.
 _RAISED_BORDER = 0.5
 
-# Points of the bare earth lie this high over the lowest of their cell at most: on a slope of so many degrees, and
-# noise.
+# Greatest height of points of the bare earth over the lowest one of their cell: from a slope (degrees), and from noise
+# (standard deviations).
 _SLOPE, _NOISE_STEP = 30.0, 4.0
 
 
@@ -75,7 +75,7 @@ def classify_ground_segments(
         ASPRS classes; noise (7, 18) and water (9) stay, earlier bridge deck (17) is forgotten. Where there
         is ground (2), it stays but for decks, and bridges must lead to it.
     segment_id : ndarray of shape (n,), int32
-        Segments, 0 is none.
+        Segments; 0 where there is none.
 
     Returns
     -------
@@ -114,7 +114,7 @@ def classify_ground_segments(
     if not is_terrain.any():
         is_terrain = is_earth.copy()
         is_terrain[is_earth] = _is_low(points[is_earth], cell / 2, _NOISE_STEP * noise)
-        monitor.inform("The cloud has no ground points (class 2); the segments alone tell what is bare earth.")
+        monitor.inform("The cloud has no ground points (class 2); bare earth is found by the segments alone.")
     is_deck = decks.find(points, is_earth, is_terrain, monitor.part(0.2, 0.9))
     is_ground = is_terrain & ~is_deck
     # Cars and parapets on a deck are no ground; terrain that rises beside the deck stays.

@@ -192,7 +192,7 @@ def share_around(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray) -> np.n
 
 
 def share_joined(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray, density: float) -> np.ndarray:
-    """Return how much of all that each group of points hangs together with belongs to the chosen groups.
+    """Return the share of the points connected to each group that belong to the chosen groups.
 
     Parameters
     ----------

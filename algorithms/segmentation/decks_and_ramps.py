@@ -8,8 +8,8 @@ from ..geometry.grid import Grid, connected_cells, distinct, find_cells, fixed_g
 from ..geometry.groups import members
 from ..packages import ndimage
 
-# Cells so wide that no gap between scan lines, or between points by chance, parts what hangs together: in spacings of
-# points, and at least (m).
+# Side of the cells, in point spacings, and its least value (m): wide enough that gaps between scan lines, and gaps by
+# chance, do not divide a surface.
 _CELL_SPACINGS, _LEAST_CELL = 3.0, 2.0
 
 # A ramp rises no more than this over its length, and the wall of a deck does.
@@ -76,7 +76,7 @@ def part_decks(
             number[following - 1] = number.max() + 1
     deck_of_cell = np.full(len(cells), -1, np.int32)
     deck_of_cell[high] = number[part]
-    # At its edge a deck shares cells with what lies at its foot.
+    # At its edge a deck shares cells with lower points at its foot.
     is_deck = xyz[member, 2] >= top[which] - _STEEPEST * grid.size
     deck[member[is_deck]] = deck_of_cell[which[is_deck]]
     return deck

@@ -53,7 +53,7 @@ class Regions:
     Attributes
     ----------
     region : list of int
-        Region of each piece, from 0; -1 is none.
+        Region of each piece, from 0; -1 where there is none.
     plane : ndarray of shape (m, 4)
         Unit normal and its product with a point of the plane that each piece of a region lies on.
     """

@@ -24,10 +24,10 @@ _SAME_SURFACE = 3.48
 # ... and the angle between their normals is no larger (cosine).
 _SAME_DIRECTION = np.cos(np.radians(15.0))
 
-# Links are looked for among so many neighbors.
+# Number of neighbors among which links are looked for.
 _LINKS = 8
 
-# Points, and candidates for their planes, of a chunk: what is looked up of them stays in the caches.
+# Points, and candidates for their planes, of a chunk: their values stay in the processor's caches.
 _CHUNK, _CHUNK_CANDIDATES = 20_000, 250_000
 
 
@@ -82,7 +82,7 @@ def segment_patches(
     """
     if len(xyz) < LEAST_NEIGHBORS:
         return np.full(len(xyz), -1, np.int32), np.zeros(len(xyz), np.float32)
-    # Points that lie together follow each other, so that what is looked up of neighbors is in the caches.
+    # Points that are near each other follow each other, so that values of neighbors are in the processor's caches.
     order = spatial.cKDTree(xyz, balanced_tree=False).indices.astype(np.int32)
     neighborhood = replace(neighborhood, count=min(neighborhood.count, len(xyz)))
     xyz = xyz[order]

@@ -39,7 +39,7 @@ def joined_planes(
     boxes : Boxes
         The voxels and their points.
     label : ndarray of shape (n,), int
-        Plane of each point in the order of the boxes: from 1 in each voxel, 0 is none.
+        Plane of each point in the order of the boxes: from 1 in each voxel; 0 where there is none.
     tolerance : float
         Distance within which a point lies on a plane, m.
     min_area : float

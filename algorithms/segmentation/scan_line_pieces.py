@@ -71,11 +71,11 @@ def slices(xyz: np.ndarray, direction: float, width: float) -> tuple[np.ndarray,
 def pieces(
     xyz: np.ndarray, direction: float, width: float, near: NearPoints, min_points: int, obstacle: float = 0.0
 ) -> np.ndarray:
-    """Return the piece (n,) that each point belongs to on the lines of one direction, from 0; -1 is none.
+    """Return the piece (n,) that each point belongs to on the lines of one direction, from 0; -1 where there is none.
 
     Points of a line that are near each other, directly or through others, are a piece; it may pass over points that
-    lie off it. Pieces of fewer than ``min_points`` points are none. One goes on behind an ``obstacle`` of at most that
-    width (m) if the line between their ends meets the criteria of ``near`` but the distance.
+    lie off it. Groups of fewer than ``min_points`` points are left out. A piece goes on behind an ``obstacle`` of at
+    most that width (m) if the line between their ends meets the criteria of ``near`` but the distance.
     """
     order, line = slices(xyz, direction, width)
     piece = np.empty(len(order), np.int64)
@@ -117,7 +117,7 @@ def _near_on_lines(points: np.ndarray, line: np.ndarray, near: NearPoints) -> np
 def ends_of(rows: np.ndarray, number: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the first and the last of ascending ``rows`` (k,) of each ``number`` (k,); each of ``count`` has some."""
     first, last = np.empty((2, count), np.int64)
-    # Where a number occurs more than once, what is written last remains.
+    # Where a number occurs more than once, the value written last remains.
     first[number[::-1]] = rows[::-1]
     last[number] = rows
     return first, last
@@ -143,7 +143,7 @@ def _over_obstacles(points: np.ndarray, along: np.ndarray, piece: np.ndarray, ne
 def merged_pieces(piece_sets: list[np.ndarray]) -> np.ndarray:
     """Return the segment (n,), int32, of each point: pieces (n,) of all directions are one where they share a point.
 
-    Segments count from 0; -1 is none.
+    Segments count from 0; -1 where there is none.
     """
     n = len(piece_sets[0])
     first, ones, others = n, [], []

@@ -75,7 +75,7 @@ def segment_clusters(
     Returns
     -------
     cluster_id : ndarray of shape (n,), int32
-        Clusters from 1, in the order of their first cores; 0 is none.
+        Clusters from 1, in the order of their first cores; 0 where there is none.
 
     Raises
     ------

@@ -113,7 +113,7 @@ def segment_planes_ransac(
     Returns
     -------
     segment_id : ndarray of shape (n,), int32
-        Planes from 1, in the order of their first points; 0 is none.
+        Planes from 1, in the order of their first points; 0 where there is none.
     normal : ndarray of shape (n, 3), float32, or None
         Upward normals of the planes, NaN on none; None unless asked for.
 

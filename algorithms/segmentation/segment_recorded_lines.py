@@ -146,7 +146,7 @@ def segment_recorded_lines(
     Returns
     -------
     segment_id : ndarray of shape (n,), int32
-        Segments from 1, those of the largest seeds first; 0 is none.
+        Segments from 1, those of the largest seeds first; 0 where there is none.
 
     Notes
     -----
@@ -222,7 +222,7 @@ def _distance_of_lines(points: np.ndarray, density: float) -> float:
 def _with_others(
     points: np.ndarray, row: np.ndarray, piece: np.ndarray, regions: Regions, distance: float, tolerance: float
 ) -> np.ndarray:
-    """Return the region (n,) of each point, -1 is none: that of its piece, or of points beside it on whose plane it is.
+    """Return the region (n,) of each point: that of its piece, or of points beside it on whose plane it is; or -1.
 
     ``row`` and ``piece`` tell the points of pieces.
     """

@@ -132,7 +132,7 @@ def segment_roofs(
 
     A roof surface is a patch on which neighbors share a plane, that is large and high enough and does not go on
     into the ground as bridges and slopes do; a deck with a narrow ramp is parted from it. Surfaces rougher than roofs
-    are, smooth spots of crops and crowns, count only where they are connected to smoother ones. What is left above
+    are, smooth spots of crops and crowns, count only where they are connected to smoother ones. The points left above
     the ground (crowns, hedges, wires, roof edges) is clustered by distance, so that both kinds can be told apart by
     their entropy afterwards.
 
@@ -148,9 +148,9 @@ def segment_roofs(
     Returns
     -------
     segment_id : ndarray of shape (n,), int32
-        Roof surfaces from 1; 0 is none.
+        Roof surfaces from 1; 0 where there is none.
     cluster_id : ndarray of shape (n,), int32
-        Roof surfaces (same numbers as segment_id), then clusters of everything else; 0 is none.
+        Roof surfaces (same numbers as segment_id), then clusters of everything else; 0 where there is none.
     reason : ndarray of shape (n,), uint8
         Raised points of surfaces that go on into the ground have one, see :class:`~..cloud.reasons.Reason`.
 

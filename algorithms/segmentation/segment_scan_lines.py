@@ -13,7 +13,7 @@ from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..stage import Param, stage
 from .scan_line_pieces import NearPoints, merged_pieces, pieces
 
-# Width of a line in point spacings: with more, lines mix what lies side by side; with less, neighbors on a line lie
+# Width of a line in point spacings: wider lines mix objects side by side; in narrower ones, neighbors on a line lie
 # farther apart than the cloud's points do.
 _WIDTH_SPACINGS = 3.0
 
@@ -127,7 +127,7 @@ def segment_scan_lines(
     Returns
     -------
     segment_id : ndarray of shape (n,), int32
-        Segments from 1 in the order of their first points; 0 is none.
+        Segments from 1 in the order of their first points; 0 where there is none.
 
     Notes
     -----

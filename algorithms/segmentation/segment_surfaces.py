@@ -150,7 +150,7 @@ def segment_surfaces(
     Returns
     -------
     segment_id : ndarray of shape (n,), int32
-        Surfaces from 1, 0 is none.
+        Surfaces from 1; 0 where there is none.
 
     Notes
     -----

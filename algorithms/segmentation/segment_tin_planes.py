@@ -86,8 +86,8 @@ def segment_tin_planes(
     Returns
     -------
     segment_id : ndarray of shape (n,), int32
-        Planes from 1 in the order of their first points; 0 is none. A point has the plane with most of its triangles,
-        by area.
+        Planes from 1 in the order of their first points; 0 where there is none. A point has the plane with
+        most of its triangles, by area.
 
     Notes
     -----
@@ -153,7 +153,7 @@ def _longest_edges(points: np.ndarray, facets: np.ndarray) -> np.ndarray:
 
 
 def _of_points(facets: np.ndarray, group: np.ndarray, area: np.ndarray, n: int) -> np.ndarray:
-    """Return for each of n points the group with the largest area around it, numbered by first points; -1 is none."""
+    """Return for each of n points the group with the largest area around it, numbered by first points, or -1."""
     inside = group >= 0
     point, which = facets[inside].ravel().astype(np.int64), np.repeat(group[inside], 3)
     weight = np.repeat(area[inside], 3)

@@ -51,14 +51,14 @@ def split_lines(xyz: np.ndarray, line: np.ndarray, tolerance: float, min_points:
     tolerance : float
         Distance from the chord of a piece within which its points lie, m.
     min_points : int
-        Pieces with fewer points are none.
+        Least number of points of a piece.
     monitor : Monitor
         Receives progress.
 
     Returns
     -------
     ndarray of shape (n,), int64
-        Piece of each point, from 0 along the lines; -1 is none.
+        Piece of each point, from 0 along the lines; -1 where there is none.
 
     Notes
     -----

@@ -260,7 +260,7 @@ def grow_surfaces(planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria, 
     Returns
     -------
     ndarray of shape (n,), int32
-        Surface of each point from 0, -1 is none.
+        Surface of each point from 0; -1 where there is none.
 
     Notes
     -----
@@ -411,7 +411,7 @@ def grow_planes(
     Returns
     -------
     ndarray of shape (n,), int32
-        Plane of each point from 0, -1 is none.
+        Plane of each point from 0; -1 where there is none.
 
     Notes
     -----

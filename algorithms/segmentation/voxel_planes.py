@@ -44,7 +44,7 @@ class VoxelPlanes:
         self.shares = np.random.default_rng(seed).random((max_planes, trials, 3))
 
     def find(self, monitor: Monitor) -> np.ndarray:
-        """Return the plane (n,), int16, of each point in the order of the boxes: from 1 in each voxel, 0 is none."""
+        """Return the plane (n,), int16, of each point in the order of the boxes: from 1 in each voxel, or 0."""
         plane = np.zeros(len(self.boxes.order), np.int16)
         voxels = np.flatnonzero(self.boxes.size > 3)
         # Voxels with about as many points go together, so that hardly any place is left empty.

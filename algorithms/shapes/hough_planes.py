@@ -133,7 +133,7 @@ class HoughPlanes:
         self.cosine = np.cos(np.radians(max_angle))
 
     def find(self, monitor: Monitor) -> np.ndarray:
-        """Return the plane (n,), int16, of each point in the order of the boxes: from 1 in each window, 0 is none."""
+        """Return the plane (n,), int16, of each point in the order of the boxes: from 1 in each window, or 0."""
         plane = np.zeros(len(self.boxes.order), np.int16)
         search = self._by_points if self.normals is None else self._by_normals
 

@@ -16,8 +16,8 @@ from ..stage import LayerFeatures, Monitor
 # A piece that lies in the largest one but for this part of it adds nothing.
 _WITHIN = 0.95
 
-# The outline of several pieces of a plane is drawn of cells of the first size (m), larger ones where there would be
-# more than so many.
+# Size of the cells (m) of which the outline of several pieces of a plane is drawn, and their largest number, for which
+# the cells of larger planes are enlarged.
 _CELL, _MOST_CELLS = 0.1, 2_000_000
 
 

@@ -16,7 +16,7 @@ _RADIUS_SPACINGS = 1.2
 # Least radius (standard deviations of the noise across surfaces): the arc that is seen rises above the noise.
 _RADIUS_DEVIATIONS = 6.0
 
-# Largest radius (m) that is searched for with nothing set: tanks have up to 20 m, and time goes with what is wider.
+# Largest radius (m) that is searched for with nothing set: tanks have up to 20 m, and larger ones take more time.
 _LARGEST_RADIUS = 20.0
 
 # How far around a point of a shape is looked (of its radius) where a cloud is worked on in parts.

@@ -89,7 +89,7 @@ def searched_points(
     side: float,
     corner: Optional[np.ndarray] = None,
 ) -> SearchedPoints:
-    """Return the points that are neither ground, water nor noise, and belong to what is searched.
+    """Return the points that are neither ground, water nor noise, and belong to the searched segments.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def named(
     points : SearchedPoints
         The points that were searched.
     label : ndarray of shape (k,), int
-        Number of the shape that each lies on, from 1; 0 is none.
+        Number of the shape that each lies on, from 1; 0 where there is none.
     kind : Shape
         What was found.
     segment_id, shape : ndarray of shape (n,), optional
@@ -166,7 +166,7 @@ def named(
     segment_id, shape : ndarray of shape (n,), int32 and uint8
         New numbers follow the largest one that is kept.
     first : int
-        What is added to the numbers of the shapes.
+        Number that is added to those of the shapes.
     """
     ids, shapes = np.zeros(n, np.int32), np.zeros(n, np.uint8)
     if search_in == EACH_SEGMENT and segment_id is not None:
@@ -252,7 +252,7 @@ def search_shapes(
     cloud : tuple of ndarray
         Coordinates (n, 3), m, and classes (n,); segments and shapes (n,) found before, or None.
     kind : Shape
-        What is searched for.
+        Settings of the search.
     search : callable
         Returns the shapes among points, for the least and the largest radius (m).
     min_radius, max_radius, tolerance, n_neighbors, search_in, sampling

@@ -272,7 +272,7 @@ def classify_ground_tin(
         low_noise = false_pits(points, surface.is_node, surface.above(), last, spacing, monitor.part(0.85, 0.9))
         surface = surface.without(low_noise, monitor.part(0.9, 1))
 
-    # 4. What lies near the finished surface is ground.
+    # 4. Points near the finished surface are ground.
     is_ground, sweep_distance = _sweep(surface, sweep_distance, scale, spacing, least)
     monitor.resolved(
         iteration_angle=angle, iteration_distance=distance, edge_length=edge_length, sweep_distance=sweep_distance

@@ -25,7 +25,7 @@ _PIT_REACH = 10.0
 # are those of multipath.
 _PIT_SHARE = 0.1
 
-# Cells are looked at one by one up to so far, and in as many steps beyond.
+# Distance (cells) up to which each cell is examined; beyond it, the same number of steps.
 _PIT_STEPS = 10
 
 # Without a largest building given, windows go up to this size (m); larger halls are found as free-standing segments.
@@ -233,7 +233,7 @@ def _view(cells: _Cells, max_building_size: Optional[float], slope: Optional[np.
     slope = lowest.at_points(known)
     above = cells.xyz[:, 2] - lowest.at_points(surface)
     says_terrain = np.where(is_object, -1, above <= removal.rise(slope)).astype(np.int8)
-    # What is seen through a roof as through a pit lies lower than the surface there.
+    # Points seen through a roof, as those of a pit, lie lower than the surface there.
     stands_free = lowest.at_points(is_free) & (above >= 0)
     if cells.low_uphill:
         below = lowest.at_points(_rim_levels(surface, is_free)) - cells.xyz[:, 2]
@@ -251,7 +251,7 @@ def _rim_levels(surface: np.ndarray, is_free: np.ndarray) -> np.ndarray:
 
 
 def _is_compact(box: np.ndarray) -> bool:
-    """Return whether the box around a turned ``box`` (2, 2) is not so much larger that cells over it are too many."""
+    """Return whether the boxes around a turned ``box`` (2, 2) are small enough to be covered by cells."""
     sides = np.ptp(box, axis=0)
     turns = ((np.cos(angle), np.sin(angle)) for angle in np.radians(_TURNS))
     return all((cos * sides + sin * sides[::-1]).prod() <= _MOST_TURNED * sides.prod() for cos, sin in turns)

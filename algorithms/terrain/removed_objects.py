@@ -193,8 +193,8 @@ class _Side:
 def _sides(surface: np.ndarray, slope: np.ndarray, cell_size: float, spacing: float) -> Iterator[_Side]:
     """Yield the four sides of the cells of a surface, in the order of ``adjacent_cells``.
 
-    A step is none if it is low, or if the surface goes on as steeply on one of its sides: the flank of a bank. It goes
-    from point to point, so that flanks are measured over a spacing where that is more than a cell.
+    Low steps are left out, and those where the surface goes on as steeply on one of its sides: the flank of a bank.
+    Flanks are measured from point to point, over a spacing where that is more than a cell.
     """
     bank_cells = max(1, round(spacing / cell_size))
     eave_cells = max(_EAVE_CELLS, bank_cells)

@@ -24,7 +24,7 @@ _HEIGHT = 0.5
 # as far above the opened surface where slopes of 12° meet in them, but they are longer.
 _LENGTH = 8.0
 
-# Share of what is longer that lies beside points that are no ground, from which it is the walls of a larger object.
+# Share of a longer ring beside points of other classes, from which on it is the walls of a larger object.
 _BESIDE = 0.5
 
 # A window is centered no farther beyond the end of the cloud than this share of its radius, so that it touches ground.

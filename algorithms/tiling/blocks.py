@@ -32,7 +32,7 @@ _BESIDE = 4.0
 # A window is enlarged where it cuts off features, to at most this many times its halo on a side.
 _MOST_HALOS = 8
 
-# Features that can be put together from pieces are left in pieces where they are longer than so many halos.
+# Length (halos) beyond which features that can be put together from pieces are left in pieces.
 _PIECE_HALOS = 2
 
 # A window of fewer points is enlarged, too: stages refuse two points, of a bird over water say, as no surface.
@@ -45,7 +45,7 @@ _BETWEEN_LOOKS = 0.5
 # Arrays of a result that are kept by the names of dimensions.
 _KINDS = ("dimensions", "used", "counts", "most", "inside", "beside", "rasters", "lattices", "pieces")
 
-# Those of them that grow with the points of a block: what is known of all blocks at once has none of them.
+# Those of them that grow with the points of a block; they are left out where all blocks are in memory at once.
 _LARGE = ("dimensions", "inside", "beside", "rasters")
 
 
@@ -153,7 +153,7 @@ class BlockResult:
 
     @classmethod
     def read(cls, path: Path, with_points: bool = True) -> BlockResult:
-        """Return what :meth:`write` wrote; without the points there are none of the arrays that grow with them."""
+        """Return what :meth:`write` wrote; without the points, arrays that grow with them are left out."""
         with np.load(path, allow_pickle=False) as stored:
             by_kind: dict[str, dict[str, np.ndarray]] = {kind: {} for kind in _KINDS}
             layers: dict[str, dict[str, np.ndarray]] = {}
@@ -386,9 +386,9 @@ def _number(
 
 
 def _cut_off(boxes: np.ndarray, window: np.ndarray, survey: np.ndarray, around: float) -> np.ndarray:
-    """Return for features which sides (n, 2, 2) of the window may cut them off, by their boxes and what lies around.
+    """Return for features which sides (n, 2, 2) of the window may cut them off, by their boxes widened by ``around``.
 
-    Where the survey ends there is none.
+    Sides at the end of the survey cut nothing off.
     """
     low = (boxes[:, 0] < window[0] + around) & (window[0] > survey[0])
     high = (boxes[:, 1] > window[1] - around) & (window[1] < survey[1])

@@ -55,8 +55,8 @@ _MOST_POINTS = 5_300_000
 # lies around them.
 _SIDE_STEP, _LEAST_SIDE, _MOST_SIDE = 50.0, 100.0, 1600.0
 
-# In dense clouds sides are multiples of a smaller step (m), down to so many times what lies around on one side: a
-# seventh of the window is the block's then.
+# In dense clouds sides are multiples of a smaller step (m), and their least
+# value a multiple of the distance around a block: the block is then a seventh of its window.
 _DENSE_STEP, _LEAST_HALOS = 10.0, 1.25
 
 # A file of more points is cut first: read again for each of its blocks it would be read too often.
@@ -70,7 +70,8 @@ _SAMPLES_ACROSS, _SAMPLE_SIDE = 4, 100.0
 # Shares of the progress: cutting, sampling, blocks, layers; the rest is writing.
 _CUT, _SAMPLED, _WORKED, _JOINED = 0.05, 0.1, 0.88, 0.9
 
-# More blocks than this, and than one for so many points: a point far off makes the extent what it is not.
+# Largest number of blocks, and least mean number of points of a block in a survey of more: otherwise a single point far
+# away makes the extent too large.
 _MANY_BLOCKS, _POINTS_PER_BLOCK = 10_000, 100
 
 # What finds the layers that a composite is given, and what takes the rasters and text files that it makes.
@@ -337,7 +338,7 @@ class _Run:
             )
 
     def _key(self, paths: Iterable[Path], *facts: Any) -> str:
-        """Return a name for what is made of files in their present state, of facts, tunables and this version."""
+        """Return a name for the result of files in their present state, of facts, tunables and this version."""
         described = [[_state(path) for path in paths], self.pipeline.name, self.tunables, _version(), facts]
         return hashlib.sha256(json.dumps(described, default=str, sort_keys=True).encode()).hexdigest()[:16]
 

@@ -14,16 +14,16 @@ from .blocks import feature_boxes
 # Two features of different blocks are the same one if they share more than this part of the smaller one.
 _SAME = 0.5
 
-# Pieces of one feature share what lies around the edge between their blocks: more than this part of the smaller one, or
-# than this length or area (m, m²), which what merely touches does not.
+# Pieces of one feature overlap around the edge between their blocks: by more than this part of the smaller one, or by
+# more than this length or area (m, m²). Features that merely touch do not.
 _PIECES, _SHARED = 0.1, 1.0
 
-# Largest distance between planes in space that are the same one: so many root mean square distances of their points,
-# and this (m), for planes of points without noise.
+# Largest distance between planes in space that are the same one: in root mean square distances of their points,
+# and its least value (m), for planes of points without noise.
 _DEVIATIONS, _LEAST = 3.0, 0.005
 
 # Largest distance between axes or centers that are the same one, and largest difference of their radii (of the smaller
-# radius): what has the same points differs by less, and pipes in insulation or beside each other by more.
+# radius): shapes of the same points differ by less, and pipes in insulation or beside each other by more.
 _OFF = 0.2
 
 

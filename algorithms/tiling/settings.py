@@ -43,7 +43,7 @@ SETTINGS = by_name(
             "Side of a block (m, empty = automatic)",
             "Larger blocks take more memory and less time, as less of what surrounds them is worked on twice. Empty: "
             "the largest multiple of 50 m, from 100 to 1600 m, that has at most 5.3 million points with those around "
-            "it; in dense clouds a multiple of 10 m, from a little more than what lies around it on one side.",
+            "it; in dense clouds a multiple of 10 m, from 1.25 times the distance around it.",
         ),
         Setting(
             "PROCESSES",

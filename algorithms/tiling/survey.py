@@ -214,7 +214,7 @@ class Survey:
         for key in keys:
             is_next[1:] |= key[order][1:] != key[order][:-1]
         group = np.cumsum(is_next) - 1
-        # Two equal records of one file are two points: what is left out is what another file has again.
+        # Two equal records of one file are two points: only those that another file repeats are left out.
         first = source[order][is_next][group]
         is_kept = source[order] == first
         point = np.cumsum(is_kept) - 1

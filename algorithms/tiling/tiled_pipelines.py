@@ -103,7 +103,7 @@ def _is_one(output: Output, declared: Iterable[Union[Layer, Raster, TextFile]]) 
 
 @dataclass(frozen=True)
 class SurveyTool:
-    """What is done with the files of a survey and runs no stage."""
+    """Work on the files of a survey that runs no stage."""
 
     name: str
     title: str

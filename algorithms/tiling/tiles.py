@@ -36,8 +36,8 @@ class TileTask:
 
 
 def points_outside(path: Path, count: int) -> str:
-    """Return what is said of a file with so many points that no block has."""
-    # Which blocks and files have to do with each other is told by the bounds in the headers.
+    """Return the sentence on a file of which ``count`` points are in no block."""
+    # Files are assigned to blocks by the bounds in their headers.
     return f"{path.name} has {count} points outside the bounds in its header; repair its header first."
 
 

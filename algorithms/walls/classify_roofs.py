@@ -71,14 +71,14 @@ def classify_roofs(
     height_above_ground : ndarray of shape (n,), float32
         Heights, m.
     segment_id : ndarray of shape (n,), int32
-        Planes from 1, as "Segment planes (RANSAC)" finds them; 0 is none.
+        Planes from 1, as "Segment planes (RANSAC)" finds them; 0 where there is none.
 
     Returns
     -------
     classification : ndarray of shape (n,), uint8
         Roofs get 6; points of class 6 on no roof become 1.
     cluster_id : ndarray of shape (n,), int32
-        Buildings from 1, from west to east; 0 is none.
+        Buildings from 1, from west to east; 0 where there is none.
 
     Notes
     -----
@@ -126,7 +126,7 @@ def classify_roofs(
 
 def _is_on_roof(segment_id: np.ndarray, height: np.ndarray, split_height: float) -> np.ndarray:
     """Return which points (n,) are of planes that lie above the split height, by half of their points at least."""
-    # Other programs number segments as they like, and what is in none -1.
+    # Other programs number segments as they like, and use -1 for points of no segment.
     number, segment = np.unique(segment_id, return_inverse=True)
     high = np.bincount(segment, height >= split_height)
     on_roof = (2 * high >= np.bincount(segment)) & (number > 0)

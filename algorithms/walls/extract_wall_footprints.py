@@ -161,9 +161,9 @@ def extract_wall_footprints(
     xyz : ndarray of shape (n, 3), float64
         Coordinates, m.
     cluster_id : ndarray of shape (n,), int32
-        Building of each roof point from 1; 0 is none.
+        Building of each roof point from 1; 0 where there is none.
     wall_of : ndarray of shape (n,), int32, optional
-        Building of each wall point from 1; 0 is none. Without it, footprints are outlines of roofs.
+        Building of each wall point from 1; 0 where there is none. Without it, footprints are outlines of roofs.
     height_above_ground : ndarray of shape (n,), float32, optional
         Heights, m, for the attributes only.
     classification : ndarray of shape (n,), uint8, optional

@@ -512,7 +512,7 @@ def _cell_costs(cells: Arrangement, case: _Case, monitor: Monitor) -> tuple[np.n
 class _Simplification:
     """The cheapest outline of some cells, made cheaper line by line.
 
-    What leaving out a line changes lies near its edges: only so much of the outline is chosen anew, and only lines near
+    Leaving out a line changes the outline near its edges only: that part is chosen anew, and only lines near
     a change are tried again.
     """
 

@@ -108,7 +108,7 @@ def _resident(pid: int) -> int:
 
 
 def make_survey(folder: Path, millions: float, side: float) -> list[Path]:
-    """Write tiles of ``side`` (m) with so many million points: a real tile beside itself again and again."""
+    """Write tiles of ``side`` (m) with ``millions`` of points: a real tile beside itself again and again."""
     folder.mkdir(parents=True)
     whole = read_cloud(TILE)
     count = round(millions * 1e6)
@@ -219,7 +219,7 @@ class Job:
 
 
 def simulate(jobs: list[Job], cores: int, storage: float) -> tuple[float, float]:
-    """Return the seconds that jobs take on so many cores, and the share of them in which the storage is busy.
+    """Return the seconds that jobs take on ``cores``, and the share of them in which the storage is busy.
 
     A core takes the next job as soon as it has finished one. Reading and writing wait their turn at the storage, which
     serves one of them after the other, ``storage`` bytes per second.

@@ -103,7 +103,7 @@ def test_eave_ridge_and_volume_of_a_gable_roof(rng):
 @pytest.mark.parametrize("slope", [0.0, 0.5, 1.0])
 @pytest.mark.parametrize("density", [4, 12, 40])
 def test_walls_do_not_lower_the_eaves(rng, slope, density):
-    """A house of 12 m by 8 m, its eaves at 5 m, with as many points on its two long walls as on so much roof."""
+    """A house of 12 m by 8 m, its eaves at 5 m, with as many points per area on its two long walls as on the roof."""
     n, walls = 12 * 8 * density, 12 * 4 * density
     plan = rng.uniform([0, 0], [12, 8], (n, 2))
     house = np.column_stack([plan, 5 + slope * (4 - np.abs(plan[:, 1] - 4)) + rng.normal(0, 0.02, n)])

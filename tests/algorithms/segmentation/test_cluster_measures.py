@@ -1,4 +1,4 @@
-"""What stands around groups of points, and what lies beneath: by hand, and by comparing everything with everything."""
+"""Points around and beneath groups of points: by hand, and by comparing everything with everything."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ def test_shares_by_hand():
     group = np.array([0, 0, 0, 1, 2, 2, 2, 2, 2])
     np.testing.assert_allclose(share_around(xyz, group, np.array([True, False, False])), [0.75, 0.75, 0])
     np.testing.assert_allclose(share_around(xyz, group, np.array([True, True, True])), 1)
-    # What lies higher by a box and a half is as near as what lies a box beside, two boxes higher is not.
+    # Points higher by a box and a half are as near as those a box beside; points two boxes higher are not.
     above = np.where(np.isin(group, 1)[:, None], xyz + [0, 0, 6], xyz)
     np.testing.assert_allclose(share_around(above, group, np.array([True, False, False]))[:2], 0.75)
     far_above = np.where(np.isin(group, 1)[:, None], xyz + [0, 0, 9], xyz)
@@ -67,7 +67,7 @@ def test_areas_do_not_depend_on_a_point_far_away():
 
 @pytest.mark.parametrize(("depth", "expected"), [(0.9, 0.0), (1.1, 2 / 5)])
 def test_penetration_by_hand(depth, expected):
-    """Of five cells of a group two have points of no or another group so far beneath; one point of ten goes on."""
+    """Of five cells of a group two have points of no or another group at that depth; one point of ten goes on."""
     group = np.repeat([1, 1, -1, 0], [5, 5, 1, 1])
     own = at_cells(0, 1, 2, 3, 4)
     xyz = np.concatenate([own, own + [0, 0, 2], at_cells(1, z=5 - depth), at_cells(3, z=5 - depth)])
@@ -131,8 +131,8 @@ def test_what_passes_a_surface_is_the_same_at_any_density(rng, density):
     assert penetration(xyz, group, density)[0] == pytest.approx(0.53, abs=0.05)
 
 
-def test_shares_of_what_hangs_together_by_hand():
-    """Four cells in a row, one of them of two groups, and two cells apart: of each row so much is of the chosen."""
+def test_shares_of_connected_points_by_hand():
+    """Four cells in a row, one of them of two groups, and two cells apart: the chosen share of each row."""
     xyz = at_cells(0, 1, 2, 2, 3, 7, 8, 20)
     group = np.array([0, 0, 0, 1, 1, 2, 3, -1])
     np.testing.assert_allclose(share_joined(xyz, group, np.array([0, 1, 0, 1], bool), 1.0), [0.5, 0.5, 0.5, 0.5])

@@ -46,7 +46,7 @@ def scene():
     """Ground with a canal 3 m deep, a bridge over it, and a flat roof 4 m high; 6 points per m²."""
     rng = np.random.default_rng(8)
     x, y = rng.uniform(0, 50, (15_000, 2)).T
-    # The bridge parts the canal in two: what lies south of it is no part of any.
+    # The bridge divides the canal in two: points south of it are of no segment.
     part = np.where((x > 20) & (x < 30), 1, 0)
     part[(part == 1) & (y > 22) & (y < 28)] = 2
     x, y, part = (values[(part != 1) | (y > 28)] for values in (x, y, part))

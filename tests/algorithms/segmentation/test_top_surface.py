@@ -1,4 +1,4 @@
-"""The surface seen from above: heights of cells, points of walls below it, and what lies near at the same height."""
+"""The surface seen from above: heights of cells, points of walls below it, and points near at the same height."""
 
 from __future__ import annotations
 

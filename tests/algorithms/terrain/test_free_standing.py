@@ -219,7 +219,7 @@ def test_machines_right_across_a_roof_make_no_terrain_of_its_halves(rng):
 
 
 def test_a_hall_and_a_wing_hardly_lower_stand_as_one():
-    """The step between them is none of a hall's, and the wing's own edge is half at the hall."""
+    """The step between them is not that of a hall, and the wing's own edge is half at the hall."""
     surface = slope(140, 140)
     hall = block(surface, slice(20, 100), slice(20, 90), 6.5)
     wing = block(surface, slice(40, 80), slice(90, 102), 5.2)

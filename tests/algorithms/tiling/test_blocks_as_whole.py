@@ -86,7 +86,7 @@ def test_blocks_give_what_the_whole_cloud_gives(cloud, tmp_path, name, tunables,
 
 
 def test_merging_is_no_part_of_a_survey():
-    """The files are one cloud: what is asked for the merging is not asked for in tiles."""
+    """The files are one cloud: tiles have no parameters of the merging."""
     pipeline = of_survey(PIPELINES["interpret_structure"])
     assert not pipeline.merges
     assert [step.name for step in pipeline.steps] == ["voxels", "features", "structure"]

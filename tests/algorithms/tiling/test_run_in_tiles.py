@@ -29,7 +29,7 @@ SIDE = 40.0
 CORNER = np.array([600_010.0, 5_000_010.0, 0.0])
 SIZE = 66
 HOUSES = ((24, 8), (10, 24), (48, 44))
-# What is tested of runs and not of results takes a chain of one quick step.
+# Tests of runs, not of results, take a chain of one quick step.
 QUICK = Pipeline("quick", "Quick", "Tests", "", "", "", "", (Step("clusters", "segment_clusters", {"radius": 1.0}),))
 
 
@@ -236,7 +236,7 @@ def test_a_corridor_is_sampled_where_it_has_points(tmp_path, monkeypatch):
     monkeypatch.setattr(module, "_SAMPLED_WHOLE", 1000)
     monkeypatch.setattr(Survey, "window", listened)
     outcome = run([path], tmp_path / "result", pipeline=QUICK, block_side=4400.0)
-    # What is read are windows of 100 m, and blocks with what lies around them.
+    # Windows of 100 m are read, and blocks with the points around them.
     sampled = [count for side, count in read if side < 4400]
     assert {side for side, _ in read if side < 4400} == {100}
     assert 0 < max(sampled) < len(xyz) / 10
