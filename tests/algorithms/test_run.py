@@ -449,10 +449,16 @@ def filter_halves(xyz, *, monitor=None):
     return np.arange(0, len(xyz), 2)
 
 
+@stage("Toy east", group="Toys", selects=True)
+def filter_east(xyz, *, monitor=None):
+    """Keep the points in the eastern half."""
+    return np.flatnonzero(xyz[:, 0] > xyz[:, 0].mean())
+
+
 @pytest.fixture
 def lattice(monkeypatch):
     """A square of one point per m², and toys in the chains."""
-    for toy in (classify_sampled, filter_halves):
+    for toy in (classify_sampled, filter_halves, filter_east):
         monkeypatch.setitem(STAGES, toy.stage.name, toy.stage)
     x, y = np.meshgrid(np.arange(60.0), np.arange(60.0))
     return create_cloud({"xyz": np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)])})
@@ -504,6 +510,21 @@ def test_a_sampling_from_outside_holds_until_a_step_makes_another_cloud(lattice)
     )[0]
     assert first is second is outside
     assert third.density > 3 * outside.density
+
+
+def test_cells_begin_at_the_corner_of_all_points_but_withheld_ones(lattice):
+    """Noise counts, as it is found in cells; points that a step makes noise or leaves out do not move the cells."""
+    points = lattice.get("xyz")
+    withhold(lattice, *np.flatnonzero(points[:, 0] < 1))
+    lattice.set("classification", np.where(points[:, 0] < 5, 7, 1).astype(np.uint8))
+    corner = points[:, :2].min(axis=0) + [1, 0]
+    monitor = Monitor()
+    run_stage(classify_sampled.stage, lattice, monitor=monitor)
+    np.testing.assert_array_equal(monitor.values["given"].corner, corner)
+    np.testing.assert_array_equal(CloudSampling.of(points, lattice.get("classification")).corner, corner - [1, 0])
+    steps = sampled(lattice, "classify_sampled", "filter_east", "classify_sampled")[0]
+    for sampling in steps:
+        np.testing.assert_array_equal(sampling.corner, corner)
 
 
 def test_sampling_needs_the_points_of_one_cloud():

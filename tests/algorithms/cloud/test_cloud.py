@@ -1,6 +1,7 @@
 """The cloud in memory: units, dimensions, what is set and what comes back."""
 
 import struct
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -266,6 +267,16 @@ def test_moved_points_are_rounded_to_the_scale_of_the_file(make_las):
     assert np.abs(cloud.get("xyz")[:, 2] - before[:, 2] - 100).max() <= 0.00051 * SURVEY_FOOT
     np.testing.assert_array_equal(read_cloud(path).points, read)
     assert cloud.points is not read
+
+
+@pytest.mark.parametrize("moved", [0, 1, 2**20 + 1])
+def test_halves_of_a_step_are_rounded_up_whatever_the_offset(town, moved):
+    """Also where the sum of large coordinates misses the half by a rounding error."""
+    cloud = create_cloud(town)
+    halves = cloud.get("xyz") + cloud.header.scale / 2
+    cloud.header = replace(cloud.header, offset=cloud.header.offset - moved * cloud.header.scale)
+    cloud.set("xyz", halves)
+    np.testing.assert_allclose(cloud.get("xyz"), halves + cloud.header.scale / 2, atol=1e-7)
 
 
 @pytest.mark.parametrize("far", [3e6, np.nan])

@@ -4,16 +4,49 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from lidar_buildings.algorithms.geometry.grid import connected_cells, distinct, find_cells, grid_over, plan_box
+from lidar_buildings.algorithms.geometry.grid import (
+    connected_cells,
+    distinct,
+    find_cells,
+    fixed_grid_over,
+    grid_over,
+    plan_box,
+    raster_cells,
+)
 
 
-def test_number_and_center_agree(rng):
+@pytest.mark.parametrize("make", [grid_over, fixed_grid_over])
+def test_number_and_center_agree(rng, make):
     xyz = rng.uniform(0, 50, (500, 3)) + [600_000, 5_000_000, 0]
-    grid = grid_over(xyz, 2.0)
+    grid = make(xyz, 2.0)
     number = grid.number(xyz)
     assert np.abs(grid.center(number) - xyz[:, :2]).max() <= 1.0 + 1e-6
     assert (number >= 0).all()
     assert number.max() < grid.rows * grid.columns
+
+
+@pytest.mark.parametrize("size", [0.3, 2.0])
+def test_a_part_of_a_cloud_has_the_cells_of_the_whole(rng, size):
+    """Fixed cells begin at multiples of their size from zero; those of a grid over points begin at the points."""
+    xyz = rng.uniform(-20, 30, (500, 3))
+    part = xyz[(xyz[:, 0] > 3.1) & (xyz[:, 1] < 7.7)]
+    grid = fixed_grid_over(xyz, size)
+    centers = grid.center(grid.number(part))
+    fixed = fixed_grid_over(part, size)
+    np.testing.assert_allclose(fixed.center(fixed.number(part)), centers, atol=1e-9)
+    np.testing.assert_allclose(np.floor(part[:, :2] / size) * size + size / 2, centers, atol=1e-9)
+    moving = grid_over(part, size)
+    assert np.abs(moving.center(moving.number(part)) - centers).max() > 0.01 * size
+
+
+@pytest.mark.parametrize("margin", [0, 2])
+def test_rasters_have_the_cells_of_the_fixed_grid_and_a_margin(rng, margin):
+    xyz = rng.uniform(-20, 30, (500, 3))
+    row, column = raster_cells(xyz, 1.5, margin)
+    assert (row.min(), column.min()) == (margin, margin)
+    _, same = np.unique(fixed_grid_over(xyz, 1.5).number(xyz), return_inverse=True)
+    _, of_raster = np.unique(row * 1000 + column, return_inverse=True)
+    np.testing.assert_array_equal(of_raster, same)
 
 
 def test_steps_lead_to_the_eight_neighbors():

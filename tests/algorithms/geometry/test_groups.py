@@ -1,10 +1,18 @@
 """Runs, items, members and components, held against loops."""
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lidar_buildings.algorithms.geometry.groups import components, items, members, run_starts, split_groups
+from lidar_buildings.algorithms.geometry.groups import (
+    components,
+    items,
+    members,
+    ordered,
+    run_starts,
+    split_groups,
+)
 
 numbers = st.lists(st.integers(-1, 4), max_size=12).map(lambda values: np.array(values, np.int64))
 
@@ -45,3 +53,15 @@ def test_things_are_of_one_group_where_a_chain_of_pairs_leads(pairs):
 def test_split_groups_gives_the_rows_of_each_in_order_and_leaves_out_minus_one():
     rows = split_groups(np.array([2, -1, 0, 2, 0, -1]), 4)
     assert [list(of_group) for of_group in rows] == [[2, 4], [], [0, 3], []]
+
+
+@pytest.mark.parametrize("n_keys", [1, 5, 10_000])
+def test_equal_keys_are_ordered_by_their_ties(rng, n_keys):
+    """As tuples are sorted by Python."""
+    key, first, second = rng.integers(0, n_keys, 300), rng.integers(0, 4, 300).astype(float), rng.normal(size=300)
+    expected = sorted(range(300), key=lambda row: (key[row], first[row], second[row]))
+    assert ordered(key, first, second).tolist() == expected
+
+
+def test_no_keys_have_an_order_of_none():
+    assert ordered(np.zeros(0, np.int64), np.zeros(0)).tolist() == []

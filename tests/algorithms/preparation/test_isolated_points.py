@@ -95,6 +95,20 @@ def test_what_hangs_by_form_or_density_stays(rng):
     assert found[len(stays) :].all()
 
 
+@pytest.mark.parametrize("height_step", [0.0, 0.3])
+def test_order_changes_nothing_where_heights_are_equal(rng, height_step):
+    town = noisy_town(density=4.0, size=80.0, seed=5)
+    xyz = town.xyz.copy()
+    if height_step:
+        xyz[:, 2] = height_step * np.round(xyz[:, 2] / height_step)
+    spacing = 4.0**-0.5
+    found = under_ground(xyz, spacing, Monitor())
+    assert found.any()
+    for _ in range(3):
+        order = rng.permutation(len(xyz))
+        assert (under_ground(xyz[order], spacing, Monitor()) == found[order]).all()
+
+
 def test_place_and_order_change_nothing(rng):
     town = noisy_town(density=4.0, size=80.0, seed=5)
     made = classify_noise_histogram(town.xyz, np.ones(len(town.xyz), np.uint8))

@@ -174,6 +174,13 @@ def test_pieces_of_a_pipe_become_one_and_pipes_beside_each_other_do_not():
     assert len(set(known.values())) == 4
 
 
+def test_pieces_that_share_more_than_half_are_still_pieces_of_one_pipe():
+    """The middle one shares more than half of its length with the first, the last one of its own with the middle one."""
+    axes, known = joined("axes", [(axis(0, 13, 5.0), 0.1)], [(axis(7, 18, 5.0), 0.1)], [(axis(16.9, 18.7, 5.0), 0.1)])
+    assert axes.columns["length"] == pytest.approx([18.7])
+    assert set(known.values()) == {1}
+
+
 def test_pipes_that_were_seen_whole_stay_as_they_are():
     """Two of one line with a gap of 0.2 m, which another block has not seen; a piece of one gives way to the whole."""
     one = [(axis(2, 6, 5.0), 0.1), (axis(6.2, 9, 5.0), 0.1), (axis(7.5, 13, 2.0), 0.1)]
