@@ -5,8 +5,11 @@ import pytest
 
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
+from lidar_buildings.algorithms.pipeline import Pipeline, Step
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.run import run_pipeline
+from lidar_buildings.algorithms.stage import stage
+from lidar_buildings.algorithms.stages import STAGES
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
 from lidar_buildings.algorithms.tiling.tiled_steps import of_survey
 from lidar_buildings.algorithms.tiling.workers import Workers
@@ -83,6 +86,35 @@ def test_blocks_give_what_the_whole_cloud_gives(cloud, tmp_path, name, tunables,
         # Centers of two points lie between two millimeters, and either is written: rarely another point is the 20th
         # nearest then.
         assert same.mean() >= (0.9995 if dimension in ("dimensionality", "linearity") else 1.0), dimension
+
+
+@stage("Cells", group="Toys", writes=("classification",), reach=5.0)
+def classify_cells(xyz, *, sampling=None, monitor=None):
+    """Write the parity of the cell of 7 m that a point is in."""
+    cell = np.floor(sampling.from_corner(xyz)[:, :2] / 7.0)
+    return (cell.sum(axis=1) % 2).astype(np.uint8)
+
+
+def test_cells_of_a_part_of_a_survey_are_those_of_the_whole(cloud, tmp_path, monkeypatch):
+    cells = Pipeline("cells", "Cells", "Tests", "", "", "", "", (Step("cells", "classify_cells"),))
+    monkeypatch.setitem(STAGES, "classify_cells", classify_cells.stage)
+    monkeypatch.setitem(PIPELINES, "cells", cells)
+    expected = run_pipeline(cells, cloud.copy(), kept=()).cloud
+    (tmp_path / "tiles").mkdir()
+    made = run_in_tiles(
+        cells,
+        tiles_of(cloud, tmp_path / "tiles"),
+        tmp_path / "out",
+        workers=Workers(processes=1),
+        block_side=40.0,
+        compressed=False,
+        extent=np.array([[11.0, 24.0], [61.0, 83.0]]) + CORNER[:2],
+    )
+    times, found = in_order([read_cloud(path) for path in made.tiles], "gps_time", "classification")
+    whole_times, whole = in_order([expected], "gps_time", "classification")
+    at = np.searchsorted(whole_times, times - 5e-6)
+    assert 1_000 < len(at) < len(whole)
+    np.testing.assert_array_equal(found, whole[at])
 
 
 def test_merging_is_no_part_of_a_survey():
