@@ -12,7 +12,8 @@ from lidar_buildings.algorithms.cloud.vpc import write_vpc
 from lidar_buildings.algorithms.pipeline import Pipeline, Step
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.run import run_pipeline
-from lidar_buildings.algorithms.stage import Cancelled, Monitor
+from lidar_buildings.algorithms.stage import Cancelled, Layer, LayerFeatures, Monitor, stage
+from lidar_buildings.algorithms.stages import STAGES
 from lidar_buildings.algorithms.tiling import run_in_tiles as module
 from lidar_buildings.algorithms.tiling.run_in_tiles import can_be_tiled, run_in_tiles
 from lidar_buildings.algorithms.tiling.survey import Survey
@@ -447,3 +448,24 @@ def test_an_extent_without_points_is_refused(tmp_path, points):
 def test_what_can_not_be_tiled_says_why(tmp_path, steps, why):
     with pytest.raises(ValueError, match=f"can't be run in tiles: .*{why}"):
         run([], tmp_path / "out", pipeline=replace(QUICK, steps=steps))
+
+
+@pytest.mark.parametrize(("around", "grows"), [(1.0, False), (8.0, True)])
+def test_a_window_grows_where_a_feature_ends_nearer_to_its_edge_than_points_decide_on_it(
+    points, tmp_path, monkeypatch, around, grows
+):
+    """A box from 20 to 29 m east of the survey's corner, in a block whose window ends 6 m behind it."""
+
+    @stage("Boxes", group="Toys", layers=(Layer("boxes", "Boxes", "Polygon", (), around=around),), reach=5.0)
+    def outline_box(xyz, *, sampling=None, monitor=None):
+        """Outline what is seen of the box."""
+        ring = np.array([[20.0, 4], [29, 4], [29, 14], [20, 14], [20, 4]]) + sampling.corner
+        ring = np.clip(ring, xyz[:, :2].min(axis=0), xyz[:, :2].max(axis=0))
+        return LayerFeatures([[ring]] if np.ptp(ring, axis=0).all() else [], {})
+
+    boxes = Pipeline("boxes", "Boxes", "Tests", "", "", "", "", (Step("boxes", "outline_box"),))
+    monkeypatch.setitem(STAGES, "outline_box", outline_box.stage)
+    monkeypatch.setitem(PIPELINES, "boxes", boxes)
+    made = run(tiles_of(tmp_path, *points[:2], slice(None)), tmp_path / "out", pipeline=boxes)
+    assert len(next(iter(made.layers.values()))) == 1
+    assert made.tries[:, 0].max() == (10.0 if grows else 5.0)

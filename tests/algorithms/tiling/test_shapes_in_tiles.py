@@ -175,7 +175,7 @@ def test_pieces_of_a_pipe_become_one_and_pipes_beside_each_other_do_not():
 
 
 def test_pieces_that_share_more_than_half_are_still_pieces_of_one_pipe():
-    """The middle one shares more than half of its length with the first, the last one of its own with the middle one."""
+    """The middle one shares more than half of its length with the first, the last one of its own with that."""
     axes, known = joined("axes", [(axis(0, 13, 5.0), 0.1)], [(axis(7, 18, 5.0), 0.1)], [(axis(16.9, 18.7, 5.0), 0.1)])
     assert axes.columns["length"] == pytest.approx([18.7])
     assert set(known.values()) == {1}
