@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling
 from lidar_buildings.algorithms.shapes.hough_planes import PlaneDirections
 from lidar_buildings.algorithms.shapes.segment_planes_hough import METHODS, segment_planes_hough
 from lidar_buildings.algorithms.stage import Monitor
@@ -178,3 +179,25 @@ def test_grouping_the_points_of_one_large_plane_can_be_canceled(rng):
     segment(square(rng, 0.0, size=20.0), monitor=monitor)
     assert len([fraction for fraction in told if 0.8 < fraction < 1]) > 10
     assert told == sorted(told)
+
+
+def test_a_part_of_a_cloud_has_the_planes_of_the_whole(rng):
+    """Forty plates at all angles, of which the first and part of the second of each row are cut off."""
+    plates = []
+    for number in range(40):
+        axes = np.linalg.qr(rng.normal(size=(3, 3)))[0][:2]
+        middle = np.array([number % 8, number // 8, 0]) * 1.5 + rng.uniform(0, 0.3, 3)
+        plates.append(middle + rng.uniform(-0.6, 0.6, (300, 2)) @ axes + rng.normal(0, 0.004, (300, 3)))
+    xyz = np.concatenate(plates)
+    sampling = CloudSampling.of(xyz)
+    kept = np.flatnonzero(xyz[:, 0] > 1.0)
+    part = CloudSampling(lambda: xyz[kept], corner=sampling.corner)
+    of_whole, of_part = (
+        segment(points, window_size=0.7, sampling=sampled)[0]
+        for points, sampled in ((xyz, sampling), (xyz[kept], part))
+    )
+    is_far = xyz[kept, 0] > 2.6
+    pairs, count = np.unique(np.column_stack([of_whole[kept], of_part])[is_far], axis=0, return_counts=True)
+    is_one = np.all([np.bincount(numbers)[numbers] == 1 for numbers in pairs.T], axis=0)
+    # 0.92 here, 0.30 if windows begin at the corner of the part: a point that is near two planes decides on some.
+    assert count[is_one].sum() > 0.75 * count.sum()
