@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 from typing import Annotated, Optional
 
@@ -14,7 +15,8 @@ from ..packages import ndimage
 from ..params import MinBuildingArea, PointDensity, PointSource
 from ..sampling.cloud_sampling import CloudSampling
 from ..segmentation.top_surface import TopSurface
-from ..stage import Param, stage
+from ..stage import Monitor, Param, stage
+from ..threads import made_ahead
 from .agreed_buildings import agreed
 from .roof_extent import FOOT, GAP, RoofExtent, amid_rough, without_vehicles
 
@@ -221,16 +223,18 @@ def complete_buildings(
     has_returns = return_number is not None and number_of_returns is not None
     goes_on = return_number < number_of_returns if has_returns else None
     positions = _POSITIONS[:1] if in_images else _POSITIONS
-    owners, refusal, place = [], np.zeros(len(xyz), np.uint8), np.zeros(0, np.int64)
-    for done, position in enumerate(positions, start=1):
-        extents = _extents_in_images(roofs, limits) if in_images else _extents_in_scan(roofs, limits, position)
+
+    def divided(number: int, part: Monitor) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        part.progress(0.0)
+        extents = _extents_in_images(roofs, limits) if in_images else _extents_in_scan(roofs, limits, positions[number])
         columns = _Columns(extents.building, extents.top, extents.cell_size)
         points = _Points(extents.cell, xyz[:, 2], height_above_ground, extents.raised, goes_on)
-        owners.append(columns.owners(points, roof_clearance, structure_height))
-        place = place if len(place) else np.ravel_multi_index(extents.cell, extents.building.shape)
-        refusal = np.where(refusal > 0, refusal, extents.refusal(owners[-1]))
-        monitor.progress(done / len(positions))
-    cluster_id = agreed(owners, place)
+        owner = columns.owners(points, roof_clearance, structure_height)
+        return owner, extents.refusal(owner), np.ravel_multi_index(extents.cell, extents.building.shape)
+
+    owners, refusals, places = zip(*made_ahead(divided, len(positions), monitor))
+    cluster_id = agreed(owners, places[0])
+    refusal = functools.reduce(lambda first, other: np.where(first > 0, first, other), refusals)
     result[cluster_id > 0] = PointClass.BUILDING
     return result.astype(np.uint8), cluster_id, *_explained(confidence, reason, is_roof, cluster_id, refusal)
 
@@ -455,9 +459,13 @@ class _Columns:
         """Return the cells of crowns that stand apart from buildings, and the cells next to them."""
         row, column = cell
         apart = raised & (self.building[cell] == 0) & (self.beside[cell] == 0)
-        standing, passed = np.zeros((2, *self.building.shape))
-        np.add.at(standing, (row[apart], column[apart]), 1)
-        np.add.at(passed, (row[apart], column[apart]), goes_on[apart])
+        shape = self.building.shape
+        number = np.ravel_multi_index((row[apart], column[apart]), shape)
+        # Means of whole numbers would be rounded to such.
+        standing, passed = (
+            np.bincount(number, weights, np.prod(shape)).reshape(shape).astype(float)
+            for weights in (None, goes_on[apart])
+        )
         around, passed_around = (
             ndimage.uniform_filter(count, _WITHIN, mode="constant") for count in (standing, passed)
         )
