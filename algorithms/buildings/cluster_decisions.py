@@ -79,7 +79,7 @@ def written_to_points(
 
 def no_clusters(classification: np.ndarray, reason: Optional[np.ndarray], monitor: Monitor) -> tuple[Any, ...]:
     """Return what a stage that classifies buildings returns where there are no clusters."""
-    monitor.warn("There are no clusters, so no buildings were found.")
+    monitor.none_found("There are no clusters, so no buildings were found.")
     classes, why = _without_buildings(classification, reason)
     undefined = (np.full(len(classes), np.nan, np.float32) for _ in range(3))
     return classes, *undefined, why, build_report(Clusters.none())

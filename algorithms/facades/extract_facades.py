@@ -330,7 +330,7 @@ def _result(
     for facade in facades:
         segment_id[facade.points] = facade.number
     if not facades:
-        monitor.warn(
+        monitor.none_found(
             f"No vertical plane of {min_area:g} m² and {min_height:g} m height was found, so there are no facades; "
             "lower these values, raise the maximum tilt, or use a cloud that was taken from the street or obliquely."
         )

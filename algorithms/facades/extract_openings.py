@@ -144,9 +144,9 @@ def extract_openings(
         facades = with_common_borders(facades, corner_distance, monitor.part(0.5, 0.55))
     found = _searched(facades, xyz, max_depth, min_size, monitor.part(0.55, 1))
     if not facades:
-        monitor.warn("No segment is a vertical plane, so there are no facades; run 'Extract facades' first.")
+        monitor.none_found("No segment is a vertical plane, so there are no facades; run 'Extract facades' first.")
     elif not any(openings for _, openings in found):
-        monitor.warn(
+        monitor.none_found(
             "No opening was found in any facade: nothing lies behind the walls and is enclosed by them; openings need "
             "about 50 points per m² and frames or panes that are set back."
         )

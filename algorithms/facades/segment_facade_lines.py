@@ -168,7 +168,7 @@ def segment_facade_lines(
     segment_id, features = _described(xyz, order, line, piece, limits, min_points)
     monitor.progress(1.0)
     if not features.geometries:
-        monitor.warn("No scan line has a straight segment; lower the minimum points or raise the tolerance.")
+        monitor.none_found("No scan line has a straight segment; lower the minimum points or raise the tolerance.")
     return segment_id, features
 
 

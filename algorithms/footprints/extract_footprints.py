@@ -231,7 +231,7 @@ def _building_points(classification: np.ndarray, cluster_id: Optional[np.ndarray
         what = (
             "point of class 6 (building) has a ClusterID" if is_building.any() else "point is called building (class 6)"
         )
-        monitor.warn(f"No {what}, so there are no footprints.")
+        monitor.none_found(f"No {what}, so there are no footprints.")
     return building
 
 

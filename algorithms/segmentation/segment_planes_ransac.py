@@ -167,13 +167,13 @@ def _kept(
     segment_id = np.zeros(len(plane), np.int32)
     on_plane = plane >= 0
     if planes is None or not on_plane.any():
-        monitor.warn("No plane was found; no point has a SegmentID.")
+        monitor.none_found("No plane was found; no point has a SegmentID.")
         return segment_id, normal
     slope = np.degrees(np.arccos(np.clip(planes.normal[:, 2], 0, 1)))
     is_kept = (slope >= min_slope) & (slope <= max_slope)
     on_plane[on_plane] = is_kept[plane[on_plane]]
     if not on_plane.any():
-        monitor.warn(
+        monitor.none_found(
             f"No plane has a slope from {min_slope:g}° to {max_slope:g}°, of {len(planes)} found; "
             "no point has a SegmentID."
         )

@@ -285,7 +285,7 @@ def search_shapes(
     for number, one in enumerate(found, start=1):
         label[one.points] = number
     if not found:
-        monitor.warn(f"No {kind.name.lower()} was found; no point got a new SegmentID.")
+        monitor.none_found(f"No {kind.name.lower()} was found; no point got a new SegmentID.")
     inside = label > 0
     old, label[inside] = label[inside], by_first_point(label[inside]) + 1
     order = sorted(dict(zip(label[inside].tolist(), old.tolist())).items())

@@ -227,7 +227,7 @@ def segment_planes_hough(
     plane = search.planes(xyz, points, monitor.part(0, 0.8))
     label = _surfaces(points.xyz, plane, max_gap, min_area * sampling.surface_density, monitor.part(0.8, 1))
     if not label.any():
-        monitor.warn("No plane was found; no point got a new SegmentID.")
+        monitor.none_found("No plane was found; no point got a new SegmentID.")
     ids, shapes, first = named(points, label, Shape.PLANE, segment_id, shape, len(xyz), search_in)
     return ids, shapes, plane_polygons(xyz[points.rows], label, first, sampling.surface_density)
 

@@ -148,7 +148,7 @@ def segment_tree(
     level = ground_level(everything, places[:, :2])
     stems = find_stems(places, level, monitor.part(0, 0.1)) if len(rows) else []
     if not stems:
-        monitor.warn("No stem was found at a height of 1.3 m; no point has a SegmentID.")
+        monitor.none_found("No stem was found at a height of 1.3 m; no point has a SegmentID.")
         return segment_id, LayerFeatures([], {field.name: [] for field in _FIELDS})
     voxels = voxels_of(places, voxel_size, min_count, max_gap, monitor.part(0.1, 0.4))
     feet = np.array([_at_breast(stem, level) for stem, level in stems])

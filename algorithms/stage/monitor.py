@@ -38,6 +38,10 @@ class Monitor:
         """Keep a warning, a sentence."""
         self.warnings.append(sentence)
 
+    def none_found(self, sentence: str) -> None:
+        """Warn that a cloud has none of what a stage looks for, which is normal for a part of a cloud."""
+        self.warn(sentence)
+
     def inform(self, sentence: str) -> None:
         """Keep a sentence about something normal that the user may want to know."""
         self.infos.append(sentence)
@@ -62,6 +66,9 @@ class _Part(Monitor):
 
     def warn(self, sentence: str) -> None:
         self.whole.warn(sentence)
+
+    def none_found(self, sentence: str) -> None:
+        self.whole.none_found(sentence)
 
     def inform(self, sentence: str) -> None:
         self.whole.inform(sentence)

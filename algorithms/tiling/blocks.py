@@ -115,8 +115,8 @@ class BlockResult:
     items : dict of str to list
         Of text files the records of items that belong to these features, with their names in the block, by their class:
         files of one stage are written of the same items.
-    messages : list of str
-        Warnings, each once.
+    messages, absent : list of str
+        Warnings, and sentences on what the block has none of, each once.
     tries : ndarray of shape (k, 4)
         What each window that was tried cost: what lay around the block at most (m), points, and processor time for
         reading and for the chain (s).
@@ -137,6 +137,7 @@ class BlockResult:
     pieces: dict[str, np.ndarray] = field(default_factory=dict)
     items: dict[str, list[tuple[str, dict[str, Any]]]] = field(default_factory=dict)
     messages: list[str] = field(default_factory=list)
+    absent: list[str] = field(default_factory=list)
     tries: np.ndarray = field(default_factory=lambda: np.zeros((0, 4)))
 
     def write(self, path: Path) -> None:
@@ -147,7 +148,7 @@ class BlockResult:
         for name, features in self.layers.items():
             arrays.update({f"layer.{name}.{key}": values for key, values in _flat(features).items()})
         arrays.update({f"items.{kind}": _text(items) for kind, items in self.items.items()})
-        arrays["messages"] = _text(self.messages)
+        arrays.update({"messages": _text(self.messages), "absent": _text(self.absent)})
         with replacing(path) as stream:
             np.savez(stream, **arrays)
 
@@ -171,6 +172,7 @@ class BlockResult:
                 **by_kind,
                 layers={name: _features(parts) for name, parts in layers.items()},
                 messages=json.loads(bytes(stored["messages"])),
+                absent=json.loads(bytes(stored["absent"])),
                 tries=stored["tries"],
             )
 
@@ -198,11 +200,16 @@ class BlockResult:
 
 
 class StoppableMonitor(Monitor):
-    """Stops a worker when a file appears that says so."""
+    """Stops a worker when a file appears that says so; keeps apart what a part of a cloud need not have."""
 
     def __init__(self, stop: Path) -> None:
         super().__init__()
         self.stop, self._looked = stop, 0.0
+        self.absent: list[str] = []
+
+    def none_found(self, sentence: str) -> None:
+        """Keep a sentence that is a warning if no part of the cloud has any."""
+        self.absent.append(sentence)
 
     def progress(self, fraction: float) -> None:
         """Raise :class:`Cancelled` when the file is there."""
@@ -292,6 +299,7 @@ def _run(task: BlockTask, window: Window, box: np.ndarray, monitor: Monitor) -> 
     for name, surface in made.rasters.items():
         result.rasters[name], result.lattices[name] = _cropped(surface, task.block.box - task.survey.origin[:2])
     result.messages = list(dict.fromkeys(monitor.warnings))
+    result.absent = list(dict.fromkeys(monitor.absent))
     return result, cuts
 
 

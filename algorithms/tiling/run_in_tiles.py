@@ -464,10 +464,16 @@ class _Run:
                 outcome.reports[names[step.name, REPORT]] = made.report
 
     def _warn_of_blocks(self, found: list[BlockResult]) -> None:
-        """Pass on each warning once, and in how many of the blocks with points it was given, if not in all."""
+        """Pass on each warning once, and in how many of the blocks with points it was given, if not in all.
+
+        Of what one block or another has not, only what no block has is told.
+        """
         count = sum(len(result.tries) > 0 for result in found)
         for sentence, given in Counter(one for result in found for one in result.messages).items():
             self.monitor.warn(sentence if given == count else f"In {given} of {count} blocks: {sentence}")
+        for sentence, given in Counter(one for result in found for one in result.absent).items():
+            if given == count:
+                self.monitor.none_found(sentence)
 
     def _pieces(self, number: int, stem: str, blocks: list[tuple[Block, Path, Path]]) -> list[TileTask]:
         """Return the tiles that a file becomes which is cut by its index: one for each block, result and numbers."""

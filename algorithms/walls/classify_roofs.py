@@ -117,7 +117,7 @@ def classify_roofs(
     monitor.progress(1.0)
     result[cluster_id > 0] = PointClass.BUILDING
     if not cluster_id.any():
-        monitor.warn(
+        monitor.none_found(
             f"No plane of {min_area:g} m² lies {split_height:g} m or more above the ground, so no roof was found; "
             "check that the cloud shows the ground beside the buildings."
         )

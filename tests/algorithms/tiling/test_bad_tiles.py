@@ -10,7 +10,8 @@ from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.pipeline import Pipeline, Step
 from lidar_buildings.algorithms.pipelines import PIPELINES
-from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.algorithms.stage import Monitor, stage
+from lidar_buildings.algorithms.stages import STAGES
 from lidar_buildings.algorithms.tiling import run_in_tiles as module
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
 from lidar_buildings.algorithms.tiling.survey import crs_of_survey, files_of_survey
@@ -215,23 +216,50 @@ def test_a_point_far_from_all_others_is_worked_on_with_them(tmp_path, monkeypatc
     assert (read_cloud(tmp_path / "out" / "land.laz").get("classification") == 2).mean() > 0.9
 
 
-def test_a_warning_of_some_blocks_says_of_how_many(tmp_path, monkeypatch):
-    """That nothing was found in a block at the edge says nothing of the survey."""
-    outlines = Pipeline("outlines", "Outlines", "Tests", "", "", "", "", (Step("roofs", "extract_footprints"),))
-    monkeypatch.setitem(PIPELINES, outlines.name, outlines)
-    paths, monitor = [], Monitor()
+def house_and_meadow(folder):
+    """Write two tiles 400 m apart, all points of the first called building, and return their paths."""
+    paths = []
     for name, west, number in (("house", 10, 6), ("meadow", 410, 2)):
         xyz = np.random.default_rng(5).uniform([west, 10, 5], [west + 20, 30, 5.1], (2000, 3)) + [600_000, 5_000_000, 0]
         classes = np.full(2000, number, np.uint8)
         arrays = {"xyz": xyz, "classification": classes, "height_above_ground": np.full(2000, 5, np.float32)}
-        paths.append(tmp_path / f"{name}.las")
+        paths.append(folder / f"{name}.las")
         write_cloud(create_cloud(arrays, RD), paths[-1])
-    options = {"workers": Workers(processes=1), "block_side": 50.0, "compressed": False}
-    outcome = run_in_tiles(outlines, paths, tmp_path / "out", monitor, **options)
+    return paths
+
+
+OF_BLOCKS = {"workers": Workers(processes=1), "block_side": 50.0, "compressed": False}
+
+
+def test_that_some_blocks_have_no_building_is_no_warning(tmp_path, monkeypatch):
+    """It says nothing of the survey, unless no block has any."""
+    outlines = Pipeline("outlines", "Outlines", "Tests", "", "", "", "", (Step("roofs", "extract_footprints"),))
+    monkeypatch.setitem(PIPELINES, outlines.name, outlines)
+    paths, monitor = house_and_meadow(tmp_path), Monitor()
+    outcome = run_in_tiles(outlines, paths, tmp_path / "out", monitor, **OF_BLOCKS)
     assert len(next(iter(outcome.layers.values()))) == 1
-    assert "In 1 of 2 blocks: No point is called building (class 6), so there are no footprints." in monitor.warnings
-    run_in_tiles(outlines, paths[1:], tmp_path / "meadow", monitor, **options)
+    assert not [sentence for sentence in monitor.warnings if "No point is called" in sentence]
+    run_in_tiles(outlines, paths[1:], tmp_path / "meadow", monitor, **OF_BLOCKS)
     assert "No point is called building (class 6), so there are no footprints." in monitor.warnings
+
+
+@stage("Toy", group="Toys", writes=("classification",), reach=1.0)
+def classify_warned(classification, *, monitor=None):
+    """Warn of buildings."""
+    if (classification == 6).any():
+        monitor.warn("There are buildings.")
+    return classification
+
+
+def test_a_warning_of_some_blocks_says_of_how_many(tmp_path, monkeypatch):
+    warned = Pipeline("warned", "Warned", "Tests", "", "", "", "", (Step("warned", "classify_warned"),))
+    monkeypatch.setitem(STAGES, "classify_warned", classify_warned.stage)
+    monkeypatch.setitem(PIPELINES, warned.name, warned)
+    paths, monitor = house_and_meadow(tmp_path), Monitor()
+    run_in_tiles(warned, paths, tmp_path / "out", monitor, **OF_BLOCKS)
+    run_in_tiles(warned, paths[:1], tmp_path / "house", monitor, **OF_BLOCKS)
+    said = [sentence for sentence in monitor.warnings if "buildings" in sentence]
+    assert said == ["In 1 of 2 blocks: There are buildings.", "There are buildings."]
 
 
 def test_a_missing_tile_of_a_virtual_point_cloud_is_named(tmp_path):
