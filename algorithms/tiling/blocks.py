@@ -231,11 +231,13 @@ def work_on_block(task: BlockTask) -> Path:
     ValueError
         If a file can't be read or the chain refuses the points.
     """
-    monitor, most = StoppableMonitor(task.stop), _MOST_HALOS * task.halo
+    most = _MOST_HALOS * task.halo
     # West and south, east and north of the block, m.
     margin = np.full((2, 2), task.halo)
     tries = []
     while True:
+        # What was said of a smaller window need not hold for a larger one.
+        monitor = StoppableMonitor(task.stop)
         box = task.block.box + margin * [[-1], [1]]
         start = time.process_time()
         window = _window(task, box, monitor)
@@ -277,7 +279,7 @@ def _inside(places: np.ndarray, box: np.ndarray) -> np.ndarray:
     return ((places >= box[0]) & (places < box[1])).all(axis=1)
 
 
-def _run(task: BlockTask, window: Window, box: np.ndarray, monitor: Monitor) -> tuple[BlockResult, np.ndarray]:
+def _run(task: BlockTask, window: Window, box: np.ndarray, monitor: StoppableMonitor) -> tuple[BlockResult, np.ndarray]:
     """Run the chain on a window; return what came of the block, and on which sides (2, 2) a feature was cut off."""
     pipeline = in_blocks(PIPELINES[task.pipeline])
     places = _places(task.survey, window)
