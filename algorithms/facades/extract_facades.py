@@ -13,7 +13,7 @@ from ..params import Boundary, CompleteFacades, CornerDistance, EdgeFactor, Faca
 from ..sampling.cloud_sampling import CloudSampling
 from ..segmentation.least_squares_planes import Planes, planes_of
 from ..segmentation.segment_planes_ransac import segment_planes_ransac
-from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
+from ..stage import Field, Layer, LayerFeatures, Monitor, Param, ProgressOnly, stage
 from .common_borders import with_common_borders
 from .curved_fronts import as_strips
 from .facade_outline import longest_edge
@@ -221,7 +221,7 @@ def _steep_planes(
             min_area=min_area / 2,
             seed=seed,
             sampling=sampling,
-            monitor=_Quiet(monitor.part(0, 0.6)),
+            monitor=ProgressOnly(monitor.part(0, 0.6)),
         )[0]
     return plane
 
@@ -233,17 +233,6 @@ def _is_stacked(xyz: np.ndarray, min_height: float) -> np.ndarray:
     np.minimum.at(low, cell, xyz[:, 2])
     np.maximum.at(high, cell, xyz[:, 2])
     return (high - low >= min_height / 2)[cell]
-
-
-class _Quiet(Monitor):
-    """Passes progress on; the values and warnings of a search for planes are not those of this stage."""
-
-    def __init__(self, listener: Monitor) -> None:
-        super().__init__()
-        self.listener = listener
-
-    def progress(self, fraction: float) -> None:
-        self.listener.progress(fraction)
 
 
 def merged_planes(xyz: np.ndarray, segment_id: np.ndarray, tolerance: float, monitor: Monitor) -> np.ndarray:

@@ -52,6 +52,11 @@ class CloudSampling:
     corner : ndarray of shape (2,), optional
         Least easting and northing of the whole, m, where cells begin; that of ``points``, unless given.
 
+    Attributes
+    ----------
+    of_whole : dict of str to float
+        Values that steps have measured on the whole of which a cloud is a part, see :func:`.stage`. Empty for a whole.
+
     Examples
     --------
     >>> lattice = np.stack(np.meshgrid(np.arange(50.0), np.arange(50.0), [7.0]), axis=-1).reshape(-1, 3)
@@ -65,6 +70,7 @@ class CloudSampling:
     ) -> None:
         self._points = points
         self.single_returns = single_returns
+        self.of_whole: dict[str, float] = {}
         if corner is not None:
             self.corner = corner
 
@@ -165,7 +171,8 @@ class CloudSampling:
     def __getstate__(self) -> dict[str, Any]:
         """Return all measures, for another process: the points stay where they are."""
         measures = {name: getattr(self, name) for name in (*_MEASURES, "_surfaces")}
-        return {**measures, "single_returns": self.single_returns, "corner": self.corner, "_points": None}
+        others = {"single_returns": self.single_returns, "corner": self.corner, "of_whole": self.of_whole}
+        return {**measures, **others, "_points": None}
 
 
 def without_noise(classification: np.ndarray) -> np.ndarray:

@@ -48,7 +48,7 @@ from .inputs_outputs import (
     feature_names,
     given_layers,
 )
-from .monitor import Cancelled, Monitor
+from .monitor import Cancelled, Monitor, ProgressOnly
 from .tunables import Param, Tunable
 
 __all__ = [
@@ -65,6 +65,7 @@ __all__ = [
     "Measure",
     "Monitor",
     "Param",
+    "ProgressOnly",
     "REFERENCE_PREFIX",
     "Raster",
     "Report",

@@ -47,6 +47,7 @@ class Stage:
     selects: bool = False
     merges: bool = False
     reach: Reach = 0.0
+    of_whole: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
@@ -136,6 +137,7 @@ def stage(
     selects: bool = False,
     merges: bool = False,
     reach: Reach = 0.0,
+    of_whole: tuple[str, ...] = (),
 ) -> Callable[[Callable], Callable]:
     """Declare a function as a stage.
 
@@ -149,7 +151,9 @@ def stage(
     and tunables on every call and carries its :class:`Stage` as ``function.stage``.
 
     ``reach`` is how far (m) from a point others may lie that decide on it, a number or a function of all tunables by
-    name: where a cloud is worked on in parts, each is seen with what surrounds it that far.
+    name: where a cloud is worked on in parts, each is seen with the points around it that far. ``of_whole`` names
+    values that it gives to ``monitor.resolved`` and that are measured on what it makes: parts of a cloud take those of
+    the whole, from ``sampling.of_whole``.
     """
     makes = {
         "writes": writes,
@@ -162,6 +166,7 @@ def stage(
         "selects": selects,
         "merges": merges,
         "reach": reach,
+        "of_whole": of_whole,
     }
 
     def declare(function: Callable) -> Callable:
@@ -227,6 +232,8 @@ def _check_declaration(declared: Stage) -> None:
         raise TypeError(f"{declared.name} moves points, so it must select them: withheld points would stay behind.")
     if declared.samples and (declared.merges or "xyz" not in declared.reads):
         raise TypeError(f"{declared.name} asks how its cloud was sampled, so it must read the xyz of one cloud.")
+    if declared.of_whole and not declared.samples:
+        raise TypeError(f"{declared.name} takes {declared.of_whole[0]!r} of the whole, so it must take its sampling.")
     if declared.samples and arguments[SAMPLING].default is not None:
         raise TypeError(f"{declared.name} must take the sampling None, which is measured on its own points.")
     if VALUES in (*declared.reads, *declared.optional) and DIMENSION not in declared.tunables:

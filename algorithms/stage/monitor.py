@@ -51,6 +51,18 @@ class Monitor:
         return _Part(self, start, end, prefix)
 
 
+class ProgressOnly(Monitor):
+    """Passes progress on; values and warnings stay here, as those of work that a run does besides its own."""
+
+    def __init__(self, listener: Monitor) -> None:
+        super().__init__()
+        self.listener = listener
+
+    def progress(self, fraction: float) -> None:
+        """Pass it on; may raise :class:`Cancelled`."""
+        self.listener.progress(fraction)
+
+
 class _Part(Monitor):
     """A stretch of another monitor's progress; everything else goes straight through."""
 

@@ -9,7 +9,7 @@ import numpy as np
 from ..geometry.grid import distinct, fixed_grid_over
 from ..params import PointSource
 from ..sampling.cloud_sampling import CloudSampling
-from ..stage import Param, stage
+from ..stage import Monitor, Param, stage
 from .false_pits import false_pits
 from .ground_points import in_plan_order, last_returns, usable_points, with_ground
 from .ground_seeds import USUAL_BUILDING, seeds_by_opening
@@ -18,6 +18,9 @@ from .tin_densification import JoinRules, Surface, grow, surface_roughness
 
 # Share of the point spacing by which the surface may bend between points, when they join.
 _GROW_BEND = 0.5
+
+# Name of the roughness of the finished surface among the values of a run.
+_ROUGHNESS = "surface_roughness"
 
 # The final sweep takes points within this many times the roughness of the finished surface, ...
 _SWEEP_DEVIATIONS = 6.0
@@ -64,6 +67,7 @@ _REACH = 40.0
     tags="ground,filter,terrain,bare earth,DTM,Axelsson,PTD,PTIN,PMF,SMRF",
     writes=("classification",),
     reach=lambda tunables: max(tunables["max_building_size"] or 0.0, _REACH),
+    of_whole=(_ROUGHNESS,),
 )
 def classify_ground_tin(
     xyz,
@@ -273,7 +277,7 @@ def classify_ground_tin(
         surface = surface.without(low_noise, monitor.part(0.9, 1))
 
     # 4. Points near the finished surface are ground.
-    is_ground, sweep_distance = _sweep(surface, sweep_distance, scale, spacing, least)
+    is_ground, sweep_distance = _sweep(surface, sweep_distance, scale, sampling, monitor)
     monitor.resolved(
         iteration_angle=angle, iteration_distance=distance, edge_length=edge_length, sweep_distance=sweep_distance
     )
@@ -299,17 +303,18 @@ def _terrain(size: float) -> str:
 
 
 def _sweep(
-    surface: Surface, distance: Optional[float], scale: float, spacing: float, least: float
+    surface: Surface, distance: Optional[float], scale: float, sampling: CloudSampling, monitor: Monitor
 ) -> tuple[np.ndarray, float]:
     """Return which points lie within ``distance`` of the surface or are its nodes, and that distance.
 
-    Where the distance is measured, its bend is tied to ``scale`` (m), and points of higher strips are ground too.
+    Where it comes from the roughness, its bend is tied to ``scale`` (m), and points of higher strips are ground too.
     """
     if distance is not None:
         return surface.within(distance), distance
-    roughness = surface_roughness(surface.nodes, least)
+    roughness = sampling.of_whole.get(_ROUGHNESS) or surface_roughness(surface.nodes, sampling.height_resolution)
+    monitor.resolved(**{_ROUGHNESS: roughness})
     distance = min(_SWEEP_DEVIATIONS * roughness, _SWEEP_NOISE * roughness + _SWEEP_BEND * scale)
-    square = distinct(fixed_grid_over(surface.points, _REGION * spacing).number(surface.points))[1]
+    square = distinct(fixed_grid_over(surface.points, _REGION * sampling.spacing).number(surface.points))[1]
     return surface.within(distance) | _of_higher_strips(surface.above(), square, distance), distance
 
 

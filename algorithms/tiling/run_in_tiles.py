@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import pickle
 import shutil
 import time
 from collections import Counter
@@ -17,14 +16,13 @@ from typing import Any, Callable, Optional, Union
 
 import numpy as np
 
-from ..cloud.cloud import Cloud
 from ..cloud.copc_index import has_index
 from ..cloud.files import readable
 from ..cloud.outputs import LAS, LAZ, locked_folder, stem_of
 from ..cloud.points import open_header
 from ..cloud.units import Resolver
 from ..pipeline import REPORT, Pipeline
-from ..run import counted, has_several_returns, run_pipeline, run_stage
+from ..run import run_stage
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import FileContent, LayerFeatures, Monitor, Report
 from .blocks import Block, BlockResult, BlockTask, work_on_block
@@ -33,14 +31,13 @@ from .joined_files import join_files
 from .joining import References, feature_numbers, join_belonging, join_features, join_numbers, refer_to_features
 from .mosaics import RasterMosaic, join_rasters
 from .survey import Source, Survey, boxes_meet, check_folder, open_survey
+from .survey_sampling import samplings_of
 from .tiled_steps import (
     afterwards,
     in_blocks,
     layers_of,
     made_by,
     owners,
-    part_of,
-    preparing,
     tunables_of,
     why_whole,
 )
@@ -61,11 +58,6 @@ _DENSE_STEP, _LEAST_HALOS = 10.0, 1.25
 
 # A file of more points is cut first: read again for each of its blocks it would be read too often.
 _LARGEST_FILE = 25_000_000
-
-# How a survey was sampled is measured on all its points up to this many, else on windows of that side (m) at most, as
-# many in each direction.
-_SAMPLED_WHOLE = 3_000_000
-_SAMPLES_ACROSS, _SAMPLE_SIDE = 4, 100.0
 
 # Shares of the progress: cutting, sampling, blocks, layers; the rest is writing.
 _CUT, _SAMPLED, _WORKED, _JOINED = 0.05, 0.1, 0.88, 0.9
@@ -248,7 +240,7 @@ class _Run:
         """Sample, work on the blocks, write the tiles."""
         given = self.survey
         halo = self.pipeline.reach(self.tunables)
-        samplings = self._samplings(given, self.monitor.part(0.0, _CUT))
+        samplings = samplings_of(self.pipeline, given, self.tunables, self.monitor.part(0.0, _CUT))
         sampling = samplings[""]
         side = block_side or _side(sampling.density, halo)
         self.monitor.resolved(sampling=sampling)
@@ -282,31 +274,6 @@ class _Run:
             shutil.rmtree(self.work, ignore_errors=True)
         self.monitor.progress(1.0)
         return outcome
-
-    def _samplings(self, survey: Survey, monitor: Monitor) -> dict[str, CloudSampling]:
-        """Return how the survey was sampled, "", and how what its preparing steps make of it is, by their names.
-
-        It is measured on windows whose places depend on the extent of the survey alone.
-        """
-        boxes = _sample_boxes(survey)
-        clouds, survey = _sampled(survey, boxes, monitor)
-        if len(clouds) < len(boxes) / 4:
-            # It fills little of its extent, as a corridor or a coast does.
-            places = survey.places(_SAMPLES_ACROSS**2, monitor.part(1.0, 1.0))
-            clouds, _ = _sampled(survey, _squares_around(places, _sample_side(survey)), monitor.part(1.0, 1.0))
-        if not clouds:
-            raise ValueError("The survey has no points within the extent; choose another extent.")
-        corner = self.survey.corner
-        samplings = {"": _sampling_of(clouds, corner)}
-        pipeline = in_blocks(self.pipeline)
-        for step in preparing(pipeline):
-            one = part_of(pipeline, [step])
-            before = list(samplings.values())[-1]
-            given = tunables_of(one, self.tunables)
-            made = [run_pipeline(one, cloud, kept=(), samplings={"": before}, **given).cloud for cloud in clouds]
-            clouds = [cloud for cloud in made if cloud is not None]
-            samplings[step.name] = _sampling_of(clouds, corner)
-        return samplings
 
     def _cut_large_files(self, side: float, largest_file: int) -> None:
         """Cut files that are too large to be read once for each of their blocks, and take the pieces in their place.
@@ -376,7 +343,7 @@ class _Run:
             block.name,
             block.side,
             halo,
-            {name: (str(sampling), sampling.corner.tolist()) for name, sampling in samplings.items()},
+            {name: (str(one), one.corner.tolist(), one.of_whole) for name, one in samplings.items()},
             str(self.survey.extent),
         )
         part = Survey(
@@ -531,53 +498,6 @@ class _Run:
         if self.survey.extent is not None:
             outcome.points = sum(open_header(tile).count for tile in outcome.tiles)
         outcome.failures += [f"{tasks[at].source.name}: {why}" for at, why in sorted(errors.items())]
-
-
-def _sample_side(survey: Survey) -> float:
-    """Return the side of the windows that the sampling is measured on, m; all have _SAMPLED_WHOLE points at most."""
-    density = survey.expected / np.prod(survey.boxes[:, 1] - survey.boxes[:, 0], axis=1).sum()
-    return float(min(_SAMPLE_SIDE, np.sqrt(_SAMPLED_WHOLE / _SAMPLES_ACROSS**2 / density)))
-
-
-def _sample_boxes(survey: Survey) -> list[np.ndarray]:
-    """Return the boxes (2, 2), m, that the sampling is measured on: the whole survey, or squares spread over it."""
-    low, high = survey.box
-    if survey.expected <= _SAMPLED_WHOLE:
-        return [np.array([low, high + 1.0])]
-    across = (np.arange(_SAMPLES_ACROSS) + 0.5) / _SAMPLES_ACROSS
-    centers = np.array([low + (high - low) * (x, y) for x in across for y in across])
-    return _squares_around(centers, _sample_side(survey))
-
-
-def _squares_around(places: np.ndarray, side: float) -> list[np.ndarray]:
-    """Return the squares (2, 2), m, of a lattice from zero that places (k, 2) lie in, each once."""
-    return [np.array([corner, corner + side]) for corner in np.unique(np.floor(places / side) * side, axis=0)]
-
-
-def _sampled(survey: Survey, boxes: list[np.ndarray], monitor: Monitor) -> tuple[list[Cloud], Survey]:
-    """Return the points of each box that has any, and the survey without files found damaged."""
-    found = []
-    for done, box in enumerate(boxes):
-        part = monitor.part(done / len(boxes), (done + 1) / len(boxes))
-        try:
-            window = survey.window(box, part)
-        except ValueError as error:
-            # The blocks of a damaged file fail by name later; all others are worked on.
-            survey = survey.sound_part(box, monitor.part(1.0, 1.0))
-            if not survey.sources:
-                raise error from None
-            window = survey.window(box, monitor.part(1.0, 1.0))
-        if window is not None and not window.cloud.withheld.all():
-            found.append(window.cloud)
-    return found, survey
-
-
-def _sampling_of(clouds: list[Cloud], corner: np.ndarray) -> CloudSampling:
-    """Return how several parts of a survey with a south-western ``corner`` (2,) were sampled, all measures taken."""
-    together = np.concatenate([cloud.get("xyz")[counted(cloud)] for cloud in clouds])
-    sampling = CloudSampling(lambda: together, not any(has_several_returns(cloud) for cloud in clouds), corner)
-    # The points are left behind, as on the way to another process.
-    return pickle.loads(pickle.dumps(sampling))
 
 
 def _side(density: float, halo: float) -> float:

@@ -55,6 +55,12 @@ def preparing(pipeline: Pipeline) -> list[Step]:
     return steps
 
 
+def measuring(pipeline: Pipeline) -> list[Step]:
+    """Return the steps up to the last that prepares the points or measures what parts take of the whole."""
+    last = max((at for at, step in enumerate(pipeline.steps, start=1) if step.stage.of_whole), default=0)
+    return list(pipeline.steps[: max(last, len(preparing(pipeline)))])
+
+
 def owners(pipeline: Pipeline) -> dict[str, tuple[str, str]]:
     """Return for each layer whose features belong to those of another: its field that tells to which, and that layer.
 

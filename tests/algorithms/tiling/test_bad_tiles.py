@@ -13,6 +13,7 @@ from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.stage import Monitor, stage
 from lidar_buildings.algorithms.stages import STAGES
 from lidar_buildings.algorithms.tiling import run_in_tiles as module
+from lidar_buildings.algorithms.tiling import survey_sampling
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
 from lidar_buildings.algorithms.tiling.survey import crs_of_survey, files_of_survey
 from lidar_buildings.algorithms.tiling.workers import Workers
@@ -176,7 +177,7 @@ def test_a_tile_whose_points_are_damaged_fails_by_name_and_the_rest_is_there(tmp
 
 def test_a_damaged_tile_of_a_corridor_does_not_stop_the_rest(tmp_path, monkeypatch):
     """Windows spread over the extent of the survey hold no points, so that places are taken from the files."""
-    monkeypatch.setattr(module, "_SAMPLED_WHOLE", 1000)
+    monkeypatch.setattr(survey_sampling, "_SAMPLED_WHOLE", 1000)
     corners = {"a": (0, 0), "b": (2000, 0), "c": (0, 2000)}
     paths = [
         tile(tmp_path / f"{name}.laz", low, (low[0] + 20, low[1] + 20), n=60_000, seed=i)

@@ -15,6 +15,7 @@ from lidar_buildings.algorithms.run import run_pipeline
 from lidar_buildings.algorithms.stage import Cancelled, Layer, LayerFeatures, Monitor, stage
 from lidar_buildings.algorithms.stages import STAGES
 from lidar_buildings.algorithms.tiling import run_in_tiles as module
+from lidar_buildings.algorithms.tiling import survey_sampling
 from lidar_buildings.algorithms.tiling.run_in_tiles import can_be_tiled, run_in_tiles
 from lidar_buildings.algorithms.tiling.survey import Survey
 from lidar_buildings.algorithms.tiling.tiles import rows_of
@@ -234,7 +235,7 @@ def test_a_corridor_is_sampled_where_it_has_points(tmp_path, monkeypatch):
         read.append((box[1, 0] - box[0, 0], 0 if found is None else len(found.cloud)))
         return found
 
-    monkeypatch.setattr(module, "_SAMPLED_WHOLE", 1000)
+    monkeypatch.setattr(survey_sampling, "_SAMPLED_WHOLE", 1000)
     monkeypatch.setattr(Survey, "window", listened)
     outcome = run([path], tmp_path / "result", pipeline=QUICK, block_side=4400.0)
     # Windows of 100 m are read, and blocks with the points around them.

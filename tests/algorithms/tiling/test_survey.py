@@ -15,6 +15,7 @@ from lidar_buildings.algorithms.pipeline import Pipeline, Step
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.algorithms.tiling import run_in_tiles as module
+from lidar_buildings.algorithms.tiling import survey_sampling
 from lidar_buildings.algorithms.tiling.cutting import cut_into_tiles
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
 from lidar_buildings.algorithms.tiling.survey import open_survey
@@ -51,9 +52,9 @@ def test_a_file_taken_away_before_a_run_goes_on_gives_no_other_file_its_points(t
         tile(tmp_path / f"{name}.las", (x, 0), seed=seed) for seed, (name, x) in enumerate(zip("abc", (0, 900, 1800)))
     ]
     # A survey too large to be measured whole has the same sampling without the file.
-    monkeypatch.setattr(module, "_SAMPLED_WHOLE", 0)
+    monkeypatch.setattr(survey_sampling, "_SAMPLED_WHOLE", 0)
     same = open_survey(paths[1:]).box
-    monkeypatch.setattr(module, "_sample_boxes", lambda survey: [same])
+    monkeypatch.setattr(survey_sampling, "_sample_boxes", lambda survey: [same])
     with pytest.raises(Cancelled):
         run(paths, tmp_path / "out", monitor=Listening(stop_at=0.87))
     outcome = run(paths[1:], tmp_path / "out")
@@ -93,9 +94,9 @@ def test_matched_images_are_known_as_such(tmp_path):
 
 def test_the_sampling_of_a_dense_survey_takes_no_more_points_than_that_of_a_small_one(tmp_path, monkeypatch):
     path = tile(tmp_path / "dense.las", (0, 0), side=60.0, n=40_000)
-    monkeypatch.setattr(module, "_SAMPLED_WHOLE", 4000)
+    monkeypatch.setattr(survey_sampling, "_SAMPLED_WHOLE", 4000)
     survey = open_survey([path])
-    boxes = module._sample_boxes(survey)
+    boxes = survey_sampling._sample_boxes(survey)
     assert len(boxes) > 8
     counts = [len(window.cloud) for window in map(survey.window, boxes) if window is not None]
     assert 1000 < sum(counts) < 6000
