@@ -539,6 +539,7 @@ def test_sampling_needs_the_points_of_one_cloud():
 @pytest.mark.parametrize(
     ("declared", "sentence"),
     [
+        ({"of_whole": ("middle",)}, "takes 'middle' of the whole, so it must take its sampling"),
         ({"input_layers": (InputLayer("map", "Map", "Point", ""),)}, "has no argument of that name"),
         ({"creates": ("xyz",)}, "can't read anything"),
         ({"selects": True, "merges": True}, "make it two stages"),

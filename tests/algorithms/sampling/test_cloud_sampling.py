@@ -97,8 +97,10 @@ def test_another_process_is_given_the_measures_and_not_the_points(rng):
     """So that the tiles of a survey share one sampling."""
     xyz = gentle_slope(rng, count=100_000)
     sampling = CloudSampling.of(xyz)
+    sampling.of_whole["surface_roughness"] = 0.02
     sent = pickle.dumps(sampling)
     there = pickle.loads(sent)
+    assert there.of_whole == {"surface_roughness": 0.02}
     assert all_of(there) == all_of(sampling)
     assert there.neighborhood(10.0, 0.3) == sampling.neighborhood(10.0, 0.3)
     assert there._points is None

@@ -8,8 +8,10 @@ import pytest
 
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
+from lidar_buildings.algorithms.geometry.grid import SparsePointsError
 from lidar_buildings.algorithms.pipeline import Pipeline, Step
 from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.run import run_pipeline
 from lidar_buildings.algorithms.stage import Monitor, stage
 from lidar_buildings.algorithms.stages import STAGES
 from lidar_buildings.algorithms.tiling import run_in_tiles as module
@@ -53,6 +55,11 @@ def tile(path, low, high, n=500, seed=0):
     xyz = np.random.default_rng(seed).uniform([*low, 0], [*high, 1], (n, 3)) + [600_000, 5_000_000, 0]
     write_cloud(create_cloud({"xyz": xyz, "gps_time": np.arange(n) + 1000.0 * seed}, "EPSG:28992"), path)
     return path
+
+
+def in_map(cloud):
+    """Return the points of a cloud from the zero of the map."""
+    return cloud.get("xyz") + cloud.origin
 
 
 def crs(wkt):
@@ -215,6 +222,21 @@ def test_a_point_far_from_all_others_is_worked_on_with_them(tmp_path, monkeypatc
     assert not done.failures
     assert len(read_cloud(tmp_path / "out" / "bird.laz")) == 1
     assert (read_cloud(tmp_path / "out" / "land.laz").get("classification") == 2).mean() > 0.9
+
+
+def test_islands_too_far_apart_for_one_surface_are_worked_on_one_by_one(tmp_path, monkeypatch):
+    ground = Pipeline("ground", "Ground", "Tests", "", "", "", "", (Step("ground", "classify_ground_tin"),))
+    monkeypatch.setitem(PIPELINES, ground.name, ground)
+    paths = [
+        tile(tmp_path / f"{name}.laz", (west, west), (west + 40, west + 40), n=2000)
+        for name, west in (("near", 0), ("far", 40_000))
+    ]
+    with pytest.raises(SparsePointsError):
+        run_pipeline(ground, create_cloud({"xyz": np.concatenate([in_map(read_cloud(path)) for path in paths])}))
+    done = run_in_tiles(ground, paths, tmp_path / "out", workers=Workers(processes=1), block_side=50.0)
+    assert not done.failures
+    for path in done.tiles:
+        assert (read_cloud(path).get("classification") == 2).mean() > 0.9
 
 
 def house_and_meadow(folder):

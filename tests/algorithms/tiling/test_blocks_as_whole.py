@@ -45,6 +45,7 @@ def tiles_of(cloud, folder):
 
 def in_order(clouds, *names):
     """Return values of all points of clouds by their times; coordinates from the zero of the map."""
+    clouds = list(clouds)
     order = np.argsort(np.concatenate([one.get("gps_time") for one in clouds]), kind="stable")
     return [
         np.concatenate([one.get(name) + (one.origin if name == "xyz" else 0) for one in clouds])[order]
@@ -115,6 +116,30 @@ def test_cells_of_a_part_of_a_survey_are_those_of_the_whole(cloud, tmp_path, mon
     at = np.searchsorted(whole_times, times - 5e-6)
     assert 1_000 < len(at) < len(whole)
     np.testing.assert_array_equal(found, whole[at])
+
+
+@stage("Middle", group="Toys", writes=("classification",), reach=5.0, of_whole=("middle",))
+def classify_by_middle(xyz, *, sampling=None, monitor=None):
+    """Write whether a point is higher than half of all points."""
+    middle = sampling.of_whole.get("middle") or float(np.median(xyz[:, 2]))
+    monitor.resolved(middle=middle)
+    return (xyz[:, 2] > middle).astype(np.uint8)
+
+
+def test_blocks_take_what_a_step_measures_from_the_whole(cloud, tmp_path, monkeypatch):
+    """Also after a step that prepares the points, and where half of the cloud is a slope."""
+    steps = (Step("noise", "classify_noise_histogram"), Step("half", "classify_by_middle"))
+    middle = Pipeline("middle", "Middle", "Tests", "", "", "", "", steps)
+    monkeypatch.setitem(STAGES, "classify_by_middle", classify_by_middle.stage)
+    monkeypatch.setitem(PIPELINES, "middle", middle)
+    expected = run_pipeline(middle, cloud.copy(), kept=()).cloud
+    (tmp_path / "tiles").mkdir()
+    paths = tiles_of(cloud, tmp_path / "tiles")
+    options = {"workers": Workers(processes=1), "block_side": 40.0, "compressed": False}
+    made = run_in_tiles(middle, paths, tmp_path / "out", **options)
+    found, whole = (in_order(clouds, "classification")[0] for clouds in (map(read_cloud, made.tiles), [expected]))
+    np.testing.assert_array_equal(found, whole)
+    assert 0.4 < whole.mean() < 0.6
 
 
 def test_merging_is_no_part_of_a_survey():
