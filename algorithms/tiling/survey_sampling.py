@@ -21,6 +21,10 @@ from .tiled_steps import in_blocks, measuring, part_of, preparing, tunables_of
 _SAMPLED_WHOLE = 3_000_000
 _SAMPLES_ACROSS, _SAMPLE_SIDE = 4, 100.0
 
+# What steps make of the points, and blocks take of the whole, is measured on as many of these windows as hold this many
+# points, one at least: a second of a core for each 60,000.
+_MEASURED = 1_500_000
+
 
 def samplings_of(
     pipeline: Pipeline, survey: Survey, tunables: dict[str, Any], monitor: Monitor
@@ -49,6 +53,7 @@ def samplings_of(
     steps, prepares = measuring(pipeline), preparing(pipeline)
     for done, step in enumerate(steps):
         before = list(samplings.values())[-1]
+        clouds = clouds if step in prepares else _enough(clouds)
         part = monitor.part(0.3 + 0.7 * done / len(steps), 0.3 + 0.7 * (done + 1) / len(steps))
         try:
             clouds, measured = _worked_on(part_of(pipeline, [step]), clouds, before, tunables, part)
@@ -115,6 +120,12 @@ def _worked_on(
     names = {name: f"{one.name}_{name}" for one in step.steps for name in one.stage.of_whole}
     found = {name: [of_one[value] for of_one in values if value in of_one] for name, value in names.items()}
     return made, {name: float(np.median(of_all)) for name, of_all in found.items() if of_all}
+
+
+def _enough(clouds: list[Cloud]) -> list[Cloud]:
+    """Return as many of the clouds, spread over all of them, as hold _MEASURED points, one at least."""
+    count = max(1, int(len(clouds) * min(1.0, _MEASURED / sum(len(cloud) for cloud in clouds))))
+    return [clouds[at] for at in np.linspace(0, len(clouds) - 1, count).round().astype(int)]
 
 
 def _sampling_of(clouds: list[Cloud], corner: np.ndarray) -> CloudSampling:
