@@ -30,7 +30,7 @@ _POINTS_PER_PLANE_ON_LINES = 1.75
 # Reach of neighborhoods, and of the surroundings of a cluster (m).
 _REACH = 5.0
 
-# Names of the two mean entropies among the values of a run.
+# Names of what parts of a cloud take of the whole: the two mean entropies.
 _OF_WHOLE = ("building_entropy", "other_entropy")
 
 
@@ -171,7 +171,7 @@ def classify_buildings(
     # 1. The mean entropy of each cluster, and the two means that tell buildings from everything else.
     entropies = cluster_entropies(xyz, cluster_id, around, monitor.part(0, 0.85))
     split = _two_entropies(entropies.means, sampling, around.count, density, monitor)
-    monitor.resolved(**dict(zip(_OF_WHOLE, (split.building, split.other))))
+    monitor.resolved(building_entropy=split.building, other_entropy=split.other)
     by_entropy = decide_by_entropy(entropies.means, split)
     monitor.progress(0.9)
 
@@ -201,10 +201,12 @@ def _two_entropies(
     means: np.ndarray, sampling: CloudSampling, n_neighbors: int, density: float, monitor: Monitor
 ) -> Split:
     """Return the two mean entropies of clusters with those entropies (m,), or of the whole that they are a part of."""
-    of_whole = [sampling.of_whole[name] for name in _OF_WHOLE if name in sampling.of_whole]
-    if len(of_whole) == len(_OF_WHOLE):
-        return Split(*of_whole)
-    return held_means(means, *_usual_entropies(sampling, n_neighbors, density), monitor)
+    if all(name in sampling.of_whole for name in _OF_WHOLE):
+        building, other = (sampling.of_whole[name] for name in _OF_WHOLE)
+        return Split(building, other)
+    split = held_means(means, *_usual_entropies(sampling, n_neighbors, density), monitor)
+    sampling.found.update(zip(_OF_WHOLE, (split.building, split.other)))
+    return split
 
 
 def _decided_in_images(

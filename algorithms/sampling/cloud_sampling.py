@@ -55,7 +55,9 @@ class CloudSampling:
     Attributes
     ----------
     of_whole : dict of str to float
-        Values that steps have measured on the whole of which a cloud is a part, see :func:`.stage`. Empty for a whole.
+        Values that steps have measured on the whole of which the cloud is a part, by their names; empty for a whole.
+    found : dict of str to float
+        Values that steps have measured on this cloud.
 
     Examples
     --------
@@ -71,6 +73,7 @@ class CloudSampling:
         self._points = points
         self.single_returns = single_returns
         self.of_whole: dict[str, float] = {}
+        self.found: dict[str, float] = {}
         if corner is not None:
             self.corner = corner
 
@@ -90,6 +93,16 @@ class CloudSampling:
     def from_corner(self, xyz: np.ndarray) -> np.ndarray:
         """Return points (n, 3), m, with easting and northing from the corner, where the cells of all stages begin."""
         return xyz - np.append(self.corner, 0.0)
+
+    def shared(self, name: str, measure: Callable[[], float]) -> float:
+        """Return the value of that name of the whole; where the cloud is the whole, what ``measure`` returns.
+
+        A stage declares the names (``of_whole``), so that they are measured before parts of a cloud are worked on.
+        """
+        if name in self.of_whole:
+            return self.of_whole[name]
+        self.found[name] = measure()
+        return self.found[name]
 
     @cached_property
     def density(self) -> float:
@@ -171,7 +184,7 @@ class CloudSampling:
     def __getstate__(self) -> dict[str, Any]:
         """Return all measures, for another process: the points stay where they are."""
         measures = {name: getattr(self, name) for name in (*_MEASURES, "_surfaces")}
-        others = {"single_returns": self.single_returns, "corner": self.corner, "of_whole": self.of_whole}
+        others = {name: getattr(self, name) for name in ("single_returns", "corner", "of_whole", "found")}
         return {**measures, **others, "_points": None}
 
 

@@ -152,8 +152,8 @@ def stage(
 
     ``reach`` is how far (m) from a point others may lie that decide on it, a number or a function of all tunables by
     name: where a cloud is worked on in parts, each is seen with the points around it that far. ``of_whole`` names
-    values that it gives to ``monitor.resolved`` and that are measured on what it makes: parts of a cloud take those of
-    the whole, from ``sampling.of_whole``.
+    values that it measures on what it makes, and of which parts of a cloud take those of the whole, see
+    :meth:`.CloudSampling.shared`.
     """
     makes = {
         "writes": writes,

@@ -9,7 +9,7 @@ import numpy as np
 from ..geometry.grid import distinct, fixed_grid_over
 from ..params import PointSource
 from ..sampling.cloud_sampling import CloudSampling
-from ..stage import Monitor, Param, stage
+from ..stage import Param, stage
 from .false_pits import false_pits
 from .ground_points import in_plan_order, last_returns, usable_points, with_ground
 from .ground_seeds import USUAL_BUILDING, seeds_by_opening
@@ -19,7 +19,7 @@ from .tin_densification import JoinRules, Surface, grow, surface_roughness
 # Share of the point spacing by which the surface may bend between points, when they join.
 _GROW_BEND = 0.5
 
-# Name of the roughness of the finished surface among the values of a run.
+# Name of what parts of a cloud take of the whole: the roughness (m) of the finished surface.
 _ROUGHNESS = "surface_roughness"
 
 # The final sweep takes points within this many times the roughness of the finished surface, ...
@@ -277,7 +277,7 @@ def classify_ground_tin(
         surface = surface.without(low_noise, monitor.part(0.9, 1))
 
     # 4. Points near the finished surface are ground.
-    is_ground, sweep_distance = _sweep(surface, sweep_distance, scale, sampling, monitor)
+    is_ground, sweep_distance = _sweep(surface, sweep_distance, scale, sampling)
     monitor.resolved(
         iteration_angle=angle, iteration_distance=distance, edge_length=edge_length, sweep_distance=sweep_distance
     )
@@ -303,7 +303,7 @@ def _terrain(size: float) -> str:
 
 
 def _sweep(
-    surface: Surface, distance: Optional[float], scale: float, sampling: CloudSampling, monitor: Monitor
+    surface: Surface, distance: Optional[float], scale: float, sampling: CloudSampling
 ) -> tuple[np.ndarray, float]:
     """Return which points lie within ``distance`` of the surface or are its nodes, and that distance.
 
@@ -311,8 +311,7 @@ def _sweep(
     """
     if distance is not None:
         return surface.within(distance), distance
-    roughness = sampling.of_whole.get(_ROUGHNESS) or surface_roughness(surface.nodes, sampling.height_resolution)
-    monitor.resolved(**{_ROUGHNESS: roughness})
+    roughness = sampling.shared(_ROUGHNESS, lambda: surface_roughness(surface.nodes, sampling.height_resolution))
     distance = min(_SWEEP_DEVIATIONS * roughness, _SWEEP_NOISE * roughness + _SWEEP_BEND * scale)
     square = distinct(fixed_grid_over(surface.points, _REGION * sampling.spacing).number(surface.points))[1]
     return surface.within(distance) | _of_higher_strips(surface.above(), square, distance), distance

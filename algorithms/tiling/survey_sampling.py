@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import pickle
-from typing import Any
+from typing import Any, Optional
 
 import numpy as np
 
 from ..cloud.cloud import Cloud
-from ..geometry.grid import SparsePointsError
 from ..pipeline import Pipeline
 from ..run import counted, has_several_returns, run_pipeline
 from ..sampling.cloud_sampling import CloudSampling
@@ -53,18 +52,16 @@ def samplings_of(
     steps, prepares = measuring(pipeline), preparing(pipeline)
     for done, step in enumerate(steps):
         before = list(samplings.values())[-1]
-        clouds = clouds if step in prepares else _enough(clouds)
         part = monitor.part(0.3 + 0.7 * done / len(steps), 0.3 + 0.7 * (done + 1) / len(steps))
-        try:
-            clouds, measured = _worked_on(part_of(pipeline, [step]), clouds, before, tunables, part)
-        except SparsePointsError:
-            if step in prepares:
-                raise
-            # Islands far from each other are no surface, but their blocks are.
-            break
-        before.of_whole.update(measured)
+        alone = part_of(pipeline, [step])
         if step in prepares:
+            parts = [part.part(at / len(clouds), (at + 1) / len(clouds)) for at in range(len(clouds))]
+            made = [_made(alone, cloud, before, tunables, heard) for cloud, heard in zip(clouds, parts)]
+            clouds = [one for one in made if one is not None]
             samplings[step.name] = _sampling_of(clouds, corner)
+        elif clouds:
+            clouds, measured = _measured(alone, _enough(clouds), before, tunables, part)
+            before.of_whole.update(measured)
     return samplings
 
 
@@ -107,19 +104,32 @@ def _sampled(survey: Survey, boxes: list[np.ndarray], monitor: Monitor) -> tuple
     return found, survey
 
 
-def _worked_on(
+def _made(
+    step: Pipeline, cloud: Cloud, sampling: CloudSampling, tunables: dict[str, Any], monitor: Monitor
+) -> Optional[Cloud]:
+    """Return what a step makes of a part of a survey."""
+    heard = ProgressOnly(monitor)
+    return run_pipeline(step, cloud, heard, kept=(), samplings={"": sampling}, **tunables_of(step, tunables)).cloud
+
+
+def _measured(
     step: Pipeline, clouds: list[Cloud], sampling: CloudSampling, tunables: dict[str, Any], monitor: Monitor
 ) -> tuple[list[Cloud], dict[str, float]]:
     """Return what a step makes of parts of a survey, and the medians of what it measures there for the whole."""
-    made, values = [], []
+    made: list[Optional[Cloud]] = []
+    values: dict[str, list[float]] = {}
     for done, cloud in enumerate(clouds):
-        heard = ProgressOnly(monitor.part(done / len(clouds), (done + 1) / len(clouds)))
-        outcome = run_pipeline(step, cloud, heard, kept=(), samplings={"": sampling}, **tunables_of(step, tunables))
-        made += [] if outcome.cloud is None else [outcome.cloud]
-        values.append(heard.values)
-    names = {name: f"{one.name}_{name}" for one in step.steps for name in one.stage.of_whole}
-    found = {name: [of_one[value] for of_one in values if value in of_one] for name, value in names.items()}
-    return made, {name: float(np.median(of_all)) for name, of_all in found.items() if of_all}
+        sampling.found.clear()
+        part = monitor.part(done / len(clouds), (done + 1) / len(clouds))
+        try:
+            made.append(_made(step, cloud, sampling, tunables, part))
+        except ValueError:
+            # A part without ground, as over water, or islands far from each other: blocks there tell what is wrong.
+            continue
+        for name, value in sampling.found.items():
+            values.setdefault(name, []).append(value)
+    sampling.found.clear()
+    return [one for one in made if one is not None], {name: float(np.median(all_)) for name, all_ in values.items()}
 
 
 def _enough(clouds: list[Cloud]) -> list[Cloud]:

@@ -10,6 +10,7 @@ from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.run import run_pipeline
 from lidar_buildings.algorithms.stage import stage
 from lidar_buildings.algorithms.stages import STAGES
+from lidar_buildings.algorithms.tiling import survey_sampling
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
 from lidar_buildings.algorithms.tiling.tiled_steps import of_survey
 from lidar_buildings.algorithms.tiling.workers import Workers
@@ -120,26 +121,62 @@ def test_cells_of_a_part_of_a_survey_are_those_of_the_whole(cloud, tmp_path, mon
 
 @stage("Middle", group="Toys", writes=("classification",), reach=5.0, of_whole=("middle",))
 def classify_by_middle(xyz, *, sampling=None, monitor=None):
-    """Write whether a point is higher than half of all points."""
-    middle = sampling.of_whole.get("middle") or float(np.median(xyz[:, 2]))
-    monitor.resolved(middle=middle)
-    return (xyz[:, 2] > middle).astype(np.uint8)
+    """Write whether a point is higher than half of all points; refuse parts in the west."""
+    if sampling.from_corner(xyz)[:, 0].max() < 30:
+        raise ValueError("There is no middle in the west.")
+    return (xyz[:, 2] > sampling.shared("middle", lambda: float(np.median(xyz[:, 2])))).astype(np.uint8)
 
 
-def test_blocks_take_what_a_step_measures_from_the_whole(cloud, tmp_path, monkeypatch):
-    """Also after a step that prepares the points, and where half of the cloud is a slope."""
+@pytest.fixture
+def middle(monkeypatch):
+    """A composite of a step that prepares the points and one that takes a value of the whole."""
     steps = (Step("noise", "classify_noise_histogram"), Step("half", "classify_by_middle"))
-    middle = Pipeline("middle", "Middle", "Tests", "", "", "", "", steps)
+    composite = Pipeline("middle", "Middle", "Tests", "", "", "", "", steps)
     monkeypatch.setitem(STAGES, "classify_by_middle", classify_by_middle.stage)
-    monkeypatch.setitem(PIPELINES, "middle", middle)
-    expected = run_pipeline(middle, cloud.copy(), kept=()).cloud
-    (tmp_path / "tiles").mkdir()
-    paths = tiles_of(cloud, tmp_path / "tiles")
+    monkeypatch.setitem(PIPELINES, "middle", composite)
+    return composite
+
+
+def in_blocks_of(pipeline, cloud, folder):
+    """Return the classes of points by their times, of a survey in tiles."""
+    (folder / "tiles").mkdir()
     options = {"workers": Workers(processes=1), "block_side": 40.0, "compressed": False}
-    made = run_in_tiles(middle, paths, tmp_path / "out", **options)
-    found, whole = (in_order(clouds, "classification")[0] for clouds in (map(read_cloud, made.tiles), [expected]))
-    np.testing.assert_array_equal(found, whole)
+    made = run_in_tiles(pipeline, tiles_of(cloud, folder / "tiles"), folder / "out", **options)
+    assert not made.failures
+    return in_order(map(read_cloud, made.tiles), "classification")[0]
+
+
+def test_blocks_take_what_a_step_measures_from_the_whole(cloud, tmp_path, middle):
+    """Where half of the cloud is a slope, each block would have a value of its own."""
+    whole = in_order([run_pipeline(middle, cloud.copy(), kept=()).cloud], "classification")[0]
+    np.testing.assert_array_equal(in_blocks_of(middle, cloud, tmp_path), whole)
     assert 0.4 < whole.mean() < 0.6
+
+
+def test_of_a_large_survey_it_is_the_median_of_samples_but_of_those_that_a_step_refuses(
+    cloud, tmp_path, middle, monkeypatch
+):
+    """Sixteen samples, of which the step refuses the four in the west."""
+    monkeypatch.setattr(survey_sampling, "_SAMPLED_WHOLE", 10_000)
+    given = []
+    monkeypatch.setattr(survey_sampling, "_measured", keeping(given, survey_sampling._measured))
+    found = in_blocks_of(middle, cloud, tmp_path)
+    ((made, values),) = given
+    assert len(made) == 12
+    xyz, origin = in_order([cloud], "xyz")[0], cloud.origin
+    expected = np.median([np.median(one.get("xyz")[:, 2]) for one in made])
+    assert values == {"middle": pytest.approx(expected, abs=1e-9)}
+    np.testing.assert_array_equal(found, xyz[:, 2] - origin[2] > values["middle"])
+
+
+def keeping(given, function):
+    """Return a function that keeps what it returns."""
+
+    def kept(*arguments):
+        given.append(function(*arguments))
+        return given[-1]
+
+    return kept
 
 
 def test_merging_is_no_part_of_a_survey():
