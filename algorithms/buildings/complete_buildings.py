@@ -449,7 +449,9 @@ class _Columns:
         row, column = cell
         standing = np.zeros(self.building.shape)
         standing[row[stands_above], column[stands_above]] = 1
-        return _sums(standing, _AROUND) < _SPARSE * _sums(self.building > 0, _AROUND)
+        around = ndimage.uniform_filter(standing, _AROUND, mode="constant")
+        roof = ndimage.uniform_filter((self.building > 0).astype(float), _AROUND, mode="constant")
+        return around < _SPARSE * roof
 
     def is_beside_crown(
         self, cell: tuple[np.ndarray, np.ndarray], raised: np.ndarray, goes_on: np.ndarray
@@ -459,21 +461,16 @@ class _Columns:
         apart = raised & (self.building[cell] == 0) & (self.beside[cell] == 0)
         shape = self.building.shape
         number = np.ravel_multi_index((row[apart], column[apart]), shape)
+        # Means of whole numbers would be rounded to such.
         standing, passed = (
-            np.bincount(number, weights, np.prod(shape)).reshape(shape) for weights in (None, goes_on[apart])
+            np.bincount(number, weights, np.prod(shape)).reshape(shape).astype(float)
+            for weights in (None, goes_on[apart])
         )
-        is_passed = _sums(passed, _WITHIN) > _PASSED * _sums(standing, _WITHIN)
-        crown = ndimage.binary_opening(standing > 0, _CROWN) & is_passed
+        around, passed_around = (
+            ndimage.uniform_filter(count, _WITHIN, mode="constant") for count in (standing, passed)
+        )
+        crown = ndimage.binary_opening(standing > 0, _CROWN) & (passed_around > _PASSED * around)
         return ndimage.binary_dilation(crown, _EIGHT)
-
-
-def _sums(counts: np.ndarray, side: int) -> np.ndarray:
-    """Return the sums of counts in the square of ``side`` cells around each cell (rows, columns).
-
-    Means would be off by rounding errors, which depend on where the raster begins, and decide where half is the limit.
-    """
-    means = ndimage.uniform_filter(counts.astype(float), side, mode="constant")
-    return np.rint(means * side**2)
 
 
 def _covered(
