@@ -88,8 +88,8 @@ IsolatedPoints = Annotated[
     bool,
     Param(
         "Isolated points",
-        "Also find what hangs free in the air (birds, flocks, plumes of dust) and what lies under the ground "
-        "(multipath), within the heights of the scene.",
+        "Also find isolated points in the air (birds, flocks, plumes of dust) and under the ground (multipath), "
+        "within the heights of the scene.",
     ),
 ]
 
@@ -123,7 +123,7 @@ BridgeHeight = Annotated[
     float,
     Param(
         "Minimum height",
-        "Height above what lies beside them from which parts of the bare earth are bridges, and segments objects.",
+        "Height above their surroundings from which parts of the bare earth are bridges, and segments objects.",
         unit="m",
         low=0.1,
         high=100,

@@ -22,8 +22,8 @@ from .row_houses import MAX_SPACING
 from .row_houses import split_rows as split_into_houses
 from .shared_borders import outline_faces
 
-# Distance (spacings) beyond which points are never joined: the longest edge within a building. What lies between such
-# gaps is outlined by itself.
+# Distance (spacings) beyond which points are never joined: the longest edge within a building. Parts with such
+# gaps between them are outlined one by one.
 _APART = 8.0
 
 # Tolerance (spacings) of outlines: samples along an edge lie within one spacing of it, and corners are rounded.

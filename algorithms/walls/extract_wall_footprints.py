@@ -118,7 +118,7 @@ def extract_wall_footprints(
         float,
         Param(
             "Maximum overhang",
-            "How far roofs may jut out over their walls; what lies deeper under a roof is inside.",
+            "How far roofs may jut out over their walls; parts deeper under a roof are inside.",
             unit="m",
             low=0,
             high=10,
@@ -189,7 +189,7 @@ def extract_wall_footprints(
     covered where the pieces of it that should hold three points hold any. An edge of the outline is judged by its
     points between the corners, which are left out. The paper takes every pair of corners for a candidate edge; here
     the whole outline is the one that costs least: unseen wall by the meter, corners by the piece and more where
-    they aren't square, what lies outside the roof by the area. It is found by a minimum cut, then line by line it is
+    they aren't square, parts outside the roof by the area. It is found by a minimum cut, then line by line it is
     tried whether the outline is better off without.
 
     Gaps of a roof, and bites at its edge up to 4 m wide, are roof where no point is seen in them, as long as surfaces
@@ -202,7 +202,7 @@ def extract_wall_footprints(
     least half of each was seen, and the smallest building or more lies behind both. The line halfway between the walls
     parts the roof. Passages under one roof are parted in the same way.
 
-    What lies deeper under a roof than it juts out over the other walls counts as inside: loggias, porches. Sides
+    Parts deeper under a roof than it juts out over the other walls count as inside: loggias, porches. Sides
     without wall points lie as far inside the edge of the roof as the other walls in the median; ``quality`` 0 marks
     them. The result depends on the seed, and not on the order of points. A building whose points are spread so thinly
     that it would be nearly empty has no footprint; the log names it.

@@ -57,7 +57,7 @@ def _between(one: WallLine, other: WallLine) -> Optional[WallLine]:
     if abs(one.direction @ other.direction) < _PARALLEL:
         return None
     direction = one.direction + sign * other.direction
-    # Where lines are not quite parallel, what lies halfway is told opposite the middle of the second one's points.
+    # Where lines are not quite parallel, halfway is measured opposite the middle of the second one's points.
     foot = one.point + ((other.point - one.point) @ one.direction) * one.direction
     nothing = np.zeros(0)
     return WallLine((foot + other.point) / 2, direction / np.hypot(*direction), nothing.astype(int), nothing, np.nan)

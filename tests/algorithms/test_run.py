@@ -1,4 +1,4 @@
-"""What stands between a stage and a cloud: dimensions in, withheld points out, results back."""
+"""How a stage is run on a cloud: dimensions in, withheld points out, results back."""
 
 from __future__ import annotations
 

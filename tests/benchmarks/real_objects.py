@@ -24,7 +24,7 @@ GROUND_DENSITY, GROUND_NOISE = 14.0, 0.02
 
 
 def scene(slope: float, share: float, seed: int = 0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return coordinates (m), true classes and object numbers (0 is ground) of houses, each with what stands beside it.
+    """Return coordinates (m), true classes and object numbers (0 is ground) of houses, each with the objects beside it.
 
     ``slope`` is the rise of the ground per meter, ``share`` how much of the points stays.
     """

@@ -324,7 +324,7 @@ def test_balconies_amid_buildings_are_part_of_them(rng, side, around, reason):
 
 @pytest.mark.parametrize("stop_at", [0.0, 0.9, 0.94, 0.98])
 def test_cancel_gets_through(garden, stop_at):
-    """Also between penetration, what lies beside and what stands around, which take a second each of large clouds."""
+    """Also between penetration and surroundings, which take a second each of large clouds."""
     xyz, cluster_id = garden
     monitor, tunables = Listening(stop_at), {}
     with pytest.raises(Cancelled):

@@ -61,7 +61,7 @@ def gable(x):
     return 8 - 0.7 * np.abs(x - 15)
 
 
-def test_a_house_gets_its_chimney_walls_and_what_stands_on_it(scene):
+def test_a_house_gets_its_chimney_walls_and_objects_on_it(scene):
     scene.roof(10, 10, 20, 22, gable)
     chimney = scene.box([16, 15, 7.2], [16.6, 15.6, 7.7], 8)
     walls = np.concatenate([scene.box([10, 10, 0.6], [10.2, 22, 4], 60), scene.box([10, 21.8, 0.6], [20, 22, 4], 60)])
@@ -162,7 +162,7 @@ def test_the_wall_between_a_roof_and_a_higher_one_belongs_to_the_building(scene)
     ("eaves", "wall_from", "bush_to"), [pytest.param(15.0, 2.6, 2.4, id="tower"), pytest.param(4.0, 1.4, 1.2, id="low")]
 )
 def test_bushes_at_a_wall_are_low_and_no_higher_at_a_tower(scene, eaves, wall_from, bush_to):
-    """At low houses up to a third of the eaves, at higher ones 2.5 m: what stands above that is wall."""
+    """At low houses up to a third of the eaves, at higher ones 2.5 m: higher points are wall."""
     roof = scene.roof(10, 10, 20, 20, eaves)
     outside = scene.xyz[roof, 0].min() - 0.25
     wall = scene.box([outside, 12, wall_from], [outside + 0.05, 18, wall_from + 1.0], 30)

@@ -1,4 +1,4 @@
-"""Decisions on clusters of matched images: by the share of surfaces, by what stands around, by color."""
+"""Decisions on clusters of matched images: by the share of surfaces, by the surroundings, by color."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def test_green_surfaces_are_plants_unless_they_are_large(rng):
     assert not decided((small, large), [1.0, 1.0], [True, True], min_area=20.0).is_building.any()
 
 
-def test_confidence_follows_what_stands_around(rng):
+def test_confidence_follows_the_surroundings(rng):
     house, leaves = roof(rng, 0, 0), crown(rng, 12, 4, 2.5, 6.0, 500)
     alone, beside = decided((house,), [1.0]), decided((house, leaves), [1.0, 0.0])
     assert 0.5 < beside.confidence[0] < alone.confidence[0]

@@ -121,7 +121,7 @@ def dormers_from_front_to_back(a, v, number):
 
 
 @pytest.mark.parametrize("roof", [low_and_high, dormers_from_front_to_back])
-def test_what_stands_side_by_side_and_is_no_house_is_no_row(rng, roof):
+def test_objects_side_by_side_that_are_no_houses_are_no_row(rng, roof):
     assert len(outlined(rng, roof, 12)[0]) == 1
 
 

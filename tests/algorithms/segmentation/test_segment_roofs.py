@@ -166,7 +166,7 @@ def test_a_bridge_on_scan_lines_is_none(rng):
     assert not segment_roofs(turned, ones(z), np.where(is_road, -ground, 0))[0].any()
 
 
-def test_bridge_decks_and_what_stands_on_them_are_no_roofs(rng):
+def test_bridge_decks_and_objects_on_them_are_no_roofs(rng):
     """A deck 6 m high, a truck of 3 m on it that hides it, and a house of 6 m beside it."""
     deck, truck, house = (
         np.insert(rng.uniform(low, high, (8 * int(np.prod(np.subtract(high, low))), 2)), 2, z, axis=1)

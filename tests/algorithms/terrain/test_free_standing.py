@@ -1,4 +1,4 @@
-"""What stands free is told from terrain by its edges alone: surfaces of which every cell is known."""
+"""Free-standing segments are told from terrain by their edges alone: surfaces of which every cell is known."""
 
 import numpy as np
 import pytest
@@ -399,7 +399,7 @@ def test_turning_the_surface_turns_the_result(rng):
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 40), (40, 1)])
-def test_a_surface_of_one_row_or_one_cell_has_nothing_that_stands(shape):
+def test_a_surface_of_one_row_or_one_cell_has_no_free_standing_segment(shape):
     """Its edge is the edge of the cloud: a step on the way along it tells nothing of the sides."""
     surface = np.zeros(shape)
     surface.ravel()[15:25] = 6.0

@@ -38,7 +38,7 @@ def test_a_glass_roof_over_a_court_is_of_the_roof_around_it(rng):
     assert joined(main, roof(rng, 6.5, 5.5, 7, 5, 6)) == [0, 0]
 
 
-def test_what_stands_on_a_stair_house_is_of_the_same_roof(rng):
+def test_objects_on_a_stair_house_are_of_the_same_roof(rng):
     main = without(roof(rng, 0, 0, 20, 16, 9), 6, 5, 8, 6)
     stairs = without(roof(rng, 6.5, 5.5, 7, 5, 12), 9, 7, 2, 2)
     assert joined(main, stairs, roof(rng, 9.2, 7.2, 1.6, 1.6, 14)) == [0, 0, 0]
