@@ -17,7 +17,7 @@ from .cluster_decisions import Decisions, decide_by_entropy, no_clusters, writte
 from .cluster_entropies import cluster_entropies
 from .cluster_evidence import ClusterEvidence, with_penetration, with_surroundings
 from .cluster_report import MEASURES, Clusters, build_report
-from .entropy_split import Split, held_means, reference_entropies
+from .entropy_split import MEAN_ENTROPIES, held_means, reference_entropies, split_of_whole
 from .surface_evidence import decide_in_images, green_clusters
 
 # Points that an entropy needs, as a multiple of those that show a plane: three shares come from it, not one direction.
@@ -30,9 +30,6 @@ _POINTS_PER_PLANE_ON_LINES = 1.75
 # Reach of neighborhoods, and of the surroundings of a cluster (m).
 _REACH = 5.0
 
-# Names of what parts of a cloud take of the whole: the two mean entropies.
-_OF_WHOLE = ("building_entropy", "other_entropy")
-
 
 @stage(
     "Classify buildings",
@@ -41,7 +38,7 @@ _OF_WHOLE = ("building_entropy", "other_entropy")
     writes=("classification", "entropy", "cluster_entropy", "confidence", "reason"),
     measures=MEASURES,
     reach=_REACH,
-    of_whole=_OF_WHOLE,
+    of_whole=MEAN_ENTROPIES,
 )
 def classify_buildings(
     xyz,
@@ -170,7 +167,8 @@ def classify_buildings(
 
     # 1. The mean entropy of each cluster, and the two means that tell buildings from everything else.
     entropies = cluster_entropies(xyz, cluster_id, around, monitor.part(0, 0.85))
-    split = _two_entropies(entropies.means, sampling, around.count, density, monitor)
+    references = _usual_entropies(sampling, around.count, density)
+    split = split_of_whole(sampling, lambda: held_means(entropies.means, *references, monitor))
     monitor.resolved(building_entropy=split.building, other_entropy=split.other)
     by_entropy = decide_by_entropy(entropies.means, split)
     monitor.progress(0.9)
@@ -195,18 +193,6 @@ def classify_buildings(
     # 3. All points of a cluster are the same.
     report = build_report(Clusters(entropies.means, decided.reasons, split, through, max_penetration))
     return written_to_points(classification, reason, entropies, decided, min_area * density, report)
-
-
-def _two_entropies(
-    means: np.ndarray, sampling: CloudSampling, n_neighbors: int, density: float, monitor: Monitor
-) -> Split:
-    """Return the two mean entropies of clusters with those entropies (m,), or of the whole that they are a part of."""
-    if all(name in sampling.of_whole for name in _OF_WHOLE):
-        building, other = (sampling.of_whole[name] for name in _OF_WHOLE)
-        return Split(building, other)
-    split = held_means(means, *_usual_entropies(sampling, n_neighbors, density), monitor)
-    sampling.found.update(zip(_OF_WHOLE, (split.building, split.other)))
-    return split
 
 
 def _decided_in_images(

@@ -11,7 +11,7 @@ from ..stage import Param, stage
 from .cluster_decisions import decide_by_entropy, no_clusters, written_to_points
 from .cluster_entropies import cluster_entropies
 from .cluster_report import MEASURES, Clusters, build_report
-from .entropy_split import k_means, two_means
+from .entropy_split import MEAN_ENTROPIES, k_means, split_of_whole, two_means
 
 # A covariance of full rank takes more than three points; three are the fewest that have eigenvalues to compare.
 _MIN_NEIGHBORS = 3
@@ -30,6 +30,7 @@ _REACH = 5.0
     writes=("classification", "entropy", "cluster_entropy", "confidence", "reason"),
     measures=MEASURES,
     reach=_REACH,
+    of_whole=MEAN_ENTROPIES,
 )
 def classify_buildings_2019(
     xyz,
@@ -114,7 +115,7 @@ def classify_buildings_2019(
     if not (cluster_id > 0).any():
         return no_clusters(classification, reason, monitor)
     entropies = cluster_entropies(xyz, cluster_id, Nearest(n_neighbors), monitor.part(0, 0.95))
-    split = _SPLITS[two_classes](entropies.means, monitor)
+    split = split_of_whole(sampling, lambda: _SPLITS[two_classes](entropies.means, monitor))
     monitor.resolved(building_entropy=split.building, other_entropy=split.other)
     decided = decide_by_entropy(entropies.means, split)
     report = build_report(Clusters(entropies.means, decided.reasons, split))

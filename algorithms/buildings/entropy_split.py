@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Optional
+from typing import Callable, Optional
 
 import numpy as np
 
 from ..neighborhoods.covariance import shannon_entropy_lps, symmetric_eigenvalues
 from ..packages import cluster
+from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Monitor
 
 # Mean entropies closer together than this count as equal: entropy is 0 to 1.1, and clusters differ by 0.01 and more.
@@ -22,6 +23,9 @@ _STARTS = 10
 
 # Limit of the rounds of two means; in one dimension they settle in a few.
 _MAX_ROUNDS = 100
+
+# Names of the two means among what parts of a cloud take of the whole.
+MEAN_ENTROPIES = ("building_entropy", "other_entropy")
 
 # Points of a simulated neighborhood at most: with more the reference entropies change by less than 0.01.
 _MAX_SIMULATED_POINTS = 500
@@ -52,6 +56,17 @@ class Split:
             return np.full(len(means), 0.5)
         to_other, to_building = np.abs(means - self.other), np.abs(means - self.building)
         return np.select([means <= self.building, means >= self.other], [1.0, 0.0], to_other / (to_other + to_building))
+
+
+def split_of_whole(sampling: CloudSampling, measure: Callable[[], Split]) -> Split:
+    """Return the split of the whole that a cloud is a part of; of a whole the one that ``measure`` returns."""
+    if all(name in sampling.of_whole for name in MEAN_ENTROPIES):
+        building, other = (sampling.of_whole[name] for name in MEAN_ENTROPIES)
+        return Split(building, other)
+    split = measure()
+    if split.separates:
+        sampling.found.update(zip(MEAN_ENTROPIES, (split.building, split.other)))
+    return split
 
 
 def two_means(means: np.ndarray, monitor: Monitor) -> Split:
