@@ -31,7 +31,7 @@ def bent_roofs(
     sampling: CloudSampling,
     monitor: Monitor,
 ) -> np.ndarray:
-    """Return the smooth surface (n,), int32, from 1, that each point is of; 0 where there is none.
+    """Return the smooth surface (n,), int32, from 1, that each point is of; 0 if unassigned.
 
     Surfaces are smooth where neighbors share a plane, however they bend on the whole. Smooth spots of crowns, which lie
     amid rough points, are left out. Only raised objects with a roof that is known already, and points close around
@@ -46,7 +46,7 @@ def bent_roofs(
     height : ndarray of shape (n,)
         Heights above ground, m.
     cluster_id : ndarray of shape (n,)
-        Buildings of the points on planes, from 1; 0 where there is none.
+        Buildings of the points on planes, from 1; 0 if unassigned.
     sampling : CloudSampling
         How the cloud was sampled.
     monitor : Monitor
@@ -91,7 +91,7 @@ def with_bent_roofs(
     xyz : ndarray of shape (n, 3), float64
         Points (m).
     cluster_id : ndarray of shape (n,), int32
-        Buildings of the points on planes, from 1; 0 where there is none.
+        Buildings of the points on planes, from 1; 0 if unassigned.
     is_bent : ndarray of shape (n,), bool
         Other points on smooth surfaces.
     gap : float

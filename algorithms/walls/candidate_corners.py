@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..geometry.line_segments import nearest_edge_distances
+from .wall_edges import WallEdge
 from .wall_lines import WallLine
-from .wall_outline import WallEdge, WallOutline
+from .wall_outline import WallOutline
 
 # What became of a candidate corner.
 CORNER = "corner"

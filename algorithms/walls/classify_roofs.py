@@ -71,14 +71,14 @@ def classify_roofs(
     height_above_ground : ndarray of shape (n,), float32
         Heights, m.
     segment_id : ndarray of shape (n,), int32
-        Planes from 1, as "Segment planes (RANSAC)" finds them; 0 where there is none.
+        Planes from 1, as "Segment planes (RANSAC)" finds them; 0 if unassigned.
 
     Returns
     -------
     classification : ndarray of shape (n,), uint8
         Roofs get 6; points of class 6 on no roof become 1.
     cluster_id : ndarray of shape (n,), int32
-        Buildings from 1, from west to east; 0 where there is none.
+        Buildings from 1, from west to east; 0 if unassigned.
 
     Notes
     -----

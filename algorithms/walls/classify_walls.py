@@ -122,14 +122,14 @@ def classify_walls(
     height_above_ground : ndarray of shape (n,), float32
         Heights, m.
     cluster_id : ndarray of shape (n,), int32
-        Buildings of roof points from 1, as "Classify roofs" finds them; 0 where there is none.
+        Buildings of roof points from 1, as "Classify roofs" finds them; 0 if unassigned.
 
     Returns
     -------
     classification : ndarray of shape (n,), uint8
         Walls get 6.
     wall_of : ndarray of shape (n,), int32
-        Building of each wall point; 0 where there is none.
+        Building of each wall point; 0 if unassigned.
 
     Raises
     ------

@@ -19,10 +19,12 @@ from ..sampling.cloud_sampling import CloudSampling
 from ..sampling.density import point_spacing
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
 from .candidate_corners import ROOF_OUTLINE, TOO_SMALL, CandidateCorners, candidate_corners
+from .cheapest_outline import Limits
 from .lanes import find_lane
 from .surroundings import Surroundings, without_nested
+from .wall_edges import WallEdge, closed
 from .wall_lines import WallLine
-from .wall_outline import Limits, WallEdge, WallOutline, closed, outline_roof, outline_walls, share_seen
+from .wall_outline import WallOutline, outline_roof, outline_walls, share_seen
 from .wall_report import MEASURES, WALL, point_counts, wall_report
 
 ROOF = "roof"
@@ -161,9 +163,9 @@ def extract_wall_footprints(
     xyz : ndarray of shape (n, 3), float64
         Coordinates, m.
     cluster_id : ndarray of shape (n,), int32
-        Building of each roof point from 1; 0 where there is none.
+        Building of each roof point from 1; 0 if unassigned.
     wall_of : ndarray of shape (n,), int32, optional
-        Building of each wall point from 1; 0 where there is none. Without it, footprints are outlines of roofs.
+        Building of each wall point from 1; 0 if unassigned. Without it, footprints are outlines of roofs.
     height_above_ground : ndarray of shape (n,), float32, optional
         Heights, m, for the attributes only.
     classification : ndarray of shape (n,), uint8, optional

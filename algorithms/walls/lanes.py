@@ -8,8 +8,10 @@ from typing import Optional
 import numpy as np
 
 from ..geometry.rings import signed_area
+from .cheapest_outline import Limits
+from .wall_edges import closed
 from .wall_lines import WallLine
-from .wall_outline import Limits, WallOutline, closed
+from .wall_outline import WallOutline
 
 # Walls along a lane are parallel within this angle (cosine): that by which walls of one building are.
 _PARALLEL = np.cos(np.deg2rad(8.0))

@@ -30,7 +30,7 @@ def split_blocks(
     height : ndarray of shape (n,)
         Heights above ground, m.
     cluster_id : ndarray of shape (n,)
-        Buildings, from 1; 0 where there is none.
+        Buildings, from 1; 0 if unassigned.
     spacing : float
         Mean distance between points, m.
     monitor : Monitor

@@ -23,7 +23,7 @@ def join_stacked(xyz: np.ndarray, cluster: np.ndarray, size: float) -> np.ndarra
     xyz : ndarray of shape (n, 3)
         Points of roofs (m).
     cluster : ndarray of shape (n,), int
-        Roof of each point from 0; -1 where there is none.
+        Roof of each point from 0; -1 if unassigned.
     size : float
         Side (m) of the cells in which roofs are held against each other: the distance within which points are of one
         roof.

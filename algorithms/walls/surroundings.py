@@ -57,7 +57,7 @@ class Surroundings:
     xyz : ndarray of shape (n, 3)
         All points (m).
     cluster_id : ndarray of shape (n,)
-        Building of each roof point from 1; 0 where there is none.
+        Building of each roof point from 1; 0 if unassigned.
     sampling : CloudSampling
         How the cloud was sampled.
     """

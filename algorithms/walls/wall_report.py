@@ -51,9 +51,9 @@ def point_counts(
     Parameters
     ----------
     cluster_id : ndarray of shape (n,)
-        Building of each roof point; 0 where there is none.
+        Building of each roof point; 0 if unassigned.
     wall_of : ndarray of shape (n,), optional
-        Building of each wall point; 0 where there is none.
+        Building of each wall point; 0 if unassigned.
     classification : ndarray of shape (n,), optional
         ASPRS classes.
     voxel_count : ndarray of shape (n,), optional

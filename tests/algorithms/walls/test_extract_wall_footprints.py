@@ -8,7 +8,7 @@ import pytest
 
 from lidar_buildings.algorithms.geometry.rings import signed_area
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
-from lidar_buildings.algorithms.walls import wall_outline
+from lidar_buildings.algorithms.walls import cheapest_outline
 from lidar_buildings.algorithms.walls.extract_wall_footprints import extract_wall_footprints
 from lidar_buildings.algorithms.walls.wall_lines import Scale, WallLine
 from lidar_buildings.algorithms.walls.wall_outline import _through_few
@@ -123,7 +123,7 @@ def test_what_a_line_changes_is_looked_for_only_near_it(rng, monkeypatch):
     ring = ((0, 0), (39, 0), *bays[1:-1])
     arrays, true = building(rng, ring, per_meter=8, noise=0.04, missing=(3, 9, 17))
     near, _ = extract_wall_footprints(**arrays)[:2]
-    monkeypatch.setattr(wall_outline, "_NEARBY", 1e3)
+    monkeypatch.setattr(cheapest_outline, "_NEARBY", 1e3)
     everywhere, _ = extract_wall_footprints(**arrays)[:2]
     assert len(near.geometries[0][0]) - 1 == len(true) == 28
     np.testing.assert_array_equal(near.geometries[0][0], everywhere.geometries[0][0])
