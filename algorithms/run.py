@@ -1,6 +1,7 @@
 """Run a stage or a pipeline in memory.
 
-A stage: fetch what it reads, leave out withheld points, store what it writes. A pipeline: one stage after the other.
+A stage: fetch the dimensions that it reads, leave out withheld points, store those that it writes. A pipeline: one
+stage after the other.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ from .stages import STAGES
 
 @dataclass
 class Outcome:
-    """What a stage made: the cloud with its new dimensions, its layers, rasters and files by name, its report.
+    """The results of a stage: the cloud with its new dimensions, its layers, rasters and files by name, its report.
 
     ``selected`` are the positions, int64 (m,), that the points of the cloud had in the one given; None where all stay.
     """
@@ -59,7 +60,7 @@ def run_stage(
     sampling: Optional[CloudSampling] = None,
     **tunables: Any,
 ) -> Outcome:
-    """Run ``stage`` and return what it made.
+    """Run ``stage`` and return its results.
 
     ``cloud`` is several clouds for a stage that merges. It sees them from the zero of the map, about which it may turn
     them; they, and the cloud that it makes, get the origin of the first.
@@ -129,7 +130,7 @@ def counted(cloud: Cloud) -> np.ndarray:
 
 
 def _log(sampling: Optional[CloudSampling], monitor: Monitor) -> None:
-    """Tell the monitor what was measured, if anything was."""
+    """Report the measurements of a sampling to the monitor, if there are any."""
     if sampling is not None and sampling.measured:
         monitor.resolved(sampling=sampling)
 
@@ -143,9 +144,9 @@ class _RunSampling:
         That of the points of ``cloud``, by the name "", and those of what steps make, by their names; each holds until
         the next one, or until a step makes a cloud of other points.
     cloud : Cloud or several, optional
-        What the pipeline begins with.
+        The input of the pipeline.
     monitor : Monitor
-        Is told what was measured.
+        Receives the measurements.
     """
 
     def __init__(self, given: Mapping[str, CloudSampling], cloud: Any, monitor: Monitor) -> None:
@@ -159,7 +160,7 @@ class _RunSampling:
         self.corner = _corner(cloud) if isinstance(cloud, Cloud) and self.given is None else None
 
     def after(self, step: Step, cloud: Any) -> None:
-        """Take the sampling that is given for what a step made, if one is."""
+        """Take the sampling that is given for the result of a step, if one is."""
         if step.name in self._all and isinstance(cloud, Cloud):
             self.given, self.points = self._all[step.name], cloud.points
 
@@ -176,7 +177,7 @@ class _RunSampling:
         return self.own
 
     def log(self) -> None:
-        """Tell the monitor what was measured for the last steps."""
+        """Report the measurements for the last steps to the monitor."""
         _log(self.own, self.monitor)
 
 
@@ -234,7 +235,7 @@ def _present(cloud: Cloud, name: str) -> np.ndarray:
 def _result(
     stage: Stage, clouds: list[Cloud], used: list[Optional[np.ndarray]], made: StageResults, monitor: Monitor
 ) -> Optional[Cloud]:
-    """Return the cloud with what the stage made of it: the same one, or a new one."""
+    """Return the cloud with the results of the stage: the same one, or a new one."""
     if stage.creates:
         return create_cloud({name: values for name, values in made.dimensions.items() if values is not None})
     if not clouds:
@@ -275,7 +276,7 @@ def _whole(cloud: Cloud, name: str, values: np.ndarray, used: Optional[np.ndarra
 
 @dataclass
 class Results(Outcome):
-    """What a chain made: the last cloud; layers, rasters, files, reports and kept clouds by the composite's names."""
+    """The results of a chain: last cloud; layers, rasters, files, reports and kept clouds by the composite's names."""
 
     clouds: dict[str, Cloud] = field(default_factory=dict)
     reports: dict[str, Report] = field(default_factory=dict)

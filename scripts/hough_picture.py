@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measure and draw what the width of the bins does to *Segment planes (Hough)*.
+"""Measure and draw the effect of the width of the bins on *Segment planes (Hough)*.
 
 The chart is on its help page::
 

@@ -83,7 +83,7 @@ def classify_buildings(
     sampling: Optional[CloudSampling] = None,
     monitor=None,
 ):
-    """Find the buildings among clusters by their mean entropy and by what a laser beam passes through.
+    """Find the buildings among clusters by their mean entropy and by how far laser beams penetrate them.
 
     Roofs are planar everywhere and have low entropy; crowns are not and have high entropy. A cluster is compared with
     the entropies of planes and volumes that are as dense and as rough as the cloud. Roofs stop the beam, crowns let it
@@ -102,7 +102,7 @@ def classify_buildings(
     reason : ndarray of shape (n,), uint8, optional
         Reasons that the segmentation gave to points outside clusters, which they keep.
     segment_id : ndarray of shape (n,), int32, optional
-        Roof surfaces; 0 where there is none. In matched images they tell roofs from crowns; without them entropy does.
+        Roof surfaces; 0 if unassigned. In matched images they tell roofs from crowns; without them entropy does.
     red, green, blue : ndarray of shape (n,), uint16, optional
         Color, used in matched images where given.
 
@@ -173,7 +173,7 @@ def classify_buildings(
     by_entropy = decide_by_entropy(entropies.means, split)
     monitor.progress(0.9)
 
-    # 2. What the beam and the surroundings tell of each cluster.
+    # 2. Evidence of penetration and of the surroundings of each cluster.
     returns = (return_number, number_of_returns)
     # Other programs number clusters as they like.
     group, numbers = entropies.groups(len(xyz)), np.arange(len(entropies.ids))

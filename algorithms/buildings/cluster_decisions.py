@@ -1,4 +1,4 @@
-"""What was decided of each cluster: confidence and reason, by entropy at first, and written to its points at last."""
+"""Decisions on clusters: confidence and reason, first by entropy, finally written to the points."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .cluster_entropies import ClusterEntropies
 from .cluster_report import Clusters, build_report
 from .entropy_split import Split
 
-# Points of a cluster, in points of the smallest building, at which its confidence loses half of what it has over 0.5.
+# Points of a cluster, in points of the smallest building, at which its confidence above 0.5 is halved.
 # A car is as large as the smallest building and can look like a roof; confidence only, no decision depends on it.
 _HALF_SUPPORT = 2.0
 
@@ -62,7 +62,7 @@ def written_to_points(
     entropies : ClusterEntropies
         Entropies of the clustered points, and the clusters.
     decisions : Decisions
-        What was decided of the clusters.
+        Decisions on the clusters.
     smallest : float
         Points of the smallest building.
     report : Report
@@ -92,7 +92,7 @@ def _supported(confidence: np.ndarray, size: np.ndarray) -> np.ndarray:
 
 
 def _without_buildings(classification: np.ndarray, reason: Optional[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the classes with earlier buildings unclassified, and the reasons given so far."""
+    """Return the classes with earlier buildings unclassified, and the reasons of earlier steps."""
     classes = np.where(classification == PointClass.BUILDING, np.uint8(PointClass.UNCLASSIFIED), classification)
     why = np.zeros(len(classes), np.uint8) if reason is None else reason.astype(np.uint8)
     return classes.astype(np.uint8), why

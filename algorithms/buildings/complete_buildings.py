@@ -153,7 +153,7 @@ def complete_buildings(
     sampling: Optional[CloudSampling] = None,
     monitor=None,
 ):
-    """Add to each building what belongs to it beside its roof surfaces, and number the buildings.
+    """Add walls, chimneys, edges and gaps to each building, and number the buildings.
 
     Buildings are decided in columns: where a roof was found, everything from the foot of the walls to just above
     the roof is building, and so are chimneys and the walls along its edge. Small gaps between roof surfaces are
@@ -174,7 +174,7 @@ def complete_buildings(
     reason : ndarray of shape (n,), uint8, optional
         Why the roofs are buildings, see :class:`~..cloud.reasons.Reason`.
     segment_id : ndarray of shape (n,), int32, optional
-        Roof surfaces; 0 where there is none. Without it the share of roof surfaces is not examined.
+        Roof surfaces; 0 if unassigned. Without it the share of roof surfaces is not examined.
     return_number, number_of_returns : ndarray of shape (n,), uint8, optional
         Without them crowns are not looked for.
 
@@ -183,7 +183,7 @@ def complete_buildings(
     classification : ndarray of shape (n,), uint8
         Buildings 6; roofs of less than the minimum area, width or share of roof surfaces become 1.
     cluster_id : ndarray of shape (n,), int32
-        Buildings from 1, from the south-west northward; 0 where there is none.
+        Buildings from 1, from the south-west northward; 0 if unassigned.
     confidence : ndarray of shape (n,), float32, or None
         Points added to a building get the mean of its roofs, rejected roofs at most 0.5; None where not given.
     reason : ndarray of shape (n,), uint8, or None
@@ -267,7 +267,7 @@ class _Roofs:
     on_surface : ndarray of shape (n,), bool, optional
         Points of roofs on a roof surface; None where these are not known.
     segment_id : ndarray of shape (n,), int32, optional
-        Roof surfaces; 0 where there is none.
+        Roof surfaces; 0 if unassigned.
     """
 
     xyz: np.ndarray
@@ -301,7 +301,7 @@ class _Extents:
     cell_size : float
         Their size, m.
     building : ndarray of shape (rows, columns), int32
-        Number of the building that covers each cell; 0 where there is none.
+        Number of the building that covers each cell; 0 for cells without building.
     refused : ndarray of shape (rows, columns), uint8
         Reason why the roof over a cell was rejected.
     top : ndarray of shape (rows, columns)
@@ -428,7 +428,7 @@ class _Columns:
         self.beside = np.where(building > 0, 0, beside)
 
     def owners(self, points: _Points, clearance: float, structure_height: float) -> np.ndarray:
-        """Return the building (n,), int32, that each point belongs to; 0 where there is none.
+        """Return the building (n,), int32, that each point belongs to; 0 if unassigned.
 
         Points up to the clearance (m) above the roof do, those up to the height of structures (m) where they are few.
         """

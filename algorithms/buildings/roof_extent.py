@@ -75,7 +75,7 @@ def amid_rough(surface: TopSurface, xyz: np.ndarray, segment_id: np.ndarray) -> 
     surface : TopSurface
         The surface of the points ``xyz`` (n, 3), m, seen from above.
     segment_id : ndarray of shape (n,), int32
-        Roof surfaces from 1; 0 where there is none.
+        Roof surfaces from 1; 0 if unassigned.
     """
     on_top = np.flatnonzero((segment_id > 0) & surface.on_top(xyz))
     row, column = surface.cell[0][on_top], surface.cell[1][on_top]
@@ -129,7 +129,7 @@ class RoofExtent:
         steps = max(1, round(_ROUNDED / self.surface.size))
         cross = ndimage.generate_binary_structure(2, 1)
         grown = ndimage.binary_dilation(core, cross, steps, mask=core | is_edge)
-        # Smeared walls, fences and branches that reach out are thinner than what they hang on.
+        # Smeared walls, fences and branches that reach out are thinner than the objects that carry them.
         return core | ndimage.binary_opening(grown, _EIGHT)
 
     def interior(self, building: np.ndarray) -> np.ndarray:

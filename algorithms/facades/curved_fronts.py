@@ -31,7 +31,7 @@ def as_strips(xyz: np.ndarray, wall: np.ndarray, tolerance: float) -> np.ndarray
     xyz : ndarray of shape (n, 3)
         Coordinates (m).
     wall : ndarray of shape (n,)
-        Walls from 1 to m, each with a point; 0 where there is none. On a curved front planes overlap.
+        Walls from 1 to m, each with a point; 0 if unassigned. On a curved front planes overlap.
     tolerance : float
         Largest root mean square distance (m) of the points of a column from their strip.
     """

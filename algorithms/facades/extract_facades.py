@@ -134,7 +134,7 @@ def extract_facades(
     Returns
     -------
     segment_id : ndarray of shape (n,), int32
-        Facades from 1, from west to east; 0 where there is none.
+        Facades from 1, from west to east; 0 if unassigned.
     facades : LayerFeatures
         Polygons with Z, counterclockwise seen from outside, with the fields above.
 
@@ -208,7 +208,7 @@ def _steep_planes(
     sampling: CloudSampling,
     monitor: Monitor,
 ) -> np.ndarray:
-    """Return the steep planes (n,) from 1 of points that stand above one another; 0 where there is none."""
+    """Return the steep planes (n,) from 1 of points that stand above one another; 0 if unassigned."""
     plane = np.zeros(len(xyz), np.int64)
     rows = np.flatnonzero(_is_stacked(xyz, min_height))
     if len(rows):

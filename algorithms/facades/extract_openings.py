@@ -103,7 +103,7 @@ def extract_openings(
     xyz : ndarray of shape (n, 3), float64
         Coordinates, m.
     segment_id : ndarray of shape (n,), int32
-        Facades from 1, as "Extract facades" finds them; 0 where there is none. Only steep segments are used.
+        Facades from 1, as "Extract facades" finds them; 0 if unassigned. Only steep segments are used.
 
     Returns
     -------

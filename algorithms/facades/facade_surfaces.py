@@ -90,7 +90,7 @@ def surfaces_of(
     xyz : ndarray of shape (n, 3)
         Coordinates of the whole cloud (m).
     segment_id : ndarray of shape (n,)
-        Planes from 1; 0 where there is none.
+        Planes from 1; 0 if unassigned.
     max_tilt : float
         Largest angle (°) of a facade to the vertical.
     edge_factor, max_gap, boundary, complete

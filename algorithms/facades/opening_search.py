@@ -1,4 +1,4 @@
-"""Openings in the plane of a facade: what is seen behind the wall, and enclosed by it."""
+"""Openings in the plane of a facade: areas enclosed by the wall with points behind it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _CELL_SPACINGS, _LEAST_CELL = 1.2, 0.02
 # Points behind the wall this far apart (m; cells at least) are of one opening: bars, curtains and panes leave gaps.
 _LINK, _LINK_CELLS = 0.3, 1.5
 
-# A side of an opening is the edge of the wall where that lies within this distance (m) of what is seen in it.
+# A side of an opening is the edge of the wall where that lies within this distance (m) of the points seen in it.
 _REACH = 0.3
 
 # Share of the outline of an opening, its sill left out where it is a door, that must have wall beside it.
@@ -128,7 +128,7 @@ class Raster:
         return mask
 
     def groups(self) -> tuple[np.ndarray, int]:
-        """Return the group from 1 of each cell with something behind the wall, and how many; 0 where there is none.
+        """Return the group from 1 of each cell with points behind the wall, 0 for others, and the number of groups.
 
         Cells are of one group if they are near each other with no wall between them.
         """

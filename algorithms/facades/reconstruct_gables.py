@@ -92,7 +92,7 @@ def reconstruct_gables(
     classification : ndarray of shape (n,), uint8
         ASPRS classes: ground (2) gives the elevation of the ground; without any, the lowest points around do.
     segment_id : ndarray of shape (n,), int32
-        Roof planes from 1, as "Segment planes (RANSAC)" or "Segment roofs" finds them; 0 where there is none.
+        Roof planes from 1, as "Segment planes (RANSAC)" or "Segment roofs" finds them; 0 if unassigned.
 
     Returns
     -------

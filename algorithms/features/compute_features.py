@@ -315,7 +315,7 @@ class NeighborhoodFeatures:
 
     @cached_property
     def plan_radius(self) -> np.ndarray:
-        """Largest horizontal distance from the point; undefined where there is none."""
+        """Largest horizontal distance from the point; undefined without neighbors."""
         radius = self.shapes.plan_radius
         return np.where(self.defined & (radius > 0), radius, np.nan)
 

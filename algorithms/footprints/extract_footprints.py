@@ -81,7 +81,7 @@ def extract_footprints(
         Param(
             "Tolerance",
             "Wiggles of the traced outline that are taken for straight; an outline that would have to move by more "
-            "than twice that becomes chords of what was traced.",
+            "than twice that becomes chords of the traced one.",
             unit="m",
             low=0.01,
             high=100,
@@ -139,14 +139,14 @@ def extract_footprints(
     spacing from its points. Walls are as few as describe the outline, those in main directions preferred, each fitted
     to all points along it, and turned to a main direction only where that moves its ends by about a point spacing at
     most; chords of curves are not. Outlines without a right angle and without parallel walls that are most of them, or
-    that straight walls would change too much, become chords of what was traced, within about the tolerance. Clusters
+    that straight walls would change too much, become chords of the traced outline, within about the tolerance. Clusters
     whose points lie on one line have no area and give no polygon.
 
     With 'Split rows', houses of a row are parted along straight lines from one side of a building to the other, in its
     main directions, where over 60 % of what is not low two roofs rise away from the line, parallel ones step by 0.4 m
     and any by 1 m, or a wall stands 0.3 m above both. At least two such lines side by side, 3.5 to 13 m apart, and
     25 m² of every house are asked for, and for a step that the lower house is not below three quarters of the higher
-    one: two roofs may be one house, and what is low or small is a part of one. Houses keep the number of their cluster.
+    one: two roofs may be one house, and low or small parts belong to one. Houses keep the number of their cluster.
 
     References
     ----------

@@ -158,7 +158,7 @@ class Arrangement:
         return True
 
     def cells_at(self, sides: np.ndarray) -> np.ndarray:
-        """Return the cell (n,) of points that lie on these ``sides`` (n, m) of the lines, -1 where there is none."""
+        """Return the cell (n,) of points that lie on these ``sides`` (n, m) of the lines, -1 if unassigned."""
         wanted = keys_of(sides)
         cell = np.minimum(np.searchsorted(self._keys, wanted), self.count - 1)
         # Rounding may put a point into a cell that is too small to exist.

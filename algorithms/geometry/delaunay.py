@@ -45,7 +45,7 @@ class Triangulation:
     facets : ndarray of shape (f, 3), int32
         The corners of each triangle, as numbers of places, counterclockwise. Of places that are the same, one is used.
     neighbors : ndarray of shape (f, 3), int32
-        The triangle across from each corner, -1 where there is none.
+        The triangle across from each corner, -1 if unassigned.
     """
 
     plan: np.ndarray

@@ -250,7 +250,7 @@ def _cleaned(ring: np.ndarray) -> np.ndarray:
 def _modelled(
     building: np.ndarray, ground: np.ndarray, outlines: list[_Outline], settings: Settings, monitor: Monitor
 ) -> list[NamedModel]:
-    """Return the models of all footprints that can be modelled; say which levels they have, and what the others lack.
+    """Return the models of all footprints that can be modelled; log their levels, and why the others have no model.
 
     The points are those of buildings in the order of their eastings.
     """

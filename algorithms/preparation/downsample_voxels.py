@@ -74,7 +74,7 @@ def downsample_voxels(
         Param(
             "Voxel size",
             "Side of the cubes that are left with one point each. Take more than the noise of the scanner and less "
-            "than the smallest thing that is to be seen.",
+            "than the smallest object of interest.",
             unit="m",
             low=0.001,
             high=1000,

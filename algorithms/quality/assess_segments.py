@@ -61,19 +61,19 @@ def assess_segments(
 
     A segment is correct if it and one of the reference share most points of both. One of the reference is
     over-segmented if several segments, most of each within it, make up most of it; several of the reference are
-    under-segmented if they make up most of one segment, most of each within it. What is left of the reference is
-    missed, what is left of the segments is noise.
+    under-segmented if they make up most of one segment, most of each within it. All other true segments are
+    missed, all other segments are noise.
 
     Parameters
     ----------
     xyz : ndarray of shape (n, 3)
         Coordinates (m) of the input.
     segment_id : ndarray of shape (n,)
-        Segments of the input; 0 where there is none.
+        Segments of the input; 0 if unassigned.
     reference_xyz : ndarray of shape (m, 3)
         Coordinates (m) of the reference: the same points in any order, perhaps with others.
     reference_segment_id : ndarray of shape (m,)
-        True segments; 0 where there is none.
+        True segments; 0 if unassigned.
 
     Returns
     -------
@@ -144,7 +144,7 @@ def match_segments(found: np.ndarray, true: np.ndarray, min_overlap: float) -> M
     Parameters
     ----------
     found, true : ndarray of shape (n,), int64
-        Segments of points from 1 without gaps, of the input and of the reference; 0 where there is none.
+        Segments of points from 1 without gaps, of the input and of the reference; 0 if unassigned.
     min_overlap : float
         Share of points, more than 0.5.
     """
@@ -184,7 +184,7 @@ def _made_up(whole: np.ndarray, shared: np.ndarray, size: np.ndarray, min_overla
 
 
 def _numbered(ids: np.ndarray, min_points: int) -> np.ndarray:
-    """Return segments numbered from 1 without gaps, 0 where there is none or it is too small."""
+    """Return segments numbered from 1 without gaps, 0 if unassigned or it is too small."""
     values, which, count = np.unique(np.asarray(ids, np.int64), return_inverse=True, return_counts=True)
     counts = (values > 0) & (count >= min_points)
     return np.where(counts, np.cumsum(counts), 0)[which]
@@ -229,7 +229,7 @@ def _page(xyz: np.ndarray, found: np.ndarray, true: np.ndarray, matches: Matches
         "correct": ("Correct", "have a counterpart with which they share most points of both."),
         "over": ("Over-segmented", "are cut up into several segments."),
         "under": ("Under-segmented", "are run together with others."),
-        "missed": ("Missed", "are none of these."),
+        "missed": ("Missed", "are matched in none of these ways."),
     }
     rows = [
         Row(

@@ -79,7 +79,7 @@ def match_points(xyz: np.ndarray, reference_xyz: np.ndarray) -> np.ndarray:
 
 
 def _match_rounded(xyz: np.ndarray, reference_xyz: np.ndarray) -> np.ndarray:
-    """Return the reference row whose rounded coordinates are a point's, -1 where there is none."""
+    """Return the reference row whose rounded coordinates are a point's, -1 if unassigned."""
     n = len(xyz)
     both = np.concatenate([xyz, reference_xyz])
     keys = np.rint((both - both.min(axis=0)) / _TOLERANCE).astype(np.int64)

@@ -112,7 +112,7 @@ def _png(image: np.ndarray) -> bytes:
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
     height, width = image.shape
-    # Each line of a PNG begins with the number of its filter; 0 where there is none.
+    # Each line of a PNG begins with the number of its filter; 0 means no filter.
     lines = np.concatenate([np.zeros((height, 1), np.uint8), image], axis=1).tobytes()
     header = struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0)
     palette = bytes(value for color in _COLORS for value in color)

@@ -95,7 +95,7 @@ class CloudSampling:
         return xyz - np.append(self.corner, 0.0)
 
     def shared(self, name: str, measure: Callable[[], float]) -> float:
-        """Return the value of that name of the whole; where the cloud is the whole, what ``measure`` returns.
+        """Return the value of that name of the whole; where the cloud is the whole, the one that ``measure`` returns.
 
         A stage declares the names (``of_whole``), so that they are measured before parts of a cloud are worked on.
         """

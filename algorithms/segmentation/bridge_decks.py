@@ -87,7 +87,7 @@ _GOES_ON = 0.3
 
 @dataclass(frozen=True)
 class Decks:
-    """What a bridge is.
+    """Criteria of bridges.
 
     Attributes
     ----------
@@ -112,7 +112,7 @@ class Decks:
 
     @classmethod
     def of(cls, min_height: float, max_width: float, min_area: float, spacing: float, noise: float) -> Decks:
-        """Return what a bridge is in a cloud with this point spacing and noise, m."""
+        """Return the criteria of bridges in a cloud with this point spacing and noise, m."""
         near = NearPoints(_NEAR_SPACINGS * spacing, float(np.tan(np.radians(_SLOPE))), _NOISE_STEP * noise)
         return cls(min_height, max_width, min_area, 2 * cell_size(spacing), LINE_SPACINGS * spacing, near)
 
@@ -134,7 +134,7 @@ class Decks:
             return is_deck
         part = connect(xyz[candidates], self.reach, _SAME_LEVEL, monitor.part(0.8, 0.9))
         others = np.flatnonzero(is_earth & (votes < _LEAST_DIRECTIONS))
-        # A filter may leave the last meters before a deck out of the ground: they count with what they go on to.
+        # A filter may leave the last meters before a deck out of the ground: they count with the ground beyond.
         terrain = np.flatnonzero((is_terrain | is_earth) & (votes < _LEAST_DIRECTIONS))
         beside = connect(xyz[terrain], self.reach, _SAME_LEVEL, monitor.part(0.9, 1))
         size = np.bincount(beside, minlength=1)
@@ -255,7 +255,7 @@ class Decks:
 
     @property
     def _stretch(self) -> np.ndarray:
-        """Factors (3,) with which ground is near ahead of a deck if it is as high, but for what a road rises."""
+        """Factors (3,) with which ground is near ahead of a deck if it is as high, but for the rise of a road."""
         return np.array([1.0, 1.0, self.reach / 2 / (_SAME_LEVEL + _ROAD * _AHEAD[-1] * self.reach)])
 
     def _with_corners(self, xyz: np.ndarray, rows: np.ndarray, raised: np.ndarray) -> np.ndarray:

@@ -75,7 +75,7 @@ def classify_ground_segments(
         ASPRS classes; noise (7, 18) and water (9) stay, earlier bridge deck (17) is forgotten. Where there
         is ground (2), it stays but for decks, and bridges must lead to it.
     segment_id : ndarray of shape (n,), int32
-        Segments; 0 where there is none.
+        Segments; 0 if unassigned.
 
     Returns
     -------
@@ -88,7 +88,7 @@ def classify_ground_segments(
     That beams do not pass through them, and that both ends are joined, is asked for in addition: crowns that hang over
     the terrain are raised, too. Of the bare earth only the points near the lowest of their cell are ground. In towns
     and forests roofs and crowns hang together with the terrain by pieces of walls and leaves: there a ground filter is
-    due before; what it called ground is then the terrain. For ground of a filter alone there is 'Classify bridges'.
+    due before; its ground points are then the terrain. For ground of a filter alone there is 'Classify bridges'.
 
     References
     ----------

@@ -26,7 +26,7 @@ _LENGTH = np.pi / 4
 def part_decks(
     xyz: np.ndarray, patch: np.ndarray, height: np.ndarray, density: float, min_height: float, min_area: float
 ) -> np.ndarray:
-    """Part decks from what they go on into by a ramp: the road to a parking deck, the bank behind a terrace.
+    """Separate decks from surfaces that a ramp joins them to: the road to a parking deck, the bank behind a terrace.
 
     Parameters
     ----------

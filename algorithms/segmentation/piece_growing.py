@@ -48,12 +48,12 @@ class Regions:
     adjacency : Adjacency
         Which of them lie side by side.
     growth : Growth
-        What belongs together.
+        Criteria of pieces of one region.
 
     Attributes
     ----------
     region : list of int
-        Region of each piece, from 0; -1 where there is none.
+        Region of each piece, from 0; -1 if unassigned.
     plane : ndarray of shape (m, 4)
         Unit normal and its product with a point of the plane that each piece of a region lies on.
     """

@@ -16,7 +16,7 @@ _EVEN = 1 / np.sqrt(3)
 # A plane grows by a voxel all around in each round: more than the widest roof needs.
 _MAX_ROUNDS = 1000
 
-# Planes around a voxel go on into it where they hold this share of its points, each of them so many:
+# Planes around a voxel go on into it where they hold this share of its points, and each at least this number:
 # leaves in which a plane would end lie on it by chance, a fifth of them on one of automatic tolerance.
 _HELD, _LEAST_POINTS = 2 / 3, 4
 
@@ -39,7 +39,7 @@ def joined_planes(
     boxes : Boxes
         The voxels and their points.
     label : ndarray of shape (n,), int
-        Plane of each point in the order of the boxes: from 1 in each voxel; 0 where there is none.
+        Plane of each point in the order of the boxes: from 1 in each voxel; 0 if unassigned.
     tolerance : float
         Distance within which a point lies on a plane, m.
     min_area : float

@@ -71,7 +71,7 @@ def slices(xyz: np.ndarray, direction: float, width: float) -> tuple[np.ndarray,
 def pieces(
     xyz: np.ndarray, direction: float, width: float, near: NearPoints, min_points: int, obstacle: float = 0.0
 ) -> np.ndarray:
-    """Return the piece (n,) that each point belongs to on the lines of one direction, from 0; -1 where there is none.
+    """Return the piece (n,) that each point belongs to on the lines of one direction, from 0; -1 if unassigned.
 
     Points of a line that are near each other, directly or through others, are a piece; it may pass over points that
     lie off it. Groups of fewer than ``min_points`` points are left out. A piece goes on behind an ``obstacle`` of at
@@ -143,7 +143,7 @@ def _over_obstacles(points: np.ndarray, along: np.ndarray, piece: np.ndarray, ne
 def merged_pieces(piece_sets: list[np.ndarray]) -> np.ndarray:
     """Return the segment (n,), int32, of each point: pieces (n,) of all directions are one where they share a point.
 
-    Segments count from 0; -1 where there is none.
+    Segments count from 0; -1 if unassigned.
     """
     n = len(piece_sets[0])
     first, ones, others = n, [], []

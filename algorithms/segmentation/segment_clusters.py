@@ -50,7 +50,7 @@ def segment_clusters(
             "larger leaves out thinner things.",
             low=1,
             high=1_000_000,
-            automatic="a quarter of what a level surface holds within the radius, as at the corner of a roof.",
+            automatic="a quarter of the points of a level surface within the radius, as at the corner of a roof.",
         ),
     ] = None,
     min_height: MinClusterHeight = 0.0,
@@ -75,7 +75,7 @@ def segment_clusters(
     Returns
     -------
     cluster_id : ndarray of shape (n,), int32
-        Clusters from 1, in the order of their first cores; 0 where there is none.
+        Clusters from 1, in the order of their first cores; 0 if unassigned.
 
     Raises
     ------
@@ -116,7 +116,7 @@ def dbscan(xyz: np.ndarray, radius: float, min_points: int, monitor: Monitor) ->
     xyz : ndarray of shape (n, 3), float64
         Points (m).
     radius : float
-        Points at most so far apart (m) are neighbors.
+        Largest distance of neighbors, m.
     min_points : int
         Neighbors of a core, itself among them.
     monitor : Monitor
@@ -168,7 +168,7 @@ def _cores(boxes: Boxes, is_near, min_points: int, monitor: Monitor) -> np.ndarr
 
 
 def _first_cluster(others: Boxes, cores: Boxes, cluster: np.ndarray, is_near, monitor: Monitor) -> np.ndarray:
-    """Return for the points of ``others`` the least cluster among the cores near them, -1 where there is none."""
+    """Return for the points of ``others`` the least cluster among the cores near them, -1 without any."""
     none = np.iinfo(np.int32).max
     least = np.full(len(others.order), none, np.int32)
     steps: list[Offset] = [(0, 0, 0), *around()]

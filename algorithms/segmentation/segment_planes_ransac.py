@@ -98,7 +98,7 @@ def segment_planes_ransac(
     """Find planes among the points that are not ground: by RANSAC in voxels, joined where they continue each other.
 
     The cloud is cut into cubes. In each, planes through three random points are tried, the one with most points on it
-    is fitted and taken out, and the next is looked for in what is left. Planes of neighboring cubes that are one
+    is fitted and taken out, and the next is looked for in the rest. Planes of neighboring cubes that are one
     plane are joined, and every point goes to the nearest of them. Planes are kept by their slope and area.
 
     Parameters
@@ -113,7 +113,7 @@ def segment_planes_ransac(
     Returns
     -------
     segment_id : ndarray of shape (n,), int32
-        Planes from 1, in the order of their first points; 0 where there is none.
+        Planes from 1, in the order of their first points; 0 if unassigned.
     normal : ndarray of shape (n, 3), float32, or None
         Upward normals of the planes, NaN on none; None unless asked for.
 
@@ -126,7 +126,7 @@ def segment_planes_ransac(
     Notes
     -----
     The slope of a plane is the angle of its normal from the vertical: roofs are kept up to 60°, walls have 90°.
-    Leaves and other scattered points are no plane: it must hold so many that of a thousand voxels of scattered
+    Leaves and other scattered points are no plane: it must hold so many points that of a thousand voxels of scattered
     points one at most would have such a plane by chance. A strip narrower than 3.5 tolerances has no plane of its own.
     The result depends on the seed, not on the order of points or the number of threads.
 

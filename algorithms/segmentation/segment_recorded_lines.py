@@ -17,7 +17,7 @@ from .piece_growing import Growth, Regions
 from .recorded_lines import Recording, recorded_lines
 from .straight_pieces import pieces_of, split_lines
 
-# Roughness of a surface beyond noise, in point spacings: what it bends between its points.
+# Roughness of a surface beyond noise, in point spacings: its curvature between points.
 _BENDS = 0.05
 
 # Distance from a chord or plane within which points belong to it (standard deviations): the ends of a chord have noise,
@@ -146,7 +146,7 @@ def segment_recorded_lines(
     Returns
     -------
     segment_id : ndarray of shape (n,), int32
-        Segments from 1, those of the largest seeds first; 0 where there is none.
+        Segments from 1, those of the largest seeds first; 0 if unassigned.
 
     Notes
     -----
@@ -214,7 +214,7 @@ def _median_step(points: np.ndarray) -> float:
 
 
 def _distance_of_lines(points: np.ndarray, density: float) -> float:
-    """Return the mean distance (m) of lines on surfaces with so many points per m²; at least that of points on them."""
+    """Return the mean distance (m) of lines on surfaces of a density (points/m²); at least that of points on them."""
     step = _median_step(points)
     return max(1 / (density * step), 1 / float(np.sqrt(density))) if step > 0 else 1 / float(np.sqrt(density))
 

@@ -88,7 +88,7 @@ def segment_regions(
     Returns
     -------
     cluster_id : ndarray of shape (n,), int32
-        Clusters from 1, in the order of their first points; 0 where there is none.
+        Clusters from 1, in the order of their first points; 0 if unassigned.
 
     Raises
     ------

@@ -148,9 +148,9 @@ def segment_roofs(
     Returns
     -------
     segment_id : ndarray of shape (n,), int32
-        Roof surfaces from 1; 0 where there is none.
+        Roof surfaces from 1; 0 if unassigned.
     cluster_id : ndarray of shape (n,), int32
-        Roof surfaces (same numbers as segment_id), then clusters of everything else; 0 where there is none.
+        Roof surfaces (same numbers as segment_id), then clusters of everything else; 0 if unassigned.
     reason : ndarray of shape (n,), uint8
         Raised points of surfaces that go on into the ground have one, see :class:`~..cloud.reasons.Reason`.
 
@@ -272,7 +272,7 @@ class _Patches:
     density: float
 
     def mean(self, values: np.ndarray) -> np.ndarray:
-        """Return the mean of what the points of each patch have."""
+        """Return the mean value of the points of each patch."""
         on_patch = self.number[self._member]
         return np.bincount(on_patch, values[self._member]) / np.maximum(np.bincount(on_patch), 1)
 

@@ -25,7 +25,7 @@ _DISTANCE_SPACINGS = 9.0
 _NOISE_STEP = 4.0
 
 # Points of one piece are closer to one another than this in clouds of 3.3 points per square meter and more (m). A piece
-# that a window cuts off is joined with what it is in the next one.
+# that a window cuts off is joined with its part in the next one.
 _REACH = 5.0
 
 
@@ -127,7 +127,7 @@ def segment_scan_lines(
     Returns
     -------
     segment_id : ndarray of shape (n,), int32
-        Segments from 1 in the order of their first points; 0 where there is none.
+        Segments from 1 in the order of their first points; 0 if unassigned.
 
     Notes
     -----

@@ -21,7 +21,7 @@ _RADIUS_SPACINGS = 3.0
 # Points of a neighborhood: nine degrees of freedom, so that the deviation of a plane is known to a quarter.
 _NEIGHBORS = 12
 
-# Roughness of a surface beyond noise, in point spacings: what it bends between its points.
+# Roughness of a surface beyond noise, in point spacings: its curvature between points.
 _BENDS = 0.05
 
 # Distance to a plane within which a point belongs to it (standard deviations): one point in 370 lies farther off.
@@ -150,7 +150,7 @@ def segment_surfaces(
     Returns
     -------
     segment_id : ndarray of shape (n,), int32
-        Surfaces from 1; 0 where there is none.
+        Surfaces from 1; 0 if unassigned.
 
     Notes
     -----

@@ -86,7 +86,7 @@ def segment_tin_planes(
     Returns
     -------
     segment_id : ndarray of shape (n,), int32
-        Planes from 1 in the order of their first points; 0 where there is none. A point has the plane with
+        Planes from 1 in the order of their first points; 0 if unassigned. A point has the plane with
         most of its triangles, by area.
 
     Notes

@@ -40,7 +40,7 @@ _OPERATIONS = {"erosion": erode, "dilation": dilate, "opening": open_voxels, "cl
             "Voxels",
             "Point",
             (
-                Field("segment_id", int, "segment of the voxel; 0 where there is none"),
+                Field("segment_id", int, "segment of the voxel; 0 if unassigned"),
                 Field("count", int, "points in the voxel; 0 where the operation added it"),
                 Field("distance", float, "distance from the voxel's center to the nearest empty voxel's", "m"),
             ),

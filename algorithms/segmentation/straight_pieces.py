@@ -58,7 +58,7 @@ def split_lines(xyz: np.ndarray, line: np.ndarray, tolerance: float, min_points:
     Returns
     -------
     ndarray of shape (n,), int64
-        Piece of each point, from 0 along the lines; -1 where there is none.
+        Piece of each point, from 0 along the lines; -1 if unassigned.
 
     Notes
     -----

@@ -260,7 +260,7 @@ def grow_surfaces(planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria, 
     Returns
     -------
     ndarray of shape (n,), int32
-        Surface of each point from 0; -1 where there is none.
+        Surface of each point from 0; -1 if unassigned.
 
     Notes
     -----
@@ -356,7 +356,7 @@ def connected_seeds(planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria
 def _nearest_that_holds(
     planes: LocalPlanes, rows: np.ndarray, surface: np.ndarray, hold: Hold, monitor: Monitor
 ) -> np.ndarray:
-    """Return the nearest neighbor (m,), int32, of points ``rows`` whose surface holds them, -1 where there is none."""
+    """Return the nearest neighbor (m,), int32, of points ``rows`` whose surface holds them, -1 without any."""
     parent = np.full(len(rows), -1, np.int32)
 
     def work(left: np.ndarray) -> None:
@@ -411,7 +411,7 @@ def grow_planes(
     Returns
     -------
     ndarray of shape (n,), int32
-        Plane of each point from 0; -1 where there is none.
+        Plane of each point from 0; -1 if unassigned.
 
     Notes
     -----

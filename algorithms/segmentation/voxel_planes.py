@@ -16,7 +16,7 @@ _DISTANCES_AT_ONCE = 1_000_000
 # Fits to the points of a trial plane, each to those that lie on the fit before.
 _REFINEMENTS = 2
 
-# Of so many voxels of scattered points one may have a plane by chance.
+# Number of voxels of scattered points of which one may have a plane by chance.
 _VOXELS_PER_CHANCE = 1000
 
 
@@ -40,7 +40,7 @@ class VoxelPlanes:
     def __init__(self, boxes: Boxes, side: float, tolerance: float, max_planes: int, trials: int, seed: int) -> None:
         self.boxes, self.tolerance = boxes, tolerance
         self.by_chance = min(0.99, 2 * tolerance / side)
-        # The same shares for all voxels: what is drawn in one depends on its own points only.
+        # The same shares for all voxels: the planes drawn in one depend on its own points only.
         self.shares = np.random.default_rng(seed).random((max_planes, trials, 3))
 
     def find(self, monitor: Monitor) -> np.ndarray:

@@ -152,7 +152,7 @@ class CylinderSearch:
     Parameters
     ----------
     xyz, normals : ndarray of shape (n, 3)
-        Points (m), sorted by elevation, and their unit normals; zero where there is none.
+        Points (m), sorted by elevation, and their unit normals; zero if undefined.
     noise : float
         Standard deviation across smooth surfaces, m.
     tolerance : float

@@ -94,7 +94,7 @@ def detect_cylinders(
     Returns
     -------
     segment_id : ndarray of shape (n,), int32
-        Cylinders from 1, in the order of their first points; 0 where there is none. Numbers follow those that are kept.
+        Cylinders from 1, in the order of their first points; 0 if unassigned. Numbers follow those that are kept.
     shape : ndarray of shape (n,), uint8
         2 on cylinders.
     axes : LayerFeatures

@@ -86,7 +86,7 @@ def detect_spheres(
     Returns
     -------
     segment_id : ndarray of shape (n,), int32
-        Spheres from 1, in the order of their first points; 0 where there is none. Numbers follow those that are kept.
+        Spheres from 1, in the order of their first points; 0 if unassigned. Numbers follow those that are kept.
     shape : ndarray of shape (n,), uint8
         3 on spheres.
     centers : LayerFeatures

@@ -40,7 +40,7 @@ def plane_polygons(xyz: np.ndarray, label: np.ndarray, first: int, density: floa
     xyz : ndarray of shape (n, 3), float64
         Points (m).
     label : ndarray of shape (n,), int
-        Plane of each point, from 1; 0 where there is none.
+        Plane of each point, from 1; 0 if unassigned.
     first : int
         Number that is added to these in the layer.
     density : float

@@ -1,4 +1,4 @@
-"""Tunables that the searches for cylinders and spheres share, and what they are where nothing is set."""
+"""Tunables that the searches for cylinders and spheres share, and their automatic values."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The points that shapes are looked for among, and what they are called afterwards."""
+"""The points among which shapes are searched, and the numbers that these get."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class SearchedPoints:
     shift : ndarray of shape (k,), float64
         How far (m) each was moved along x.
     origin : ndarray of shape (3,)
-        What was subtracted from the coordinates of the cloud (m).
+        Offset that was subtracted from the coordinates of the cloud (m).
     """
 
     rows: np.ndarray
@@ -151,11 +151,11 @@ def named(
     points : SearchedPoints
         The points that were searched.
     label : ndarray of shape (k,), int
-        Number of the shape that each lies on, from 1; 0 where there is none.
+        Number of the shape that each lies on, from 1; 0 if unassigned.
     kind : Shape
-        What was found.
+        Shape found at each point.
     segment_id, shape : ndarray of shape (n,), optional
-        What the cloud had before; kept but where the whole cloud was searched.
+        Dimensions of the cloud before; kept but where the whole cloud was searched.
     n : int
         Points of the cloud.
     search_in : str
@@ -185,12 +185,12 @@ def named(
 
 @dataclass(frozen=True)
 class Surroundings:
-    """What a search needs besides the radii.
+    """Settings of a search besides the radii.
 
     Attributes
     ----------
     xyz, normals : ndarray of shape (k, 3)
-        Searched points (m), sorted by elevation, and their unit normals; zero where there is none.
+        Searched points (m), sorted by elevation, and their unit normals; zero if undefined.
     noise : float
         Standard deviation across smooth surfaces, m.
     tolerance : float

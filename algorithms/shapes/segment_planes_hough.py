@@ -172,7 +172,7 @@ def segment_planes_hough(
     Returns
     -------
     segment_id : ndarray of shape (n,), int32
-        Planes from 1, in the order of their first points; 0 where there is none. Numbers follow those that are kept.
+        Planes from 1, in the order of their first points; 0 if unassigned. Numbers follow those that are kept.
     shape : ndarray of shape (n,), uint8
         1 on planes.
     planes : LayerFeatures

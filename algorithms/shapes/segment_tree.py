@@ -94,7 +94,7 @@ def segment_tree(
 ):
     """Divide trees that were scanned from the ground into stems and branches, with diameters, lengths and volumes.
 
-    The points become voxels, whose gaps are closed. Stems are what is round and upright at breast height. Every voxel
+    The points become voxels, whose gaps are closed. Stems are round and upright at breast height. Every voxel
     has the shortest path to the root of a stem, and connected voxels about as far from it are a slice. At each fork
     of the slices the branch goes on where the way to its tip is longest, and the others are branches of the next order.
     Points of short and of crooked branches, and those far from the wood, are leaves.

@@ -54,7 +54,7 @@ class SphereSearch:
     Parameters
     ----------
     xyz, normals : ndarray of shape (n, 3)
-        Points (m) and their unit normals; zero where there is none.
+        Points (m) and their unit normals; zero if undefined.
     noise : float
         Standard deviation across smooth surfaces, m.
     tolerance : float

@@ -44,7 +44,7 @@ class Voxels:
     places : ndarray of shape (m, 3)
         Centers of the voxels (m).
     of_point : ndarray of shape (n,)
-        The voxel of each point, -1 where there is none.
+        The voxel of each point, -1 if unassigned.
     one, other : ndarray of shape (k,)
         The voxels at both ends of each step.
     length : ndarray of shape (k,)

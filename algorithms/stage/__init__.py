@@ -1,4 +1,4 @@
-"""Stages and their tunables: how a numpy function declares what it is.
+"""Stages and their tunables: how a numpy function declares its inputs, outputs and parameters.
 
 A stage is an ordinary function with a declaration beside it:
 

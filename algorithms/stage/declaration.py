@@ -27,7 +27,7 @@ Reach = Union[float, Callable[[dict[str, Any]], float]]
 
 @dataclass(frozen=True)
 class Stage:
-    """Everything that is known of a stage without running it."""
+    """The declaration of a stage, known without running it."""
 
     function: Callable
     title: str
@@ -106,7 +106,7 @@ class Stage:
         return self.reach(self.check(tunables)) if callable(self.reach) else self.reach
 
     def unpack(self, returned: Any) -> StageResults:
-        """Give what the function returned its names."""
+        """Name the results that the function returned."""
         results = list(returned) if isinstance(returned, tuple) else [returned]
         names = (*(self.creates or self.writes), *self.layers, *self.rasters, *self.files)
         declared = self.selects + len(names) + bool(self.measures)
@@ -152,7 +152,7 @@ def stage(
 
     ``reach`` is how far (m) from a point others may lie that decide on it, a number or a function of all tunables by
     name: where a cloud is worked on in parts, each is seen with the points around it that far. ``of_whole`` names
-    values that it measures on what it makes, and of which parts of a cloud take those of the whole, see
+    values that it measures on its results, and of which parts of a cloud take those of the whole, see
     :meth:`.CloudSampling.shared`.
     """
     makes = {
@@ -181,7 +181,7 @@ def stage(
 
 
 def _checked(function: Callable, declared: Stage) -> Callable:
-    """Return the function with a check of what it is called with, in the words of its declaration."""
+    """Return the function with a check of its arguments against its declaration."""
     signature = inspect.signature(function)
 
     @functools.wraps(function)

@@ -17,9 +17,9 @@ class Monitor:
     values : dict
         Values that automatic tunables took, and other estimates, by name.
     warnings : list of str
-        Sentences for the log about what is not normal.
+        Sentences for the log about problems.
     infos : list of str
-        Sentences for the log about what is normal.
+        Sentences for the log that are no warnings.
     """
 
     def __init__(self) -> None:
@@ -39,7 +39,7 @@ class Monitor:
         self.warnings.append(sentence)
 
     def none_found(self, sentence: str) -> None:
-        """Warn that a cloud has none of what a stage looks for, which is normal for a part of a cloud."""
+        """Warn that a stage found nothing in a cloud, which is normal for a part of a cloud."""
         self.warn(sentence)
 
     def inform(self, sentence: str) -> None:

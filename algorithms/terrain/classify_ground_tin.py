@@ -79,7 +79,7 @@ def classify_ground_tin(
         Optional[str],
         Param(
             "Terrain",
-            "What the largest buildings are like: it sets the maximum building size (20, 40, 60, 120, 250 m) and the "
+            "Kind of terrain and of its buildings: it sets the maximum building size (20, 40, 60, 120, 250 m) and the "
             "iteration angle (30° in nature, else 20°) where these are automatic.",
             choices=tuple(_TERRAINS),
             automatic="the smallest kind from town on that has room for the largest building found.",
@@ -115,7 +115,7 @@ def classify_ground_tin(
             unit="m",
             low=0.1,
             high=100,
-            automatic="half the point spacing (coarse and medium: the whole), at least what the granularity says.",
+            automatic="half the point spacing (coarse and medium: the whole), at least that of the granularity.",
             advanced=True,
         ),
     ] = None,

@@ -145,13 +145,13 @@ def seeds_by_opening(
         return _view(cells, max_building_size, slope, part)
 
     first = view(0, None, monitor.part(0, 1 / len(angles)))
-    # The slope changes little from cell to cell: what the first direction measured will do.
+    # The slope changes little from cell to cell: that of the first direction serves for all.
     others = made_ahead(
         lambda number, part: view(number + 1, first.slope, part), len(angles) - 1, monitor.part(1 / len(angles), 1)
     )
     views = [first, *others]
     candidates = views[0].candidates
-    # The first direction is that of the box: it tells best what the end of the cloud cuts off.
+    # The first direction is that of the box: it shows best which objects the end of the cloud cuts off.
     stands_free = views[0].stands_free | np.logical_and.reduce([view.stands_free for view in views[1:] or views])
     is_terrain = (sum(view.says_terrain[candidates] for view in views) > 0) & ~stands_free[candidates]
     return candidates[is_terrain], stands_free, max(max_building_size or USUAL_BUILDING, views[0].size)
@@ -242,7 +242,7 @@ def _view(cells: _Cells, max_building_size: Optional[float], slope: Optional[np.
 
 
 def _rim_levels(surface: np.ndarray, is_free: np.ndarray) -> np.ndarray:
-    """Return the elevation (m) of the free-standing segment beside each cell that is of none, -inf without any.
+    """Return the elevation (m) of the free-standing segment beside each other cell, -inf without any.
 
     Matching rounds edges, so that a rim as wide as a cell lies between a roof and the terrain and joins both.
     """

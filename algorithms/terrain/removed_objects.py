@@ -126,7 +126,7 @@ class ObjectRemoval:
     def removed_by_opening(self, slope: np.ndarray, monitor: Monitor) -> np.ndarray:
         """Return for each cell the radius (cells) of the first window that removes it, 0 where none does.
 
-        A window removes what it lowers by more than terrain of this slope may rise within it.
+        A window removes cells that it lowers by more than terrain of this slope may rise within it.
         """
         removed_by = np.zeros(self.surface.shape, np.int32)
         opened = self.surface
@@ -209,7 +209,7 @@ def _sides(surface: np.ndarray, slope: np.ndarray, cell_size: float, spacing: fl
 
 @dataclass(frozen=True)
 class _RegionEdges:
-    """The edges of regions (r,), in cells; the first is what belongs to no region.
+    """The edges of regions (r,), in cells; the first are the cells of no region.
 
     Attributes
     ----------

@@ -70,7 +70,7 @@ class Block:
 
 @dataclass(frozen=True)
 class BlockTask:
-    """What a worker needs to know of a block: all paths are seen by all workers."""
+    """The task of a worker on a block: all paths are seen by all workers."""
 
     block: Block
     survey: Survey
@@ -94,7 +94,7 @@ class BlockResult:
     stays : ndarray of shape (n,), bool
         Which records are left by a chain that selects; empty where all are.
     dimensions : dict of str to ndarray of shape (n, ...)
-        What the chain wrote; coordinates in meters from the zero of the map.
+        Dimensions that the chain wrote; coordinates in meters from the zero of the map.
     used : dict of str to ndarray of shape (k,), int64
         For each numbered dimension the numbers that records of the block have, ascending.
     counts : dict of str to ndarray of shape (k,), int64
@@ -116,7 +116,7 @@ class BlockResult:
         Of text files the records of items that belong to these features, with their names in the block, by their class:
         files of one stage are written of the same items.
     messages, absent : list of str
-        Warnings, and sentences on what the block has none of, each once.
+        Warnings, and sentences of steps that found nothing, each once.
     tries : ndarray of shape (k, 4)
         What each window that was tried cost: what lay around the block at most (m), points, and processor time for
         reading and for the chain (s).
@@ -178,7 +178,7 @@ class BlockResult:
 
     @classmethod
     def edges(cls, path: Path) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
-        """Return what a file of :meth:`write` has of the records inside and beside the edges."""
+        """Return the records inside and beside the edges from a file of :meth:`write`."""
         with np.load(path, allow_pickle=False) as stored:
             kinds = [
                 {key.partition(".")[2]: stored[key] for key in stored.files if key.startswith(f"{kind}.")}
@@ -200,7 +200,7 @@ class BlockResult:
 
 
 class StoppableMonitor(Monitor):
-    """Stops a worker when a file appears that says so; keeps apart what a part of a cloud need not have."""
+    """Stops a worker when a file appears that says so; collects sentences of steps that found nothing."""
 
     def __init__(self, stop: Path) -> None:
         super().__init__()
@@ -208,7 +208,7 @@ class StoppableMonitor(Monitor):
         self.absent: list[str] = []
 
     def none_found(self, sentence: str) -> None:
-        """Keep a sentence that is a warning if no part of the cloud has any."""
+        """Keep a sentence that is a warning if steps found nothing in all parts of the cloud."""
         self.absent.append(sentence)
 
     def progress(self, fraction: float) -> None:
@@ -236,7 +236,7 @@ def work_on_block(task: BlockTask) -> Path:
     margin = np.full((2, 2), task.halo)
     tries = []
     while True:
-        # What was said of a smaller window need not hold for a larger one.
+        # Warnings of a smaller window may not hold for a larger one.
         monitor = StoppableMonitor(task.stop)
         box = task.block.box + margin * [[-1], [1]]
         start = time.process_time()
@@ -316,7 +316,7 @@ def _left(window: Window, made: Results) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _written(pipeline: Pipeline, made: Results, point: np.ndarray, origin: np.ndarray) -> dict[str, np.ndarray]:
-    """Return what the steps wrote for each record, coordinates in meters from the zero of the map."""
+    """Return the dimensions that steps wrote for each record, coordinates in meters from the zero of the map."""
     cloud = made.cloud
     names = dict.fromkeys(name for step in pipeline.steps for name in step.stage.writes)
     values = {name: cloud.get(name)[point] for name in names if cloud is not None and cloud.has(name)}
@@ -328,7 +328,7 @@ def _written(pipeline: Pipeline, made: Results, point: np.ndarray, origin: np.nd
 def _keep_layers(
     result: BlockResult, pipeline: Pipeline, made: Results, task: BlockTask, box: np.ndarray
 ) -> np.ndarray:
-    """Keep features that have a part in the block, and what belongs to them; return on which sides one was cut off."""
+    """Keep features that have a part in the block, and those that belong to them; return where one was cut off."""
     block, owner, declared = task.block.box, owners(pipeline), layers_of(pipeline)
     cuts = np.zeros((2, 2), bool)
     for name in sorted(made.layers, key=lambda name: name in owner):

@@ -71,7 +71,7 @@ FindLayers = Callable[[Survey], dict[str, Optional[LayerFeatures]]]
 TakeRaster = Callable[[Survey, RasterMosaic], None]
 TakeFile = Callable[[Survey, str, FileContent], None]
 
-# What a run keeps beside the tiles until it is complete.
+# Folder beside the tiles with the results of blocks until the run is complete.
 _WORK = ".lidar-buildings"
 
 # Seconds between two messages about how far it is.
@@ -197,7 +197,7 @@ def can_be_tiled(pipeline: Pipeline) -> bool:
 
 @contextmanager
 def _work_folder(folder: Path) -> Iterator[Path]:
-    """Give the folder in which a run keeps what it has done so far; refuse it while another run has it."""
+    """Give the folder in which a run keeps the results of blocks; refuse it while another run has it."""
     work = folder / _WORK
     try:
         work.mkdir(exist_ok=True)
@@ -380,7 +380,7 @@ class _Run:
     def _layers(
         self, blocks: list[Block], found: list[BlockResult], numbers: list[dict[str, np.ndarray]], monitor: Monitor
     ) -> tuple[dict[str, LayerFeatures], dict[str, np.ndarray]]:
-        """Return each layer of the composite, of all blocks together, and block and number of what was kept."""
+        """Return each layer of the composite, of all blocks together, and block and number of the features kept."""
         names = list(dict.fromkeys(name for result in found for name in result.layers))
         layers: dict[str, LayerFeatures] = {}
         kept: dict[str, np.ndarray] = {}
@@ -433,7 +433,7 @@ class _Run:
     def _warn_of_blocks(self, found: list[BlockResult]) -> None:
         """Pass on each warning once, and in how many of the blocks with points it was given, if not in all.
 
-        Of what one block or another has not, only what no block has is told.
+        That steps found nothing is passed on only if all blocks say so.
         """
         count = sum(len(result.tries) > 0 for result in found)
         for sentence, given in Counter(one for result in found for one in result.messages).items():

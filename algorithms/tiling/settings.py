@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Setting:
-    """One setting: its name on the command line, its title in the dialog, and what it is for."""
+    """One setting: its name on the command line, its title in the dialog, and its purpose."""
 
     name: str
     title: str

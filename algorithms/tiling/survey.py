@@ -204,7 +204,7 @@ class Survey:
                     yield start + rows, records
 
     def _in_order(self, records: np.ndarray, source: np.ndarray, position: np.ndarray) -> Window:
-        """Sort records by what was measured, and leave every measurement once."""
+        """Sort records by their measurements, and leave every measurement once."""
         layout = self.header.layout
         keys = [records[axis] for axis in "XYZ"]
         keys += [layout.get(records, name) for name in _KEYS if name in layout.names]

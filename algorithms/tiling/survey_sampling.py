@@ -1,4 +1,4 @@
-"""How a survey was sampled, measured before it is worked on in blocks, and what blocks take of the whole."""
+"""How a survey was sampled, measured before it is worked on in blocks, and the values that blocks take of the whole."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ from .tiled_steps import in_blocks, measuring, part_of, preparing, tunables_of
 _SAMPLED_WHOLE = 3_000_000
 _SAMPLES_ACROSS, _SAMPLE_SIDE = 4, 100.0
 
-# What steps make of the points, and blocks take of the whole, is measured on as many of these windows as hold this many
-# points, one at least: a second of a core for each 60,000.
+# Values that steps measure on their results, and blocks take of the whole, are measured on as many of these windows as
+# hold this many points, one at least: a core takes a second for each 60,000 of *Detect buildings*.
 _MEASURED = 1_500_000
 
 
 def samplings_of(
     pipeline: Pipeline, survey: Survey, tunables: dict[str, Any], monitor: Monitor
 ) -> dict[str, CloudSampling]:
-    """Return how a survey was sampled, "", and how what its preparing steps make of it is, by their names.
+    """Return the sampling of a survey, "", and those of the clouds that its preparing steps make, by their names.
 
     Each has the values that blocks take of the whole (``of_whole``). All is measured on windows whose places depend on
     the extent of the survey alone.
@@ -107,7 +107,7 @@ def _sampled(survey: Survey, boxes: list[np.ndarray], monitor: Monitor) -> tuple
 def _made(
     step: Pipeline, cloud: Cloud, sampling: CloudSampling, tunables: dict[str, Any], monitor: Monitor
 ) -> Optional[Cloud]:
-    """Return what a step makes of a part of a survey."""
+    """Return the cloud that a step makes of a part of a survey."""
     heard = ProgressOnly(monitor)
     return run_pipeline(step, cloud, heard, kept=(), samplings={"": sampling}, **tunables_of(step, tunables)).cloud
 
@@ -115,7 +115,7 @@ def _made(
 def _measured(
     step: Pipeline, clouds: list[Cloud], sampling: CloudSampling, tunables: dict[str, Any], monitor: Monitor
 ) -> tuple[list[Cloud], dict[str, float]]:
-    """Return what a step makes of parts of a survey, and the medians of what it measures there for the whole."""
+    """Return the clouds that a step makes of parts of a survey, and the medians of the values that it measures."""
     made: list[Optional[Cloud]] = []
     values: dict[str, list[float]] = {}
     for done, cloud in enumerate(clouds):
@@ -124,7 +124,7 @@ def _measured(
         try:
             made.append(_made(step, cloud, sampling, tunables, part))
         except ValueError:
-            # A part without ground, as over water, or islands far from each other: blocks there tell what is wrong.
+            # A part without ground, as over water, or islands far from each other: blocks there report their errors.
             continue
         for name, value in sampling.found.items():
             values.setdefault(name, []).append(value)

@@ -31,8 +31,8 @@ pipes and large planes are put together from the pieces that blocks found. Raste
 and no seams. Steps that read layers alone are run once, on those of the whole survey.
 
 A run that was stopped goes on where it was when it is started again with the same input, parameters and version; until
-it is complete, what it has done is kept in a hidden folder among the tiles. Blocks that fail are named at the end; the
-tiles that they touch are missing then, all others are written.
+it is complete, the results of blocks are kept in a hidden folder among the tiles. Blocks that fail are named at the end;
+the tiles that they touch are missing then, all others are written.
 
 The blocks are worked on by one process for each core, or by the workers of a Dask cluster that runs already. These must
 see the same folders under the same paths; they get the program from here, and need numpy, scipy, laspy and lazrs.
@@ -72,7 +72,7 @@ class TiledPipeline:
 
     @property
     def summary(self) -> str:
-        """What it is for, in a sentence."""
+        """Its purpose, in a sentence."""
         return f"{self.pipeline.title} on a survey of any size, tile by tile, in several processes."
 
     @property
@@ -140,7 +140,7 @@ def settings_help(settings: dict[str, Setting]) -> str:
 
 
 def survey_tool_help(tool: SurveyTool) -> str:
-    """Return what a tool does, as HTML that QGIS's help pane shows."""
+    """Return the help of a tool, as HTML that QGIS's help pane shows."""
     return "\n".join([paragraphs(tool.summary), paragraphs(tool.description), settings_help(CUT_SETTINGS)])
 
 
@@ -150,7 +150,7 @@ TILED_PIPELINES = {
 
 
 def tiled_pipeline_help(tiled: TiledPipeline) -> str:
-    """Return what a composite does in tiles, and then what it does, as HTML that QGIS's help pane shows."""
+    """Return the help of a composite in tiles, and of its steps, as HTML that QGIS's help pane shows."""
     made = [output_text(tiled.pipeline, output) for output in (*tiled.layers, *tiled.rasters, *tiled.files)]
     if tiled.report:
         made.append(output_text(tiled.pipeline, tiled.report))

@@ -56,7 +56,7 @@ def preparing(pipeline: Pipeline) -> list[Step]:
 
 
 def measuring(pipeline: Pipeline) -> list[Step]:
-    """Return the steps up to the last that prepares the points or measures what parts take of the whole."""
+    """Return the steps up to the last that prepares the points or measures values that parts take of the whole."""
     last = max((at for at, step in enumerate(pipeline.steps, start=1) if step.stage.of_whole), default=0)
     return list(pipeline.steps[: max(last, len(preparing(pipeline)))])
 
@@ -97,7 +97,7 @@ def files_of(pipeline: Pipeline) -> dict[str, tuple[TextFile, str]]:
 
 
 def _named(names: dict[tuple[str, str], str], step: Step, layer: str) -> str:
-    """Return what the composite calls a layer that a step makes, or is given by an earlier one."""
+    """Return the composite's name of a layer that a step makes, or is given by an earlier one."""
     return names[made_by(step.layers[layer]) if layer in step.layers else (step.name, layer)]
 
 

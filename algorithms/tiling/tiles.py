@@ -1,4 +1,4 @@
-"""The tiles of a survey's output: the points of a file, or of a piece of it, with what the blocks found."""
+"""The tiles of a survey's output: the points of a file, or of a piece of it, with the results of the blocks."""
 
 from __future__ import annotations
 

@@ -70,7 +70,7 @@ class Limits:
 
 @dataclass(frozen=True)
 class OutlineCase:
-    """What all outlines of one building are judged by: its roof, its scale, limits, and the overhang (m)."""
+    """Data by which all outlines of one building are judged: its roof, its scale, limits, and the overhang (m)."""
 
     cover: RoofCover
     scale: Scale
@@ -79,10 +79,10 @@ class OutlineCase:
 
 
 class OutlineCells:
-    """The cells that all lines of a building make, and what an outline of some of them costs.
+    """The cells that all lines of a building make, and the cost of an outline of some of them.
 
     An outline is told by which cells are ``inside`` (cells,), and the lines it may run along by which are ``open``
-    (lines,). All costs are sums over cells, edges and crossings, so that what a change costs is told by those near it.
+    (lines,). All costs are sums over cells, edges and crossings, so that those near a change tell its cost.
     """
 
     def __init__(self, lines: list[WallLine], near: list[np.ndarray], case: OutlineCase, monitor: Monitor) -> None:
@@ -101,7 +101,7 @@ class OutlineCells:
         return inside[self.edges.left] != inside[self.edges.right]
 
     def total(self, inside: np.ndarray) -> float:
-        """Return what an outline costs."""
+        """Return the cost of an outline."""
         area = self.if_inside[inside].sum() + self.if_outside[~inside].sum()
         return float(self.cost[self.is_cut(inside)].sum() + area + self._corners(inside) @ self.corner_cost)
 
@@ -113,7 +113,7 @@ class OutlineCells:
         return np.where(is_touched_twice, 2, before != after)
 
     def line_costs(self, inside: np.ndarray) -> np.ndarray:
-        """Return what the edges of an outline cost on each line (lines,)."""
+        """Return the cost of the edges of an outline on each line (lines,)."""
         cut = self.is_cut(inside)
         return np.bincount(self.edges.line[cut], self.cost[cut], len(self.lines))
 

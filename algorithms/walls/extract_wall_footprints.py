@@ -178,7 +178,7 @@ def extract_wall_footprints(
     wall_footprints : LayerFeatures
         One polygon per building, by cluster number. ``source`` says whether it is of walls or of the roof.
     wall_edges : LayerFeatures
-        The edges of all footprints with what was seen of them.
+        The edges of all footprints with the share seen and the points of each.
     candidate_corners : LayerFeatures
         The intersections of all pairs of a building's lines within 2 m of the box around its roof, and what became
         of each.

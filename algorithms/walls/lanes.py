@@ -29,11 +29,11 @@ def find_lane(outline: WallOutline, limits: Limits, min_area: float) -> Optional
     Parameters
     ----------
     outline : WallOutline
-        Outline of what was taken for one building.
+        Outline of the houses that were taken for one building.
     limits : Limits
         What walls may be like; roofs that meet over a lane jut out over it from both sides.
     min_area : float
-        Smallest house, m²: so much of the outline lies behind each of the two walls.
+        Smallest house, m²: least area of the outline behind each of the two walls.
 
     Returns
     -------

@@ -62,7 +62,7 @@ def _stretch(line: WallLine, start: np.ndarray, end: np.ndarray) -> tuple[float,
 
 
 def edge_between(start: np.ndarray, end: np.ndarray, line: WallLine, near: np.ndarray, scale: Scale) -> WallEdge:
-    """Return an edge with what the points between its corners say of it."""
+    """Return an edge with quality, points and precision from the points between its corners."""
     low, high = _stretch(line, start, end)
     corner = min(_CORNER, _CORNER_SHARE * (high - low))
     low, high = low + corner, high - corner

@@ -173,7 +173,7 @@ def test_withheld_points_are_not_shown_and_not_changed(cloud):
     monitor = Monitor()
     run_stage(classify_toy.stage, cloud, monitor=monitor)
     assert monitor.values["seen"] == 3
-    # The classification stays, ids are none, numbers are undefined.
+    # The classification stays, ids are 0, numbers are undefined.
     assert cloud.get("classification").tolist() == [1, 1, 5, 6, 1]
     assert cloud.get("cluster_id").tolist() == [1, 2, 0, 3, 0]
     np.testing.assert_allclose(cloud.get("entropy"), [0, 0.1, np.nan, 0.3, np.nan], rtol=1e-6)

@@ -11,8 +11,8 @@ from lidar_buildings.tests.real.clouds import DATA
 
 CAR, FENCE, POLE, TREE = 65, 66, 64, int(PointClass.HIGH_VEGETATION)
 
-# Each house has a lot of so many meters, with two trees, a car, a fence and a pole: the first tree and the fence at
-# its walls, the others so far off (m).
+# Each house has a lot of this side (m), with two trees, a car, a fence and a pole: the first tree and the fence at
+# its walls, the others at this distance (m).
 LOT, TOUCHING, APART = 70.0, 0.3, (1.0, 6.0)
 BESIDE = (TREE, TREE, CAR, FENCE, POLE)
 

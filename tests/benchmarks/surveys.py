@@ -287,7 +287,7 @@ _AGREEING = {
     "ground/samp53": 150.0,
 }
 
-# Composites whose points are compared, with the dimension that tells what they are.
+# Composites whose points are compared, with the dimension compared.
 _COMPARED = {
     "detect_buildings": "classification",
     "model_terrain": "classification",
@@ -323,7 +323,7 @@ def _in_plan_order(cloud: Cloud, dimension: str) -> np.ndarray:
 
 
 def main() -> None:
-    """Run what the command line names, and write its tables."""
+    """Run the measurement that the command line names, and write its tables."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("what", choices=["run", "workers", "tiles", "cost", "agree"])
     parser.add_argument("--millions", type=float, default=10.0, help="points of the survey")

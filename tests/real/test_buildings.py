@@ -26,7 +26,7 @@ REACHED = {
     "buildings/ign-chalet": (94.6, 81.8),
 }
 
-# Area (m²) called building where there is none, in cells of 0.5 m.
+# Area (m²) called building in clouds without buildings, in cells of 0.5 m.
 REACHED_WITHOUT_BUILDINGS = {
     "buildings/ign-forest-none": 0.0,
     "buildings/ign-bridge-none": 0.0,
@@ -35,7 +35,7 @@ REACHED_WITHOUT_BUILDINGS = {
 # Other versions of numpy, scipy and scikit-learn round differently, and a roof more or less is decided by that.
 MARGIN, AREA_MARGIN = 0.7, 25.0
 
-# Below these (%) the program would not do what it is for, whatever was reached.
+# Least values (%) for the program to serve its purpose, whatever was reached.
 FLOORS = dict.fromkeys(REACHED, 75.0)
 FLOORS["buildings/ahn3-delft"] = 80.0
 
@@ -48,7 +48,7 @@ BY_CHANCE = "buildings/ign-stbarth-4"
 
 SMALL = "buildings/ahn-amsterdam-1"
 
-# What the chain writes or leaves in the cloud, and what tells its points apart.
+# Dimensions that the chain writes or leaves, and those by which points are told apart.
 WRITTEN = (
     "classification",
     "height_above_ground",

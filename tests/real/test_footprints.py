@@ -28,7 +28,7 @@ from lidar_buildings.tests.real.base_map import (
 REACHED = {"truth": (0.927, 0.33, 0.43), "chain": (0.902, 0.48, 0.57)}
 MARGIN, CORNER_MARGIN = 0.01, 0.1
 
-# What the stage is for, whatever was reached.
+# Least values for the stage to serve its purpose, whatever was reached.
 LEAST_IOU, MOST_CORNER = {"truth": 0.90, "chain": 0.85}, (0.5, 0.65)
 
 

@@ -222,7 +222,7 @@ def test_a_roof_of_glass_is_a_building_at_any_density(rng, density, is_numbered)
 
 
 def test_reasons_with_penetration(rng):
-    """A roof, a canopy as flat as a roof, a crown, and a rough thing that nothing passes through."""
+    """A roof, a canopy as flat as a roof, a crown, and a rough object that no beam passes."""
     ground = roof(rng, 30, 0, 5, 5, elevation=0.0)
     crowns = [crown(rng, 20, 40), crown(rng, 40, 40), crown(rng, 60, 40)]
     under = np.column_stack([rng.uniform([10, 30], [70, 50], (6000, 2)), np.zeros(6000)])
@@ -304,7 +304,7 @@ def test_a_smooth_spot_amid_leaves_is_no_building_and_a_roof_beside_a_tree_is(rn
     [(3.0, roof, Reason.BESIDE), (3.0, crown, Reason.PENETRATED), (1.5, roof, Reason.PENETRATED)],
 )
 def test_balconies_amid_buildings_are_part_of_them(rng, side, around, reason):
-    """A floor past which what is below is seen, apart from the roofs around: such spots amid crowns are leaves."""
+    """A floor past which lower points are seen, apart from the roofs around: such spots amid crowns are leaves."""
     balcony = roof(rng, -side / 2, -side / 2, side, side, density=12)
     below = balcony - [0, 0, 3]
     places = [(x, y) for x in (-4, 4) for y in (-4, 0, 4)]

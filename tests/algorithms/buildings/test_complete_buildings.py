@@ -1,4 +1,4 @@
-"""What belongs to a building beside its roof surfaces, in scenes where each point's part is known."""
+"""Parts of a building beside its roof surfaces, in scenes where each point's part is known."""
 
 from itertools import product
 
@@ -17,7 +17,7 @@ SIDE = 40.0
 
 
 class Scene:
-    """A field with roofs that the stages before have found; what is added is not classified yet."""
+    """A field with roofs that the stages before have found; points that are added are not classified yet."""
 
     def __init__(self, rng, density=10):
         self.rng = rng
@@ -210,7 +210,7 @@ def test_a_crown_that_touches_the_wall_is_told_from_it_by_the_pulses_that_pass(s
 
 
 def test_a_narrow_alley_in_which_the_ground_shows_is_not_closed(scene):
-    """Two row houses a meter apart: what hangs above the alley is no building."""
+    """Two row houses a meter apart: points above the alley are no building."""
     scene.roof(5, 10, 14.5, 20, 6.0)
     scene.roof(15.5, 10, 25, 20, 6.0)
     alley = np.flatnonzero(scene.within(14.6, 11, 15.4, 19))
@@ -495,7 +495,7 @@ def test_the_gap_to_close_holds_in_images(rng, gap, closed):
 @pytest.mark.parametrize("least", [0.6, 0.0])
 def test_the_share_of_surfaces_holds_in_images(rng, least):
     xyz, part = seen_from_above(rng, box(5, 5, 13, 13, 5.0))
-    # Strips of surface, with as much between that is none: more than half of what lies near them, less than 0.6 of all.
+    # Strips of surface with gaps as wide: more than half of the points near them are surface, less than 0.6 of all.
     found = (part == 1) & (xyz[:, 0] % 1.0 < 0.55)
     building, reason = complete_images(xyz, part, found, min_roof_share=least)
     assert building[part == 1].any() == (least == 0.0)

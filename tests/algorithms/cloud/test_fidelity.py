@@ -111,7 +111,7 @@ def test_new_dimensions_come_after_the_old_bytes(made, take_apart, tmp_path, poi
     assert new["records"][:, old["size"] :].tobytes() == b"".join(
         i.tobytes() + n.tobytes() for i, n in zip(ids, normals)
     )
-    expected = descriptor("ClusterID", 6, text="cluster; 0 where there is none")
+    expected = descriptor("ClusterID", 6, text="cluster; 0 if unassigned")
     added = new["vlrs"][1][54:][len(EXTRA) :]
     assert added[:192] == expected
     assert [added[i + 4 : i + 11] for i in range(192, 768, 192)] == [b"NormalX", b"NormalY", b"NormalZ"]

@@ -116,7 +116,7 @@ def low_and_high(a, v, number):
 
 
 def dormers_from_front_to_back(a, v, number):
-    """What is 2 m wide and 0.8 m higher ends before it would be a house."""
+    """A strip 2 m wide and 0.8 m higher ends before it would be a house."""
     return 7 + 0.8 * (np.abs(a - WIDTH / 2) < 1)
 
 
@@ -189,7 +189,7 @@ def test_large_buildings_are_looked_at_piece_by_piece(rng, monkeypatch):
 
 
 def step_of(height, left=0.0, right=0.0, low=8.0):
-    """Return a roof across a wall at 0: so much higher there, and rising so much per meter to the left and right."""
+    """Return a roof across a wall at 0: ``step`` m higher there, rising by slopes to the left and right."""
     return lambda x: low + np.where(x < 0, -left * x, height + right * x)
 
 
@@ -236,14 +236,14 @@ def test_what_looks_like_a_wall_between_two_houses(seen, unseen):
         (3.5, 3.5, 0.0, False),
         (21.0, 21.0, 0.0, True),
         (23.0, 23.0, 0.0, False),
-        # It is seen on three fifths, of what is no low part of a house.
+        # It is seen on three fifths of the length without low parts of houses.
         (12.0, 8.5, 0.0, True),
         (12.0, 6.0, 0.0, False),
         (12.0, 6.0, 4.0, True),
     ],
 )
 def test_how_long_a_wall_is_and_how_much_of_it_is_seen(depth, seen, low, is_wall):
-    """A step of 0.8 m across a row, of which so much is seen, and so much is beside roofs that are lower than 4 m."""
+    """A step of 0.8 m across a row, of which shares are seen, and beside roofs lower than 4 m."""
     along = 0.25 * np.arange(round(depth / 0.25))[:, None]
     roof = 8 + np.where((np.arange(81) >= 40) & (along < seen), 0.8, 0.0)
     roof[along[:, 0] >= depth - low] = 3.0

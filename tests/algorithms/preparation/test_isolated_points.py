@@ -1,4 +1,4 @@
-"""What belongs to nothing is found in simulated towns, and nothing thin that stands or hangs in them is lost."""
+"""Isolated points of simulated towns are found, and thin objects such as masts, lamps and wires stay."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from lidar_buildings.algorithms.preparation.isolated_points import in_the_air, u
 from lidar_buildings.algorithms.stage import Monitor
 from lidar_buildings.tests.noisy import noisy_town
 
-# Things that must stay, and what of the town must.
+# Objects and classes of the town that must stay.
 STAYS = ("mast", "lamp", "wire", "chimney")
 TOWN = (PointClass.GROUND, PointClass.BUILDING, PointClass.HIGH_VEGETATION)
 

@@ -79,7 +79,7 @@ def test_small_planes_are_left_out(method, rng):
 
 
 def test_bins_smaller_than_the_noise_lose_the_maximum(rng):
-    """The trade-off of the paper, section 4.1.1: what is found of a rough plane with bins of a tenth of its noise."""
+    """The trade-off of the paper, section 4.1.1: the share found of a rough plane with bins of a tenth of its noise."""
     xyz = square(rng, 10, noise=0.1)
     wide = segment(xyz, tolerance=0.23, distance_bin=0.23, window_size=3.0, min_area=4.0)
     narrow = segment(

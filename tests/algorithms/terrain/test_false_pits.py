@@ -88,7 +88,7 @@ def test_a_narrow_ditch_is_no_noise(rng):
 
 
 def test_hollows_of_rough_ground_are_no_noise(rng):
-    """Blocks and stumps: what is as rough as this has true pits everywhere."""
+    """Blocks and stumps: surfaces as rough as this have true pits everywhere."""
     xyz = terrain(rng, 4, roughness=0.35)
     assert (classified(xyz) != 7).all()
 

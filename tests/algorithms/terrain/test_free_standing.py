@@ -9,7 +9,7 @@ USUAL = 60.0
 
 
 def slope(rows, columns, rise=0.0):
-    """Return a surface that rises so much per cell of 1 m along its rows."""
+    """Return a surface that rises by a slope along its rows of cells of 1 m."""
     return np.repeat(rise * np.arange(rows, dtype=float)[:, None], columns, axis=1)
 
 
@@ -187,7 +187,7 @@ def test_machines_on_a_roof_make_no_terrain_of_it(height, length):
 
 @pytest.mark.parametrize("height", [3.0, 6.0])
 def test_a_house_with_a_penthouse_is_no_terrain(height):
-    """Islands are wide: on what is not, anything may stand."""
+    """Islands are wide: narrow ones may hold any object."""
     surface = slope(60, 60)
     house = block(surface, slice(20, 40), slice(20, 40), height)
     block(surface, slice(24, 36), slice(24, 36), 3.0)
@@ -351,7 +351,7 @@ def test_of_what_is_cut_off_seven_tenths_of_the_rest_must_be_seen(seen, is_objec
 
 
 def test_machines_make_no_terrain_of_a_building_that_is_cut_off():
-    """Their edges are longer than what is seen of the roof's around them."""
+    """Their edges are longer than the visible ones of the roof around them."""
     surface = slope(60, 60)
     building = block(surface, slice(29, 60), slice(8, 52), 2.2)
     for row in (33, 43):

@@ -1,4 +1,4 @@
-"""Composites whose steps look far give in blocks what they give of the whole cloud, point by point."""
+"""Composites whose steps reach far give the same result in blocks as on the whole cloud, point by point."""
 
 import numpy as np
 import pytest
@@ -170,7 +170,7 @@ def test_of_a_large_survey_it_is_the_median_of_samples_but_of_those_that_a_step_
 
 
 def keeping(given, function):
-    """Return a function that keeps what it returns."""
+    """Return a function whose results are kept."""
 
     def kept(*arguments):
         given.append(function(*arguments))

@@ -1,4 +1,4 @@
-"""A survey in tiles gives what it gives as one file: however it is cut, stopped, damaged, or spread over workers."""
+"""A survey in tiles gives the same result as in one file: however it is cut, stopped or damaged."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -307,7 +307,7 @@ def test_a_stopped_run_goes_on_where_it_was(points, tmp_path, monkeypatch):
     first, monitor = len(done), Monitor()
     outcome = run(paths, tmp_path / "result", monitor, pipeline=QUICK, block_side=10.0)
     assert first < outcome.blocks
-    # What was finished is not made again.
+    # Finished blocks are not worked on again.
     assert len(done) == outcome.blocks
     assert any("were worked on before" in sentence for sentence in monitor.infos)
     expected = run(paths, tmp_path / "expected", pipeline=QUICK, block_side=10.0)
@@ -358,7 +358,7 @@ def test_a_block_that_fails_is_named_and_the_rest_is_there(points, tmp_path, mon
     assert [tile.name for tile in outcome.tiles] == ["tile0.las"]
     assert any("This block is damaged." in sentence for sentence in outcome.failures)
     assert any("tile1.las is not written" in sentence for sentence in outcome.failures)
-    # What was done stays for the next try.
+    # Finished blocks stay for the next try.
     monkeypatch.setattr(module, "work_on_block", work)
     done = counted(monkeypatch)
     again = run(paths, tmp_path / "result", pipeline=QUICK, block_side=10.0)
@@ -459,7 +459,7 @@ def test_a_window_grows_where_a_feature_ends_nearer_to_its_edge_than_points_deci
 
     @stage("Boxes", group="Toys", layers=(Layer("boxes", "Boxes", "Polygon", (), around=around),), reach=5.0)
     def outline_box(xyz, *, sampling=None, monitor=None):
-        """Outline what is seen of the box."""
+        """Outline the part of the box that is seen."""
         ring = np.array([[20.0, 4], [29, 4], [29, 14], [20, 14], [20, 4]]) + sampling.corner
         ring = np.clip(ring, xyz[:, :2].min(axis=0), xyz[:, :2].max(axis=0))
         return LayerFeatures([[ring]] if np.ptp(ring, axis=0).all() else [], {})

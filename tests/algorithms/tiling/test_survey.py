@@ -1,4 +1,4 @@
-"""Files that are tiles of one cloud: none gets what belongs to another, and all have the units of the survey."""
+"""Files that are tiles of one cloud: none gets points of another, and all have the units of the survey."""
 
 import os
 import struct
