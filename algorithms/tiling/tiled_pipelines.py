@@ -31,8 +31,8 @@ pipes and large planes are put together from the pieces that blocks found. Raste
 and no seams. Steps that read layers alone are run once, on those of the whole survey.
 
 A run that was stopped goes on where it was when it is started again with the same input, parameters and version; until
-it is complete, the results of blocks are kept in a hidden folder among the tiles. Blocks that fail are named at the end;
-the tiles that they touch are missing then, all others are written.
+it is complete, the results of blocks are kept in a hidden folder among the tiles. Blocks that fail are named at the
+end; the tiles that they touch are missing then, all others are written.
 
 The blocks are worked on by one process for each core, or by the workers of a Dask cluster that runs already. These must
 see the same folders under the same paths; they get the program from here, and need numpy, scipy, laspy and lazrs.
