@@ -27,7 +27,7 @@ LAS, LAZ, COPC, VPC = ".las", ".laz", ".copc.laz", ".vpc"
 # Working folders, hidden beside the targets: their names, the file that a running program keeps open and locked in
 # each, and the folder in it for old files while new ones take their places.
 _PREFIX, _SUFFIX = ".lb-", ".part"
-_LOCK = "lock"
+LOCK = "lock"
 _OLD = "old"
 # A working folder younger than this (s) may belong to a run that has not locked it yet: far longer than that takes.
 _UNLOCKED = 2.0
@@ -71,6 +71,35 @@ def same_file(one: Path, other: Path) -> bool:
     if one.exists() and other.exists():
         return one.samefile(other)
     return one.resolve() == other.resolve()
+
+
+def check_not_read(targets: Iterable[Path], sources: Iterable[Path]) -> None:
+    """Refuse targets by which a file that is read would be written over, also through links.
+
+    Raises
+    ------
+    ValueError
+        If one of them is, or leads to, one of ``sources``.
+    """
+    read = {_identity(source): source for source in sources}
+    for target in targets:
+        identity = _identity(target)
+        if identity and identity in read:
+            means = "is" if target.resolve() == target.absolute() else f"leads to {read[identity]}, which is"
+            raise ValueError(
+                f"{target.name} is in the folder {target.parent}, where the tiles go, and {means} an input; "
+                "choose another folder."
+            )
+
+
+def _identity(path: Path) -> tuple[int, ...]:
+    """Return device and number of the file that a path leads to, nothing where there is no such file."""
+    try:
+        stat = path.stat()
+    except OSError:
+        # A link to itself, or to nothing, leads to no file that is read.
+        return ()
+    return stat.st_dev, stat.st_ino
 
 
 class _File(io.FileIO):
@@ -159,7 +188,7 @@ class _WorkingFolder:
     def __init__(self, parent: Path) -> None:
         _sweep(parent)
         self.path = Path(tempfile.mkdtemp(_SUFFIX, _PREFIX, parent))
-        self._lock = (self.path / _LOCK).open("wb")
+        self._lock = (self.path / LOCK).open("wb")
         if fcntl is not None:
             # A file system without locks has none of its working folders swept either.
             with suppress(OSError):
@@ -170,7 +199,7 @@ class _WorkingFolder:
         for path in self.path.iterdir():
             if path.is_dir():
                 shutil.rmtree(path, ignore_errors=True)
-            elif path.name != _LOCK:
+            elif path.name != LOCK:
                 # What another program holds is swept by a later run.
                 with suppress(OSError):
                     path.unlink()
@@ -188,7 +217,7 @@ class _Entry:
 
     def put_in_place(self, undo: ExitStack) -> None:
         """Move the files to their places, and note how to undo that."""
-        made = {self.final.with_name(new.name): new for new in self.folder.iterdir() if new.name != _LOCK}
+        made = {self.final.with_name(new.name): new for new in self.folder.iterdir() if new.name != LOCK}
         if not made:
             return
         aside = self.folder / _OLD
@@ -236,7 +265,7 @@ def _sweep(folder: Path) -> None:
 
 def _is_abandoned(folder: Path) -> bool:
     """Whether a working folder is empty, or no running program holds its lock."""
-    lock = folder / _LOCK
+    lock = folder / LOCK
     try:
         if folder.is_symlink() or time.time() - folder.stat().st_mtime < _UNLOCKED:
             return False
@@ -278,7 +307,7 @@ def locked_folder(folder: Path) -> Iterator[bool]:
 
     The system releases the lock when the program ends, however it ends.
     """
-    with (folder / _LOCK).open("ab") as lock:
+    with (folder / LOCK).open("ab") as lock:
         try:
             if fcntl is not None:
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)

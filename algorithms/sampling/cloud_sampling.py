@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Any, Callable, Optional, Union
+from typing import Callable, Optional, Union
 
 import numpy as np
 
@@ -181,11 +181,17 @@ class CloudSampling:
         labeled = ((*_MEASURES[name], value) for name, value in self.measured.items())
         return ", ".join(f"{label} {value:.4g} {unit}".rstrip() for label, unit, value in labeled)
 
-    def __getstate__(self) -> dict[str, Any]:
-        """Return all measures, for another process: the points stay where they are."""
-        measures = {name: getattr(self, name) for name in (*_MEASURES, "_surfaces")}
-        others = {name: getattr(self, name) for name in ("single_returns", "corner", "of_whole", "found")}
-        return {**measures, **others, "_points": None}
+    def without_points(self) -> CloudSampling:
+        """Return the sampling as numbers alone, all measured: for blocks of a survey, in other processes."""
+        alone = CloudSampling(_no_points, self.single_returns, self.corner)
+        alone.__dict__.update({name: getattr(self, name) for name in _MEASURES})
+        alone.__dict__["_surfaces"] = self._surfaces.measured()
+        alone.of_whole, alone.found = dict(self.of_whole), dict(self.found)
+        return alone
+
+
+def _no_points() -> np.ndarray:
+    raise RuntimeError("A sampling without points has all its measures.")
 
 
 def without_noise(classification: np.ndarray) -> np.ndarray:

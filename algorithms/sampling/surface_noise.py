@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Optional, Union
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Callable, Optional, Union
 
 import numpy as np
 
@@ -94,6 +96,30 @@ def surface_density(xyz: np.ndarray) -> float:
     return SurfaceSample(xyz).density()
 
 
+@dataclass(frozen=True)
+class MeasuredSurfaces:
+    """The numbers measured on a :class:`SurfaceSample` from which neighborhoods follow.
+
+    Attributes
+    ----------
+    n_points : int
+        Points of the sample.
+    surface_density : float
+        Points per square meter of surfaces.
+    narrow_below : int
+        Smooth neighborhoods of fewer points than this are narrow in plan, because points lie on lines.
+    """
+
+    n_points: int
+    surface_density: float
+    narrow_below: int
+
+    def neighborhood(self, density: float, deviation: float) -> Union[Nearest, Wide]:
+        """Return which points show the plane of a surface, see :meth:`SurfaceSample.neighborhood`."""
+        on_lines = self.narrow_below.__gt__
+        return _neighborhood(self.n_points, self.surface_density, on_lines, density, deviation)
+
+
 class SurfaceSample:
     """Squares spread over a cloud with all points in them: neighborhoods there stand for those of the whole cloud.
 
@@ -172,11 +198,20 @@ class SurfaceSample:
             As many nearest points as reach half a meter and 6.2 deviations, from 8 to 100 and at most all; and not
             fewer than are wide in plan, where less than four fifths of the smooth neighborhoods of that number are.
         """
-        own = self.density()
-        reach = max(_LEAST_REACH, _REACH_DEVIATIONS * deviation)
-        expected = np.pi * reach**2 * (own if own > _UNEVEN * density else density)
-        count = min(max(int(np.ceil(min(expected, _MOST_NEIGHBORS))), LEAST_NEIGHBORS), len(self))
-        return Wide(count) if count < min(MOST_ACROSS_LINES, len(self)) and self._on_lines(count) else Nearest(count)
+        return _neighborhood(len(self), self.density(), self._on_lines, density, deviation)
+
+    def measured(self) -> MeasuredSurfaces:
+        """Return what neighborhoods follow from, without the points: for the parts of a cloud that is worked on so."""
+        return MeasuredSurfaces(len(self), self.density(), self._narrow_below)
+
+    @cached_property
+    def _narrow_below(self) -> int:
+        """Least number of points from which on smooth neighborhoods are not narrow: they widen with their number."""
+        low, high = LEAST_NEIGHBORS, min(MOST_ACROSS_LINES, len(self))
+        while low < high:
+            middle = (low + high) // 2
+            low, high = (middle + 1, high) if self._on_lines(middle) else (low, middle)
+        return low
 
     def _on_lines(self, count: int) -> bool:
         """Return whether smooth neighborhoods of ``count`` points are narrow, because points lie on lines."""
@@ -194,6 +229,16 @@ class SurfaceSample:
 
         in_chunks(work, np.arange(len(self.rows)), nearest.rows_per_chunk(len(self)), Monitor())
         return variances
+
+
+def _neighborhood(
+    n_points: int, own_density: float, on_lines: Callable[[int], bool], density: float, deviation: float
+) -> Union[Nearest, Wide]:
+    """Return which points show the plane of a surface, see :meth:`SurfaceSample.neighborhood`."""
+    reach = max(_LEAST_REACH, _REACH_DEVIATIONS * deviation)
+    expected = np.pi * reach**2 * (own_density if own_density > _UNEVEN * density else density)
+    count = min(max(int(np.ceil(min(expected, _MOST_NEIGHBORS))), LEAST_NEIGHBORS), n_points)
+    return Wide(count) if count < min(MOST_ACROSS_LINES, n_points) and on_lines(count) else Nearest(count)
 
 
 def _expected_quantile(share: float, degrees: int) -> float:

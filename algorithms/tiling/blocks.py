@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import time
+import zipfile
+import zlib
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Optional
@@ -155,7 +157,8 @@ class BlockResult:
     @classmethod
     def read(cls, path: Path, with_points: bool = True) -> BlockResult:
         """Return what :meth:`write` wrote; without the points, arrays that grow with them are left out."""
-        with np.load(path, allow_pickle=False) as stored:
+        # numpy leaves a file open that it can't read.
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
             by_kind: dict[str, dict[str, np.ndarray]] = {kind: {} for kind in _KINDS}
             layers: dict[str, dict[str, np.ndarray]] = {}
             for key in stored.files:
@@ -175,6 +178,15 @@ class BlockResult:
                 absent=json.loads(bytes(stored["absent"])),
                 tries=stored["tries"],
             )
+
+    @classmethod
+    def is_complete(cls, path: Path) -> bool:
+        """Whether a file holds what :meth:`write` wrote; one that is missing, cut off or damaged does not."""
+        try:
+            cls.read(path)
+        except (OSError, EOFError, KeyError, ValueError, TypeError, zipfile.BadZipFile, zlib.error):
+            return False
+        return True
 
     @classmethod
     def edges(cls, path: Path) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:

@@ -55,7 +55,7 @@ def cut_into_tiles(
         If a file is damaged, no point lies within the extent, one of the files would be overwritten, or a tile can't
         be written.
     """
-    check_folder(folder, survey)
+    check_folder(folder, [source.path for source in survey.sources])
     kind = LAZ if compressed else LAS
     with working_folder(folder) as heaps:
         blocks = _sort_out(survey, side, heaps, monitor.part(0.0, _READ))

@@ -7,8 +7,7 @@ import json
 import shutil
 import time
 from collections import Counter
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -18,7 +17,7 @@ import numpy as np
 
 from ..cloud.copc_index import has_index
 from ..cloud.files import readable
-from ..cloud.outputs import LAS, LAZ, locked_folder, stem_of
+from ..cloud.outputs import LAS, LAZ, replacing, stem_of
 from ..cloud.points import open_header
 from ..cloud.units import Resolver
 from ..pipeline import REPORT, Pipeline
@@ -30,7 +29,7 @@ from .cutting import cut_into_tiles
 from .joined_files import join_files
 from .joining import References, feature_numbers, join_belonging, join_features, join_numbers, refer_to_features
 from .mosaics import RasterMosaic, join_rasters
-from .survey import Source, Survey, boxes_meet, check_folder, open_survey
+from .survey import Source, Survey, boxes_meet, check_folder, files_of_survey, open_survey
 from .survey_sampling import samplings_of
 from .tiled_steps import (
     afterwards,
@@ -42,6 +41,7 @@ from .tiled_steps import (
     why_whole,
 )
 from .tiles import TileTask, points_outside, rows_of, write_tile
+from .work_folder import remove_work, work_folder
 from .workers import Workers, run_all
 
 # A window has at most about this many points, so that a worker needs 1.8 GB (340 bytes per point), and two of them, one
@@ -70,9 +70,6 @@ _MANY_BLOCKS, _POINTS_PER_BLOCK = 10_000, 100
 FindLayers = Callable[[Survey], dict[str, Optional[LayerFeatures]]]
 TakeRaster = Callable[[Survey, RasterMosaic], None]
 TakeFile = Callable[[Survey, str, FileContent], None]
-
-# Folder beside the tiles with the results of blocks until the run is complete.
-_WORK = ".lidar-buildings"
 
 # Seconds between two messages about how far it is.
 _BETWEEN_MESSAGES = 10.0
@@ -166,14 +163,16 @@ def run_in_tiles(
     check_can_be_tiled(pipeline)
     for step, chosen in pipeline.by_step(tunables):
         step.stage.check(chosen)
-    survey = open_survey(paths, crs_units, monitor, extent)
-    check_folder(folder, survey)
-    with _work_folder(folder) as work:
+    given = [Path(path) for path in paths]
+    survey = open_survey(given, crs_units, monitor, extent)
+    check_folder(folder, [*files_of_survey(given), *given])
+    with work_folder(folder) as work:
         run = _Run(pipeline, survey, folder, work, monitor, workers, tunables, compressed, crs_units)
         run.find_layers, run.take_raster, run.take_file = find_layers, take_raster, take_file
         outcome = run.all(block_side, largest_file)
     if not outcome.failures:
-        shutil.rmtree(work, ignore_errors=True)
+        # Windows removes no lock that is open.
+        remove_work(work)
     return outcome
 
 
@@ -193,21 +192,6 @@ def check_can_be_tiled(pipeline: Pipeline) -> None:
 def can_be_tiled(pipeline: Pipeline) -> bool:
     """Whether a composite can be run in tiles: it works on one cloud, and no step of it is decided by the whole."""
     return not why_whole(pipeline)
-
-
-@contextmanager
-def _work_folder(folder: Path) -> Iterator[Path]:
-    """Give the folder in which a run keeps the results of blocks; refuse it while another run has it."""
-    work = folder / _WORK
-    try:
-        work.mkdir(exist_ok=True)
-    except OSError as error:
-        raise ValueError(f"The folder {folder} can't be written ({error.strerror}); choose another one.") from error
-    with locked_folder(work) as is_ours:
-        if not is_ours:
-            raise ValueError(f"Another run is writing to {folder}; wait for its end or choose another folder.")
-        (work / "stop").unlink(missing_ok=True)
-        yield work
 
 
 class _Run:
@@ -247,7 +231,7 @@ class _Run:
         self.monitor.inform(f"Blocks of {side:g} m, each worked on with {halo:.4g} m around it.")
         self._cut_large_files(side, largest_file)
         outcome = TilesOutcome(self.survey, [], sampling=sampling, points=len(self.survey))
-        with self.workers.open() as executor:
+        with self.workers.open({source.path.parent for source in given.sources} | {self.folder}) as executor:
             blocks, results, failed = self._work_on_blocks(executor, side, halo, samplings)
             outcome.blocks = len(blocks)
             outcome.failures = [f"Block {blocks[number].name}: {why}" for number, why in sorted(failed.items())]
@@ -270,8 +254,8 @@ class _Run:
             self._warn_of_blocks(found)
             self._write_tiles(executor, done, numbers, [blocks[number] for number in failed], outcome)
         if not outcome.failures:
-            # Nothing is left to go on with. Windows keeps the lock, which is still open.
-            shutil.rmtree(self.work, ignore_errors=True)
+            # Nothing is left to go on with.
+            remove_work(self.work)
         self.monitor.progress(1.0)
         return outcome
 
@@ -315,7 +299,7 @@ class _Run:
         """Have all blocks worked on that are not done yet; return blocks, results and failures by position."""
         blocks = _blocks(self.survey, side)
         tasks = [self._task(block, halo, samplings) for block in blocks]
-        known = {number: task.result for number, task in enumerate(tasks) if task.result.is_file()}
+        known = {number: task.result for number, task in enumerate(tasks) if BlockResult.is_complete(task.result)}
         if known:
             self.monitor.inform(
                 f"{len(known)} of {len(blocks)} blocks were worked on before and are taken as they are."
@@ -472,7 +456,8 @@ class _Run:
         becomes = []
         for (block, _), of_block in zip(done, numbers):
             becomes.append(self.work / f"numbers-{block.name}.npz")
-            np.savez(becomes[-1], **of_block)
+            with replacing(becomes[-1]) as stream:
+                np.savez(stream, **of_block)
         tasks = []
         stems = _unique_stems(self.survey.sources)
         boxes, lost = (_boxes(some) for some in ([block for block, _ in done], failed))

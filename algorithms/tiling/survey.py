@@ -13,7 +13,7 @@ import numpy as np
 from ..cloud.cloud import Cloud
 from ..cloud.files import files_of, readable
 from ..cloud.header import COPC_HIERARCHY, COPC_INFO, LASZIP, Header, read_header
-from ..cloud.outputs import kind_of, same_file
+from ..cloud.outputs import check_not_read, kind_of
 from ..cloud.points import check_points, chunks_near, is_within, open_headers, read_chunks
 from ..cloud.units import Resolver, Units, units_of, wkt_of
 from ..cloud.vpc import check_tiles, fill_merged, merged_header
@@ -334,22 +334,26 @@ def _box(header: Header, units: Units) -> np.ndarray:
     return box + np.array([-step, step])
 
 
-def check_folder(folder: Path, survey: Survey) -> None:
-    """Refuse a folder that has an input of the run in it, or make it where it is missing.
+def check_folder(folder: Path, inputs: Iterable[Path]) -> None:
+    """Refuse a folder in which a name leads to an input of the run, or make the folder where it is missing.
+
+    Parameters
+    ----------
+    folder : Path
+        Where the tiles go.
+    inputs : iterable of Path
+        All files that the run reads.
 
     Raises
     ------
     ValueError
-        If it is a file, has an input in it, or can't be made.
+        If it is a file, if an input is in it, also by a link, or if it can't be made.
     """
     if folder.exists() and not folder.is_dir():
         raise ValueError(f"{folder} is a file; choose a folder for the tiles.")
-    paths = [source.path for source in survey.sources] if folder.exists() else []
-    # A link to a file elsewhere is followed: the file would be written over.
-    inside = [path for path in paths if any(same_file(one.parent, folder) for one in (path, path.resolve()))]
-    if inside:
-        raise ValueError(f"{inside[0].name} is in the folder {folder}, where the tiles go; choose another folder.")
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        names = sorted(folder.iterdir())
     except OSError as error:
         raise ValueError(f"The folder {folder} can't be made ({error.strerror}); choose another one.") from error
+    check_not_read(names, inputs)

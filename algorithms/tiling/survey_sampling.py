@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pickle
 from typing import Any, Optional
 
 import numpy as np
@@ -142,5 +141,4 @@ def _sampling_of(clouds: list[Cloud], corner: np.ndarray) -> CloudSampling:
     """Return how several parts of a survey with a south-western ``corner`` (2,) were sampled, all measures taken."""
     together = np.concatenate([cloud.get("xyz")[counted(cloud)] for cloud in clouds])
     sampling = CloudSampling(lambda: together, not any(has_several_returns(cloud) for cloud in clouds), corner)
-    # The points are left behind, as on the way to another process.
-    return pickle.loads(pickle.dumps(sampling))
+    return sampling.without_points()

@@ -5,74 +5,39 @@ from __future__ import annotations
 import os
 import pickle
 import shutil
-import subprocess
-import sys
 import tempfile
-from collections.abc import Iterator
-from concurrent.futures import (
-    FIRST_COMPLETED,
-    BrokenExecutor,
-    Executor,
-    Future,
-    ProcessPoolExecutor,
-    ThreadPoolExecutor,
-    wait,
-)
+from collections.abc import Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
-from multiprocessing import get_context, set_executable
 from pathlib import Path
 from typing import Any, Callable, Optional
 
 from ..stage import Cancelled, Monitor
-from ..threads import n_threads, use_threads
+from ..threads import n_threads
+from .processes import FOLDER, PACKAGE, CannotStart, Processes, WorkerEnded
 
 # Seconds between two looks at whether the user wants to stop.
 _BETWEEN_LOOKS = 0.5
 
-# Seconds that a scheduler, or an interpreter, has to answer.
+# Seconds that a scheduler has to answer.
 _ANSWER = 15
+
+# Seconds that work has to end after it is told to stop. Then its process is ended.
+_TO_STOP = 1.5
 
 # What Dask raises, by its name, when the workers that were given a task have died one after the other.
 _ALL_DIED = "KilledWorker"
 
 # Of a process that the system has ended.
 _ENDED = (
-    "a process that worked on it was ended, by the system where memory was short; run it again with fewer processes or "
-    "smaller blocks"
+    "the processes that worked on it were ended, by the system where memory was short; run it again with fewer "
+    "processes or smaller blocks"
 )
 
 # Windows waits for no more processes than that.
 _MOST_PROCESSES = 61
-
-# The package as workers import it, and the folder it is in.
-_PACKAGE = __name__.split(".", maxsplit=1)[0]
-_FOLDER = Path(__file__).resolve().parents[2]
-
-
-def own_python() -> str:
-    """Return the interpreter that new processes of this machine are started with: the one that runs this program.
-
-    A program that embeds Python, as QGIS, is no interpreter itself. Python then believes that it is the first one on
-    the PATH, which may be another one, that can't load the packages of this one.
-    """
-    prefix = Path(sys.exec_prefix)
-    version = f"python{sys.version_info.major}.{sys.version_info.minor}"
-    names = ("python.exe",) if os.name == "nt" else (f"bin/{version}", "bin/python3")
-    candidates = [sys.executable, *(str(prefix / name) for name in names)]
-    found = [one for one in candidates if Path(one).stem.lower().startswith("python") and Path(one).exists()]
-    return next(filter(_is_own, found), (found or [sys.executable])[-1])
-
-
-def _is_own(python: str) -> bool:
-    """Return whether an interpreter has the version and the standard library of this one."""
-    asked = "import os, sys; print(sys.version, os.__file__)"
-    try:
-        answer = subprocess.run([python, "-c", asked], capture_output=True, text=True, timeout=_ANSWER, check=False)
-    except (OSError, subprocess.TimeoutExpired):
-        return False
-    return answer.stdout.strip() == f"{sys.version} {os.__file__}"
 
 
 @dataclass(frozen=True)
@@ -95,8 +60,13 @@ class Workers:
     certificates: tuple[str, ...] = ()
 
     @contextmanager
-    def open(self) -> Iterator[Executor]:
+    def open(self, distrusted: Iterable[Path] = ()) -> Iterator[Executor]:
         """Give an executor, as ``concurrent.futures`` has them; it is closed at the end.
+
+        Parameters
+        ----------
+        distrusted : iterable of Path
+            Folders of data: processes of this machine import no module from them.
 
         Raises
         ------
@@ -114,15 +84,11 @@ class Workers:
             with ThreadPoolExecutor(1) as here:
                 yield here
             return
-        # A program that has threads, as QGIS, can't be forked safely.
-        set_executable(own_python())
-        context = get_context("spawn")
-        threads = max(1, n_threads() // count)
-        executor = ProcessPoolExecutor(count, context, initializer=use_threads, initargs=(threads,))
+        processes = Processes(count, max(1, n_threads() // count), distrusted)
         try:
-            yield executor
+            yield processes
         finally:
-            executor.shutdown(wait=True, cancel_futures=True)
+            processes.shutdown(cancel_futures=True)
 
     @contextmanager
     def _cluster(self) -> Iterator[Executor]:
@@ -178,11 +144,11 @@ class _Remote(Executor):
 
 def _archive(folder: Path) -> Path:
     """Write a zip of the core, which imports no QGIS, and return it."""
-    package = folder / "content" / _PACKAGE
+    package = folder / "content" / PACKAGE
     ignored = shutil.ignore_patterns("__pycache__", "*.pyc")
-    shutil.copytree(_FOLDER / "algorithms", package / "algorithms", ignore=ignored)
+    shutil.copytree(FOLDER / "algorithms", package / "algorithms", ignore=ignored)
     (package / "__init__.py").write_text('"""The core of LiDAR Buildings, as workers import it."""\n', encoding="utf-8")
-    return Path(shutil.make_archive(str(folder / _PACKAGE), "zip", folder / "content"))
+    return Path(shutil.make_archive(str(folder / PACKAGE), "zip", folder / "content"))
 
 
 def run_all(
@@ -210,7 +176,7 @@ def run_all(
     Cancelled
         If the monitor is told to cancel; no work is left running then.
     ValueError
-        If a process of this machine ends before its work does.
+        If processes of this machine can't be started.
     """
     waiting = {executor.submit(work, task): number for number, task in enumerate(tasks)}
     results: dict[int, Any] = {}
@@ -226,9 +192,9 @@ def run_all(
                     results[number] = future.result()
                 elif isinstance(error, (ValueError, OSError, MemoryError)):
                     failed[number] = str(error) or type(error).__name__
-                elif isinstance(error, BrokenExecutor):
-                    raise ValueError(f"The survey was not finished: {_ENDED}.") from None
-                elif type(error).__name__ == _ALL_DIED:
+                elif isinstance(error, CannotStart):
+                    raise ValueError(str(error)) from error
+                elif isinstance(error, WorkerEnded) or type(error).__name__ == _ALL_DIED:
                     failed[number] = f"{_ENDED}."
                 else:
                     raise error
@@ -239,6 +205,6 @@ def run_all(
         for future in open_:
             future.cancel()
         if isinstance(error, Cancelled):
-            wait([future for future in open_ if not future.cancelled()], timeout=_ANSWER)
+            wait([future for future in open_ if not future.cancelled()], timeout=_TO_STOP)
         raise
     return results, failed

@@ -6,6 +6,8 @@ from collections import Counter
 import numpy as np
 import pytest
 
+from lidar_buildings.algorithms.neighborhoods.covariance import Nearest
+from lidar_buildings.algorithms.neighborhoods.wide_in_plan import Wide
 from lidar_buildings.algorithms.sampling import cloud_sampling as module
 from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling, without_noise
 from lidar_buildings.algorithms.sampling.density import effective_density, point_density
@@ -93,14 +95,25 @@ def test_the_log_shows_what_was_measured(rng):
     assert "effective" not in str(sampling)
 
 
-def test_another_process_is_given_the_measures_and_not_the_points(rng):
-    """So that the tiles of a survey share one sampling."""
+def test_blocks_are_given_the_measures_and_not_the_points(rng):
+    """So that the blocks of a survey share one sampling, in a few hundred bytes."""
     xyz = gentle_slope(rng, count=100_000)
     sampling = CloudSampling.of(xyz)
     sampling.of_whole["surface_roughness"] = 0.02
-    sent = pickle.dumps(sampling)
+    sent = pickle.dumps(sampling.without_points())
     there = pickle.loads(sent)
     assert there.of_whole == {"surface_roughness": 0.02}
     assert all_of(there) == all_of(sampling)
-    assert there.neighborhood(10.0, 0.3) == sampling.neighborhood(10.0, 0.3)
-    assert there._points is None
+    for density, deviation in ((10.0, 0.3), (10.0, 0.05), (2.0, 0.02), (0.5, 0.02)):
+        assert there.neighborhood(density, deviation) == sampling.neighborhood(density, deviation)
+    assert len(sent) < 2000
+
+
+def test_blocks_look_as_wide_as_the_whole_where_points_lie_on_lines(rng):
+    along, across = np.meshgrid(np.arange(0, 60, 0.1), np.arange(0, 60, 1.5))
+    xyz = np.column_stack([along.ravel(), across.ravel(), rng.normal(0, 0.01, along.size)])
+    sampling = CloudSampling.of(xyz)
+    alone = sampling.without_points()
+    found = [sampling.neighborhood(density, 0.02) for density in (2.0, 12.0, 18.0, 30.0, 50.0, 70.0)]
+    assert {type(one) for one in found} == {Nearest, Wide}
+    assert [alone.neighborhood(density, 0.02) for density in (2.0, 12.0, 18.0, 30.0, 50.0, 70.0)] == found

@@ -1,6 +1,5 @@
 """Files that are tiles of one cloud: none gets points of another, and all have the units of the survey."""
 
-import os
 import struct
 import subprocess
 import sys
@@ -19,7 +18,7 @@ from lidar_buildings.algorithms.tiling import survey_sampling
 from lidar_buildings.algorithms.tiling.cutting import cut_into_tiles
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
 from lidar_buildings.algorithms.tiling.survey import open_survey
-from lidar_buildings.algorithms.tiling.workers import Workers, run_all
+from lidar_buildings.algorithms.tiling.workers import Workers
 from lidar_buildings.tests.las_files import descriptor, made_las, vlr
 from lidar_buildings.tests.monitors import Listening
 
@@ -122,11 +121,6 @@ def test_names_that_some_systems_take_for_one_are_told_apart(tmp_path):
         folder.mkdir()
     paths = [tile(folders[0] / "Tile.las", (0, 0)), tile(folders[1] / "tile.las", (30, 0), seed=1)]
     assert [made.name for made in run(paths, tmp_path / "out").tiles] == ["Tile.las", "tile_2.las"]
-
-
-def test_a_process_that_the_system_ends_is_a_sentence(tmp_path):
-    with Workers(processes=2).open() as executor, pytest.raises(ValueError, match="fewer processes or smaller blocks"):
-        run_all(executor, os._exit, [9], tmp_path / "stop", Monitor(), lambda number: None)
 
 
 def test_cutting_keeps_fields_of_one_name_apart(tmp_path):

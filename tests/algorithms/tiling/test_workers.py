@@ -16,8 +16,9 @@ from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.algorithms.tiling.processes import own_python
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
-from lidar_buildings.algorithms.tiling.workers import Workers, own_python
+from lidar_buildings.algorithms.tiling.workers import Workers
 from lidar_buildings.tests.builders import roof
 
 DETECT = PIPELINES["detect_buildings"]
