@@ -8,7 +8,7 @@ from __future__ import annotations
 _SEGMENTS = "Each segment in a color of its own, points of none in gray."
 
 CAPTIONS = {
-    "detectbuildings": "A simulated town: ground brown, buildings red with their footprints, the rest gray.",
+    "detectbuildings": "A simulated town: ground brown, plants green, buildings red with their footprints, the rest gray.",
     "mapfootprints": "A simulated village from a drone's images: roofs red, and the walls below them as footprints.",
     "modelbuildings": "Edges of the closed models over the points they were made of.",
     "modelfacades": "One side of a simulated street: each facade in a color, windows and doors outlined.",
@@ -39,6 +39,7 @@ CAPTIONS = {
     "segmenttree": "Stem and branches of a simulated tree in a color each; leaves are gray.",
     "segmentvoxels": "Components of connected voxels, each in a color of its own.",
     "classifybuildings": "How sure it is that a cluster is a building, from blue to red.",
+    "classifyvegetation": "Crowns, hedges and bushes in green, the darker the higher; buildings red, walls gray.",
     "completebuildings": "Whole buildings in red, with walls, dormers and edges.",
     "extractfootprints": "Footprints around the points of buildings.",
     "classifyroofs": "Roofs of a simulated village in red; plants at their height are gray.",

@@ -123,6 +123,7 @@ SCENES = {
     "segmenttree": Scene(TREE, ("segment_tree",), tilt=80.0, height=560),
     "segmentvoxels": Scene(TOWN, (*HEIGHT, "segment_voxels")),
     "classifybuildings": Scene(TOWN, (*ROOFS, "classify_buildings"), color="confidence"),
+    "classifyvegetation": Scene(TOWN, (*BUILDINGS, "classify_vegetation"), color="classification"),
     "completebuildings": Scene(TOWN, BUILDINGS, color="classification"),
     "extractfootprints": Scene(TOWN, (*BUILDINGS, "extract_footprints"), color="classification", lines="footprints"),
     "classifyroofs": Scene(VILLAGE, WALLS[:-1], color="classification"),

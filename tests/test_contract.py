@@ -78,6 +78,7 @@ STAGE_IDS = {
     "classifybuildings",
     "classifybuildings2019",
     "completebuildings",
+    "classifyvegetation",
     "extractfootprints",
     "classifyroofs",
     "classifywalls",

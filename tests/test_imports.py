@@ -32,6 +32,7 @@ ROOMS = (
     "segmentation",
     "shapes",
     "buildings",
+    "landcover",
     "footprints",
     "walls",
     "facades",

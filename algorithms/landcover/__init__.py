@@ -1,0 +1,1 @@
+"""What covers the ground beside buildings: vegetation, water, wires."""

@@ -1,0 +1,161 @@
+"""Vegetation: what is above the ground and neither a building nor another solid object."""
+
+from __future__ import annotations
+
+from typing import Annotated, NamedTuple, Optional
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from ..sampling.cloud_sampling import CloudSampling
+from ..stage import Param, stage
+from .solid_objects import REACH, find_solid_objects
+
+# Points of these classes may be vegetation; all others stay.
+_OPEN = (
+    PointClass.NEVER_CLASSIFIED,
+    PointClass.UNCLASSIFIED,
+    PointClass.LOW_VEGETATION,
+    PointClass.MEDIUM_VEGETATION,
+    PointClass.HIGH_VEGETATION,
+)
+
+
+class Heights(NamedTuple):
+    """Heights above the ground (m) from which vegetation is medium and high."""
+
+    medium: float
+    high: float
+
+
+HEIGHTS = {
+    "2 m and 5 m": Heights(2.0, 5.0),
+    "0.5 m and 2 m": Heights(0.5, 2.0),
+    "0.5 m and 1.5 m (IGN)": Heights(0.5, 1.5),
+    "0.3 m and 2 m (ICSM)": Heights(0.3, 2.0),
+}
+
+
+@stage(
+    "Classify vegetation",
+    group="Land cover",
+    tags="vegetation,tree,canopy,bush,hedge,crown,plant,forest,low,medium,high,car,pole,fence",
+    writes=("classification",),
+    reach=REACH,
+)
+def classify_vegetation(
+    xyz,
+    classification,
+    height_above_ground,
+    number_of_returns=None,
+    *,
+    look_for: Annotated[
+        bool, Param("Look for vegetation", "Without it no class changes: for models that have this step.")
+    ] = True,
+    heights: Annotated[
+        str,
+        Param(
+            "Heights of medium and high vegetation",
+            "Height above the ground from which vegetation is medium (4), and that from which it is high (5); below "
+            "both it is low (3). The last two are those of the French and the Australian surveys.",
+            choices=tuple(HEIGHTS),
+        ),
+    ] = "2 m and 5 m",
+    min_height: Annotated[
+        float,
+        Param(
+            "Minimum height",
+            "Height above the ground from which points are vegetation; lower ones are unclassified.",
+            unit="m",
+            low=0,
+            high=10,
+        ),
+    ] = 0.1,
+    medium_height: Annotated[
+        Optional[float],
+        Param(
+            "Medium vegetation from",
+            "Height above the ground from which vegetation is medium (4).",
+            unit="m",
+            low=0,
+            high=100,
+            automatic="the lower one of the heights chosen above.",
+            advanced=True,
+        ),
+    ] = None,
+    high_height: Annotated[
+        Optional[float],
+        Param(
+            "High vegetation from",
+            "Height above the ground from which vegetation is high (5).",
+            unit="m",
+            low=0,
+            high=100,
+            automatic="the higher one of the heights chosen above.",
+            advanced=True,
+        ),
+    ] = None,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Classify low, medium and high vegetation: what is above the ground and of no other class.
+
+    Cars, garden walls, fences, boats and poles stay unclassified (1): objects whose surfaces are smooth and reflect the
+    whole pulse, and slender upright ones. Ground, buildings, water, noise and all other classes stay as they are.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes. Points of 0 and 1 are looked at; earlier vegetation (3, 4, 5) is classified anew.
+    height_above_ground : ndarray of shape (n,), float32
+        Heights, m.
+    number_of_returns : ndarray of shape (n,), uint8, optional
+        Returns of each point's pulse. Without it all objects count as opaque.
+
+    Returns
+    -------
+    classification : ndarray of shape (n,), uint8
+        Low, medium and high vegetation 3, 4 and 5; 1 for what was looked at and is none.
+
+    Raises
+    ------
+    ValueError
+        If high vegetation begins lower than medium vegetation.
+
+    Notes
+    -----
+    Buildings come first: what 'Complete buildings' leaves over above the ground is nearly all vegetation. An object is
+    a group of points that are connected in plan and height. It is solid if it is no higher than 3.5 m, if less than a
+    fifth of its pulses had several returns, and if half of its points lie within the roughness of roofs and walls to
+    the plane of their neighborhood. It is a pole if it is four times as high as its extent in plan. In thin clouds few
+    cars are recognized: there are too few points for a plane. Objects that touch a plant are vegetation with it.
+
+    References
+    ----------
+    ASPRS, 2019. LAS specification 1.4, R15, table 17.
+    """
+    classes = classification.astype(np.uint8)
+    if not look_for:
+        return classes
+    limits = HEIGHTS[heights]
+    medium = limits.medium if medium_height is None else medium_height
+    high = limits.high if high_height is None else high_height
+    if high < medium:
+        raise ValueError(
+            f"High vegetation from (high_height) must be at least medium vegetation from ({medium:g} m), got {high:g} "
+            "m; raise it or lower the other."
+        )
+    monitor.resolved(medium_height=medium, high_height=high)
+    sampling = sampling or CloudSampling.of(xyz, classification)
+    is_open = np.isin(classification, _OPEN)
+    plants = np.flatnonzero(is_open & (height_above_ground > min_height))
+    has_passed = np.zeros(len(plants), bool) if number_of_returns is None else number_of_returns[plants] > 1
+    is_solid = find_solid_objects(xyz[plants], height_above_ground[plants], has_passed, sampling, monitor)
+    classes[is_open] = PointClass.UNCLASSIFIED
+    plants = plants[~is_solid]
+    layer = np.searchsorted([medium, high], height_above_ground[plants], side="right")
+    classes[plants] = np.array(_OPEN[2:], np.uint8)[layer]
+    monitor.progress(1.0)
+    return classes

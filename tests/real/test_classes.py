@@ -1,0 +1,34 @@
+"""Land cover in real clouds, found with nothing set: the figures are F (%) of merged classes, measured as here."""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.cloud.asprs import PointClass
+from lidar_buildings.tests.builders import VEGETATION
+from lidar_buildings.tests.real.clouds import detected, truth
+
+MARGIN = 1.0
+
+# Classes of the truth that are left out: what nobody classified (cars, poles and walls among it), bridges, artefacts.
+IGNORED = (0, 1, 17, 26, 64, 65, 66, 67)
+
+
+def f_score(name: str, classes: tuple) -> float:
+    """Return the F (%) of merged classes in a cloud."""
+    true, made = truth(name), detected(name).classification
+    counted = ~np.isin(true, IGNORED)
+    is_true, is_found = np.isin(true[counted], classes), np.isin(made[counted], classes)
+    return 200 * (is_true & is_found).sum() / (is_true.sum() + is_found.sum())
+
+
+# Of the plants of the chalet's meadow, most under 0.2 m, two thirds are ground to the filter.
+@pytest.mark.parametrize(
+    ("name", "reached"),
+    [("ign-forest-none", 98.6), ("ign-bridge-none", 94.3), ("ign-chalet", 87.0), ("ign-stbarth-4", 88.8)],
+)
+def test_vegetation_is_found_as_well_as_before(name, reached):
+    assert f_score(f"buildings/{name}", VEGETATION) >= reached - MARGIN
+
+
+def test_every_point_has_been_looked_at():
+    assert not (detected("buildings/ign-chalet").classification == PointClass.NEVER_CLASSIFIED).any()
