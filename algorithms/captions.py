@@ -8,7 +8,7 @@ from __future__ import annotations
 _SEGMENTS = "Each segment in a color of its own, points of none in gray."
 
 CAPTIONS = {
-    "detectbuildings": "A simulated town: ground brown, plants green, buildings red with their footprints, the rest gray.",
+    "detectbuildings": "A simulated town: ground brown, plants green, buildings red with footprints, the rest gray.",
     "mapfootprints": "A simulated village from a drone's images: roofs red, and the walls below them as footprints.",
     "modelbuildings": "Edges of the closed models over the points they were made of.",
     "modelfacades": "One side of a simulated street: each facade in a color, windows and doors outlined.",
