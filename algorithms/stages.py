@@ -25,6 +25,7 @@ from .preparation.downsample_voxels import downsample_voxels
 from .preparation.filter_points import filter_points
 from .preparation.merge_clouds import merge_clouds
 from .quality.assess_buildings import assess_buildings
+from .quality.assess_classes import assess_classes
 from .quality.assess_ground import assess_ground
 from .quality.assess_models import assess_models
 from .quality.assess_segments import assess_segments
@@ -106,6 +107,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     reconstruct_roofs,
     export_for_roofer,
     assess_buildings,
+    assess_classes,
     assess_ground,
     assess_models,
     assess_segments,

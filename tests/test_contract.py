@@ -87,6 +87,7 @@ STAGE_IDS = {
     "exportforroofer",
     "assessbuildings",
     "assessground",
+    "assessclasses",
     "assessmodels",
     "comparecorners",
     "simulatetown",

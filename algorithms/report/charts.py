@@ -22,6 +22,9 @@ _LEAST_VALUE = 1e-200
 
 _SIDE, _MARGIN = 420, 50
 
+# Sides of a cell of a matrix, and room for the names of its rows and columns, pixels.
+_CELL_WIDTH, _CELL_HEIGHT, _NAMES = 84, 44, 190
+
 # More dots make a page that no browser likes.
 _MOST_DOTS = 3000
 
@@ -117,6 +120,53 @@ def draw_scatter(xy: np.ndarray, axis: str, unit: str, mean_name: str) -> str:
     body = f'{rings}<path d="{cross}" stroke="#ccc"/><g fill="{BLUE}" fill-opacity="0.45">{dots}</g>{mean}'
     legend = _legend([Series(shown, BLUE, xy), Series(mean_name, RED, xy)])
     return legend + _picture(_SIDE, _SIDE, axis, body)
+
+
+def draw_matrix(counts: np.ndarray, names: list[str], columns: str, rows: str) -> str:
+    """Return the HTML of a matrix of counts (m, m) as a heat map: the darker, the larger the share of its row.
+
+    Parameters
+    ----------
+    counts : ndarray of shape (m, m), int
+        How many items of the class of each row have the class of each column.
+    names : list of str
+        The classes.
+    columns, rows : str
+        What the two sides of the matrix are.
+    """
+    shares = counts / np.maximum(counts.sum(axis=1, keepdims=True), 1)
+    left, top = _NAMES, _NAMES
+    parts = [
+        f'<text x="{left - 10}" y="{top + (i + 0.6) * _CELL_HEIGHT:.1f}" text-anchor="end">{html.escape(name)}</text>'
+        f'<text transform="translate({left + (i + 0.6) * _CELL_WIDTH:.1f} {top - 10}) rotate(-60)">'
+        f"{html.escape(name)}</text>"
+        for i, name in enumerate(names)
+    ]
+    parts += [
+        _cell(left + j * _CELL_WIDTH, top + i * _CELL_HEIGHT, int(counts[i, j]), float(shares[i, j]), i == j)
+        for i in range(len(names))
+        for j in range(len(names))
+    ]
+    parts.append(f'<text x="10" y="{top - 10}">{html.escape(rows)}</text>')
+    parts.append(f'<text x="{left}" y="16">{html.escape(columns)}</text>')
+    width, height = left + len(names) * _CELL_WIDTH + 90, top + len(names) * _CELL_HEIGHT + 10
+    return _picture(width, height, f"{rows} and {columns}", "".join(parts))
+
+
+def _cell(x: float, y: float, count: int, share: float, is_right: bool) -> str:
+    """Return a cell of a matrix with its count and its share of the row; empty ones have no text."""
+    fill = BLUE if is_right else RED
+    # Text is white where the cell is darker than half.
+    ink = "#fff" if share > 0.5 else "#222"  # noqa: PLR2004
+    text = (
+        f'<text x="{x + _CELL_WIDTH / 2:.1f}" y="{y + 19:.1f}" text-anchor="middle" fill="{ink}">{count:,}</text>'
+        f'<text x="{x + _CELL_WIDTH / 2:.1f}" y="{y + 36:.1f}" text-anchor="middle" font-size="12" fill="{ink}">'
+        f"{100 * share:.1f} %</text>"
+    )
+    return (
+        f'<rect x="{x:.1f}" y="{y:.1f}" width="{_CELL_WIDTH}" height="{_CELL_HEIGHT}" fill="{fill}" '
+        f'fill-opacity="{share:.3f}" stroke="#ccc"/>' + (text if count else "")
+    )
 
 
 @dataclass(frozen=True)

@@ -72,6 +72,18 @@ def build_page(title: str, lead: str, tables: dict[str, list[Row]], picture: str
     return f'<!DOCTYPE html>\n<html lang="en"><head>{head}</head>\n<body>\n' + "\n".join(parts) + "\n</body></html>\n"
 
 
+def draw_table(title: str, head: list[str], rows: list[list[str]]) -> str:
+    """Return the HTML of a table under its heading; the first column names the rows, the others hold numbers."""
+    names = "".join(f'<th scope="col">{html.escape(name)}</th>' for name in head)
+    lines = [
+        f'<tr><th scope="row">{html.escape(row[0])}</th>'
+        + "".join(f'<td class="number">{html.escape(value)}</td>' for value in row[1:])
+        + "</tr>"
+        for row in rows
+    ]
+    return f"<h2>{html.escape(title)}</h2>\n<table>\n<tr>{names}</tr>\n" + "\n".join(lines) + "\n</table>\n"
+
+
 def draw_map(xyz: np.ndarray, outcome: np.ndarray, names: tuple[str, str, str, str]) -> str:
     """Return the HTML of a map, north up, of what came of the topmost point of each pixel.
 

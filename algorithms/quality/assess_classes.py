@@ -1,0 +1,221 @@
+"""How good all classes are: the confusion matrix against a reference, and what follows from it."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+
+from ..cloud.asprs import PointClass, parse_classes
+from ..params import IgnoredClasses
+from ..report.charts import draw_matrix
+from ..report.page import FALSE, HIT, MISS, REST, Row, build_page, draw_map, draw_table, percent
+from ..stage import Measure, Param, Report, stage
+from .confusion import class_rates, cohens_kappa, confusion, overall_accuracy
+from .point_matching import compared_points
+
+# Classes that have an output of their own, by the names of these.
+_KINDS = {
+    "ground": (PointClass.GROUND,),
+    "vegetation": (PointClass.LOW_VEGETATION, PointClass.MEDIUM_VEGETATION, PointClass.HIGH_VEGETATION),
+    "building": (PointClass.BUILDING,),
+    "water": (PointClass.WATER,),
+    "wires": (
+        PointClass.WIRE_GUARD,
+        PointClass.WIRE_CONDUCTOR,
+        PointClass.TRANSMISSION_TOWER,
+        PointClass.WIRE_CONNECTOR,
+    ),
+    "bridges": (PointClass.BRIDGE_DECK,),
+    "noise": (PointClass.LOW_NOISE, PointClass.HIGH_NOISE),
+}
+_UNCLASSIFIED = (PointClass.NEVER_CLASSIFIED, PointClass.UNCLASSIFIED)
+
+# Numbers that a class can have in LAS.
+_CODES = 256
+
+# What the map calls its colors.
+_LEGEND = ("right", "another class called ground", "ground called another class", "other classes confused")
+
+
+@stage(
+    "Assess classes",
+    group="Quality",
+    tags="accuracy,confusion matrix,kappa,overall accuracy,IoU,F-score,F1,completeness,reference,validation",
+    measures=(
+        Measure("accuracy", "Overall accuracy", "%"),
+        Measure("kappa", "Cohen's kappa", "%"),
+        Measure("mean_iou", "Mean intersection over union", "%"),
+        *(Measure(f"{kind}_f", f"F-score of {kind}", "%") for kind in _KINDS),
+        *(Measure(f"{kind}_iou", f"Intersection over union of {kind}", "%") for kind in _KINDS),
+        Measure("points", "Points compared"),
+    ),
+)
+def assess_classes(
+    xyz,
+    classification,
+    reference_xyz,
+    reference_classification,
+    *,
+    ignored_classes: IgnoredClasses = "64-67",
+    merged_classes: Annotated[
+        str,
+        Param(
+            "Merged classes",
+            "Classes that count as one: numbers and ranges separated by commas, and one such group from the next by a "
+            "semicolon; empty merges none.",
+        ),
+    ] = "0, 1; 3-5; 7, 18; 13-16",
+    monitor=None,
+):
+    """Compare all classes with those of a reference: confusion matrix, accuracy, kappa, and figures of each class.
+
+    The page shows the matrix as a heat map, completeness, correctness, F-score and intersection over union of each
+    class, and a map of the errors.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Coordinates (m) of the input.
+    classification : ndarray of shape (n,)
+        Classes of the input.
+    reference_xyz : ndarray of shape (m, 3)
+        Coordinates (m) of the reference: the same points in any order, perhaps with others.
+    reference_classification : ndarray of shape (m,)
+        True classes.
+
+    Returns
+    -------
+    Report
+        Percentages, and a page with the matrix and a map. A percentage of nothing is NaN.
+
+    Raises
+    ------
+    ValueError
+        If a point of the input is not in the reference, every point is ignored, or a class is in two merged groups.
+
+    Notes
+    -----
+    With TP points of a class in both, FN in the reference only and FP in the input only: completeness TP / (TP + FN),
+    correctness TP / (TP + FP), F their harmonic mean, intersection over union TP / (TP + FN + FP). The mean of the
+    latter is that of the classes, as merged, that the reference has. Figures of ground (2), vegetation (3-5), building
+    (6), water (9), wires and masts (13-16), bridges (17) and noise (7, 18) are outputs, too, however classes are
+    merged. Classes of a reference that mean "everything else" (1) are best ignored.
+
+    References
+    ----------
+    Congalton, R. G., 1991. A review of assessing the accuracy of classifications of remotely sensed data. Remote
+    Sensing of Environment 37(1), 35-46.
+    """
+    groups = parse_groups(merged_classes)
+    xyz, called, true = compared_points(
+        xyz, classification, reference_xyz, reference_classification, parse_classes(ignored_classes)
+    )
+    monitor.progress(0.5)
+    every = confusion(true, called, _CODES)
+    parts = merged(np.flatnonzero(every.any(axis=0) | every.any(axis=1)), groups)
+    number = np.zeros(_CODES, np.int64)
+    for i, part in enumerate(parts):
+        number[part] = i
+    matrix = confusion(number[true], number[called], len(parts))
+    rates = class_rates(matrix)
+    values = {
+        "accuracy": overall_accuracy(matrix),
+        "kappa": cohens_kappa(matrix),
+        "mean_iou": float(rates["iou"][matrix.sum(axis=1) > 0].mean()),
+        **_of_kinds(every),
+        "points": len(xyz),
+    }
+    monitor.progress(0.7)
+    names = [_called(part) for part in parts]
+    outcome = _outcome(called, true, number[called] == number[true])
+    return Report(values, _page(matrix, names, values, _table(matrix, names, rates), draw_map(xyz, outcome, _LEGEND)))
+
+
+def parse_groups(text: str) -> list[np.ndarray]:
+    """Return the merged classes of a text such as ``"3-5; 7, 18"``, each group ascending.
+
+    Raises
+    ------
+    ValueError
+        If a group is no list of numbers and ranges, or a class is in two.
+    """
+    groups = [parse_classes(part, "Merged classes") for part in text.split(";") if part.strip()]
+    numbers, counts = np.unique(np.concatenate(groups or [np.zeros(0, np.int64)]), return_counts=True)
+    if (counts > 1).any():
+        raise ValueError(
+            f"Merged classes (merged_classes) must have each class in one group, got {numbers[counts > 1][0]} in two; "
+            "leave it out of one."
+        )
+    return groups
+
+
+def merged(occurring: np.ndarray, groups: list[np.ndarray]) -> list[np.ndarray]:
+    """Return the classes that occur (m,), those of a group together, in ascending order of the first of each."""
+    in_groups = np.concatenate([*groups, np.zeros(0, np.int64)])
+    parts = [np.intersect1d(group, occurring) for group in groups]
+    parts += [np.array([single]) for single in np.setdiff1d(occurring, in_groups)]
+    return sorted((part for part in parts if len(part)), key=lambda part: int(part[0]))
+
+
+def _called(numbers: np.ndarray) -> str:
+    """Return what people call classes: their numbers, and the name of their kind or of the class."""
+    classes = {int(number) for number in numbers}
+    kinds = {"unclassified": _UNCLASSIFIED, **_KINDS}
+    kind = next((name for name, members in kinds.items() if len(classes) > 1 and classes <= set(members)), "")
+    standard = {int(one): one.name.replace("_", " ").lower() for one in PointClass}
+    names = [kind] if kind else [standard[number] for number in sorted(classes) if number in standard]
+    return f"{', '.join(map(str, sorted(classes)))} {', '.join(names)}".strip()
+
+
+def _of_kinds(matrix: np.ndarray) -> dict[str, float]:
+    """Return F and intersection over union (percent) of the kinds of classes that are outputs."""
+    found = {}
+    for kind, members in _KINDS.items():
+        inside = np.zeros(len(matrix), bool)
+        inside[list(members)] = True
+        hits, true, called = matrix[np.ix_(inside, inside)].sum(), matrix[inside].sum(), matrix[:, inside].sum()
+        # The second class is everything else; what is right of it does not count.
+        rates = class_rates(np.array([[hits, true - hits], [called - hits, 0]]))
+        found[f"{kind}_f"], found[f"{kind}_iou"] = float(rates["f"][0]), float(rates["iou"][0])
+    return found
+
+
+def _table(matrix: np.ndarray, names: list[str], rates: dict[str, np.ndarray]) -> str:
+    """Return the HTML of the figures of each class."""
+    head = ["Class", "Points in the reference", "Points in the input", "Completeness", "Correctness", "F-score", "IoU"]
+    rows = [
+        [
+            name,
+            f"{true:,}",
+            f"{called:,}",
+            *(percent(float(rates[rate][i])) for rate in ("completeness", "correctness", "f", "iou")),
+        ]
+        for i, (name, true, called) in enumerate(zip(names, matrix.sum(axis=1), matrix.sum(axis=0)))
+    ]
+    return draw_table("Classes", head, rows)
+
+
+def _outcome(called: np.ndarray, true: np.ndarray, is_right: np.ndarray) -> np.ndarray:
+    """Return what came of each point (n,), as the map shows it."""
+    taken, lost = called == PointClass.GROUND, true == PointClass.GROUND
+    return np.select([is_right, taken, lost], [REST, HIT, MISS], FALSE).astype(np.uint8)
+
+
+def _page(matrix: np.ndarray, names: list[str], values: dict, table: str, picture: str) -> str:
+    rows = [
+        Row(
+            "Overall accuracy",
+            percent(values["accuracy"]),
+            f"{int(np.trace(matrix)):,} of {values['points']:,} points have the class of the reference.",
+        ),
+        Row("Kappa", percent(values["kappa"]), "Agreement beyond what chance would give; 100 % is perfect."),
+        Row(
+            "Mean IoU",
+            percent(values["mean_iou"]),
+            "Points of a class in both among those in either, the mean over the classes of the reference.",
+        ),
+    ]
+    lead = f"{values['points']:,} points of {len(names)} classes were compared with the reference."
+    heat = "<h2>Confusion matrix</h2>\n" + draw_matrix(matrix, names, "Class of the input", "True class")
+    return build_page("Quality of the classes", lead, {"All classes": rows}, heat + table + picture)

@@ -1,0 +1,45 @@
+"""Confusion matrices: what was called what, and the figures that follow."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def confusion(true: np.ndarray, called: np.ndarray, count: int) -> np.ndarray:
+    """Return how many items (count, count), int64, of each true class (rows) got each class (columns), both from 0."""
+    return np.bincount(true.astype(np.int64) * count + called, minlength=count**2).reshape(count, count)
+
+
+def class_rates(matrix: np.ndarray) -> dict[str, np.ndarray]:
+    """Return completeness, correctness, F and IoU of each class, percent (m,); NaN of nothing."""
+    hits, true, called = np.diag(matrix), matrix.sum(axis=1), matrix.sum(axis=0)
+    return {
+        "completeness": _percent(hits, true),
+        "correctness": _percent(hits, called),
+        "f": _percent(2 * hits, true + called),
+        "iou": _percent(hits, true + called - hits),
+    }
+
+
+def overall_accuracy(matrix: np.ndarray) -> float:
+    """Return the share (percent) of items whose class is right; NaN of none."""
+    return float(_percent(np.trace(matrix), matrix.sum()))
+
+
+def cohens_kappa(matrix: np.ndarray) -> float:
+    """Return the agreement (percent) beyond that by chance; NaN where chance alone gives all.
+
+    References
+    ----------
+    Cohen, J., 1960. A coefficient of agreement for nominal scales. Educational and Psychological Measurement 20(1).
+    """
+    total = matrix.sum()
+    if not total:
+        return float("nan")
+    chance = float((matrix.sum(axis=1) / total) @ (matrix.sum(axis=0) / total))
+    return 100.0 * (np.trace(matrix) / total - chance) / (1 - chance) if chance < 1 else float("nan")
+
+
+def _percent(part: np.ndarray, whole: np.ndarray) -> np.ndarray:
+    whole = np.asarray(whole, float)
+    return 100.0 * np.divide(part, whole, out=np.full(whole.shape, np.nan), where=whole > 0)
