@@ -41,6 +41,7 @@ _DETECTION = (
     Step("roofs", "segment_roofs"),
     Step("buildings", "classify_buildings"),
     Step("complete", "complete_buildings"),
+    Step("near_ground", "complete_ground"),
     Step("vegetation", "classify_vegetation"),
     Step("footprints", "extract_footprints"),
 )

@@ -56,6 +56,7 @@ from .simulation.simulate_village import simulate_village
 from .terrain.classify_ground_cloth import classify_ground_cloth
 from .terrain.classify_ground_tin import classify_ground_tin
 from .terrain.classify_ground_tin_2000 import classify_ground_tin_2000
+from .terrain.complete_ground import complete_ground
 from .terrain.compute_height_above_ground import compute_height_above_ground
 from .terrain.rasterize_terrain import rasterize_terrain
 from .walls.classify_roofs import classify_roofs
@@ -74,6 +75,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     classify_ground_tin_2000,
     classify_ground_cloth,
     compute_height_above_ground,
+    complete_ground,
     rasterize_terrain,
     compute_features,
     classify_dimensionality,

@@ -106,6 +106,7 @@ SCENES = {
     "classifygroundsegments": Scene(BRIDGE, ("segment_scan_lines", "classify_ground_segments"), color="classification"),
     "classifybridges": Scene(BRIDGE, (*GROUND, "classify_bridges"), color="classification"),
     "computeheightaboveground": Scene(TOWN, HEIGHT, color="height_above_ground"),
+    "completeground": Scene(TOWN, (*HEIGHT, "complete_ground"), color="classification"),
     "computefeatures": Scene(TOWN, ("compute_features",), color="planarity"),
     "classifydimensionality": Scene(
         TOWN, (NOISE, "compute_features", "classify_dimensionality"), color="dimensionality"

@@ -55,6 +55,7 @@ STAGE_IDS = {
     "classifygroundcloth",
     "computeheightaboveground",
     "rasterizeterrain",
+    "completeground",
     "computefeatures",
     "classifydimensionality",
     "segmentregions",
