@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from processing.gui.ContextAction import ContextAction
+from qgis.PyQt.QtWidgets import QMessageBox
 
+from .models import model_file
 from .pipeline_algorithm import PipelineAlgorithm
 
 
@@ -20,8 +22,12 @@ class OpenInDesigner(ContextAction):
 
     def execute(self) -> None:
         """Show the graph."""
-        from processing.modeler.ModelerDialog import ModelerDialog
-
+        try:
+            from processing.modeler.ModelerDialog import ModelerDialog
+        except ImportError as error:
+            text = f"This version of QGIS opens its Model Designer in another way ({error})."
+            QMessageBox.information(None, self.name, f"{text} Its model is {model_file(self.itemData.pipeline)}.")
+            return
         dialog = ModelerDialog.create(self.itemData.as_model())
         dialog.show()
         dialog.activate()

@@ -219,7 +219,9 @@ class PipelineAlgorithm(DeclaredAlgorithm, QgsProcessingModelAlgorithm):
             self._systems = make_in_main_thread(read_extent(path)[2] for path in self._clouds)
         return super().prepareAlgorithm(self._with_defaults(parameters), context, feedback)
 
-    def postProcessAlgorithm(self, context: QgsProcessingContext, feedback: QgsProcessingFeedback) -> dict:  # noqa: N802
+    def postProcessAlgorithm(  # noqa: N802
+        self, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ) -> dict:
         """Make the CRS of results last."""
         renew_in_main_thread(context.temporaryLayerStore().mapLayers().values())
         return {}

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Callable
 
-from qgis.core import QgsApplication, QgsProcessingRegistry
+from qgis.core import Qgis, QgsApplication, QgsMessageLog, QgsProcessingRegistry
 
 from .provider import Provider
+
+LOG = "LiDAR Buildings"
 
 
 class Plugin:
@@ -19,7 +22,7 @@ class Plugin:
     def __init__(self, iface) -> None:
         self.iface = iface
         self.provider = None
-        self._actions: list = []
+        self._undo: list[Callable[[], None]] = []
         self._added_path = ""
 
     def initProcessing(self) -> None:  # noqa: N802 - QGIS asks for this name
@@ -31,22 +34,38 @@ class Plugin:
         self.provider.refreshAlgorithms()
 
     def initGui(self) -> None:  # noqa: N802 - QGIS asks for this name
-        """Add the provider, and "open in the model designer" to the toolbox."""
+        """Add the provider, and then what is optional."""
+        self.initProcessing()
+        self._add("The toolbox entry 'Open in Model Designer'", self._add_designer)
+
+    def _add(self, what: str, add: Callable[[], Callable[[], None]]) -> None:
+        """Add something optional to the desktop, and keep what takes it away; where it fails, the log says so.
+
+        Modules of QGIS's own plugins move between its versions, and the algorithms need none of them.
+        """
+        try:
+            self._undo.append(add())
+        except Exception as error:  # noqa: BLE001 - whatever another version of QGIS raises
+            QgsMessageLog.logMessage(
+                f"{what} is missing in this version of QGIS ({error}); all algorithms work without it.",
+                LOG,
+                Qgis.MessageLevel.Warning,
+            )
+
+    def _add_designer(self) -> Callable[[], None]:
+        """Add "open in the model designer" to the toolbox."""
         from processing.gui.ProviderActions import ProviderContextMenuActions
 
         from .designer import OpenInDesigner
 
-        self.initProcessing()
-        self._actions = [OpenInDesigner()]
-        ProviderContextMenuActions.registerProviderContextMenuActions(self._actions)
+        actions = [OpenInDesigner()]
+        ProviderContextMenuActions.registerProviderContextMenuActions(actions)
+        return lambda: ProviderContextMenuActions.deregisterProviderContextMenuActions(actions)
 
     def unload(self) -> None:
         """Take away what was added."""
-        if self._actions:
-            from processing.gui.ProviderActions import ProviderContextMenuActions
-
-            ProviderContextMenuActions.deregisterProviderContextMenuActions(self._actions)
-            self._actions = []
+        while self._undo:
+            self._undo.pop()()
         if self.provider is not None:
             self._registry().removeProvider(self.provider)
             self.provider = None

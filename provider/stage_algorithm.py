@@ -160,7 +160,9 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
             self.job.systems = make_in_main_thread(read_extent(path)[2] for path in self.job.paths)
         return True
 
-    def postProcessAlgorithm(self, context: QgsProcessingContext, feedback: QgsProcessingFeedback) -> dict:  # noqa: N802
+    def postProcessAlgorithm(  # noqa: N802
+        self, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ) -> dict:
         """Make the CRS of results last."""
         renew_in_main_thread(context.temporaryLayerStore().mapLayers().values())
         return {}

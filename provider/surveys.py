@@ -74,17 +74,15 @@ def write_survey(
     ValueError
         If it can't be written.
     """
-    crs, to_degrees = place_of_survey(survey).crs, None
-    if crs.isValid():
-        change = QgsCoordinateTransform(crs, QgsCoordinateReferenceSystem(WGS84), context.transformContext())
+    crs, path = place_of_survey(survey).crs, _vpc_of(folder)
+    change = QgsCoordinateTransform(crs, QgsCoordinateReferenceSystem(WGS84), context.transformContext())
 
-        def to_degrees(coordinates: np.ndarray) -> np.ndarray:
-            there = [change.transform(QgsPointXY(*place)) for place in coordinates.tolist()]
-            return np.array([(place.x(), place.y()) for place in there])
+    def to_degrees(coordinates: np.ndarray) -> np.ndarray:
+        there = [change.transform(QgsPointXY(*place)) for place in coordinates.tolist()]
+        return np.array([(place.x(), place.y()) for place in there])
 
-    path = _vpc_of(folder)
     try:
-        write_vpc(tiles, path, to_degrees)
+        write_vpc(tiles, path, to_degrees if crs.isValid() else None)
     except QgsCsException:
         # With coordinates far outside of its system a survey lies nowhere on Earth.
         monitor.warn(

@@ -179,7 +179,9 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
             self._systems = make_in_main_thread([self.wkt, WGS84])
         return True
 
-    def postProcessAlgorithm(self, context: QgsProcessingContext, feedback: QgsProcessingFeedback) -> dict:  # noqa: N802
+    def postProcessAlgorithm(  # noqa: N802
+        self, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ) -> dict:
         """Make the CRS of results last."""
         renew_in_main_thread(context.temporaryLayerStore().mapLayers().values())
         return {}

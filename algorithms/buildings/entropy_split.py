@@ -151,14 +151,14 @@ def reference_entropies(n_points: int, roughness: float = 0.0, trials: int = 400
     plane, volume : float
         The random numbers are fixed: the same arguments always give the same two figures.
     """
-    random = np.random.default_rng(0)
+    generator = np.random.default_rng(0)
     n_points = min(n_points, _MAX_SIMULATED_POINTS)
-    directions = random.normal(size=(trials, n_points, 3))
+    directions = generator.normal(size=(trials, n_points, 3))
     ball = directions / np.linalg.norm(directions, axis=2, keepdims=True)
-    ball *= random.random((trials, n_points, 1)) ** (1 / 3)
-    angle = random.random((trials, n_points)) * 2 * np.pi
-    radius = np.sqrt(random.random((trials, n_points)))
-    across = roughness * random.normal(size=angle.shape)
+    ball *= generator.random((trials, n_points, 1)) ** (1 / 3)
+    angle = generator.random((trials, n_points)) * 2 * np.pi
+    radius = np.sqrt(generator.random((trials, n_points)))
+    across = roughness * generator.normal(size=angle.shape)
     disk = np.stack([radius * np.cos(angle), radius * np.sin(angle), across], axis=2)
     return _mean_entropy(disk), _mean_entropy(ball)
 

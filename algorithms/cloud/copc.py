@@ -143,7 +143,7 @@ def _gathered(code: int, axis: int) -> int:
 
 def _levels(codes: np.ndarray, monitor: Monitor) -> np.ndarray:
     """Return the octree level of each point, uint8 (n,); ``codes`` is sorted."""
-    random = np.random.default_rng(_SEED)
+    generator = np.random.default_rng(_SEED)
     levels = np.empty(len(codes), np.uint8)
     left = np.arange(len(codes))
     for level in range(_DEEPEST + 1):
@@ -152,7 +152,7 @@ def _levels(codes: np.ndarray, monitor: Monitor) -> np.ndarray:
         taken = _in_leaves(current >> np.uint64(3 * (_BITS - level)), level)
         first = run_starts(current >> np.uint64(3 * (_BITS - level - _GRID_LEVELS)))
         lengths = np.diff(np.append(first, len(current)))
-        taken[first + (random.random(len(first)) * lengths).astype(np.int64)] = True
+        taken[first + (generator.random(len(first)) * lengths).astype(np.int64)] = True
         levels[left[taken]] = level
         left = left[~taken]
         if not len(left):

@@ -37,6 +37,8 @@ _KEPT_IN_MEMORY = 2**24
 _COPIED_AT_ONCE = 2**24
 # Doubles may be this many steps of the scale apart; some files are written with far too fine a scale.
 _COARSEST = 1000.0
+# Areas of cells whose sides are a smaller step are 0 in doubles.
+_LEAST_STEP = float(np.sqrt(np.finfo(float).tiny))
 # What the header of every file written here says of the program that wrote it.
 SOFTWARE = "LiDAR Buildings"
 LASZIP = (b"laszip encoded", 22204)
@@ -280,8 +282,8 @@ class _Reader:
         step = np.abs(header.scale)
         with np.errstate(over="ignore"):
             farthest = np.abs(header.offset) + 2.0**31 * step
-        # Beyond, all coordinates are one and the same; of NaN and infinity the comparison is false.
-        if not (np.spacing(farthest) <= _COARSEST * step).all():
+        # Beyond, all coordinates are one and the same; of NaN and infinity the comparison is false. Below, areas are 0.
+        if not ((np.spacing(farthest) <= _COARSEST * step) & (step >= _LEAST_STEP)).all():
             raise ValueError(
                 f"{self.path.name} has no usable coordinates: scale {header.scale.tolist()}, offset "
                 f"{header.offset.tolist()} in its header; get the file again."

@@ -204,30 +204,30 @@ def _parse(wkt: str) -> Optional[_Node]:
     """Return a nameless node that holds the systems in ``wkt`` (ESRI writes two side by side), None if it is no WKT."""
     root = _Node("", [], [])
     stack = [root]
-    for token in _TOKEN.findall(wkt):
-        if token in ("[", "("):
+    for piece in _TOKEN.findall(wkt):
+        if piece in ("[", "("):
             if not stack[-1].values or len(stack) > _DEEPEST:
                 return None
             # What was taken for a value is the keyword of what follows.
             node = _Node(str(stack[-1].values.pop()).upper(), [], [])
             stack[-1].children.append(node)
             stack.append(node)
-        elif token in ("]", ")"):
+        elif piece in ("]", ")"):
             if len(stack) == 1:
                 return None
             stack.pop()
-        elif token != ",":
-            stack[-1].values.append(_value(token))
+        elif piece != ",":
+            stack[-1].values.append(_value(piece))
     return root if len(stack) == 1 and root.children else None
 
 
-def _value(token: str) -> Union[str, float]:
-    if token.startswith('"'):
-        return token[1:-1]
+def _value(piece: str) -> Union[str, float]:
+    if piece.startswith('"'):
+        return piece[1:-1]
     try:
-        return float(token)
+        return float(piece)
     except ValueError:
-        return token
+        return piece
 
 
 def _stored_wkt(header: Header) -> str:

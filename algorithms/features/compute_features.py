@@ -55,7 +55,8 @@ _REACH = 5.0
 @stage(
     "Compute features",
     group="Features",
-    tags="PCA,covariance,eigenvalues,linearity,planarity,scattering,entropy,normals,verticality,geometric,optimal,scale",
+    tags="PCA,covariance,eigenvalues,linearity,planarity,scattering,entropy,normals,verticality,geometric,optimal,"
+    "scale",
     writes=_FEATURES,
     reach=lambda tunables: (tunables["radius"] or _REACH) if tunables["neighborhood"] == "radius" else _REACH,
 )

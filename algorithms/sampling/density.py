@@ -54,12 +54,12 @@ def point_density(xyz: np.ndarray) -> float:
     """
     low, high = plan_box(xyz)
     extent = high - low
-    if not extent.any():
+    # A line of points has no area either: it is taken as wide as its points are apart.
+    area = max(float(extent.prod()), float(extent.max()) ** 2 / len(xyz))
+    if not area:
         raise ValueError(
             f"The cloud has no extent in plan (points: {len(xyz)}), so it has no density; choose a larger cloud."
         )
-    # A line of points has no area either: it is taken as wide as its points are apart.
-    area = max(float(extent.prod()), float(extent.max()) ** 2 / len(xyz))
     density = len(xyz) / area
     for _ in range(20):
         size = max(float(np.sqrt(_POINTS_PER_CELL / density)), _LEAST_CELL)

@@ -135,20 +135,22 @@ class HoughPlanes:
     def find(self, monitor: Monitor) -> np.ndarray:
         """Return the plane (n,), int16, of each point in the order of the boxes: from 1 in each window, or 0."""
         plane = np.zeros(len(self.boxes.order), np.int16)
-        search = self._by_points if self.normals is None else self._by_normals
 
         def work(windows: np.ndarray) -> None:
             for window in windows:
                 start = self.boxes.start[window]
                 inside = slice(start, start + self.boxes.size[window])
                 xyz = self.boxes.xyz[inside]
-                normals = None if self.normals is None else self.normals[inside]
-                plane[inside] = search(xyz - (xyz.min(axis=0) + xyz.max(axis=0)) / 2, normals)
+                centered = xyz - (xyz.min(axis=0) + xyz.max(axis=0)) / 2
+                if self.normals is None:
+                    plane[inside] = self._by_points(centered)
+                else:
+                    plane[inside] = self._by_normals(centered, self.normals[inside])
 
         in_chunks(work, np.flatnonzero(self.boxes.size >= _LEAST_POINTS), _WINDOWS, monitor)
         return plane
 
-    def _by_points(self, xyz: np.ndarray, _: Optional[np.ndarray]) -> np.ndarray:
+    def _by_points(self, xyz: np.ndarray) -> np.ndarray:
         """Return the plane (k,) of each point of a window: every point votes for all planes through it."""
         plane, left = np.zeros(len(xyz), np.int16), np.arange(len(xyz))
         votes = self._votes(xyz)
@@ -176,9 +178,8 @@ class HoughPlanes:
             votes += np.bincount(level.ravel(), minlength=len(votes))
         return votes.reshape(len(directions), self.levels)
 
-    def _by_normals(self, xyz: np.ndarray, normals: Optional[np.ndarray]) -> np.ndarray:
+    def _by_normals(self, xyz: np.ndarray, normals: np.ndarray) -> np.ndarray:
         """Return the plane (k,) of each point of a window: its normal votes for a direction, then it for a distance."""
-        assert normals is not None
         plane = np.zeros(len(xyz), np.int16)
         left = np.flatnonzero(normals.any(axis=1))
         cells = self.directions.bin_of(normals[left]) if len(left) else left

@@ -5,13 +5,13 @@ from __future__ import annotations
 import sys
 
 import pytest
-from qgis.core import QgsApplication
+from qgis.core import Qgis, QgsApplication
 
 import lidar_buildings
 from lidar_buildings.algorithms import packages
 from lidar_buildings.provider import dependencies
 from lidar_buildings.provider.pipeline_algorithm import PipelineAlgorithm
-from lidar_buildings.provider.plugin import Plugin
+from lidar_buildings.provider.plugin import LOG, Plugin
 
 
 @pytest.fixture
@@ -72,6 +72,34 @@ def test_what_is_added_is_taken_away(provider, qgis_application, monkeypatch):
     assert len(added) == 1
     assert (ProviderContextMenuActions.actions, sys.path) == (actions, path)
     assert len(registry.providers()) == providers
+    plugin.unload()
+
+
+def without_modules_that_move(monkeypatch):
+    """Have the modules of Processing that other versions of QGIS keep elsewhere not found."""
+    for name in ("gui.ProviderActions", "gui.ContextAction", "modeler", "modeler.ModelerDialog"):
+        monkeypatch.setitem(sys.modules, f"processing.{name}", None)
+    monkeypatch.delitem(sys.modules, "lidar_buildings.provider.designer", raising=False)
+
+
+def test_all_algorithms_are_there_where_modules_of_qgis_have_moved(provider, monkeypatch):
+    without_modules_that_move(monkeypatch)
+    kept = []
+    registry = type(
+        "R", (), {"addProvider": staticmethod(kept.append), "removeProvider": staticmethod(lambda provider: None)}
+    )
+    monkeypatch.setattr(Plugin, "_registry", lambda self: registry)
+    messages = []
+    QgsApplication.messageLog().messageReceived[str, str, Qgis.MessageLevel].connect(
+        lambda text, tag, level: messages.append((tag, level, text))
+    )
+    plugin = lidar_buildings.classFactory(None)
+    plugin.initGui()
+    (added,) = kept
+    assert {one.id() for one in added.algorithms()} == {one.id() for one in provider.algorithms()}
+    ((_, level, text),) = [one for one in messages if one[0] == LOG]
+    assert level == Qgis.MessageLevel.Warning
+    assert "Open in Model Designer" in text
     plugin.unload()
 
 

@@ -126,6 +126,8 @@ def test_more_points_promised_than_there_are(good, tmp_path, kind, count):
         (131, "<d", np.nan, "no usable coordinates"),
         (155, "<d", np.inf, "no usable coordinates"),
         (139, "<d", 0.0, "no usable coordinates"),
+        (131, "<d", 5e-324, "no usable coordinates"),
+        (147, "<d", 1e-160, "no usable coordinates"),
         (155, "<d", 1e300, "no usable coordinates"),
         (131, "<d", 1e300, "no usable coordinates"),
         (100, "<I", 2**31, "VLRs"),

@@ -115,19 +115,32 @@ def test_a_chunk_table_outside_of_the_points(laz):
     assert_refused(path, "chunk table should be at", *(patched(raw, points_at(raw), "<q", place) for place in places))
 
 
-def test_a_chunk_table_that_promises_too_much(laz):
+def with_table(raw, table, filled=0):
+    """Return the file with another chunk table, points and bytes of each chunk, after some bytes that are 0."""
     lazrs = pytest.importorskip("lazrs")
-    raw, path = laz
-    (table_at,) = struct.unpack_from("<q", raw, points_at(raw))
+    table_at = struct.unpack_from("<q", raw, points_at(raw))[0] + filled
     size = struct.unpack_from("<H", raw, record_at(raw) - 34)[0]
-    record = lazrs.LazVlr(raw[record_at(raw) : record_at(raw) + size])
-    hostile = []
-    for table in ([(POINTS, 10**9)], [(POINTS, 2**31 - 1)], [(10**9, 100)], [(POINTS, 40), (0, 2**30)]):
-        stream = io.BytesIO(raw[:table_at])
-        stream.seek(table_at)
-        lazrs.write_chunk_table(stream, table, record)
-        hostile.append(stream.getvalue())
-    assert_refused(path, "damaged", *hostile)
+    raw = patched(raw, points_at(raw), "<q", table_at)
+    stream = io.BytesIO(raw[: table_at - filled] + bytes(filled))
+    stream.seek(table_at)
+    lazrs.write_chunk_table(stream, table, lazrs.LazVlr(raw[record_at(raw) : record_at(raw) + size]))
+    return stream.getvalue()
+
+
+def test_a_chunk_table_that_promises_too_much(laz):
+    raw, path = laz
+    tables = ([(POINTS, 10**9)], [(POINTS, 2**31 - 1)], [(10**9, 100)], [(POINTS, 40), (0, 2**30)])
+    assert_refused(path, "damaged", *(with_table(raw, table) for table in tables))
+
+
+def test_a_chunk_that_begins_near_the_end_of_the_file(make_las, tmp_path):
+    """The sizes of its layers were cut off, which numpy said in its own words."""
+    path = tmp_path / "sound.laz"
+    write_cloud(read_cloud(make_las(point_format=7, n=POINTS)), path)
+    raw = path.read_bytes()
+    room = struct.unpack_from("<q", raw, points_at(raw))[0] - points_at(raw) - 8
+    hostile = [with_table(raw, [(POINTS - 1, room), (1, size)], size) for size in (1, 2, 5, 17, 30)]
+    assert_refused(tmp_path / "hostile.laz", "ends before the sizes of its", *hostile)
 
 
 def test_points_of_another_size_in_the_laszip_record(laz):

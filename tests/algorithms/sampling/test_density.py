@@ -92,3 +92,11 @@ def test_the_density_is_never_less_than_a_quarter(rng):
     middles = rng.uniform(0, 500, (300, 1, 2))
     xyz = (middles + rng.normal(0, 0.3, (300, 50, 2))).reshape(-1, 2)
     assert effective_density(xyz) >= point_density(xyz) / 4.01
+
+
+@pytest.mark.parametrize("size", [0.0, 5e-324, 1e-170])
+def test_an_extent_whose_area_is_zero_has_no_density(rng, size):
+    """With steps of 5e-324 m it was an error of Python's own."""
+    xyz = np.column_stack([rng.integers(0, 9, (20, 2)) * size, np.arange(20.0)])
+    with pytest.raises(ValueError, match="no extent in plan"):
+        point_density(xyz)
