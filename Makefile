@@ -68,9 +68,10 @@ pictures: $(VENV)/made ## draw the pictures of the help pages anew, or those of 
 	@scripts/offscreen.sh $(VENV)/bin/python scripts/help_pictures.py $(IDS)
 	@$(if $(IDS),,scripts/offscreen.sh $(VENV)/bin/python scripts/hough_picture.py)
 
-package: ## the zip for QGIS's plugin repository (in dist/)
+package: $(VENV)/made ## the zip for QGIS's plugin repository (in dist/), scanned as that scans it
 	@$(PYTHON) scripts/metadata.py
 	@$(PYTHON) scripts/package.py
+	@$(VENV)/bin/python scripts/scan.py dist/*-$$(sed -n 's/^version=//p' metadata.txt).zip
 
 clean: ## remove what these commands made in this folder
 	rm -rf $(VENV) demo dist benchmarks tests/benchmarks/.cache .hypothesis .mypy_cache .pytest_cache .ruff_cache .qgis-settings

@@ -247,10 +247,30 @@ def _result(
         cloud, points = _selected(stage, clouds[0], made.selected), None
     else:
         cloud, points = clouds[0], used[0]
+    _clear(cloud, [name for name, values in made.dimensions.items() if values is not None], monitor)
     for name, values in made.dimensions.items():
         if values is not None:
             cloud.set(name, _whole(cloud, name, values, points))
     return cloud
+
+
+def _clear(cloud: Cloud, written: Collection[str], monitor: Monitor) -> None:
+    """Clear the dimensions that describe numbers which are written anew, but are not written themselves."""
+    stale = [
+        one for one in DIMENSIONS.values() if one.of in written and one.name not in written and cloud.has(one.name)
+    ]
+    known = [one for one in stale if not _is_undefined(cloud.get(one.name))]
+    for one in known:
+        cloud.set(one.name, np.full(len(cloud), one.undefined, one.dtype))
+    if known:
+        names = ", ".join(one.disk[0] for one in known)
+        numbers = ", ".join(sorted({DIMENSIONS[one.of].disk[0] for one in known}))
+        monitor.inform(f"Cleared {names}, as earlier runs left it: {numbers} is numbered anew.")
+
+
+def _is_undefined(values: np.ndarray) -> bool:
+    """Whether no point has a value."""
+    return bool((np.isnan(values) if values.dtype.kind == "f" else values == 0).all())
 
 
 def _selected(stage: Stage, cloud: Cloud, selected: Optional[np.ndarray]) -> Cloud:
@@ -269,7 +289,7 @@ def _whole(cloud: Cloud, name: str, values: np.ndarray, used: Optional[np.ndarra
     if cloud.has(name) and DIMENSIONS[name].standard:
         whole = cloud.get(name).copy()
     else:
-        whole = np.full((len(cloud), *values.shape[1:]), np.nan if dtype[0] == "f" else 0, dtype)
+        whole = np.full((len(cloud), *values.shape[1:]), DIMENSIONS[name].undefined, dtype)
     whole[used] = values
     return whole
 

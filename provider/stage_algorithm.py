@@ -20,6 +20,7 @@ from qgis.core import (
 )
 
 from ..algorithms.cloud.cloud import Cloud
+from ..algorithms.cloud.dimensions import DIMENSIONS
 from ..algorithms.cloud.files import count_points, read_cloud, read_extent
 from ..algorithms.cloud.outputs import replacing
 from ..algorithms.help import stage_help
@@ -30,7 +31,7 @@ from .crs import crs_units, make_in_main_thread, renew_in_main_thread
 from .declared import DeclaredAlgorithm
 from .dependencies import missing_sentence
 from .errors import as_processing_errors
-from .feedback import FeedbackMonitor, announce, warn_unknown_parameters
+from .feedback import FeedbackMonitor, announce, is_step, warn_unknown_parameters
 from .input_layers import find_input_layer, input_layer_files, input_layer_parameter, read_input_layer, refuse_elsewhere
 from .inputs import (
     OUTPUT,
@@ -190,6 +191,7 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
     ) -> dict:
         """Read, run the stage, write; all or nothing. What was cancelled has no results."""
         announce(self.stage.title, feedback)
+        self._alone = not is_step(feedback)
         warn_unknown_parameters(self, parameters, feedback)
         monitor = FeedbackMonitor(feedback, self.stage, self.job.tunables)
         definitions, subject = self.destinationParameterDefinitions(), subject_of(self.job.paths, feedback)
@@ -225,6 +227,7 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         parts = [monitor.part(i * share, (i + 1) * share) for i in range(len(paths))]
         clouds = [read_cloud(path, part, crs_units, self.job.box) for path, part in zip(paths, parts)]
         reference = clouds.pop() if self.job.reference else None
+        self._tell_what_is_taken(clouds, monitor)
         found = {wanted: find_input_layer(self, wanted, parameters, context) for wanted in self.stage.input_layers}
         given = {wanted: layer for wanted, layer in found.items() if layer is not None}
         place = place_of_cloud(clouds[0]) if clouds else place_of_layers(given, monitor)
@@ -236,6 +239,13 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         tunables = self.job.tunables
         outcome = run_stage(self.stage, cloud, reference, monitor.part(_READ, _RUN), input_layers, **tunables)
         return outcome, place_of_cloud(outcome.cloud) if outcome.cloud is not None else place
+
+    def _tell_what_is_taken(self, clouds: list[Cloud], monitor: Monitor) -> None:
+        """Log which dimensions of earlier runs are read; of a chain they are those of its own steps."""
+        names = [name for name in self.stage.optional if name in DIMENSIONS and not DIMENSIONS[name].standard]
+        there = [DIMENSIONS[name].disk[0] for name in names if all(cloud.has(name) for cloud in clouds)]
+        if self._alone and there:
+            monitor.inform(f"The cloud has {', '.join(there)} of an earlier run; they are taken as they are.")
 
     def _numbers(self, outcome: Outcome, monitor: Monitor) -> dict:
         """Return the numbers by the names of their outputs."""

@@ -15,7 +15,7 @@ from pathlib import Path, PurePosixPath
 import pytest
 
 from lidar_buildings.algorithms import packages
-from lidar_buildings.scripts import metadata
+from lidar_buildings.scripts import metadata, scan
 
 ROOT = Path(__file__).resolve().parent.parent
 PLUGIN = "lidar_buildings"
@@ -55,6 +55,33 @@ def general(contents) -> dict[str, str]:
 def test_make_package_runs_the_script_that_is_tested():
     planned = subprocess.run(["make", "-n", "package"], cwd=ROOT, check=True, capture_output=True, text=True).stdout
     assert "scripts/package.py" in planned
+
+
+def test_make_package_scans_the_zip():
+    planned = subprocess.run(["make", "-n", "package"], cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    assert planned.index("scripts/package.py") < planned.index("scripts/scan.py")
+
+
+def test_the_scanners_of_the_plugin_repository_find_nothing(made):
+    assert scan.findings(made) == []
+
+
+@pytest.mark.parametrize(
+    ("planted", "found"),
+    [
+        ("import pickle\n\nthawed = pickle.loads(b'')\n", "bandit B301"),
+        ("password = 'hunter2'\n", "bandit B105"),
+        ("key = 'AKIAIOSFODNN7" + "EXAMPLE'\n", "detect-secrets"),
+        ("import os\n", "flake8: ./lidar_buildings/planted.py:1:1: F401"),
+        ("def\n", "bandit: ./lidar_buildings/planted.py"),
+    ],
+)
+def test_a_planted_finding_fails(made, tmp_path, planted, found, capsys):
+    archive = tmp_path / "planted.zip"
+    with zipfile.ZipFile(archive, "w") as opened:
+        opened.writestr(f"{PLUGIN}/planted.py", planted)
+    assert scan.main(archive) == 1
+    assert found in capsys.readouterr().out
 
 
 def test_zip_is_named_after_its_version_and_not_too_large(made, general):

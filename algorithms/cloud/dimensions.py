@@ -16,7 +16,8 @@ class Dimension:
 
     ``disk`` holds the names on disk (one per component), as QGIS and PDAL write
     them; ``aliases`` are read as the same thing; ``description`` has at most 31
-    bytes, since LAS has 32 for it; ``standard`` ones are LAS fields.
+    bytes, since LAS has 32 for it; ``standard`` ones are LAS fields. ``of`` is the dimension whose numbers it
+    describes, or is one of: where a stage numbers anew, what an earlier run said of other numbers is cleared.
     """
 
     name: str
@@ -26,6 +27,12 @@ class Dimension:
     unit: str = ""
     standard: bool = False
     aliases: tuple[str, ...] = ()
+    of: str = ""
+
+    @property
+    def undefined(self) -> float:
+        """The value of a point that has none: NaN in a float dimension, 0 in all others."""
+        return float("nan") if self.dtype[0] == "f" else 0
 
 
 _STANDARD = (
@@ -54,9 +61,9 @@ _WRITTEN = (
         aliases=("height above ground", "height_above_ground", "HAG"),
     ),
     Dimension("segment_id", ("SegmentID",), "i4", "segment; 0 if unassigned", aliases=("segment_id",)),
-    Dimension("shape", ("Shape",), "u1", "1 plane, 2 cylinder, 3 sphere"),
+    Dimension("shape", ("Shape",), "u1", "1 plane, 2 cylinder, 3 sphere", of="segment_id"),
     Dimension("cluster_id", ("ClusterID",), "i4", "cluster; 0 if unassigned", aliases=("cluster_id",)),
-    Dimension("wall_of", ("WallOf",), "i4", "cluster of the wall's roof", aliases=("wall_of",)),
+    Dimension("wall_of", ("WallOf",), "i4", "cluster of the wall's roof", aliases=("wall_of",), of="cluster_id"),
     Dimension("linearity", ("Linearity",), "f4", "(l1 - l2) / l1"),
     Dimension("planarity", ("Planarity",), "f4", "(l2 - l3) / l1"),
     Dimension("scattering", ("Scattering",), "f4", "l3 / l1"),
@@ -78,8 +85,8 @@ _WRITTEN = (
     Dimension("cluster_entropy", ("ClusterEntropy",), "f4", "mean entropy of the cluster"),
     Dimension("previous_source_id", ("PreviousSourceId",), "u2", "PointSourceId before the merge"),
     Dimension("voxel_count", ("VoxelCount",), "u4", "points of the voxel"),
-    Dimension("confidence", ("Confidence",), "f4", "0 unsure to 1 sure of building"),
-    Dimension("reason", ("Reason",), "u1", "why it is a building or not"),
+    Dimension("confidence", ("Confidence",), "f4", "0 unsure to 1 sure of building", of="cluster_id"),
+    Dimension("reason", ("Reason",), "u1", "why it is a building or not", of="cluster_id"),
 )
 
 DIMENSIONS = {dimension.name: dimension for dimension in (*_STANDARD, *_WRITTEN)}

@@ -19,6 +19,7 @@ from lidar_buildings.algorithms.cloud.units import NO_CRS
 from lidar_buildings.algorithms.help import pipeline_help
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.run import run_pipeline
+from lidar_buildings.algorithms.simulation.simulate_plant import simulate_plant
 from lidar_buildings.algorithms.stage import LayerFeatures
 from lidar_buildings.provider import models
 from lidar_buildings.provider.clouds import CloudsParameter
@@ -514,3 +515,28 @@ def test_a_mapping_that_fails_late_leaves_nothing(provider, context, log, mappin
     with pytest.raises(QgsProcessingException, match="No page"):
         run("toymapping", given, context, log)
     assert list(out.iterdir()) == []
+
+
+def test_a_model_finds_the_same_on_a_cloud_of_an_earlier_run(provider, context, log, tmp_path):
+    """Of a plant with the Shape of an earlier run one axis of 66 was found."""
+    xyz, _, segment_id, shape, *_ = simulate_plant(pipes=1, tanks=0, spheres=0, density=1000.0, clutter=False)
+    found = []
+    for number, old in enumerate(({}, {"segment_id": segment_id, "shape": shape})):
+        write_cloud(create_cloud({"xyz": xyz, **old}), tmp_path / f"{number}.las")
+        results = run(
+            "modelindustry",
+            {
+                "INPUT": str(tmp_path / f"{number}.las"),
+                "OUTPUT": str(tmp_path / f"made{number}.las"),
+                "AXES": str(tmp_path / f"axes{number}.gpkg"),
+            },
+            context,
+            log,
+        )
+        axes = QgsVectorLayer(results["AXES"])
+        found.append(sorted(feature.geometry().asWkt() for feature in axes.getFeatures()))
+    assert found[0]
+    assert found[0] == found[1]
+    assert [one for one in log.infos if one.startswith("Cleared")] == [
+        "Cleared Shape, as earlier runs left it: SegmentID is numbered anew."
+    ]

@@ -46,6 +46,14 @@ def test_the_log_tells_automatic_values(provider, context, log, town_file, out):
     assert "Base, automatic: 10 m" in log.infos
 
 
+def test_the_log_tells_what_is_taken_of_an_earlier_run(provider, context, log, town_file, out):
+    run("toyoutline", {"INPUT": str(town_file), "FOOTPRINTS": str(out / "a.gpkg")}, context, log)
+    assert not [one for one in log.infos if "earlier run" in one]
+    run("toylift", {"INPUT": str(town_file), "OUTPUT": str(out / "a.las")}, context, log)
+    run("toyoutline", {"INPUT": str(out / "a.las"), "FOOTPRINTS": str(out / "b.gpkg")}, context, log)
+    assert "The cloud has HeightAboveGround of an earlier run; they are taken as they are." in log.infos
+
+
 def test_the_log_rounds_what_the_results_have_in_full(provider, context, log, out):
     xyz = np.column_stack([np.arange(9.0), np.arange(9.0), np.full(9, 12.345678)])
     write_cloud(create_cloud({"xyz": xyz, "classification": np.full(9, 2)}, "EPSG:28992"), out / "in.las")
