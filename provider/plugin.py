@@ -9,7 +9,9 @@ from typing import Callable
 from qgis.core import Qgis, QgsApplication, QgsMessageLog, QgsProcessingRegistry
 
 from .provider import Provider
+from .settings import add_options
 
+# Tab of the log messages.
 LOG = "LiDAR Buildings"
 
 
@@ -36,6 +38,7 @@ class Plugin:
     def initGui(self) -> None:  # noqa: N802 - QGIS asks for this name
         """Add the provider, and then what is optional."""
         self.initProcessing()
+        self._add("The page of the plugin in the options of Processing", add_options)
         self._add("The toolbox entry 'Open in Model Designer'", self._add_designer)
 
     def _add(self, what: str, add: Callable[[], Callable[[], None]]) -> None:

@@ -45,6 +45,7 @@ from .models import pipeline_parameters
 from .outputs import all_in_place, check_targets, target_path
 from .parameters import tunable_values
 from .rasters import write_mosaic
+from .schedulers import check_scheduler
 from .styles import layer_style, show_on_load
 from .surveys import VPC, WGS84, check_vpc, place_of_survey, write_survey
 from .text_files import file_parameter, write_text
@@ -159,6 +160,7 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         processes = parameters.get(PROCESSES)
         count = None if processes is None else self.parameterAsInt(parameters, PROCESSES, context)
         scheduler = self.parameterAsString(parameters, SCHEDULER, context).strip()
+        check_scheduler(scheduler)
         listed = self.parameterAsString(parameters, CERTIFICATES, context).split(";")
         certificates = tuple(one.strip() for one in listed if one.strip())
         if certificates and len(certificates) != 3:

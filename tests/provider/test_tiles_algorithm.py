@@ -10,6 +10,8 @@ import pytest
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.cloud.vpc import write_vpc
+from lidar_buildings.provider import schedulers
+from lidar_buildings.provider.settings import SCHEDULERS
 from lidar_buildings.tests.builders import roof
 from lidar_buildings.tests.las_files import made_las
 from lidar_buildings.tests.provider.helpers import opened, squares, values_of
@@ -113,9 +115,99 @@ def test_a_scheduler_that_is_not_there_is_a_sentence(algorithm, context, log, fo
 
     pytest.importorskip("distributed")
     monkeypatch.setattr(workers, "_ANSWER", 1)
+    monkeypatch.setattr(schedulers, "confirmed", lambda: ["tcp://127.0.0.1:9"])
     given = {"INPUT": str(folder), "OUTPUT": str(tmp_path / "tiles"), "SCHEDULER": "tcp://127.0.0.1:9", **QUICKLY}
     with pytest.raises(refused(), match="No Dask scheduler answers at tcp://127.0.0.1:9"):
         algorithm.run(given, context, log, {}, False)
+
+
+@pytest.fixture
+def settings():
+    """QGIS's settings, as they were before afterwards."""
+    from qgis.core import QgsSettings
+
+    before = QgsSettings().value(SCHEDULERS.key)
+    yield QgsSettings()
+    if before is None:
+        QgsSettings().remove(SCHEDULERS.key)
+    else:
+        QgsSettings().setValue(SCHEDULERS.key, before)
+
+
+@pytest.fixture
+def connected(monkeypatch):
+    """Addresses that something wanted to connect to."""
+    from lidar_buildings.algorithms.tiling import workers
+
+    asked = []
+
+    def connect(self):
+        asked.append(self.scheduler)
+        raise ValueError("No Dask scheduler answers.")
+
+    monkeypatch.setattr(workers.Workers, "_cluster", connect)
+    return asked
+
+
+def test_a_scheduler_that_nobody_confirmed_is_refused_before_anything_runs(
+    algorithm, context, log, folder, tmp_path, settings, connected
+):
+    """The address was taken from a model of somebody else, whose scheduler then ran its code."""
+    settings.remove(SCHEDULERS.key)
+    given = {"INPUT": str(folder), "OUTPUT": str(tmp_path / "tiles"), "SCHEDULER": "tcp://elsewhere:1", **QUICKLY}
+    accepted, why = algorithm.checkParameterValues(given, context)
+    assert not accepted
+    assert "'tcp://elsewhere:1' (SCHEDULER) was not confirmed" in why
+    assert "Settings ▸ Options ▸ Processing ▸ Providers ▸ LiDAR Buildings" in why
+    _, succeeded = algorithm.run(given, context, log, {}, False)
+    assert not succeeded
+    assert [one for one in log.errors if "was not confirmed" in one]
+    assert connected == []
+    assert not (tmp_path / "tiles").exists()
+
+
+def test_a_scheduler_in_a_model_is_refused(provider, context, log, folder, tmp_path, settings, connected):
+    from qgis.core import (
+        QgsProcessingModelAlgorithm,
+        QgsProcessingModelChildAlgorithm,
+        QgsProcessingModelChildParameterSource,
+    )
+
+    settings.remove(SCHEDULERS.key)
+    model = QgsProcessingModelAlgorithm("nice", "models", "")
+    child = QgsProcessingModelChildAlgorithm("lidarbuildings:modelterrainintiles")
+    given = {"INPUT": str(folder), "OUTPUT": str(tmp_path / "tiles"), "SCHEDULER": "tcp://elsewhere:1", **QUICKLY}
+    for name, value in given.items():
+        child.addParameterSources(name, [QgsProcessingModelChildParameterSource.fromStaticValue(value)])
+    model.addChildAlgorithm(child)
+    with pytest.raises(refused()):
+        model.run({}, context, log, {}, False)
+    assert [one for one in log.errors if "'tcp://elsewhere:1' (SCHEDULER) was not confirmed" in one]
+    assert connected == []
+
+
+def test_a_confirmed_scheduler_is_taken(algorithm, context, log, folder, tmp_path, settings, connected):
+    settings.setValue(SCHEDULERS.key, "tcp://mine:1  tcp://mine:2")
+    given = {"INPUT": str(folder), "OUTPUT": str(tmp_path / "tiles"), "SCHEDULER": "tcp://mine:2", **QUICKLY}
+    with pytest.raises(refused(), match="No Dask scheduler answers"):
+        algorithm.run(given, context, log, {}, False)
+    assert connected == ["tcp://mine:2"]
+
+
+@pytest.mark.parametrize("is_wanted", [True, False])
+def test_in_the_desktop_the_user_is_asked_once(qgis_application, settings, monkeypatch, is_wanted):
+    settings.remove(SCHEDULERS.key)
+    asked = []
+    monkeypatch.setattr(schedulers, "_has_windows", lambda: True)
+    monkeypatch.setattr(schedulers, "_is_wanted", lambda address: asked.append(address) or is_wanted)
+    for _ in range(2):
+        if is_wanted:
+            schedulers.check_scheduler("tcp://mine:1")
+        else:
+            with pytest.raises(ValueError, match="was not confirmed"):
+                schedulers.check_scheduler("tcp://mine:1")
+    assert len(asked) == (1 if is_wanted else 2)
+    assert schedulers.confirmed() == (["tcp://mine:1"] if is_wanted else [])
 
 
 def test_tiles_are_not_written_over_those_that_are_read(algorithm, context, log, folder):

@@ -1,0 +1,56 @@
+"""Which Dask schedulers a run may connect to: those that the user has confirmed, wherever an address comes from.
+
+Whoever controls a scheduler runs code as the user. An address may stand in a model or a project of somebody else.
+"""
+
+from __future__ import annotations
+
+from qgis.core import QgsApplication
+from qgis.PyQt.QtCore import QThread
+from qgis.PyQt.QtWidgets import QMessageBox
+
+from .settings import GROUP, SCHEDULERS
+
+
+def confirmed() -> list[str]:
+    """Return the addresses that the user has confirmed."""
+    return SCHEDULERS.value.split()
+
+
+def check_scheduler(address: str) -> None:
+    """Refuse the address of a Dask scheduler that the user has not confirmed; in a window, ask first.
+
+    Raises
+    ------
+    ValueError
+        If the address is not confirmed; says how to.
+    """
+    if not address or address in confirmed():
+        return
+    if _has_windows() and _is_wanted(address):
+        SCHEDULERS.set(" ".join([*confirmed(), address]))
+        return
+    raise ValueError(
+        f"The Dask scheduler {address!r} (SCHEDULER) was not confirmed, and whoever controls it can run code as you; "
+        f"if it is yours, add it to '{SCHEDULERS.title}' under Settings ▸ Options ▸ Processing ▸ Providers ▸ {GROUP}."
+    )
+
+
+def _has_windows() -> bool:
+    """Whether the user can be asked: in the desktop, from the thread of its windows."""
+    application = QgsApplication.instance()
+    return QgsApplication.platform() == "desktop" and QThread.currentThread() == application.thread()
+
+
+def _is_wanted(address: str) -> bool:
+    """Ask whether a scheduler may be used."""
+    buttons = QMessageBox.StandardButton
+    answer = QMessageBox.question(
+        None,
+        GROUP,
+        f"Connect to the Dask scheduler at {address}?\n\nWhoever controls it can run code as you, also on this "
+        "computer: answer Yes only if it is yours. The address is then kept in the options of Processing.",
+        buttons.Yes | buttons.No,
+        buttons.No,
+    )
+    return answer == buttons.Yes

@@ -1,0 +1,70 @@
+"""What users set for all runs, under Settings ▸ Options ▸ Processing ▸ Providers ▸ LiDAR Buildings."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Callable
+
+from qgis.core import QgsSettings
+
+GROUP = "LiDAR Buildings"
+
+# Where QGIS's Processing keeps what its options dialog shows.
+_KEPT_AT = "Processing/Configuration"
+
+
+@dataclass(frozen=True)
+class Option:
+    """One setting: its name in QGIS's settings, its title in the options, and its value where nothing is set."""
+
+    name: str
+    title: str
+    default: str = ""
+
+    @property
+    def key(self) -> str:
+        """Where QGIS keeps it."""
+        return f"{_KEPT_AT}/{self.name}"
+
+    @property
+    def value(self) -> str:
+        """What the user has set."""
+        found: Any = QgsSettings().value(self.key, self.default)
+        return self.default if found is None else str(found).strip()
+
+    def set(self, value: str) -> None:
+        """Keep a value, and show it in the options."""
+        QgsSettings().setValue(self.key, value)
+        config = _processing_config()
+        if config is not None and self.name in config.settings:
+            config.settings[self.name].value = value
+
+
+SCHEDULERS = Option("LIDARBUILDINGS_SCHEDULERS", "Dask schedulers that may be used (addresses, with spaces between)")
+
+OPTIONS = (SCHEDULERS,)
+
+
+def _processing_config() -> Any:
+    """Return the class that holds the options of Processing; None where this QGIS has none of that name."""
+    try:
+        from processing.core.ProcessingConfig import ProcessingConfig
+    except ImportError:
+        return None
+    return ProcessingConfig
+
+
+def add_options() -> Callable[[], None]:
+    """Show the settings in the options of Processing; return what takes them away again."""
+    from processing.core.ProcessingConfig import ProcessingConfig, Setting
+
+    for option in OPTIONS:
+        setting = Setting(GROUP, option.name, option.title, option.default)
+        setting.read()
+        ProcessingConfig.addSetting(setting)
+
+    def remove() -> None:
+        for option in OPTIONS:
+            ProcessingConfig.removeSetting(option.name)
+
+    return remove
