@@ -16,26 +16,6 @@ from pathlib import Path
 # E203 asks for "a[b:c]" where the formatter of this project writes "a[b + 1 : c]".
 FLAKE8 = ("--isolated", "--max-line-length=120", "--extend-ignore=E203")
 
-# Findings that are meant so, by test and file, with the reason.
-JUSTIFIED = {
-    ("B301", "survey_sampling.py"): "a copy in memory of what this process has made",
-    ("B403", "survey_sampling.py"): "a copy in memory of what this process has made",
-    (
-        "B403",
-        "workers.py",
-    ): "what goes to the workers of the cluster whose address the user gives; no file is unpickled",
-    ("B404", "workers.py"): "see B603",
-    (
-        "B603",
-        "workers.py",
-    ): "starts the interpreter that runs this program, with a list of arguments and without a shell",
-    ("B404", "processes.py"): "see B603",
-    (
-        "B603",
-        "processes.py",
-    ): "starts the interpreter that runs this program, with arguments of its own, without a shell",
-}
-
 
 def findings(archive: Path) -> list[str]:
     """Return a line for each finding of the scanners in a zip.
@@ -52,13 +32,12 @@ def findings(archive: Path) -> list[str]:
 
 
 def _of_bandit(folder: str) -> list[str]:
-    """Return the findings of all tests of bandit but those that are justified."""
+    """Return the findings of all tests of bandit, but for lines that say ``nosec`` with the reason."""
     found = json.loads(_said("bandit", "--quiet", "--recursive", "--format", "json", ".", folder=folder))
     failed = [f"bandit: {one['filename']}: {one['reason']}" for one in found["errors"]]
     return failed + [
         f"bandit {one['test_id']}: {one['filename']}:{one['line_number']}: {one['issue_text']}"
         for one in found["results"]
-        if (one["test_id"], Path(one["filename"]).name) not in JUSTIFIED
     ]
 
 

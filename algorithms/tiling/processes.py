@@ -8,7 +8,7 @@ run the main program again in each. Both are unsafe where the current folder hol
 from __future__ import annotations
 
 import os
-import subprocess
+import subprocess  # nosec B404 - no shell, see below
 import sys
 import tempfile
 from collections.abc import Iterable
@@ -152,7 +152,7 @@ class _Process:
         }
         try:
             # Signals of a terminal are for the main process: it ends the others.
-            self._program = subprocess.Popen(  # the interpreter that runs this, no shell
+            self._program = subprocess.Popen(  # nosec B603 - the interpreter that runs this, no shell
                 [python, str(_PROGRAM), str(others.fileno())],
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
@@ -236,7 +236,9 @@ def _is_own(python: str) -> bool:
     # "-I" searches neither the current folder nor what the environment names.
     asked = [python, "-I", "-c", "import os, sys; print(sys.version, os.__file__)"]
     try:
-        answer = subprocess.run(asked, capture_output=True, text=True, timeout=_ANSWER, check=False)
+        answer = subprocess.run(  # nosec B603 - an interpreter, no shell
+            asked, capture_output=True, text=True, timeout=_ANSWER, check=False
+        )
     except (OSError, subprocess.TimeoutExpired):
         return False
     return answer.stdout.strip() == f"{sys.version} {os.__file__}"

@@ -15,7 +15,8 @@ from queue import SimpleQueue
 from typing import Any
 
 # Python searches the folder of a program first; the modules here are imported by the name of their package only.
-_OWN_FOLDER = os.path.dirname(os.path.abspath(__file__))  # noqa: PTH100, PTH120 - pathlib is imported after the search path is set
+# Before the search path is set, pathlib may not be imported.
+_OWN_FOLDER = os.path.dirname(os.path.abspath(__file__))  # noqa: PTH100, PTH120
 _GONE = 1
 
 

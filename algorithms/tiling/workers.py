@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-import pickle
+import pickle  # nosec B403 - what goes to the cluster that the user has confirmed; no file is unpickled
 import shutil
 import tempfile
 from collections.abc import Iterable, Iterator
