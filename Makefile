@@ -31,7 +31,7 @@ Makefile: ;
 
 else
 
-.PHONY: help install resources pictures demo test test-core lint bench fuzz package clean
+.PHONY: help install resources pictures demo test test-core lint bench fuzz docs package clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.* ## /  make \1\t/p' Makefile | expand -t 18
@@ -42,7 +42,7 @@ install: ## QGIS, the Python packages and the plugin, where they are missing
 demo: install ## find the buildings of a simulated town, or of TILE, and draw them (in demo/)
 	@scripts/offscreen.sh $(PYTHON) scripts/demo.py $(if $(TILE),"$(TILE)")
 
-test: install $(VENV)/made lint ## check the code, then run every test, on all cores
+test: install $(VENV)/made lint docs ## check the code, build the documentation, then run every test, on all cores
 	@scripts/offscreen.sh $(VENV)/bin/python -m pytest $(ON_ALL_CORES)
 
 test-core: ## the tests of the core with CORE_PYTHON, which needs no QGIS but requirements-dev.txt and what those name
@@ -68,17 +68,20 @@ pictures: $(VENV)/made ## draw the pictures of the help pages anew, or those of 
 	@scripts/offscreen.sh $(VENV)/bin/python scripts/help_pictures.py $(IDS)
 	@$(if $(IDS),,scripts/offscreen.sh $(VENV)/bin/python scripts/hough_picture.py)
 
+docs: $(VENV)/made ## the documentation (in docs/_build/html), with warnings as errors
+	@$(VENV)/bin/python -m sphinx -b html -q -W --keep-going docs docs/_build/html
+
 package: $(VENV)/made ## the zip for QGIS's plugin repository (in dist/), scanned as that scans it
 	@$(PYTHON) scripts/metadata.py
 	@$(PYTHON) scripts/package.py
 	@$(VENV)/bin/python scripts/scan.py dist/*-$$(sed -n 's/^version=//p' metadata.txt).zip
 
 clean: ## remove what these commands made in this folder
-	rm -rf $(VENV) demo dist benchmarks tests/benchmarks/.cache .hypothesis .mypy_cache .pytest_cache .ruff_cache .qgis-settings
+	rm -rf $(VENV) demo dist benchmarks docs/_build docs/gallery docs/methods/generated docs/reference/generated tests/benchmarks/.cache .hypothesis .mypy_cache .pytest_cache .ruff_cache .qgis-settings
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # The system's packages show through, so that the tests run on the numpy and the QGIS that users have.
-$(VENV)/made: requirements.txt requirements-dev.txt
+$(VENV)/made: requirements.txt requirements-dev.txt requirements-docs.txt
 	$(PYTHON) -m venv --system-site-packages $(VENV)
 	$(VENV)/bin/python -m pip install --quiet -r requirements-dev.txt
 	@touch $@

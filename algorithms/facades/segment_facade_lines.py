@@ -141,7 +141,7 @@ def segment_facade_lines(
 
     Notes
     -----
-    The paper tells ground by Z' - min(Z') < d0 and facades by |Y' - max(Y')| < h0, with Y' across the way of the
+    The paper tells ground by Z' - min(Z') < d0 and facades by abs(Y' - max(Y')) < h0, with Y' across the way of the
     vehicle; here Y' is the distance from the scanner in plan, on each of its two sides. A file doesn't tell where the
     scanner was: it is taken to be over the point in the middle of the time of its line, which begins and ends with
     the sky. Lines end where no point comes for an eighth of a turn. They are split at gaps, and at their farthest point

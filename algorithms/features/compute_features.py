@@ -152,7 +152,7 @@ def compute_features(
         ``eigenentropy`` -sum e ln e with e = l / sum l, 0 to ln 3;
         ``eigenvalue_sum`` l1 + l2 + l3 in m²;
         ``surface_variation`` l3 / (l1 + l2 + l3), 0 to 1/3;
-        ``verticality`` 1 - |n_z|, 0 on flat roofs and 1 on walls;
+        ``verticality`` 1 - abs(n_z), 0 on flat roofs and 1 on walls;
         ``normal`` the unit eigenvector of l3, upward;
         ``height_range`` highest less lowest elevation and ``height_deviation`` their standard deviation, m;
         ``plan_radius`` largest horizontal distance r from the point to its neighbors, m, ``plan_density`` points

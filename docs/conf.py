@@ -1,0 +1,69 @@
+"""Settings of the documentation; generated pages are written before Sphinx reads the others."""
+
+from __future__ import annotations
+
+import configparser
+import sys
+from pathlib import Path
+
+DOCS = Path(__file__).resolve().parent
+ROOT = DOCS.parent
+sys.path[:0] = [str(ROOT), str(DOCS)]
+
+import conftest  # noqa: F401 - registers the checkout as the package lidar_buildings
+
+_metadata = configparser.ConfigParser()
+_metadata.read(ROOT / "metadata.txt", encoding="utf-8")
+
+project = "LiDAR Buildings"
+author = copyright = _metadata["general"]["author"]
+release = version = _metadata["general"]["version"]
+
+extensions = [
+    "myst_parser",
+    "numpydoc",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.mathjax",
+    "sphinx_gallery.gen_gallery",
+    "sphinxcontrib.bibtex",
+]
+exclude_patterns = ["_build", "gallery_src", "**/GALLERY_HEADER.rst", "sg_execution_times.rst"]
+source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
+myst_enable_extensions = ["dollarmath", "colon_fence"]
+myst_heading_anchors = 3
+
+html_theme = "alabaster"
+html_theme_options = {"description": "Buildings in point clouds, in QGIS", "page_width": "1080px"}
+html_sidebars = {"**": ["about.html", "navigation.html", "searchbox.html"]}
+html_show_sourcelink = False
+
+bibtex_bibfiles = ["references.bib"]
+bibtex_reference_style = "author_year"
+
+numpydoc_show_class_members = False
+numpydoc_xref_param_type = False
+autodoc_typehints = "none"
+
+sphinx_gallery_conf = {
+    "examples_dirs": "gallery_src",
+    "gallery_dirs": "gallery",
+    "filename_pattern": r"plot_",
+    "abort_on_example_error": True,
+    "download_all_examples": False,
+    "show_memory": False,
+    "min_reported_time": 1,
+    "remove_config_comments": True,
+    "within_subsection_order": "FileNameSortKey",
+    "nested_sections": False,
+    "write_computation_times": False,
+    "backreferences_dir": None,
+}
+# sphinx-gallery keeps functions in its settings, which Sphinx can't store between builds.
+suppress_warnings = ["config.cache"]
+
+
+def setup(app) -> None:
+    """Write the generated pages."""
+    import generated_pages
+
+    generated_pages.write(DOCS)
