@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated, Optional, Union
 
@@ -19,7 +19,6 @@ from ..sampling.surface_noise import plane_roughness
 from ..stage import Monitor, Param, stage
 from ..terrain.on_decks import on_bridges
 from .cluster_measures import plan_areas, share_joined
-from .decks_and_ramps import part_decks
 from .planar_patches import segment_patches
 from .top_surface import TopSurface, highest_of_cells
 
@@ -131,10 +130,8 @@ def segment_roofs(
     """Gather the points above the ground into roof surfaces and clusters of everything else.
 
     A roof surface is a patch on which neighbors share a plane, that is large and high enough and does not go on
-    into the ground as bridges and slopes do; a deck with a narrow ramp is parted from it. Surfaces rougher than roofs
-    are, smooth spots of crops and crowns, count only where they are connected to smoother ones. The points left above
-    the ground (crowns, hedges, wires, roof edges) is clustered by distance, so that both kinds can be told apart by
-    their entropy afterwards.
+    into the ground as bridges, ramps and slopes do. The remaining points above the ground (crowns, hedges, wires, roof
+    edges) are clustered by distance, so that both kinds can be told apart by their entropy afterwards.
 
     Parameters
     ----------
@@ -182,7 +179,7 @@ def segment_roofs(
     part = monitor.part(0, 0.75)
     patch, roughness = _patches_among(xyz, used, around, density, off_plane, max_slope, part)
 
-    patches = _Patches(xyz, patch, height_above_ground, density).with_decks(min_height, min_area)
+    patches = _Patches(xyz, patch, height_above_ground, density)
     monitor.progress(0.8)
     roughest = max(_ROUGHEST, _ROUGHEST_NOISE * noise, _ROUGHEST_OFF_PLANE * off_plane)
     is_roof = patches.smooth(patches.roofs(min_height, min_area), roughness, roughest)
@@ -287,12 +284,6 @@ class _Patches:
     def is_terrain(self) -> np.ndarray:
         """Which of them go on into the ground."""
         return self.mean(self.height < _LOW) > _LOW_SHARE
-
-    def with_decks(self, min_height: float, min_area: float) -> _Patches:
-        """Return them with decks apart from the ramps that lead up to them."""
-        joined = np.where(self.points_of(self.is_terrain), self.number, -1)
-        deck = part_decks(self.xyz, joined, self.height, self.density, min_height, min_area)
-        return replace(self, number=np.where(deck >= 0, deck + len(self.is_terrain), self.number).astype(np.int32))
 
     def roofs(self, min_height: float, min_area: float) -> np.ndarray:
         """Return which of them are high and large enough, and do not go on into the ground."""

@@ -220,9 +220,6 @@ def classify_ground_tin(
     fixed. It ends when hardly any point joins. Distances are measured across the facet, so that slopes don't loosen or
     tighten them. Free-standing segments, with steps down all round, are excluded from the seeds and from densification.
 
-    A point that lies too high above its facet is tried again at its mirror image about the facet's highest node, if
-    that is a seed: where the surface beyond is nearly level and has the image, the point is the edge of a terrace.
-
     The final sweep adds the points within the noise of the finished surface, which the paper leaves unclassified.
     Where strips overlap that were not adjusted to one another, the surface follows the lower one. The points of the
     other are told from plants by the empty air over them, and are ground too.
@@ -267,7 +264,7 @@ def classify_ground_tin(
 
     # 2. The surface grows from them.
     scale, least = max(cell_size, spacing), sampling.height_resolution
-    rules = JoinRules(angle, iteration_distance, _GROW_BEND * spacing, edge_length, scale, least)
+    rules = JoinRules(angle, iteration_distance, _GROW_BEND * spacing, edge_length, least)
     surface, distance, _ = grow(points, np.flatnonzero(last)[seeds], may_join, rules, monitor.part(0.3, 0.85))
 
     # 3. Groups of multipath points under it are no ground.

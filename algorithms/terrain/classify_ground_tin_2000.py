@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Annotated, Optional
 
 import numpy as np
@@ -10,6 +11,7 @@ from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Param, stage
 from .ground_points import in_plan_order, last_returns, usable_points, with_ground
 from .ground_seeds import USUAL_BUILDING, seeds_by_lowest
+from .mirror_points import mirrored_angle
 from .tin_densification import JoinRules, grow, surface_roughness
 
 # Share of the point spacing by which the surface may bend between points, when they join.
@@ -172,7 +174,7 @@ def classify_ground_tin_2000(
     usable = in_plan_order(xyz, usable, spacing)
     points, last = xyz[usable], last_returns(return_number, number_of_returns, usable)
     edge_length = max(_MIN_EDGE, spacing) if edge_length is None else edge_length
-    mirror_reach, least = max(_MIN_MIRROR_REACH, spacing), sampling.height_resolution
+    least = sampling.height_resolution
 
     seeds = np.flatnonzero(last)[seeds_by_lowest(points[last], max_building_size)]
     rules = JoinRules(
@@ -180,11 +182,11 @@ def classify_ground_tin_2000(
         max_distance=iteration_distance,
         bend=_GROW_BEND * spacing,
         edge_length=edge_length,
-        mirror_reach=mirror_reach,
         least=least,
         estimates_angle=True,
         terrain_angle=terrain_angle,
         is_exhaustive=True,
+        beyond=partial(mirrored_angle, longest=max(_MIN_MIRROR_REACH, spacing)),
     )
     surface, distance, angle = grow(points, seeds, last, rules, monitor.part(0, 0.9))
     if sweep_distance is None:

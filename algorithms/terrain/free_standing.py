@@ -33,28 +33,14 @@ _OPEN_IF_CUT = 0.7
 # Share of its steps down that must be as high as its rule asks for: beside the others a wing may be.
 _HIGH = 0.5
 
-# Share of its steps down that must face others, those to the west some to the east: a terrace steps down on one side.
-_FACING = 0.2
-
 # Share of its open edge on which each part of a hall has steps down: more than half, less than a free-standing one.
 _PART_EDGE = 0.5
 
 # Share of its edge beside a roof no lower than itself from which on a rough cell or group of cells is on that roof.
 _ON_ROOF = 0.5
 
-# Sides of a cell: along both axes, both ways.
-_SIDES = 4
-
 # Fewest cells of a segment; smaller ones are too rough to tell.
 _LEAST_CELLS = 4
-
-# Share of its area on which a wide segment may carry free-standing ones, or else it is terrain: chimneys and machines
-# take up less of a roof.
-_CARRIES = 0.1
-
-# Height (m) of the steps around a wide segment from which on it is a podium, whatever it carries: quays and terraces
-# are lower.
-_HIGHEST_QUAY = 4.0
 
 
 @dataclass(frozen=True)
@@ -72,30 +58,21 @@ class _CutRule:
         Share of its edge, the end of the cloud included or not, that must be open.
     is_open_of_rest : bool
         Whether that is a share of the edge that is left, rather than of all.
-    must_face : bool
-        Whether steps have to face one another however much is cut off: at a corner of the cloud none do.
     """
 
     most_cut: float
     least_step: float
     open_share: float
     is_open_of_rest: bool
-    must_face: bool
 
-
-# Share of its outline up to which a segment that the end of the cloud cuts off is judged as a whole one: one side of
-# four, and a little.
-_HARDLY_CUT = 0.35
 
 _CUT_RULES = (
-    # One side is cut off: as for a whole one.
-    _CutRule(_HARDLY_CUT, least_step=1.0, open_share=_OPEN_EDGE, is_open_of_rest=False, must_face=True),
-    # Two sides are cut off at most, so that those left still face one another.
-    _CutRule(0.5, least_step=2.0, open_share=_OPEN_IF_CUT, is_open_of_rest=True, must_face=True),
+    # One side of four is cut off, and a little: as for a whole one.
+    _CutRule(0.35, least_step=1.0, open_share=_OPEN_EDGE, is_open_of_rest=False),
     # A corner of a roof in a corner of the cloud, with the walls of a house of two floors.
-    _CutRule(0.55, least_step=4.0, open_share=_OPEN_IF_CUT, is_open_of_rest=True, must_face=False),
+    _CutRule(0.55, least_step=4.0, open_share=_OPEN_IF_CUT, is_open_of_rest=True),
     # Less than half of its outline is left, with the walls of a high house.
-    _CutRule(0.7, least_step=6.0, open_share=_OPEN_IF_CUT, is_open_of_rest=True, must_face=False),
+    _CutRule(0.7, least_step=6.0, open_share=_OPEN_IF_CUT, is_open_of_rest=True),
 )
 
 
@@ -109,24 +86,13 @@ class _Lengths:
         All of it but the end of the cloud.
     open : ndarray of shape (s,), int64
         What nothing hides of it.
-    down : ndarray of shape (4, s), int64
-        Steps down to each side.
+    down : ndarray of shape (s,), int64
+        Steps down.
     """
 
     whole: np.ndarray
     open: np.ndarray
     down: np.ndarray
-
-    @property
-    def all_down(self) -> np.ndarray:
-        """Steps down (s,) to any side."""
-        return self.down.sum(axis=0)
-
-    @property
-    def facing(self) -> np.ndarray:
-        """Steps down (s,) that face others."""
-        # Sides come along each axis both ways.
-        return 2 * np.minimum(self.down[::2], self.down[1::2]).sum(axis=0)
 
 
 @dataclass(frozen=True)
@@ -139,14 +105,11 @@ class _Edges:
         Segment on this and on the other side.
     step : ndarray of shape (e,), float64
         How much higher this side is (m).
-    side : ndarray of shape (e,), int64
-        Direction to the other side, in the order of ``adjacent_cells``.
     """
 
     own: np.ndarray
     other: np.ndarray
     step: np.ndarray
-    side: np.ndarray
 
     def lengths(self, is_free: np.ndarray, least_step: np.ndarray) -> _Lengths:
         """Return the lengths of edges, with steps of at least some height (s,) (m).
@@ -158,8 +121,7 @@ class _Edges:
         is_hidden = ~is_down & (is_free[self.other] | (self.other == 0))
         whole = np.bincount(self.own, minlength=count)
         is_open = np.bincount(self.own[~is_hidden], minlength=count)
-        by_side = np.bincount(self.own[is_down] + count * self.side[is_down], minlength=_SIDES * count)
-        return _Lengths(whole, is_open, by_side.reshape(_SIDES, count))
+        return _Lengths(whole, is_open, np.bincount(self.own[is_down], minlength=count))
 
 
 @dataclass(frozen=True)
@@ -285,10 +247,7 @@ def _are_free_standing(segments: _Segments, least: float, usual: float, largest:
         if not found.any():
             break
         is_free |= found
-    # An island with houses on it has quays all round; what has higher walls carries towers.
-    podium_step = np.full(len(is_free), max(_HIGHEST_QUAY, least))
-    may_be_island = is_free & is_wide & ~_bounded_by_steps(segments, is_free, podium_step, least)
-    return is_free & ~_carry_others(segments.number, is_free, np.flatnonzero(may_be_island))
+    return is_free
 
 
 def _bounded_by_steps(segments: _Segments, is_free: np.ndarray, least_step: np.ndarray, least: float) -> np.ndarray:
@@ -306,17 +265,15 @@ def _bounded_by_steps(segments: _Segments, is_free: np.ndarray, least_step: np.n
         Least height (m) of any step, of which the heights of walls that are cut off are multiples.
     """
     lengths = segments.edges.lengths(is_free, least_step)
-    down = lengths.all_down
+    down = lengths.down
     # The outline of its box is no longer for a jagged edge, nor for other segments inside.
     outline = np.minimum(lengths.whole + segments.ends, 2 * segments.sides.sum(axis=0))
     found = np.zeros(len(is_free), bool)
     for rule in _CUT_RULES:
         high = segments.edges.lengths(is_free, np.maximum(least_step, rule.least_step * least))
-        faces = high.facing >= _FACING * high.all_down
-        may_be = faces | ((segments.ends > _HARDLY_CUT * outline) & (not rule.must_face))
         edge = outline - segments.ends if rule.is_open_of_rest else lengths.whole + segments.ends
         is_seen = (segments.ends <= rule.most_cut * outline) & (lengths.open >= rule.open_share * edge)
-        found |= may_be & is_seen & (high.all_down >= _HIGH * down)
+        found |= is_seen & (high.down >= _HIGH * down)
     return found & (down > 0) & (down >= _FREE_EDGE * lengths.open)
 
 
@@ -345,7 +302,7 @@ def _reunited(segments: _Segments, is_free: np.ndarray, least: float) -> np.ndar
     """Give segments that meet without the step of a hall one number, if most of the edge of each steps down."""
     count = len(is_free)
     lengths = segments.edges.lengths(is_free, np.full(count, least))
-    is_part = ~is_free & (lengths.all_down > _PART_EDGE * lengths.open)
+    is_part = ~is_free & (lengths.down > _PART_EDGE * lengths.open)
     own, other = segments.edges.own, segments.edges.other
     is_level = is_part[own] & is_part[other] & (np.abs(segments.edges.step) < max(_HALL_STEP, least))
     # Components are numbered by their first segments: that of 0, which is no part, stays 0.
@@ -373,10 +330,10 @@ def _box_sides(segment: np.ndarray) -> np.ndarray:
 def _edges(surface: np.ndarray, segment: np.ndarray) -> _Edges:
     """Return the edges of all segments but 0."""
     parts = []
-    for side, (here, other) in enumerate(adjacent_cells(surface.ndim)):
+    for here, other in adjacent_cells(surface.ndim):
         is_edge = (segment[here] > 0) & (segment[here] != segment[other]) & ~np.isnan(surface[other])
         step = surface[here][is_edge] - surface[other][is_edge]
-        parts.append((segment[here][is_edge], segment[other][is_edge], step, np.full(len(step), side)))
+        parts.append((segment[here][is_edge], segment[other][is_edge], step))
     return _Edges(*(np.concatenate(part) for part in zip(*parts)))
 
 
@@ -389,16 +346,3 @@ def _ends(surface: np.ndarray, segment: np.ndarray, count: int) -> np.ndarray:
         for side in (0, -1):
             ends += np.bincount(np.take(segment, side, axis).ravel(), minlength=count)
     return ends
-
-
-def _carry_others(segment: np.ndarray, is_free: np.ndarray, candidates: np.ndarray) -> np.ndarray:
-    """Return which candidates among the segments (s,) have free-standing ones inside on too much of their area."""
-    count = len(is_free)
-    area = np.bincount(segment.ravel(), minlength=count)
-    boxes = ndimage.find_objects(segment, count - 1)
-    carries = np.zeros(count, bool)
-    for number in candidates:
-        box = boxes[number - 1]
-        inside = ndimage.binary_fill_holes(segment[box] == number) & (segment[box] != number)
-        carries[number] = (inside & is_free[segment[box]]).sum() > _CARRIES * area[number]
-    return carries

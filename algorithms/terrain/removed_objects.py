@@ -12,7 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..geometry.adjacent_cells import adjacent_cells
-from ..geometry.groups import components
 from ..geometry.raster_opening import open_surface
 from ..packages import ndimage
 from ..stage import Monitor
@@ -44,25 +43,8 @@ _JOINED = 0.5
 # Share of its whole edge, other objects beside it included, on which it has to. Fitted on eight of the ISPRS samples.
 _JOINED_OF_ALL = 0.25
 
-# Share of a part's area that is no more than a step above the terrain around, from which on it is terrain whatever its
-# edge: objects are off the ground everywhere. Fitted on eight of the ISPRS samples.
-_LEVEL_SHARE = 0.25
-
-# Slope (tangent) of the steps at which such parts end: steeper than paths and lawns, less steep than soil can be.
-_PART_SLOPE = 0.4
-
-# Fewest cells of such a part: of a crown, the lowest leaf in a single cell may be as low as the ground.
-_LEAST_PART = 4
-
 # Slope (tangent) up to which a step beside a slope as steep as itself is the flank of a bank rather than a wall: 63°.
 _STEEPEST_BANK = 2.0
-
-# Slope (tangent) from which on a flank is a roof rather than soil, which lies on up to 45°: 50°, since it looks steeper
-# where lowest points lie unevenly in their cells.
-_STEEPEST_SOIL = 1.2
-
-# Fewest cells over which that slope is measured: the lowest point of a cell may lie anywhere in it.
-_EAVE_CELLS = 2
 
 # Share of the largest window from which on windows remove spits and hilltops rather than houses.
 _LARGE_WINDOW = 0.5
@@ -111,13 +93,11 @@ class ObjectRemoval:
         # Without free-standing objects, a low roof beside a higher one is as narrow as it is.
         removed = self.is_free_standing | (self.removed_by_opening(first, monitor.part(0, 0.5)) > 0)
         slope = self._slope_without(removed)
-        return self._slope_without(self._not_joined(slope, monitor.part(0.5, 1)))
+        return self._slope_without(self.objects(slope, monitor.part(0.5, 1)))
 
     def objects(self, slope: np.ndarray, monitor: Monitor) -> np.ndarray:
         """Return which cells are objects on terrain of this slope."""
-        objects = self._not_joined(slope, monitor)
-        step = _PART_SLOPE * max(self.cell_size, self.spacing)
-        return _without_level_parts(objects, self.is_free_standing, self.surface, step)
+        return self.without_joined(self.removed_by_opening(_SLOPE_SHARE * slope, monitor), slope)
 
     def rise(self, slope: np.ndarray) -> np.ndarray:
         """Return how far (m) terrain of such slopes may rise within a cell."""
@@ -162,9 +142,6 @@ class ObjectRemoval:
             objects &= ~is_terrain[region] | self.is_free_standing
         return objects
 
-    def _not_joined(self, slope: np.ndarray, monitor: Monitor) -> np.ndarray:
-        return self.without_joined(self.removed_by_opening(_SLOPE_SHARE * slope, monitor), slope)
-
     def _slope_without(self, objects: np.ndarray) -> np.ndarray:
         return _slope(_interpolated(self.surface, objects), self.cell_size)
 
@@ -179,15 +156,11 @@ class _Side:
         What selects them.
     joins : ndarray of bool
         Whether a cell joins the one beside it without a step.
-    is_eave : ndarray of bool
-        Whether it is the end of a flank steeper than soil, beyond which the surface is not as steep: if it belongs to a
-        roof, that one reaches down to the ground.
     """
 
     here: tuple[slice, ...]
     beside: tuple[slice, ...]
     joins: np.ndarray
-    is_eave: np.ndarray
 
 
 def _sides(surface: np.ndarray, slope: np.ndarray, cell_size: float, spacing: float) -> Iterator[_Side]:
@@ -197,14 +170,12 @@ def _sides(surface: np.ndarray, slope: np.ndarray, cell_size: float, spacing: fl
     Flanks are measured from point to point, over a spacing where that is more than a cell.
     """
     bank_cells = max(1, round(spacing / cell_size))
-    eave_cells = max(_EAVE_CELLS, bank_cells)
-    bank, steep = bank_cells * cell_size, _STEEPEST_SOIL * eave_cells * cell_size
+    bank = bank_cells * cell_size
     allowed = (_JOIN_SLOPE + _JOIN_SHARE * slope) * cell_size
-    flanks = zip(_flanks(surface, bank_cells), _flanks(surface, eave_cells))
-    for (here, beside), ((fall, fall_beyond), (roof, beyond)) in zip(adjacent_cells(surface.ndim), flanks):
+    for (here, beside), (fall, fall_beyond) in zip(adjacent_cells(surface.ndim), _flanks(surface, bank_cells)):
         step = surface[here] - surface[beside]
         highest_bank = np.minimum(np.maximum(fall, fall_beyond) + _JOIN_SLOPE * bank, _STEEPEST_BANK * bank)
-        yield _Side(here, beside, (step < allowed[here]) | (step < highest_bank), (roof >= steep) & (beyond < steep))
+        yield _Side(here, beside, (step < allowed[here]) | (step < highest_bank))
 
 
 @dataclass(frozen=True)
@@ -216,41 +187,33 @@ class _RegionEdges:
     whole : ndarray of shape (r,), int64
         Cells along its edge, one for each side.
     open : ndarray of shape (r,), int64
-        Those of them that have no other object beside them.
+        Those that have no other object beside them.
     joined : ndarray of shape (r,), int64
-        Those of them that join the terrain.
-    eaves : ndarray of shape (4, r), int64
-        Those of them that are eaves, to each side.
+        Those that join the terrain.
     """
 
     whole: np.ndarray
     open: np.ndarray
     joined: np.ndarray
-    eaves: np.ndarray
 
     def join_terrain(self) -> np.ndarray:
         """Return which regions join the terrain on enough of their edge."""
-        # A roof has eaves on two sides that face one another, and as many cells on either.
-        roof = 2 * (np.minimum(self.eaves[0], self.eaves[1]) + np.minimum(self.eaves[2], self.eaves[3]))
-        joined = self.joined - roof
-        is_terrain = (joined >= _JOINED * np.maximum(self.open, 1)) & (joined >= _JOINED_OF_ALL * self.whole)
+        is_terrain = self.joined >= _JOINED * np.maximum(self.open, 1)
+        is_terrain &= self.joined >= _JOINED_OF_ALL * self.whole
         is_terrain[0] = False
         return is_terrain
 
 
 def _region_edges(region: np.ndarray, count: int, objects: np.ndarray, sides: list[_Side]) -> _RegionEdges:
     """Return the edges of regions, numbered from 1 to ``count``, among all objects."""
-    counts: list[list[np.ndarray]] = [[], [], [], []]
+    counts = np.zeros((3, count + 1), np.int64)
     for side in sides:
         own = region[side.here]
         at_edge = (own > 0) & (region[side.beside] != own)
         at_open_edge = at_edge & ~objects[side.beside]
-        at_joined_edge = at_open_edge & side.joins
-        lengths = (at_edge, at_open_edge, at_joined_edge, at_joined_edge & side.is_eave)
-        for of_kind, cells in zip(counts, lengths):
-            of_kind.append(np.bincount(own[cells], minlength=count + 1))
-    whole, is_open, joined, eaves = np.array(counts)
-    return _RegionEdges(whole.sum(axis=0), is_open.sum(axis=0), joined.sum(axis=0), eaves)
+        kinds = (at_edge, at_open_edge, at_open_edge & side.joins)
+        counts += [np.bincount(own[cells], minlength=count + 1) for cells in kinds]
+    return _RegionEdges(*counts)
 
 
 def nearest_known(surface: np.ndarray, unknown: np.ndarray) -> np.ndarray:
@@ -293,36 +256,6 @@ def _slope(surface: np.ndarray, cell_size: float) -> np.ndarray:
     gradients = [np.gradient(smooth, cell_size, axis=axis) for axis in axes]
     squares = sum((gradient**2 for gradient in gradients), np.zeros_like(smooth))
     return np.sqrt(ndimage.gaussian_filter(squares, _SLOPE_SCALE / cell_size, mode="nearest"))
-
-
-def _without_level_parts(
-    objects: np.ndarray, is_free_standing: np.ndarray, surface: np.ndarray, step: float
-) -> np.ndarray:
-    """Return the objects but for smooth parts that are no higher than the terrain around on a share of their area.
-
-    Parts end at a ``step`` (m) or a higher one: of a bank and the bushes on it, removed together, the bank comes back
-    alone. Free-standing objects stay.
-    """
-    part = _smooth_parts(objects & ~is_free_standing, surface, step)
-    above = surface - _interpolated(surface, objects)
-    level, area = np.bincount(part.ravel(), (above <= _STEP).ravel()), np.bincount(part.ravel())
-    is_terrain = (level >= _LEVEL_SHARE * area) & (area >= _LEAST_PART)
-    is_terrain[0] = False
-    return objects & ~is_terrain[part]
-
-
-def _smooth_parts(chosen: np.ndarray, surface: np.ndarray, step: float) -> np.ndarray:
-    """Label (from 1) the chosen cells that join by less than ``step`` (m) from cell to cell; 0 are all others."""
-    number = np.cumsum(chosen).reshape(chosen.shape) - 1
-    pairs = []
-    # Every second one: the others are the same pairs the other way round.
-    for here, beside in list(adjacent_cells(surface.ndim))[::2]:
-        joins = chosen[here] & chosen[beside] & (np.abs(surface[here] - surface[beside]) < step)
-        pairs.append(np.stack([number[here][joins], number[beside][joins]]))
-    one, other = np.concatenate(pairs, axis=1)
-    part = np.zeros(chosen.shape, np.int64)
-    part[chosen] = components(one, other, int(chosen.sum()))[1] + 1
-    return part
 
 
 def _flanks(surface: np.ndarray, apart: int) -> Iterator[tuple[np.ndarray, np.ndarray]]:

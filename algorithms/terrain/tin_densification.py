@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Optional
+from typing import Callable, Optional
 
 import numpy as np
 
 from ..geometry.grid import plan_box
-from ..geometry.tin import CORNERS, Tin, node_residuals, robust_deviation
+from ..geometry.tin import Tin, node_residuals, robust_deviation
 from ..packages import spatial
 from ..sampling.height_resolution import LEAST_RESOLUTION
 from ..stage import Monitor
@@ -16,12 +16,6 @@ from ..stage import Monitor
 # A point may join the TIN within this many robust deviations of its nodes: of their distances from the plane of their
 # neighbors, and of the angles under which these appear where angles are estimated.
 _GROW_DEVIATIONS = 8.0
-
-# Beyond a breakline the surface continues where it is less steep than this, °.
-_LEVEL = 20.0
-
-# A mirrored point joins within this share of the distance at which others join.
-_MIRROR_SHARE = 0.25
 
 # A point nearer than this share of the edge length to a node makes a sliver and adds no information.
 _MIN_NODE_DISTANCE = 0.25
@@ -53,8 +47,6 @@ class JoinRules:
         Part of an estimated distance that allows for bends of the terrain between points, m.
     edge_length : float
         Facets whose edges are all shorter are closed, m.
-    mirror_reach : float
-        Longest distance in plan over which a point is mirrored, m.
     least : float
         Least roughness of a surface, m: that of rounded heights.
     estimates_angle : bool
@@ -64,17 +56,20 @@ class JoinRules:
     is_exhaustive : bool
         Whether rounds go on until no point qualifies, and every point is tried in each; else rounds that add little
         are the last, and points far from the first TIN or in closed facets are not tried again, which is faster.
+    beyond : callable, optional
+        Returns the angles (°) of points that do not fit their facets as they lie, inf where they do not fit at all:
+        see :func:`.mirror_points.mirrored_angle`.
     """
 
     max_angle: float
     max_distance: Optional[float]
     bend: float
     edge_length: float
-    mirror_reach: float
     least: float = LEAST_RESOLUTION
     estimates_angle: bool = False
     terrain_angle: float = 90.0
     is_exhaustive: bool = False
+    beyond: Optional[Callable[[Tin, np.ndarray, np.ndarray, float, int], np.ndarray]] = None
 
     def is_last(self, step: int, n_joining: int, n_nodes: int) -> bool:
         """Return whether the round ``step`` (from 1), in which points joined ``n_nodes`` nodes, is the last."""
@@ -195,11 +190,12 @@ def _joining(
     apart = _to_nearest_node(tin, facet, surface.points[candidates]) > _MIN_NODE_DISTANCE * rules.edge_length
     candidates, facet = candidates[apart], facet[apart]
     here = surface.points[candidates]
-    offset, angle = _offset_and_angle(tin, facet, here)
+    offset, angle = offset_and_angle(tin, facet, here)
     fits = (offset <= distance) & (angle <= max_angle) & _is_terrain(tin, facet, here, rules.terrain_angle)
-    mirrored = np.flatnonzero(~fits)
-    angle[mirrored] = _mirrored_angle(tin, facet[mirrored], here[mirrored], distance, rules, n_start)
-    fits |= angle <= max_angle
+    if rules.beyond is not None:
+        others = np.flatnonzero(~fits)
+        angle[others] = rules.beyond(tin, facet[others], here[others], distance, n_start)
+        fits |= angle <= max_angle
     # Ties go to the south-west, so that the points' order doesn't matter.
     order = np.lexsort((here[fits, 1], here[fits, 0], angle[fits], facet[fits]))
     first = np.unique(facet[fits][order], return_index=True)[1]
@@ -207,32 +203,7 @@ def _joining(
     return candidates, joining
 
 
-def _mirrored_angle(
-    tin: Tin, facet: np.ndarray, here: np.ndarray, distance: float, rules: JoinRules, n_start: int
-) -> np.ndarray:
-    """Return the angles (°) of points that lie beyond a breakline, at their mirror images; inf where they don't fit.
-
-    A point above its facet is turned about the facet's highest node (Axelsson's mirror point). Where the surface on
-    that other side is nearly level and has the image, the point carries it on to the upper edge of a terrace. Only
-    seeds mirror, so that the surface can't climb on by itself.
-    """
-    angle = np.full(len(here), np.inf)
-    corners = tin.facets[facet]
-    highest = corners[np.arange(len(corners)), np.argmax(tin.nodes[corners, 2], axis=1)]
-    image = 2 * (tin.nodes[highest] + tin.shift) - here
-    reach = np.linalg.norm(here[:, :2] - image[:, :2], axis=1) / 2
-    can = (corners >= CORNERS).all(axis=1) & (reach < rules.mirror_reach)
-    can[can] = (highest[can] < CORNERS + n_start) & (here[can, 2] > tin.elevation(here[can], facet[can]))
-    of, image = np.flatnonzero(can), image[can]
-    there = tin.locate_near(image, highest[of])
-    offset, found = _offset_and_angle(tin, there, image)
-    level = (tin.slope_cosine() > np.cos(np.radians(_LEVEL))) & ~tin.is_extrapolated()
-    fits = (offset <= _MIRROR_SHARE * distance) & level[there]
-    angle[of[fits]] = found[fits]
-    return angle
-
-
-def _offset_and_angle(tin: Tin, facet: np.ndarray, here: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def offset_and_angle(tin: Tin, facet: np.ndarray, here: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the distance (m) of points to their facets, and the largest angle (°) to the nodes of these."""
     offset = np.abs(here[:, 2] - tin.elevation(here, facet)) * tin.slope_cosine()[facet]
     nearest = _to_nearest_node(tin, facet, here)

@@ -324,19 +324,7 @@ WHOLE = (
         "terrain.classify_ground_tin:last_returns",
         lambda number, numbers, usable: np.ones(len(usable), bool),
     ),
-    _out("ground: higher strips", "terrain.classify_ground_tin:_of_higher_strips", _nowhere),
-    _out(
-        "ground: mirror points",
-        "terrain.tin_densification:_mirrored_angle",
-        lambda tin, facet, *_: np.full(len(facet), np.inf),
-    ),
-    _out(
-        "ground: level parts of removed objects",
-        "terrain.removed_objects:_without_level_parts",
-        lambda objects, *_: objects,
-    ),
     _out("ground: banks", "terrain.removed_objects:_STEEPEST_BANK", 0.0),
-    _out("ground: eaves", "terrain.removed_objects:_STEEPEST_SOIL", np.inf),
     _out("ground: share of the whole edge", "terrain.removed_objects:_JOINED_OF_ALL", 0.0),
     _out("ground: regions of large windows apart", "terrain.removed_objects:_LARGE_WINDOW", 1.0),
     _out(
@@ -349,12 +337,6 @@ WHOLE = (
         "terrain.ground_seeds:find_free_standing",
         lambda surface, *_: (np.zeros(surface.shape, bool), 0.0),
     ),
-    _out(
-        "free-standing: islands and podiums",
-        "terrain.free_standing:_carry_others",
-        lambda segment, is_free, _: np.zeros(len(is_free), bool),
-    ),
-    _out("free-standing: facing steps", "terrain.free_standing:_FACING", 0.0),
     _out("free-standing: most steps are high", "terrain.free_standing:_HIGH", 0.0),
     _out("free-standing: open edge", "terrain.free_standing:_OPEN_EDGE", 0.0),
     _out(
@@ -367,11 +349,6 @@ WHOLE = (
         "free-standing: cut off by two sides",
         "terrain.free_standing:_CUT_RULES",
         importlib.import_module(f"{PACKAGE}.terrain.free_standing")._CUT_RULES[:1],
-    ),
-    _out(
-        "roofs: decks and ramps",
-        "segmentation.segment_roofs:part_decks",
-        lambda xyz, *_: np.full(len(xyz), -1, np.int32),
     ),
     _out("roofs: roughest by noise", "segmentation.segment_roofs:_ROUGHEST_NOISE", 0.0),
     _out("roofs: roughest by off-plane deviation", "segmentation.segment_roofs:_ROUGHEST_OFF_PLANE", 0.0),

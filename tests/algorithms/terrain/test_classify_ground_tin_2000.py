@@ -71,7 +71,7 @@ def test_progress_only_grows_and_a_cancel_gets_through(rng):
 def test_rounds_go_on_until_no_point_qualifies(rng):
     """After the last round no point outside the surface is under the thresholds of that round."""
     xyz, _ = scan(rng, TERRAINS["hill"], density=1)
-    rules = JoinRules(20.0, None, 0.3, 2.0, 1.0, estimates_angle=True, is_exhaustive=True)
+    rules = JoinRules(20.0, None, 0.3, 2.0, estimates_angle=True, is_exhaustive=True)
     start = np.flatnonzero(np.isin(np.arange(len(xyz)), rng.choice(len(xyz), 12, replace=False)))
     surface, distance, angle = grow(xyz, start, np.ones(len(xyz), bool), rules, Monitor())
     limits = rules.limits(surface.nodes)
@@ -97,11 +97,11 @@ def test_the_angle_is_estimated_from_the_nodes(noise, spread, rng):
     """Nodes on a grid, so many meters apart: eight deviations of the angles under which their residuals appear."""
     x, y = np.meshgrid(np.arange(60.0), np.arange(60.0))
     nodes = np.column_stack([spread * x.ravel(), spread * y.ravel(), rng.normal(0, noise, x.size)])
-    estimated = JoinRules(90.0, None, 0.0, 1.0, 1.0, estimates_angle=True).angle(nodes)
+    estimated = JoinRules(90.0, None, 0.0, 1.0, estimates_angle=True).angle(nodes)
     # A residual is that of the node and of the plane of its eight neighbors.
     deviation = np.degrees(np.arctan(noise * np.sqrt(1 + 1 / 8) / spread))
     assert estimated == pytest.approx(min(8 * deviation, 90.0), rel=0.08)
-    assert JoinRules(5.0, None, 0.0, 1.0, 1.0, estimates_angle=True).angle(nodes) == min(5.0, estimated)
+    assert JoinRules(5.0, None, 0.0, 1.0, estimates_angle=True).angle(nodes) == min(5.0, estimated)
 
 
 def test_nothing_steeper_than_the_terrain_angle_joins(rng):

@@ -121,17 +121,7 @@ def test_two_fifths_of_the_edge_must_be_seen(seen, is_object):
     assert find_free_standing(surface, 1.0, USUAL)[0][house].all() == is_object
 
 
-@pytest.mark.parametrize(("seen", "is_object"), [(2, True), (1, False)])
-def test_a_fifth_of_the_steps_must_face_others(seen, is_object):
-    """Of 10 m by 10 m, in the corner between two towers: to the other sides it is all steps."""
-    surface = slope(80, 80)
-    house = block(surface, slice(30, 40), slice(30, 40), 4.0)
-    surface[10:30, 10 : 40 - seen] = 20.0
-    surface[10 : 40 - seen, 10:30] = 20.0
-    assert find_free_standing(surface, 1.0, USUAL)[0][house].all() == is_object
-
-
-@pytest.mark.parametrize(("rows", "height", "is_object"), [(60, 1.2, True), (30, 1.8, False), (30, 2.2, True)])
+@pytest.mark.parametrize(("rows", "height", "is_object"), [(60, 1.2, True), (30, 3.8, False), (30, 4.2, True)])
 def test_a_third_of_the_edge_may_lie_where_the_cloud_ends(rows, height, is_object):
     """A building of 25 m that crosses a cloud as long as that; half of it may, if it is no causeway."""
     for turned in (np.asarray, np.transpose):
@@ -153,26 +143,6 @@ def test_a_house_among_plants_stands_free_and_they_do_not(low, high, rng):
     found = find_free_standing(surface, 1.0, USUAL)[0]
     assert found[house].all()
     assert not found[plants & ~house].any()
-
-
-def test_an_island_with_houses_on_it_is_terrain_and_the_houses_are_not():
-    surface = slope(160, 160)
-    block(surface, slice(10, 150), slice(10, 150), 3.0)
-    houses = np.zeros(surface.shape, bool)
-    for row in range(20, 130, 30):
-        for column in range(20, 130, 30):
-            houses |= block(surface, slice(row, row + 14), slice(column, column + 10), 6.0)
-    np.testing.assert_array_equal(find_free_standing(surface, 1.0, USUAL)[0], houses)
-
-
-@pytest.mark.parametrize(("height", "is_object"), [(3.8, False), (4.2, True)])
-def test_a_podium_has_walls_higher_than_quays(height, is_object):
-    surface = slope(120, 120)
-    podium = block(surface, slice(10, 110), slice(10, 110), height)
-    towers = block(surface, slice(20, 50), slice(20, 50), 40.0) | block(surface, slice(60, 95), slice(60, 80), 60.0)
-    found = find_free_standing(surface, 1.0, USUAL)[0]
-    assert found[towers].all()
-    np.testing.assert_array_equal(found[~towers], (podium & is_object)[~towers])
 
 
 @pytest.mark.parametrize(("height", "length"), [(8.0, 8), (3.5, 20)])
@@ -281,15 +251,6 @@ def test_a_low_house_beside_a_tower_is_judged_by_the_rest_of_its_edge():
     np.testing.assert_array_equal(find_free_standing(surface, 1.0, USUAL)[0], low | tower)
 
 
-def test_terraces_below_a_forest_are_terrain(rng):
-    """The upper edge of the first is too rough to tell, that of each of the others lies below one that is judged."""
-    vineyard = np.floor(slope(130, 140) + np.arange(130)[:, None] / 12) * 3.0
-    vineyard[118:] += rng.uniform(0.0, 15.0, vineyard[118:].shape)
-    assert not find_free_standing(vineyard, 1.0, USUAL)[0][:118].any()
-    hut = block(vineyard, slice(50, 57), slice(30, 36), 3.0)
-    np.testing.assert_array_equal(find_free_standing(vineyard, 1.0, USUAL)[0][:118], hut[:118])
-
-
 def test_terraces_and_hills_are_terrain():
     """A terrace has its step on one side, and nothing is known of the others; a hill has no step, however high."""
     terraces = np.floor(slope(90, 60) + np.arange(90)[:, None] / 30) * 4.0
@@ -307,8 +268,8 @@ def test_a_house_at_the_end_of_the_cloud_stands_free_on_its_other_sides():
 @pytest.mark.parametrize(
     ("rows", "columns", "lowest"),
     [
-        (slice(0, 10), slice(10, 50), 2.0),  # of its outline 0.4 is cut off, and the sides left over face one another
-        (slice(40, 60), slice(40, 60), 4.0),  # a corner: half, and none do
+        (slice(0, 10), slice(10, 50), 4.0),  # of its outline 0.4 is cut off
+        (slice(40, 60), slice(40, 60), 4.0),  # a corner: half
         (slice(30, 60), slice(0, 60), 6.0),  # two thirds: one side is left
         (slice(15, 60), slice(0, 60), np.inf),  # more: it may be the terrain from which something is dug out
     ],
@@ -353,7 +314,7 @@ def test_of_what_is_cut_off_seven_tenths_of_the_rest_must_be_seen(seen, is_objec
 def test_machines_make_no_terrain_of_a_building_that_is_cut_off():
     """Their edges are longer than the visible ones of the roof around them."""
     surface = slope(60, 60)
-    building = block(surface, slice(29, 60), slice(8, 52), 2.2)
+    building = block(surface, slice(29, 60), slice(8, 52), 4.2)
     for row in (33, 43):
         for column in (12, 22, 32, 42):
             block(surface, slice(row, row + 6), slice(column, column + 6), 3.0)

@@ -208,17 +208,6 @@ def test_a_hall_larger_than_usual_is_found_as_it_stands_free(rng):
     assert size == 60.0
 
 
-def test_a_low_wing_along_a_hall_is_no_terrain(rng):
-    """It steps down on one side as a terrace does, by a canopy; with the hall it is wider than any window."""
-    plan = even(220, 220, 0.9) + rng.uniform(-0.2, 0.2, (245 * 245, 2))
-    z, is_roof = raise_roofs(
-        plan, np.zeros(len(plan)), (40, 40, 130, 110, 12.0), (45, 150, 120, 9, 5.5), (45, 159, 120, 2.5, 3.0)
-    )
-    seeds, stands_free, _ = seeds_by_opening(np.column_stack([plan, z]), 1.0, None, Monitor())
-    assert not stands_free[z == 5.5].any()
-    assert not is_roof[seeds].any()
-
-
 def test_a_flat_hill_as_large_as_a_hall_is_terrain(rng):
     xyz, is_top = scene_with_plateau(rng, bank=15.0)
     seeds, stands_free, size = seeds_by_opening(xyz, 1.4, None, Monitor())
@@ -258,21 +247,6 @@ def test_a_roof_that_meets_a_steep_slope_is_none_where_it_is_high_over_it(rng):
     seeds, *_ = seeds_by_opening(np.column_stack([plan, z + rng.normal(0, 0.02, len(plan))]), 1.0, None, Monitor())
     assert not (z - terrain > 5.0)[seeds].any()
     assert (~is_roof[seeds]).sum() > 0.45 * (~is_roof).sum()
-
-
-def test_a_lane_between_two_houses_on_a_pier_is_terrain(rng):
-    """The pier is narrower than the windows and 4 m high; the lane joins the shore on less than a quarter of its edge.
-
-    As far as that is nearer than the water, it lies in the terrain around.
-    """
-    plan = even(90, 110) + rng.uniform(-0.3, 0.3, (len(even(90, 110)), 2))
-    x, y = plan.T - [[45], [70]]
-    is_pier, is_lane = (np.abs(x) < 15) & (y > 0) & (y < 30), (np.abs(x) < 3) & (y > 0) & (y < 30)
-    z = np.where(is_pier | (y < 0), 4.0, 0.0)
-    z[is_pier & ~is_lane & (y > 1)] = 12.0
-    seeds, *_ = seeds_by_opening(np.column_stack([plan, z + rng.normal(0, 0.02, len(plan))]), 1.0, None, Monitor())
-    assert (is_lane & (y < 15))[seeds].sum() > 0.8 * 6 * 15
-    assert not (z > 4.0)[seeds].any()
 
 
 @pytest.mark.parametrize("slope", [0.8, 1.0, 1.1])

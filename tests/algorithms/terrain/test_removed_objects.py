@@ -4,12 +4,10 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.stage import Monitor
-from lidar_buildings.algorithms.terrain import removed_objects as module
 from lidar_buildings.algorithms.terrain.removed_objects import (
     ObjectRemoval,
     _slope,
     _windows,
-    _without_level_parts,
 )
 
 
@@ -77,75 +75,12 @@ def test_what_stands_free_stays_an_object_in_a_region_that_comes_back():
     np.testing.assert_array_equal(objects_of(surface, np.zeros_like(removed_by), free=free), free)
 
 
-@pytest.mark.parametrize(("height", "stays"), [(0.05, False), (0.15, True), (-1.0, False)])
-def test_a_part_at_the_height_of_the_terrain_comes_back_and_what_stands_beside_it_does_not(height, stays):
-    """The windows took the strip between two hedges together with these."""
-    surface, removed_by = removed_square()
-    surface[15:18, 15:25] = surface[22:25, 15:25] = 2.0
-    surface[18:22, 15:25] = height
-    objects = removed_by > 0
-    expected = objects & ((surface == 2.0) | stays)
-    np.testing.assert_array_equal(_without_level_parts(objects, np.zeros_like(objects), surface, 0.4), expected)
-
-
-@pytest.mark.parametrize(("touching", "stays"), [(3, False), (2, True)])
-def test_a_part_that_comes_back_is_no_higher_than_the_terrain_on_a_quarter(touching, stays):
-    """Of ten rows of a bank so many are as low; the others rise by 0.35 m each, one smooth part."""
-    surface, removed_by = removed_square()
-    rise = 0.35 * np.maximum(np.arange(10) - touching + 1, 0)
-    surface[15:25, 15:25] = rise[:, None]
-    objects = removed_by > 0
-    np.testing.assert_array_equal(_without_level_parts(objects, np.zeros_like(objects), surface, 0.4), objects & stays)
-
-
-@pytest.mark.parametrize(("size", "stays"), [(2, False), (1, True)])
-def test_single_cells_tell_nothing_of_the_terrain(size, stays):
-    """A crown's lowest leaf may hang as low as the ground beside it."""
-    surface, removed_by = removed_square(side=size)
-    objects = removed_by > 0
-    np.testing.assert_array_equal(_without_level_parts(objects, np.zeros_like(objects), surface, 0.4), objects & stays)
-
-
-def test_what_stands_free_does_not_come_back_however_low_it_is():
-    surface, removed_by = removed_square()
-    objects = removed_by > 0
-    np.testing.assert_array_equal(_without_level_parts(objects, objects, surface, 0.4), objects)
-
-
-@pytest.mark.parametrize(("spacing", "step"), [(0.0, 0.4), (2.5, 1.0)])
-def test_parts_end_at_steep_steps_from_point_to_point(spacing, step, monkeypatch):
-    """Between cells, which hold a point each or less, they are as steep."""
-    monkeypatch.setattr(module, "_without_level_parts", lambda objects, *given: steps.append(given[-1]) or objects)
-    steps, level = [], np.zeros((30, 30))
-    ObjectRemoval(level, level > 0, 60.0, 1.0, spacing).objects(level, Monitor())
-    assert steps == [pytest.approx(step)]
-
-
 @pytest.mark.parametrize(("slope", "stays"), [(1.2, False), (1.9, False), (2.3, True)])
 def test_flanks_as_steep_as_the_step_make_a_bank_of_it_up_to_a_slope_of_two(slope, stays):
     _, removed_by = removed_square()
     rows, columns = np.mgrid[:40, :40]
     pyramid = -slope * np.maximum(np.abs(rows - 19.5), np.abs(columns - 19.5))
     np.testing.assert_array_equal(objects_of(pyramid, removed_by), (removed_by > 0) & stays)
-
-
-@pytest.mark.parametrize("turned", [np.asarray, np.transpose])
-@pytest.mark.parametrize(("slope", "stays"), [(1.1, False), (1.3, True), (1.7, True)])
-def test_a_roof_that_reaches_down_to_the_ground_is_steeper_than_soil_on_both_sides(slope, stays, turned):
-    """Its gables are walls, and its eaves half of its edge."""
-    surface, removed_by = removed_square()
-    surface[removed_by > 0] = (slope * (5 - np.abs(np.arange(40) - 19.5)) * np.ones((40, 1)))[removed_by > 0]
-    np.testing.assert_array_equal(objects_of(turned(surface), removed_by), (removed_by > 0) & stays)
-
-
-@pytest.mark.parametrize("fall", [0.0, 1.7])
-def test_a_steep_bank_on_one_side_is_no_eave(fall):
-    """On the other side the surface is level, or falls on beyond the edge."""
-    surface, removed_by = removed_square()
-    columns = np.arange(40.0)
-    surface[:] = 1.7 * np.clip(columns - 14.5, 0, 5) - fall * np.maximum(columns - 19, 0)
-    surface[:15] = surface[25:] = -90.0
-    np.testing.assert_array_equal(objects_of(surface, removed_by), np.zeros_like(removed_by, bool))
 
 
 @pytest.mark.parametrize(("slope", "stays"), [(0.0, True), (0.5, True), (0.7, False)])
