@@ -45,7 +45,9 @@ def test_a_row_has_as_many_cells_as_the_table_and_no_heading_comes_twice():
         Table("towns", "town", "s", "s")
 
 
-@pytest.mark.parametrize("script", ["accuracy.py", "benchmark.py", "models.py", "structure.py", "surveys.py", "worth.py"])
+@pytest.mark.parametrize(
+    "script", ["accuracy.py", "benchmark.py", "models.py", "structure.py", "surveys.py", "worth.py"]
+)
 def test_every_script_starts_and_tells_where_its_results_go(script):
     done = subprocess.run([sys.executable, FOLDER / script, "--help"], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr

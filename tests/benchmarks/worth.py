@@ -324,6 +324,7 @@ WHOLE = (
         "terrain.classify_ground_tin:last_returns",
         lambda number, numbers, usable: np.ones(len(usable), bool),
     ),
+    _out("ground: higher strips", "terrain.classify_ground_tin:_of_higher_strips", _nowhere),
     _out("ground: banks", "terrain.removed_objects:_STEEPEST_BANK", 0.0),
     _out("ground: share of the whole edge", "terrain.removed_objects:_JOINED_OF_ALL", 0.0),
     _out("ground: regions of large windows apart", "terrain.removed_objects:_LARGE_WINDOW", 1.0),
@@ -525,10 +526,10 @@ def _measure(chosen: argparse.Namespace) -> None:
     wanted = chosen.clouds or ["*"]
     scenes = [scene for scene in SCENES if any(fnmatchcase(str(scene), pattern) for pattern in wanted)]
     with multiprocessing.Pool(chosen.jobs) as pool:
-        results = pool.map(measured, [(scene, names, chosen.cache) for scene in scenes], chunksize=1)
-    usual = Table("scores", "cloud", "score, %")
-    for scene, score, _ in results:
-        usual.add(scene, score, digits=2)
+        usual, results = Table("scores", "cloud", "score, %"), []
+        for result in pool.imap(measured, [(scene, names, chosen.cache) for scene in scenes]):
+            usual.add(*result[:2], digits=2)
+            results.append(result)
     usual.add("mean", float(np.mean([score for _, score, _ in results])), digits=2)
     columns = ("mean change, %", "largest loss, %", "cloud of the loss", "largest gain, %", "cloud of the gain", "s")
     table = Table(chosen.name, "rule", *columns)

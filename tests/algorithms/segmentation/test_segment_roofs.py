@@ -6,7 +6,6 @@ import pytest
 from lidar_buildings.algorithms.buildings.classify_buildings import classify_buildings
 from lidar_buildings.algorithms.cloud.reasons import Reason
 from lidar_buildings.algorithms.sampling.density import point_density
-from lidar_buildings.algorithms.segmentation.decks_and_ramps import part_decks
 from lidar_buildings.algorithms.segmentation.segment_roofs import segment_roofs
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.tests.builders import FAR
@@ -121,40 +120,6 @@ def test_what_goes_on_into_the_ground_is_no_roof(rng):
     assert reason.dtype == np.uint8
 
 
-def deck(rng, density, ramp_width, turn):
-    """Return points and heights of a deck of 24 m by 20 m, 3 m high, with a ramp of 20 m up to it from a field."""
-    plan = rng.uniform(-30, 30, (int(3600 * density), 2))
-    x, y = plan.T
-    is_deck = (x > 0) & (x < 24) & (np.abs(y) < 10)
-    is_ramp = (x <= 0) & (x > -20) & (np.abs(y) < ramp_width / 2)
-    height = np.where(is_deck, 3.0, np.where(is_ramp, 3.0 + 0.15 * x, 0.0))
-    cos, sin = np.cos(np.radians(turn)), np.sin(np.radians(turn))
-    xyz = np.column_stack([cos * x - sin * y, sin * x + cos * y, height + rng.normal(0, 0.02, len(x))])
-    return xyz, height, is_deck
-
-
-@pytest.mark.parametrize("density", [3, 12, 40])
-@pytest.mark.parametrize("turn", [0, 30, 45])
-def test_a_deck_with_a_narrow_ramp_is_a_roof(density, turn, rng):
-    xyz, height, is_deck = deck(rng, density, 6.0, turn)
-    segment, _, reason = segment_roofs(xyz, ones(xyz), height)
-    assert (segment[is_deck] > 0).mean() > 0.95
-    # Of the ramp its upper end belongs to the deck.
-    is_ramp = (height > 0) & (height < 1.6)
-    assert not segment[is_ramp | (height == 0)].any()
-    assert (reason[is_ramp & (height >= 1.5)] == Reason.INTO_GROUND).mean() > 0.9
-
-
-@pytest.mark.parametrize("density", [3, 12, 40])
-@pytest.mark.parametrize("turn", [0, 30, 45])
-def test_a_deck_with_a_ramp_as_wide_as_itself_is_none(density, turn, rng):
-    """A quay, a terrace in a slope, the head of a bridge."""
-    xyz, height, is_deck = deck(rng, density, 20.0, turn)
-    segment, _, reason = segment_roofs(xyz, ones(xyz), height)
-    assert not segment.any()
-    assert (reason[is_deck] == Reason.INTO_GROUND).mean() > 0.95
-
-
 def test_a_bridge_on_scan_lines_is_none(rng):
     """A deck 8 m wide over a river 40 m wide and 4 m deep, on lines 1.2 m apart, across which it hangs together."""
     x, y = rng.uniform([-60, -40], [60, 40], (115_200, 2)).T
@@ -183,27 +148,11 @@ def test_bridge_decks_and_objects_on_them_are_no_roofs(rng):
     assert (segment_roofs(xyz, np.ones_like(classes), height)[0][part == 1] > 0).any()
 
 
-def test_a_high_part_without_a_ramp_to_be_seen_stays_with_its_patch(rng):
-    plan = rng.uniform(0, 40, (6400, 2))
-    is_high, is_between = plan[:, 0] < 15, (plan[:, 0] >= 15) & (plan[:, 0] < 25)
-    xyz = np.column_stack([plan, 3.0 * is_high])[~is_between]
-    patch = np.zeros(len(xyz), np.int32)
-    assert (part_decks(xyz, patch, xyz[:, 2], 4.0, 2.0, 2.0) == -1).all()
-
-
 @pytest.mark.parametrize("noise", [0.1, 0.15])
 def test_roofs_of_very_noisy_clouds_are_found(noise, rng):
     xyz, height, truth = village(rng, 40, noise)
     segment, _, _ = segment_roofs(xyz, ones(xyz), height)
     assert (segment[truth > 0] > 0).mean() > 0.75
-
-
-def test_cars_parked_on_a_deck_make_it_no_narrower(rng):
-    """With holes every 6 m no circle of more than 6 m lies between them, and the ramp is 5 m wide."""
-    xyz, height, is_deck = deck(rng, 12, 5.0, 0)
-    is_car = is_deck & ((xyz[:, :2] % 6) < 2.2).all(axis=1)
-    segment, _, _ = segment_roofs(xyz[~is_car], ones(xyz[~is_car]), height[~is_car])
-    assert (segment[is_deck[~is_car]] > 0).mean() > 0.95
 
 
 @pytest.mark.parametrize("density", [2, 3, 4, 6, 12])
