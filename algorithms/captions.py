@@ -41,6 +41,7 @@ CAPTIONS = {
     "segmentvoxels": "Components of connected voxels, each in a color of its own.",
     "classifybuildings": "How sure it is that a cluster is a building, from blue to red.",
     "classifyvegetation": "Crowns, hedges and bushes in green, the darker the higher; buildings red, walls gray.",
+    "classifywater": "The river of a simulated town in blue, below its bridges.",
     "completebuildings": "Whole buildings in red, with walls, dormers and edges.",
     "extractfootprints": "Footprints around the points of buildings.",
     "classifyroofs": "Roofs of a simulated village in red; plants at their height are gray.",

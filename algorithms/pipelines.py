@@ -42,6 +42,7 @@ _DETECTION = (
     Step("buildings", "classify_buildings"),
     Step("complete", "complete_buildings"),
     Step("near_ground", "complete_ground"),
+    Step("water", "classify_water"),
     Step("vegetation", "classify_vegetation"),
     Step("footprints", "extract_footprints"),
 )
@@ -61,8 +62,9 @@ _PIPELINES = (
         description=(
             "Noise, ground and heights first, on request bridges; then roof surfaces and clusters of everything else "
             "above the ground. A cluster is a building by its mean entropy, compared with that of planes and volumes, "
-            "and by how much of the beam passes through it; then whole buildings with their walls, vegetation among "
-            "the rest, and outlines. Distances and tolerances follow the density and the noise of the cloud."
+            "and by how much of the beam passes through it; then whole buildings with their walls, water, "
+            "vegetation among the rest, and outlines. Distances and tolerances follow the density and the noise of the "
+            "cloud."
         ),
         references=_SANTOS,
         steps=_DETECTION,
@@ -72,6 +74,7 @@ _PIPELINES = (
             "roofs_min_height",
             "ground_max_building_size",
             "bridges_max_width",
+            "water_look_for",
             "vegetation_look_for",
             "footprints_regularize",
         ),

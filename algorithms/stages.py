@@ -15,6 +15,7 @@ from .features.classify_dimensionality import classify_dimensionality
 from .features.compute_features import compute_features
 from .footprints.extract_footprints import extract_footprints
 from .landcover.classify_vegetation import classify_vegetation
+from .landcover.classify_water import classify_water
 from .models3d.export_for_roofer import export_for_roofer
 from .models3d.reconstruct_roofs import reconstruct_roofs
 from .preparation.classify_noise_histogram import classify_noise_histogram
@@ -97,6 +98,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     classify_buildings,
     classify_buildings_2019,
     complete_buildings,
+    classify_water,
     classify_vegetation,
     extract_footprints,
     classify_roofs,

@@ -125,6 +125,7 @@ SCENES = {
     "segmentvoxels": Scene(TOWN, (*HEIGHT, "segment_voxels")),
     "classifybuildings": Scene(TOWN, (*ROOFS, "classify_buildings"), color="confidence"),
     "classifyvegetation": Scene(TOWN, (*BUILDINGS, "classify_vegetation"), color="classification"),
+    "classifywater": Scene(TOWN, (*BUILDINGS, "classify_water"), color="classification"),
     "completebuildings": Scene(TOWN, BUILDINGS, color="classification"),
     "extractfootprints": Scene(TOWN, (*BUILDINGS, "extract_footprints"), color="classification", lines="footprints"),
     "classifyroofs": Scene(VILLAGE, WALLS[:-1], color="classification"),

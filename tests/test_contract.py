@@ -80,6 +80,7 @@ STAGE_IDS = {
     "classifybuildings2019",
     "completebuildings",
     "classifyvegetation",
+    "classifywater",
     "extractfootprints",
     "classifyroofs",
     "classifywalls",

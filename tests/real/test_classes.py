@@ -32,3 +32,14 @@ def test_vegetation_is_found_as_well_as_before(name, reached):
 
 def test_every_point_has_been_looked_at():
     assert not (detected("buildings/ign-chalet").classification == PointClass.NEVER_CLASSIFIED).any()
+
+
+# Canals under 30 m wide, of which most pulses are lost. At 4 points per m² the points at the foot of the quays count.
+@pytest.mark.parametrize(("name", "reached"), [("ahn3-delft-4", 86.7), ("amsterdam-centre-10", 95.8)])
+def test_canals_are_found_as_well_as_before(name, reached):
+    assert f_score(f"buildings/{name}", (PointClass.WATER,)) >= reached - MARGIN
+
+
+@pytest.mark.parametrize("name", ["ign-chalet", "ign-stbarth-4", "ahn-amsterdam-1"])
+def test_no_water_is_found_where_there_is_none(name):
+    assert not (detected(f"buildings/{name}").classification == PointClass.WATER).any()

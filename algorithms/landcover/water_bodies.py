@@ -1,0 +1,156 @@
+"""Water bodies: areas that give few pulses back, whose ground is level and lower than what surrounds it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Optional
+
+import numpy as np
+
+from ..geometry.grid import raster_cells, refuse_sparse
+from ..packages import ndimage
+from ..stage import Monitor
+
+# How far from a point (m) others decide whether its surface is level.
+REACH = 10.0
+
+_EIGHT = np.ones((3, 3), bool)
+
+
+@dataclass(frozen=True)
+class _Rules:
+    """What water is to a laser: most pulses are reflected away from the sensor, the others return from one level.
+
+    Attributes
+    ----------
+    least_cell, cell_spacings : float
+        Side of the cells: 1 m, and 1.5 point spacings, so that cells of land hold a point.
+    window : float
+        Side (m) of the square in which pulses are counted: the least width of a ditch that is seen.
+    few : float
+        Largest number of pulses, as a share of that of land. Canals and simulated rivers give 0.1 to 0.4.
+    land : float
+        Quantile of the cells by their pulses that is land in one flight line: others lie in two, fewer in water.
+    half_width : float
+        Largest gap that is no end of the cloud, half of it (m).
+    level : float
+        Largest difference of height (m) on water within 10 m: waves, and the fall of rivers that are not torrents.
+    on_level : float
+        Least share of a body's ground that has its level.
+    higher : float
+        Least share of the ground around a body that is higher than its level.
+    ring : int
+        Width (cells) of what is around it, and of the strip at its edges in which pulses from land count, too.
+    seen : int
+        Least number of its cells with ground.
+    """
+
+    least_cell: float = 1.0
+    cell_spacings: float = 1.5
+    window: float = 5.0
+    few: float = 0.5
+    land: float = 0.25
+    half_width: float = 25.0
+    level: float = 0.15
+    on_level: float = 0.8
+    higher: float = 0.5
+    ring: int = 3
+    seen: int = 4
+
+
+_RULES = _Rules()
+
+
+def water_levels(
+    xyz: np.ndarray, is_ground: np.ndarray, is_pulse: np.ndarray, spacing: float, min_area: float, monitor: Monitor
+) -> np.ndarray:
+    """Return the elevation (n,) of the water at each point, m; NaN where there is none.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points without noise, m, from the corner of the cloud.
+    is_ground : ndarray of shape (n,), bool
+        Points that a ground filter took for ground; water is among them.
+    is_pulse : ndarray of shape (n,), bool
+        One point of each pulse.
+    spacing : float
+        Point spacing, m.
+    min_area : float
+        Area of the smallest water body, m².
+    monitor : Monitor
+        Receives progress.
+    """
+    size = max(_RULES.least_cell, _RULES.cell_spacings * spacing)
+    refuse_sparse(xyz, size)
+    row, column = raster_cells(xyz, size, 0)
+    lowest = np.full((row.max() + 1, column.max() + 1), np.inf)
+    np.minimum.at(lowest, (row[is_ground], column[is_ground]), xyz[is_ground, 2])
+    has_ground = np.isfinite(lowest)
+    monitor.progress(0.3)
+    is_seen = np.zeros(lowest.shape, bool)
+    is_seen[row, column] = True
+    pulses = np.zeros(lowest.shape)
+    np.add.at(pulses, (row[is_pulse], column[is_pulse]), 1.0)
+    is_sparse = _sparse(pulses, is_seen, size)
+    radius = int(np.ceil(REACH / size))
+    around = ndimage.minimum_filter(lowest, 2 * radius + 1)
+    is_low = has_ground & (lowest <= around + _RULES.level)
+    monitor.progress(0.6)
+    body, level = _bodies(is_sparse & (is_low | ~has_ground), is_low, lowest, min_area / size**2)
+    if level is None:
+        return np.full(len(xyz), np.nan)
+    # Beside land, pulses that come back from it hide that water gives few.
+    edge = ndimage.binary_dilation(body, _EIGHT, iterations=_RULES.ring)
+    monitor.progress(0.9)
+    return np.where(edge, level, np.nan)[row, column]
+
+
+def _sparse(pulses: np.ndarray, is_seen: np.ndarray, size: float) -> np.ndarray:
+    """Return which cells inside the cloud are amid few pulses."""
+    inside = _without_gaps(is_seen, _RULES.half_width / size)
+    side = 2 * round(_RULES.window / size / 2) + 1
+    covered = ndimage.uniform_filter(inside.astype(float), side, mode="constant")
+    density = ndimage.uniform_filter(pulses, side, mode="constant") / np.maximum(covered, 1 / side**2)
+    return inside & (density < _RULES.few * np.quantile(density[is_seen], _RULES.land))
+
+
+def _without_gaps(is_seen: np.ndarray, reach: float) -> np.ndarray:
+    """Return the cells of the cloud with the gaps in it, up to twice as wide as ``reach`` (cells)."""
+    near = ndimage.distance_transform_edt(~is_seen) <= reach
+    # The end of the raster is no end of what is near: water goes on beyond a tile.
+    return is_seen | (ndimage.distance_transform_edt(np.pad(near, 1, constant_values=True))[1:-1, 1:-1] > reach)
+
+
+def _bodies(
+    candidates: np.ndarray, is_low: np.ndarray, lowest: np.ndarray, min_cells: float
+) -> tuple[np.ndarray, Optional[np.ndarray]]:
+    """Return the cells of water bodies, and the level at each cell: that of the nearest cell with water; or None."""
+    part, _ = ndimage.label(candidates, _EIGHT)
+    size, seen = np.bincount(part.ravel()), np.bincount(part[is_low], minlength=part.max() + 1)
+    is_water = np.zeros(candidates.shape, bool)
+    shows_level = np.zeros(candidates.shape, bool)
+    for number, tight in enumerate(ndimage.find_objects(part), 1):
+        if size[number] < min_cells or seen[number] < _RULES.seen:
+            continue
+        box = tuple(slice(max(0, side.start - _RULES.ring), side.stop + _RULES.ring) for side in tight)
+        inside = part[box] == number
+        on_level = _on_level(inside, is_low[box], lowest[box])
+        if on_level is not None:
+            is_water[box] |= inside
+            shows_level[box] |= on_level
+    if not shows_level.any():
+        return is_water, None
+    nearest = ndimage.distance_transform_edt(~shows_level, return_distances=False, return_indices=True)
+    return is_water, lowest[tuple(nearest)]
+
+
+def _on_level(inside: np.ndarray, is_low: np.ndarray, lowest: np.ndarray) -> Optional[np.ndarray]:
+    """Return the cells of a part that have its level, or None where it is not level or not lower than its banks."""
+    seen = inside & is_low
+    level = float(np.median(lowest[seen]))
+    on_level = seen & (np.abs(lowest - level) <= _RULES.level)
+    banks = ndimage.binary_dilation(inside, _EIGHT, iterations=_RULES.ring) & ~inside & np.isfinite(lowest)
+    if on_level.sum() < _RULES.on_level * seen.sum() or not banks.any():
+        return None
+    return on_level if (lowest[banks] > level + _RULES.level).mean() >= _RULES.higher else None
