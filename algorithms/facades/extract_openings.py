@@ -3,30 +3,26 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Annotated, Callable
+from typing import Annotated
 
 import numpy as np
 
 from ..geometry.line_segments import is_valid
-from ..packages import spatial
 from ..params import Boundary, CompleteFacades, CornerDistance, EdgeFactor, FacadeGap, FacadeTilt
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
+from .approaches import BEFORE
 from .common_borders import with_common_borders
 from .extract_facades import AROUND_CORNER, FACADE_FIELDS
-from .facade_frame import thinned
 from .facade_outline import longest_edge
 from .facade_surfaces import Facade, facade_features, surfaces_of
 from .opening_search import Opening, find_openings
+from .shared_openings import drawn_once
 
 # A segment with this share of its points in the openings of others is what fills them: panes, curtains, shop fronts.
 _FILLING = 0.5
 
 # Openings whose middles differ in height by less than this share of their height are in one row.
 _SAME_ROW = 0.5
-
-# The ground before an opening is the lowest hundredth of the points within this distance in plan (m), one to a cell of
-# this size (m).
-_GROUND_REACH, _GROUND_CELL, _LOWEST = 1.5, 0.2, 0.01
 
 # A hole ends this far (m) inside the boundary: the sill of a door lies on it.
 _INSIDE = 0.01
@@ -64,7 +60,7 @@ OPENING_FIELDS = (
         ),
         Layer("openings", "Windows and doors", "Polygon", OPENING_FIELDS, style="openings"),
     ),
-    reach=lambda tunables: max(tunables["max_depth"], _GROUND_REACH),
+    reach=lambda tunables: max(tunables["max_depth"], BEFORE),
 )
 def extract_openings(
     xyz,
@@ -120,8 +116,12 @@ def extract_openings(
     other with no wall between are one opening. It must have wall within 0.15 m along half of its outline, where the
     sill of a door does not count, and points in a tenth of its area. Its sides are the edges of the wall
     where these lie within 0.3 m of the points. It is a rectangle unless the convex hull of its points fills less than
-    three quarters of it, as that of a triangular window. Panes with at most 0.15 m between them are one window. Sills
-    up to 0.4 m over the lowest points within 1.5 m are those of doors.
+    three quarters of it, as that of a triangular window. Panes with at most 0.15 m between them are one window.
+
+    A door is 1.8 m high at least, and ground, a landing or steps up to 1.5 m before the wall rise to within 0.4 m of
+    its sill, with no wall seen further down. Where nothing is seen before the wall, its foot is taken for the ground.
+    Openings that two walls share are drawn in the one that encloses them more. An opening that another wall hides, up
+    to the maximum depth before it, is not drawn.
 
     References
     ----------
@@ -159,36 +159,23 @@ def _searched(
 ) -> list[tuple[Facade, list[Opening]]]:
     """Return facades with their openings, without those that fill openings of others; larger ones come first."""
     is_filling = np.zeros(len(xyz), bool)
-    ground = _ground_near(xyz)
     found: list[tuple[Facade, list[Opening]]] = []
     for done, facade in enumerate(sorted(facades, key=lambda facade: -facade.area), start=1):
         monitor.progress((done - 1) / len(facades))
         if is_filling[facade.points].mean() >= _FILLING:
             continue
-        openings = find_openings(facade, xyz, _near(facade, xyz, max_depth), ground, max_depth, min_size)
+        openings = find_openings(facade, xyz, _near(facade, xyz, max(max_depth, BEFORE)), max_depth, min_size)
         for opening in openings:
             is_filling[opening.points] = True
         found.append((facade, openings))
     monitor.progress(1.0)
-    return sorted(found, key=lambda item: item[0].number)
+    return sorted(drawn_once(found, xyz, max_depth), key=lambda item: item[0].number)
 
 
-def _ground_near(xyz: np.ndarray) -> Callable[[np.ndarray], float]:
-    """Return a function that tells the elevation (m) of the lowest points near a point (3,), m, in plan."""
-    points = thinned(xyz - xyz.min(axis=0), _GROUND_CELL) + xyz.min(axis=0)
-    tree = spatial.cKDTree(points[:, :2])
-
-    def ground(point: np.ndarray) -> float:
-        near = tree.query_ball_point(point[:2], _GROUND_REACH)
-        return float(np.quantile(points[near, 2], _LOWEST)) if near else float(point[2])
-
-    return ground
-
-
-def _near(facade: Facade, xyz: np.ndarray, max_depth: float) -> np.ndarray:
-    """Return the points in the box around a facade and the room behind it."""
+def _near(facade: Facade, xyz: np.ndarray, margin: float) -> np.ndarray:
+    """Return the points in the box around a facade with a margin (m) on all sides."""
     corners = facade.rings[0]
-    low, high = corners.min(axis=0) - max_depth, corners.max(axis=0) + max_depth
+    low, high = corners.min(axis=0) - margin, corners.max(axis=0) + margin
     inside = np.ones(len(xyz), bool)
     for axis in range(3):
         inside &= (xyz[:, axis] >= low[axis]) & (xyz[:, axis] <= high[axis])

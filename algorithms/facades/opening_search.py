@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, Optional
+from typing import Optional
 
 import numpy as np
 
 from ..geometry.groups import components, members
 from ..geometry.polylines import simplify_ring
 from ..packages import ndimage, spatial
+from .approaches import BEFORE, FROM_WALL, Approach
 from .facade_outline import grown
 from .facade_surfaces import Facade
 
@@ -33,9 +34,6 @@ _SEEN = 0.1
 
 # An opening higher than this (m) must have wall above it: the recessed part of a front has not.
 _TALL = 4.0
-
-# An opening whose lower edge lies within this height (m) over the ground before it is a door.
-_SILL = 0.4
 
 # Panes side by side with no more than this between them (m) are one window: a pier of wall is wider than a mullion.
 _MULLION = 0.15
@@ -142,7 +140,6 @@ def find_openings(
     facade: Facade,
     xyz: np.ndarray,
     rows: np.ndarray,
-    ground: Callable[[np.ndarray], float],
     max_depth: float,
     min_size: float,
 ) -> list:
@@ -156,8 +153,6 @@ def find_openings(
         The whole cloud (m).
     rows : ndarray of shape (k,)
         The points near the facade.
-    ground : callable
-        Returns the elevation (m) of the ground near a point (3,), m.
     max_depth : float
         How far behind the wall (m) points may be of its openings.
     min_size : float
@@ -165,17 +160,19 @@ def find_openings(
     """
     local = facade.frame.local(xyz[rows])
     off_wall = max(_OFF_WALL * facade.rms, _LEAST_OFF)
-    is_wall = np.abs(local[:, 2]) <= off_wall
-    is_behind = (local[:, 2] < -off_wall) & (local[:, 2] >= -max_depth)
+    out = local[:, 2]
+    is_wall = np.abs(out) <= off_wall
+    is_behind = (out < -off_wall) & (out >= -max_depth)
     if not is_wall.any() or not is_behind.any():
         return []
     wall, behind, own = local[is_wall, :2], local[is_behind], rows[is_behind]
     raster = Raster(wall, behind[:, :2], max(_CELL_SPACINGS * facade.spacing, _LEAST_CELL))
     label, count = raster.groups()
     group = _joined(behind[:, :2], label[raster.cell(behind[:, :2])], count)
+    approach = Approach(wall, local[(out > max(FROM_WALL, off_wall)) & (out <= BEFORE), :2])
     found = []
     for chosen in members(group).values():
-        made = _opening(facade, raster, wall, behind[chosen], own[chosen], ground, min_size)
+        made = _opening(facade, raster, wall, behind[chosen], own[chosen], approach, min_size)
         if made is not None:
             found.append(made)
     return sorted(_apart(found), key=lambda opening: tuple(opening.box[0]))
@@ -204,7 +201,7 @@ def _opening(
     wall: np.ndarray,
     behind: np.ndarray,
     points: np.ndarray,
-    ground: Callable[[np.ndarray], float],
+    approach: Approach,
     min_size: float,
 ) -> Optional[Opening]:
     """Return the opening that points behind a wall show, None where they show none."""
@@ -215,8 +212,7 @@ def _opening(
     box, beside = _bounded(box, wall, raster.size, spacing)
     if (box[1] - box[0] < min_size).any():
         return None
-    sill = facade.frame.space(np.array([[box[:, 0].mean(), box[0, 1]]]))[0]
-    is_door = sill[2] - ground(sill) <= _SILL
+    is_door = approach.leads_to(box)
     ring, share = _shape(box, behind[:, :2], spacing)
     enclosed = _enclosure(raster, ring, box[0, 1] if is_door else None)
     cells = len(np.unique(np.column_stack(raster.cell(behind[:, :2])), axis=0)) * raster.size**2

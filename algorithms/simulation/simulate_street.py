@@ -68,6 +68,27 @@ def simulate_street(
         bool,
         Param("Clutter", "Put parked cars, trees, poles and people before the fronts, which hide parts of them."),
     ] = True,
+    stoops: Annotated[
+        float,
+        Param(
+            "Height of stoops",
+            "Height of the doors over the street. Stairs lead up to them; from 1.4 m on there are cellar windows.",
+            unit="m",
+            low=0,
+            high=4,
+        ),
+    ] = 0.0,
+    unevenness: Annotated[
+        float,
+        Param(
+            "Unevenness",
+            "How far the ends of a front are before or behind the line of its neighbors at most: fronts nearly in one "
+            "plane.",
+            unit="m",
+            low=0,
+            high=1,
+        ),
+    ] = 0.0,
     glass: Annotated[
         float,
         Param(
@@ -136,7 +157,8 @@ def simulate_street(
 
     Notes
     -----
-    A curved front is made of six flat strips; walls of neighboring houses in one plane are one facade. The position of
+    Stairs lead straight up to a landing of 1.2 m before raised doors. A curved front is made of six flat strips;
+    walls of neighboring houses in one plane are one facade. The position of
     the vehicle is known exactly; the noise lies along the beam. Frames stand 10 cm and panes 16 cm behind the front.
     Not simulated: rooms behind panes, roofs, mirror images in glass, and echoes that mix two surfaces at an edge.
 
@@ -154,7 +176,7 @@ def simulate_street(
             f"A street of {length:g} m has {pulses / 1e6:.0f} million pulses, more than {MAX_PULSES / 1e6:.0f} "
             "million; shorten it, lower the line rate, or take a larger speed or angular step."
         )
-    scene, truth, street = build_street(length, width, slope, clutter, seed)
+    scene, truth, street = build_street(length, width, slope, clutter, seed, stoops, unevenness)
     ground = scene.relief.plane
     # In the right lane: the fronts of both sides are seen at different distances.
     ends = [np.array(street.at(sign * length / 2, -width / 8)) for sign in (-1, 1)]

@@ -27,6 +27,12 @@ _AXIS, _MARGIN = 2.4, 0.5
 # Depth of recesses and bays, depth and height of balconies (m).
 _STEP, _BALCONY, _PARAPET = 1.2, 1.1, 1.0
 
+# Stairs to a raised door: depth of the landing, run and greatest rise of a step, width beside the door (m).
+_LANDING, _RUN, _RISE, _BESIDE = 1.2, 0.28, 0.18, 0.25
+
+# Cellar windows under raised floors: sill over the ground and height (m); floors from this height (m) have them.
+_CELLAR, _LEAST_RAISED = (0.25, 0.8), 1.4
+
 # Strips of a curved front, and the angle (°) that it turns by.
 _STRIPS, _TURN = 6, 60.0
 
@@ -97,11 +103,14 @@ class Line:
         return Rect(float(x), float(y), along[1] - along[0], inward[1] - inward[0], angle)
 
 
-def build_front(scene: Scene, truth: Truth, line: Line, height: float, kind: str) -> None:
-    """Put the front of a house with this height over the ground at its start (m) behind a line."""
-    top = float(scene.relief.plane(*line.start)) + height
+def build_front(scene: Scene, truth: Truth, line: Line, height: float, kind: str, raised: float = 0.0) -> None:
+    """Put the front of a house behind a line.
+
+    The height (m) is over the ground at the start of the line, its ground floor ``raised`` (m) over the street.
+    """
+    top = float(scene.relief.plane(*line.start)) + height + raised
     for part, is_front in _parts(line, kind):
-        _build_wall(scene, truth, part, top, kind, has_openings=is_front and part.length > 1.8)
+        _build_wall(scene, truth, part, top, kind, raised, has_openings=is_front and part.length > 1.8)
     if kind == "balconies":
         _hang_balconies(scene, line, top, height)
 
@@ -113,7 +122,7 @@ def _parts(line: Line, kind: str) -> list[tuple[Line, bool]]:
         inward = step if kind == "recess" else -step
         corners = [(0, 0), (third, 0), (third, inward), (2 * third, inward), (2 * third, 0), (3 * third, 0)]
         points = [line.at(*corner) for corner in corners]
-        return [(_between(a, b), k % 2 == 0) for k, (a, b) in enumerate(zip(points, points[1:]))]
+        return [(between(a, b), k % 2 == 0) for k, (a, b) in enumerate(zip(points, points[1:]))]
     if kind == "curved":
         half = np.deg2rad(_TURN / 2)
         radius = line.length / (2 * np.sin(half))
@@ -121,16 +130,19 @@ def _parts(line: Line, kind: str) -> list[tuple[Line, bool]]:
         # The arc bulges toward the street.
         out = radius * (np.cos(angle) - np.cos(half))
         points = [line.at(line.length / 2 + radius * np.sin(a), -o) for a, o in zip(angle, out)]
-        return [(_between(a, b), False) for a, b in zip(points, points[1:])]
+        return [(between(a, b), False) for a, b in zip(points, points[1:])]
     return [(line, True)]
 
 
-def _between(a: np.ndarray, b: np.ndarray) -> Line:
+def between(a: np.ndarray, b: np.ndarray) -> Line:
+    """Return the foot of a wall from one point (2,) to another, m."""
     length = float(np.hypot(*(b - a)))
     return Line(a, (b - a) / length, length)
 
 
-def _build_wall(scene: Scene, truth: Truth, line: Line, top: float, kind: str, has_openings: bool) -> None:
+def _build_wall(
+    scene: Scene, truth: Truth, line: Line, top: float, kind: str, raised: float, has_openings: bool
+) -> None:
     """Put one flat wall with its openings, and what is true of it."""
     ends = [line.at(0.0), line.at(line.length)]
     feet = [float(scene.relief.plane(*end)) for end in ends]
@@ -138,7 +150,7 @@ def _build_wall(scene: Scene, truth: Truth, line: Line, top: float, kind: str, h
     number = truth.add_wall(start, end, top, kind)
     own = scene.new_id()
     truth.facade_of[own] = number
-    floor = max(feet)
+    ground = max(feet)
     axes = _axes(line.length) if has_openings else []
     spans, last = [], 0.0
     for middle, width in axes:
@@ -148,7 +160,8 @@ def _build_wall(scene: Scene, truth: Truth, line: Line, top: float, kind: str, h
         _block(scene, line, (start, end), (0.0, _WALL), min(feet) - _BELOW, top, own)
     for k, (middle, width) in enumerate(axes):
         along = (middle - width / 2, middle + width / 2)
-        _build_axis(scene, truth, line, along, floor, (min(feet) - _BELOW, top), own, number, k == len(axes) // 2)
+        levels = (ground, ground + raised)
+        _build_axis(scene, truth, line, along, levels, (min(feet) - _BELOW, top), own, number, k == len(axes) // 2)
 
 
 def _axes(length: float) -> list[tuple[float, float]]:
@@ -162,23 +175,43 @@ def _build_axis(
     truth: Truth,
     line: Line,
     along: tuple[float, float],
-    floor: float,
+    levels: tuple[float, float],
     heights: tuple[float, float],
     own: int,
     facade: int,
     has_door: bool,
 ) -> None:
-    """Put the openings of one axis and the wall between them."""
-    bottom, top = heights
+    """Put the openings of one axis and the wall between them; ``levels`` are ground and ground floor (m)."""
+    (bottom, top), (ground, floor) = heights, levels
     level, below = floor, bottom
+    if not has_door and floor - ground >= _LEAST_RAISED:
+        low, high = ground + _CELLAR[0], ground + sum(_CELLAR)
+        _block(scene, line, along, (0.0, _WALL), below, low, own)
+        _build_opening(scene, truth, line, along, (low, high), "window", facade)
+        below = high
     while level + _SILL + _WINDOW[1] + 0.3 < top:
         is_door = has_door and level == floor
-        low, high = (bottom, level + _DOOR[1]) if is_door else (level + _SILL, level + _SILL + _WINDOW[1])
+        low, high = (level + _SILL, level + _SILL + _WINDOW[1])
+        if is_door:
+            low, high = floor if floor > ground else bottom, level + _DOOR[1]
+            _put_stairs(scene, line, along, (bottom, ground, floor))
         if low > below:
             _block(scene, line, along, (0.0, _WALL), below, low, own)
         _build_opening(scene, truth, line, along, (low, high), "door" if is_door else "window", facade)
         below, level = high, level + _STOREY
     _block(scene, line, along, (0.0, _WALL), below, top, own)
+
+
+def _put_stairs(scene: Scene, line: Line, along: tuple[float, float], levels: tuple[float, float, float]) -> None:
+    """Put a landing and steps before a door, from the bottom of its wall over the ground to the floor (m)."""
+    bottom, ground, floor = levels
+    steps = int(np.ceil((floor - ground) / _RISE))
+    wide = (along[0] - _BESIDE, along[1] + _BESIDE)
+    number = scene.new_id() if steps else 0
+    for step in range(steps):
+        start = 0.0 if step == 0 else _LANDING + (step - 1) * _RUN
+        outward = (-(_LANDING + step * _RUN), -start)
+        _block(scene, line, wide, outward, bottom, floor - step / steps * (floor - ground), number)
 
 
 def _build_opening(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ..cloud.asprs import PointClass
@@ -9,7 +11,7 @@ from .plants import plant_tree
 from .relief import Relief
 from .scene import Scene
 from .solids import Rect, Solid, flat
-from .street_fronts import KINDS, Line, Truth, build_front
+from .street_fronts import KINDS, Line, Truth, between, build_front
 from .town_layout import park_car
 
 # Widths of houses, and heights of the eaves of a side (m); houses of one side differ by less than a storey.
@@ -22,7 +24,15 @@ _PEOPLE, _TREES, _POLES, _CARS = 1.2, 2.2, 2.4, 3.6
 _PERSON, _POLE = (0.45, 1.75), (0.16, 6.0)
 
 
-def build_street(length: float, width: float, slope: float, clutter: bool, seed: int) -> tuple[Scene, Truth, Rect]:
+def build_street(
+    length: float,
+    width: float,
+    slope: float,
+    clutter: bool,
+    seed: int,
+    raised: float = 0.0,
+    unevenness: float = 0.0,
+) -> tuple[Scene, Truth, Rect]:
     """Make up a street.
 
     Parameters
@@ -35,6 +45,10 @@ def build_street(length: float, width: float, slope: float, clutter: bool, seed:
         Whether cars, trees, poles and people stand before the fronts.
     seed : int
         For all that is drawn.
+    raised : float
+        Height of the doors over the street (m).
+    unevenness : float
+        Distance (m) that the ends of fronts stand before or behind the line of the street at most.
 
     Returns
     -------
@@ -50,16 +64,31 @@ def build_street(length: float, width: float, slope: float, clutter: bool, seed:
     size = length + 2 * width
     scene, truth = Scene(Relief(size, angle, float(np.tan(np.deg2rad(slope))))), Truth()
     street = Rect(size / 2, size / 2, length, width, angle)
+    fronts = _Fronts(raised, unevenness, np.random.default_rng([seed, 7]))
     for side in (1, -1):
-        _build_side(scene, truth, street, side, rng)
+        _build_side(scene, truth, street, side, rng, fronts)
     if clutter:
         for side in (1, -1):
             _put_clutter(scene, street, side, rng)
     return scene, truth, street
 
 
-def _build_side(scene: Scene, truth: Truth, street: Rect, side: int, rng: np.random.Generator) -> None:
-    """Put houses side by side, each with another kind of front, the ends of a street closed by plain ones."""
+@dataclass(frozen=True)
+class _Fronts:
+    """How high (m) doors are over the street, and how far (m) the ends of fronts are off its line at most."""
+
+    raised: float
+    unevenness: float
+    rng: np.random.Generator
+
+    def off_line(self, line: Line) -> Line:
+        """Return a line whose ends are before or behind that of a line."""
+        first, last = self.rng.uniform(-1.0, 1.0, 2) * self.unevenness
+        return between(line.at(0.0, first), line.at(line.length, last)) if self.unevenness else line
+
+
+def _build_side(scene: Scene, truth: Truth, street: Rect, side: int, rng: np.random.Generator, fronts: _Fronts) -> None:
+    """Put houses side by side, each with another kind of front."""
     # Seen along the line, the street is on the right: on the left of the street the line runs forward.
     start = np.array(street.at(-side * street.length / 2, side * street.width / 2))
     way = side * np.array([np.cos(street.angle), np.sin(street.angle)])
@@ -68,7 +97,8 @@ def _build_side(scene: Scene, truth: Truth, street: Rect, side: int, rng: np.ran
     first = int(rng.integers(len(KINDS)))
     for k, width in enumerate(widths):
         kind = KINDS[(first + k) % len(KINDS)]
-        build_front(scene, truth, Line(start, way, width), eave + rng.uniform(0, _DIFFERENCE), kind)
+        height = eave + rng.uniform(0, _DIFFERENCE)
+        build_front(scene, truth, fronts.off_line(Line(start, way, width)), height, kind, fronts.raised)
         start = start + width * way
 
 

@@ -124,6 +124,59 @@ def test_a_shop_front_that_is_a_plane_of_its_own_fills_an_opening(rng):
     assert openings.columns["kind"] == ["door"]
 
 
+def stairs(rng, west, east, height, depth=1.2, steps=4):
+    """Return points of a landing before the wall and of the risers and treads that lead up to it from the south."""
+    parts = []
+    for step in range(steps):
+        front, top = -(depth + 0.28 * step), height * (1 - step / steps)
+        riser = wall(rng, (west, front), (east, front), low=top - height / steps, high=top, density=250)
+        tread = rng.uniform((west, front, top), (east, front + (depth if step == 0 else 0.28), top), (200, 3))
+        parts += [riser, tread]
+    return np.concatenate(parts)
+
+
+def test_a_door_up_two_meters_of_stairs_is_one_and_what_is_beside_it_is_not(rng):
+    """A cellar window in the yard, and a tall window whose sill is as high as that of the door."""
+    door, cellar, tall = (3.4, 2.0, 4.4, 4.2), (6.0, 0.2, 7.2, 0.9), (9.0, 2.0, 10.2, 4.4)
+    points, pane = pierced(rng, [door, cellar, tall])
+    hidden = (points[:, 0] > 3.1) & (points[:, 0] < 4.7) & (points[:, 2] < 2.0)
+    xyz, segment_id = as_cloud(rng, points[~hidden], np.concatenate([pane, stairs(rng, 3.1, 4.7, 2.0)]))
+    openings = extract_openings(xyz, segment_id)[1]
+    assert openings.columns["kind"] == ["door", "window", "window"]
+
+
+def test_a_stair_seen_from_below_leads_up_by_its_risers(rng):
+    points, pane = pierced(rng, [(3.4, 2.0, 4.4, 4.2)])
+    hidden = (points[:, 0] > 3.1) & (points[:, 0] < 4.7) & (points[:, 2] < 2.0)
+    riser = wall(rng, (3.1, -1.2), (4.7, -1.2), low=1.0, high=2.0, density=250)
+    openings = extract_openings(*as_cloud(rng, points[~hidden], np.concatenate([pane, riser])))[1]
+    assert openings.columns["kind"] == ["door"]
+    assert boxes_of(openings)[0] == pytest.approx((3.4, 2.0, 4.4, 4.2), abs=0.05)
+
+
+def test_openings_of_two_walls_in_nearly_one_plane_are_drawn_once(rng):
+    """A front that bends by 0.8° in its middle; within 4 m of the bend its points are of either plane."""
+    points, pane = pierced(rng, WINDOWS)
+    xyz, segment_id = as_cloud(rng, points, pane)
+    xyz[:, 1] += np.where(segment_id, np.tan(np.radians(0.8)) * np.maximum(xyz[:, 0] - 6.0, 0), 0)
+    segment_id[: len(points)] = 1 + (xyz[: len(points), 0] + rng.uniform(-4, 4, len(points)) > 6.0)
+    facades, openings = extract_openings(xyz, segment_id)
+    assert len(facades) == 2
+    assert len(openings) == 6
+    assert np.abs(boxes_of(openings)[:, None] - WINDOWS).max(axis=2).min(axis=0).max() < 0.1
+
+
+def test_openings_behind_a_wall_are_not_drawn(rng):
+    """A second wall 0.4 m behind the first, pierced where the first is closed, and where it is pierced too."""
+    points, pane = pierced(rng, [WINDOWS[0]], depth=0.7)
+    inner, inner_pane = pierced(rng, WINDOWS[:3])
+    inner_all = np.concatenate([inner, inner_pane]) + [0, 0.4, 0]
+    xyz, segment_id = as_cloud(rng, points, np.concatenate([pane, inner_all]))
+    segment_id[len(points) + len(pane) :][: len(inner)] = 2
+    openings = extract_openings(xyz, segment_id)[1]
+    np.testing.assert_allclose(boxes_of(openings), [WINDOWS[0]], atol=0.06)
+
+
 def test_place_turn_and_order_change_nothing(front, rng):
     xyz, segment_id = front
     expected = extract_openings(xyz, segment_id)[1]

@@ -78,6 +78,31 @@ def test_glass_lets_pulses_pass_and_clutter_hides():
     assert PointClass.UNCLASSIFIED in cluttered["classification"]
 
 
+def test_stoops_raise_doors_and_have_stairs_up_to_them():
+    """Each door begins 2 m over the street, with something of a building up to its sill before it."""
+    points, facades, openings, _ = made(stoops=2.0, slope=0.0, clutter=False, line_rate=50.0, angular_step=0.5)
+    kinds = np.array(openings.columns["kind"])
+    low = np.array([ring[:, 2].min() for (ring,) in openings.geometries])
+    assert low[kinds == "door"] == pytest.approx([2.0] * np.sum(kinds == "door"))
+    assert sorted(set(np.round(low[kinds == "window"], 2)))[:2] == [0.25, 2.9]
+    stairs = points["xyz"][(points["classification"] == PointClass.BUILDING) & (points["segment_id"] == 0)]
+    seen = 0
+    for (ring,), kind, facade in zip(openings.geometries, kinds, openings.columns["facade"]):
+        origin, normal = plane(facades.geometries[facade - 1][0])
+        near = np.linalg.norm((stairs - ring[:2].mean(axis=0))[:, :2], axis=1) < 1.4
+        before = near & ((stairs - origin) @ normal > 0.3) & (stairs[:, 2] < 2.05)
+        seen += kind == "door" and before.sum() > 5 and stairs[before, 2].max() > 1.7
+    assert seen > 0.5 * np.sum(kinds == "door")
+
+
+def test_uneven_fronts_differ_from_one_line_by_what_is_said():
+    _, even, *_ = made(slope=0.0)
+    _, uneven, *_ = made(slope=0.0, unevenness=0.2)
+    one, other = (np.concatenate([ring[:2, :2] for (ring,) in some.geometries]) for some in (even, uneven))
+    off = np.linalg.norm(one[:, None] - other, axis=2).min(axis=1)
+    assert 0.05 < off.max() < 0.3
+
+
 def test_the_same_seed_gives_the_same_street_and_another_another():
     one, other, another = (made(seed=seed, length=12.0)[0]["xyz"] for seed in (3, 3, 4))
     np.testing.assert_array_equal(one, other)

@@ -1,0 +1,87 @@
+"""What leads up to an opening: ground, a landing or steps before it, which make it a door."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+# Depth (m) before a wall in which ground, landings and stairs lead up to a door, and from which they count: a sill or a
+# cornice juts out less than 0.2 m, a landing is rarely deeper than 1.5 m.
+FROM_WALL, BEFORE = 0.2, 1.5
+
+
+@dataclass(frozen=True)
+class _Rules:
+    """What makes an opening a door."""
+
+    # Least height (m): a person walks through. Building codes ask for 2.0 m; a rim may not be seen.
+    least_height: float = 1.8
+    # A door is this far (m) above what leads up to it at most: two steps of 0.18 m and the noise of the edge.
+    step: float = 0.4
+    # The wall below a sill is looked for down to this depth (m) below the step: one row of stones.
+    below: float = 0.4
+    # Share of the columns of an opening that decides: most of them.
+    most: float = 0.5
+    # Width of a column (m): a step has several points in it from 50 points per m² on.
+    column: float = 0.15
+    # The foot of a wall of which nothing is seen before it is this quantile of its points around the opening.
+    foot: float = 0.01
+
+
+_RULES = _Rules()
+
+
+class Approach:
+    """The surroundings of a wall, in its frame.
+
+    Parameters
+    ----------
+    wall : ndarray of shape (n, 2)
+        Positions (m) along and up of the points on the wall.
+    before : ndarray of shape (m, 2)
+        Of the points from :data:`FROM_WALL` to :data:`BEFORE` (m) before it.
+    """
+
+    def __init__(self, wall: np.ndarray, before: np.ndarray) -> None:
+        self.wall, self.before = (some[np.argsort(some[:, 0], kind="stable")] for some in (wall, before))
+
+    def leads_to(self, box: np.ndarray) -> bool:
+        """Return whether a person can walk up to an opening with a box (2, 2), m, and through it.
+
+        The highest surface below the sill, in most columns of the opening, is at most a step below it, and no wall is
+        seen further down. Where nothing is seen before the wall, the foot of the wall is taken instead.
+        """
+        low, high = box[:, 1]
+        if high - low < _RULES.least_height:
+            return False
+        top = _highest(_between(self.before, box), box, low + _RULES.step)
+        is_seen = np.isfinite(top)
+        if is_seen.mean() < _RULES.most:
+            return bool(low - self._foot(box) <= _RULES.step)
+        seen_wall = _highest(_between(self.wall, box), box, low - _RULES.step) > low - _RULES.step - _RULES.below
+        is_reached = top[is_seen] >= low - _RULES.step
+        return bool(is_reached.mean() >= _RULES.most > seen_wall.mean())
+
+    def _foot(self, box: np.ndarray) -> float:
+        """Return the lowest position (m) up the wall around an opening, that of its sill where the wall ends there."""
+        around = [[box[0, 0] - BEFORE, 0.0], [box[1, 0] + BEFORE, 0.0]]
+        near = np.concatenate([_between(some, np.array(around))[:, 1] for some in (self.wall, self.before)])
+        return float(min(np.quantile(near, _RULES.foot), box[0, 1])) if len(near) else float(box[0, 1])
+
+
+def _between(places: np.ndarray, box: np.ndarray) -> np.ndarray:
+    """Return the positions (k, 2), of those in order along the wall, between the sides of a box."""
+    first, last = np.searchsorted(places[:, 0], box[:, 0])
+    return places[first:last]
+
+
+def _highest(places: np.ndarray, box: np.ndarray, limit: float) -> np.ndarray:
+    """Return the highest position up to a limit (m) in each column of a box, -inf where there are no points."""
+    left, right = box[:, 0]
+    count = max(1, int((right - left) / _RULES.column))
+    top = np.full(count, -np.inf)
+    low = places[places[:, 1] <= limit]
+    column = np.minimum(((low[:, 0] - left) / (right - left) * count).astype(np.int64), count - 1)
+    np.maximum.at(top, column, low[:, 1])
+    return top
