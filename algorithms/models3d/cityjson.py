@@ -12,6 +12,7 @@ import numpy as np
 
 from ..stage import MapFrame
 from .building_facts import NamedModel, building_attributes, face_attributes
+from .set_openings import DOOR, WINDOW
 from .solids import GROUND, ROOF, WALL, Solid
 
 CITYJSON, CITYJSON_SEQ = "CityJSON", "CityJSONSeq"
@@ -20,7 +21,13 @@ FORMATS = {CITYJSON: (".city.json", ".json"), CITYJSON_SEQ: (".city.jsonl", ".js
 # Vertices are whole numbers of this (map units): finer than any survey, coarser than rounding errors.
 _SCALE = 0.001
 
-_SURFACES = {ROOF: "RoofSurface", WALL: "WallSurface", GROUND: "GroundSurface"}
+_SURFACES = {
+    ROOF: "RoofSurface",
+    WALL: "WallSurface",
+    GROUND: "GroundSurface",
+    WINDOW: "Window",
+    DOOR: "Door",
+}
 
 # Decimals of attributes.
 _DECIMALS = 3
@@ -119,8 +126,8 @@ def _building(one: NamedModel, vertices: _Vertices) -> dict[str, Any]:
     geometry = []
     for level, solids in one.model.solids.items():
         parts = [_shell(one, solid, vertices.numbers(solid.vertices), level == one.model.level) for solid in solids]
-        surfaces = [surface for _, of_part in parts for surface in of_part]
         first = np.cumsum([0, *(len(of_part) for _, of_part in parts)]).tolist()
+        surfaces = [_numbered(surface, start) for (_, some), start in zip(parts, first) for surface in some]
         values = [[list(range(start, end))] for start, end in zip(first, first[1:])]
         boundaries = [[shell] for shell, _ in parts]
         is_single = len(parts) == 1
@@ -143,7 +150,31 @@ def _shell(one: NamedModel, solid: Solid, numbers: list[int], is_best: bool) -> 
         facts = _plain(face_attributes(one, solid, face)) if is_best and kind == ROOF else {}
         facts.pop("building", None)
         surfaces.append({"type": _SURFACES[kind], **facts})
+    for face, wall in _walls_of_openings(solid).items():
+        surfaces[face]["parent"] = wall
+        surfaces[wall].setdefault("children", []).append(face)
     return shell, surfaces
+
+
+def _walls_of_openings(solid: Solid) -> dict[int, int]:
+    """Return the wall, by face, of each face that is a window or door: the one that has its edges the other way."""
+    openings = [face for face, kind in enumerate(solid.kinds) if kind in (WINDOW, DOOR)]
+    if not openings:
+        return {}
+    face_of = {
+        edge: face
+        for face, rings in enumerate(solid.faces)
+        for ring in rings
+        for edge in zip(ring, [*ring[1:], ring[0]])
+    }
+    return {face: face_of[solid.faces[face][0][1], solid.faces[face][0][0]] for face in openings}
+
+
+def _numbered(surface: dict[str, Any], start: int) -> dict[str, Any]:
+    """Return a surface of a solid whose surfaces begin at a number, with the numbers of its parent and children."""
+    parent = {"parent": surface["parent"] + start} if "parent" in surface else {}
+    children = {"children": [child + start for child in surface["children"]]} if "children" in surface else {}
+    return {**surface, **parent, **children}
 
 
 def _plain(facts: dict[str, Any]) -> dict[str, Any]:

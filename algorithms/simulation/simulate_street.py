@@ -8,7 +8,9 @@ import numpy as np
 
 from ..params import Seed
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
-from .scanner import MAX_PULSES
+from .scanner import MAX_PULSES, scan
+from .scene import Scene
+from .solids import Rect
 from .street_fronts import Truth
 from .street_scene import build_street
 from .vehicle import Drive, drive_along, pulses_of
@@ -18,6 +20,8 @@ _HEIGHT = 2.2
 
 # Points of a wall this far from its front (m, and standard deviations of the noise) are on its ends and reveals.
 _ON_FRONT, _DEVIATIONS = 0.01, 4.0
+
+VIEWS = ("vehicle", "airplane")
 
 _CREATED = (
     "xyz",
@@ -43,6 +47,11 @@ _OPENING_FIELDS = (
     Field("width", float, "Width", "m"),
     Field("height", float, "Height", "m"),
 )
+_HOUSE_FIELDS = (
+    Field("id", int, "number of the house"),
+    Field("eave", float, "Elevation of the eaves", "m"),
+    Field("ridge", float, "Elevation of the ridge", "m"),
+)
 _CORNER_FIELDS = (Field("facade", int, "number of the facade"),)
 
 
@@ -55,6 +64,7 @@ _CORNER_FIELDS = (Field("facade", int, "number of the facade"),)
         Layer("facades", "True facades", "Polygon", _FACADE_FIELDS, style="facades"),
         Layer("openings", "True openings", "Polygon", _OPENING_FIELDS),
         Layer("corners", "True corners", "Point", _CORNER_FIELDS),
+        Layer("houses", "True houses", "Polygon", _HOUSE_FIELDS),
     ),
 )
 def simulate_street(
@@ -89,6 +99,29 @@ def simulate_street(
             high=1,
         ),
     ] = 0.0,
+    houses: Annotated[
+        bool,
+        Param("Houses", "Put houses with gable roofs behind the fronts; no front is curved then."),
+    ] = False,
+    view: Annotated[
+        str,
+        Param(
+            "View",
+            "Scan the street from a vehicle or from an airplane. Both see the same street for the same seed.",
+            choices=VIEWS,
+        ),
+    ] = "vehicle",
+    density: Annotated[
+        float,
+        Param(
+            "Pulse density",
+            "Laser pulses of the scan from the air.",
+            unit="pulses/m²",
+            low=0.5,
+            high=100,
+            advanced=True,
+        ),
+    ] = 12.0,
     glass: Annotated[
         float,
         Param(
@@ -119,7 +152,7 @@ def simulate_street(
     seed: Seed = 1,
     monitor: Optional[Monitor] = None,
 ):
-    """Scan a made-up street from a vehicle, with the true facades, windows, doors and corners.
+    """Scan a made-up street from a vehicle or an airplane, with the true facades, windows, doors and corners.
 
     Houses stand side by side along both sides: plain fronts, fronts with a recess, a bay, balconies, and curved ones,
     all with windows and doors. Parked cars, trees, poles and people hide parts of them. The vehicle drives through
@@ -149,6 +182,8 @@ def simulate_street(
         Polygons with Z, counterclockwise seen from the street; openings in the plane of the facade's front.
     corners : LayerFeatures
         Corners of the facades, points with Z.
+    houses : LayerFeatures
+        Outlines of the houses on the ground, polygons with Z; none without ``houses``.
 
     Raises
     ------
@@ -158,14 +193,15 @@ def simulate_street(
     Notes
     -----
     Stairs lead straight up to a landing of 1.2 m before raised doors. A curved front is made of six flat strips;
-    walls of neighboring houses in one plane are one facade. The position of
-    the vehicle is known exactly; the noise lies along the beam. Frames stand 10 cm and panes 16 cm behind the front.
-    Not simulated: rooms behind panes, roofs, mirror images in glass, and echoes that mix two surfaces at an edge.
+    walls of neighboring houses in one plane are one facade. The roofs of houses are flush with their walls. From the
+    air the street is scanned as "Simulate town" does. The position of the vehicle is known exactly; the noise lies
+    along the beam. Frames stand 10 cm and panes 16 cm behind the front. Not simulated: rooms behind panes, mirror
+    images in glass, and echoes of the vehicle's scanners that mix two surfaces at an edge.
 
     Examples
     --------
     >>> from lidar_buildings.algorithms.simulation.simulate_street import simulate_street
-    >>> *_, facades, openings, corners = simulate_street(length=20.0, line_rate=5.0, angular_step=2.0)
+    >>> *_, facades, openings, corners, houses = simulate_street(length=20.0, line_rate=5.0, angular_step=2.0)
     >>> len(corners) >= 4 * len(facades)
     True
     """
@@ -176,26 +212,32 @@ def simulate_street(
             f"A street of {length:g} m has {pulses / 1e6:.0f} million pulses, more than {MAX_PULSES / 1e6:.0f} "
             "million; shorten it, lower the line rate, or take a larger speed or angular step."
         )
-    scene, truth, street = build_street(length, width, slope, clutter, seed, stoops, unevenness)
-    ground = scene.relief.plane
-    # In the right lane: the fronts of both sides are seen at different distances.
-    ends = [np.array(street.at(sign * length / 2, -width / 8)) for sign in (-1, 1)]
-    ends = [np.array([*end, float(ground(*end)) + _HEIGHT]) for end in ends]
-    way = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
-    made = drive_along(
-        scene,
-        Drive(ends[0], way, length, speed),
-        line_rate=line_rate,
-        angular_step=angular_step,
-        max_range=max_range,
-        range_noise=range_noise,
-        seed=seed,
-        monitor=monitor,
-    )
+    scene, truth, street = build_street(length, width, slope, clutter, seed, stoops, unevenness, houses)
+    if view == "airplane":
+        made = dict(vars(scan(scene, density=density, range_noise=range_noise, seed=seed, monitor=monitor)))
+    else:
+        made = drive_along(
+            scene,
+            _drive(scene, street, speed),
+            line_rate=line_rate,
+            angular_step=angular_step,
+            max_range=max_range,
+            range_noise=range_noise,
+            seed=seed,
+            monitor=monitor,
+        )
     made = _with_numbers(_through_glass(made, truth, glass, seed), truth, range_noise)
     if not len(made["xyz"]):
         raise ValueError(f"Nothing is within {max_range:g} m of the scanners; raise the maximum range.")
     return (*(made[name] for name in _CREATED), *_layers(truth))
+
+
+def _drive(scene: Scene, street: Rect, speed: float) -> Drive:
+    """Return a drive in the right lane, from which the fronts of both sides are seen at different distances."""
+    ends = [np.array(street.at(sign * street.length / 2, -street.width / 8)) for sign in (-1, 1)]
+    ends = [np.array([*end, float(scene.relief.plane(*end)) + _HEIGHT]) for end in ends]
+    way = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
+    return Drive(ends[0], way, street.length, speed)
 
 
 def _through_glass(made: dict[str, np.ndarray], truth: Truth, share: float, seed: int) -> dict[str, np.ndarray]:
@@ -225,8 +267,8 @@ def _with_numbers(made: dict[str, np.ndarray], truth: Truth, noise: float) -> di
     return {**made, "segment_id": on_facade, "cluster_id": opening[number]}
 
 
-def _layers(truth: Truth) -> tuple[LayerFeatures, LayerFeatures, LayerFeatures]:
-    """Return the true facades, openings and corners."""
+def _layers(truth: Truth) -> tuple[LayerFeatures, ...]:
+    """Return the true facades, openings, corners and houses."""
     walls = truth.facades
     numbers = list(range(1, len(walls) + 1))
     facades = LayerFeatures([[ring] for ring in walls], {"id": numbers, "kind": truth.kinds})
@@ -241,6 +283,10 @@ def _layers(truth: Truth) -> tuple[LayerFeatures, LayerFeatures, LayerFeatures]:
             "height": [float(ring[2, 2] - ring[1, 2]) for ring in rings],
         },
     )
+    outlines = LayerFeatures(
+        [[ring] for ring in truth.houses],
+        {"id": list(range(1, len(truth.houses) + 1)), "eave": truth.eaves, "ridge": truth.ridges},
+    )
     corners = [corner for ring in walls for corner in ring[:-1]]
     owner = np.repeat(numbers, [len(ring) - 1 for ring in walls]).tolist()
-    return facades, openings, LayerFeatures(corners, {"facade": owner})
+    return facades, openings, LayerFeatures(corners, {"facade": owner}), outlines

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from .scene import Scene
-from .solids import Rect, Solid, flat
+from .solids import Rect, Solid, flat, gable
 
 KINDS = ("plain", "recess", "bay", "curved", "balconies")
 
@@ -29,6 +29,9 @@ _STEP, _BALCONY, _PARAPET = 1.2, 1.1, 1.0
 
 # Stairs to a raised door: depth of the landing, run and greatest rise of a step, width beside the door (m).
 _LANDING, _RUN, _RISE, _BESIDE = 1.2, 0.28, 0.18, 0.25
+
+# Houses behind fronts: depth (m), pitch of their gable roofs (°), thickness of the lid of a bay (m).
+_DEPTH, _PITCHES, _LID = 10.0, (30.0, 45.0), 0.2
 
 # Cellar windows under raised floors: sill over the ground and height (m); floors from this height (m) have them.
 _CELLAR, _LEAST_RAISED = (0.25, 0.8), 1.4
@@ -52,6 +55,9 @@ class Truth:
     facade_of: dict[int, int] = field(default_factory=dict)
     opening_of: dict[int, int] = field(default_factory=dict)
     glass: set[int] = field(default_factory=set)
+    houses: list[np.ndarray] = field(default_factory=list)
+    eaves: list[float] = field(default_factory=list)
+    ridges: list[float] = field(default_factory=list)
 
     @property
     def facades(self) -> list[np.ndarray]:
@@ -113,6 +119,35 @@ def build_front(scene: Scene, truth: Truth, line: Line, height: float, kind: str
         _build_wall(scene, truth, part, top, kind, raised, has_openings=is_front and part.length > 1.8)
     if kind == "balconies":
         _hang_balconies(scene, line, top, height)
+
+
+def build_house(scene: Scene, truth: Truth, line: Line, height: float, kind: str, pitch: float) -> None:
+    """Put a house behind a straight front with this height over the ground: its other walls and a gable roof (°).
+
+    The roof is flush with the walls; its ridge runs along the street, and it goes on over a recess.
+    """
+    ground = float(scene.relief.plane(*line.start))
+    top, across, number = ground + height, (0.0, line.length), scene.new_id()
+    inner = _STEP + _WALL if kind == "recess" else _WALL
+    for along, inward in ((across, (inner, _DEPTH)), *(((end, end + _WALL), (_WALL, inner)) for end in _ends(line))):
+        _block(scene, line, along, inward, ground - 2 * _BELOW, top, number)
+    rect = line.rect(across, (0.0, _DEPTH))
+    tops = gable(rect, top, float(np.tan(np.deg2rad(pitch))))
+    scene.solids.append(Solid(rect, tops, top, PointClass.BUILDING, number))
+    third, front = line.length / 3, [(0.0, 0.0)]
+    if kind == "bay":
+        _block(scene, line, (third, 2 * third), (-_STEP, 0.0), top - _LID, top, number)
+    if kind in ("bay", "recess"):
+        off = _STEP if kind == "recess" else -_STEP
+        front += [(third, 0.0), (third, off), (2 * third, off), (2 * third, 0.0)]
+    corners = [*front, (line.length, 0.0), (line.length, _DEPTH), (0.0, _DEPTH), (0.0, 0.0)]
+    truth.houses.append(np.array([(*line.at(*corner), ground) for corner in corners]))
+    truth.eaves.append(top)
+    truth.ridges.append(float(np.min(tops @ [rect.x, rect.y, 1.0])))
+
+
+def _ends(line: Line) -> tuple[float, float]:
+    return 0.0, line.length - _WALL
 
 
 def _parts(line: Line, kind: str) -> list[tuple[Line, bool]]:
@@ -256,6 +291,11 @@ def _block(
     if along[1] - along[0] > 1e-6 and top - bottom > 1e-6:
         rect = line.rect(along, inward)
         scene.solids.append(Solid(rect, flat(rect, top), bottom, PointClass.BUILDING, number))
+
+
+def draw_pitch(rng: np.random.Generator) -> float:
+    """Return the pitch (°) of a roof."""
+    return float(rng.uniform(*_PITCHES))
 
 
 def _hang_balconies(scene: Scene, line: Line, top: float, height: float) -> None:

@@ -11,7 +11,7 @@ from .plants import plant_tree
 from .relief import Relief
 from .scene import Scene
 from .solids import Rect, Solid, flat
-from .street_fronts import KINDS, Line, Truth, between, build_front
+from .street_fronts import KINDS, Line, Truth, between, build_front, build_house, draw_pitch
 from .town_layout import park_car
 
 # Widths of houses, and heights of the eaves of a side (m); houses of one side differ by less than a storey.
@@ -32,6 +32,7 @@ def build_street(
     seed: int,
     raised: float = 0.0,
     unevenness: float = 0.0,
+    houses: bool = False,
 ) -> tuple[Scene, Truth, Rect]:
     """Make up a street.
 
@@ -49,6 +50,8 @@ def build_street(
         Height of the doors over the street (m).
     unevenness : float
         Distance (m) that the ends of fronts stand before or behind the line of the street at most.
+    houses : bool
+        Whether there are houses behind the fronts, none of which is curved then.
 
     Returns
     -------
@@ -64,7 +67,7 @@ def build_street(
     size = length + 2 * width
     scene, truth = Scene(Relief(size, angle, float(np.tan(np.deg2rad(slope))))), Truth()
     street = Rect(size / 2, size / 2, length, width, angle)
-    fronts = _Fronts(raised, unevenness, np.random.default_rng([seed, 7]))
+    fronts = _Fronts(raised, unevenness, houses, np.random.default_rng([seed, 7]))
     for side in (1, -1):
         _build_side(scene, truth, street, side, rng, fronts)
     if clutter:
@@ -75,10 +78,11 @@ def build_street(
 
 @dataclass(frozen=True)
 class _Fronts:
-    """How high (m) doors are over the street, and how far (m) the ends of fronts are off its line at most."""
+    """Height (m) of doors over the street, greatest distance (m) of fronts from its line, and whether houses follow."""
 
     raised: float
     unevenness: float
+    houses: bool
     rng: np.random.Generator
 
     def off_line(self, line: Line) -> Line:
@@ -94,11 +98,15 @@ def _build_side(scene: Scene, truth: Truth, street: Rect, side: int, rng: np.ran
     way = side * np.array([np.cos(street.angle), np.sin(street.angle)])
     eave = rng.uniform(*_EAVES)
     widths = _divided(street.length, rng)
-    first = int(rng.integers(len(KINDS)))
+    kinds = [kind for kind in KINDS if kind != "curved"] if fronts.houses else KINDS
+    first = int(rng.integers(len(kinds)))
     for k, width in enumerate(widths):
-        kind = KINDS[(first + k) % len(KINDS)]
+        kind = kinds[(first + k) % len(kinds)]
         height = eave + rng.uniform(0, _DIFFERENCE)
-        build_front(scene, truth, fronts.off_line(Line(start, way, width)), height, kind, fronts.raised)
+        line = fronts.off_line(Line(start, way, width))
+        build_front(scene, truth, line, height, kind, fronts.raised)
+        if fronts.houses:
+            build_house(scene, truth, line, height + fronts.raised, kind, draw_pitch(fronts.rng))
         start = start + width * way
 
 

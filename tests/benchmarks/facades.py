@@ -54,7 +54,7 @@ def streets() -> list[Table]:
         "s",
     )
     for seed, clutter in STREETS:
-        *arrays, facades, openings, corners = simulate_street(length=LENGTH, clutter=clutter, seed=seed)
+        *arrays, facades, openings, corners, _ = simulate_street(length=LENGTH, clutter=clutter, seed=seed)
         points = dict(zip(simulate_street.stage.creates, arrays))
         xyz, true = points["xyz"], points["segment_id"]
         start = time.perf_counter()
@@ -138,7 +138,7 @@ def lines() -> list[Table]:
     rates = [f"{name}: {rate}" for name in ("ground", "facade") for rate in ("compl.", "corr.")]
     table = Table("facade_lines", "street", "points", *rates, "s")
     for seed in (1, 2):
-        *arrays, _, _, _ = simulate_street(length=LENGTH, line_rate=40.0, seed=seed)
+        *arrays, _, _, _, _ = simulate_street(length=LENGTH, line_rate=40.0, seed=seed)
         points = dict(zip(simulate_street.stage.creates, arrays))
         start = time.perf_counter()
         number, found = segment_facade_lines(points["xyz"], points["gps_time"], points["point_source_id"])

@@ -11,7 +11,7 @@ from lidar_buildings.tests.builders import FAR
 
 @pytest.fixture(scope="module")
 def street():
-    *arrays, _, _, _ = simulate_street(length=16.0, line_rate=10.0, angular_step=0.5, seed=2)
+    *arrays, _, _, _, _ = simulate_street(length=16.0, line_rate=10.0, angular_step=0.5, seed=2)
     return dict(zip(simulate_street.stage.creates, arrays))
 
 

@@ -15,7 +15,7 @@ def street():
 
 
 def made(**tunables):
-    *arrays, facades, openings, corners = simulate_street(**{**QUICK, **tunables})
+    *arrays, facades, openings, corners, _ = simulate_street(**{**QUICK, **tunables})
     return dict(zip(simulate_street.stage.creates, arrays)), facades, openings, corners
 
 

@@ -1,0 +1,88 @@
+"""Walls in plan: directed segments with the outside on their right, of facades and of footprints."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..geometry.rings import signed_area
+from ..stage import LayerFeatures
+
+
+@dataclass(frozen=True)
+class PlanSegments:
+    """Directed segments in plan, with the building on their left.
+
+    Attributes
+    ----------
+    start, end : ndarray of shape (k, 2)
+        Ends, m.
+    owner : ndarray of shape (k,)
+        Facade or footprint, from 0, of each.
+    """
+
+    start: np.ndarray
+    end: np.ndarray
+    owner: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.start)
+
+    @property
+    def length(self) -> np.ndarray:
+        """Lengths (k,), m."""
+        return np.hypot(*(self.end - self.start).T)
+
+    @property
+    def way(self) -> np.ndarray:
+        """Unit vectors (k, 2) from start to end."""
+        return (self.end - self.start) / self.length[:, None]
+
+    @property
+    def normal(self) -> np.ndarray:
+        """Unit vectors (k, 2) to the outside."""
+        x, y = self.way.T
+        return np.column_stack([y, -x])
+
+    def moved(self, shift: np.ndarray) -> PlanSegments:
+        """Return the segments moved by a vector (2,), m."""
+        return PlanSegments(self.start + shift, self.end + shift, self.owner)
+
+
+def facade_segments(facades: LayerFeatures) -> PlanSegments:
+    """Return the segment of each upright polygon, at the middle of its height.
+
+    Polygons run counterclockwise seen from outside, as "Extract facades" draws them.
+    """
+    ends = []
+    for number, rings in enumerate(facades.geometries):
+        ring = np.asarray(rings[0], float)
+        offset = ring[:-1] - ring[0]
+        normal = np.cross(offset, np.roll(offset, -1, axis=0)).sum(axis=0)
+        across = np.hypot(*normal[:2])
+        if across <= 1e-9:
+            continue
+        along = np.array([-normal[1], normal[0]]) / across
+        middle = (ring[:, 2].min() + ring[:, 2].max()) / 2
+        # The foot of the perpendicular from the first vertex, carried up or down the plane to the middle.
+        base = ring[0, :2] - normal[:2] / across**2 * normal[2] * (middle - ring[0, 2])
+        position = (ring[:, :2] - base) @ along
+        ends.append((base + position.min() * along, base + position.max() * along, number))
+    start, end, owner = zip(*ends) if ends else ((), (), ())
+    return PlanSegments(np.array(start).reshape(-1, 2), np.array(end).reshape(-1, 2), np.array(owner, int))
+
+
+def outline_segments(footprints: LayerFeatures) -> PlanSegments:
+    """Return the edges of the exterior rings of footprints."""
+    starts, ends, owners = [], [], []
+    for number, rings in enumerate(footprints.geometries):
+        ring = np.asarray(rings[0], float)[:, :2]
+        ring = ring if signed_area(ring) > 0 else ring[::-1]
+        is_edge = np.hypot(*np.diff(ring, axis=0).T) > 1e-6
+        starts.append(ring[:-1][is_edge])
+        ends.append(ring[1:][is_edge])
+        owners.append(np.full(int(is_edge.sum()), number))
+    if not starts:
+        return PlanSegments(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0, int))
+    return PlanSegments(np.concatenate(starts), np.concatenate(ends), np.concatenate(owners))

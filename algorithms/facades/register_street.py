@@ -1,0 +1,180 @@
+"""Facades and openings of a street scan, moved onto an airborne cloud by the walls and the ground that both show."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from ..report.page import Row, build_page
+from ..stage import InputLayer, Layer, LayerFeatures, Measure, Monitor, Param, Report, stage
+from .extract_facades import AROUND_CORNER, FACADE_FIELDS, extract_facades
+from .extract_openings import OPENING_FIELDS, extract_openings
+from .plan_segments import facade_segments, outline_segments
+from .registration import Registration, register
+
+_MEASURES = (
+    Measure("shift_x", "Shift eastward", "m"),
+    Measure("shift_y", "Shift northward", "m"),
+    Measure("shift_z", "Shift upward", "m"),
+    Measure("residual", "Residual of common walls and ends", "m"),
+    Measure("overhang", "Outlines before the walls", "m"),
+    Measure("walls", "Common walls"),
+    Measure("ends", "Common ends of walls"),
+    Measure("ground", "Common cells of ground"),
+)
+
+# What the report says of each measure.
+_MEANINGS = {
+    "shift_x": "What is added to the eastings of the street scan.",
+    "shift_y": "What is added to its northings.",
+    "shift_z": "What is added to its elevations, from the ground that both scans show.",
+    "residual": "Root mean square distance of common walls and ends from the outlines after the shift.",
+    "overhang": "Mean distance of the outlines from the air before the walls: eaves, and the edge of the points.",
+    "walls": "Facades that lie on an edge of a footprint.",
+    "ends": "Ends of facades that lie at a corner of a footprint; they give the shift along the street.",
+    "ground": "Cells of 0.5 m in which the lowest point of the street is ground from the air, too.",
+}
+
+
+@stage(
+    "Register street scan",
+    group="Facades",
+    tags="registration,alignment,shift,coregistration,mobile mapping,terrestrial,airborne,facade,street,Peng",
+    input_layers=(
+        InputLayer("footprints", "Footprints", "Polygon", "Outlines of the buildings, from the airborne cloud."),
+    ),
+    layers=(
+        Layer(
+            "facades",
+            "Facades with openings",
+            "Polygon",
+            FACADE_FIELDS,
+            style="facades",
+            deviation="rms",
+            around=AROUND_CORNER,
+        ),
+        Layer("openings", "Windows and doors", "Polygon", OPENING_FIELDS, style="openings"),
+    ),
+    measures=_MEASURES,
+)
+def register_street(
+    xyz,
+    classification,
+    reference_xyz,
+    footprints,
+    reference_classification=None,
+    *,
+    max_shift: Annotated[
+        float,
+        Param(
+            "Maximum shift",
+            "How far the street scan may be off the airborne cloud, along either axis.",
+            unit="m",
+            low=0,
+            high=20,
+        ),
+    ] = 3.0,
+    min_size: Annotated[
+        float,
+        Param("Minimum size", "Least width and height of a window or door.", unit="m", low=0.05, high=10),
+    ] = 0.4,
+    monitor=None,
+):
+    """Find facades, windows and doors in a street scan and move them onto the airborne cloud.
+
+    The shift makes facades lie on the outlines of buildings, their ends at corners of these, and the street on the
+    ground. It is reported with its residual. The airborne cloud stays where it is.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates of the airborne cloud, m.
+    classification : ndarray of shape (n,), uint8
+        Its classes: ground (2) gives the shift in height.
+    reference_xyz : ndarray of shape (m, 3), float64
+        Coordinates of the street scan, from a vehicle or a tripod, m.
+    footprints : LayerFeatures
+        Outlines of the buildings.
+    reference_classification : ndarray of shape (m,), uint8, optional
+        Classes of the street scan; its ground, water and noise are no facades.
+
+    Returns
+    -------
+    facades, openings : LayerFeatures
+        As of "Extract openings", in the frame of the airborne cloud.
+    report : Report
+        The shift, its residual and what it rests on.
+
+    Raises
+    ------
+    ValueError
+        If the airborne cloud has no ground points.
+
+    Notes
+    -----
+    The paper scans streets without satellite positions and leaves open how its scans come together. A vehicle's
+    position between high houses is off by decimeters to meters, its direction hardly at all; so the transformation is
+    a shift. A search on a grid of 0.25 m finds the shift at which most of the walls lie on outlines; least squares in
+    narrowing rounds then solve for shift and overhang of the eaves together, which walls on both sides of a street tell
+    apart. Where a street shows no end of a wall at a corner, the shift along it stays near 0.
+
+    References
+    ----------
+    Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on vehicle
+    LIDAR. EURASIP Journal on Image and Video Processing 2018:121, sections 3 and 4.
+    """
+    is_ground = classification == PointClass.GROUND
+    if not is_ground.any():
+        raise ValueError(
+            "No point of the airborne cloud is called ground (class 2); run 'Classify ground points (TIN)' first."
+        )
+    classes = np.zeros(len(reference_xyz), np.uint8) if reference_classification is None else reference_classification
+    segment_id, _ = extract_facades(reference_xyz, classes, monitor=monitor.part(0, 0.5))
+    facades, openings = extract_openings(
+        reference_xyz, segment_id, min_size=min_size, monitor=monitor.part(0.5, 0.9)
+    )
+    found = register(
+        facade_segments(facades), outline_segments(footprints), reference_xyz, xyz[is_ground], max_shift
+    )
+    if found is None:
+        monitor.warn(
+            "No facade lies on a footprint, so the street scan is not moved; raise the maximum shift, or check that "
+            "both clouds show the same buildings."
+        )
+        found = Registration(np.zeros(3), float("nan"), float("nan"), 0, 0, 0)
+    else:
+        monitor.inform(_sentence(found))
+    monitor.progress(1.0)
+    return _moved(facades, found.shift), _moved(openings, found.shift), _report(found)
+
+
+def _sentence(found: Registration) -> str:
+    """Return what was found, in a sentence."""
+    x, y, z = found.shift
+    return (
+        f"The street scan is moved by {x:.2f} m eastward, {y:.2f} m northward and {z:.2f} m upward; {found.walls} walls "
+        f"and {found.ends} ends then lie {found.residual:.2f} m off the outlines (root mean square)."
+    )
+
+
+def _moved(features: LayerFeatures, shift: np.ndarray) -> LayerFeatures:
+    """Return features moved by a vector (3,), m."""
+    columns = dict(features.columns)
+    if "base" in columns:
+        columns["base"] = [base + float(shift[2]) for base in columns["base"]]
+    return LayerFeatures([[ring + shift for ring in rings] for rings in features.geometries], columns)
+
+
+def _report(found: Registration) -> Report:
+    """Return the measures and their page."""
+    lengths = (*found.shift.tolist(), found.residual, found.overhang)
+    counts = (found.walls, found.ends, found.ground)
+    values = dict(zip((measure.name for measure in _MEASURES), (*lengths, *counts)))
+    shown = [*("undefined" if np.isnan(value) else f"{value:.3f} m" for value in lengths), *map(str, counts)]
+    rows = [
+        Row(measure.title, text, _MEANINGS[measure.name]) for measure, text in zip(_MEASURES, shown)
+    ]
+    lead = _sentence(found) if found.walls else "No facade lies on a footprint; the street scan is not moved."
+    return Report(values, build_page("Registration of a street scan", lead, {"Shift": rows}, ""))

@@ -1,0 +1,214 @@
+"""The shift between a street scan and an airborne one: by walls and outlines, their ends, and the ground that both see."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Optional
+
+import numpy as np
+
+from ..geometry.grid import distinct, grid_over
+from ..packages import spatial
+from .plan_segments import PlanSegments
+
+
+@dataclass(frozen=True)
+class _Rules:
+    """What is common to both scans, and how far it may be off."""
+
+    # Walls and outlines run the same way within this angle (°): regularized outlines turn by a few degrees.
+    angle: float = 10.0
+    # Step of the search (m), and distance (m) within which it counts a wall or an end as common.
+    step: float = 0.25
+    near: float = 0.4
+    # Distances (m) within which walls and ends are common in the rounds that follow: down to twice the accuracy
+    # of an outline (0.1 m).
+    rounds: tuple[float, ...] = (0.6, 0.6, 0.4, 0.4, 0.3, 0.3, 0.2, 0.2)
+    # Standard deviations (m) of an outline's edge, of the eaves' overhang, and of the shift along a street where
+    # nothing there tells it.
+    edge: float = 0.1
+    overhang: float = 0.3
+    unseen: float = 1.0
+    # Walls shorter than this (m) are sides of recesses, which outlines from the air don't show.
+    shortest: float = 2.0
+    # Cells (m) of which the lowest points are taken for the ground of the street, and the least of them.
+    cell: float = 0.5
+    least_cells: int = 20
+    # Ground of both scans is common within this height (m) of the median difference.
+    ground: float = 0.2
+
+
+_RULES = _Rules()
+
+
+@dataclass(frozen=True)
+class Registration:
+    """How a street scan is moved onto an airborne one.
+
+    Attributes
+    ----------
+    shift : ndarray of shape (3,)
+        Vector (m) by which the street scan is moved.
+    residual : float
+        Root mean square distance (m) of common walls and ends after that; NaN without any.
+    overhang : float
+        How far outlines from the air lie before the walls (m), in the mean.
+    walls, ends, ground : int
+        Common walls, ends of walls, and cells of ground.
+    """
+
+    shift: np.ndarray
+    residual: float
+    overhang: float
+    walls: int
+    ends: int
+    ground: int
+
+
+@dataclass(frozen=True)
+class _Common:
+    """Linear equations of the shift in plan and the overhang: coefficients (m, 3), values (m,), weights (m,)."""
+
+    coefficients: np.ndarray
+    values: np.ndarray
+    weights: np.ndarray
+    n_walls: int
+
+
+def register(
+    walls: PlanSegments,
+    outlines: PlanSegments,
+    street: np.ndarray,
+    ground: np.ndarray,
+    max_shift: float,
+) -> Optional[Registration]:
+    """Return the shift of a street scan, None where it has no wall in common with the outlines.
+
+    Parameters
+    ----------
+    walls, outlines : PlanSegments
+        Facades of the street scan, and edges of footprints from the air.
+    street : ndarray of shape (n, 3)
+        Points of the street scan, m.
+    ground : ndarray of shape (m, 3)
+        Ground points of the airborne scan, m.
+    max_shift : float
+        Greatest shift along either axis (m).
+
+    Notes
+    -----
+    A wall and an outline that run the same way give the shift across them, but for the overhang of the eaves, which is
+    one unknown for all: walls of both sides of a street tell it from the shift. Ends of walls and corners of outlines
+    give the shift along. A search on a grid finds which are common, least squares in narrowing rounds their shift. The
+    ground then gives the shift in height.
+    """
+    long = walls.length >= _RULES.shortest
+    walls = PlanSegments(walls.start[long], walls.end[long], walls.owner[long])
+    if not len(walls) or not len(outlines):
+        return None
+    plan, common = _shift_in_plan(walls, outlines, max_shift)
+    if common is None:
+        return None
+    height, cells = _shift_in_height(street, ground, plan[:2])
+    off = common.coefficients @ plan - common.values
+    residual = float(np.sqrt(np.average(off**2, weights=common.weights)))
+    n_ends = len(common.values) - common.n_walls
+    return Registration(np.array([*plan[:2], height]), residual, float(plan[2]), common.n_walls, n_ends, cells)
+
+
+def _shift_in_plan(
+    walls: PlanSegments, outlines: PlanSegments, max_shift: float
+) -> tuple[np.ndarray, Optional[_Common]]:
+    """Return shift and overhang (3,), m, and the equations that they solve; None without any."""
+    plan = np.array([*_searched(walls, outlines, max_shift), 0.0])
+    common = None
+    for near in _RULES.rounds:
+        common = _common(walls, outlines, plan, near)
+        if not common.n_walls:
+            return plan, None
+        plan = _solved(common)
+    return plan, common
+
+
+def _searched(walls: PlanSegments, outlines: PlanSegments, max_shift: float) -> np.ndarray:
+    """Return the shift (2,), m, of a grid at which most of the walls lie on outlines, by length; ends count a meter."""
+    steps = np.arange(-np.floor(max_shift / _RULES.step), np.floor(max_shift / _RULES.step) + 1) * _RULES.step
+    shifts = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
+    # Of shifts that are equally good the smallest comes first.
+    shifts = shifts[np.argsort(np.hypot(*shifts.T), kind="stable")]
+    score = [_score(walls.moved(shift), outlines) for shift in shifts]
+    return shifts[int(np.argmax(score))]
+
+
+def _score(walls: PlanSegments, outlines: PlanSegments) -> float:
+    across, shared, left, right = _offsets(walls, outlines)
+    on_outline = ((np.abs(across) <= _RULES.near) & (shared > 0)).any(axis=1)
+    ends = sum((np.abs(along) <= _RULES.near).any(axis=1)[on_outline].sum() for along in (left, right))
+    return float(walls.length[on_outline].sum() + ends)
+
+
+def _offsets(walls: PlanSegments, outlines: PlanSegments) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Return, of walls and outlines that run the same way, how far outlines are off; NaN (or 0 shared) for others.
+
+    Distance across the wall (m), shared length (m), and distances along it of the left and right ends, each (walls,
+    outlines).
+    """
+    way, normal = walls.way[:, None], walls.normal[:, None]
+    alike = walls.way @ outlines.way.T >= np.cos(np.radians(_RULES.angle))
+    middle = (walls.start + walls.end)[:, None] / 2
+    first, last = ((ends[None] - middle) for ends in (outlines.start, outlines.end))
+    along = [np.einsum("ijk,ijk->ij", ends, np.broadcast_to(way, ends.shape)) for ends in (first, last)]
+    off = [np.einsum("ijk,ijk->ij", ends, np.broadcast_to(normal, ends.shape)) for ends in (first, last)]
+    half = walls.length[:, None] / 2
+    shared = np.where(alike, np.minimum(along[1], half) - np.maximum(along[0], -half), 0.0)
+    # Where the wall's middle is beside the outline, or at the nearer end of the outline.
+    place = np.clip(-along[0] / np.maximum(along[1] - along[0], 1e-9), 0, 1)
+    across = np.where(alike, off[0] + place * (off[1] - off[0]), np.nan)
+    left, right = np.where(alike, along[0] + half, np.nan), np.where(alike, along[1] - half, np.nan)
+    return across, shared, left, right
+
+
+def _common(walls: PlanSegments, outlines: PlanSegments, plan: np.ndarray, near: float) -> _Common:
+    """Return the equations of walls and ends that are within a distance (m) of outlines and corners at a shift."""
+    across, shared, left, right = _offsets(walls.moved(plan[:2]), outlines)
+    off = np.where(shared > 0, np.abs(across - plan[2]), np.inf)
+    best = off.argmin(axis=1)
+    rows = np.flatnonzero(off[np.arange(len(walls)), best] <= near)
+    equations = [(*walls.normal[k], 1.0, across[k, best[k]], np.sqrt(walls.length[k])) for k in rows]
+    for k in rows:
+        # Gables overhang as eaves do: an outline goes on beyond both ends of a wall.
+        for along, outward in ((left[k], -1.0), (right[k], 1.0)):
+            beside = np.where(np.abs(across[k] - plan[2]) <= near, np.abs(along - outward * plan[2]), np.inf)
+            if beside.min() <= near:
+                equations.append((*walls.way[k], outward, along[beside.argmin()], 1.0))
+    table = np.array(equations).reshape(-1, 5)
+    coefficients, values = table[:, :3], table[:, 3] + table[:, :2] @ plan[:2]
+    return _Common(coefficients, values, table[:, 4], len(rows))
+
+
+def _solved(common: _Common) -> np.ndarray:
+    """Return shift and overhang (3,), m, by weighted least squares; what nothing tells stays near 0."""
+    known = np.sqrt(common.weights) / _RULES.edge
+    assumed = np.diag([1 / _RULES.unseen, 1 / _RULES.unseen, 1 / _RULES.overhang])
+    left = np.concatenate([common.coefficients * known[:, None], assumed])
+    right = np.concatenate([common.values * known, np.zeros(3)])
+    return np.linalg.lstsq(left, right, rcond=None)[0]
+
+
+def _shift_in_height(street: np.ndarray, ground: np.ndarray, shift: np.ndarray) -> tuple[float, int]:
+    """Return the shift in height (m) of a street scan that is moved in plan, and on how many cells it was measured."""
+    cells, cell = distinct(grid_over(street, _RULES.cell).number(street))
+    order = np.lexsort((street[:, 2], cell))
+    lowest = street[order[np.searchsorted(cell[order], np.arange(len(cells)))]]
+    distance, nearest = spatial.cKDTree(ground[:, :2]).query(lowest[:, :2] + shift, k=min(3, len(ground)))
+    distance, nearest = distance.reshape(len(lowest), -1), nearest.reshape(len(lowest), -1)
+    beside = distance[:, -1] <= 2 * _RULES.cell + _RULES.near
+    difference = ground[nearest[beside], 2].mean(axis=1) - lowest[beside, 2]
+    if len(difference) < _RULES.least_cells:
+        return 0.0, 0
+    # The fullest window: under cars and walls the lowest point is no ground.
+    order = np.sort(difference)
+    until = np.searchsorted(order, order + 2 * _RULES.ground, side="right")
+    first = int(np.argmax(until - np.arange(len(order))))
+    window = order[first : until[first]]
+    return float(np.median(window)), len(window)

@@ -1,0 +1,226 @@
+"""A city block from the street and from the air: roofs, walls where they were seen, windows and doors."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..facades.plan_segments import PlanSegments, facade_segments
+from ..facades.street_walls import fitted_to_walls
+from ..geometry.line_segments import nearest_edge_distances
+from ..sampling.cloud_sampling import CloudSampling
+from ..stage import Field, InputLayer, Layer, LayerFeatures, Monitor, Param, TextFile, stage
+from . import cityjson
+from .building_facts import BUILDING_FIELDS, ROOF_FIELDS, WALL_FIELDS, NamedModel, face_attributes, face_rings
+from .reconstruct_roofs import reconstruct_roofs
+from .set_openings import DOOR, WINDOW, Opening, with_openings
+from .solids import WALL, Solid, fault_of
+
+# The level of detail with windows and doors, as CityJSON writes it.
+LEVEL_OF_OPENINGS = "3"
+
+# A wall of the model is one that was seen if the middle of its foot lies within this distance (m) of it: rounding, and
+# the tilt of facades.
+_ON_FACADE = 0.1
+
+STREET, AIR = "street", "air"
+
+OPENING_FIELDS = (
+    Field("id", int, "number of the opening, from 1"),
+    Field("building", str, "building that it is part of, as in the layer of buildings", of="footprints"),
+    Field("kind", str, "window or door"),
+    Field("width", float, "width", "m"),
+    Field("height", float, "height", "m"),
+    Field("sill", float, "height of its lower side over the ground of the building", "m"),
+)
+
+
+@stage(
+    "Reconstruct block",
+    group="Models in three dimensions",
+    tags="3D,LoD3,city block,street,facade,window,door,roof,solid,city model,CityJSON,mobile mapping,airborne,Peng",
+    input_layers=(
+        InputLayer("footprints", "Footprints", "Polygon", "Outlines of the buildings, from the airborne cloud."),
+        InputLayer(
+            "facades",
+            "Facades",
+            "Polygon",
+            "Upright polygons of the walls seen from the street, in the frame of the cloud, as 'Register street scan' "
+            "makes them.",
+        ),
+        InputLayer("openings", "Windows and doors", "Polygon", "Polygons in the planes of the facades."),
+    ),
+    layers=(
+        Layer("buildings", "Buildings", "Polygon", BUILDING_FIELDS, style="model_grounds"),
+        Layer(
+            "walls",
+            "Walls",
+            "Polygon",
+            (*WALL_FIELDS, Field("source", str, f"{STREET}: on a facade; {AIR}: on the outline of a footprint")),
+            style="model_walls",
+        ),
+        Layer("roofs", "Roofs", "Polygon", ROOF_FIELDS, style="model_roofs"),
+        Layer("set_openings", "Windows and doors of the model", "Polygon", OPENING_FIELDS, style="openings"),
+    ),
+    files=(TextFile("cityjson", "CityJSON", cityjson.FORMATS, cityjson.cityjson_pieces, NamedModel, "footprints"),),
+)
+def reconstruct_block(
+    xyz,
+    classification,
+    footprints,
+    facades,
+    openings,
+    *,
+    min_plane_area: Annotated[
+        float,
+        Param("Minimum plane area", "Area of the smallest roof plane, seen from above.", unit="m²", low=0.1, high=1000),
+    ] = 1.5,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Model the buildings of a block with the walls, windows and doors that were seen from the street.
+
+    The outline of each building follows the facades where they were seen: fronts, recesses, bays. Elsewhere it is the
+    footprint. Roofs are reconstructed on it, and windows and doors set into the walls.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Coordinates (m) of the airborne cloud.
+    classification : ndarray of shape (n,)
+        Its classes; points of class 6 are modelled, those of class 2 are the ground.
+    footprints : LayerFeatures
+        Outlines of the buildings.
+    facades, openings : LayerFeatures
+        Walls, windows and doors seen from the street.
+
+    Returns
+    -------
+    buildings, roofs : LayerFeatures
+        As of "Reconstruct roofs", on the outlines that follow the facades.
+    walls : LayerFeatures
+        Walls with holes for their windows and doors, and whether each was seen from the street.
+    set_openings : LayerFeatures
+        Windows and doors as faces of the walls.
+    cityjson : list of NamedModel
+        The same for one file: CityJSON 2.0 with levels of detail 1.2, 1.3, 2.2 and, with ``Window`` and ``Door``
+        surfaces, 3.
+
+    Raises
+    ------
+    ValueError
+        If no point is called building, or none ground, or no footprint has an area.
+
+    Notes
+    -----
+    A wall belongs to the nearest footprint within 1.6 m. An edge of the footprint up to 0.5 m before a wall is the
+    outline of its eaves and moves onto it; walls with less than 3 m between them are joined. Of two parallel walls the
+    outer one hides the end of the inner one, so the step between them is at the end of the outer one. A facade that
+    ends near a corner of the footprint is the corner. Windows and doors lie in the plane of the wall, 3 cm from its
+    edges at least; those that cross an edge of a wall are left out, and their number is said.
+
+    References
+    ----------
+    Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on vehicle
+    LIDAR. EURASIP Journal on Image and Video Processing 2018:121.
+    CityJSON Specifications 2.0.1, section 3.3 (semantics of geometric primitives).
+    """
+    segments = facade_segments(facades)
+    fitted, seen = fitted_to_walls(footprints, segments)
+    monitor.progress(0.1)
+    buildings, _, roofs, models, _ = reconstruct_roofs(
+        xyz,
+        classification,
+        fitted,
+        min_plane_area=min_plane_area,
+        sampling=sampling,
+        monitor=monitor.part(0.1, 0.9),
+    )
+    pierced, done = _pierced(models, _openings(openings))
+    _inform(int((seen > 0).sum()), len(footprints), len(done), len(openings), monitor)
+    monitor.progress(1.0)
+    return buildings, _walls(pierced, segments), roofs, _opening_layer(done), pierced
+
+
+def _openings(features: LayerFeatures) -> list[Opening]:
+    """Return windows and doors; what no attribute calls a door is a window."""
+    kinds = features.columns.get("kind", [WINDOW] * len(features))
+    return [
+        Opening(number, DOOR if kind == DOOR else WINDOW, np.asarray(rings[0], float)[:-1])
+        for number, (rings, kind) in enumerate(zip(features.geometries, kinds), start=1)
+        if np.asarray(rings[0]).shape[1] == 3
+    ]
+
+
+def _pierced(models: list[NamedModel], openings: list[Opening]) -> tuple[list[NamedModel], list[tuple]]:
+    """Return the models with a level of detail that has openings, and each opening that was set with its model."""
+    pierced, done, left = [], [], openings
+    for one in models:
+        solids = []
+        for solid in one.model.best:
+            made, found = with_openings(solid, left)
+            if found and fault_of(made):
+                made, found = solid, []
+            solids.append(made)
+            done += [(one, opening) for opening in found]
+            taken = {opening.number for opening in found}
+            left = [opening for opening in left if opening.number not in taken]
+        levels = {**one.model.solids, LEVEL_OF_OPENINGS: solids}
+        pierced.append(replace(one, model=replace(one.model, solids=levels)))
+    return pierced, done
+
+
+def _inform(n_fitted: int, n_footprints: int, n_set: int, n_openings: int, monitor: Monitor) -> None:
+    """Say how many footprints follow facades, and how many openings were set."""
+    monitor.inform(f"{n_fitted} of {n_footprints} footprints follow facades; {n_set} of {n_openings} openings are set.")
+    if n_set < n_openings:
+        monitor.warn(f"{n_openings - n_set} of {n_openings} windows and doors lie in no wall of a model and are left out.")
+
+
+def _best_with_openings(one: NamedModel) -> list[Solid]:
+    return one.model.solids[LEVEL_OF_OPENINGS]
+
+
+def _walls(models: list[NamedModel], segments: PlanSegments) -> LayerFeatures:
+    """Return the walls of models with the holes of their openings."""
+    geometries, rows = [], []
+    for one in models:
+        for solid in _best_with_openings(one):
+            for face in (face for face, kind in enumerate(solid.kinds) if kind == WALL):
+                geometries.append(face_rings(solid, face))
+                rows.append({**face_attributes(one, solid, face), "source": _source(solid, face, segments)})
+    names = [*(field.name for field in WALL_FIELDS if field.name != "id"), "source"]
+    columns = {name: [row[name] for row in rows] for name in names}
+    return LayerFeatures(geometries, {"id": list(range(1, len(rows) + 1)), **columns})
+
+
+def _source(solid: Solid, face: int, segments: PlanSegments) -> str:
+    """Return whether a wall was seen from the street."""
+    ring = solid.vertices[solid.faces[face][0]][:, :2]
+    middle = (ring.min(axis=0) + ring.max(axis=0)) / 2
+    if not len(segments):
+        return AIR
+    return STREET if nearest_edge_distances(middle[None], segments.start, segments.end)[0] <= _ON_FACADE else AIR
+
+
+def _opening_layer(done: list[tuple]) -> LayerFeatures:
+    """Return windows and doors as polygons."""
+    columns: dict[str, list] = {field.name: [] for field in OPENING_FIELDS}
+    geometries = []
+    for number, (one, opening) in enumerate(done, start=1):
+        ring = opening.ring
+        geometries.append([np.concatenate([ring, ring[:1]])])
+        offset = ring[:, None, :2] - ring[None, :, :2]
+        values = (
+            number,
+            one.name,
+            opening.kind,
+            float(np.hypot(*offset.reshape(-1, 2).T).max()),
+            float(np.ptp(ring[:, 2])),
+            float(ring[:, 2].min() - one.model.base),
+        )
+        for name, value in zip(columns, values):
+            columns[name].append(value)
+    return LayerFeatures(geometries, columns)

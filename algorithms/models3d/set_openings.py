@@ -1,0 +1,115 @@
+"""Windows and doors as faces of their own in the walls of a solid: level of detail 3."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..geometry.line_segments import are_inside, is_valid
+from .solids import WALL, Solid
+
+WINDOW, DOOR = "window", "door"
+
+
+@dataclass(frozen=True)
+class _Rules:
+    """When an opening is one of a wall."""
+
+    # Wall and opening face the same way within this angle (cosine: 15°), and are off each other by this (m) at most.
+    same_way: float = 0.966
+    off: float = 0.5
+    # Distance (m) that stays between an opening and the edge of its wall: thinner strips make no sound triangles.
+    margin: float = 0.03
+    # An opening is cut back to its wall, of which it keeps this share of its area at least.
+    kept: float = 0.8
+
+
+_RULES = _Rules()
+
+
+@dataclass(frozen=True)
+class Opening:
+    """A window or door: number, kind and open ring (m, 3), counterclockwise seen from outside, m."""
+
+    number: int
+    kind: str
+    ring: np.ndarray
+
+
+def with_openings(solid: Solid, openings: list[Opening]) -> tuple[Solid, list[Opening]]:
+    """Return a solid with the openings that lie in its walls as faces, and those openings as they were set.
+
+    A wall gets a hole for each, which the face of the opening closes: the solid stays closed. ``planes`` of these faces
+    are the numbers of the openings.
+    """
+    vertices = [tuple(row) for row in solid.vertices.tolist()]
+    faces, kinds, planes = [list(rings) for rings in solid.faces], list(solid.kinds), list(solid.planes)
+    walls = [_Wall(solid, face) for face, kind in enumerate(solid.kinds) if kind == WALL]
+    done = []
+    for opening in openings:
+        wall, flat = _best_wall(walls, opening)
+        if wall is None or flat is None:
+            continue
+        ring = wall.space(flat)
+        numbers = list(range(len(vertices), len(vertices) + len(ring)))
+        vertices += [tuple(row) for row in ring.tolist()]
+        wall.rings.append(np.concatenate([flat[::-1], flat[-1:]]))
+        faces[wall.face].append(numbers[::-1])
+        faces.append([numbers])
+        kinds.append(opening.kind)
+        planes.append(opening.number)
+        done.append(Opening(opening.number, opening.kind, ring))
+    return Solid(np.array(vertices), faces, kinds, planes), done
+
+
+class _Wall:
+    """An upright face of a solid, in its own plane: along and up it."""
+
+    def __init__(self, solid: Solid, face: int) -> None:
+        self.face = face
+        normal = solid.normal(face)
+        self.normal = normal / np.linalg.norm(normal)
+        level = np.array([-self.normal[1], self.normal[0], 0.0])
+        self.along = level / np.linalg.norm(level)
+        self.up = np.cross(self.normal, self.along)
+        self.origin = solid.vertices[solid.faces[face][0][0]]
+        self.rings = [self.flat(solid.vertices[[*ring, ring[0]]]) for ring in solid.faces[face]]
+
+    def flat(self, places: np.ndarray) -> np.ndarray:
+        """Return positions (m, 2) along and up the wall of places (m, 3)."""
+        return (places - self.origin) @ np.column_stack([self.along, self.up])
+
+    def space(self, flat: np.ndarray) -> np.ndarray:
+        """Return the places (m, 3) on the wall of positions (m, 2)."""
+        return self.origin + flat[:, :1] * self.along + flat[:, 1:] * self.up
+
+
+def _best_wall(walls: list[_Wall], opening: Opening) -> tuple:
+    """Return the nearest wall that an opening can be set into, and its open ring (m, 2) there; None without any."""
+    offset = opening.ring - opening.ring[0]
+    normal = np.cross(offset, np.roll(offset, -1, axis=0)).sum(axis=0)
+    normal /= np.linalg.norm(normal)
+    middle = opening.ring.mean(axis=0)
+    off = [abs(float((middle - wall.origin) @ wall.normal)) for wall in walls]
+    for number in np.argsort(off):
+        wall = walls[number]
+        if off[number] > _RULES.off:
+            break
+        if normal @ wall.normal >= _RULES.same_way:
+            flat = _cut_back(wall.rings, wall.flat(opening.ring))
+            if flat is not None:
+                return wall, flat
+    return None, None
+
+
+def _cut_back(rings: list[np.ndarray], flat: np.ndarray):
+    """Return the open ring (m, 2) of an opening within the rings of a wall; None if it doesn't lie in it."""
+    outer = rings[0]
+    low, high = outer.min(axis=0) + _RULES.margin, outer.max(axis=0) - _RULES.margin
+    inner = np.clip(flat, low, high)
+    kept = np.ptp(inner, axis=0).prod() / max(np.ptp(flat, axis=0).prod(), 1e-9)
+    if kept < _RULES.kept or not are_inside(inner, outer).all():
+        return None
+    closed = np.concatenate([inner[::-1], inner[-1:]])
+    return inner if is_valid([outer, *rings[1:], closed]) else None
