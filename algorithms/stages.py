@@ -10,6 +10,7 @@ from .buildings.complete_buildings import complete_buildings
 from .facades.extract_facades import extract_facades
 from .facades.extract_openings import extract_openings
 from .facades.reconstruct_gables import reconstruct_gables
+from .facades.register_street import register_street
 from .facades.segment_facade_lines import segment_facade_lines
 from .features.classify_dimensionality import classify_dimensionality
 from .features.compute_features import compute_features
@@ -17,6 +18,7 @@ from .footprints.extract_footprints import extract_footprints
 from .landcover.classify_vegetation import classify_vegetation
 from .landcover.classify_water import classify_water
 from .models3d.export_for_roofer import export_for_roofer
+from .models3d.reconstruct_block import reconstruct_block
 from .models3d.reconstruct_roofs import reconstruct_roofs
 from .preparation.classify_noise_histogram import classify_noise_histogram
 from .preparation.classify_noise_histogram_2019 import classify_noise_histogram_2019
@@ -107,8 +109,10 @@ _FUNCTIONS: tuple[Any, ...] = (
     segment_facade_lines,
     extract_facades,
     extract_openings,
+    register_street,
     reconstruct_gables,
     reconstruct_roofs,
+    reconstruct_block,
     export_for_roofer,
     assess_buildings,
     assess_classes,

@@ -86,6 +86,7 @@ STAGE_IDS = {
     "classifywalls",
     "extractwallfootprints",
     "reconstructroofs",
+    "reconstructblock",
     "exportforroofer",
     "assessbuildings",
     "assessground",
@@ -102,6 +103,7 @@ STAGE_IDS = {
     "extractopenings",
     "segmentfacadelines",
     "reconstructgables",
+    "registerstreet",
 }
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints", "modelbuildings"}
 PIPELINE_IDS |= {"modelfacades", "modelindustry", "modelterrain"}
@@ -115,6 +117,7 @@ VERBS |= {
     "downsample",
     "merge",
     "rasterize",
+    "register",
     "map",
     "compare",
     "interpret",
@@ -159,6 +162,12 @@ USED_WITH: dict[tuple[str, str], dict[str, Any]] = {
 ESTIMATED_IN_ROUNDS = {("classify_ground_tin_2000", "iteration_distance")}
 # Read layers whose geometries have heights (m): those of roofs.
 READS_HEIGHTS = {"assess_models": 6.0}
+
+# Input layers with upright polygons: part of the southern wall of a house, by shares of its length, and heights (m).
+UPRIGHT = {
+    ("reconstruct_block", "facades"): (0.0, 1.0, 0.5, 4.0),
+    ("reconstruct_block", "openings"): (0.4, 0.6, 2.0, 3.2),
+}
 # Tunables at which a stage that makes its own data is quick.
 QUICK: dict[str, dict[str, Any]] = {
     "simulate_tree": {"height": 4.0, "dbh": 0.08, "n_branches": 2, "density": 300.0},
@@ -169,7 +178,7 @@ QUICK: dict[str, dict[str, Any]] = {
     "simulate_flight": {"duration": 20.0, "line_rate": 4.0},
     "simulate_village": {"size": 90.0, "density": 5.0},
     "segment_facade_lines": {"tolerance": 1.0},
-    "simulate_street": {"length": 12.0, "line_rate": 10.0, "angular_step": 2.0},
+    "simulate_street": {"length": 12.0, "line_rate": 10.0, "angular_step": 2.0, "houses": True},
     "simulate_drone_site": {"size": 60.0, "density": 5.0},
 }
 
@@ -323,6 +332,13 @@ def parts_of(values: np.ndarray) -> list[np.ndarray]:
     return [values[::2], values[1::2]]
 
 
+def upright(ring: np.ndarray, part: tuple[float, float, float, float]) -> np.ndarray:
+    """Return the ring of a part of the wall over the southern edge of a ring: shares of it, and heights (m)."""
+    first, last, low, high = part
+    start, end = (ring[0] + share * (ring[1] - ring[0]) for share in (first, last))
+    return np.array([(*start, low), (*end, low), (*end, high), (*start, high), (*start, low)])
+
+
 def drawn(stage: Stage, shift: tuple[float, float] = (0.0, 0.0)) -> dict[str, LayerFeatures]:
     """Return a layer for each input layer of the stage: the houses of the scene, each layer a hand further north."""
     boxes = ((5, 5, 17, 13), (22, 20, 31, 34))
@@ -332,6 +348,8 @@ def drawn(stage: Stage, shift: tuple[float, float] = (0.0, 0.0)) -> dict[str, La
         rings = [ring + (0.0, 0.125 * i) + shift for ring in rings]
         if stage.name in READS_HEIGHTS:
             rings = [np.column_stack([ring, np.full(len(ring), READS_HEIGHTS[stage.name])]) for ring in rings]
+        if (stage.name, input_layer.name) in UPRIGHT:
+            rings = [upright(ring, UPRIGHT[stage.name, input_layer.name]) for ring in rings]
         shapes = {"Polygon": [[ring] for ring in rings], "LineString": rings, "Point": [ring[0] for ring in rings]}
         layers[input_layer.name] = LayerFeatures(
             shapes[input_layer.geometry], {"id": np.array([1, 2]), "name": ["one", None]}

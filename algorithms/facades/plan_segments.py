@@ -51,13 +51,15 @@ class PlanSegments:
 
 
 def facade_segments(facades: LayerFeatures) -> PlanSegments:
-    """Return the segment of each upright polygon, at the middle of its height.
+    """Return the segment of each polygon with heights that is not level, at the middle of its height.
 
     Polygons run counterclockwise seen from outside, as "Extract facades" draws them.
     """
     ends = []
     for number, rings in enumerate(facades.geometries):
         ring = np.asarray(rings[0], float)
+        if ring.shape[1] < 3:
+            continue
         offset = ring[:-1] - ring[0]
         normal = np.cross(offset, np.roll(offset, -1, axis=0)).sum(axis=0)
         across = np.hypot(*normal[:2])

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Optional
+from typing import Annotated
 
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..report.page import Row, build_page
-from ..stage import InputLayer, Layer, LayerFeatures, Measure, Monitor, Param, Report, stage
+from ..stage import InputLayer, Layer, LayerFeatures, Measure, Param, Report, stage
 from .extract_facades import AROUND_CORNER, FACADE_FIELDS, extract_facades
 from .extract_openings import OPENING_FIELDS, extract_openings
 from .plan_segments import facade_segments, outline_segments
@@ -63,8 +63,8 @@ def register_street(
     xyz,
     classification,
     reference_xyz,
+    reference_classification,
     footprints,
-    reference_classification=None,
     *,
     max_shift: Annotated[
         float,
@@ -95,10 +95,10 @@ def register_street(
         Its classes: ground (2) gives the shift in height.
     reference_xyz : ndarray of shape (m, 3), float64
         Coordinates of the street scan, from a vehicle or a tripod, m.
+    reference_classification : ndarray of shape (m,), uint8
+        Its classes; ground, water and noise are no facades. All points may be unclassified.
     footprints : LayerFeatures
         Outlines of the buildings.
-    reference_classification : ndarray of shape (m,), uint8, optional
-        Classes of the street scan; its ground, water and noise are no facades.
 
     Returns
     -------
@@ -130,14 +130,9 @@ def register_street(
         raise ValueError(
             "No point of the airborne cloud is called ground (class 2); run 'Classify ground points (TIN)' first."
         )
-    classes = np.zeros(len(reference_xyz), np.uint8) if reference_classification is None else reference_classification
-    segment_id, _ = extract_facades(reference_xyz, classes, monitor=monitor.part(0, 0.5))
-    facades, openings = extract_openings(
-        reference_xyz, segment_id, min_size=min_size, monitor=monitor.part(0.5, 0.9)
-    )
-    found = register(
-        facade_segments(facades), outline_segments(footprints), reference_xyz, xyz[is_ground], max_shift
-    )
+    segment_id, _ = extract_facades(reference_xyz, reference_classification, monitor=monitor.part(0, 0.5))
+    facades, openings = extract_openings(reference_xyz, segment_id, min_size=min_size, monitor=monitor.part(0.5, 0.9))
+    found = register(facade_segments(facades), outline_segments(footprints), reference_xyz, xyz[is_ground], max_shift)
     if found is None:
         monitor.warn(
             "No facade lies on a footprint, so the street scan is not moved; raise the maximum shift, or check that "
@@ -154,8 +149,8 @@ def _sentence(found: Registration) -> str:
     """Return what was found, in a sentence."""
     x, y, z = found.shift
     return (
-        f"The street scan is moved by {x:.2f} m eastward, {y:.2f} m northward and {z:.2f} m upward; {found.walls} walls "
-        f"and {found.ends} ends then lie {found.residual:.2f} m off the outlines (root mean square)."
+        f"The street scan is moved by {x:.2f} m eastward, {y:.2f} m northward and {z:.2f} m upward; "
+        f"{found.walls} walls and {found.ends} ends are then off the outlines by {found.residual:.2f} m (rms)."
     )
 
 
@@ -173,8 +168,6 @@ def _report(found: Registration) -> Report:
     counts = (found.walls, found.ends, found.ground)
     values = dict(zip((measure.name for measure in _MEASURES), (*lengths, *counts)))
     shown = [*("undefined" if np.isnan(value) else f"{value:.3f} m" for value in lengths), *map(str, counts)]
-    rows = [
-        Row(measure.title, text, _MEANINGS[measure.name]) for measure, text in zip(_MEASURES, shown)
-    ]
+    rows = [Row(measure.title, text, _MEANINGS[measure.name]) for measure, text in zip(_MEASURES, shown)]
     lead = _sentence(found) if found.walls else "No facade lies on a footprint; the street scan is not moved."
     return Report(values, build_page("Registration of a street scan", lead, {"Shift": rows}, ""))

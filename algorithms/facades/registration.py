@@ -1,4 +1,4 @@
-"""The shift between a street scan and an airborne one: by walls and outlines, their ends, and the ground that both see."""
+"""The shift between a street scan and an airborne one: by walls, their ends, and the ground that both see."""
 
 from __future__ import annotations
 
@@ -21,6 +21,8 @@ class _Rules:
     # Step of the search (m), and distance (m) within which it counts a wall or an end as common.
     step: float = 0.25
     near: float = 0.4
+    # Overhangs of eaves (m) that are tried: few are wider.
+    overhangs: tuple[float, ...] = (0.0, 0.4, 0.8)
     # Distances (m) within which walls and ends are common in the rounds that follow: down to twice the accuracy
     # of an outline (0.1 m).
     rounds: tuple[float, ...] = (0.6, 0.6, 0.4, 0.4, 0.3, 0.3, 0.2, 0.2)
@@ -67,7 +69,7 @@ class Registration:
 
 @dataclass(frozen=True)
 class _Common:
-    """Linear equations of the shift in plan and the overhang: coefficients (m, 3), values (m,), weights (m,)."""
+    """Linear equations of the shift in plan and the overhangs of eaves and gables: (m, 4), values and weights (m,)."""
 
     coefficients: np.ndarray
     values: np.ndarray
@@ -99,7 +101,8 @@ def register(
     -----
     A wall and an outline that run the same way give the shift across them, but for the overhang of the eaves, which is
     one unknown for all: walls of both sides of a street tell it from the shift. Ends of walls and corners of outlines
-    give the shift along. A search on a grid finds which are common, least squares in narrowing rounds their shift. The
+    give the shift along, but for the overhang of gables, another unknown. A search on a grid finds which are common,
+    least squares in narrowing rounds their shift. The
     ground then gives the shift in height.
     """
     long = walls.length >= _RULES.shortest
@@ -119,8 +122,8 @@ def register(
 def _shift_in_plan(
     walls: PlanSegments, outlines: PlanSegments, max_shift: float
 ) -> tuple[np.ndarray, Optional[_Common]]:
-    """Return shift and overhang (3,), m, and the equations that they solve; None without any."""
-    plan = np.array([*_searched(walls, outlines, max_shift), 0.0])
+    """Return shift and overhangs (4,), m, and the equations that they solve; None without any."""
+    plan = _searched(walls, outlines, max_shift)
     common = None
     for near in _RULES.rounds:
         common = _common(walls, outlines, plan, near)
@@ -131,20 +134,26 @@ def _shift_in_plan(
 
 
 def _searched(walls: PlanSegments, outlines: PlanSegments, max_shift: float) -> np.ndarray:
-    """Return the shift (2,), m, of a grid at which most of the walls lie on outlines, by length; ends count a meter."""
+    """Return shift and overhangs (4,), m, at which most of the walls lie on outlines, by length; ends count a meter."""
     steps = np.arange(-np.floor(max_shift / _RULES.step), np.floor(max_shift / _RULES.step) + 1) * _RULES.step
     shifts = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
     # Of shifts that are equally good the smallest comes first.
     shifts = shifts[np.argsort(np.hypot(*shifts.T), kind="stable")]
-    score = [_score(walls.moved(shift), outlines) for shift in shifts]
-    return shifts[int(np.argmax(score))]
+    score = np.array([_scores(walls.moved(shift), outlines) for shift in shifts])
+    overhang, best = np.unravel_index(np.argmax(score.T), score.T.shape)
+    return np.array([*shifts[best], _RULES.overhangs[overhang], 0.0])
 
 
-def _score(walls: PlanSegments, outlines: PlanSegments) -> float:
+def _scores(walls: PlanSegments, outlines: PlanSegments) -> list[float]:
+    """Return the length (m) of walls on outlines, and a meter for each of their ends at a corner, by overhang."""
     across, shared, left, right = _offsets(walls, outlines)
-    on_outline = ((np.abs(across) <= _RULES.near) & (shared > 0)).any(axis=1)
-    ends = sum((np.abs(along) <= _RULES.near).any(axis=1)[on_outline].sum() for along in (left, right))
-    return float(walls.length[on_outline].sum() + ends)
+    scores = []
+    for overhang in _RULES.overhangs:
+        is_near = np.abs(across - overhang) <= _RULES.near
+        on_outline = (is_near & (shared > 0)).any(axis=1)
+        ends = [(is_near & (np.abs(along) <= _RULES.near)).any(axis=1).sum() for along in (left, right)]
+        scores.append(float(walls.length[on_outline].sum() + sum(ends)))
+    return scores
 
 
 def _offsets(walls: PlanSegments, outlines: PlanSegments) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -174,24 +183,24 @@ def _common(walls: PlanSegments, outlines: PlanSegments, plan: np.ndarray, near:
     off = np.where(shared > 0, np.abs(across - plan[2]), np.inf)
     best = off.argmin(axis=1)
     rows = np.flatnonzero(off[np.arange(len(walls)), best] <= near)
-    equations = [(*walls.normal[k], 1.0, across[k, best[k]], np.sqrt(walls.length[k])) for k in rows]
+    equations = [(*walls.normal[k], 1.0, 0.0, across[k, best[k]], np.sqrt(walls.length[k])) for k in rows]
     for k in rows:
-        # Gables overhang as eaves do: an outline goes on beyond both ends of a wall.
+        # Under gables that overhang, an outline goes on beyond both ends of a wall.
         for along, outward in ((left[k], -1.0), (right[k], 1.0)):
-            beside = np.where(np.abs(across[k] - plan[2]) <= near, np.abs(along - outward * plan[2]), np.inf)
+            beside = np.where(np.abs(across[k] - plan[2]) <= near, np.abs(along - outward * plan[3]), np.inf)
             if beside.min() <= near:
-                equations.append((*walls.way[k], outward, along[beside.argmin()], 1.0))
-    table = np.array(equations).reshape(-1, 5)
-    coefficients, values = table[:, :3], table[:, 3] + table[:, :2] @ plan[:2]
-    return _Common(coefficients, values, table[:, 4], len(rows))
+                equations.append((*walls.way[k], 0.0, outward, along[beside.argmin()], 1.0))
+    table = np.array(equations).reshape(-1, 6)
+    coefficients, values = table[:, :4], table[:, 4] + table[:, :2] @ plan[:2]
+    return _Common(coefficients, values, table[:, 5], len(rows))
 
 
 def _solved(common: _Common) -> np.ndarray:
-    """Return shift and overhang (3,), m, by weighted least squares; what nothing tells stays near 0."""
+    """Return shift and overhangs (4,), m, by weighted least squares; what nothing tells stays near 0."""
     known = np.sqrt(common.weights) / _RULES.edge
-    assumed = np.diag([1 / _RULES.unseen, 1 / _RULES.unseen, 1 / _RULES.overhang])
+    assumed = np.diag([1 / _RULES.unseen, 1 / _RULES.unseen, 1 / _RULES.overhang, 1 / _RULES.overhang])
     left = np.concatenate([common.coefficients * known[:, None], assumed])
-    right = np.concatenate([common.values * known, np.zeros(3)])
+    right = np.concatenate([common.values * known, np.zeros(4)])
     return np.linalg.lstsq(left, right, rcond=None)[0]
 
 

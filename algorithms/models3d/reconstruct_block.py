@@ -139,6 +139,8 @@ def reconstruct_block(
         monitor=monitor.part(0.1, 0.9),
     )
     pierced, done = _pierced(models, _openings(openings))
+    if not len(segments):
+        monitor.warn("No facade is an upright polygon with heights, so all walls are those of footprints.")
     _inform(int((seen > 0).sum()), len(footprints), len(done), len(openings), monitor)
     monitor.progress(1.0)
     return buildings, _walls(pierced, segments), roofs, _opening_layer(done), pierced
@@ -176,7 +178,9 @@ def _inform(n_fitted: int, n_footprints: int, n_set: int, n_openings: int, monit
     """Say how many footprints follow facades, and how many openings were set."""
     monitor.inform(f"{n_fitted} of {n_footprints} footprints follow facades; {n_set} of {n_openings} openings are set.")
     if n_set < n_openings:
-        monitor.warn(f"{n_openings - n_set} of {n_openings} windows and doors lie in no wall of a model and are left out.")
+        monitor.warn(
+            f"{n_openings - n_set} of {n_openings} windows and doors lie in no wall of a model and are left out."
+        )
 
 
 def _best_with_openings(one: NamedModel) -> list[Solid]:

@@ -64,7 +64,7 @@ _CORNER_FIELDS = (Field("facade", int, "number of the facade"),)
         Layer("facades", "True facades", "Polygon", _FACADE_FIELDS, style="facades"),
         Layer("openings", "True openings", "Polygon", _OPENING_FIELDS),
         Layer("corners", "True corners", "Point", _CORNER_FIELDS),
-        Layer("houses", "True houses", "Polygon", _HOUSE_FIELDS),
+        Layer("outlines", "True outlines of houses", "Polygon", _HOUSE_FIELDS),
     ),
 )
 def simulate_street(
@@ -182,7 +182,7 @@ def simulate_street(
         Polygons with Z, counterclockwise seen from the street; openings in the plane of the facade's front.
     corners : LayerFeatures
         Corners of the facades, points with Z.
-    houses : LayerFeatures
+    outlines : LayerFeatures
         Outlines of the houses on the ground, polygons with Z; none without ``houses``.
 
     Raises

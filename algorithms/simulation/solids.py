@@ -132,8 +132,8 @@ class SolidArrays:
         far = np.full(len(which), np.inf)
         for face in range(_FACES):
             normal, offset = self.faces[which, face, :3], self.faces[which, face, 3]
-            speed = np.einsum("ij,ij->i", normal, direction)
-            left = offset - np.einsum("ij,ij->i", normal, origin)
+            speed = _dot(normal, direction)
+            left = offset - _dot(normal, origin)
             with np.errstate(divide="ignore", invalid="ignore"):
                 crossing = left / speed
             near = np.where(speed < 0, np.maximum(near, crossing), near)
@@ -141,6 +141,11 @@ class SolidArrays:
             # A beam parallel to a face, and on its wrong side, never comes in.
             far = np.where((speed == 0) & (left < 0), -np.inf, far)
         return np.where((near < far) & (near > 0), near, np.inf)
+
+
+def _dot(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Return the scalar products (n,) of vectors (n, 3), summed in one order wherever the arrays lie in memory."""
+    return one[:, 0] * other[:, 0] + one[:, 1] * other[:, 1] + one[:, 2] * other[:, 2]
 
 
 def rectangles(solids: Sequence[Solid]) -> Rect:

@@ -67,6 +67,7 @@ IDS = {
     "segmentregions",
     "segmentroofs",
     "reconstructroofs",
+    "reconstructblock",
     "exportforroofer",
     "simulatetown",
     "simulateflight",
@@ -84,6 +85,7 @@ IDS = {
     "extractopenings",
     "segmentfacadelines",
     "reconstructgables",
+    "registerstreet",
 }
 TILED_IDS = {
     "interpretstructureintiles",

@@ -1,0 +1,86 @@
+"""Street scans that are off by a known vector: it is found, with what it rests on."""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.cloud.asprs import PointClass
+from lidar_buildings.algorithms.facades.plan_segments import PlanSegments, facade_segments, outline_segments
+from lidar_buildings.algorithms.facades.register_street import register_street
+from lidar_buildings.algorithms.facades.registration import register
+from lidar_buildings.algorithms.stage import LayerFeatures, Monitor
+from lidar_buildings.tests.blocks import outlines, seen_from
+
+
+@pytest.fixture(scope="module")
+def scans():
+    air, layers = seen_from("airplane")
+    return air["xyz"], air["classification"], seen_from("vehicle")[0]["xyz"], layers
+
+
+def walls_of(layers):
+    """Return the true facades along the street as they are seen: without the ends that meet a neighbor's."""
+    return facade_segments(layers["facades"])
+
+
+@pytest.mark.parametrize("off", [(0.0, 0.0, 0.0), (1.4, -0.9, 0.6), (-2.2, 2.6, -1.1)])
+def test_the_shift_of_true_walls_is_found_also_under_eaves(scans, off):
+    """Within 4 cm of plan, although all outlines are 0.4 m before the walls, and 2 cm of height."""
+    xyz, classes, street, layers = scans
+    walls = walls_of(layers).moved(-np.array(off[:2]))
+    ground = xyz[classes == PointClass.GROUND]
+    for overhang in (0.0, 0.4):
+        found = register(walls, outline_segments(outlines(overhang)), street - off, ground, 3.0)
+        np.testing.assert_allclose(found.shift[:2], off[:2], atol=0.04)
+        assert found.shift[2] == pytest.approx(off[2], abs=0.02)
+        assert found.walls >= 4
+        assert found.residual < 0.15
+
+
+def test_facades_and_openings_of_a_scan_are_moved_onto_the_block(scans):
+    xyz, classes, street, layers = scans
+    off = np.array([1.2, -0.7, 0.5])
+    monitor = Monitor()
+    facades, openings, report = register_street(
+        xyz, classes, street - off, np.zeros(len(street), np.uint8), outlines(0.2), monitor=monitor
+    )
+    found = np.array([report.values[name] for name in ("shift_x", "shift_y", "shift_z")])
+    # Along the street only the ends of the rows tell it.
+    np.testing.assert_allclose(found, off, atol=0.15)
+    assert report.values["residual"] < 0.15
+    assert report.values["walls"] >= 3
+    assert report.values["ground"] > 100
+    assert not monitor.warnings
+    corners = np.array(layers["corners"].geometries)
+    made = np.concatenate([rings[0][:-1] for rings in facades.geometries])
+    assert np.median(np.linalg.norm(corners[:, None] - made, axis=2).min(axis=1)) < 0.15
+    true = np.array([ring.mean(axis=0) for (ring,) in layers["openings"].geometries])
+    middle = np.array([ring.mean(axis=0) for (ring,) in openings.geometries])
+    assert np.median(np.linalg.norm(true[:, None] - middle, axis=2).min(axis=1)) < 0.15
+    assert min(facades.columns["base"]) == pytest.approx(min(ring[0][:, 2].min() for ring in facades.geometries))
+
+
+def test_walls_of_one_side_say_nothing_of_the_shift_along_them():
+    """One wall before a longer outline: the shift across is found, that along stays 0."""
+    wall = PlanSegments(np.array([[10.0, 0.3]]), np.array([[20.0, 0.3]]), np.array([0]))
+    outline = PlanSegments(np.array([[0.0, 0.0]]), np.array([[40.0, 0.0]]), np.array([0]))
+    level = np.random.default_rng(1).uniform((0, -5, 0), (40, 5, 0), (4000, 3))
+    found = register(wall, outline, level, level + [0, 0, 0.25], 3.0)
+    assert found.shift[0] == pytest.approx(0.0, abs=1e-6)
+    # The overhang of the eaves takes its part.
+    assert found.shift[1] - found.overhang == pytest.approx(-0.3, abs=0.02)
+    assert found.shift[2] == pytest.approx(0.25)
+    assert (found.walls, found.ends) == (1, 0)
+
+
+def test_a_scan_of_another_street_is_not_moved_and_clouds_without_ground_are_refused(scans):
+    xyz, classes, street, _ = scans
+    far = LayerFeatures([[ring + 500.0 for ring in rings] for rings in outlines().geometries], {})
+    monitor = Monitor()
+    few = street[::10]
+    unknown = np.zeros(len(few), np.uint8)
+    facades, _, report = register_street(xyz, classes, few, unknown, far, monitor=monitor)
+    assert report.values["shift_x"] == 0.0
+    assert np.isnan(report.values["residual"])
+    assert "No facade lies on a footprint" in monitor.warnings[-1]
+    with pytest.raises(ValueError, match="No point of the airborne cloud is called ground"):
+        register_street(xyz, np.ones_like(classes), few, unknown, far)
