@@ -10,7 +10,8 @@ import numpy as np
 from ..neighborhoods.covariance import symmetric_eigenvalues
 from ..neighborhoods.nearest_blocks import PAIRS
 from ..stage import Monitor
-from .cylinder_fits import SECTORS, Cylinder, across_axis, bends, fit_cylinder, upward
+from .cylinder_evidence import FACING, MOST_LOOKED_AT, Evidence, Points
+from .cylinder_fits import Cylinder, across_axis, fit_cylinder, upward
 from .hough_planes import PlaneDirections
 from .shape_windows import WINDOW, Level, level_of, levels
 
@@ -49,10 +50,6 @@ _FIRST_FITS = (0.15, 0.06)
 # Rounds of the first fits: the points change after each, so that they need not converge.
 _FIRST_ROUNDS = 2
 
-# Largest angle (°) between the normal of a point on a cylinder and the direction away from the axis: on thin pipes
-# normals are rounded by neighborhoods nearly as wide as the pipe.
-_NORMAL_ANGLE = 30.0
-
 # Fewest points of a seed, and of a window in which one is searched for: three times the unknowns of a cylinder.
 LEAST_POINTS = 16
 
@@ -66,50 +63,11 @@ _FIRST_STEP = 6.0
 _GAP_RADII = 2.0
 _GAP_SPACINGS = 6.0
 
-# Least length of a cylinder (diameters): shorter pieces cannot be told from elbows.
-_LENGTH = 1.5
-
-# Length (m) that is enough for any diameter: of a tank less may be seen.
-_LONG_ENOUGH = 1.0
-
-# Least length (diameters) of cylinders that are long enough in meters: shorter ones cannot be told from spheres.
-_SHORT = 0.3
-
-# Largest root mean square distance of the points from the cylinder (standard deviations of the noise).
-_MOST_ROUGH = 1.25
-
-# Largest part of that distance (standard deviations of the noise) that a bend, a cone or faces explain.
-_MOST_BENT = 0.6
-
-# Most points of a fit or a test of shape: more do not change the result.
-_MOST_LOOKED_AT = 1500
-
-# Largest median angle (°) between normals and the directions away from the axis, in addition to that of uneven points:
-# the rounded normals of an edge have more.
-_MOST_MEDIAN_ANGLE = 10.0
-
-# Median angle (°, times point spacing over radius) by which normals are off because points are uneven: the center of
-# random points in a disk deviates by 1 / (2 √π) spacings from its middle, and the normal is that of the surface there.
-_UNEVEN_ANGLE = 10.9
-
-# Where normals are farther off than at most edges, the points must be as close to the cylinder as the noise lets them:
-# the root mean square of k points exceeds the deviation by 2 / √(2 k) of it in one case of forty.
-_CONFIDENCE = 2.0
-
-# Distance from the axis (radii) up to which the space around a cylinder is free.
-_AROUND = 1.5
-
-# Most points in that space (per point on the cylinder): where a plate was taken for a cylinder, it goes on there.
-_MOST_AROUND = 0.6
-
 # Least height of the arc that is seen above its chord (standard deviations of the noise): a flatter one is a plane.
 _LEAST_SAGITTA = 6.0
 
 # Least share of the cells of the surface, between the ends and on the circumference seen, that hold points.
 _LEAST_FILLED = 0.5
-
-# Most points inside a cylinder (per point on it): solids of other shapes have more.
-_MOST_INSIDE = 0.15
 
 
 @dataclass(frozen=True)
@@ -153,12 +111,10 @@ class CylinderSearch:
     ----------
     xyz, normals : ndarray of shape (n, 3)
         Points (m), sorted by elevation, and their unit normals; zero if undefined.
-    noise : float
-        Standard deviation across smooth surfaces, m.
-    tolerance : float
-        Distance within which a point lies on a cylinder, m.
-    spacing : float
-        Distance between points on surfaces, m.
+    shift : ndarray of shape (n,)
+        How far (m) each was moved along x from where it lies in ``evidence.places``.
+    evidence : Evidence
+        Noise, tolerance and spacing, and what makes points those of a cylinder.
     min_seen : float
         Least share of the circumference with points.
     min_points : int
@@ -169,14 +125,14 @@ class CylinderSearch:
         self,
         xyz: np.ndarray,
         normals: np.ndarray,
-        noise: float,
-        tolerance: float,
-        spacing: float,
+        shift: np.ndarray,
+        evidence: Evidence,
         min_seen: float,
         min_points: int,
     ) -> None:
-        self.xyz, self.normals, self.noise, self.tolerance = xyz, normals, noise, tolerance
-        self.spacing, self.min_seen, self.min_points = spacing, min_seen, min_points
+        self.xyz, self.normals, self.shift, self.evidence = xyz, normals, shift, evidence
+        self.noise, self.tolerance, self.spacing = evidence.noise, evidence.tolerance, evidence.spacing
+        self.min_seen, self.min_points = min_seen, min_points
         self.is_free = normals.any(axis=1)
         self.directions = PlaneDirections(_DIRECTION_BIN)
         self.bins = self.directions.bin_of(np.where(self.is_free[:, None], normals, [0.0, 0.0, 1.0]))
@@ -250,27 +206,12 @@ class CylinderSearch:
         return (cylinder, points) if self._is_round(rows, points, cylinder) else None
 
     def _fitted(self, points: np.ndarray, cylinder: Cylinder, *rounds: int) -> Cylinder:
-        return fit_cylinder(self.xyz[points[:: len(points) // _MOST_LOOKED_AT + 1]], cylinder, *rounds)
+        return fit_cylinder(self.xyz[points[:: len(points) // MOST_LOOKED_AT + 1]], cylinder, *rounds)
 
     def _is_round(self, near: np.ndarray, points: np.ndarray, cylinder: Cylinder) -> bool:
         """Return whether ``points`` look like a cylinder among the points ``near`` it."""
-        along, distance, away = cylinder.local(self.xyz[points])
-        rough = float(np.sqrt(((distance - cylinder.radius) ** 2).mean())) / self.noise
-        facing = np.abs(np.einsum("ij,ij->i", away, self.normals[points]))
-        angle = np.degrees(np.arccos(min(float(np.median(facing)), 1.0)))
-        if rough > _MOST_ROUGH or angle > _MOST_MEDIAN_ANGLE + _UNEVEN_ANGLE * self.spacing / cylinder.radius:
-            return False
-        if angle > _MOST_MEDIAN_ANGLE and rough > 1 + _CONFIDENCE / np.sqrt(2 * len(points)):
-            return False
-        at, reach, _ = cylinder.local(self.xyz[near])
-        margin = 0.05 * np.ptp(along) + 2 * self.tolerance
-        between = (at > along.min() + margin) & (at < along.max() - margin)
-        inside = between & (reach < 0.9 * cylinder.radius - 2 * self.tolerance)
-        around = between & (reach > cylinder.radius + 2 * self.tolerance) & (reach < _AROUND * cylinder.radius)
-        if inside.sum() > _MOST_INSIDE * len(points) or around.sum() > _MOST_AROUND * len(points):
-            return False
-        looked_at = points[:: len(points) // _MOST_LOOKED_AT + 1]
-        return bends(cylinder, self.xyz[looked_at]) <= _MOST_BENT * self.noise
+        own, all_near = (Points(self.xyz[rows], self.normals[rows]) for rows in (points, near))
+        return self.evidence.is_round(cylinder, own, all_near)
 
     def _axis(self, rows: np.ndarray) -> Optional[np.ndarray]:
         """Return the normal of the great circle along which normals fill most of the Gaussian sphere."""
@@ -318,7 +259,7 @@ class CylinderSearch:
         """Return which of the points ``rows`` lie on an endless cylinder and face away from its axis or to it."""
         _, distance, away = cylinder.local(self.xyz[rows])
         facing = np.abs(np.einsum("ij,ij->i", away, self.normals[rows]))
-        return (np.abs(distance - cylinder.radius) <= tolerance) & (facing >= np.cos(np.radians(_NORMAL_ANGLE)))
+        return (np.abs(distance - cylinder.radius) <= tolerance) & (facing >= FACING)
 
     def _grown(self, rows: np.ndarray, cylinder: Cylinder, seed: np.ndarray) -> Optional[Found]:
         """Return the cylinder that a seed grows to along its axis, None where its points do not fit a cylinder."""
@@ -346,7 +287,7 @@ class CylinderSearch:
 
     def _near(self, rows: np.ndarray, ends: np.ndarray, cylinder: Cylinder, more: float) -> np.ndarray:
         """Return the free points of ``rows`` in the box around an axis, ``more`` (m) longer at both ends."""
-        reach = _AROUND * cylinder.radius + self.tolerance
+        reach = cylinder.radius + 2 * self.tolerance
         longer = np.array([ends[0] - more * cylinder.axis, ends[1] + more * cylinder.axis])
         low, high = longer.min(axis=0) - reach, longer.max(axis=0) + reach
         # Points are sorted by elevation.
@@ -378,29 +319,15 @@ class CylinderSearch:
         points = near[self._is_on(near, cylinder, self.tolerance)]
         points = self._run(points, cylinder, ends.mean(axis=0), gap)
         along, distance, away = cylinder.local(self.xyz[points])
-        if len(points) < self.min_points or not self._is_long(along, cylinder):
+        if len(points) < self.min_points or not self.evidence.is_long(along, cylinder):
             return None
-        seen, filled = self._coverage(along, cylinder.angle(away), cylinder)
+        seen, filled = self.evidence.coverage(along, cylinder.angle(away), cylinder)
         sagitta = cylinder.radius * (1 - np.cos(np.pi * min(seen, 0.5)))
         if seen < self.min_seen or filled < _LEAST_FILLED or sagitta < _LEAST_SAGITTA * self.noise:
             return None
         rms = float(np.sqrt(((distance - cylinder.radius) ** 2).mean()))
-        low, high = float(along.min()), float(along.max())
-        return Found(cylinder, low, high, points, rms, seen) if self._is_round(near, points, cylinder) else None
-
-    @staticmethod
-    def _is_long(along: np.ndarray, cylinder: Cylinder) -> bool:
-        diameter = 2 * cylinder.radius
-        return bool(np.ptp(along) >= max(min(_LENGTH * diameter, _LONG_ENOUGH), _SHORT * diameter))
-
-    def _coverage(self, along: np.ndarray, angle: np.ndarray, cylinder: Cylinder) -> tuple[float, float]:
-        """Return the share of the circumference with points, and of the cells there that hold some."""
-        sectors = int(np.clip(2 * np.pi * cylinder.radius / (2 * self.spacing), 8, SECTORS))
-        sector = np.minimum(((angle / (2 * np.pi) + 0.5) * sectors).astype(np.int64), sectors - 1)
-        length = float(np.ptp(along))
-        slices = int(np.clip(length / max(3 * self.spacing, 0.5 * cylinder.radius), 1, 30))
-        at = np.minimum(((along - along.min()) / max(length, 1e-9) * slices).astype(np.int64), slices - 1)
-        cells = np.bincount(sector * slices + at, minlength=sectors * slices).reshape(sectors, slices) > 0
-        # A sector with stray points only is not seen.
-        is_seen = cells.mean(axis=1) >= 0.3
-        return float(is_seen.mean()), float(cells[is_seen].mean()) if is_seen.any() else 0.0
+        one = Found(cylinder, float(along.min()), float(along.max()), points, rms, seen)
+        if not self._is_round(near, points, cylinder):
+            return None
+        in_place = one.moved(-self.shift[points[0]]).cylinder
+        return None if self.evidence.goes_on(in_place, along) else one

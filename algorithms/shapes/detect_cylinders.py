@@ -8,8 +8,9 @@ import numpy as np
 
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
+from .cylinder_evidence import Evidence
 from .cylinder_search import LEAST_POINTS, CylinderSearch, Found
-from .joined_cylinders import joined
+from .joined_cylinders import joined, without_nested
 from .joined_pieces import whole_axis
 from .search_settings import MaxRadius, MinRadius, ShapeTolerance, reach_of_radius
 from .searched_points import WHOLE_CLOUD, SearchIn, Shape, Surroundings, search_shapes
@@ -77,8 +78,10 @@ def detect_cylinders(
     most of it gives the direction of an axis. The points of this circle are projected along the axis, and each votes
     along its normal, to both sides, for the center of a circle of every radius. The best circle is fitted by least
     squares, grown along its axis, and kept if its points look like a cylinder: close to it, spread over enough of its
-    circumference, without a bend, and with nothing inside. Pieces of one pipe that a flange or the shadow of another
-    object parts are put together, if one cylinder lies as close to the points of each as the cylinder of its own.
+    circumference, without a bend, with little inside, and ending in the air beside the arc that is seen, where a kerb
+    goes on. Of cylinders in each other the one with most points is kept. Pieces of one pipe that a flange or the shadow
+    of another object parts are put together, if one cylinder lies as close to the points of each as the cylinder of its
+    own.
 
     Parameters
     ----------
@@ -113,7 +116,9 @@ def detect_cylinders(
     and time and memory don't grow with the radius. A bin of the Gaussian sphere counts at most a sixteenth of the
     normals, so that planes don't decide the direction. A cylinder is at least 1.5 diameters long, or one meter if its
     diameter is larger, and 0.3 diameters in any case: shorter pieces can't be told from elbows and spheres. A bend, a
-    cone or a bulge shows in the distances of the points from the cylinder, which must not follow their position on it.
+    cone or a bulge shows in the distances of the points from the cylinder, which must not follow their position on it
+    by more than 0.6 of the noise and 0.3 % of the radius, the tolerance to which tanks are built. The inside is counted
+    in ten slices along the axis, of which the middle one decides, so that a roof within the wall does not matter.
     The paper does not put pieces together; here they are also where they lie in different segments.
 
     References
@@ -125,12 +130,12 @@ def detect_cylinders(
     """
 
     def search(around: Surroundings, low: float, high: float, monitor: Monitor) -> list[Found]:
-        found = CylinderSearch(
-            around.xyz, around.normals, around.noise, around.tolerance, around.spacing, min_seen, min_points
-        ).find(low, high, monitor)
-        # Segments are searched apart from each other; pieces of one pipe lie in several.
+        # Segments are searched apart; what is around a cylinder, and other pieces of it, lies in several.
         places = around.xyz - np.column_stack([around.shift, np.zeros((len(around.shift), 2))])
-        apart = [one.moved(-around.shift[one.points[0]]) for one in found]
+        evidence = Evidence(around.noise, around.tolerance, around.spacing, places)
+        search = CylinderSearch(around.xyz, around.normals, around.shift, evidence, min_seen, min_points)
+        apart = [one.moved(-around.shift[one.points[0]]) for one in search.find(low, high, monitor)]
+        apart = without_nested(apart)
         return joined(apart, places, around.noise, around.spacing, max_gap)
 
     found = search_shapes(

@@ -33,6 +33,30 @@ _CAP_SHARE = 0.3
 _STRAY = 0.3
 
 
+def without_nested(found: list[Found]) -> list[Found]:
+    """Return the cylinders without those in or around another one with more points: a wall is one surface.
+
+    The stairs around a tank and plates that stand out of its wall look like further tanks. A cylinder is left out if
+    its middle lies near the axis of the other one, between the ends of that.
+    """
+    order = sorted(range(len(found)), key=lambda n: (-len(found[n].points), int(found[n].points[0])))
+    kept: list[int] = []
+    for number in order:
+        middle = found[number].ends.mean(axis=0)
+        if not any(_is_within(found[number], middle, found[other]) for other in kept):
+            kept.append(number)
+    return [found[number] for number in sorted(kept)]
+
+
+def _is_within(one: Found, middle: np.ndarray, other: Found) -> bool:
+    """Return whether a cylinder with a middle (3,) is nearly the same as another one."""
+    offset = middle - other.cylinder.center
+    along = float(offset @ other.cylinder.axis)
+    if not other.low <= along <= other.high:
+        return False
+    return float(offset @ offset) - along**2 <= (_BESIDE * other.cylinder.radius) ** 2 and _are_alike(one, other)
+
+
 def joined(found: list[Found], xyz: np.ndarray, noise: float, spacing: float, max_gap: float) -> list[Found]:
     """Return cylinders, those that are pieces of one put together, closest pieces first.
 
@@ -98,8 +122,7 @@ def _gap(one: Found, other: Found) -> float:
 
     It is infinite where they are not.
     """
-    a, b = one.cylinder, other.cylinder
-    if abs(np.log(a.radius / b.radius)) > np.log(_RADII) or abs(a.axis @ b.axis) < np.cos(np.radians(_ANGLE)):
+    if not _are_alike(one, other):
         return np.inf
     gaps = []
     for piece, of_other in ((one, other), (other, one)):
@@ -110,6 +133,14 @@ def _gap(one: Found, other: Found) -> float:
             return np.inf
         gaps.append(max(along.min() - (piece.high - piece.low), -along.max()))
     return float(max(gaps))
+
+
+def _are_alike(one: Found, other: Found) -> bool:
+    """Return whether two cylinders have about the same radius and direction."""
+    a, b = one.cylinder, other.cylinder
+    return bool(max(a.radius, b.radius) <= _RADII * min(a.radius, b.radius)) and bool(
+        abs(a.axis @ b.axis) >= np.cos(np.radians(_ANGLE))
+    )
 
 
 def _as_one(one: Found, other: Found, xyz: np.ndarray, noise: float, spacing: float) -> Optional[Found]:

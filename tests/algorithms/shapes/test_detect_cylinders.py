@@ -8,7 +8,7 @@ from lidar_buildings.algorithms.shapes.cylinder_fits import Cylinder, bends, fit
 from lidar_buildings.algorithms.shapes.detect_cylinders import detect_cylinders
 from lidar_buildings.algorithms.stage import Monitor
 from lidar_buildings.tests.builders import EXACT_FAR
-from lidar_buildings.tests.industry import bent, edge, pipe, slab
+from lidar_buildings.tests.industry import bent, edge, pipe, slab, tank_farm
 
 
 def detect(xyz, *, segment_id=None, shape=None, **tunables):
@@ -210,3 +210,30 @@ def test_an_empty_range_of_radii_is_refused(rng):
         detect(xyz, search_in="each segment")
     with pytest.raises(ValueError, match="All points lie on one line"):
         detect(np.column_stack([np.arange(50.0)] * 3))
+
+
+def test_real_tanks_are_found_in_a_yard_and_nothing_else_is(rng):
+    """Plates that stand out by one to two deviations, ladders, stairs and sunk roofs: none of four was found."""
+    farm = tank_farm(rng, tanks=((13.74, 0), (8.56, 26)))
+    _, _, axes = detect(farm.xyz, min_radius=0.2)
+    found = sorted(zip(axes.columns["radius"], [line[:, :2].mean(axis=0) for line in axes.geometries]), reverse=True)
+    assert [radius for radius, _ in found] == pytest.approx([13.74, 8.56], abs=0.03)
+    assert np.array([place for _, place in found]) == pytest.approx(farm.tanks[:, :2], abs=0.05)
+
+
+def test_a_kerb_is_no_pipe(rng):
+    """Its surface goes on in the road on both sides; a pipe as round ends in the air."""
+    half = pipe(rng, 0.2, 10.0, 0.05, 0.01, (1, 0, 0), seen=0.5)
+    half[:, 2] = np.abs(half[:, 2])
+    road = rng.uniform([-5, -1], [5, 1], (8000, 2))
+    road = np.column_stack([road, rng.normal(0, 0.01, len(road))])[np.abs(road[:, 1]) > 0.2]
+    assert len(detect(half, max_radius=1.0)[2]) == 1
+    assert len(detect(np.concatenate([half, road]), max_radius=1.0)[2]) == 0
+
+
+def test_one_tank_is_not_three_in_each_other(rng):
+    """The stairs around a wall, which bend as it does, looked like wider tanks."""
+    tank = pipe(rng, 8.56, 12.0, 0.25, 0.02, (0, 0, 1), seen=1.0)
+    shells = [pipe(rng, 8.56 + more, 12.0, 0.45, 0.02, (0, 0, 1), seen=0.5) for more in (0.24, 0.41)]
+    _, _, axes = detect(np.concatenate([tank, *shells]), min_radius=5.0)
+    assert axes.columns["radius"] == pytest.approx([8.56], abs=0.01)
