@@ -135,13 +135,13 @@ _PIPELINES = (
         title="Interpret structure",
         group="Models",
         tags="linear,planar,volumetric,dimensionality,voxel,drone,UAV,scanner,scene,structure,Weinmann",
-        summary="Tell lines, surfaces and volumes apart in the merged clouds of several scanners or scans.",
+        summary="Tell lines, surfaces and volumes apart in a cloud, or in those of several scanners merged.",
         description=(
             "Merges the clouds, leaves one point per voxel, so that places that were scanned for long don't count more "
             "than others, describes the neighborhood of each point, and sorts points by the largest of linearity, "
             "planarity and scattering: wires and edges, ground and walls, crowns and bushes. The features stay in the "
             "cloud. The neighborhood of 50 points gives smooth results on noisy scans; 'optimal' chooses a number for "
-            "each point and keeps more detail. Of a single cloud, start with 'Downsample to voxels'. In tiles, the "
+            "each point and keeps more detail. In tiles, the "
             "files of a survey are one cloud, also where they overlap: they are not moved, and points keep the "
             "numbers of their sources."
         ),

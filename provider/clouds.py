@@ -61,7 +61,7 @@ class CloudParameter(_TakesFiles, QgsProcessingParameterPointCloudLayer):
 
 
 class CloudsParameter(_TakesFiles, QgsProcessingParameterMultipleLayers):
-    """Two or more point clouds, each a layer or the path of a file that QGIS itself may be unable to open."""
+    """One point cloud or more, each a layer or the path of a file that QGIS itself may be unable to open."""
 
     def __init__(self, name: str, description: str) -> None:
         super().__init__(name, description, Qgis.ProcessingSourceType.PointCloud)
@@ -124,12 +124,12 @@ def cloud_path(algorithm: QgsProcessingAlgorithm, name: str, parameters: dict, c
 def cloud_paths(
     algorithm: QgsProcessingAlgorithm, name: str, parameters: dict, context: QgsProcessingContext
 ) -> list[Path]:
-    """Return the files of the point clouds that a parameter gives, see :func:`cloud_path`; at least two."""
+    """Return the files of the point clouds that a parameter gives, see :func:`cloud_path`; at least one."""
     title = algorithm.parameterDefinition(name).description()
     values = [_plain(algorithm, name, value, context) for value in _flat(parameters.get(name))]
     paths = [_path(title, name, value, context) for value in values if value is not None and value != ""]
-    if len(paths) < 2:
-        raise ValueError(f"{title} ({name}) must be at least two, got {len(paths)}; choose another.")
+    if not paths:
+        raise ValueError(f"{title} ({name}) are missing; choose a point cloud.")
     return paths
 
 

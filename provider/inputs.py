@@ -44,7 +44,7 @@ def with_setting(
 def input_parameter(several: bool) -> QgsProcessingParameterDefinition:
     """Return the parameter of the cloud, or of the clouds, that a stage or chain works on."""
     if several:
-        return with_help(CloudsParameter(INPUTS, "Point clouds"), "Two or more files or layers of points.")
+        return with_help(CloudsParameter(INPUTS, "Point clouds"), "Files or layers of points, one or more.")
     return with_help(CloudParameter(INPUT, "Point cloud"), "File or layer of the points.")
 
 

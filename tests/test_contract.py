@@ -663,9 +663,9 @@ def assert_no_noise_found(stage: Stage, made: StageResults) -> None:
 
 
 @pytest.mark.parametrize("stage", [stage for stage in ALL.values() if stage.merges], ids=lambda stage: stage.name)
-def test_clouds_to_merge_are_at_least_two(stage):
-    with pytest.raises(ValueError, match=rf"^{stage.title} needs at least two point clouds, got 1; add another\.$"):
-        stage.function(*(arrays and arrays[:1] for arrays in arrays_of(stage, scene())), **drawn(stage))
+def test_no_cloud_can_not_be_merged(stage):
+    with pytest.raises(ValueError, match=rf"^{stage.title} needs a point cloud, got none; add one\.$"):
+        stage.function(*(arrays and arrays[:0] for arrays in arrays_of(stage, scene())), **drawn(stage))
 
 
 @each_with_input

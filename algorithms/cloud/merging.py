@@ -30,7 +30,7 @@ def merge_records(clouds: list[Cloud], xyz: Optional[np.ndarray], monitor: Optio
     Parameters
     ----------
     clouds : list of Cloud
-        Two or more, of one origin, which the result has too. They are not changed.
+        One or more, of one origin, which the result has too. They are not changed.
     xyz : ndarray of shape (n, 3), float64, or None
         New coordinates of all points (m, relative to the common origin); None where none were moved.
     monitor : Monitor, optional

@@ -259,7 +259,8 @@ def _tell_apart(clouds: list[np.ndarray], monitor: Monitor) -> None:
     gap = np.linalg.norm(np.maximum(np.maximum(low[:, None] - high, low - high[:, None]), 0.0), axis=2)
     np.fill_diagonal(gap, np.inf)
     nearest = gap.min(axis=1)
-    apart = np.flatnonzero(nearest > _APART)
+    # A single cloud has no other.
+    apart = np.flatnonzero((nearest > _APART) & np.isfinite(nearest))
     if len(apart):
         monitor.warn(
             f"Some clouds lie apart, {nearest[apart].min():,.0f} m or more from the nearest other (cloud "

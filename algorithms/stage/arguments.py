@@ -36,8 +36,8 @@ def check_arrays(arguments: dict[str, Any], names: Iterable[str], merges: bool, 
             continue
         if merges:
             arrays = arguments[name] = [np.asarray(array) for array in arguments[name]]
-            if len(arrays) < 2:
-                raise ValueError(f"{title} needs at least two point clouds, got {len(arrays)}; add another.")
+            if not arrays:
+                raise ValueError(f"{title} needs a point cloud, got none; add one.")
             clouds = [f"point cloud {i}" for i in range(1, len(arrays) + 1)]
         else:
             arguments[name] = np.asarray(arguments[name])

@@ -252,6 +252,17 @@ def two_scans(rng):
     return [create_cloud({"xyz": part}) for part in parts], inner
 
 
+def test_the_structure_of_one_cloud_is_that_of_the_merged_ones(rng):
+    """One cloud was refused."""
+    clouds, _ = two_scans(rng)
+    whole = np.concatenate([cloud.to_map(cloud.get("xyz")) for cloud in clouds])
+    merged = run_pipeline(PIPELINES["interpret_structure"], clouds).cloud
+    monitor = Monitor()
+    made = run_pipeline(PIPELINES["interpret_structure"], create_cloud({"xyz": whole}), monitor=monitor).cloud
+    np.testing.assert_array_equal(made.get("dimensionality"), merged.get("dimensionality"))
+    assert not monitor.warnings
+
+
 def test_lines_surfaces_and_volumes_of_two_scanners_are_told_apart(rng):
     """The best neighborhoods are smaller than 50 points, and 50 points give the smoother picture, as published."""
     kinds = {"ground": "PLANAR", "wall": "PLANAR", "wire": "LINEAR", "crown": "VOLUMETRIC"}

@@ -389,9 +389,10 @@ def test_an_optional_dimension_is_merged_where_all_clouds_have_it(cloud):
     assert merged.get("cluster_id").tolist() == [0, 1, 2, 3, 4]
 
 
-def test_one_cloud_can_not_be_merged(cloud):
-    with pytest.raises(ValueError, match=r"^Merge toy needs at least two point clouds, got 1; add another\.$"):
-        run_stage(merge_toy.stage, [cloud])
+def test_one_cloud_is_merged_with_nothing(cloud):
+    merged = run_stage(merge_toy.stage, [cloud]).cloud
+    assert len(merged) == len(cloud) - np.count_nonzero(cloud.withheld)
+    assert (merged.get("point_source_id") == 1).all()
 
 
 def test_an_empty_cloud_is_told_by_its_number():

@@ -470,7 +470,7 @@ def test_help_of_a_composite_tells_layers_and_what_is_kept():
     ("change", "sentence"),
     [
         ({"OLD": None}, "Old map (OLD) is missing; choose a layer of polygons."),
-        ({"INPUTS": ["{one}"]}, "Point clouds (INPUTS) must be at least two, got 1; choose another."),
+        ({"INPUTS": []}, "Point clouds (INPUTS) are missing; choose a point cloud."),
         ({"HIGH_OUTPUT": "{one}"}, "is also an input; choose another name."),
         ({"TOP": "{out}/a.png"}, "a.png can't be written as a raster: give it the extension .tif."),
         ({"TOP": "{out}/a.tif", "FLOOR": "{out}/a.tif"}, "give each its own."),
