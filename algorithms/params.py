@@ -84,15 +84,6 @@ MinFrequency = Annotated[
     ),
 ]
 
-IsolatedPoints = Annotated[
-    bool,
-    Param(
-        "Isolated points",
-        "Also find isolated points in the air (birds, flocks, plumes of dust) and under the ground (multipath), "
-        "within the heights of the scene.",
-    ),
-]
-
 SplitHeight = Annotated[
     float,
     Param(

@@ -20,6 +20,7 @@ from .landcover.classify_water import classify_water
 from .models3d.export_for_roofer import export_for_roofer
 from .models3d.reconstruct_block import reconstruct_block
 from .models3d.reconstruct_roofs import reconstruct_roofs
+from .preparation.classify_noise_air import classify_noise_air
 from .preparation.classify_noise_histogram import classify_noise_histogram
 from .preparation.classify_noise_histogram_2019 import classify_noise_histogram_2019
 from .preparation.classify_noise_statistical import classify_noise_statistical
@@ -70,6 +71,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     merge_clouds,
     classify_noise_histogram,
     classify_noise_histogram_2019,
+    classify_noise_air,
     classify_noise_statistical,
     clip_cloud,
     filter_points,

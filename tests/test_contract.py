@@ -43,6 +43,7 @@ TITLES_OF_QGIS = {"Fix geometries"}
 
 # Released ids: people's saved models and scripts call them. A new one is added, none is ever changed.
 STAGE_IDS = {
+    "classifynoiseair",
     "classifynoisehistogram",
     "classifynoisehistogram2019",
     "classifynoisestatistical",

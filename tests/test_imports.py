@@ -42,7 +42,7 @@ ROOMS = (
     "top",
     "tiling",
 )
-HELPERS = {"packages", "memory", "threads", "params"}
+HELPERS = {"packages", "memory", "threads", "params", "rules"}
 # Lines of a room, of the lines of all rooms: a larger one holds more than one idea.
 LARGEST_ROOM = 0.12
 # Functions that import what their first argument says.

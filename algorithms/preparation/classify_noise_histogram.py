@@ -9,11 +9,11 @@ import numpy as np
 from ..cloud.asprs import NOISE, PointClass
 from ..geometry.grid import Grid, fixed_grid_over, lattice, plan_box
 from ..packages import spatial
-from ..params import IsolatedPoints, MinFrequency
+from ..params import MinFrequency
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Monitor, Param, stage
 from .height_histograms import Histogram, pooled_histogram, with_borrowed_ranges
-from .isolated_points import add_isolated
+from .points_under_ground import under_ground
 
 # Points per cell on average: with the eight cells around it some 4000 points make a histogram, whatever the density.
 _POINTS_PER_CELL = 450
@@ -78,7 +78,13 @@ def classify_noise_histogram(
             advanced=True,
         ),
     ] = 200.0,
-    isolated: IsolatedPoints = True,
+    isolated: Annotated[
+        bool,
+        Param(
+            "Isolated points under the ground",
+            "Also find single points and a few together under the ground (multipath), within the heights of the scene.",
+        ),
+    ] = True,
     sampling: Optional[CloudSampling] = None,
     monitor=None,
 ):
@@ -86,7 +92,7 @@ def classify_noise_histogram(
 
     The heights of each cell and its neighbors make a histogram. From both ends inward, bins that hold few points and
     are parted from the scene by a gap are noise: low noise (class 7) below it and high noise (class 18) above it. Then
-    come isolated points between these heights: loose things in the open air, and single points under the ground.
+    come isolated points under the ground. 'Classify noise in the air' finds birds and dust between these heights.
 
     Parameters
     ----------
@@ -106,12 +112,10 @@ def classify_noise_histogram(
     adjoins the scene stays too (chimneys, masts, treetops, slopes), and so do three high points close together (a
     lamp, a wire). A cell whose surroundings have no full bin borrows the range of the nearest one that has.
 
-    Isolated points are found without histograms. In the air: what no chain of points 2.4 m apart (3.5 point spacings
-    on sparse clouds) ties to the scene, has nothing above it, and stops less than three tenths of the pulses. Wires,
-    panes, the heads of lamps, and things that the border of the cloud cuts stay. Under the ground: single points or a
-    few, 0.45 m or more (0.4 point spacings) below the surface on all sides, and not beside others of the same height,
-    as ground seen between leaves is. Among crowns and in narrow yards points just below the ground are left alone.
-    What touches the scene is not found: dust on the ground, birds in a tree, points among grass.
+    Isolated points under the ground are found without histograms: single points or a few, 0.45 m or more (0.4 point
+    spacings) below the surface on all sides, and not beside others of the same height, as ground seen between leaves
+    is. Points that share a level over meters are a floor, seen through glass or in a shaft. Among crowns and in narrow
+    yards points just below the ground are left alone.
 
     The filter of the paper (T_f) has no gap, no groups, no pooled cells and no isolated points; see 'Classify noise by
     height histogram (as published 2019)'.
@@ -140,7 +144,8 @@ def classify_noise_histogram(
     hanging = np.flatnonzero(is_high & is_near)
     is_high[hanging[_in_group(points[hanging], max(1.0, _GROUP_SPACINGS * spacing))]] = False
     if isolated:
-        add_isolated(points, is_low, is_high, spacing, monitor.part(0.7, 1.0))
+        rest = np.flatnonzero(~(is_low | is_high))
+        is_low[rest[under_ground(points[rest], spacing, monitor.part(0.7, 1.0))]] = True
     made[used[is_low]] = PointClass.LOW_NOISE
     made[used[is_high]] = PointClass.HIGH_NOISE
     monitor.resolved(low_noise=int(is_low.sum()), high_noise=int(is_high.sum()))

@@ -9,11 +9,11 @@ import numpy as np
 from ..cloud.asprs import NOISE, PointClass
 from ..geometry.grid import distinct, plan_box
 from ..packages import spatial
-from ..params import IsolatedPoints
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Monitor, Param, stage
 from ..threads import n_threads
-from .isolated_points import add_isolated, link_length
+from .points_in_the_air import in_the_air, link_length
+from .points_under_ground import under_ground
 
 # Points of a chunk: progress is shown after each, and only its neighbors are held in memory.
 _CHUNK = 100_000
@@ -53,7 +53,14 @@ def classify_noise_statistical(
             high=100,
         ),
     ] = 6.0,
-    isolated: IsolatedPoints = True,
+    isolated: Annotated[
+        bool,
+        Param(
+            "Isolated points",
+            "Also find isolated points in the air (birds, flocks, plumes of dust) and under the ground (multipath), "
+            "within the heights of the scene.",
+        ),
+    ] = True,
     sampling: Optional[CloudSampling] = None,
     monitor=None,
 ):
@@ -85,10 +92,10 @@ def classify_noise_statistical(
 
     With isolated points, both are mended. A point must then be farther than 4.8 m (7 point spacings on sparse clouds)
     from its nearest one, too, so that facades and crowns keep their sparse parts. And noise is what no chain of points
-    half as far apart ties to the scene, and points under the ground: the height histogram's stage finds these in the
-    same way, and its notes say what stays. Since only points with nothing around them can be noise by their distance
-    then, neighbors are looked up for those in voxels with few points, and of the others of large clouds for a sample of
-    200,000, which stands for all in mean and standard deviation.
+    half as far apart ties to the scene, and points under the ground: 'Classify noise in the air' and the height
+    histogram's stage find these in the same way, and their notes say what stays. Since only points with nothing around
+    them can be noise by their distance then, neighbors are looked up for those in voxels with few points, and of the
+    others of large clouds for a sample of 200,000, which stands for all in mean and standard deviation.
 
     References
     ----------
@@ -115,7 +122,11 @@ def classify_noise_statistical(
     is_low, is_high = np.zeros((2, len(points)), bool)
     is_low[rows[noise]], is_high[rows[noise]] = rise[noise] < 0, rise[noise] >= 0
     if isolated:
-        add_isolated(points, is_low, is_high, spacing, monitor.part(0.5, 1.0))
+        rest = np.flatnonzero(~(is_low | is_high))
+        hanging = in_the_air(points[rest], spacing, monitor.part(0.5, 0.7))
+        is_high[rest[hanging]] = True
+        rest = rest[~hanging]
+        is_low[rest[under_ground(points[rest], spacing, monitor.part(0.7, 1.0))]] = True
     made[used[is_low]] = PointClass.LOW_NOISE
     made[used[is_high]] = PointClass.HIGH_NOISE
     monitor.resolved(low_noise=int(is_low.sum()), high_noise=int(is_high.sum()))

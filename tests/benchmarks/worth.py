@@ -297,24 +297,16 @@ def _out(name: str, where: str, value: Any) -> Rule:
 # Whole rules, left out.
 WHOLE = (
     Rule("noise: isolated points", tunables={"noise": {"isolated": False}}),
-    _out("noise: isolated points in the air", "preparation.isolated_points:in_the_air", _nowhere),
-    _out("noise: isolated points under the ground", "preparation.isolated_points:under_ground", _nowhere),
-    _out("noise: wires are no isolated points", "preparation.isolated_points:_on_wires", _nowhere),
-    _out(
-        "noise: points cut by the border are kept",
-        "preparation.isolated_points:_is_cut",
-        lambda xyz, thing, _: np.zeros(thing.max() + 1, bool),
-    ),
-    _out("noise: points with form are kept", "preparation.isolated_points:_has_form", lambda *_: False),
+    _out("noise: isolated points under the ground", "preparation.points_under_ground:under_ground", _nowhere),
     _out(
         "noise: low points are supported by others",
-        "preparation.isolated_points:_is_supported",
+        "preparation.points_under_ground:_is_supported",
         lambda xyz, rows, *_: np.zeros(len(rows), bool),
     ),
     _out(
         "noise: floors are not noise",
-        "preparation.isolated_points:_is_floor",
-        lambda grid, cells, which, _: np.zeros(len(which), bool),
+        "preparation.points_under_ground:_is_floor",
+        _nowhere,
     ),
     _out("noise: groups in histograms are kept", "preparation.classify_noise_histogram:_in_group", _nowhere),
     _out("ground: pits", "terrain.ground_seeds:_pits", _nowhere),

@@ -38,6 +38,7 @@ IDS = {
     "classifygroundcloth",
     "classifygroundtin",
     "classifygroundtin2000",
+    "classifynoiseair",
     "classifynoisehistogram",
     "classifynoisehistogram2019",
     "classifynoisestatistical",

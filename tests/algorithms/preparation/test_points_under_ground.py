@@ -1,12 +1,13 @@
-"""Isolated points of simulated towns are found, and thin objects such as masts, lamps and wires stay."""
+"""Isolated points of simulated towns are found under the ground and in the air, and thin objects such as masts stay."""
 
 import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.cloud.asprs import NOISE, PointClass
+from lidar_buildings.algorithms.preparation.classify_noise_air import classify_noise_air
 from lidar_buildings.algorithms.preparation.classify_noise_histogram import classify_noise_histogram
 from lidar_buildings.algorithms.preparation.classify_noise_statistical import classify_noise_statistical
-from lidar_buildings.algorithms.preparation.isolated_points import in_the_air, under_ground
+from lidar_buildings.algorithms.preparation.points_under_ground import under_ground
 from lidar_buildings.algorithms.stage import Monitor
 from lidar_buildings.tests.noisy import noisy_town
 
@@ -20,7 +21,11 @@ def plain(rng, density=8.0, side=80.0, slope=0.0):
     return np.column_stack([plan, slope * plan[:, 0] + rng.normal(0, 0.02, len(plan))])
 
 
-@pytest.mark.parametrize("classify", [classify_noise_histogram, classify_noise_statistical])
+def by_histogram_and_in_the_air(xyz, classification):
+    return classify_noise_air(xyz, classify_noise_histogram(xyz, classification))
+
+
+@pytest.mark.parametrize("classify", [by_histogram_and_in_the_air, classify_noise_statistical])
 @pytest.mark.parametrize(
     "differs", [{"density": 2.0}, {"density": 8.0, "slope": 25.0}, {"density": 8.0, "forest": 0.6}, {"density": 30.0}]
 )
@@ -78,21 +83,14 @@ def test_points_that_are_ground_for_each_other_stay(rng):
     assert found[-1]
 
 
-def test_what_hangs_by_form_or_density_stays(rng):
-    ground = plain(rng)
-    roof = np.column_stack([rng.uniform(20, 30, (800, 2)), np.full(800, 12.0)])
-    crown = rng.uniform([50, 50, 9], [58, 58, 14], (500, 3))
-    along = np.arange(5, 75, 1.0)
-    wire = np.column_stack([along, np.full(70, 65.0), 20 + 0.002 * (along - 40) ** 2])
-    sparse_wire = np.column_stack([along[::4] + 0.3, np.full(18, 15.0), np.full(18, 18.0)])
-    pane = np.column_stack([rng.uniform([35, 5], [45, 12], (40, 2)), np.full(40, 7.0)])
-    lamp = rng.uniform([70, 40, 8], [70.4, 40.4, 8.1], (4, 3))
-    stays = np.concatenate([ground, roof, crown, wire, sparse_wire, pane, lamp])
-    birds = np.array([[40.0, 40, 8], [10, 50, 30], [25, 25, 20]])
-    dust = rng.uniform([5, 25, 20], [17, 37, 26], (150, 3))
-    found = in_the_air(np.concatenate([stays, birds, dust]), 8.0**-0.5, Monitor())
-    assert not found[: len(stays)].any()
-    assert found[len(stays) :].all()
+def test_points_that_share_a_level_are_a_floor_seen_through_glass(rng):
+    """Nine returns of a shaft's floor, 3 m below a deck and level to 5 cm over 5 m, made the deck beside it ground."""
+    deck = plain(rng, 10.0, 40.0)
+    along = np.linspace(0, 5, 9)
+    floor = np.column_stack([18 + along, 20 + 0.3 * rng.random(9), -3 + rng.uniform(-0.025, 0.025, 9)])
+    spread = floor - [0, 0, 1] * np.linspace(0, 4, 9)[:, None]
+    assert not under_ground(np.concatenate([deck, floor]), 10.0**-0.5, Monitor()).any()
+    assert under_ground(np.concatenate([deck, spread]), 10.0**-0.5, Monitor())[-9:].all()
 
 
 @pytest.mark.parametrize("height_step", [0.0, 0.3])

@@ -1,0 +1,210 @@
+"""Loose points in the air over the scene: birds, flocks, plumes of dust.
+
+Solid objects are supported from below. The points of a plume or a flock are few among all points of a column of air,
+since most pulses pass it; those of a roof or a crown are most of them, whether or not its walls or its trunk were seen.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..geometry.grid import distinct, find_cells, fixed_grid_over, plan_box
+from ..geometry.groups import components
+from ..packages import spatial
+from ..stage import Monitor
+from .points_under_ground import mask_of, near_cells
+
+# Largest distance (m) between points of one object: chimneys and structures on roofs are lower, points along masts and
+# wires closer.
+_LINK = 2.4
+
+# The same in point spacings, where that is more: of points at random hardly any has none within it.
+_LINK_SPACINGS = 3.5
+
+# Share of the pulses that an object stops, below which it is not solid.
+_SOLID_SHARE = 0.3
+
+# Side (point spacings) of the columns in which this share is measured: 16 points of the scene in each.
+_SHARE_SPACINGS = 4.0
+
+# Points that a column counts as having at least: those that the edge of the cloud cuts count as half full.
+_LEAST_IN_COLUMN = 8
+
+# Size (m) up to which three points or more are the head of a lamp: birds are farther apart.
+_COMPACT = 1.0
+
+# The same in point spacings, where that is more.
+_COMPACT_SPACINGS = 1.5
+
+# Largest standard deviation (m) of points across a plane: roofs of glass are no thicker.
+_THIN = 0.3
+
+# Largest standard deviation across a plane or a line, as a share of that along it.
+_THIN_RATIO = 0.1
+
+# Wires in bundles are lines in small neighborhoods only: share of the points whose neighbors must lie along a line.
+_BUNDLE_SHARE = 0.5
+
+# Points of these neighborhoods.
+_BUNDLE_NEIGHBORS = 8
+
+# Largest variance of a neighborhood across its line, as a share of that along it.
+_BUNDLE_RATIO = 0.1
+
+# Fewest points near one line that show a wire of which little is seen.
+_TUBE_POINTS = 5
+
+# Largest distance (m) of these from the line, sideways.
+_TUBE_ACROSS = 0.35
+
+# Largest distance (m) of these from the line, up and down: wires sag.
+_TUBE_UP = 0.6
+
+# Least length (m) along the line over which they are spread.
+_TUBE_LENGTH = 12.0
+
+# Nearest points of each point through which lines are tried.
+_TUBE_NEIGHBORS = 24
+
+# Least distance (m) between the two points of a line: between nearer ones its direction is chance.
+_TUBE_NEAREST = 1.0
+
+# Largest distance (m) between the two points of a line.
+_TUBE_REACH = 16.0
+
+
+def link_length(spacing: float) -> float:
+    """Return up to which distance (m) points belong to one object."""
+    return max(_LINK, _LINK_SPACINGS * spacing)
+
+
+def in_the_air(xyz: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarray:
+    """Return which points (n,) are loose objects in the open air, apart from the scene below them.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Coordinates (m).
+    spacing : float
+        Point spacing (m).
+    monitor : Monitor
+        Receives progress.
+    """
+    link = link_length(spacing)
+    thing = _things(xyz, link)
+    is_loose = (_loose(xyz, thing, spacing, monitor) & ~_is_cut(xyz, thing, link))[thing]
+    rows = np.flatnonzero(is_loose)
+    rows = rows[_is_open(xyz, is_loose, rows, link)]
+    rows = rows[~_on_wires(xyz[rows])]
+    found = np.zeros(len(xyz), bool)
+    found[rows] = True
+    return found
+
+
+def _things(xyz: np.ndarray, link: float) -> np.ndarray:
+    """Return the thing (n,) that each point belongs to, from 0: occupied voxels of side ``link`` that touch."""
+    steps = [np.floor((axis - axis.min()) / link).astype(np.int32) + 1 for axis in xyz.T]
+    shape = [int(step.max()) + 2 for step in steps]
+    number = (steps[2].astype(np.int64) * shape[1] + steps[1]) * shape[0] + steps[0]
+    del steps
+    voxels, voxel = distinct(number)
+    del number
+    here, there = [], []
+    for up, north, east in np.ndindex(3, 3, 3):
+        step = ((up - 1) * shape[1] + north - 1) * shape[0] + east - 1
+        if step > 0:
+            beside, found = find_cells(voxels, voxels + step)
+            here.append(np.flatnonzero(found))
+            there.append(beside[found])
+    return components(np.concatenate(here), np.concatenate(there), len(voxels))[1][voxel]
+
+
+def _loose(xyz: np.ndarray, thing: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarray:
+    """Return which things let most pulses pass and are neither compact, nor lines, nor planes."""
+    n_points = np.bincount(thing)
+    small = np.flatnonzero((n_points < n_points.max())[thing])
+    cell = fixed_grid_over(xyz, _SHARE_SPACINGS * spacing).number(xyz)
+    cells, which = distinct(cell)
+    in_cell = np.bincount(which)
+    pairs = np.unique(thing[small].astype(np.int64) * len(cells) + which[small])
+    in_columns = np.bincount(
+        pairs // len(cells), np.maximum(in_cell[pairs % len(cells)], _LEAST_IN_COLUMN), len(n_points)
+    )
+    is_loose = (in_columns > 0) & (n_points < _SOLID_SHARE * in_columns)
+
+    order = small[np.argsort(thing[small], kind="stable")]
+    ends = np.searchsorted(thing[order], np.arange(len(n_points) + 1))
+    for number in np.flatnonzero(is_loose & (n_points >= 3)).tolist():
+        points = xyz[order[ends[number] : ends[number + 1]]]
+        is_loose[number] = not _has_form(points, max(_COMPACT, _COMPACT_SPACINGS * spacing))
+        monitor.progress(0.5)
+    return is_loose
+
+
+def _is_cut(xyz: np.ndarray, thing: np.ndarray, link: float) -> np.ndarray:
+    """Return which things of three points or more reach the border of the cloud: they may be parts of larger ones."""
+    low, high = plan_box(xyz)
+    x, y = xyz[:, 0], xyz[:, 1]
+    is_outer = (x < low[0] + link) | (x > high[0] - link) | (y < low[1] + link) | (y > high[1] - link)
+    return (np.bincount(thing, is_outer) > 0) & (np.bincount(thing) >= 3)
+
+
+def _has_form(points: np.ndarray, compact: float) -> bool:
+    """Return whether points fill a small place, or lie along lines or in a plane."""
+    if (np.ptp(points, axis=0) <= compact).all():
+        return True
+    if len(points) < _TUBE_POINTS:
+        return False
+    deviation = np.sqrt(np.maximum(np.linalg.eigvalsh(np.cov(points.T)), 0))
+    is_line = deviation[1] <= _THIN_RATIO * deviation[2]
+    is_plane = len(points) >= 2 * _TUBE_POINTS and deviation[0] <= min(_THIN, _THIN_RATIO * deviation[1])
+    return bool(is_line or is_plane or _share_of_lines(points) > _BUNDLE_SHARE)
+
+
+def _share_of_lines(points: np.ndarray) -> float:
+    """Return the share of points whose nearest ones lie along a line, as those of bundled wires do."""
+    near = points[spatial.cKDTree(points).query(points, min(_BUNDLE_NEIGHBORS, len(points)))[1]]
+    near -= near.mean(axis=1, keepdims=True)
+    eigenvalues = np.linalg.eigvalsh(np.einsum("nki,nkj->nij", near, near))
+    return float((eigenvalues[:, 1] < _BUNDLE_RATIO * eigenvalues[:, 2]).mean())
+
+
+def _is_open(xyz: np.ndarray, is_loose: np.ndarray, rows: np.ndarray, link: float) -> np.ndarray:
+    """Return which rows have the scene, all that isn't loose, below them and nothing of it above, close by in plan."""
+    if not len(rows) or is_loose.all():
+        return np.zeros(len(rows), bool)
+    grid = fixed_grid_over(xyz, link / 2)
+    cells, which = distinct(grid.number(xyz))
+    scene = np.flatnonzero(mask_of(len(cells), near_cells(grid, cells, which[rows]))[which] & ~is_loose)
+    top = np.full(len(cells), -np.inf)
+    np.maximum.at(top, which[scene], xyz[scene, 2])
+    highest = np.full(len(rows), -np.inf)
+    for step in (0, *grid.around):
+        beside, found = find_cells(cells, cells[which[rows]] + step)
+        highest = np.maximum(highest, np.where(found, top[beside], -np.inf))
+    return np.isfinite(highest) & (xyz[rows, 2] > highest)
+
+
+def _on_wires(points: np.ndarray) -> np.ndarray:
+    """Return which of few points lie in a line with others, as the points of wires do that a scanner rarely hits."""
+    on_wire = np.zeros(len(points), bool)
+    if len(points) < _TUBE_POINTS:
+        return on_wire
+    count = min(_TUBE_NEIGHBORS, len(points))
+    distance, near = spatial.cKDTree(points).query(points, count, distance_upper_bound=_TUBE_REACH)
+    # Missing neighbors stand at infinity.
+    places = np.concatenate([points, np.full((1, 3), np.inf)])
+    for row in np.flatnonzero(np.isfinite(distance).sum(axis=1) >= _TUBE_POINTS).tolist():
+        others = near[row][np.isfinite(distance[row])]
+        off = places[others] - points[row]
+        along = off[1:, :2]
+        length = np.linalg.norm(along, axis=1)
+        usable = length > _TUBE_NEAREST
+        along, rise = along[usable] / length[usable, None], off[1:, 2][usable] / length[usable]
+        at = along @ off[:, :2].T
+        across = np.abs(along[:, :1] * off[:, 1] - along[:, 1:] * off[:, 0])
+        inside = (across <= _TUBE_ACROSS) & (np.abs(off[:, 2] - rise[:, None] * at) <= _TUBE_UP)
+        reach = np.where(inside, at, -np.inf).max(axis=1) - np.where(inside, at, np.inf).min(axis=1)
+        for line in np.flatnonzero((inside.sum(axis=1) >= _TUBE_POINTS) & (reach >= _TUBE_LENGTH)):
+            on_wire[others[inside[line]]] = True
+    return on_wire

@@ -1,0 +1,255 @@
+"""Isolated points under the ground: echoes of pulses that took a detour.
+
+A laser pulse does not pass the ground, so that what lies under it on all sides is no part of the scene, unless it is a
+floor: points of multipath come at all depths, those of a floor agree.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..geometry.grid import Grid, distinct, find_cells, fixed_grid_over
+from ..geometry.groups import ordered
+from ..packages import spatial
+from ..rules import rule
+from ..stage import Monitor
+
+
+@dataclass(frozen=True)
+class UnderGroundRules:
+    """What is under the ground, and what of it is a floor."""
+
+    depth: float = rule(0.45, "m", "physics: less deep are grass, ruts, and the noise of the scanner")
+    depth_spacings: float = rule(0.4, "point spacings", "physics: the ground bends between points; the larger counts")
+    close_cell: float = rule(2.0, "point spacings", "statistics: four points a cell, the lowest of which is its level")
+    around_cell: float = rule(10.0, "m", "physics: some ground is seen in each such cell, even among trees")
+    around_cell_spacings: float = rule(16.0, "point spacings", "statistics: 256 points a cell; the larger counts")
+    around_share: float = rule(0.02, "share", "statistics: points of a cell below its level; more of them are ground")
+    smooth_step: float = rule(0.3, "m", "physics: steps between cells of ground and of roofs; crowns have larger ones")
+    on_ground: float = rule(0.5, "m", "physics: as far over the ground around, a smooth surface is ground itself")
+    shallow: float = rule(2.0, "m", "physics: deeper points are beside a smooth surface, not under it")
+    rounds: int = rule(3, "rounds", "low points that are found hide others beneath the surface that they pull down")
+    support_points: int = rule(3, "points", "others at its height make a point part of a surface")
+    support_height: float = rule(0.3, "m", "physics: half the height of the disk of these, that of tufts")
+    support_radius: float = rule(2.5, "point spacings", "physics: a wider disk would reach a slope where it is as low")
+    support_reach: float = rule(1.25, "m", "the same in dense clouds")
+    support_most: float = rule(5.0, "point spacings", "the most that this may be")
+    floor_points: int = rule(5, "points", "others at one level that make a floor")
+    floor_level: float = rule(0.1, "m", "physics: floors are level to this, echoes of detours come at all depths")
+    floor_reach: float = rule(5.0, "m", "physics: half the length of a court or shaft in which the floor is seen")
+    floor_extent: float = rule(2.0, "m", "physics: points closer together may be echoes of one mirror")
+
+
+UNDER_GROUND = UnderGroundRules()
+
+# Cells at once, so that memory stays small.
+_CHUNK = 50_000
+
+
+def under_ground(xyz: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarray:
+    """Return which points (n,) lie under the ground, alone or few together.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Coordinates (m).
+    spacing : float
+        Point spacing (m).
+    monitor : Monitor
+        Receives progress.
+    """
+    grid = fixed_grid_over(xyz, UNDER_GROUND.close_cell * spacing)
+    cells, which = distinct(grid.number(xyz))
+    order = _by_cell_and_height(which, xyz)
+    n_points = np.bincount(which)
+    start = np.cumsum(n_points) - n_points
+    middle = xyz[order[start + n_points // 2]]
+    size = max(UNDER_GROUND.around_cell, UNDER_GROUND.around_cell_spacings * spacing)
+    depth = max(UNDER_GROUND.depth, UNDER_GROUND.depth_spacings * spacing)
+
+    found, n_found = np.zeros(len(xyz), bool), np.zeros(len(cells), np.int64)
+    near = np.arange(len(cells))
+    for turn in range(UNDER_GROUND.rounds):
+        # Without the points found before, which are the lowest of their cells, their companions stand out.
+        lowest = xyz[order[start + np.minimum(n_found, n_points - 1)]]
+        lowest[n_found == n_points] = np.nan
+        # Below the surface close by, below the ground around, and not beside others of the same height.
+        surface = _close_surface(grid, cells, lowest, middle, near)
+        rows = _deep(xyz, which, np.flatnonzero(mask_of(len(cells), near)[which] & ~found), surface, depth)
+        around = _surroundings(lowest[n_found < n_points], xyz[rows], size)
+        close, is_smooth = surface.at(xyz, rows, which), surface.is_smooth[which[rows]]
+        rows = rows[_is_under(xyz[rows, 2], close, is_smooth, around, depth)]
+        near = near_cells(grid, cells, which[rows])
+        rows = rows[~_is_supported(xyz, rows, mask_of(len(cells), near)[which], spacing)]
+        monitor.progress((turn + 1) / UNDER_GROUND.rounds)
+        if not len(rows):
+            break
+        found[rows] = True
+        low = np.flatnonzero(found)
+        found[low[_is_floor(xyz[low])]] = False
+        n_found = np.bincount(which[found], minlength=len(cells))
+        near = near_cells(grid, cells, which[rows])
+    return found
+
+
+def mask_of(length: int, places: np.ndarray) -> np.ndarray:
+    """Return a mask (length,) that is true at some places."""
+    mask = np.zeros(length, bool)
+    mask[places] = True
+    return mask
+
+
+def _by_cell_and_height(which: np.ndarray, xyz: np.ndarray) -> np.ndarray:
+    """Return the rows (n,) in the order of cells, those of a cell from the lowest up, of equal ones from the west."""
+    x, y, z = xyz.T
+    # One number for both sorts three times as fast; heights count to a part in two thousand million of their range.
+    key = which.astype(np.int64) << 32
+    key |= ((z - z.min()) * ((2**31 - 1) / max(float(np.ptp(z)), 1e-9))).astype(np.int64)
+    return ordered(key, x, y)
+
+
+def _deep(xyz: np.ndarray, which: np.ndarray, rows: np.ndarray, surface: _Surface, depth: float) -> np.ndarray:
+    """Return those of the rows that lie more than ``depth`` (m) below the surface, or where it is not known."""
+    parts = [rows[start : start + _CHUNK] for start in range(0, len(rows), _CHUNK)]
+    return np.concatenate(
+        [rows[:0], *(part[~(xyz[part, 2] >= surface.at(xyz, part, which) - depth)] for part in parts)]
+    )
+
+
+def near_cells(grid: Grid, cells: np.ndarray, which: np.ndarray) -> np.ndarray:
+    """Return the places in ``cells`` of some cells and those around them, ascending."""
+    at, is_cell = find_cells(cells, (cells[np.unique(which)][:, None] + [0, *grid.around]).ravel())
+    return np.unique(at[is_cell])
+
+
+def _is_supported(xyz: np.ndarray, rows: np.ndarray, is_near: np.ndarray, spacing: float) -> np.ndarray:
+    """Return which points have others close by at their own height: ground seen between leaves or walls.
+
+    Echoes that took a detour come at all depths, those of the ground agree to centimeters.
+    """
+    if not len(rows):
+        return np.zeros(0, bool)
+    radius = max(
+        UNDER_GROUND.support_radius * spacing, min(UNDER_GROUND.support_most * spacing, UNDER_GROUND.support_reach)
+    )
+    # Heights are stretched so that the neighborhood is a flat disk.
+    stretch = np.array([1.0, 1.0, radius / UNDER_GROUND.support_height])
+    tree = spatial.cKDTree(xyz[is_near] * stretch)
+    distance = tree.query(xyz[rows] * stretch, UNDER_GROUND.support_points + 1)[0]
+    return distance[:, -1] <= radius
+
+
+def _is_under(z: np.ndarray, close: np.ndarray, is_smooth: np.ndarray, around: np.ndarray, depth: float) -> np.ndarray:
+    """Return which elevations (m) below the surface close by are below the ground, too."""
+    # Among crowns, walls and water the ground may be anywhere down to where it is seen to be, and as much lower again.
+    unsure = np.where(is_smooth, around[:, 1], 2 * around[:, 0] - around[:, 2])
+    is_on_ground = is_smooth & (close <= around[:, 1] + UNDER_GROUND.on_ground)
+    return (z < unsure - depth) | (is_on_ground & (z >= close - UNDER_GROUND.shallow))
+
+
+@dataclass(frozen=True)
+class _Surface:
+    """The lowest surface around each cell: a plane through ``origin`` with a slope, and whether neighbors agree.
+
+    ``origin`` (m, 3) has NaN where the surface is not known; ``slope`` is (m, 2), ``is_smooth`` (m,).
+    """
+
+    origin: np.ndarray
+    slope: np.ndarray
+    is_smooth: np.ndarray
+
+    def at(self, xyz: np.ndarray, rows: np.ndarray, which: np.ndarray) -> np.ndarray:
+        """Return the elevation (m) of the surface at some points, ``which`` is the cell of each point."""
+        cell = which[rows]
+        off = xyz[rows, :2] - self.origin[cell, :2]
+        return self.origin[cell, 2] + np.einsum("ij,ij->i", self.slope[cell], off)
+
+
+def _close_surface(
+    grid: Grid, cells: np.ndarray, lowest: np.ndarray, middle: np.ndarray, wanted: np.ndarray
+) -> _Surface:
+    """Return the lowest surface around the ``wanted`` cells (places in ``cells``).
+
+    ``lowest`` and ``middle`` are the points of each cell at these ranks in height. Up to three neighbors may hold
+    companions of a low point; most points of such a cell are on the surface, though, unlike those of a cell
+    beyond an edge or farther along a ditch.
+    """
+    origin, slope, is_smooth = np.full((len(cells), 3), np.nan), np.zeros((len(cells), 2)), np.zeros(len(cells), bool)
+    for start in range(0, len(wanted), _CHUNK):
+        part = wanted[start : start + _CHUNK]
+        around = [find_cells(cells, cells[part] + step) for step in grid.around]
+        beside = _beside(around, lowest, middle[part])
+        slope[part] = _slope(beside)
+        low = _flattened(beside, slope[part])
+        mid = _flattened(_beside(around, middle, middle[part]), slope[part])
+        smooth = low[:, 4:] - low[:, :4] <= UNDER_GROUND.smooth_step
+        is_smooth[part] = smooth.any(axis=1)
+        base = np.take_along_axis(low, np.argmax(smooth, axis=1)[:, None], axis=1)[:, 0]
+        rough = low[:, 1] - (low[:, 3] - low[:, 1])
+        origin[part, :2] = middle[part, :2]
+        origin[part, 2] = np.minimum(np.where(is_smooth[part], base, rough), mid[:, 0])
+    return _Surface(origin, slope, is_smooth)
+
+
+def _surroundings(levels: np.ndarray, points: np.ndarray, size: float) -> np.ndarray:
+    """Return elevations (m) of the ground in the eight cells of ``size`` (m) around points (m, 8), ascending."""
+    grid = fixed_grid_over(levels, size)
+    cells, which = distinct(grid.number(levels))
+    order = _by_cell_and_height(which, levels)
+    count = np.bincount(which)
+    start = np.cumsum(count) - count
+    chosen = levels[order[start + np.floor(UNDER_GROUND.around_share * count).astype(np.int64)]]
+    number = grid.number(points)
+    beside = _beside([find_cells(cells, number + step) for step in grid.around], chosen, points)
+    return _flattened(beside, _slope(beside))
+
+
+def _beside(around: list[tuple[np.ndarray, np.ndarray]], levels: np.ndarray, origin: np.ndarray) -> np.ndarray:
+    """Return the levels of the eight cells around some (m, 8, 3), NaN if none; plan from ``origin``.
+
+    ``around`` has for each of the eight where they are in ``levels``, and which of them are there.
+    """
+    beside = np.full((len(origin), 8, 3), np.nan)
+    for column, (at, found) in enumerate(around):
+        beside[found, column] = levels[at[found]]
+    beside[:, :, :2] -= origin[:, None, :2]
+    return beside
+
+
+def _slope(beside: np.ndarray) -> np.ndarray:
+    """Return rise eastward and northward (m, 2): the middle one of those between opposite neighbors.
+
+    So that one odd height does not change it.
+    """
+    west, east, south, north = ([0, 3, 5], [2, 4, 7], [0, 1, 2], [5, 6, 7])
+    eastward = (beside[:, east, 2] - beside[:, west, 2]) / (beside[:, east, 0] - beside[:, west, 0])
+    northward = (beside[:, north, 2] - beside[:, south, 2]) / (beside[:, north, 1] - beside[:, south, 1])
+    return np.column_stack([_middle(eastward), _middle(northward)])
+
+
+def _flattened(beside: np.ndarray, slope: np.ndarray) -> np.ndarray:
+    """Return heights (m, 8) carried to the origin along the slope, ascending, NaN last."""
+    return np.sort(beside[:, :, 2] - np.einsum("ikj,ij->ik", beside[:, :, :2], slope), axis=1)
+
+
+def _middle(values: np.ndarray) -> np.ndarray:
+    """Return the median (m,) of three values each, 0 where none is known."""
+    values = np.sort(values, axis=1)
+    known = np.isfinite(values).sum(axis=1)
+    middle = np.where(known == 2, (values[:, 0] + values[:, 1]) / 2, np.where(known == 1, values[:, 0], values[:, 1]))
+    return np.where(known > 0, middle, 0.0)
+
+
+def _is_floor(low: np.ndarray) -> np.ndarray:
+    """Return which low points (n, 3) belong to a floor: others lie at their level, spread over meters."""
+    # Heights are stretched so that the neighborhood is a flat disk.
+    stretch = np.array([1.0, 1.0, UNDER_GROUND.floor_reach / UNDER_GROUND.floor_level])
+    places = low * stretch
+    near = spatial.cKDTree(places).query_ball_point(places, UNDER_GROUND.floor_reach, return_sorted=True)
+    is_floor = np.zeros(len(low), bool)
+    for row, others in enumerate(near):
+        if len(others) > UNDER_GROUND.floor_points:
+            is_floor[row] = np.ptp(low[others, :2], axis=0).max() >= UNDER_GROUND.floor_extent
+    return is_floor

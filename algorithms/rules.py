@@ -1,0 +1,20 @@
+"""Rules of the methods: numbers that a module's frozen dataclass holds, each with its unit and the reason for it."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+
+def rule(value: Any, unit: str, why: str) -> Any:
+    """Return a field of a dataclass of rules: its value, the unit, and why it is so large.
+
+    Examples
+    --------
+    >>> @dataclasses.dataclass(frozen=True)
+    ... class Rules:
+    ...     step: float = rule(1.0, "m", "physics: lower than any eave")
+    >>> [(one.name, one.default, one.metadata["unit"]) for one in dataclasses.fields(Rules)]
+    [('step', 1.0, 'm')]
+    """
+    return dataclasses.field(default=value, metadata={"unit": unit, "why": why})
