@@ -26,11 +26,18 @@ class _Lazy(ModuleType):
 
 
 def missing() -> list[str]:
-    """Return the packages that are not installed, by the names to install them."""
-    absent = [name for module, name in REQUIRED.items() if importlib.util.find_spec(module) is None]
-    if importlib.util.find_spec("lazrs") is None and importlib.util.find_spec("laszip") is None:
-        absent.append("lazrs")
-    return absent
+    """Return the packages that are not installed and without which nothing runs, by the names to install them."""
+    return [name for module, name in REQUIRED.items() if importlib.util.find_spec(module) is None]
+
+
+def has_laz() -> bool:
+    """Whether LAZ can be read and written; LAS can without."""
+    return any(importlib.util.find_spec(module) is not None for module in ("lazrs", "laszip"))
+
+
+def absent() -> list[str]:
+    """Return all packages to install: those that are missing, and the one for LAZ."""
+    return [*missing(), *([] if has_laz() else ["lazrs"])]
 
 
 spatial = _Lazy("scipy.spatial")

@@ -57,7 +57,7 @@ _PIPELINES = (
         name="detect_buildings",
         title="Detect buildings",
         group="Models",
-        tags="building,detection,roof,footprint,classification,entropy,k-means",
+        tags="building,house,detection,roof,footprint,classification,entropy,k-means,las2building,lasclassify",
         summary="Find the buildings in a point cloud: classified points and footprints, with nothing to set.",
         description=(
             "Noise, ground and heights first, on request bridges; then roof surfaces and clusters of everything else "
@@ -97,7 +97,7 @@ _PIPELINES = (
     ),
     Pipeline(
         name="detect_buildings_2019",
-        title="Detect buildings (as published 2019)",
+        title="Detect buildings, published 2019",
         group="Models",
         tags="building,detection,entropy,k-means,region growing,Santos",
         summary="Find the buildings in a point cloud by the steps of the paper of 2019, to compare with.",
@@ -134,7 +134,7 @@ _PIPELINES = (
         name="interpret_structure",
         title="Interpret structure",
         group="Models",
-        tags="linear,planar,volumetric,dimensionality,voxel,drone,UAV,scanner,scene,structure,Weinmann",
+        tags="linear,planar,volumetric,dimensionality,voxel,drone,UAV,scanner,scene,structure,Weinmann,wire,power line",
         summary="Tell lines, surfaces and volumes apart in a cloud, or in those of several scanners merged.",
         description=(
             "Merges the clouds, leaves one point per voxel, so that places that were scanned for long don't count more "
@@ -230,7 +230,7 @@ _PIPELINES = (
         name="model_terrain",
         title="Model terrain",
         group="Models",
-        tags="terrain,bare earth,DTM,DEM,bridge,fly-over,segments,scan line,filter,Sithole,Vosselman",
+        tags="terrain,bare earth,DTM,DEM,bridge,fly-over,segments,scan line,lasground,filter,Sithole,Vosselman",
         summary="Model the bare earth without objects and bridges: classified points and rasters, by segments.",
         description=(
             "Noise first; then pieces of artificial scan lines in several directions are merged to segments. "

@@ -11,7 +11,13 @@ from qgis.PyQt.QtGui import QIcon
 from ..algorithms.help import as_text, with_picture
 from ..algorithms.pipeline import Pipeline
 from ..algorithms.stage import Stage
-from .paths import HELP, ICON, PICTURES
+from .paths import GROUP_ICONS, HELP, ICON, PICTURES
+
+# The group that the toolbox shows first.
+FIRST_GROUP = "Models"
+
+# What people look for that holds for every algorithm.
+_TAGS_OF_ALL = ("las", "laz", "copc", "pdal", "lidar", "point cloud")
 
 
 class DeclaredAlgorithm:
@@ -28,8 +34,11 @@ class DeclaredAlgorithm:
         return self.declared.title
 
     def group(self) -> str:
-        """Return the group's title."""
-        return self.declared.group
+        """Return the group's title.
+
+        QGIS sorts groups by it; the space has the models come first.
+        """
+        return f" {FIRST_GROUP}" if self.declared.group == FIRST_GROUP else self.declared.group
 
     def groupId(self) -> str:  # noqa: N802
         """Return the group's id."""
@@ -37,15 +46,16 @@ class DeclaredAlgorithm:
 
     def tags(self) -> list:
         """Return words that the toolbox finds the algorithm by."""
-        return [tag.strip() for tag in self.declared.tags.split(",") if tag.strip()]
+        return [*(tag.strip() for tag in self.declared.tags.split(",") if tag.strip()), *_TAGS_OF_ALL]
 
     def icon(self) -> QIcon:
-        """Return the plugin's icon."""
-        return QIcon(str(ICON))
+        """Return the icon of the group."""
+        return QIcon(self.svgIconPath())
 
     def svgIconPath(self) -> str:  # noqa: N802
-        """Return the icon's file."""
-        return str(ICON)
+        """Return the file of the group's icon, or of the plugin's where the group has none."""
+        icon = GROUP_ICONS / f"{self.groupId()}.svg"
+        return str(icon if icon.is_file() else ICON)
 
     def shortDescription(self) -> str:  # noqa: N802
         """Return what it is for, in a sentence."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import shlex
 import sys
 from pathlib import Path
@@ -9,48 +10,86 @@ from pathlib import Path
 from qgis.core import QgsApplication
 
 from ..algorithms import packages
+from ..algorithms.tiling.processes import own_python
 
 # pip must not resolve dependencies (it would put a second numpy before QGIS's own), so those that are
 # not part of numpy's family are named here.
 _WITH = {"scikit-learn": ("scikit-learn", "joblib", "threadpoolctl")}
 _DEBIAN = {"scipy": "python3-scipy", "scikit-learn": "python3-sklearn"}
+_DEBIAN_PIP = "python3-pip"
 
 
 def missing_sentence() -> str:
-    """Return which packages are missing and the command that installs them; "" when all are there."""
-    missing = packages.missing()
+    """Return which packages are missing and the command that installs them; "" when all are there.
+
+    Without a package for LAZ alone everything but LAZ and COPC works, see :func:`laz_sentence`.
+    """
+    return _sentence(packages.missing(), packages.absent())
+
+
+def laz_sentence() -> str:
+    """Return that LAZ and COPC can't be read, and the command that mends it; "" where they can."""
+    return "" if packages.has_laz() else f"Only LAS files can be read and written. {_sentence(['lazrs'], ['lazrs'])}"
+
+
+def _sentence(missing: list[str], wanted: list[str]) -> str:
     if not missing:
         return ""
     noun = "package is" if len(missing) == 1 else "packages are"
-    return f"Python {noun} missing: {', '.join(missing)}. Run this in a terminal and restart QGIS: {command(missing)}"
+    return (
+        f"Python {noun} missing: {', '.join(missing)}. Choose Plugins ▸ LiDAR Buildings ▸ Check installation, or run "
+        f"this in a terminal and restart QGIS: {command(wanted)}"
+    )
 
 
-def command(missing: list) -> str:
+def command(missing: list[str]) -> str:
     """Return the command that installs ``missing`` for the Python that QGIS runs, on this platform."""
-    commands = []
-    if _is_debian():
-        # scipy and scikit-learn have to fit the system's numpy: the system's own do.
-        system = [_DEBIAN[name] for name in missing if name in _DEBIAN]
-        missing = [name for name in missing if name not in _DEBIAN]
-        if system:
-            commands.append("sudo apt-get install -y " + " ".join(system))
-    if missing:
-        names = [name for package in missing for name in _WITH.get(package, (package,))]
-        target = Path(QgsApplication.qgisSettingsDirPath()) / "python"
-        commands.append(
-            f"{_quoted(python())} -m pip install --no-deps --target {_quoted(str(target))} {' '.join(names)}"
-        )
-    return " && ".join(commands)
+    commands = [system_command(missing), shown_command(missing)]
+    return " && ".join(one for one in commands if one)
+
+
+def system_command(missing: list[str]) -> str:
+    """Return the command for those packages that the system has to install, "" for none."""
+    if not _is_debian():
+        return ""
+    # scipy and scikit-learn have to fit the system's numpy: the system's own do.
+    names = [_DEBIAN[name] for name in missing if name in _DEBIAN]
+    if _by_pip(missing) and importlib.util.find_spec("pip") is None:
+        names.append(_DEBIAN_PIP)
+    return f"sudo apt-get install -y {' '.join(names)}" if names else ""
+
+
+def shown_command(missing: list[str]) -> str:
+    """Return the command for the packages that pip installs, as a terminal takes it; "" for none."""
+    if not _by_pip(missing):
+        return ""
+    return " ".join(_quoted(part) for part in (python(), *pip_arguments(missing)))
+
+
+def pip_arguments(missing: list[str]) -> list[str]:
+    """Return what the interpreter of QGIS is to be started with to install packages into the profile."""
+    names = [name for package in _by_pip(missing) for name in _WITH.get(package, (package,))]
+    return ["-m", "pip", "install", "--no-deps", "--target", str(package_folder()), *names]
+
+
+def package_folder() -> Path:
+    """Return the folder of the profile in which QGIS looks for packages."""
+    return Path(QgsApplication.qgisSettingsDirPath()) / "python"
+
+
+def _by_pip(missing: list[str]) -> list[str]:
+    return [name for name in missing if not (_is_debian() and name in _DEBIAN)]
 
 
 def python() -> str:
-    """Return the Python interpreter of this QGIS; ``sys.executable`` may be QGIS itself."""
-    executable = Path(sys.executable or "")
-    if executable.name.lower().startswith("python"):
-        return str(executable)
-    base = Path(sys.base_prefix)
+    """Return the Python interpreter of this QGIS, of its version; ``sys.executable`` may be QGIS itself."""
+    found = own_python()
+    if Path(found).stem.lower().startswith("python"):
+        return found
+    base, executable = Path(sys.base_prefix), Path(sys.executable or "")
     places = (base / "python.exe", executable.parent / "bin" / "python3", base / "bin" / "python3")
-    return next((str(place) for place in places if place.is_file()), "python3")
+    version = f"python{sys.version_info.major}.{sys.version_info.minor}"
+    return next((str(place) for place in places if place.is_file()), version)
 
 
 def _is_debian() -> bool:

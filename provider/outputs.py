@@ -21,6 +21,7 @@ from qgis.core import (
     QgsProperty,
 )
 
+from ..algorithms import packages
 from ..algorithms.cloud.cloud import Cloud
 from ..algorithms.cloud.copc_sidecar import check_place, copc_path
 from ..algorithms.cloud.files import write_cloud
@@ -314,11 +315,17 @@ def write_for_qgis(cloud: Cloud, target: str, context: QgsProcessingContext, mon
     """
     path = Path(target)
     needs_copc = kind_of(path) != COPC and context.willLoadLayerOnCompletion(target) and not reads_las()
-    write_cloud(cloud, path, monitor, copc_beside=needs_copc)
+    can_be_shown = not needs_copc or packages.has_laz()
+    write_cloud(cloud, path, monitor, copc_beside=needs_copc and can_be_shown)
     if not needs_copc:
         return target
     layers = context.layersToLoadOnCompletion()
-    shown = str(copc_path(path))
-    layers[shown] = layers.pop(target)
+    details, shown = layers.pop(target), str(copc_path(path))
+    if can_be_shown:
+        layers[shown] = details
+    else:
+        monitor.warn(
+            f"{path.name} is written, but not shown: this QGIS shows COPC only, which needs the package lazrs."
+        )
     context.setLayersToLoadOnCompletion(layers)
     return shown

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from importlib import import_module
 from pathlib import Path
 from typing import Callable
 
@@ -39,6 +40,8 @@ class Plugin:
         """Add the provider, and then what is optional."""
         self.initProcessing()
         self._add("The page of the plugin in the options of Processing", add_options)
+        self._add("The menu of the plugin", lambda: self._with_iface("menu", "add_menu"))
+        self._add("The message on missing packages", lambda: self._with_iface("installation", "warn_at_start"))
         self._add("The toolbox entry 'Open in Model Designer'", self._add_designer)
 
     def _add(self, what: str, add: Callable[[], Callable[[], None]]) -> None:
@@ -54,6 +57,12 @@ class Plugin:
                 LOG,
                 Qgis.MessageLevel.Warning,
             )
+
+    def _with_iface(self, module: str, function: str) -> Callable[[], None]:
+        """Call a function of a module that needs the windows of QGIS, where there are some."""
+        if self.iface is None:
+            return lambda: None
+        return getattr(import_module(f".{module}", __package__), function)(self.iface)
 
     def _add_designer(self) -> Callable[[], None]:
         """Add "open in the model designer" to the toolbox."""

@@ -10,9 +10,14 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 RELEASE = re.compile(r"^## (\d+\.\d+\.\d+)\b.*$", re.MULTILINE)
 
+# The plugin manager shows the text as it is, in a small window: the heading and this many lines, details left out.
+LINES = 10
+
 
 def filled(metadata: str, changelog: str) -> str:
-    """Return the text of metadata.txt with the version and history that the text of CHANGELOG.md tells.
+    """Return the text of metadata.txt with the version and the news of the latest release of CHANGELOG.md.
+
+    The news are the list before the first heading within the release, its first ten lines, without Markdown.
 
     Raises
     ------
@@ -22,9 +27,11 @@ def filled(metadata: str, changelog: str) -> str:
     newest = RELEASE.search(changelog)
     if newest is None:
         raise ValueError("CHANGELOG.md has no heading like '## 1.2.3'; add one for the version to be released.")
-    # To the reader of metadata.txt a percent sign is special, "#" starts a comment, and only indented lines go on.
-    history = re.sub(r"^#+ ", "", changelog[newest.start() :], flags=re.MULTILINE).replace("%", "%%")
-    indented = "\n    ".join(line for line in history.splitlines() if line)
+    after = changelog[newest.end() :]
+    news = re.split(r"^#", after, maxsplit=1, flags=re.MULTILINE)[0]
+    lines = [line for line in re.sub(r"[*`]", "", news).splitlines() if line.strip()][:LINES]
+    # To the reader of metadata.txt a percent sign is special, and only indented lines go on.
+    indented = "\n    ".join([newest[0].lstrip("# "), *lines]).replace("%", "%%")
     metadata = re.sub(r"^version=.*$", f"version={newest[1]}", metadata, flags=re.MULTILINE)
     return re.sub(
         r"^changelog=.*\Z", lambda _: f"changelog=\n    {indented}\n", metadata, flags=re.MULTILINE | re.DOTALL

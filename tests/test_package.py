@@ -131,6 +131,12 @@ def test_icon_is_in_the_zip(contents, general):
     assert f"{PLUGIN}/{general['icon']}" in contents
 
 
+def test_pictures_that_the_readme_shows_are_in_the_zip(contents):
+    shown = re.findall(r"!\[[^]]*\]\(([^)]+)\)", contents[f"{PLUGIN}/README.md"].decode())
+    assert shown
+    assert not [name for name in shown if f"{PLUGIN}/{name}" not in contents]
+
+
 def test_what_is_for_developers_stays_out(contents):
     folders = {PurePosixPath(name).parts[1] for name in contents}
     assert not folders & {"tests", "scripts", "Makefile", "conftest.py", "pyproject.toml", "demo", "dist"}
@@ -141,7 +147,6 @@ def test_everything_that_the_plugin_runs_on_is_in(contents):
     for folder in ("algorithms", "provider", "resources"):
         files = (path for path in (ROOT / folder).rglob("*") if path.is_file() and "__pycache__" not in path.parts)
         wanted |= {path.relative_to(ROOT).as_posix() for path in files}
-    wanted = {name for name in wanted if not name.startswith("resources/readme/")}
     assert not wanted - {str(PurePosixPath(name).relative_to(PLUGIN)) for name in contents}
 
 
@@ -167,8 +172,11 @@ def test_metadata_tells_what_the_changelog_does():
     assert filled == current, "run scripts/metadata.py"
 
 
-def test_metadata_takes_the_newest_version_and_the_whole_history():
-    changelog = "# Changelog\n\nHow to read it.\n\n## 1.2.0 (2030-01-02)\n\n- 90 % faster.\n\n## 1.1.9\n\n- First.\n"
+def test_metadata_takes_the_newest_version_and_its_news():
+    changelog = (
+        "# Changelog\n\nHow to read it.\n\n## 1.2.0 (2030-01-02)\n\n- *Detect* is 90 % faster.\n\n### In detail\n\n"
+        "- A tree.\n\n## 1.1.9\n\n- First.\n"
+    )
     filled = metadata.filled("[general]\nname=A\nversion=0\nchangelog=old\n    older\n", changelog)
     reader = configparser.ConfigParser()
     reader.read_string(filled)
@@ -177,10 +185,11 @@ def test_metadata_takes_the_newest_version_and_the_whole_history():
     assert reader["general"]["changelog"].split("\n") == [
         "",
         "1.2.0 (2030-01-02)",
-        "- 90 % faster.",
-        "1.1.9",
-        "- First.",
+        "- Detect is 90 % faster.",
     ]
+    long = changelog.replace("- *Detect* is 90 % faster.", "\n".join(f"- {n}" for n in range(30)))
+    reader.read_string(metadata.filled("[general]\nname=A\nversion=0\nchangelog=old\n", long))
+    assert reader["general"]["changelog"].split("\n")[-1] == "- 9"
 
 
 def test_metadata_refuses_a_changelog_without_a_version():

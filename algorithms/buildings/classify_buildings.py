@@ -34,7 +34,7 @@ _REACH = 5.0
 @stage(
     "Classify buildings",
     group="Buildings",
-    tags="building,entropy,k-means,unsupervised,classification",
+    tags="building,entropy,k-means,unsupervised,classification,lasclassify",
     writes=("classification", "entropy", "cluster_entropy", "confidence", "reason"),
     measures=MEASURES,
     reach=_REACH,

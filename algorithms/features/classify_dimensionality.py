@@ -21,7 +21,7 @@ class Dimensionality(IntEnum):
 @stage(
     "Classify dimensionality",
     group="Features",
-    tags="linear,planar,volumetric,linearity,planarity,scattering,structure,dimensionality",
+    tags="linear,planar,volumetric,linearity,planarity,scattering,structure,dimensionality,wire,power line",
     writes=("dimensionality",),
 )
 def classify_dimensionality(linearity, planarity, scattering, *, monitor=None):

@@ -39,7 +39,7 @@ _TRACING = 0.5
 @stage(
     "Extract footprints",
     group="Buildings",
-    tags="polygons,outlines,alpha shape,concave hull,vectorize,regularize,right angles",
+    tags="polygons,outlines,alpha shape,concave hull,vectorize,regularize,right angles,las2building,lasboundary",
     layers=(Layer("footprints", "Footprints", "Polygon", FIELDS, style="footprints"),),
 )
 def extract_footprints(

@@ -62,7 +62,7 @@ _CLOSE = 0.01
 
 @stage(
     "Reconstruct roofs",
-    group="Models in three dimensions",
+    group="3D",
     tags="3D,LoD1.2,LoD1.3,LoD2.2,LOD2,roof,solid,city model,CityJSON,CityJSONSeq,OBJ,3DBAG,ridge,gable,hip,dormer",
     input_layers=(
         InputLayer(

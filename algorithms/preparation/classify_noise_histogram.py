@@ -33,7 +33,7 @@ _REACH = 10.0
 @stage(
     "Classify noise by height histogram",
     group="Preparation",
-    tags="noise,outliers,birds,low points,high points,multipath,histogram,clean",
+    tags="noise,outliers,birds,low points,high points,multipath,histogram,clean,denoise,lasnoise",
     writes=("classification",),
     reach=_REACH,
 )

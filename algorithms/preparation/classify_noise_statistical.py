@@ -30,7 +30,7 @@ _SAMPLE_WAVE = 1e3 * np.sqrt([2.0, 3.0, 5.0])
 @stage(
     "Classify noise by distance",
     group="Preparation",
-    tags="noise,outliers,statistical outlier removal,SOR,isolated points,clean",
+    tags="noise,outliers,statistical outlier removal,SOR,isolated points,clean,denoise,lasnoise",
     writes=("classification",),
 )
 def classify_noise_statistical(

@@ -18,7 +18,7 @@ _NO_LIMIT = "no limit; the log gives the range of the cloud."
 @stage(
     "Filter points",
     group="Preparation",
-    tags="select,extract,subset,class,height,range,limits,remove,split,expression",
+    tags="select,extract,subset,class,height,range,limits,remove,split,expression,las2las",
     selects=True,
 )
 def filter_points(

@@ -55,7 +55,8 @@ class Transform:
 @stage(
     "Merge point clouds",
     group="Preparation",
-    tags="combine,append,join,union,tiles,scans,register,relative orientation,transform,rotate,shift,matrix,4x4",
+    tags="combine,append,join,union,tiles,scans,register,lasmerge,"
+    "relative orientation,transform,rotate,shift,matrix,4x4",
     writes=("xyz", "point_source_id", "previous_source_id"),
     merges=True,
 )

@@ -65,7 +65,7 @@ _OBJECTS = Layer(
 @stage(
     "Assess buildings",
     group="Quality",
-    tags="accuracy,completeness,correctness,F-score,F1,quality,evaluation,reference,validation",
+    tags="accuracy,completeness,correctness,F-score,F1,quality,evaluation,reference,validation,IoU,overlap",
     layers=(_OBJECTS,),
     measures=_MEASURES,
 )

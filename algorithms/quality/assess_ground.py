@@ -14,7 +14,7 @@ from .point_matching import compared_points
 @stage(
     "Assess ground",
     group="Quality",
-    tags="accuracy,type I error,type II error,total error,kappa,evaluation,reference,filter,validation",
+    tags="accuracy,type I error,type II error,total error,kappa,evaluation,reference,filter,validation,RMSE",
     measures=(
         Measure("type_1", "Type I error", "%"),
         Measure("type_2", "Type II error", "%"),

@@ -88,7 +88,7 @@ _MEASURES = (
 @stage(
     "Assess models",
     group="Quality",
-    tags="3D,LoD2,city model,roof,accuracy,rms,distance,evaluation,validation",
+    tags="3D,LoD2,city model,roof,accuracy,rms,distance,evaluation,validation,RMSE",
     input_layers=(
         InputLayer(
             "roofs",

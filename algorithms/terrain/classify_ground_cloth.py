@@ -35,7 +35,7 @@ _FARTHEST_BY_LINKS = 20
 @stage(
     "Classify ground points (cloth)",
     group="Terrain",
-    tags="ground,filter,terrain,bare earth,DTM,cloth simulation,CSF,PMF,SMRF",
+    tags="ground,filter,terrain,bare earth,DTM,cloth simulation,CSF,PMF,SMRF,lasground",
     writes=("classification",),
 )
 def classify_ground_cloth(

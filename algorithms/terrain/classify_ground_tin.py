@@ -64,7 +64,7 @@ _REACH = 40.0
 @stage(
     "Classify ground points (TIN)",
     group="Terrain",
-    tags="ground,filter,terrain,bare earth,DTM,Axelsson,PTD,PTIN,PMF,SMRF",
+    tags="ground,filter,terrain,bare earth,DTM,Axelsson,PTD,PTIN,PMF,SMRF,lasground",
     writes=("classification",),
     reach=lambda tunables: max(tunables["max_building_size"] or 0.0, _REACH),
     of_whole=(_ROUGHNESS,),

@@ -16,7 +16,7 @@ _REACH = 10.0
 @stage(
     "Height above ground",
     group="Terrain",
-    tags="normalize,normalise,normalization,nDSM,HAG,height,terrain,TIN",
+    tags="normalize,normalise,normalization,nDSM,HAG,height,terrain,TIN,lasheight",
     writes=("height_above_ground",),
     reach=_REACH,
 )

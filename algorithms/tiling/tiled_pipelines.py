@@ -14,9 +14,6 @@ from .run_in_tiles import can_be_tiled
 from .settings import CUT_SETTINGS, SETTINGS, Setting
 from .tiled_steps import afterwards, of_survey
 
-# The group of the toolbox.
-_GROUP = "Surveys in tiles"
-
 _DESCRIPTION = """
 For surveys of any size: the input is a folder of tiles, a virtual point cloud, any number of files, or one file of any
 size. Each file becomes a classified tile of the same name in the output folder, with a virtual point cloud over all of
@@ -62,8 +59,8 @@ class TiledPipeline:
 
     @property
     def group(self) -> str:
-        """The group of the toolbox."""
-        return _GROUP
+        """The group of the toolbox: a composite and its twin in tiles are neighbors."""
+        return self.pipeline.group
 
     @property
     def tags(self) -> str:
@@ -110,7 +107,7 @@ class SurveyTool:
     tags: str
     summary: str
     description: str
-    group: str = _GROUP
+    group: str = "Preparation"
 
     @property
     def id(self) -> str:
@@ -121,7 +118,7 @@ class SurveyTool:
 CUT_INTO_TILES = SurveyTool(
     name="cut_into_tiles",
     title="Cut into tiles",
-    tags="tile,tiles,split,grid,folder,survey,large,retile",
+    tags="tile,tiles,split,grid,folder,survey,large,retile,lastile",
     summary="Cut point clouds of any size into square tiles.",
     description=(
         "The tiles are those of a lattice that starts at the zero of the map; each is named by its lower left corner "

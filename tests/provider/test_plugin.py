@@ -2,16 +2,29 @@
 
 from __future__ import annotations
 
+import subprocess
 import sys
 
+import numpy as np
 import pytest
-from qgis.core import Qgis, QgsApplication
+from qgis.core import (
+    Qgis,
+    QgsApplication,
+    QgsCoordinateReferenceSystem,
+    QgsPointCloudLayer,
+    QgsProcessingOutputLayerDefinition,
+    QgsRectangle,
+)
 
 import lidar_buildings
 from lidar_buildings.algorithms import packages
-from lidar_buildings.provider import dependencies
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
+from lidar_buildings.provider import dependencies, installation
+from lidar_buildings.provider.menu import view_parameters
 from lidar_buildings.provider.pipeline_algorithm import PipelineAlgorithm
 from lidar_buildings.provider.plugin import LOG, Plugin
+from lidar_buildings.tests.provider.helpers import run
 
 
 @pytest.fixture
@@ -119,6 +132,7 @@ def test_packages_of_another_installer_are_found_and_forgotten(provider, tmp_pat
     [
         (["lazrs"], True, "{python} -m pip install --no-deps --target {profile}/python lazrs"),
         (["scipy", "scikit-learn"], True, "sudo apt-get install -y python3-scipy python3-sklearn"),
+        (["scipy"], False, "{python} -m pip install --no-deps --target {profile}/python scipy"),
         (
             ["scikit-learn", "lazrs"],
             True,
@@ -144,14 +158,112 @@ def test_names_with_spaces_are_quoted(monkeypatch):
     assert "--target '/home/a user/p/python' lazrs" in dependencies.command(["lazrs"])
 
 
+def test_without_pip_debian_is_asked_for_it(qgis_application, monkeypatch):
+    monkeypatch.setattr(dependencies, "_is_debian", lambda: True)
+    monkeypatch.setattr(dependencies.importlib.util, "find_spec", lambda name: None)
+    assert dependencies.system_command(["lazrs"]) == "sudo apt-get install -y python3-pip"
+
+
 def test_python_is_never_qgis_itself(monkeypatch, tmp_path):
     monkeypatch.setattr(sys, "executable", str(tmp_path / "bin" / "qgis-ltr-bin.exe"))
+    monkeypatch.setattr(sys, "exec_prefix", str(tmp_path))
     monkeypatch.setattr(sys, "base_prefix", str(tmp_path))
-    assert dependencies.python() == "python3"
+    assert dependencies.python() == f"python{sys.version_info.major}.{sys.version_info.minor}"
     (tmp_path / "python.exe").touch()
     assert dependencies.python() == str(tmp_path / "python.exe")
 
 
+def test_another_python_that_comes_first_on_the_path_is_not_taken(monkeypatch, tmp_path):
+    """Its minor version may differ, and lazrs for it can't be loaded."""
+    other = tmp_path / "python3"
+    other.write_text("#!/bin/sh\necho 3.1 elsewhere\n")
+    other.chmod(0o755)
+    monkeypatch.setattr(sys, "executable", str(other))
+    asked = [dependencies.python(), "-c", "import sys; print(sys.version)"]
+    told = subprocess.run(asked, capture_output=True, text=True, check=True).stdout
+    assert told.strip() == sys.version
+
+
 def test_packages_are_looked_up_by_import(monkeypatch):
     monkeypatch.setattr(packages.importlib.util, "find_spec", lambda name: None)
-    assert packages.missing() == ["scipy", "scikit-learn", "laspy", "lazrs"]
+    assert packages.missing() == ["scipy", "scikit-learn", "laspy"]
+    assert packages.absent() == ["scipy", "scikit-learn", "laspy", "lazrs"]
+
+
+@pytest.fixture
+def without_laz(monkeypatch):
+    """A Python without lazrs and laszip."""
+    find = packages.importlib.util.find_spec
+    monkeypatch.setattr(
+        packages.importlib.util, "find_spec", lambda name: None if name in ("lazrs", "laszip") else find(name)
+    )
+
+
+def test_las_needs_no_package_for_laz(provider, context, log, town, tmp_path, without_laz):
+    write_cloud(create_cloud(town, wkt="EPSG:28992"), tmp_path / "town.las")
+    lift = provider.algorithm("toylift")
+    assert lift.canExecute()[0]
+    assert provider.warningMessage().startswith("Only LAS files can be read and written.")
+    wanted = QgsProcessingOutputLayerDefinition(str(tmp_path / "out.las"), context.project())
+    run("toylift", {"INPUT": str(tmp_path / "town.las"), "OUTPUT": wanted}, context, log)
+    assert read_cloud(tmp_path / "out.las").has("height_above_ground")
+    assert [one for one in log.warnings if "needs the package lazrs" in one]
+    assert context.layersToLoadOnCompletion() == {}
+
+
+def test_what_is_installed_is_text_to_copy(qgis_application, without_laz):
+    text = installation.installation_text()
+    for wanted in (f"QGIS {Qgis.version()}", f"numpy {np.__version__}", "lazrs ", "Only LAS files"):
+        assert wanted in text
+
+
+def test_nothing_is_installed_without_a_yes(qgis_application, monkeypatch, without_laz):
+    started, shown = [], []
+    monkeypatch.setattr(installation, "_run", lambda parent, *command: started.append(command) or "")
+    assert not installation.install_missing(None, lambda command: shown.append(command) or False)
+    assert started == []
+    assert shown == [dependencies.shown_command(["lazrs"])]
+
+
+def test_a_yes_runs_the_command_that_was_shown(qgis_application, monkeypatch, without_laz):
+    started = []
+    monkeypatch.setattr(installation, "_run", lambda parent, *command: started.append(command) or "it failed")
+    monkeypatch.setattr(installation.QMessageBox, "warning", lambda *words: started.append(words[-1]))
+    assert not installation.install_missing(None, lambda command: True)
+    assert started[0] == (dependencies.python(), dependencies.pip_arguments(["lazrs"]))
+    assert "lazrs" in started[1]
+    assert "it failed" in started[1]
+
+
+class Interface:
+    """What the menu asks of QGIS's windows."""
+
+    def __init__(self, active, visible, extent, crs):
+        self.active, self.visible, self.extent, self.crs = active, visible, extent, QgsCoordinateReferenceSystem(crs)
+
+    def activeLayer(self):
+        return self.active
+
+    def mapCanvas(self):
+        crs = self.crs
+        settings = type("S", (), {"destinationCrs": lambda self: crs})()
+        visible, extent = self.visible, self.extent
+        return type(
+            "C",
+            (),
+            {"layers": lambda self: visible, "extent": lambda self: extent, "mapSettings": lambda self: settings},
+        )()
+
+
+def test_the_button_fills_in_the_cloud_and_the_view(provider, town, tmp_path):
+    write_cloud(create_cloud(town, wkt="EPSG:28992"), tmp_path / "town.copc.laz")
+    layer = QgsPointCloudLayer(str(tmp_path / "town.copc.laz"), "town", "copc")
+    assert layer.isValid()
+    part = QgsRectangle(85_005, 446_005, 85_100, 446_012)
+    given = view_parameters(Interface(None, [layer], part, "EPSG:28992"))
+    assert given["INPUT"] == layer.id()
+    assert given["EXTENT"].toString(0) == "85005,446005 : 85019,446012"
+    assert given["EXTENT"].crs().authid() == "EPSG:28992"
+    for whole in (QgsRectangle(80_000, 440_000, 90_000, 450_000), QgsRectangle(0, 0, 1, 1)):
+        assert view_parameters(Interface(layer, [], whole, "EPSG:28992")) == {"INPUT": layer.id()}
+    assert view_parameters(Interface(None, [], part, "EPSG:28992")) == {}

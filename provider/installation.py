@@ -1,0 +1,191 @@
+"""What is installed, in text to copy, and the installation of packages that are missing."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.metadata
+import platform
+import sys
+from pathlib import Path
+from typing import Any, Callable, Optional
+
+from qgis.core import Qgis, QgsApplication
+from qgis.PyQt.QtCore import QProcess, QProcessEnvironment, Qt
+from qgis.PyQt.QtWidgets import (
+    QApplication,
+    QDialog,
+    QDialogButtonBox,
+    QLabel,
+    QMessageBox,
+    QPlainTextEdit,
+    QProgressDialog,
+    QPushButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from ..algorithms import packages
+from ..algorithms.cloud.header import SOFTWARE
+from . import PROVIDER_ID
+from .dependencies import (
+    laz_sentence,
+    missing_sentence,
+    package_folder,
+    pip_arguments,
+    python,
+    shown_command,
+    system_command,
+)
+from .paths import PLUGIN
+from .texts import tr
+
+_VERSIONS = ("numpy", *packages.REQUIRED.values(), "lazrs", "laszip", "distributed")
+
+
+def installation_text() -> str:
+    """Return versions and folders, one a line, and what is missing."""
+    lines = [
+        f"{SOFTWARE} {_plugin_version()}",
+        f"QGIS {Qgis.version()}",
+        f"Python {platform.python_version()} ({python()})",
+        f"System {platform.platform()}",
+        *(f"{name} {_version(name)}" for name in _VERSIONS),
+        f"Folder for packages {package_folder()}",
+        f"Folder of the plugin {PLUGIN}",
+    ]
+    return "\n".join([*lines, "", missing_sentence() or laz_sentence() or tr("Everything is installed.")])
+
+
+def _plugin_version() -> str:
+    lines = (PLUGIN / "metadata.txt").read_text(encoding="utf-8").splitlines()
+    return next((line.partition("=")[2] for line in lines if line.startswith("version=")), "")
+
+
+def _version(name: str) -> str:
+    try:
+        return importlib.metadata.version(name)
+    except importlib.metadata.PackageNotFoundError:
+        return tr("is not installed")
+
+
+def show_installation(parent: Optional[QWidget]) -> None:
+    """Show what is installed, and offer to install what is missing."""
+    dialog = InstallationDialog(parent)
+    dialog.exec()
+
+
+class InstallationDialog(QDialog):
+    """Versions in text to copy, a button that copies them, and one that installs what is missing."""
+
+    def __init__(self, parent: Optional[QWidget]) -> None:
+        super().__init__(parent)
+        self.setWindowTitle(tr("LiDAR Buildings: installation"))
+        self.resize(720, 420)
+        self.text = QPlainTextEdit(installation_text())
+        self.text.setReadOnly(True)
+        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
+        buttons.rejected.connect(self.reject)
+        copy = QPushButton(tr("Copy"))
+        copy.clicked.connect(lambda: QApplication.clipboard().setText(self.text.toPlainText()))
+        buttons.addButton(copy, QDialogButtonBox.ButtonRole.ActionRole)
+        self.install = QPushButton(tr("Install…"))
+        self.install.setVisible(bool(packages.absent()))
+        self.install.clicked.connect(self._install)
+        buttons.addButton(self.install, QDialogButtonBox.ButtonRole.ActionRole)
+        layout = QVBoxLayout(self)
+        layout.addWidget(QLabel(tr("Add this text to a report of a problem.")))
+        layout.addWidget(self.text)
+        layout.addWidget(buttons)
+
+    def _install(self) -> None:
+        install_missing(self)
+        self.text.setPlainText(installation_text())
+        self.install.setVisible(bool(packages.absent()))
+
+
+def install_missing(parent: Optional[QWidget], ask: Optional[Callable[[str], bool]] = None) -> bool:
+    """Install the packages that are missing, after the user has seen the command; return whether all are there."""
+    absent = packages.absent()
+    by_system = system_command(absent)
+    if by_system:
+        QMessageBox.information(
+            parent,
+            SOFTWARE,
+            tr("Packages of the system have to be installed in a terminal, then QGIS be started again:")
+            + f"\n\n{by_system}",
+        )
+        return False
+    if not absent or not (ask or (lambda command: _is_wanted(parent, command)))(shown_command(absent)):
+        return not absent
+    told = _run(parent, python(), pip_arguments(absent))
+    _find_new_packages()
+    left = packages.absent()
+    if left:
+        reason = told.strip().splitlines()[-1] if told.strip() else tr("the command gave no reason")
+        QMessageBox.warning(parent, SOFTWARE, tr("Not installed: {}. Python says: {}").format(", ".join(left), reason))
+    else:
+        QMessageBox.information(parent, SOFTWARE, tr("Everything is installed; the algorithms can run."))
+    return not left
+
+
+def _is_wanted(parent: Optional[QWidget], command: str) -> bool:
+    buttons = QMessageBox.StandardButton
+    question = tr("Run this command? It installs Python packages for QGIS alone, from the Python Package Index.")
+    return QMessageBox.question(parent, SOFTWARE, f"{question}\n\n{command}", buttons.Yes | buttons.No) == buttons.Yes
+
+
+def _run(parent: Optional[QWidget], program: str, arguments: list[str]) -> str:
+    """Run a program while a window shows that it is at work; return what it printed last, or why it failed."""
+    waiting = QProgressDialog(tr("Installing Python packages…"), tr("Cancel"), 0, 0, parent)
+    waiting.setWindowTitle(SOFTWARE)
+    waiting.setWindowModality(Qt.WindowModality.WindowModal)
+    waiting.setMinimumDuration(0)
+    process = QProcess(waiting)
+    environment = QProcessEnvironment.systemEnvironment()
+    # Of QGIS's own start; another interpreter would look for its modules there.
+    environment.remove("PYTHONHOME")
+    process.setProcessEnvironment(environment)
+    process.setProcessChannelMode(QProcess.ProcessChannelMode.MergedChannels)
+    process.finished.connect(lambda *_: waiting.reset())
+    waiting.canceled.connect(process.kill)
+    process.start(program, arguments)
+    if not process.waitForStarted():
+        return process.errorString()
+    waiting.exec()
+    process.waitForFinished()
+    return bytes(process.readAll()).decode(errors="replace")
+
+
+def _find_new_packages() -> None:
+    """Have this Python find what was installed while it runs."""
+    folder = str(package_folder())
+    if Path(folder).is_dir() and folder not in sys.path:
+        sys.path.append(folder)
+    importlib.invalidate_caches()
+
+
+def warn_at_start(iface: Any) -> Callable[[], None]:
+    """Show a message with a button where the algorithms can't run; return what takes it away again."""
+    sentence = missing_sentence()
+    if not sentence:
+        return lambda: None
+    bar = iface.messageBar()
+    item = bar.createMessage(SOFTWARE, tr("Python packages are missing: {}.").format(", ".join(packages.missing())))
+    button = QPushButton(tr("Install…"), item)
+
+    def install() -> None:
+        if install_missing(iface.mainWindow()):
+            bar.popWidget(item)
+            _refresh()
+
+    button.clicked.connect(install)
+    item.layout().addWidget(button)
+    bar.pushWidget(item, Qgis.MessageLevel.Warning)
+    return lambda: None
+
+
+def _refresh() -> None:
+    """Have the toolbox ask again which algorithms can run."""
+    provider = QgsApplication.processingRegistry().providerById(PROVIDER_ID)
+    if provider is not None:
+        provider.refreshAlgorithms()

@@ -1,0 +1,94 @@
+"""The plugin's menu and toolbar button: the way to a first result, and what helps where something is missing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Callable, Optional
+
+from qgis.core import (
+    QgsCoordinateTransform,
+    QgsCsException,
+    QgsMapLayer,
+    QgsPointCloudLayer,
+    QgsProject,
+    QgsReferencedRectangle,
+)
+from qgis.PyQt.QtGui import QIcon
+from qgis.PyQt.QtWidgets import QAction
+
+from . import PROVIDER_ID
+from .inputs import EXTENT, INPUT
+from .paths import GROUP_ICONS, ICON
+from .texts import tr
+
+MENU = "LiDAR Buildings"
+
+
+def find_in_view_text() -> str:
+    """Return what the menu and the button are called that find buildings in the map view."""
+    return tr("Find buildings in this view…")
+
+
+def add_menu(iface: Any) -> Callable[[], None]:
+    """Add the menu and the toolbar button; return what takes them away again."""
+    find = QAction(QIcon(str(GROUP_ICONS / "buildings.svg")), find_in_view_text(), iface.mainWindow())
+    find.setToolTip(tr("Find the buildings of the active point cloud within the map view"))
+    find.triggered.connect(lambda: open_dialog(iface))
+    check = QAction(QIcon(str(ICON)), tr("Check installation…"), iface.mainWindow())
+    check.triggered.connect(lambda: _check_installation(iface))
+    for action in (find, check):
+        iface.addPluginToMenu(MENU, action)
+    iface.addToolBarIcon(find)
+
+    def remove() -> None:
+        iface.removeToolBarIcon(find)
+        for action in (find, check):
+            iface.removePluginMenu(MENU, action)
+
+    return remove
+
+
+def _check_installation(iface: Any) -> None:
+    from .installation import show_installation
+
+    show_installation(iface.mainWindow())
+
+
+def open_dialog(iface: Any) -> None:
+    """Open the dialog of *Detect buildings* with the cloud and the extent that the map shows."""
+    from processing import createAlgorithmDialog
+
+    dialog = createAlgorithmDialog(f"{PROVIDER_ID}:detectbuildings", view_parameters(iface))
+    dialog.show()
+
+
+def view_parameters(iface: Any) -> dict[str, Any]:
+    """Return the point cloud that the map shows, and the part of it within the map view, as parameters.
+
+    The active layer is taken, or the first point cloud that is visible; without one, both are left to the user. There
+    is no extent where the view shows the whole cloud or nothing of it.
+    """
+    cloud = _cloud(iface.activeLayer(), iface.mapCanvas().layers())
+    if cloud is None:
+        return {}
+    extent = _visible_part(cloud, iface.mapCanvas())
+    return {INPUT: cloud.id(), **({EXTENT: extent} if extent is not None else {})}
+
+
+def _cloud(active: Optional[QgsMapLayer], visible: list[QgsMapLayer]) -> Optional[QgsPointCloudLayer]:
+    """Return the active layer if it is a point cloud with a file, else the first of the visible ones."""
+    clouds = (one for one in (active, *visible) if isinstance(one, QgsPointCloudLayer))
+    return next((one for one in clouds if Path(one.source()).is_file()), None)
+
+
+def _visible_part(cloud: QgsPointCloudLayer, canvas: Any) -> Optional[QgsReferencedRectangle]:
+    """Return the extent of the map view, in the CRS of the map; None where it shows all of a cloud or nothing of it."""
+    view, crs = canvas.extent(), canvas.mapSettings().destinationCrs()
+    try:
+        change = QgsCoordinateTransform(cloud.crs(), crs, QgsProject.instance())
+        whole = change.transformBoundingBox(cloud.extent())
+    except QgsCsException:
+        return None
+    if view.contains(whole) or not view.intersects(whole):
+        return None
+    return QgsReferencedRectangle(view.intersect(whole), crs)
