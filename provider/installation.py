@@ -39,7 +39,8 @@ from .dependencies import (
 from .paths import PLUGIN
 from .texts import tr
 
-_VERSIONS = ("numpy", *packages.REQUIRED.values(), "lazrs", "laszip", "distributed")
+_VERSIONS = ("numpy", *packages.REQUIRED.values(), "lazrs")
+_OPTIONAL = ("laszip", "distributed")
 
 
 def installation_text() -> str:
@@ -50,6 +51,7 @@ def installation_text() -> str:
         f"Python {platform.python_version()} ({python()})",
         f"System {platform.platform()}",
         *(f"{name} {_version(name)}" for name in _VERSIONS),
+        *(f"{name} {_version(name)} ({tr('optional')})" for name in _OPTIONAL),
         f"Folder for packages {package_folder()}",
         f"Folder of the plugin {PLUGIN}",
     ]
@@ -89,9 +91,9 @@ class InstallationDialog(QDialog):
         copy.clicked.connect(lambda: QApplication.clipboard().setText(self.text.toPlainText()))
         buttons.addButton(copy, QDialogButtonBox.ButtonRole.ActionRole)
         self.install = QPushButton(tr("Install…"))
-        self.install.setVisible(bool(packages.absent()))
         self.install.clicked.connect(self._install)
         buttons.addButton(self.install, QDialogButtonBox.ButtonRole.ActionRole)
+        self.install.setVisible(bool(packages.absent()))
         layout = QVBoxLayout(self)
         layout.addWidget(QLabel(tr("Add this text to a report of a problem.")))
         layout.addWidget(self.text)
@@ -166,22 +168,37 @@ def _find_new_packages() -> None:
 
 def warn_at_start(iface: Any) -> Callable[[], None]:
     """Show a message with a button where the algorithms can't run; return what takes it away again."""
-    sentence = missing_sentence()
-    if not sentence:
-        return lambda: None
-    bar = iface.messageBar()
-    item = bar.createMessage(SOFTWARE, tr("Python packages are missing: {}.").format(", ".join(packages.missing())))
-    button = QPushButton(tr("Install…"), item)
+    return _StartMessage(iface).remove if packages.missing() else lambda: None
 
-    def install() -> None:
-        if install_missing(iface.mainWindow()):
-            bar.popWidget(item)
+
+class _StartMessage:
+    """The message that packages are missing.
+
+    The object has to live as long as its button: Python takes what only a signal refers to for garbage.
+    """
+
+    def __init__(self, iface: Any) -> None:
+        self.iface = iface
+        text = tr("Python packages are missing: {}.").format(", ".join(packages.missing()))
+        self.item = iface.messageBar().createMessage(SOFTWARE, text)
+        self.button = QPushButton(tr("Install…"), self.item)
+        self.button.clicked.connect(self.install)
+        self.item.layout().addWidget(self.button)
+        iface.messageBar().pushWidget(self.item, Qgis.MessageLevel.Warning)
+
+    def install(self) -> None:
+        """Install what is missing; then the message has done its work."""
+        if install_missing(self.iface.mainWindow()):
+            self.remove()
             _refresh()
 
-    button.clicked.connect(install)
-    item.layout().addWidget(button)
-    bar.pushWidget(item, Qgis.MessageLevel.Warning)
-    return lambda: None
+    def remove(self) -> None:
+        """Take the message away, if the user has not."""
+        try:
+            self.iface.messageBar().popWidget(self.item)
+        except RuntimeError:
+            # Qt has deleted it with the bar.
+            return
 
 
 def _refresh() -> None:
