@@ -31,10 +31,14 @@ from lidar_buildings.tests.toys import TOYS
 IDS = {
     "assessbuildings",
     "assessground",
+    "assessclasses",
     "assessmodels",
     "classifybuildings",
     "classifybuildings2019",
     "classifydimensionality",
+    "classifyvegetation",
+    "classifywater",
+    "completeground",
     "classifygroundcloth",
     "classifygroundtin",
     "classifygroundtin2000",
@@ -127,8 +131,43 @@ def test_the_toolbox_has_all_and_nothing_else(provider):
 
 def test_the_algorithm_is_the_stage(stage, algorithm):
     assert (algorithm.name(), algorithm.displayName(), algorithm.group()) == (stage.id, stage.title, stage.group)
-    assert algorithm.tags() == [tag.strip() for tag in stage.tags.split(",") if tag.strip()]
+    own = [tag.strip() for tag in stage.tags.split(",") if tag.strip()]
+    assert algorithm.tags() == [*own, "las", "laz", "copc", "pdal", "lidar", "point cloud"]
     assert not algorithm.icon().isNull()
+
+
+def test_every_group_has_an_icon(provider):
+    groups = {one.groupId(): one.svgIconPath() for one in provider.algorithms() if one.group() != "Toys"}
+    assert {name: Path(path).stem for name, path in groups.items()} == {name: name for name in groups}
+
+
+def test_the_toolbox_begins_with_the_models_and_these_with_detect_buildings(provider):
+    assert min(one.group() for one in provider.algorithms()) == " Models"
+    models = sorted(one.displayName() for one in provider.algorithms() if one.group() == " Models")
+    assert models[:2] == ["Detect buildings", "Detect buildings, in tiles"]
+    twins = [name for name in models if name.endswith(", in tiles")]
+    assert len(twins) == len(models) / 2
+    assert all(models[models.index(name) - 1] == name[: -len(", in tiles")] for name in twins)
+
+
+@pytest.mark.parametrize(
+    ("word", "wanted"),
+    [
+        ("las2building", "detectbuildings"),
+        ("lasground", "classifygroundtin"),
+        ("vegetation", "classifyvegetation"),
+        ("canopy", "rasterizeterrain"),
+        ("denoise", "classifynoisehistogram"),
+        ("rmse", "comparecorners"),
+        ("iou", "assessbuildings"),
+        ("wire", "interpretstructure"),
+        ("normalize", "computeheightaboveground"),
+        ("copc", "detectbuildings"),
+        ("pdal", "detectbuildings"),
+    ],
+)
+def test_words_that_people_type_find_it(provider, word, wanted):
+    assert word in [tag.lower() for tag in provider.algorithm(wanted).tags()]
 
 
 def test_inputs_and_outputs_are_what_the_stage_reads_and_makes(stage, algorithm):
