@@ -41,6 +41,7 @@ _DETECTION = (
     Step("roofs", "segment_roofs"),
     Step("buildings", "classify_buildings"),
     Step("complete", "complete_buildings"),
+    Step("refine", "refine_buildings"),
     Step("near_ground", "complete_ground"),
     Step("water", "classify_water"),
     Step("vegetation", "classify_vegetation"),
@@ -48,8 +49,8 @@ _DETECTION = (
 )
 _DETECTION_SHARED: dict[str, tuple[str, ...]] = {
     "min_area": ("buildings", "complete", "footprints"),
-    "density": ("roofs", "buildings", "complete"),
-    "source": ("ground", "roofs", "buildings", "complete"),
+    "density": ("roofs", "buildings", "complete", "refine"),
+    "source": ("ground", "roofs", "buildings", "complete", "refine"),
 }
 
 _PIPELINES = (
@@ -62,9 +63,9 @@ _PIPELINES = (
         description=(
             "Noise, ground and heights first, on request bridges; then roof surfaces and clusters of everything else "
             "above the ground. A cluster is a building by its mean entropy, compared with that of planes and volumes, "
-            "and by how much of the beam passes through it; then whole buildings with their walls, water, "
-            "vegetation among the rest, and outlines. Distances and tolerances follow the density and the noise of the "
-            "cloud."
+            "and by how much of the beam passes through it; then whole buildings with their walls, whose edges are "
+            "corrected by what all buildings of the cloud look like, water, vegetation among the rest, and outlines. "
+            "Distances and tolerances follow the density and the noise of the cloud."
         ),
         references=_SANTOS,
         steps=_DETECTION,

@@ -7,6 +7,7 @@ from typing import Any
 from .buildings.classify_buildings import classify_buildings
 from .buildings.classify_buildings_2019 import classify_buildings_2019
 from .buildings.complete_buildings import complete_buildings
+from .buildings.refine_buildings import refine_buildings
 from .facades.extract_facades import extract_facades
 from .facades.extract_openings import extract_openings
 from .facades.reconstruct_gables import reconstruct_gables
@@ -102,6 +103,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     classify_buildings,
     classify_buildings_2019,
     complete_buildings,
+    refine_buildings,
     classify_water,
     classify_vegetation,
     extract_footprints,

@@ -80,6 +80,7 @@ STAGE_IDS = {
     "classifybuildings",
     "classifybuildings2019",
     "completebuildings",
+    "refinebuildings",
     "classifyvegetation",
     "classifywater",
     "extractfootprints",
@@ -109,7 +110,7 @@ STAGE_IDS = {
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints", "modelbuildings"}
 PIPELINE_IDS |= {"modelfacades", "modelindustry", "modelterrain"}
 
-CLASSIFYING = {"classify", "complete"}
+CLASSIFYING = {"classify", "complete", "refine"}
 VERBS = CLASSIFYING | {"segment", "cluster", "compute", "extract", "regularize", "simplify", "assess", "simulate"}
 VERBS |= {
     "detect",

@@ -86,6 +86,7 @@ _WRITTEN = (
     Dimension("previous_source_id", ("PreviousSourceId",), "u2", "PointSourceId before the merge"),
     Dimension("voxel_count", ("VoxelCount",), "u4", "points of the voxel"),
     Dimension("confidence", ("Confidence",), "f4", "0 unsure to 1 sure of building", of="cluster_id"),
+    Dimension("building_probability", ("BuildingProbability",), "f4", "likeness to the buildings", of="cluster_id"),
     Dimension("reason", ("Reason",), "u1", "why it is a building or not", of="cluster_id"),
 )
 

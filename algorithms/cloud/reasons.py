@@ -16,6 +16,7 @@ class Reason(IntEnum):
     BESIDE = 5
     LARGE_PLANE = 6
     SURFACE = 7
+    LIKE_BUILDINGS = 8
     ROUGH = 11
     PENETRATED = 12
     INTO_GROUND = 13
@@ -28,6 +29,7 @@ class Reason(IntEnum):
     VEHICLE = 20
     ALIKE = 21
     WITHOUT_ENTROPY = 22
+    UNLIKE_BUILDINGS = 23
 
     @property
     def text(self) -> str:
@@ -41,7 +43,16 @@ class Reason(IntEnum):
 
 
 _FOR_BUILDING = frozenset(
-    {Reason.PLANE, Reason.SOLID_PLANE, Reason.SOLID, Reason.ATTACHED, Reason.BESIDE, Reason.LARGE_PLANE, Reason.SURFACE}
+    {
+        Reason.PLANE,
+        Reason.SOLID_PLANE,
+        Reason.SOLID,
+        Reason.ATTACHED,
+        Reason.BESIDE,
+        Reason.LARGE_PLANE,
+        Reason.SURFACE,
+        Reason.LIKE_BUILDINGS,
+    }
 )
 
 _TEXTS = {
@@ -55,6 +66,7 @@ _TEXTS = {
     Reason.LARGE_PLANE: "Building: a plane too large for a tree crown, although part of the beam passes, as through "
     "glass.",
     Reason.SURFACE: "Building: planar over meters, like what surrounds it (matched images).",
+    Reason.LIKE_BUILDINGS: "Building: beside a building, and like the buildings of the scene.",
     Reason.ROUGH: "Not a building: high entropy, typical of tree crowns.",
     Reason.PENETRATED: "Not a building: low entropy, but the laser beam penetrates it.",
     Reason.INTO_GROUND: "Not a building: the surface continues into the ground.",
@@ -66,5 +78,6 @@ _TEXTS = {
     Reason.GREEN: "Not a building: as green as the vegetation of the scene (matched images).",
     Reason.VEHICLE: "Not a building: as wide, long and high as a car, a van or a caravan (matched images).",
     Reason.ALIKE: "Undecided: all clusters have the same entropy.",
+    Reason.UNLIKE_BUILDINGS: "Not a building: unlike the other buildings of the scene.",
     Reason.WITHOUT_ENTROPY: "Undecided: the points have no extent, so their entropy is undefined.",
 }

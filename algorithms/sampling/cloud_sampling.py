@@ -36,6 +36,10 @@ _MOST_SEEN_THROUGH, _LEAST_DENSITY = 0.02, 8.0
 _LEAST_SCAN_NOISE = 0.001 / float(np.sqrt(12))
 
 
+# Returns the numbers that a table shows.
+Learn = Callable[[np.ndarray], tuple[float, ...]]
+
+
 class CloudSampling:
     """How a cloud samples its surfaces: how densely, how evenly, with how much noise.
 
@@ -54,10 +58,12 @@ class CloudSampling:
 
     Attributes
     ----------
-    of_whole : dict of str to float
+    of_whole : dict of str to float or tuple of floats
         Values that steps have measured on the whole of which the cloud is a part, by their names; empty for a whole.
     found : dict of str to float
         Values that steps have measured on this cloud.
+    samples : dict of str to tuple
+        Tables that steps have learned from on this cloud, each with the function that learns from several together.
 
     Examples
     --------
@@ -72,8 +78,9 @@ class CloudSampling:
     ) -> None:
         self._points = points
         self.single_returns = single_returns
-        self.of_whole: dict[str, float] = {}
+        self.of_whole: dict[str, Any] = {}
         self.found: dict[str, float] = {}
+        self.samples: dict[str, tuple[np.ndarray, Learn]] = {}
         if corner is not None:
             self.corner = corner
 
@@ -103,6 +110,17 @@ class CloudSampling:
             return self.of_whole[name]
         self.found[name] = measure()
         return self.found[name]
+
+    def learned(self, name: str, sample: Callable[[], np.ndarray], learn: Learn) -> tuple[float, ...]:
+        """Return the numbers of that name that were learned on the whole; on this cloud, where it is the whole.
+
+        ``sample`` returns a table, a row for each item, and ``learn`` what it shows. Tables of parts of a survey are
+        learned from together, one below the other.
+        """
+        if name in self.of_whole:
+            return self.of_whole[name]
+        self.samples[name] = sample(), learn
+        return learn(self.samples[name][0])
 
     @cached_property
     def density(self) -> float:

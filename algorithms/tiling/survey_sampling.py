@@ -9,7 +9,7 @@ import numpy as np
 from ..cloud.cloud import Cloud
 from ..pipeline import Pipeline
 from ..run import counted, has_several_returns, run_pipeline
-from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.cloud_sampling import CloudSampling, Learn
 from ..stage import Monitor, ProgressOnly
 from .survey import Survey
 from .tiled_steps import in_blocks, measuring, part_of, preparing, tunables_of
@@ -113,12 +113,14 @@ def _made(
 
 def _measured(
     step: Pipeline, clouds: list[Cloud], sampling: CloudSampling, tunables: dict[str, Any], monitor: Monitor
-) -> tuple[list[Cloud], dict[str, float]]:
-    """Return the clouds that a step makes of parts of a survey, and the medians of the values that it measures."""
+) -> tuple[list[Cloud], dict[str, Any]]:
+    """Return the clouds that a step makes of parts of a survey, and what it measures and learns on them together."""
     made: list[Optional[Cloud]] = []
     values: dict[str, list[float]] = {}
+    tables: dict[str, list[tuple[np.ndarray, Learn]]] = {}
     for done, cloud in enumerate(clouds):
         sampling.found.clear()
+        sampling.samples.clear()
         part = monitor.part(done / len(clouds), (done + 1) / len(clouds))
         try:
             made.append(_made(step, cloud, sampling, tunables, part))
@@ -127,8 +129,14 @@ def _measured(
             continue
         for name, value in sampling.found.items():
             values.setdefault(name, []).append(value)
+        for name, table in sampling.samples.items():
+            tables.setdefault(name, []).append(table)
     sampling.found.clear()
-    return [one for one in made if one is not None], {name: float(np.median(all_)) for name, all_ in values.items()}
+    sampling.samples.clear()
+    measured: dict[str, Any] = {name: float(np.median(all_)) for name, all_ in values.items()}
+    for name, parts in tables.items():
+        measured[name] = parts[0][1](np.concatenate([table for table, _ in parts]))
+    return [one for one in made if one is not None], measured
 
 
 def _enough(clouds: list[Cloud]) -> list[Cloud]:

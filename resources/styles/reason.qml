@@ -10,6 +10,7 @@
       <category value="5" label="Building: low entropy, and adjacent to or surrounded by buildings, where points seen past an edge are no evidence of vegetation" color="51,119,187,255" pointSize="0" render="true"/>
       <category value="6" label="Building: a plane too large for a tree crown, although part of the beam passes, as through glass" color="68,170,187,255" pointSize="0" render="true"/>
       <category value="7" label="Building: planar over meters, like what surrounds it (matched images)" color="17,119,136,255" pointSize="0" render="true"/>
+      <category value="8" label="Building: beside a building, and like the buildings of the scene" color="136,221,238,255" pointSize="0" render="true"/>
       <category value="11" label="Not a building: high entropy, typical of tree crowns" color="221,170,51,255" pointSize="0" render="true"/>
       <category value="12" label="Not a building: low entropy, but the laser beam penetrates it" color="153,119,0,255" pointSize="0" render="true"/>
       <category value="13" label="Not a building: the surface continues into the ground" color="170,136,119,255" pointSize="0" render="true"/>
@@ -22,6 +23,7 @@
       <category value="20" label="Not a building: as wide, long and high as a car, a van or a caravan (matched images)" color="170,68,153,255" pointSize="0" render="true"/>
       <category value="21" label="Undecided: all clusters have the same entropy" color="120,120,120,255" pointSize="0" render="true"/>
       <category value="22" label="Undecided: the points have no extent, so their entropy is undefined" color="80,80,80,255" pointSize="0" render="true"/>
+      <category value="23" label="Not a building: unlike the other buildings of the scene" color="238,119,51,255" pointSize="0" render="true"/>
     </categories>
   </renderer>
   <blendMode>0</blendMode>

@@ -95,6 +95,16 @@ def test_the_log_shows_what_was_measured(rng):
     assert "effective" not in str(sampling)
 
 
+def test_what_was_learned_on_the_whole_is_taken_and_else_learned_on_the_cloud(rng):
+    sampling = CloudSampling.of(gentle_slope(rng))
+    table = np.array([[1.0, 2.0], [3.0, 4.0]])
+    assert sampling.learned("sums", lambda: table, lambda rows: tuple(rows.sum(axis=0))) == (4.0, 6.0)
+    assert sampling.samples["sums"][0] is table
+    assert not sampling.without_points().samples
+    sampling.of_whole["sums"] = (7.0,)
+    assert sampling.without_points().learned("sums", lambda: table, tuple) == (7.0,)
+
+
 def test_blocks_are_given_the_measures_and_not_the_points(rng):
     """So that the blocks of a survey share one sampling, in a few hundred bytes."""
     xyz = gentle_slope(rng, count=100_000)

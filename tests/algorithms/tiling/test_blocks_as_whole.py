@@ -169,6 +169,30 @@ def test_of_a_large_survey_it_is_the_median_of_samples_but_of_those_that_a_step_
     np.testing.assert_array_equal(found, xyz[:, 2] - origin[2] > values["middle"])
 
 
+@stage("Mean", group="Toys", writes=("classification",), reach=5.0, of_whole=("mean",))
+def classify_by_mean(xyz, *, sampling=None, monitor=None):
+    """Write whether a point is higher than the mean of all, which is learned from a table of elevations."""
+    (mean,) = sampling.learned("mean", lambda: xyz[:, 2:], lambda table: (float(table.mean()),))
+    return (xyz[:, 2] > mean).astype(np.uint8)
+
+
+def test_what_is_learned_on_a_large_survey_is_learned_on_all_samples_together(cloud, tmp_path, monkeypatch):
+    """Samples of different size would have another mean of their means."""
+    composite = Pipeline("mean", "Mean", "Tests", "", "", "", "", (Step("mean", "classify_by_mean"),))
+    monkeypatch.setitem(STAGES, "classify_by_mean", classify_by_mean.stage)
+    monkeypatch.setitem(PIPELINES, "mean", composite)
+    monkeypatch.setattr(survey_sampling, "_SAMPLED_WHOLE", 10_000)
+    given = []
+    monkeypatch.setattr(survey_sampling, "_measured", keeping(given, survey_sampling._measured))
+    found = in_blocks_of(composite, cloud, tmp_path)
+    ((made, values),) = given
+    assert len({len(one) for one in made}) > 1
+    expected = np.concatenate([one.get("xyz")[:, 2] for one in made]).mean()
+    assert values == {"mean": (pytest.approx(expected, abs=1e-9),)}
+    xyz = in_order([cloud], "xyz")[0]
+    np.testing.assert_array_equal(found, xyz[:, 2] - cloud.origin[2] > values["mean"][0])
+
+
 def keeping(given, function):
     """Return a function whose results are kept."""
 

@@ -1,0 +1,115 @@
+"""What points in space cells are like: shape, height, returns, intensity and the column that each cell is part of."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Optional
+
+import numpy as np
+
+from ..geometry.grid import distinct, lattice
+from ..neighborhoods.covariance import dimensionality, shannon_entropy, smallest_eigenvectors, symmetric_eigenvalues
+from .space_cells import SpaceCells, covariances
+
+# Smallest variance (m²) of points along an axis: coordinates are given to a centimeter, or few points share a plane.
+_LEAST_VARIANCE = 1e-4
+
+# Sides of the columns in plan (cells): that of a cell, and three, as far as the cells around reach.
+_COLUMNS = (1, 3)
+
+
+@dataclass(frozen=True)
+class CellPoints:
+    """Points (n,) that are described: coordinates (m), heights above ground (m), whether they are ground.
+
+    Attributes
+    ----------
+    goes_on : ndarray of shape (n,), bool, optional
+        Whether the pulse went on to another return.
+    returns : tuple of two ndarrays of shape (n,), uint8, optional
+        Return number and number of returns; None where no pulse has several.
+    intensity : ndarray of shape (n,), optional
+        Strength of the return; None where it is the same everywhere.
+    """
+
+    xyz: np.ndarray
+    height: np.ndarray
+    is_ground: np.ndarray
+    returns: Optional[tuple[np.ndarray, np.ndarray]]
+    intensity: Optional[np.ndarray]
+
+
+def cell_features(points: CellPoints, cells: SpaceCells, chosen: np.ndarray) -> np.ndarray:
+    """Return the features (k, f), float64, of the ``chosen`` cells (k,), rows of all cells.
+
+    Two neighborhoods give the shape: the cell, and the cell with those around it.
+    """
+    around = cells.around[chosen]
+    own, block = cells.moments[chosen], around @ cells.moments
+    count = own[:, 0]
+    features = [_shapes(block), _shapes(own), np.log(block[:, :1]), np.log(own[:, :1])]
+    features.append((own[:, 3] / count - block[:, 3] / block[:, 0])[:, None])
+    features.append((cells.sums(points.height)[chosen] / count)[:, None])
+    if points.returns is not None:
+        number, of = points.returns
+        goes_on = cells.sums(number < of)
+        own_returns = [goes_on[chosen], cells.sums(number)[chosen], cells.sums(of)[chosen]]
+        features.append(np.column_stack([*(values / count for values in own_returns), around @ goes_on / block[:, 0]]))
+    if points.intensity is not None:
+        strength, square = (cells.sums(points.intensity.astype(float) ** power) for power in (1, 2))
+        mean, squares = around @ strength / block[:, 0], around @ square / block[:, 0]
+        spread = np.sqrt(np.maximum(squares - mean**2, 0))
+        features.append(np.column_stack([strength[chosen] / count, mean, spread]))
+    upward = np.argsort(points.xyz[:, 2], kind="stable")
+    first = np.empty(len(cells.count), np.int64)
+    first[cells.cell] = np.arange(len(cells.cell))
+    level = cells.centers[chosen, 2]
+    for side in _COLUMNS:
+        features.append(_columns(points, side * cells.size, upward, first[chosen], level))
+    return np.column_stack(features)
+
+
+def _shapes(moments: np.ndarray) -> np.ndarray:
+    """Return the shape (k, 9) of groups of points with ``moments`` (k, 10).
+
+    Linearity, planarity, scattering and their entropy; deviation from the plane, verticality as the normal's z, share
+    of the spread that is upright, size and spread of elevations.
+    """
+    spread = covariances(moments)
+    eigenvalues = np.maximum(symmetric_eigenvalues(spread), _LEAST_VARIANCE)
+    normal = smallest_eigenvectors(spread, eigenvalues)
+    shares = dimensionality(eigenvalues)
+    total, upright = eigenvalues.sum(axis=1), np.maximum(spread[:, 2], 0)
+    measures = shannon_entropy(*shares), np.sqrt(eigenvalues[:, 2]), normal[:, 2], upright / total
+    return np.column_stack([*shares, *measures, np.sqrt(total), np.sqrt(upright)])
+
+
+def _columns(
+    points: CellPoints, side: float, upward: np.ndarray, rows: np.ndarray, level: np.ndarray
+) -> np.ndarray:
+    """Return the columns (k, 5) in plan, of a ``side`` (m), that cells are part of.
+
+    Share of ground, height of the topmost point, distances of the cell's ``level`` (k,) from the topmost and the lowest
+    point, and spread of elevations, m.
+
+    Parameters
+    ----------
+    upward : ndarray of shape (n,), int
+        Rows of all points, the lowest first.
+    rows : ndarray of shape (k,), int
+        A point of each cell.
+    """
+    east, north = (lattice(points.xyz[:, axis], side) for axis in (0, 1))
+    east, north = east - east.min(), north - north.min()
+    values, column = distinct(north * (int(east.max()) + 1) + east)
+    z, count = points.xyz[:, 2], np.bincount(column, minlength=len(values))
+    # Of several points of a column the one that is written last stays.
+    top, bottom, height = (np.empty(len(values)) for _ in range(3))
+    top[column[upward]], height[column[upward]] = z[upward], points.height[upward]
+    bottom[column[upward[::-1]]] = z[upward[::-1]]
+    above = z - bottom[column]
+    mean, square = (np.bincount(column, above**power, len(values)) / count for power in (1, 2))
+    ground = np.bincount(column, points.is_ground, len(values)) / count
+    of = column[rows]
+    spread = np.sqrt(np.maximum(square - mean**2, 0))
+    return np.column_stack([ground[of], height[of], top[of] - level, level - bottom[of], spread[of]])

@@ -1,0 +1,295 @@
+"""Buildings refined by what the scene itself shows: a classifier learns from the result that it then corrects."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Any, Optional
+
+import numpy as np
+
+from ..cloud.asprs import NOISE, PointClass
+from ..cloud.reasons import Reason
+from ..geometry.grid import raster_cells, refuse_sparse
+from ..packages import ndimage
+from ..params import PointDensity, PointSource
+from ..sampling.cloud_sampling import CloudSampling, not_noise
+from ..stage import Monitor, Param, stage
+from .cell_features import CellPoints, cell_features
+from .scene_learning import LabeledCells, learn_halves, predict, shared_by_surfaces
+from .space_cells import SpaceCells
+
+# What blocks of a survey take of the whole.
+_LEARNED = "building_likeness"
+
+# Classes that never become building.
+_NEVER = (PointClass.GROUND, PointClass.WATER, PointClass.BRIDGE_DECK, *NOISE)
+
+
+@dataclass(frozen=True)
+class _Rules:
+    """What is looked at, and what changes.
+
+    Fitted values are those of seven real clouds of airborne scanners, whose mean F rises by 0.84.
+
+    Attributes
+    ----------
+    cell_spacings : float
+        Side of a cell (point spacings): on a roof it holds 16 points, enough for a plane. 3 and 6 gain 0.1 less, 5 the
+        same.
+    raised : float
+        Points up to this height (m) above ground are the roughness of the ground.
+    foot : float
+        Points lower than this (m) keep their class, as 'Complete buildings' adds no lower ones to a wall.
+    edge : float
+        Only points at most this far (m) from a building's edge change: there the rules of earlier stages meet. 2 m
+        gain the same, 5 m 0.1 less.
+    becomes, ceases : float
+        Points over the first probability become building, those under the second cease to be. The result must
+        contradict the class clearly: 0.8 and 0.1 gain 0.1 less.
+    edge_cell_spacings, least_edge_cell : float
+        Side of the cells in which distances to edges are measured, in point spacings and at least in meters: as in
+        'Complete buildings', they hold a point where a roof was seen.
+    """
+
+    cell_spacings: float = 4.0
+    raised: float = 0.2
+    foot: float = 0.5
+    edge: float = 3.0
+    becomes: float = 0.7
+    ceases: float = 0.15
+    edge_cell_spacings: float = 1.2
+    least_edge_cell: float = 0.5
+
+
+_RULES = _Rules()
+
+# Points within the distance of edges, and the cells around those around them, decide on a point (m).
+_REACH = 10.0
+
+
+@stage(
+    "Refine buildings",
+    group="Buildings",
+    tags="building,self-training,learning,logistic regression,refine",
+    writes=("classification", "cluster_id", "confidence", "reason", "building_probability"),
+    reach=_REACH,
+    of_whole=(_LEARNED,),
+)
+def refine_buildings(
+    xyz,
+    classification,
+    height_above_ground,
+    cluster_id,
+    confidence=None,
+    reason=None,
+    segment_id=None,
+    return_number=None,
+    number_of_returns=None,
+    intensity=None,
+    *,
+    learn: Annotated[
+        bool,
+        Param(
+            "Learn from the scene",
+            "Learn what buildings of this cloud look like, and correct points near their edges that look otherwise. "
+            "Without it nothing is changed.",
+        ),
+    ] = True,
+    density: PointDensity = None,
+    source: PointSource = "automatic",
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Correct the edges of buildings by what the other buildings of the scene look like.
+
+    The classes found so far are the labels from which a logistic regression learns, on one half of the scene, how
+    points of buildings differ from all others in shape, height, returns and intensity; it then gives a probability to
+    each point of the other half, and the reverse. Points up to 3 m from the edge of a building change their class where
+    that strongly contradicts it. Nothing comes from outside the cloud.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes with whole buildings (6), as 'Complete buildings' leaves them.
+    height_above_ground : ndarray of shape (n,), float32
+        Heights, m.
+    cluster_id : ndarray of shape (n,), int32
+        Buildings from 1; 0 if unassigned.
+    confidence : ndarray of shape (n,), float32, optional
+        Confidence that points are of buildings, 0 to 1.
+    reason : ndarray of shape (n,), uint8, optional
+        Why points are called building or not, see :class:`~..cloud.reasons.Reason`.
+    segment_id : ndarray of shape (n,), int32, optional
+        Roof surfaces, whose points share a part of their probability; 0 if unassigned.
+    return_number, number_of_returns : ndarray of shape (n,), uint8, optional
+        Used where pulses have several returns.
+    intensity : ndarray of shape (n,), uint16, optional
+        Used where it differs between points.
+
+    Returns
+    -------
+    classification : ndarray of shape (n,), uint8
+        Points that look like buildings become 6, points of buildings that don't become 1; ground, noise and bridge
+        decks never change.
+    cluster_id : ndarray of shape (n,), int32
+        Buildings from 1 without gaps; points that become building get the nearest one.
+    confidence : ndarray of shape (n,), float32, or None
+        Points that change get their probability; None where not given.
+    reason : ndarray of shape (n,), uint8, or None
+        The same with the reason; None where not given.
+    building_probability : ndarray of shape (n,), float32, or None
+        Probability of building, 0 to 1, smooth over neighbors; 0 for ground and what is lower than 0.2 m, NaN for
+        noise. None where nothing was learned.
+
+    Notes
+    -----
+    This is self-training in one round, on all labels: half-wrong ones cancel out, and walls are learned although few
+    points of walls are certain. Points are described in cubes of four point spacings, alone and with the 26 around:
+    shape (eigenvalues), elevation, height, returns, intensity, and the column in plan of one cube and of three. Halves
+    are squares of 10 m in turn, so that no point is judged by labels of its own surroundings alone. What is wrong
+    everywhere in a scene is learned, too.
+
+    Nothing is changed in scenes with a single building, and in clouds of matched images, which show crowns and roofs as
+    one closed surface: there the corrections lose as much as they gain.
+
+    References
+    ----------
+    Yarowsky, D., 1995. Unsupervised word sense disambiguation rivaling supervised methods. Proceedings of the 33rd
+    Annual Meeting of the Association for Computational Linguistics, 189-196 (self-training).
+    Weinmann, M., Jutzi, B., Hinz, S., Mallet, C., 2015. Semantic point cloud interpretation based on optimal
+    neighborhoods, relevant features and efficient classifiers. ISPRS Journal of Photogrammetry and Remote Sensing 105,
+    286-304 (features).
+    """
+    sampling = sampling or CloudSampling.of(xyz, classification)
+    density = sampling.effective_density if density is None else density
+    monitor.resolved(density=density)
+    used = not_noise(classification)
+    if not learn or sampling.is_closed_surface(source) or not len(used):
+        return classification, cluster_id, confidence, reason, None
+    spacing = 1 / float(np.sqrt(density))
+    scene = _Scene(sampling.from_corner(xyz[used]), classification[used], height_above_ground[used], cluster_id[used])
+
+    # 1. Learn from the cells of each half, or take what was learned on the whole survey.
+    known = (of[used] if of is not None else None for of in (return_number, number_of_returns, intensity))
+    labeled = scene.labeled(_RULES.cell_spacings * spacing, *known, monitor.part(0, 0.7))
+    learned = sampling.learned(_LEARNED, lambda: labeled.sample(scene.cluster_id), learn_halves)
+    monitor.progress(0.8)
+    if not learned:
+        monitor.inform("Buildings are not refined: the scene has fewer than two buildings to learn from.")
+        return classification, cluster_id, confidence, reason, None
+
+    # 2. The probability of each point, by what was learned on the other half.
+    likely = labeled.smooth(predict(learned, labeled.features, labeled.half))
+    probability = np.full(len(xyz), np.nan)
+    probability[used] = shared_by_surfaces(
+        scene.of_points(labeled, likely), None if segment_id is None else segment_id[used]
+    )
+    monitor.progress(0.9)
+
+    # 3. Points near edges that strongly contradict their class.
+    becomes, ceases, nearest = scene.changes(probability[used], spacing)
+    becomes, ceases = used[becomes], used[ceases]
+    monitor.resolved(points_added=len(becomes), points_removed=len(ceases))
+    return (
+        _with(classification, PointClass.BUILDING, becomes, PointClass.UNCLASSIFIED, ceases),
+        _numbered(_with(cluster_id, nearest, becomes, 0, ceases)),
+        None if confidence is None else _with(confidence, probability[becomes], becomes, probability[ceases], ceases),
+        None if reason is None else _with(reason, Reason.LIKE_BUILDINGS, becomes, Reason.UNLIKE_BUILDINGS, ceases),
+        probability.astype(np.float32),
+    )
+
+
+@dataclass(frozen=True)
+class _Scene:
+    """All points (n,) but noise: coordinates (m) from the corner of the whole, classes, heights (m) and buildings."""
+
+    xyz: np.ndarray
+    classification: np.ndarray
+    height: np.ndarray
+    cluster_id: np.ndarray
+
+    @property
+    def is_building(self) -> np.ndarray:
+        """Which points are of buildings."""
+        return self.classification == PointClass.BUILDING
+
+    @property
+    def is_raised(self) -> np.ndarray:
+        """Which points are learned, and may be of buildings."""
+        never = np.isin(self.classification, _NEVER)
+        return (self.height > _RULES.raised) & ~never
+
+    def labeled(
+        self,
+        size: float,
+        return_number: Optional[np.ndarray],
+        number_of_returns: Optional[np.ndarray],
+        intensity: Optional[np.ndarray],
+        monitor: Monitor,
+    ) -> LabeledCells:
+        """Return the cells of a ``size`` (m) with raised points, and what they are like."""
+        cells = SpaceCells(self.xyz, size)
+        monitor.progress(0.3)
+        raised = cells.sums(self.is_raised)
+        chosen = np.flatnonzero(raised)
+        label = cells.sums(self.is_raised & self.is_building)[chosen] / raised[chosen]
+        points = CellPoints(
+            self.xyz,
+            self.height,
+            self.classification == PointClass.GROUND,
+            _returns(return_number, number_of_returns),
+            intensity if intensity is not None and intensity.any() else None,
+        )
+        features = cell_features(points, cells, chosen)
+        monitor.progress(1.0)
+        return LabeledCells(cells, chosen, raised[chosen], label, features)
+
+    def of_points(self, labeled: LabeledCells, likely: np.ndarray) -> np.ndarray:
+        """Return the probability (n,) of points, that (k,) of their cells; 0 where they are not raised."""
+        of_cells = np.zeros(len(labeled.cells.count))
+        of_cells[labeled.chosen] = likely
+        return np.where(self.is_raised, of_cells[labeled.cells.cell], 0.0)
+
+    def changes(self, probability: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the rows of points that become building, and of those that cease; the building nearest to the former.
+
+        ``probability`` (n,) is that of building, ``spacing`` (m) that of the points.
+        """
+        size = max(_RULES.least_edge_cell, _RULES.edge_cell_spacings * spacing)
+        refuse_sparse(self.xyz, size)
+        cell = raster_cells(self.xyz, size, 1)
+        building = np.zeros((cell[0].max() + 2, cell[1].max() + 2), np.int32)
+        building[tuple(of[self.is_building] for of in cell)] = self.cluster_id[self.is_building]
+        outside, nearest = ndimage.distance_transform_edt(building == 0, return_indices=True)
+        inside = ndimage.distance_transform_edt(building > 0)
+        may_change = self.is_raised & (self.height > _RULES.foot)
+        may_change &= (np.maximum(outside, inside)[cell] * size <= _RULES.edge) & (building.max() > 0)
+        becomes = np.flatnonzero(may_change & ~self.is_building & (probability > _RULES.becomes))
+        ceases = np.flatnonzero(may_change & self.is_building & (probability < _RULES.ceases))
+        of_nearest = building[tuple(nearest)]
+        return becomes, ceases, of_nearest[tuple(of[becomes] for of in cell)]
+
+
+def _returns(
+    return_number: Optional[np.ndarray], number_of_returns: Optional[np.ndarray]
+) -> Optional[tuple[np.ndarray, np.ndarray]]:
+    """Return both numbers (n,) where pulses are known to have several returns; None elsewhere."""
+    if return_number is None or number_of_returns is None or number_of_returns.max(initial=0) < 2:
+        return None
+    return return_number, number_of_returns
+
+
+def _with(values: np.ndarray, first: Any, becomes: np.ndarray, second: Any, ceases: np.ndarray) -> np.ndarray:
+    """Return a copy of values (n,) with the ``first`` at rows that become building, the ``second`` at those that cease."""
+    changed = values.copy()
+    changed[becomes], changed[ceases] = first, second
+    return changed
+
+
+def _numbered(cluster_id: np.ndarray) -> np.ndarray:
+    """Return the numbers (n,), int32, of buildings without gaps, in their order; 0 if unassigned."""
+    is_there = np.bincount(cluster_id) > 0
+    is_there[0] = False
+    return np.where(is_there, np.cumsum(is_there), 0).astype(np.int32)[cluster_id]

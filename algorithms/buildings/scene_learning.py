@@ -1,0 +1,137 @@
+"""What buildings of a scene look like, learned from its own classes: each half of the scene judges the other one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Optional
+
+import numpy as np
+
+from ..geometry.grid import lattice
+from .logistic_regression import LogisticRegression
+from .space_cells import SpaceCells
+
+
+@dataclass(frozen=True)
+class _Rules:
+    """How a scene is learned.
+
+    Attributes
+    ----------
+    half : float
+        Side (m) of the squares that alternately belong to the two halves of a scene: about that of a small house. Both
+        halves hold all kinds of roofs, and no point is judged by labels of its own surroundings alone. 5 and 20 m change
+        the gain by less than 0.1.
+    sample : int
+        Cells that are learned at most. With 25,000 or all the mean F of seven real clouds differs by less than 0.01.
+    least_buildings : int
+        With fewer buildings there is nothing of the same kind to learn from.
+    votes : int
+        Rounds in which a cell takes half of its probability from the cells around. One or three gain 0.03 less.
+    cluster_share : float
+        Share of the probability that points of a roof surface take from the mean of that surface. Without it the gain
+        is 0.13 smaller, with 0.5 it is the same.
+    """
+
+    half: float = 10.0
+    sample: int = 10_000
+    least_buildings: int = 2
+    votes: int = 2
+    cluster_share: float = 0.3
+
+
+RULES = _Rules()
+
+
+@dataclass(frozen=True)
+class LabeledCells:
+    """Cells with raised points, and what they are like.
+
+    Attributes
+    ----------
+    cells : SpaceCells
+        All cells.
+    chosen : ndarray of shape (k,), int64
+        Rows of those with raised points.
+    raised : ndarray of shape (k,)
+        Raised points of each.
+    label : ndarray of shape (k,)
+        Share of these that are building.
+    features : ndarray of shape (k, f)
+        Features, see :func:`.cell_features.cell_features`.
+    """
+
+    cells: SpaceCells
+    chosen: np.ndarray
+    raised: np.ndarray
+    label: np.ndarray
+    features: np.ndarray
+
+    @property
+    def half(self) -> np.ndarray:
+        """The half of the scene, 0 or 1, int64 (k,), that each cell is in."""
+        return lattice(self.cells.centers[self.chosen, :2], RULES.half).sum(axis=1) % 2
+
+    def sample(self, cluster_id: np.ndarray) -> np.ndarray:
+        """Return cells (j, 3 + f) to learn from: half, mark of the building, label and features of each.
+
+        Marks tell buildings apart, also those of other parts of a survey; 0 is none. ``cluster_id`` (n,) are the
+        buildings of the points, from 1; 0 if unassigned.
+        """
+        is_building = cluster_id > 0
+        east = np.bincount(cluster_id[is_building], self.cells.xyz[is_building, 0], int(cluster_id.max()) + 1)
+        mark = np.zeros(len(self.cells.count))
+        mark[self.cells.cell[is_building]] = 1.0 + np.abs(east[cluster_id[is_building]])
+        table = np.column_stack([self.half, mark[self.chosen], self.label, self.features])
+        return _spread(table, RULES.sample)
+
+    def smooth(self, likely: np.ndarray) -> np.ndarray:
+        """Return probabilities (k,) after votes of the cells around, which count by their raised points."""
+        around = self.cells.around[self.chosen][:, self.chosen]
+        voters = around @ self.raised
+        for _ in range(RULES.votes):
+            likely = (likely + around @ (self.raised * likely) / voters) / 2
+        return likely
+
+
+def learn_halves(sample: np.ndarray) -> tuple[float, ...]:
+    """Return the two regressions, as numbers, that were learned on the halves of a sample (j, 3 + f).
+
+    Empty where it has fewer than two buildings, or a half has only points of one kind.
+    """
+    marks = np.unique(sample[:, 1])
+    sample = _spread(sample, RULES.sample)
+    half, label = sample[:, 0], sample[:, 2]
+    halves = [half == number for number in (0, 1)]
+    has_both = all(rows.any() and 0 < label[rows].mean() < 1 for rows in halves)
+    if (marks > 0).sum() < RULES.least_buildings or not has_both:
+        return ()
+    fitted = [LogisticRegression.fit(sample[rows, 3:], label[rows]) for rows in halves]
+    return tuple(np.concatenate([part for one in fitted for part in (one.mean, one.scale, one.weights)]).tolist())
+
+
+def predict(learned: tuple[float, ...], features: np.ndarray, half: np.ndarray) -> np.ndarray:
+    """Return the probability (k,) of building of cells, by the regression of the half (k,) that they are not in."""
+    likely, count = np.zeros(len(features)), features.shape[1]
+    for number, values in enumerate(np.reshape(learned, (2, -1))):
+        mean, scale, weights = np.split(values, (count, 2 * count))
+        others = half != number
+        likely[others] = LogisticRegression(mean, scale, weights).predict(features[others])
+    return likely
+
+
+def shared_by_surfaces(likely: np.ndarray, segment_id: Optional[np.ndarray]) -> np.ndarray:
+    """Return probabilities (n,) of points, those of roof surfaces drawn toward the mean of the surface."""
+    if segment_id is None:
+        return likely
+    on_surface = segment_id > 0
+    mean = np.bincount(segment_id, likely) / np.maximum(np.bincount(segment_id), 1)
+    share = RULES.cluster_share
+    return np.where(on_surface, (1 - share) * likely + share * mean[segment_id], likely)
+
+
+def _spread(table: np.ndarray, most: int) -> np.ndarray:
+    """Return ``most`` rows of a table at even distances, or all."""
+    if len(table) <= most:
+        return table
+    return table[np.arange(most) * len(table) // most]

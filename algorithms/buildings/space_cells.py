@@ -1,0 +1,72 @@
+"""Cubes in space that hold the points of a few neighbors, and sums over each cube and the 26 around it."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ..geometry.sparse_voxels import neighbor_pairs, voxelize
+from ..neighborhoods.nearest_blocks import PAIRS
+from ..packages import sparse
+
+
+class SpaceCells:
+    """The occupied cells of a cubic lattice, with the points that each holds.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points, m, with easting and northing from the corner of the whole: a part of a cloud then has the same cells.
+    size : float
+        Side of a cell, m.
+
+    Attributes
+    ----------
+    voxels : ndarray of shape (m, 3), int64
+        Column, row and layer of each cell, sorted.
+    cell : ndarray of shape (n,), int64
+        The cell of each point.
+    count : ndarray of shape (m,), int64
+        Points of each cell.
+    """
+
+    def __init__(self, xyz: np.ndarray, size: float) -> None:
+        self.xyz, self.size = xyz, size
+        self.voxels, self.cell, self.count = voxelize(xyz, size)
+
+    def sums(self, values: np.ndarray) -> np.ndarray:
+        """Return the sum (m,) of the values (n,) of the points of each cell."""
+        return np.bincount(self.cell, values, len(self.count))
+
+    @cached_property
+    def around(self) -> Any:
+        """Sparse matrix (m, m): 1 for each cell itself and the up to 26 that touch it."""
+        one, other, _ = neighbor_pairs(self.voxels, 26)
+        own = np.arange(len(self.count))
+        rows, columns = np.concatenate([one, other, own]), np.concatenate([other, one, own])
+        return sparse.csr_matrix((np.ones(len(rows)), (rows, columns)), (len(own), len(own)))
+
+    @cached_property
+    def centers(self) -> np.ndarray:
+        """Middle of the points of each cell (m, 3), m."""
+        return self._origin + self.moments[:, 1:4] / self.moments[:, :1]
+
+    @cached_property
+    def moments(self) -> np.ndarray:
+        """Number of points, sums of x, y, z and of their six products (m, 10), m and m², about the points' middle."""
+        off = np.ascontiguousarray((self.xyz - self._origin).T)
+        products = [off[a] * off[b] for a, b in PAIRS]
+        return np.column_stack([self.count.astype(float), *(self.sums(values) for values in (*off, *products))])
+
+    @cached_property
+    def _origin(self) -> np.ndarray:
+        # Sums about a point nearby keep the digits that squares of large coordinates lose.
+        return np.rint(self.xyz.mean(axis=0))
+
+
+def covariances(moments: np.ndarray) -> np.ndarray:
+    """Return the covariances (m, 6), m², of groups of points with ``moments`` (m, 10)."""
+    means = moments[:, 1:] / moments[:, :1]
+    return np.column_stack([means[:, 3 + i] - means[:, a] * means[:, b] for i, (a, b) in enumerate(PAIRS)])
