@@ -43,6 +43,7 @@ CAPTIONS = {
     "classifyvegetation": "Crowns, hedges and bushes in green, the darker the higher; buildings red, walls gray.",
     "classifywater": "The river of a simulated town in blue, below its bridges.",
     "completebuildings": "Whole buildings in red, with walls, dormers and edges.",
+    "refinebuildings": "The probability of building that was learned from the scene, from dark to light.",
     "extractfootprints": "Footprints around the points of buildings.",
     "classifyroofs": "Roofs of a simulated village in red; plants at their height are gray.",
     "classifywalls": "Roofs with the walls below their eaves.",

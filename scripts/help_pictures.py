@@ -127,6 +127,7 @@ SCENES = {
     "classifyvegetation": Scene(TOWN, (*BUILDINGS, "classify_vegetation"), color="classification"),
     "classifywater": Scene(TOWN, (*BUILDINGS, "classify_water"), color="classification"),
     "completebuildings": Scene(TOWN, BUILDINGS, color="classification"),
+    "refinebuildings": Scene(TOWN, (*BUILDINGS, "refine_buildings"), color="building_probability"),
     "extractfootprints": Scene(TOWN, (*BUILDINGS, "extract_footprints"), color="classification", lines="footprints"),
     "classifyroofs": Scene(VILLAGE, WALLS[:-1], color="classification"),
     "classifywalls": Scene(VILLAGE, WALLS, color="classification", tilt=60.0),

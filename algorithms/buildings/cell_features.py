@@ -84,9 +84,7 @@ def _shapes(moments: np.ndarray) -> np.ndarray:
     return np.column_stack([*shares, *measures, np.sqrt(total), np.sqrt(upright)])
 
 
-def _columns(
-    points: CellPoints, side: float, upward: np.ndarray, rows: np.ndarray, level: np.ndarray
-) -> np.ndarray:
+def _columns(points: CellPoints, side: float, upward: np.ndarray, rows: np.ndarray, level: np.ndarray) -> np.ndarray:
     """Return the columns (k, 5) in plan, of a ``side`` (m), that cells are part of.
 
     Share of ground, height of the topmost point, distances of the cell's ``level`` (k,) from the topmost and the lowest

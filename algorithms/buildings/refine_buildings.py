@@ -172,8 +172,8 @@ def refine_buildings(
     scene = _Scene(sampling.from_corner(xyz[used]), classification[used], height_above_ground[used], cluster_id[used])
 
     # 1. Learn from the cells of each half, or take what was learned on the whole survey.
-    known = (of[used] if of is not None else None for of in (return_number, number_of_returns, intensity))
-    labeled = scene.labeled(_RULES.cell_spacings * spacing, *known, monitor.part(0, 0.7))
+    number, of, strength = (_of(values, used) for values in (return_number, number_of_returns, intensity))
+    labeled = scene.labeled(_RULES.cell_spacings * spacing, number, of, strength, monitor.part(0, 0.7))
     learned = sampling.learned(_LEARNED, lambda: labeled.sample(scene.cluster_id), learn_halves)
     monitor.progress(0.8)
     if not learned:
@@ -183,9 +183,7 @@ def refine_buildings(
     # 2. The probability of each point, by what was learned on the other half.
     likely = labeled.smooth(predict(learned, labeled.features, labeled.half))
     probability = np.full(len(xyz), np.nan)
-    probability[used] = shared_by_surfaces(
-        scene.of_points(labeled, likely), None if segment_id is None else segment_id[used]
-    )
+    probability[used] = shared_by_surfaces(scene.of_points(labeled, likely), _of(segment_id, used))
     monitor.progress(0.9)
 
     # 3. Points near edges that strongly contradict their class.
@@ -281,8 +279,13 @@ def _returns(
     return return_number, number_of_returns
 
 
+def _of(values: Optional[np.ndarray], rows: np.ndarray) -> Optional[np.ndarray]:
+    """Return the values (k,) of some rows; None where there are no values."""
+    return None if values is None else values[rows]
+
+
 def _with(values: np.ndarray, first: Any, becomes: np.ndarray, second: Any, ceases: np.ndarray) -> np.ndarray:
-    """Return a copy of values (n,) with the ``first`` at rows that become building, the ``second`` at those that cease."""
+    """Return a copy of values (n,) with the ``first`` at rows that become building, the ``second`` at others."""
     changed = values.copy()
     changed[becomes], changed[ceases] = first, second
     return changed

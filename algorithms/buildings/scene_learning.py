@@ -20,8 +20,8 @@ class _Rules:
     ----------
     half : float
         Side (m) of the squares that alternately belong to the two halves of a scene: about that of a small house. Both
-        halves hold all kinds of roofs, and no point is judged by labels of its own surroundings alone. 5 and 20 m change
-        the gain by less than 0.1.
+        halves hold all kinds of roofs, and no point is judged by labels of its own surroundings alone. 5 and 20 m
+        change the gain by less than 0.1.
     sample : int
         Cells that are learned at most. With 25,000 or all the mean F of seven real clouds differs by less than 0.01.
     least_buildings : int

@@ -50,6 +50,7 @@ IDS = {
     "downsamplevoxels",
     "mergeclouds",
     "completebuildings",
+    "refinebuildings",
     "computefeatures",
     "computeheightaboveground",
     "rasterizeterrain",

@@ -58,6 +58,7 @@ WRITTEN = (
     "cluster_entropy",
     "confidence",
     "reason",
+    "building_probability",
 )
 KEYS = ("xyz", "gps_time", "return_number", "number_of_returns", "intensity", "point_source_id")
 
