@@ -41,7 +41,7 @@ class _Rules:
     foot : float
         Points lower than this (m) keep their class, as 'Complete buildings' adds no lower ones to a wall.
     edge : float
-        Only points at most this far (m) from a building's edge change: there the rules of earlier stages meet. 2 m
+        Only points at most this far (m) from a building's edge change: there the rules of earlier stages meet. 3 m
         gain the same, 5 m 0.1 less.
     becomes, ceases : float
         Points over the first probability become building, those under the second cease to be. The result must
@@ -54,7 +54,7 @@ class _Rules:
     cell_spacings: float = 4.0
     raised: float = 0.2
     foot: float = 0.5
-    edge: float = 3.0
+    edge: float = 2.0
     becomes: float = 0.7
     ceases: float = 0.15
     edge_cell_spacings: float = 1.2
@@ -104,7 +104,7 @@ def refine_buildings(
 
     The classes found so far are the labels from which a logistic regression learns, on one half of the scene, how
     points of buildings differ from all others in shape, height, returns and intensity; it then gives a probability to
-    each point of the other half, and the reverse. Points up to 3 m from the edge of a building change their class where
+    each point of the other half, and the reverse. Points up to 2 m from the edge of a building change their class where
     that strongly contradicts it. Nothing comes from outside the cloud.
 
     Parameters

@@ -55,6 +55,9 @@ _FOR_BUILDING = frozenset(
     }
 )
 
+# Reasons of points that belong to a building by the roof beside them: walls, edges, what stands on it.
+ADDED = (Reason.ATTACHED, Reason.LIKE_BUILDINGS)
+
 _TEXTS = {
     Reason.NOT_LOOKED_AT: "In no cluster: ground, or too low or too small to be considered.",
     Reason.PLANE: "Building: low entropy, typical of planes.",

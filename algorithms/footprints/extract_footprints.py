@@ -8,7 +8,7 @@ from typing import Annotated, Any, Optional
 import numpy as np
 
 from ..cloud.asprs import PointClass
-from ..cloud.reasons import Reason
+from ..cloud.reasons import ADDED
 from ..geometry.grid import connected_cells, find_cells, grid_over
 from ..geometry.groups import split_groups
 from ..params import MinBuildingArea
@@ -244,7 +244,7 @@ def _parts(
     how: _Outlining,
 ) -> list[_Part]:
     """Return the parts of building points that lie apart, with the points beside them that show where roofs end."""
-    is_attached = np.zeros(len(building), bool) if reason is None else reason[building] == Reason.ATTACHED
+    is_attached = np.zeros(len(building), bool) if reason is None else np.isin(reason[building], ADDED)
     is_roof = find_roof_points(xyz[building], cluster, is_attached, how.roof_spacing)
     non_building = find_non_building_points(xyz, classification, building[is_roof], how.roof_spacing)
     parts = []

@@ -7,7 +7,7 @@ from typing import Any, Optional
 
 import numpy as np
 
-from ..cloud.reasons import Reason
+from ..cloud.reasons import ADDED, Reason
 from ..geometry.groups import split_groups
 from ..geometry.rings import perimeter, signed_area
 from ..packages import spatial
@@ -256,6 +256,5 @@ def _main_reason(values: Optional[np.ndarray], rows: np.ndarray) -> str:
     """Return the sentence of the reason that most points have, "" without any; what was added later has none itself."""
     given = [] if values is None else values[rows].astype(np.int64)
     counts = np.bincount(given, minlength=max(Reason) + 1)
-    later = Reason.ATTACHED, Reason.LIKE_BUILDINGS
-    roofs = [reason for reason in Reason if reason.is_building and reason not in later and counts[reason]]
+    roofs = [reason for reason in Reason if reason.is_building and reason not in ADDED and counts[reason]]
     return max(roofs, key=lambda reason: counts[reason]).text if roofs else ""
