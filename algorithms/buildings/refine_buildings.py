@@ -165,6 +165,7 @@ def refine_buildings(
     sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.effective_density if density is None else density
     monitor.resolved(density=density)
+    monitor.progress(0.0)
     used = not_noise(classification)
     if not learn or sampling.is_closed_surface(source) or not len(used):
         return classification, cluster_id, confidence, reason, None
