@@ -165,7 +165,7 @@ def refine_buildings(
     sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.effective_density if density is None else density
     monitor.resolved(density=density)
-    monitor.progress(0.0)
+    monitor.progress(0.1)
     used = not_noise(classification)
     if not learn or sampling.is_closed_surface(source) or not len(used):
         return classification, cluster_id, confidence, reason, None
@@ -174,7 +174,7 @@ def refine_buildings(
 
     # 1. Learn from the cells of each half, or take what was learned on the whole survey.
     number, of, strength = (_of(values, used) for values in (return_number, number_of_returns, intensity))
-    labeled = scene.labeled(_RULES.cell_spacings * spacing, number, of, strength, monitor.part(0, 0.7))
+    labeled = scene.labeled(_RULES.cell_spacings * spacing, number, of, strength, monitor.part(0.1, 0.7))
     learned = sampling.learned(_LEARNED, lambda: labeled.sample(scene.cluster_id), learn_halves)
     monitor.progress(0.8)
     if not learned:
