@@ -8,63 +8,49 @@ import numpy as np
 
 from ..cloud.reasons import Reason
 from ..packages import ndimage
+from ..rules import rule
 from ..segmentation.top_surface import TopSurface
 
-# Gaps between roof surfaces (ridges, dormers, chimneys) are closed over this (m), unless the caller says otherwise, ...
-GAP = 1.5
 
-# ... where the surface stays above the ground by this (m).
-_RAISED = 1.0
+@dataclass(frozen=True)
+class ImageRoofRules:
+    """Roofs and vehicles in clouds of matched images."""
 
-# Largest distance (m) between the end of a roof surface and the edge of the roof, which matching rounds.
-_ROUNDED = 0.7
+    gap: float = rule(1.5, "m", "gaps between roof surfaces that are closed: ridges, dormers, chimneys")
+    least_width: float = rule(1.5, "m", "physics: what is narrower everywhere is a wall, a railing or a hedge")
+    raised: float = rule(1.0, "m", "height over the ground that the surface keeps where a gap is closed")
+    rounded: float = rule(0.7, "m", "physics: matching rounds edges of roofs over the size of its windows")
+    half: float = rule(0.5, "share", "of a roof's height at its edge: a step is smeared evenly to both sides")
+    steep: float = rule(1.0, "m per m", "physics: smeared walls fall as steeply; soil does not")
+    foot: float = rule(0.3, "m", "physics: lower points beyond the edge of a roof are ground, kerbs and low plants")
+    above: float = rule(1.0, "m", "higher points over a roof are of a crown or a higher wall, not of its edge")
+    near: float = rule(2.0, "m", "distance within which points around a roof surface are looked at")
+    surface_share: float = rule(0.6, "share", "of these on surfaces around a roof; fewer around smooth spots of crowns")
+    at_height: float = rule(1.5, "m", "largest difference of points at about the height of a surface")
+    at_height_share: float = rule(0.3, "share", "the same of its height, where that is less: lower ones are of edges")
 
-# Height at the edge of a roof (share of the roof's height): a step is smeared evenly to both sides.
-_HALF = 0.5
 
-# Smeared walls fall by this much (m per m) or more.
-_STEEP = 1.0
+@dataclass(frozen=True)
+class VehicleRules:
+    """Sizes of vans and cars, with their smeared edges; buses are wider and longer."""
 
-# Points beyond the edge of the roof lower than this (m) are ground, kerbs and low plants.
-FOOT = 0.3
+    least_width: float = rule(1.4, "m", "physics")
+    most_width: float = rule(2.6, "m", "physics: the width that roads admit")
+    least_van: float = rule(4.3, "m", "physics: length of the shortest van")
+    most_van: float = rule(7.5, "m", "physics: length of the longest van")
+    van_height: float = rule(3.0, "m", "physics: height of the highest van")
+    least_car: float = rule(3.2, "m", "physics: length of the shortest car")
+    most_car: float = rule(5.4, "m", "physics: length of the longest car")
+    car_height: float = rule(1.75, "m", "physics: height of the highest car")
+    filled: float = rule(0.65, "share", "of its smallest rectangle that a vehicle fills")
 
-# Points more than this (m) above the roof are of a crown or a higher wall, not of its edge.
-_ABOVE = 1.0
 
-# Least and largest width (m) of vans and cars, smeared edges included; buses are wider.
-_VAN_WIDTH = (1.4, 2.6)
-
-# Least and largest length (m) of vans, smeared edges included.
-_VAN_LENGTH = (4.3, 7.5)
-
-# Largest height (m) of vans above the ground.
-_VAN_HEIGHT = 3.0
-
-# Least and largest length (m) of cars, smeared edges included.
-_CAR_LENGTH = (3.2, 5.4)
-
-# Largest height (m) of cars above the ground.
-_CAR_HEIGHT = 1.75
-
-# Share of its rectangle that a vehicle fills.
-_FILLED = 0.65
+IMAGE_ROOFS, VEHICLES = ImageRoofRules(), VehicleRules()
 
 # Directions that the smallest rectangle around an object is looked for in.
 _DIRECTIONS = np.radians(np.arange(0.0, 90.0, 5.0))
 
 _EIGHT = np.ones((3, 3), bool)
-
-# Distance (m) within which points around a roof surface are looked at.
-_NEAR = 2.0
-
-# Share of these, at about its height, that are on surfaces around a roof; fewer are around the smooth spots of crowns.
-_MOST = 0.6
-
-# Largest difference (m) of points at about the height of a surface.
-_AT_HEIGHT = 1.5
-
-# The same as a share of its height, where that is less: lower ones are of edges.
-_AT_HEIGHT_SHARE = 0.3
 
 
 def amid_rough(surface: TopSurface, xyz: np.ndarray, segment_id: np.ndarray) -> np.ndarray:
@@ -81,12 +67,12 @@ def amid_rough(surface: TopSurface, xyz: np.ndarray, segment_id: np.ndarray) -> 
     row, column = surface.cell[0][on_top], surface.cell[1][on_top]
     on_surface = np.zeros(surface.height.shape, bool)
     on_surface[row, column] = True
-    tolerance = np.minimum(_AT_HEIGHT, _AT_HEIGHT_SHARE * surface.height)
-    share = surface.share_near(on_surface, _NEAR, tolerance, _RAISED)[row, column]
+    tolerance = np.minimum(IMAGE_ROOFS.at_height, IMAGE_ROOFS.at_height_share * surface.height)
+    share = surface.share_near(on_surface, IMAGE_ROOFS.near, tolerance, IMAGE_ROOFS.raised)[row, column]
     # Other programs number surfaces as they like.
     segments, of = np.unique(segment_id[on_top], return_inverse=True)
     mean = np.bincount(of, share) / np.bincount(of)
-    return np.isin(segment_id, segments[mean < _MOST])
+    return np.isin(segment_id, segments[mean < IMAGE_ROOFS.surface_share])
 
 
 @dataclass(frozen=True)
@@ -104,17 +90,17 @@ class RoofExtent:
     surface: TopSurface
     is_roof: np.ndarray
 
-    def covered(self, min_width: float, gap: float) -> np.ndarray:
+    def covered(self, gap: float) -> np.ndarray:
         """Return the cells (rows, columns) that roofs cover.
 
-        Parts narrower than ``min_width`` (m) are left out; gaps of at most ``gap`` (m) between roofs are closed.
+        Narrow parts are left out; gaps of at most ``gap`` (m) between roofs are closed.
         """
-        raised = self.surface.height >= _RAISED
+        raised = self.surface.height >= IMAGE_ROOFS.raised
         closed = self.is_roof
         if gap >= self.surface.size:
             closed = closed | (ndimage.binary_closing(self.is_roof, self._disk(gap / 2)) & raised)
             closed |= self._small_holes(closed, gap) & raised
-        wide = ndimage.binary_opening(closed, self._disk(min_width / 2))
+        wide = ndimage.binary_opening(closed, self._disk(IMAGE_ROOFS.least_width / 2))
         # Opening rounds the corners off, too: they come back.
         wide = ndimage.binary_dilation(wide, _EIGHT, 2, mask=closed) if wide.any() else wide
         return self._to_edges(wide)
@@ -125,8 +111,10 @@ class RoofExtent:
             return core
         nearest = ndimage.distance_transform_edt(~core, return_distances=False, return_indices=True)
         height, elevation = self.surface.height[tuple(nearest)], self.surface.elevation[tuple(nearest)]
-        is_edge = (self.surface.height >= _HALF * height) & (self.surface.elevation <= elevation + _ABOVE)
-        steps = max(1, round(_ROUNDED / self.surface.size))
+        is_edge = (self.surface.height >= IMAGE_ROOFS.half * height) & (
+            self.surface.elevation <= elevation + IMAGE_ROOFS.above
+        )
+        steps = max(1, round(IMAGE_ROOFS.rounded / self.surface.size))
         cross = ndimage.generate_binary_structure(2, 1)
         grown = ndimage.binary_dilation(core, cross, steps, mask=core | is_edge)
         # Smeared walls, fences and branches that reach out are thinner than the objects that carry them.
@@ -136,7 +124,7 @@ class RoofExtent:
         """Return the cells (rows, columns) of numbered buildings that rounded edges don't reach."""
         same = ndimage.grey_erosion(building, footprint=_EIGHT) == ndimage.grey_dilation(building, footprint=_EIGHT)
         inward = ndimage.distance_transform_edt((building > 0) & same)
-        return inward * self.surface.size > _ROUNDED - self.surface.size
+        return inward * self.surface.size > IMAGE_ROOFS.rounded - self.surface.size
 
     def faces(self, building: np.ndarray) -> np.ndarray:
         """Return numbered buildings (rows, columns) with the smeared walls around them.
@@ -146,10 +134,10 @@ class RoofExtent:
         """
         cross = ndimage.generate_binary_structure(2, 1)
         grown = building.copy()
-        for _ in range(max(1, round(_ROUNDED / self.surface.size))):
+        for _ in range(max(1, round(IMAGE_ROOFS.rounded / self.surface.size))):
             above = ndimage.grey_dilation(np.where(grown > 0, self.surface.elevation, -np.inf), footprint=cross)
-            falls = self.surface.elevation <= above - _STEEP * self.surface.size
-            is_face = (grown == 0) & falls & (self.surface.height >= FOOT)
+            falls = self.surface.elevation <= above - IMAGE_ROOFS.steep * self.surface.size
+            is_face = (grown == 0) & falls & (self.surface.height >= IMAGE_ROOFS.foot)
             grown = np.where(is_face, ndimage.grey_dilation(grown, footprint=cross), grown)
         return grown
 
@@ -158,7 +146,7 @@ class RoofExtent:
         found = np.zeros(count + 1, bool)
         for number, where in enumerate(ndimage.find_objects(region, count), start=1):
             extent = [(part.stop - part.start) * self.surface.size for part in where]
-            if max(extent) <= np.hypot(_VAN_WIDTH[1], _VAN_LENGTH[1]):
+            if max(extent) <= np.hypot(VEHICLES.most_width, VEHICLES.most_van):
                 inside = region[where] == number
                 found[number] = self._is_vehicle(inside, self.surface.height[where][inside])
         return found
@@ -168,9 +156,11 @@ class RoofExtent:
         cell = self.surface.size
         width, length, filled = smallest_rectangle(inside, cell)
         top = float(np.percentile(height, 90))
-        is_van = _between(length, _VAN_LENGTH, cell) and top <= _VAN_HEIGHT
-        is_car = _between(length, _CAR_LENGTH, cell) and top <= _CAR_HEIGHT
-        return _between(width, _VAN_WIDTH, cell) and filled >= _FILLED and (is_van or is_car)
+        rules = VEHICLES
+        is_van = rules.least_van - cell <= length <= rules.most_van + cell and top <= rules.van_height
+        is_car = rules.least_car - cell <= length <= rules.most_car + cell and top <= rules.car_height
+        has_width = rules.least_width - cell <= width <= rules.most_width + cell
+        return bool(has_width and filled >= rules.filled and (is_van or is_car))
 
     def _small_holes(self, closed: np.ndarray, gap: float) -> np.ndarray:
         holes, count = ndimage.label(ndimage.binary_fill_holes(closed) & ~closed)
@@ -194,10 +184,6 @@ def smallest_rectangle(inside: np.ndarray, size: float) -> tuple[float, float, f
     best = int(np.argmin(sides[0] * sides[1]))
     width, length = np.sort(sides[:, best]).tolist()
     return width, length, float(inside.sum() * size**2 / (width * length))
-
-
-def _between(value: float, bounds: tuple[float, float], margin: float) -> bool:
-    return bounds[0] - margin <= value <= bounds[1] + margin
 
 
 def without_vehicles(extent: RoofExtent, building: np.ndarray, refused: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -294,6 +294,12 @@ def _out(name: str, where: str, value: Any) -> Rule:
     return Rule(name, ((where, value),))
 
 
+def _set(where: str, **values: Any) -> Any:
+    """Return the rules of a module with other values."""
+    module, _, name = where.partition(":")
+    return dataclasses.replace(vars(importlib.import_module(f"{PACKAGE}.{module}"))[name], **values)
+
+
 # Whole rules, left out.
 WHOLE = (
     Rule("noise: isolated points", tunables={"noise": {"isolated": False}}),
@@ -360,16 +366,22 @@ WHOLE = (
     _out("classify: weight of the references", "buildings.entropy_split:_REFERENCE_WEIGHT", 10**9),
     Rule("complete: gaps", tunables={"complete": {"gap": 0.0}}),
     Rule("complete: structures on roofs", tunables={"complete": {"structure_height": 0.0}}),
-    Rule("complete: minimum width", tunables={"complete": {"min_width": 0.0}}),
     Rule("complete: share of roof surfaces", tunables={"complete": {"min_roof_share": 0.0}}),
-    _out("complete: three positions", "buildings.complete_buildings:_POSITIONS", ((0.0, 0.0),)),
-    _out("complete: bushes", "buildings.complete_buildings:_BUSHES", 0.0),
+    _out(
+        "complete: bushes",
+        "buildings.building_columns:COLUMNS",
+        _set("buildings.building_columns:COLUMNS", bush_share=0.0),
+    ),
     _out(
         "complete: crowns",
-        "buildings.complete_buildings:_Columns.is_beside_crown",
+        "buildings.building_columns:Columns.is_beside_crown",
         lambda self, *_: np.zeros(self.building.shape, bool),
     ),
-    _out("complete: chimneys are sparse", "buildings.complete_buildings:_SPARSE", 9.0),
+    _out(
+        "complete: chimneys are sparse",
+        "buildings.building_columns:COLUMNS",
+        _set("buildings.building_columns:COLUMNS", sparse_share=9.0),
+    ),
     _out("neighborhoods: wide in plan", "neighborhoods.wide_in_plan:LEAST_WIDTH", 0.0),
 )
 

@@ -1,0 +1,114 @@
+"""Points in the columns of buildings: walls and structures belong to a roof, bushes and crowns beside it do not."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Optional
+
+import numpy as np
+
+from ..packages import ndimage
+from ..rules import rule
+
+_EIGHT = np.ones((3, 3), bool)
+
+
+@dataclass(frozen=True)
+class ColumnRules:
+    """What belongs to a roof, and what stands beside it."""
+
+    wall_reach: float = rule(1.0, "m", "physics: eaves reach out so far, and roof surfaces end before them")
+    sparse_share: float = rule(0.3, "share", "chimneys and dormers cover less of the cells around, crowns more")
+    around: int = rule(7, "cells", "side of the square in which these are counted, some 4 m")
+    bush_share: float = rule(0.33, "share", "of the roof's height, up to which points beside a roof may be bushes")
+    bush_height: float = rule(2.5, "m", "physics: hedges and bushes at walls are trimmed lower than a floor")
+    crown_cells: int = rule(
+        2, "cells", "a patch of cells beside a building that is as wide may be a crown; walls are narrower"
+    )
+    passed_share: float = rule(0.5, "share", "of the points of a crown, those at least that the beam passed")
+    within: int = rule(5, "cells", "side of the square in which this share is measured, some 3 m")
+
+
+COLUMNS = ColumnRules()
+
+
+@dataclass(frozen=True)
+class ColumnPoints:
+    """All points (n,), as they are compared with buildings.
+
+    Attributes
+    ----------
+    cell : tuple of two ndarrays of shape (n,)
+        Row and column of the cell that each is in.
+    elevation, height : ndarray of shape (n,)
+        Elevation and height above ground, m.
+    raised : ndarray of shape (n,), bool
+        Higher than the foot of a wall, and no noise.
+    goes_on : ndarray of shape (n,), bool, optional
+        Whether the pulse went on to another return; None where returns are not known.
+    """
+
+    cell: tuple[np.ndarray, np.ndarray]
+    elevation: np.ndarray
+    height: np.ndarray
+    raised: np.ndarray
+    goes_on: Optional[np.ndarray]
+
+
+class Columns:
+    """The cells of buildings: whose they are, whose roof they stand beside, and how high it and the highest near is."""
+
+    def __init__(self, building: np.ndarray, top: np.ndarray, cell_size: float) -> None:
+        self.building = building
+        self.top = top
+        reach = 2 * max(1, round(COLUMNS.wall_reach / cell_size)) + 1
+        self.highest = ndimage.maximum_filter(np.where(building > 0, top, -np.inf), reach)
+        beside = ndimage.grey_dilation(building, footprint=_EIGHT)
+        self.beside = np.where(building > 0, 0, beside)
+
+    def owners(self, points: ColumnPoints, clearance: float, structure_height: float) -> np.ndarray:
+        """Return the building (n,), int32, that each point belongs to; 0 if unassigned.
+
+        Points up to the clearance (m) above the roof do, those up to the height of structures (m) where they are few.
+        """
+        above = points.elevation - self.top[points.cell]
+        inside = points.raised & (self.building[points.cell] > 0)
+        stands_above = inside & (above > clearance)
+        is_chimney = stands_above & (above <= structure_height) & self.is_sparse(points.cell, stands_above)[points.cell]
+        may_be_plant = points.height < np.minimum(COLUMNS.bush_share * (points.height - above), COLUMNS.bush_height)
+        if points.goes_on is not None:
+            may_be_plant |= self.is_beside_crown(points.cell, points.raised, points.goes_on)[points.cell]
+        # Points between a roof and the next higher one are the wall of the higher one.
+        is_wall = points.raised & (points.elevation <= self.highest[points.cell]) & (inside | ~may_be_plant)
+        owner = np.where(inside, self.building[points.cell], self.beside[points.cell])
+        return np.where((inside & (above <= clearance)) | is_chimney | is_wall, owner, 0).astype(np.int32)
+
+    def is_sparse(self, cell: tuple[np.ndarray, np.ndarray], stands_above: np.ndarray) -> np.ndarray:
+        """Return the cells around which the points that stand above the roof cover a small part of it."""
+        row, column = cell
+        standing = np.zeros(self.building.shape)
+        standing[row[stands_above], column[stands_above]] = 1
+        around = ndimage.uniform_filter(standing, COLUMNS.around, mode="constant")
+        roof = ndimage.uniform_filter((self.building > 0).astype(float), COLUMNS.around, mode="constant")
+        return around < COLUMNS.sparse_share * roof
+
+    def is_beside_crown(
+        self, cell: tuple[np.ndarray, np.ndarray], raised: np.ndarray, goes_on: np.ndarray
+    ) -> np.ndarray:
+        """Return the cells of crowns that stand apart from buildings, and the cells next to them."""
+        row, column = cell
+        apart = raised & (self.building[cell] == 0) & (self.beside[cell] == 0)
+        shape = self.building.shape
+        number = np.ravel_multi_index((row[apart], column[apart]), shape)
+        # Means of whole numbers would be rounded to such.
+        standing, passed = (
+            np.bincount(number, weights, np.prod(shape)).reshape(shape).astype(float)
+            for weights in (None, goes_on[apart])
+        )
+        around, passed_around = (
+            ndimage.uniform_filter(count, COLUMNS.within, mode="constant") for count in (standing, passed)
+        )
+        crown = ndimage.binary_opening(standing > 0, np.ones((COLUMNS.crown_cells,) * 2, bool)) & (
+            passed_around > COLUMNS.passed_share * around
+        )
+        return ndimage.binary_dilation(crown, _EIGHT)

@@ -1,0 +1,123 @@
+"""Where the roofs of buildings are in plan, in cells: gaps closed, regions numbered, and how high the roofs are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..cloud.reasons import Reason
+from ..packages import ndimage
+
+Cell = tuple[np.ndarray, np.ndarray]
+
+_EIGHT = np.ones((3, 3), bool)
+
+
+@dataclass(frozen=True)
+class Coverage:
+    """The cells that buildings cover.
+
+    Attributes
+    ----------
+    cell : tuple of two ndarrays of shape (n,)
+        Row and column of the cell that each point is in.
+    cell_size : float
+        Their size, m.
+    building : ndarray of shape (rows, columns), int32
+        Number of the building that covers each cell; 0 for cells without building.
+    refused : ndarray of shape (rows, columns), uint8
+        Reason why the roof over a cell was rejected.
+    top : ndarray of shape (rows, columns)
+        Elevation of the roof in each cell or the nearest one with a roof, m.
+    raised : ndarray of shape (n,), bool
+        Points that belong to a building if their cell does.
+    """
+
+    cell: Cell
+    cell_size: float
+    building: np.ndarray
+    refused: np.ndarray
+    top: np.ndarray
+    raised: np.ndarray
+
+    def refusal(self, owner: np.ndarray) -> np.ndarray:
+        """Return why points (n,) are of no building, as :class:`~..cloud.reasons.Reason`; 0 for points of one."""
+        why = np.where(self.building[self.cell] > 0, np.uint8(Reason.TOO_LOW), self.refused[self.cell])
+        return np.where(owner > 0, np.uint8(0), why)
+
+
+def covered_cells(cell: Cell, is_roof: np.ndarray, is_low: np.ndarray, gap: float, cell_size: float) -> np.ndarray:
+    """Return the cells (rows, columns) that roofs cover, gaps closed where the ground doesn't show."""
+    row, column = cell
+    margin = int(np.ceil(gap / cell_size)) + 2
+    shape = (row.max() + margin, column.max() + margin)
+    roof, open_ground = (cells_with(cell, points, shape) for points in (is_roof, is_low))
+    closed = roof
+    reach = round(gap / 2 / cell_size)
+    if reach:
+        closed = roof | ndimage.binary_closing(roof, _disk(reach))
+    holes = ndimage.binary_fill_holes(closed) & ~closed
+    # A hole as narrow as the gap may be closed too; a courtyard may not.
+    small = _small(holes, max(1.0, (gap / cell_size) ** 2))
+    return roof | ((closed | small) & ~open_ground)
+
+
+def cells_with(cell: Cell, points: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
+    """Return which cells of a raster hold one of the chosen points (n,)."""
+    row, column = cell
+    cells = np.zeros(shape, bool)
+    cells[row[points], column[points]] = True
+    return cells
+
+
+def _small(mask: np.ndarray, most: float) -> np.ndarray:
+    """Return the part of ``mask`` that lies in regions of at most ``most`` cells."""
+    region, count = ndimage.label(mask)
+    size = np.bincount(region.ravel(), minlength=count + 1)
+    size[0] = 0
+    return mask & (size <= most)[region]
+
+
+def numbered(covered: np.ndarray, min_area: float, cell_size: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return numbers from 1 for regions that are large enough, from the south-west, and why the others are refused."""
+    region, count = ndimage.label(covered, _EIGHT)
+    is_large = np.bincount(region.ravel(), minlength=count + 1) * cell_size**2 >= min_area
+    return renumbered(is_large)[region], np.where(is_large, 0, Reason.TOO_SMALL).astype(np.uint8)[region]
+
+
+def mostly_roof(
+    building: np.ndarray,
+    refused: np.ndarray,
+    cell: Cell,
+    at_roof: np.ndarray,
+    on_surface: np.ndarray,
+    least: float,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return what :func:`numbered` does, without buildings with less than ``least`` of their roof on surfaces."""
+    number = building[cell]
+    whole, part = (np.bincount(number[of], minlength=building.max() + 1) for of in (at_roof, at_roof & on_surface))
+    # Buildings too narrow for anything but edges are not judged.
+    share = np.where(whole > 0, part / np.maximum(whole, 1), 1.0)
+    kept = renumbered(share >= least)[building]
+    return kept, np.where((building > 0) & (kept == 0), np.uint8(Reason.MOSTLY_OTHER), refused)
+
+
+def renumbered(kept: np.ndarray) -> np.ndarray:
+    """Return the new numbers (m,), int32, of regions: from 1 for those that are kept, 0 for others and for region 0."""
+    kept = kept & (np.arange(len(kept)) > 0)
+    return np.where(kept, np.cumsum(kept), 0).astype(np.int32)
+
+
+def roof_top(cell: Cell, elevation: np.ndarray, is_roof: np.ndarray, covered: np.ndarray) -> np.ndarray:
+    """Return the elevation (rows, columns) of the highest roof point of each cell, or of the nearest such cell."""
+    row, column = cell
+    top = np.full(covered.shape, -np.inf)
+    np.maximum.at(top, (row[is_roof], column[is_roof]), elevation[is_roof])
+    nearest = ndimage.distance_transform_edt(~np.isfinite(top), return_distances=False, return_indices=True)
+    return top[tuple(nearest)]
+
+
+def _disk(radius: int) -> np.ndarray:
+    row, column = np.mgrid[-radius : radius + 1, -radius : radius + 1]
+    return row**2 + column**2 <= radius**2 + 0.5 * radius
