@@ -34,6 +34,7 @@ from .stage import (
     given_layers,
 )
 from .stages import STAGES
+from .threads import one_blas_thread
 
 
 @dataclass
@@ -91,7 +92,8 @@ def run_stage(
     own = sampling_of(clouds[0]) if stage.samples and sampling is None else None
     if stage.samples:
         arguments[SAMPLING] = sampling or own
-    made = stage.unpack(stage.function(*arrays, **layers, **arguments, monitor=monitor))
+    with one_blas_thread():
+        made = stage.unpack(stage.function(*arrays, **layers, **arguments, monitor=monitor))
     _log(own, monitor)
     if made.selected is not None and used[0] is not None:
         made = replace(made, selected=np.flatnonzero(used[0])[made.selected])

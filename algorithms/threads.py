@@ -5,11 +5,13 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor, wait
+from contextlib import contextmanager
 from threading import Event
 from typing import Any, Callable
 
 import numpy as np
 
+from .packages import threadpoolctl
 from .stage import Cancelled, Monitor
 
 # Each thread holds arrays of its own, up to 20 MB: with one for each core of a large server they would take more memory
@@ -36,6 +38,21 @@ def n_threads() -> int:
 def use_threads(count: int) -> None:
     """Let this process work with ``count`` threads at once, one of several that share the cores."""
     _TOLD[:] = [count]
+
+
+@contextmanager
+def one_blas_thread() -> Iterator[None]:
+    """Hold the linear algebra of numpy at one thread: the matrices here are small, and the threads are at work already.
+
+    Without the package threadpoolctl, which scikit-learn brings, nothing is changed.
+    """
+    try:
+        limits = threadpoolctl.threadpool_limits(1, user_api="blas")
+    except ImportError:
+        yield
+        return
+    with limits:
+        yield
 
 
 def in_chunks(work: Callable[[np.ndarray], None], rows: np.ndarray, size: int, monitor: Monitor) -> None:

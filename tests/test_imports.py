@@ -15,7 +15,7 @@ from lidar_buildings.algorithms import STAGES
 ROOT = Path(__file__).resolve().parent.parent
 QGIS = {"qgis", "osgeo", "processing", "PyQt5", "PyQt6", "console"}
 POINT_CLOUD_FILES = {"laspy", "lazrs", "laszip", "copclib"}
-NUMERICAL = {"scipy", "sklearn"}
+NUMERICAL = {"scipy", "sklearn", "threadpoolctl"}
 # The rooms of the core in their order: a module imports from its own room and from earlier ones.
 # "" holds the helpers of the core itself, "top" the modules that know stages and pipelines.
 ROOMS = (

@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Union
+from typing import Optional, Union
 
 import numpy as np
 
 from ..neighborhoods.covariance import Nearest, neighborhood_eigenvalues, shannon_entropy_lps
 from ..neighborhoods.wide_in_plan import Wide
+from ..packages import spatial
 from ..stage import Monitor
+
+# Large odd numbers mix the bits of coordinates; the high ones of the products are mixed well.
+_MIXERS = (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9)
+
+# Bits of the mixed number that are compared with a share.
+_BITS = 24
 
 
 @dataclass(frozen=True)
@@ -49,7 +56,11 @@ class ClusterEntropies:
 
 
 def cluster_entropies(
-    xyz: np.ndarray, cluster_id: np.ndarray, around: Union[Nearest, Wide], monitor: Monitor
+    xyz: np.ndarray,
+    cluster_id: np.ndarray,
+    around: Union[Nearest, Wide],
+    monitor: Monitor,
+    measured: Optional[int] = None,
 ) -> ClusterEntropies:
     """Measure the entropy of each clustered point among the clustered points, and its mean in each cluster.
 
@@ -63,11 +74,43 @@ def cluster_entropies(
         The neighborhood of a point, itself included.
     monitor : Monitor
         Receives the progress.
+    measured : int, optional
+        Points of each cluster, about, whose neighborhoods are measured: the mean needs no more. Each other point has the
+        entropy of a measured one near it.
     """
     rows = np.flatnonzero(cluster_id > 0)
-    values = shannon_entropy_lps(neighborhood_eigenvalues(xyz[rows], around, monitor=monitor))
     ids, position, sizes = np.unique(cluster_id[rows], return_inverse=True, return_counts=True)
-    return ClusterEntropies(rows, position, values, ids, sizes, _means(values, position, len(ids)))
+    clustered = xyz[rows]
+    tree = spatial.cKDTree(clustered, balanced_tree=False)
+    chosen = None if measured is None else _sample(clustered, np.minimum(1.0, measured / sizes)[position])
+    values = shannon_entropy_lps(neighborhood_eigenvalues(clustered, around, tree, monitor, chosen))
+    means = _means(values, position, len(ids))
+    if chosen is not None:
+        _spread(values, chosen, tree.indices)
+    return ClusterEntropies(rows, position, values, ids, sizes, means)
+
+
+def _sample(xyz: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """Return a sample (n,), bool, that has each point (n, 3) with the probability ``share`` (n,).
+
+    The coordinates alone decide, so that a cluster has the same sample in every part of a survey that holds it.
+    """
+    mixed = np.zeros(len(xyz), np.uint64)
+    for column, mixer in zip(xyz.T, _MIXERS):
+        # Tenths of a millimeter: coordinates that were stored in steps may differ by rounding.
+        mixed += np.rint(column * 1e4).astype(np.int64).view(np.uint64) * np.uint64(mixer)
+        mixed ^= mixed >> np.uint64(29)
+    mixed *= np.uint64(_MIXERS[0])
+    chosen = (mixed >> np.uint64(64 - _BITS)) < share * 2.0**_BITS
+    # Without any, the mean of a small cluster would be undefined by chance.
+    return chosen if chosen.any() else np.ones(len(xyz), bool)
+
+
+def _spread(values: np.ndarray, chosen: np.ndarray, order: np.ndarray) -> None:
+    """Give each other point the value of the chosen one before it in an order (n,) in which near points are near."""
+    at = np.where(chosen[order], np.arange(len(order)), -1)
+    at[0] = max(int(at[0]), int(np.argmax(at >= 0)))
+    values[order] = values[order[np.maximum.accumulate(at)]]
 
 
 def _means(values: np.ndarray, position: np.ndarray, count: int) -> np.ndarray:

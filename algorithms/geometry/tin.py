@@ -6,7 +6,7 @@ from typing import Callable, Optional
 
 import numpy as np
 
-from ..packages import spatial
+from ..packages import ndimage, spatial
 from ..stage import Monitor
 from ..threads import in_chunks
 from .delaunay import Triangulation, circles, triangulate
@@ -20,6 +20,9 @@ _MAX_STEPS = 1000
 
 # On a side of a facet weights are 0 but for rounding: what is less negative than this lies inside.
 _ROUNDING = 1e-9
+
+# Side of the cells of starts for walks, in mean distances of nodes: two cells for each node.
+_START_CELL = 0.7
 
 # The far corners come before the nodes.
 CORNERS = 4
@@ -108,13 +111,13 @@ class Tin:
     def locate(self, xyz: np.ndarray, monitor: Optional[Monitor] = None) -> np.ndarray:
         """Return the facet (n,), int32, under each point.
 
-        Each point starts at a facet of its nearest node and walks from there, all points of a
+        Each point starts at a facet of a node near it and walks from there, all points of a
         chunk together: a step or two for nearly all of them. Beyond the far corners the facet
-        is the one at the nearest place between them.
+        is the one at the nearest position between them.
         """
         used = CORNERS + np.flatnonzero(self._at_node[CORNERS:] >= 0)
-        tree = spatial.cKDTree(self.nodes[used, :2])
-        return self._located(xyz, lambda rows, plan: used[tree.query(plan)[1]], monitor or Monitor())
+        near = _NodeRaster(self.nodes[used, :2])
+        return self._located(xyz, lambda rows, plan: used[near.at(plan)], monitor or Monitor())
 
     def locate_near(self, xyz: np.ndarray, node: np.ndarray) -> np.ndarray:
         """Return the facet (n,), int32, under each point, for points that are near a node (n,) known by number."""
@@ -209,8 +212,38 @@ class Tin:
         return slope, a[:, 2] - np.einsum("ij,ij->i", slope, a[:, :2])
 
 
-def node_residuals(nodes: np.ndarray, n_neighbors: int = 8) -> np.ndarray:
-    """Return how far each node lies above the plane of its neighbors.
+class _NodeRaster:
+    """A raster with a node near each cell, for walks: faster than the nearest node from a tree, and as good a start.
+
+    Parameters
+    ----------
+    plan : ndarray of shape (m, 2), float64
+        Nodes, m >= 1.
+    """
+
+    def __init__(self, plan: np.ndarray) -> None:
+        self._low, high = plan.min(axis=0), plan.max(axis=0)
+        extent = high - self._low
+        # Nodes on a line have no area; their raster has a cell for each of them along it.
+        self._size = (
+            max(_START_CELL * float(np.sqrt(extent.prod() / len(plan))), float(extent.max()) / len(plan)) or 1.0
+        )
+        self._shape = (extent / self._size).astype(np.int64) + 1
+        node = np.full(self._shape, -1, np.int64)
+        node[tuple(self._cells(plan).T)] = np.arange(len(plan))
+        filled = ndimage.distance_transform_edt(node < 0, return_distances=False, return_indices=True)
+        self._node = node[tuple(filled)]
+
+    def at(self, plan: np.ndarray) -> np.ndarray:
+        """Return a node (n,) near each position (n, 2)."""
+        return self._node[tuple(self._cells(plan).T)]
+
+    def _cells(self, plan: np.ndarray) -> np.ndarray:
+        return np.clip(((plan - self._low) / self._size).astype(np.int64), 0, self._shape - 1)
+
+
+def node_residuals(nodes: np.ndarray, n_neighbors: int = 8, most: Optional[int] = None) -> np.ndarray:
+    """Return how far each node, or each of a sample of them, lies above the plane of its neighbors.
 
     Parameters
     ----------
@@ -218,17 +251,21 @@ def node_residuals(nodes: np.ndarray, n_neighbors: int = 8) -> np.ndarray:
         Points of a surface (m), m > 3.
     n_neighbors : int
         Neighbors in plan that the plane is fitted to, the node itself left out.
+    most : int, optional
+        Size of the sample, about; all nodes, unless given.
 
     Returns
     -------
-    ndarray of shape (m,)
+    ndarray of shape (m,), or fewer
         Residuals (m): measurement noise and what the surface bends within its own spacing.
     """
     count = min(n_neighbors, len(nodes) - 1)
     tree = spatial.cKDTree(nodes[:, :2])
-    residuals = np.empty(len(nodes))
+    step = 1 if most is None else max(1, len(nodes) // most)
+    residuals = np.empty(len(nodes[::step]))
 
-    def fit(rows: np.ndarray) -> None:
+    def fit(sample: np.ndarray) -> None:
+        rows = sample * step
         neighbors = tree.query(nodes[rows, :2], k=count + 1)[1][:, 1:]
         design = nodes[neighbors] - nodes[rows, None]
         heights = design[..., 2].copy()
@@ -237,9 +274,9 @@ def node_residuals(nodes: np.ndarray, n_neighbors: int = 8) -> np.ndarray:
         # A whisker on the diagonal keeps collinear neighbors solvable.
         normal = np.swapaxes(design, 1, 2) @ design + 1e-6 * np.eye(3)
         right = np.swapaxes(design, 1, 2) @ heights[..., None]
-        residuals[rows] = -np.linalg.solve(normal, right)[:, 2, 0]
+        residuals[sample] = -np.linalg.solve(normal, right)[:, 2, 0]
 
-    in_chunks(fit, np.arange(len(nodes)), _FIT_CHUNK, Monitor())
+    in_chunks(fit, np.arange(len(residuals)), _FIT_CHUNK, Monitor())
     return residuals
 
 

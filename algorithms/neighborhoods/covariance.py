@@ -121,8 +121,9 @@ def reduce_neighborhoods(
     tree: Any = None,
     monitor: Optional[Monitor] = None,
     extents: bool = False,
+    chosen: Optional[np.ndarray] = None,
 ) -> None:
-    """Call ``reduce(rows, shapes)`` for all points, chunk by chunk, in threads.
+    """Call ``reduce(rows, shapes)`` for all points, or the chosen ones, chunk by chunk, in threads.
 
     Parameters
     ----------
@@ -139,6 +140,8 @@ def reduce_neighborhoods(
         Receives progress.
     extents : bool
         Whether height range and plan radius are wanted too.
+    chosen : ndarray of shape (n,), bool, optional
+        The points whose neighborhoods are wanted.
 
     Raises
     ------
@@ -156,11 +159,16 @@ def reduce_neighborhoods(
         reduce(rows, neighborhood.shapes(columns, tree, rows, extents))
 
     # In the order of the tree's leaves the neighbors of one chunk lie together in memory.
-    in_chunks(work, tree.indices, neighborhood.rows_per_chunk(len(xyz)), monitor)
+    rows = tree.indices if chosen is None else tree.indices[chosen[tree.indices]]
+    in_chunks(work, rows, neighborhood.rows_per_chunk(len(xyz)), monitor)
 
 
 def neighborhood_eigenvalues(
-    xyz: np.ndarray, neighborhood: Neighborhood, tree: Any = None, monitor: Optional[Monitor] = None
+    xyz: np.ndarray,
+    neighborhood: Neighborhood,
+    tree: Any = None,
+    monitor: Optional[Monitor] = None,
+    chosen: Optional[np.ndarray] = None,
 ) -> np.ndarray:
     """Return the eigenvalues of the covariance of each point with its neighbors.
 
@@ -174,18 +182,20 @@ def neighborhood_eigenvalues(
         Tree of ``xyz``, built when absent.
     monitor : Monitor, optional
         Receives progress.
+    chosen : ndarray of shape (n,), bool, optional
+        The points whose neighborhoods are wanted; the eigenvalues of all others are NaN.
 
     Returns
     -------
     ndarray of shape (n, 3), float64
         l1 >= l2 >= l3 >= 0 (m²); NaN where there are fewer than three neighbors or all coincide.
     """
-    eigenvalues = np.empty((len(xyz), 3))
+    eigenvalues = np.empty((len(xyz), 3)) if chosen is None else np.full((len(xyz), 3), np.nan)
 
     def keep(rows: np.ndarray, shapes: Shapes) -> None:
         eigenvalues[rows] = defined_eigenvalues(shapes.covariances, shapes.counts)
 
-    reduce_neighborhoods(xyz, neighborhood, keep, tree, monitor)
+    reduce_neighborhoods(xyz, neighborhood, keep, tree, monitor, chosen=chosen)
     return eigenvalues
 
 

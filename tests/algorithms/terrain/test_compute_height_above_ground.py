@@ -48,8 +48,10 @@ def test_inside_the_ground_nothing_is_said():
 
 def test_every_point_over_the_hull_of_the_ground_is_measured_from_the_surface(rng):
     """On steep, sparse ground points within 0.3 m of the hull's edge were taken for outside, and were 2.6 m off."""
-    ground = np.column_stack([rng.uniform(0, 60, (1100, 2)), np.zeros(1100)])
-    ground[:, 2] = ground[:, 0] + rng.normal(0, 0.3, 1100)
+    plan = rng.uniform(0, 60, (1300, 2))
+    # One point in each cell of 0.5 m: it is a node as it is.
+    plan = plan[np.sort(np.unique(np.floor(plan / 0.5), axis=0, return_index=True)[1])][:1100]
+    ground = np.column_stack([plan, plan[:, 0] + rng.normal(0, 0.3, 1100)])
     above = np.column_stack([rng.uniform(0, 60, (20_000, 2)), np.full(20_000, 100.0)])
     expected = 100 - LinearNDInterpolator(ground[:, :2], ground[:, 2])(above[:, :2])
     is_inside = np.isfinite(expected)
@@ -58,6 +60,14 @@ def test_every_point_over_the_hull_of_the_ground_is_measured_from_the_surface(rn
     height = compute_height_above_ground(np.concatenate([ground, above]), classes, monitor=monitor)[1100:]
     np.testing.assert_allclose(height[is_inside], expected[is_inside], atol=1e-4)
     assert f"{(~is_inside).sum()} of 21100 points" in monitor.infos[0]
+
+
+def test_noise_of_single_ground_points_does_not_reach_heights(rng):
+    ground = np.column_stack([rng.uniform(0, 30, (36_000, 2)), rng.normal(0, 0.05, 36_000)])
+    above = np.column_stack([rng.uniform(1, 29, (5000, 2)), np.full(5000, 8.0)])
+    height = compute_height_above_ground(np.concatenate([ground, above]), np.repeat([2, 1], [36_000, 5000]))[36_000:]
+    # Ten points in a cell, and interpolation between three cells.
+    assert np.std(height - 8.0) < 0.05 / np.sqrt(10)
 
 
 def test_one_ground_point_is_a_level_ground():
