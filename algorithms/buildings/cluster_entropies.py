@@ -75,7 +75,7 @@ def cluster_entropies(
     monitor : Monitor
         Receives the progress.
     measured : int, optional
-        Points of each cluster, about, whose neighborhoods are measured: the mean needs no more. Each other point has the
+        Points of each cluster, about, that are measured: the mean needs no more. Each other point has the
         entropy of a measured one near it.
     """
     rows = np.flatnonzero(cluster_id > 0)
