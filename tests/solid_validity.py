@@ -2,10 +2,20 @@
 
 import itertools
 import json
+import re
 
 import numpy as np
+from pysfcgal.geometry import Geometry
+from scipy.spatial import cKDTree
 
 PLANAR = 0.01
+
+# Triangles of a face turn by no more than this from its plane (°), the default of val3dity.
+MOST_TURN = 20.0
+
+# A cube of 1 m, and its sides seen from outside.
+CUBE = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], float)
+SIDES = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6]]
 
 
 def assert_valid_solid(vertices, faces):
@@ -17,6 +27,7 @@ def assert_valid_solid(vertices, faces):
         assert_plane_and_simple(vertices, rings)
     assert signed_volume(vertices, faces) > 0, "the faces look inward"
     assert_no_crossing(vertices, faces)
+    assert_valid_for_sfcgal(vertices, faces)
 
 
 def edges_of(rings):
@@ -38,7 +49,7 @@ def assert_vertices_have_one_umbrella(vertices, faces):
     for here, ways in following.items():
         start = next(iter(ways))
         count, way = 1, ways[start]
-        while way != start:
+        while way != start and count <= len(ways):
             way, count = ways[way], count + 1
         assert count == len(ways), f"faces touch in vertex {here} only"
 
@@ -148,6 +159,47 @@ def deep_inside(place, rings):
             if (a[1] > place[1]) != (b[1] > place[1]):
                 odd ^= bool(place[0] < a[0] + (place[1] - a[1]) * (b[0] - a[0]) / (b[1] - a[1]))
     return odd
+
+
+def assert_valid_for_sfcgal(vertices, faces):
+    """A second opinion, with exact arithmetic: the solid of the constrained Delaunay triangles of all faces is valid.
+
+    The triangles turn from the planes of their faces by no more than val3dity allows.
+    """
+    triangles = []
+    for rings in faces:
+        normal = sum(newell(vertices[ring]) for ring in rings)
+        of_face = triangulated(vertices, rings)
+        for a, b, c in of_face:
+            across = np.cross(vertices[b] - vertices[a], vertices[c] - vertices[a])
+            cosine = across @ normal / (np.linalg.norm(across) * np.linalg.norm(normal))
+            assert cosine > np.cos(np.deg2rad(MOST_TURN)), f"a triangle turns by {np.degrees(np.arccos(cosine)):.0f}°"
+        triangles += of_face
+    # Vertices are rounded where files round them, relative to a corner nearby.
+    local = vertices - np.floor(vertices.min(axis=0))
+    texts = [
+        "((" + ",".join("{:.4f} {:.4f} {:.4f}".format(*local[v]) for v in (*ring, ring[0])) + "))" for ring in triangles
+    ]
+    solid = Geometry.from_wkt("SOLID Z((" + ",".join(texts) + "))")
+    assert solid.is_valid(), str(solid.is_valid_detail()[0])[:200]
+
+
+def triangulated(vertices, rings):
+    """Return the constrained Delaunay triangles of a face in its plane, by CGAL."""
+    if len(rings) == 1 and len(rings[0]) == 3:
+        return [list(rings[0])]
+    normal = sum(newell(vertices[ring]) for ring in rings)
+    used = sorted({v for ring in rings for v in ring})
+    plan = dict(zip(used, in_plane(vertices[used] - vertices[used[0]], normal / np.linalg.norm(normal))))
+    texts = ["(" + ",".join("{:.9f} {:.9f}".format(*plan[v]) for v in (*ring, ring[0])) + ")" for ring in rings]
+    mesh = Geometry.from_wkt("POLYGON(" + ",".join(texts) + ")").tessellate()
+    tree = cKDTree(list(plan.values()))
+    triangles = []
+    for text in re.findall(r"\(\(([^()]*)\)\)", mesh.to_wkt(9)):
+        corners = np.array([[float(value) for value in place.split()] for place in text.split(",")[:3]])
+        numbers = [used[k] for k in tree.query(corners[:, :2])[1]]
+        triangles.append(numbers if turn(*(plan[v] for v in numbers)) > 0 else numbers[::-1])
+    return triangles
 
 
 def assert_valid_cityjson(text):

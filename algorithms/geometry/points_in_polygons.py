@@ -46,7 +46,7 @@ def are_in_polygons(plan: np.ndarray, polygons: Polygons, monitor: Monitor) -> n
         near = rows.within(box)
         near = near[~found[near]]
         edges = polygons.edges[polygons.first[number] : polygons.first[number + 1]]
-        found[near] = _are_inside(plan[near], edges)
+        found[near] = are_within(plan[near], edges)
     monitor.progress(1.0)
     return found
 
@@ -77,8 +77,8 @@ class _Rows:
         return near[(northing >= box[0, 1]) & (northing <= box[1, 1])]
 
 
-def _are_inside(plan: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Return which points (n, 2) have an odd number of edges (m, 2, 2) to their east."""
+def are_within(plan: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Return which points (n, 2) lie within the edges (m, 2, 2) of rings: an odd number of edges lie to their east."""
     order = np.argsort(plan[:, 1], kind="stable")
     x, y = plan[order].T
     # From the lower end of each edge to the upper one, which belongs to the next edge.

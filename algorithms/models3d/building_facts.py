@@ -11,6 +11,7 @@ import numpy as np
 
 from ..stage import Field
 from .building_models import BuildingModel
+from .roof_points import RULES
 from .solids import ROOF, Solid
 
 # Roofs below this slope (°) are flat: drains need 1 to 3°, and 5° is the least for tiles.
@@ -39,8 +40,9 @@ BUILDING_FIELDS = (
     Field("ridge_height", float, "height of the highest corner of its roof above the ground", "m"),
     Field("roof_area", float, "area of its roof, in its slopes", "m²"),
     Field("volume", float, "volume", "m³"),
-    Field("rms", float, "root mean square distance of the points on planes of its roof to the nearest face", "m"),
-    Field("explained", float, "share of all its points that lie on the model, 0 to 1"),
+    Field("rms", float, "root mean square height of its roof points above or below the model", "m"),
+    Field("off", float, f"share of its roof points more than {RULES.off} m above or below the model, 0 to 1"),
+    Field("explained", float, "share of its roof points that lie on the model, 0 to 1"),
     Field("covered", float, "share of its area that has points, 0 to 1"),
     Field("confidence", float, "sureness of the model: explained times covered, 0 to 1"),
     Field("points", int, "points over its footprint"),
@@ -53,7 +55,7 @@ ROOF_FIELDS = (
     Field("area", float, "area, in the slope", "m²"),
     Field("eave", float, "elevation of its lowest corner", "m"),
     Field("ridge", float, "elevation of its highest corner", "m"),
-    Field("rms", float, "root mean square distance of its points", "m"),
+    Field("rms", float, "root mean square height of its points above or below it", "m"),
 )
 WALL_FIELDS = (
     Field("id", int, "number of the face, from 1"),
@@ -91,12 +93,12 @@ class NamedModel:
 
 
 def _plain_solid(solid: Solid) -> dict[str, Any]:
-    return {**vars(solid), "vertices": solid.vertices.tolist()}
+    return {**{one.name: getattr(solid, one.name) for one in fields(solid)}, "vertices": solid.vertices.tolist()}
 
 
 def slope_and_azimuth(solid: Solid, face: int) -> tuple[float, float]:
     """Return slope and azimuth (°) of a face; the azimuth of a level one is NaN."""
-    x, y, z = solid.normal(face).tolist()
+    x, y, z = solid.normals[face].tolist()
     across = math.hypot(x, y)
     if across < 1e-6 * abs(z):
         return 0.0, math.nan
@@ -105,7 +107,7 @@ def slope_and_azimuth(solid: Solid, face: int) -> tuple[float, float]:
 
 def face_area(solid: Solid, face: int) -> float:
     """Return the area (m²) of a face."""
-    return float(np.linalg.norm(solid.normal(face)))
+    return float(np.linalg.norm(solid.normals[face]))
 
 
 def faces_of(solids: Sequence[Solid], kind: str) -> list[tuple[Solid, int]]:
@@ -134,6 +136,7 @@ def building_attributes(one: NamedModel) -> dict[str, Any]:
         "roof_area": sum(face_area(solid, face) for solid, face in roofs),
         "volume": sum(solid.volume for solid in model.best),
         "rms": model.rms,
+        "off": model.off,
         "explained": model.explained,
         "covered": model.covered,
         "confidence": model.explained * model.covered,

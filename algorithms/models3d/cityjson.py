@@ -13,13 +13,13 @@ import numpy as np
 from ..stage import MapFrame
 from .building_facts import NamedModel, building_attributes, face_attributes
 from .set_openings import DOOR, WINDOW
-from .solids import GROUND, ROOF, WALL, Solid
+from .solids import DECIMALS, GROUND, ROOF, WALL, Solid
 
 CITYJSON, CITYJSON_SEQ = "CityJSON", "CityJSONSeq"
 FORMATS = {CITYJSON: (".city.json", ".json"), CITYJSON_SEQ: (".city.jsonl", ".jsonl")}
 
-# Vertices are whole numbers of this (map units): finer than any survey, coarser than rounding errors.
-_SCALE = 0.001
+# Vertices are whole numbers of this (map units), as solids have them: faces stay plane.
+_SCALE = 10.0**-DECIMALS
 
 _SURFACES = {
     ROOF: "RoofSurface",
@@ -30,7 +30,7 @@ _SURFACES = {
 }
 
 # Decimals of attributes.
-_DECIMALS = 3
+_DIGITS = 3
 
 
 def cityjson_pieces(models: Collection[NamedModel], called: str, frame: MapFrame) -> Iterator[str]:
@@ -89,7 +89,7 @@ def unique_names(names: Iterable[str]) -> Iterator[str]:
 def _head(low: np.ndarray, high: np.ndarray, translate: np.ndarray, crs: str, is_filled: bool) -> dict[str, Any]:
     metadata: dict[str, Any] = {}
     if is_filled:
-        metadata["geographicalExtent"] = np.round([*low, *high], _DECIMALS).tolist()
+        metadata["geographicalExtent"] = np.round([*low, *high], _DIGITS).tolist()
     authority = re.fullmatch(r"([A-Za-z]+):(\w+)", crs)
     if authority:
         metadata["referenceSystem"] = f"https://www.opengis.net/def/crs/{authority[1].upper()}/0/{authority[2]}"
@@ -179,7 +179,7 @@ def _numbered(surface: dict[str, Any], start: int) -> dict[str, Any]:
 
 def _plain(facts: dict[str, Any]) -> dict[str, Any]:
     """Return attributes as JSON has them: rounded, null where undefined."""
-    rounded = {name: round(value, _DECIMALS) if isinstance(value, float) else value for name, value in facts.items()}
+    rounded = {name: round(value, _DIGITS) if isinstance(value, float) else value for name, value in facts.items()}
     return {
         name: None if isinstance(value, float) and not math.isfinite(value) else value
         for name, value in rounded.items()

@@ -44,6 +44,7 @@ from .model_inputs import (
     tell_without_area,
 )
 from .roof_partition import inside_rings
+from .roof_points import are_low
 from .solids import ROOF, WALL
 
 # Fewer points than this over a footprint show no roof.
@@ -56,7 +57,8 @@ _GROUND_PERCENTILE, _GROUND_STEP = 5.0, 2.0
 # Footprints without a model that a warning names.
 _NAMED = 5
 
-# Vertices of footprints nearer to each other than this (m) are one.
+# Vertices of footprints nearer to each other than this (m) are one; those nearer to the line of their neighbors are
+# superfluous.
 _CLOSE = 0.01
 
 
@@ -177,10 +179,11 @@ def reconstruct_roofs(
 
     Notes
     -----
-    Faces are plane to 1 cm and solids are closed two-manifolds: where more than two walls would meet in an edge, the
-    smallest piece of roof there joins a neighbor. Parts of a footprint that touch in a point only are solids of their
-    own. A level that is farther from the points than a simpler one, or is no valid solid, is left out. The ground is
-    level, at the 5th percentile of the ground points nearest to the outline. Curved roofs become strips.
+    Solids are valid by the rules of ISO 19107. Corners lie where planes intersect, to 0.1 mm, so that faces are plane;
+    where more than two walls would meet in an edge, the smallest piece of roof there joins a neighbor. A part of a roof
+    with a fault takes the plane of a neighbor or becomes level. Parts of a footprint that touch in a point only are
+    solids of their own. A level that is farther from the points than a simpler one is left out. The ground is level,
+    at the 5th percentile of the ground points nearest to the outline. Curved roofs become strips.
 
     Other than in the publications, lines cut only the cells along which planes are beside each other, so that the cost
     grows with the border of planes and not with the square of their number; and a border costs its length and the
@@ -205,7 +208,7 @@ def reconstruct_roofs(
     settings = Settings(
         point_spacing(building), tolerance, min_plane_area, max_slope, min_step, top_percentile, level_of_detail
     )
-    models = _modelled(building, ground, outlines, settings, monitor)
+    models = _modelled(building, are_low(building, settings.spacing), ground, outlines, settings, monitor)
     layers = _building_layer(models), _face_layer(models, WALL), _face_layer(models, ROOF)
     return *layers, models, models
 
@@ -239,16 +242,31 @@ def _outlines(footprints: LayerFeatures, monitor: Monitor) -> list[_Outline]:
 
 
 def _cleaned(ring: np.ndarray) -> np.ndarray:
-    """Return a closed ring without the vertices that follow another one too closely."""
+    """Return a closed ring without the vertices that are too close to another one or to the line of their neighbors."""
     kept = [ring[0]]
-    for place in ring[1:-1]:
-        if np.hypot(*(place - kept[-1])) >= _CLOSE and np.hypot(*(place - ring[0])) >= _CLOSE:
+    for place, following in zip(ring[1:-1], ring[2:]):
+        is_apart = np.hypot(*(place - kept[-1])) >= _CLOSE and np.hypot(*(place - ring[0])) >= _CLOSE
+        if is_apart and _off_line(place, kept[-1], following) >= _CLOSE:
             kept.append(place)
+    if len(kept) > 2 and _off_line(kept[0], kept[-1], kept[1]) < _CLOSE:
+        kept.pop(0)
     return np.array([*kept, kept[0]])
 
 
+def _off_line(place: np.ndarray, start: np.ndarray, end: np.ndarray) -> float:
+    """Return the distance (m) of a position to the line between two others."""
+    along, offset = end - start, place - start
+    length = float(np.hypot(*along))
+    return abs(along[0] * offset[1] - along[1] * offset[0]) / length if length > 0 else float(np.hypot(*offset))
+
+
 def _modelled(
-    building: np.ndarray, ground: np.ndarray, outlines: list[_Outline], settings: Settings, monitor: Monitor
+    building: np.ndarray,
+    is_low: np.ndarray,
+    ground: np.ndarray,
+    outlines: list[_Outline],
+    settings: Settings,
+    monitor: Monitor,
 ) -> list[NamedModel]:
     """Return the models of all footprints that can be modelled; log their levels, and why the others have no model.
 
@@ -257,11 +275,12 @@ def _modelled(
     base_of = _ground_heights(ground)
     models, empty, failed = [], 0, []
     for number, outline in enumerate(outlines):
-        points = _points_over(building, outline.rings)
-        if len(points) < _LEAST_POINTS:
+        over = _rows_over(building, outline.rings)
+        if len(over) < _LEAST_POINTS:
             empty += 1
         else:
-            model = model_building(points, outline.rings, base_of(outline.rings), settings)
+            base = base_of(outline.rings)
+            model = model_building(building[over], is_low[over], outline.rings, base, settings)
             if model.level:
                 models.append(NamedModel(outline.name, outline.rings, model))
             else:
@@ -290,12 +309,12 @@ def _warn_of_others(empty: int, failed: list[tuple[str, str]], count: int, monit
         monitor.warn(f"{len(failed)} of {count} footprints have points but no model ({named}{more}).")
 
 
-def _points_over(building: np.ndarray, rings: list) -> np.ndarray:
-    """Return the points, of those in the order of their eastings, that lie over a footprint."""
+def _rows_over(building: np.ndarray, rings: list) -> np.ndarray:
+    """Return which points, of those in the order of their eastings, lie over a footprint: rows, ascending."""
     (west, south), (east, north) = rings[0].min(axis=0), rings[0].max(axis=0)
-    some = building[np.searchsorted(building[:, 0], west) : np.searchsorted(building[:, 0], east, side="right")]
-    some = some[(some[:, 1] >= south) & (some[:, 1] <= north)]
-    return some[inside_rings(some[:, :2], rings)]
+    rows = np.arange(*np.searchsorted(building[:, 0], (west, east)))
+    rows = rows[(building[rows, 1] >= south) & (building[rows, 1] <= north)]
+    return rows[inside_rings(building[rows, :2], rings)]
 
 
 def _ground_heights(ground: np.ndarray) -> Callable[[list], float]:

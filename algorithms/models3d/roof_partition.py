@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..facades.facade_outline import inside_ring
+from ..geometry.points_in_polygons import are_within
 from ..geometry.subdivision import SNAP, Subdivision
 from ..packages import spatial
+from .heights_around import HeightsAround
 from .labelling import cheapest_labels
 from .roof_lines import find_roof_lines
 from .roof_planes import RoofPlanes
@@ -16,8 +18,15 @@ from .roof_planes import RoofPlanes
 # The footprint itself is kept to this, m.
 _SNAP_OUTLINE = 0.005
 
+# Cells with a mean width below this (m) are wedges between lines that are nearly the same.
+_WEDGE = 0.02
+
 # A point off a plane by this many tolerances explains nothing more; farther ones count the same.
 _FAR_OFF = 2.0
+
+# All points on top draw their cells to planes nearby: one that is this far (m) off, or farther, counts for this share
+# of its area.
+_FARTHEST, _FAR_WEIGHT = 1.0, 0.5
 
 # A meter of border between two planes costs as much as this area (m²) of roof that no plane explains, and so does a
 # square meter of the wall between them, up to a step of 1 m. A dormer of 1.5 m by 1.5 m has 6 m of border.
@@ -27,9 +36,12 @@ _BORDER, _STEP, _MOST_STEP = 0.10, 0.05, 1.0
 # for this share of their area.
 _GAP_SPACINGS, _GAP_WEIGHT = 2.0, 0.3
 
-# Roofs end no lower over the ground (m), and reach no farther (m) beyond the heights of their points. A plane that
-# leaves these limits within a cell is charged with more than any cell's points could.
-_LEAST_HEIGHT, _BEYOND_POINTS, _FORBIDDEN = 0.5, 1.5, 3.0
+# Roofs end no lower over the ground (m), and reach no farther (m) below their points. A plane that leaves these limits
+# within a cell is charged with more (m²) than any cell's points could.
+_LEAST_HEIGHT, _BELOW_POINTS, _FORBIDDEN = 0.5, 1.5, 1000.0
+
+# A meter by which a corner is above all points around costs as much as this area (m²) that no plane explains.
+_TOO_HIGH = 1.0
 
 # Cells of the grid on which gaps are looked for, m.
 _GAP_CELL = 0.5
@@ -59,10 +71,7 @@ class Partition:
 
 def inside_rings(xy: np.ndarray, rings: list) -> np.ndarray:
     """Return which places (n, 2) a polygon holds."""
-    inside = np.zeros(len(xy), bool)
-    for ring in rings:
-        inside ^= inside_ring(xy, ring)
-    return inside
+    return are_within(xy, np.concatenate([np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings]))
 
 
 def empty_partition(rings: list, xy: np.ndarray) -> tuple[Subdivision, np.ndarray]:
@@ -74,20 +83,52 @@ def empty_partition(rings: list, xy: np.ndarray) -> tuple[Subdivision, np.ndarra
     length = np.hypot(*(pieces[:, 1] - pieces[:, 0]).T)
     for start, end in pieces[np.argsort(-length, kind="stable")]:
         cells.cut(start, end, _SNAP_OUTLINE)
-    inside = inside_rings(cells.centers(), rings) & ~cells.touch_rectangle()
+    inside = _are_inside(cells, rings)
     cells.close(~inside)
     return cells, inside
 
 
+def _are_inside(cells: Subdivision, rings: list) -> np.ndarray:
+    """Return which cells lie inside a footprint; very narrow ones as the neighbor along their longest edge does.
+
+    Lines along a facade that are nearly in line leave wedges of millimeters between each other.
+    """
+    inside = inside_rings(cells.centers(), rings) & ~cells.touch_rectangle()
+    for cell in np.flatnonzero(_mean_widths(cells) < _WEDGE):
+        loop = cells.loops[cell]
+        edges = [(v, u) for u, v in zip(loop, [*loop[1:], loop[0]]) if (v, u) in cells.cell_of]
+        longest = max(edges, key=lambda edge: (math.dist(*(cells.vertices[v] for v in edge)), edge))
+        inside[cell] = inside[cells.cell_of[longest]]
+    return inside
+
+
+def _mean_widths(cells: Subdivision) -> np.ndarray:
+    """Return the mean widths (cells,), m: twice the areas over the perimeters."""
+    places = np.array(cells.vertices)
+    width = np.zeros(len(cells))
+    for cell, area in enumerate(cells.areas()):
+        corner = places[cells.loops[cell]]
+        width[cell] = 2 * area / np.hypot(*(corner - np.roll(corner, 1, axis=0)).T).sum()
+    return width
+
+
 def divide_footprint(
-    xyz: np.ndarray, planes: RoofPlanes, rings: list, spacing: float, tolerance: float, base: float
+    xyz: np.ndarray,
+    is_top: np.ndarray,
+    planes: RoofPlanes,
+    rings: list,
+    spacing: float,
+    tolerance: float,
+    base: float,
 ) -> Partition:
     """Divide a footprint among roof planes so that points and borders cost least.
 
     Parameters
     ----------
     xyz : ndarray of shape (n, 3)
-        Points over the footprint (m), relative to a place nearby.
+        Points over the footprint (m), relative to a position nearby.
+    is_top : ndarray of shape (n,), bool
+        Which of them have no higher point beside them.
     planes : RoofPlanes
         Their planes, at least one.
     rings : list of ndarray
@@ -100,10 +141,11 @@ def divide_footprint(
     cells, _ = empty_partition(rings, xyz[:, :2])
     for piece in find_roof_lines(xyz, planes, rings, spacing):
         cells.cut(piece.start, piece.end, SNAP)
-    inside = inside_rings(cells.centers(), rings) & ~cells.touch_rectangle()
+    inside = _are_inside(cells, rings)
     used = np.flatnonzero(inside)
     cost = np.zeros((len(cells), len(planes)))
-    cost[used] = _costs(xyz, planes, cells, used, spacing, tolerance) + _forbidden(planes, cells, used, xyz, base)
+    cost[used] = _costs(xyz, is_top, planes, cells, used, spacing, tolerance)
+    cost[used] += _forbidden(planes, cells, used, xyz, base)
     label = np.full(len(cells), -1)
     label[used] = _labels(planes, cells, used, cost[used])
     return Partition(cells, label, planes.coefficients, cost)
@@ -131,14 +173,20 @@ def _labels(planes: RoofPlanes, cells: Subdivision, used: np.ndarray, cost: np.n
 
 
 def _costs(
-    xyz: np.ndarray, planes: RoofPlanes, cells: Subdivision, used: np.ndarray, spacing: float, tolerance: float
+    xyz: np.ndarray,
+    is_top: np.ndarray,
+    planes: RoofPlanes,
+    cells: Subdivision,
+    used: np.ndarray,
+    spacing: float,
+    tolerance: float,
 ) -> np.ndarray:
     """Return the area (m²) of each cell (len(used), m) that each plane leaves unexplained."""
     on_plane = planes.label >= 0
     cell = np.full(len(xyz), -1)
     for number, c in enumerate(used):
         cell[cells.members[c]] = number
-    counted = np.flatnonzero(on_plane & (cell >= 0))
+    counted = np.flatnonzero((on_plane | is_top) & (cell >= 0))
     cost = np.zeros((len(used), len(planes)))
     if not len(counted):
         return cost
@@ -149,8 +197,9 @@ def _costs(
     weight[len(counted) :] = _GAP_WEIGHT * _GAP_CELL**2
     # Of a gap its nearest point tells the plane, not the height.
     for plane in range(len(planes)):
-        off = np.abs(xyz[sample, 2] - planes.height(plane, xyz[sample, :2])) * planes.cosine[plane] / tolerance
-        share = np.minimum(off / _FAR_OFF, 1.0) ** 2
+        off = np.abs(xyz[sample, 2] - planes.height(plane, xyz[sample, :2])) * planes.cosine[plane]
+        share = on_plane[sample] * np.minimum(off / (_FAR_OFF * tolerance), 1.0) ** 2
+        share += _FAR_WEIGHT * np.minimum(off / _FARTHEST, 1.0) ** 2
         cost[:, plane] = np.bincount(of_cell, weight * share, len(used))
     return cost
 
@@ -185,14 +234,13 @@ def _lattice_in(corners: np.ndarray) -> np.ndarray:
 
 
 def _forbidden(planes: RoofPlanes, cells: Subdivision, used: np.ndarray, xyz: np.ndarray, base: float) -> np.ndarray:
-    """Return a charge (len(used), m) for planes that reach into the ground or into the sky within a cell."""
-    on_plane = planes.label >= 0
-    low = max(base + _LEAST_HEIGHT, float(xyz[on_plane, 2].min()) - _BEYOND_POINTS)
-    high = float(xyz[on_plane, 2].max()) + _BEYOND_POINTS
-    charge = np.zeros((len(used), len(planes)))
-    for number, c in enumerate(used):
-        corners = np.array([cells.vertices[v] for v in cells.loops[c]])
-        z = corners @ planes.coefficients[:, :2].T + planes.coefficients[:, 2]
-        beyond = (z < low).any(axis=0) | (z > high).any(axis=0)
-        charge[number, beyond] = 1.0 + _FORBIDDEN * cells.area(cells.loops[c])
-    return charge
+    """Return a charge (len(used), m) for planes that reach into the ground or above the points around within a cell."""
+    low = max(base + _LEAST_HEIGHT, float(xyz[planes.label >= 0, 2].min()) - _BELOW_POINTS)
+    size = np.array([len(cells.loops[cell]) for cell in used])
+    corner = np.concatenate([cells.loops[cell] for cell in used])
+    some, position = np.unique(corner, return_inverse=True)
+    xy = np.array(cells.vertices)[some]
+    z = xy @ planes.coefficients[:, :2].T + planes.coefficients[:, 2]
+    above = np.maximum(z - HeightsAround(xyz).highest(xy)[:, None], 0.0)
+    charge = np.where(z < low, _FORBIDDEN, _TOO_HIGH * above)
+    return np.maximum.reduceat(charge[position], np.cumsum(size) - size, axis=0)

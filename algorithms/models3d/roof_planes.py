@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..geometry.groups import components
 from ..neighborhoods.covariance import Nearest, smallest_eigenvectors, symmetric_eigenvalues
 from ..packages import spatial
 from ..segmentation.least_squares_planes import planes_of
@@ -21,6 +22,9 @@ _SAME_FACING = 6.0
 
 # Share of a plane's points that a round of growth must add before the plane is fitted anew.
 _REFIT = 0.3
+
+# Points on top that lie on no plane form a patch where they are no farther from each other than this (spacings).
+_PATCH_SPACINGS = 2.0
 
 # Rounds in which points choose the best plane of their neighborhood.
 _CHOICES = 3
@@ -77,7 +81,47 @@ def find_roof_planes(xyz: np.ndarray, tolerance: float, max_slope: float, min_po
     label = growth.all_planes(eigenvalues[:, 2], min_points)
     label = _chosen_by_neighborhood(xyz, neighbors, label, tolerance)
     label = _merged(xyz, neighbors, label, tolerance)
-    return _fitted(xyz, _large(label, min_points))
+    planes = _fitted(xyz, _large(label, min_points))
+    # Points change planes after these have grown, and the last fit may stand a plane on its edge.
+    return _some(planes, planes.cosine >= growth.least_upward)
+
+
+def with_level_patches(
+    xyz: np.ndarray, is_top: np.ndarray, planes: RoofPlanes, spacing: float, min_points: int
+) -> RoofPlanes:
+    """Return planes and a level one for each patch of points on top that lies on no plane.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Points of the building (m).
+    is_top : ndarray of shape (n,), bool
+        Which of them have no higher point beside them.
+    planes : RoofPlanes
+        The planes of its roof.
+    spacing : float
+        Mean distance of neighboring points (m).
+    min_points : int
+        Points of the smallest patch.
+    """
+    rest = np.flatnonzero(is_top & (planes.label < 0))
+    if len(rest) < min_points:
+        return planes
+    pairs = spatial.cKDTree(xyz[rest]).query_pairs(_PATCH_SPACINGS * spacing, output_type="ndarray")
+    _, patch = components(pairs[:, 0], pairs[:, 1], len(rest))
+    patch = _large(patch, min_points)
+    count = int(patch.max()) + 1
+    heights = [float(np.median(xyz[rest[patch == number], 2])) for number in range(count)]
+    label = planes.label.copy()
+    label[rest[patch >= 0]] = len(planes) + patch[patch >= 0]
+    level = np.column_stack([np.zeros((count, 2)), heights])
+    return RoofPlanes(np.concatenate([planes.coefficients, level]), label)
+
+
+def _some(planes: RoofPlanes, is_kept: np.ndarray) -> RoofPlanes:
+    """Return the planes that are kept (m,), with their points."""
+    number = np.append(np.where(is_kept, np.cumsum(is_kept) - 1, -1), -1)
+    return RoofPlanes(planes.coefficients[is_kept], number[planes.label])
 
 
 class _Growth:

@@ -2,32 +2,41 @@
 
 from __future__ import annotations
 
+import math
 from collections import defaultdict
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
-from ..facades.facade_outline import inside_ring
+from ..geometry.groups import components
+from ..geometry.points_in_polygons import are_within
 from ..geometry.rings import signed_area
-from ..geometry.subdivision import OUTSIDE, Subdivision
+from ..geometry.subdivision import OUTSIDE, SNAP, Subdivision
 
 ROOF, WALL, GROUND = "roof", "wall", "ground"
 
-# Heights at one place that differ by at most this (m) become one: planes stay plane to half of that.
-_SAME_HEIGHT = 0.016
+# Positions have as many decimals (m) as files: a corner that rounding moves by half a tenth of a millimeter turns a
+# triangle 5 mm high by less than a degree.
+DECIMALS = 4
 
-# Faces are plane to this (m); vertices lie no closer together than that (m).
-PLANAR, _APART = 0.01, 0.002
+# Planes that intersect within this distance (m) of a vertex, in plan, meet in it: cuts pass that closely to vertices.
+_MEET = 2 * SNAP
 
-# Decimals of positions (m), as files have them.
-_DECIMALS = 3
+# Heights at one position that differ by at most this (m) become one: planes stay plane to half of that.
+_SAME_HEIGHT = 0.001
 
-# A vertex with two edges that is off the line of their other ends by less than this (m), in plan by a tenth of it, is
-# superfluous: heights that became one have moved by as much.
-_SUPERFLUOUS = 0.005
+# The same where too many walls would meet in an edge else: faces stay plane to half of that.
+_NEARLY_SAME_HEIGHT = 0.016
 
-# Walls that turn by less than this (rad) are one face.
-_STRAIGHT = 1e-3
+# A vertex with two edges that is off the line of their other ends by less than this (m) is superfluous.
+_SUPERFLUOUS = 0.0005
+
+# Lines that turn by less than this (sine) have no intersection to go to.
+_LEAST_TURN = 0.05
+
+# Walls whose corners are off their common plane by less than this (m) are one face.
+_STRAIGHT = 0.0005
 
 _BASE = -1
 
@@ -56,71 +65,84 @@ class Solid:
     kinds: list[str] = field(default_factory=list)
     planes: list[int] = field(default_factory=list)
 
+    @cached_property
+    def normals(self) -> np.ndarray:
+        """Vectors (faces, 3) across the faces, outward, as long as their areas (m²)."""
+        rings = [ring for rings in self.faces for ring in rings]
+        length = np.array([len(ring) for ring in rings])
+        corner = self.vertices[np.concatenate(rings)]
+        start = np.cumsum(length) - length
+        offset = corner - corner[np.repeat(start, length)]
+        following = np.arange(1, len(corner) + 1)
+        following[start + length - 1] = start
+        x, y, z = offset.T
+        u, v, w = offset[following].T
+        across = 0.5 * np.column_stack([y * w - z * v, z * u - x * w, x * v - y * u])
+        first = np.cumsum([0, *(len(rings) for rings in self.faces[:-1])])
+        return np.add.reduceat(across, start[first], axis=0)
+
     @property
     def volume(self) -> float:
         """Volume (m³)."""
-        origin = self.vertices.mean(axis=0)
-        total = 0.0
-        for rings in self.faces:
-            for ring in rings:
-                corner = self.vertices[ring] - origin
-                total += float(
-                    np.einsum("ij,ij->", np.cross(corner[1:-1], corner[2:]), corner[:1].repeat(len(ring) - 2, 0))
-                )
-        return total / 6
-
-    def normal(self, face: int) -> np.ndarray:
-        """Return the vector (3,) across a face, outward, as long as its area (m²)."""
-        return sum((_area_vector(self.vertices[ring]) for ring in self.faces[face]), np.zeros(3))
+        corner = self.vertices[[rings[0][0] for rings in self.faces]] - self.vertices.mean(axis=0)
+        return float(np.einsum("ij,ij->", corner, self.normals)) / 3
 
 
-def _area_vector(corners: np.ndarray) -> np.ndarray:
-    """Return the vector (3,) across a ring, as long as its area."""
-    offset = corners - corners[0]
-    return 0.5 * np.cross(offset, np.roll(offset, -1, axis=0)).sum(axis=0)
-
-
-def build_solid(cells: Subdivision, label: np.ndarray, coefficients: np.ndarray, base: float) -> Solid:
-    """Return the solid between a level ground and the planes of cells.
+def build_solid(levels: Levels) -> tuple[Solid, list[list[int]]]:
+    """Return the solid between a level ground and the planes of cells, and the cells beside each of its faces.
 
     Parameters
     ----------
-    cells : Subdivision
-        The cells; they get vertices where roofs cross.
-    label : ndarray of shape (cells,)
-        Plane of each cell, -1 outside.
-    coefficients : ndarray of shape (m, 3)
-        The planes.
-    base : float
-        Height of the ground (m).
+    levels : Levels
+        The heights; cells get vertices where roofs cross.
 
     Raises
     ------
     ValueError
         If more than two faces would meet in an edge; see :func:`Levels.crowded`.
     """
-    levels = Levels(cells, label, coefficients, base)
     levels.part_crossing_roofs()
     return _Builder(levels).solid()
 
 
 class Levels:
-    """Heights at the vertices of a partition: one for each plane there; those that are nearly the same are one."""
+    """Heights at the vertices of a partition: one for each plane there, and one of planes that meet.
+
+    Vertices move in plan, by centimeters, to where the planes beside them intersect: faces stay plane.
+
+    Parameters
+    ----------
+    cells : Subdivision
+        The cells.
+    label : ndarray of shape (cells,)
+        Plane of each cell, -1 outside.
+    coefficients : ndarray of shape (m, 3)
+        The planes z = a x + b y + c.
+    base : float
+        Height of the ground (m).
+    """
 
     def __init__(self, cells: Subdivision, label: np.ndarray, coefficients: np.ndarray, base: float) -> None:
-        self.cells, self.label, self.coefficients, self.base = cells, label, coefficients, base
-        self.around: dict[int, list[int]] = defaultdict(list)
+        self.cells, self.label, self.base = cells, label, round(base, DECIMALS)
+        self.coefficients = [tuple(row) for row in coefficients.tolist()]
+        self.around: dict[int, set[int]] = defaultdict(set)
+        self._spokes: dict[int, list[int]] = defaultdict(list)
+        self._outline: dict[int, list[int]] = defaultdict(list)
         for (u, v), cell in cells.cell_of.items():
+            self._spokes[u].append(v)
             if label[cell] >= 0:
-                self.around[u].append(label[cell])
+                self.around[u].add(int(label[cell]))
                 if self.plane_beyond(u, v) == _BASE:
-                    self.around[u].append(_BASE)
-                    self.around[v].append(_BASE)
+                    self._outline[u].append(v)
+                    self._outline[v].append(u)
+        self.place = list(cells.vertices)
         self.number: dict[tuple[int, int], int] = {}
         self.positions: list[tuple[float, float, float]] = []
-        self._spokes: dict[int, list[int]] = defaultdict(list)
-        for u, v in cells.cell_of:
-            self._spokes[u].append(v)
+        for vertex, planes in self.around.items():
+            if len(planes) > 1:
+                self._move_to_intersection(vertex, sorted(planes))
+            if vertex in self._outline:
+                planes.add(_BASE)
         for vertex in self.around:
             self._number(vertex)
 
@@ -133,30 +155,72 @@ class Levels:
         """Return the height (m) at which a plane, or the ground, is at a vertex."""
         return self.positions[self.number[vertex, plane]][2]
 
-    def _number(self, vertex: int) -> None:
-        """Give numbers to the positions at a vertex."""
-        x, y = self.cells.vertices[vertex]
-        heights = []
-        for plane in sorted(set(self.around[vertex])):
-            a, b, c = self.coefficients[plane] if plane != _BASE else (0.0, 0.0, self.base)
-            heights.append((a * x + b * y + c, plane))
-        heights.sort()
+    def _height_at(self, plane: int, place: tuple[float, float]) -> float:
+        if plane == _BASE:
+            return self.base
+        a, b, c = self.coefficients[plane]
+        return a * place[0] + b * place[1] + c
+
+    def _move_to_intersection(self, vertex: int, planes: list[int]) -> None:
+        """Move a vertex to where planes intersect, on the outline if it lies on that, or else by less."""
+        place = self.place[vertex]
+        meeting = self._meeting(planes, place)
+        if not meeting or meeting[-1][0] < 0.1 * _SAME_HEIGHT:
+            return
+        along = [self._across(place, self.place[other]) for other in self._outline.get(vertex, ())]
+        for lines, farthest in ((along, _MEET), ([], SNAP)) if along else (([], _MEET),):
+            step = _common_step([*lines, *(line for _, line in meeting)], farthest)
+            moved = place[0] + step[0], place[1] + step[1]
+            if step != (0.0, 0.0) and self._keeps_cells(vertex, moved):
+                self.place[vertex] = moved
+                return
+
+    def _meeting(self, planes: list[int], place: tuple[float, float]) -> list[tuple[float, tuple[float, float, float]]]:
+        """Return the lines (nx, ny, offset), m from a position, in which planes intersect near it, nearest first."""
+        found = []
+        for i, one in enumerate(planes):
+            a, b, c = self.coefficients[one]
+            for other in planes[i + 1 :]:
+                d, e, f = self.coefficients[other]
+                turn = math.hypot(a - d, b - e)
+                step = (a - d) * place[0] + (b - e) * place[1] + c - f
+                if turn > 0 and abs(step) <= _MEET * turn:
+                    found.append((abs(step) / turn, ((a - d) / turn, (b - e) / turn, -step / turn)))
+        return sorted(found)
+
+    @staticmethod
+    def _across(place: tuple[float, float], other: tuple[float, float]) -> tuple[float, float, float]:
+        """Return the line (nx, ny, 0) from a position to another one."""
+        x, y = other[0] - place[0], other[1] - place[1]
+        length = math.hypot(x, y)
+        return -y / length, x / length, 0.0
+
+    def _keeps_cells(self, vertex: int, moved: tuple[float, float]) -> bool:
+        """Return whether the cells around a vertex keep their orientation when it is moved."""
+        before, self.place[vertex] = self.place[vertex], moved
+        loops = [self.cells.loops[self.cells.cell_of[vertex, other]] for other in self._spokes[vertex]]
+        kept = all(_loop_area([self.place[v] for v in loop]) > 0 for loop in loops)
+        self.place[vertex] = before
+        return kept
+
+    def _number(self, vertex: int, same: float = _SAME_HEIGHT) -> None:
+        """Give numbers to the positions at a vertex, one for heights that differ by at most ``same`` (m)."""
+        x, y = self.place[vertex]
+        place = self.place[vertex] = round(x, DECIMALS), round(y, DECIMALS)
         group: list[tuple[float, int]] = []
-        for height, plane in heights:
-            if group and height - group[0][0] > _SAME_HEIGHT:
+        for height, plane in sorted((self._height_at(plane, place), plane) for plane in self.around[vertex]):
+            if group and height - group[0][0] > same:
                 self._enter(vertex, group)
                 group = []
             group.append((height, plane))
-        if group:
-            self._enter(vertex, group)
+        self._enter(vertex, group)
 
     def _enter(self, vertex: int, group: list[tuple[float, int]]) -> None:
-        x, y = self.cells.vertices[vertex]
         is_ground = any(plane == _BASE for _, plane in group)
-        z = self.base if is_ground else sum(height for height, _ in group) / len(group)
+        z = self.base if is_ground else round(sum(height for height, _ in group) / len(group), DECIMALS)
         for _, plane in group:
             self.number[vertex, plane] = len(self.positions)
-        self.positions.append((x, y, z))
+        self.positions.append((*self.place[vertex], z))
 
     def part_crossing_roofs(self) -> None:
         """Put a vertex where one of two planes beside an edge comes from below the other."""
@@ -171,9 +235,10 @@ class Levels:
             if at_u * at_v >= 0:
                 continue
             share = at_u / (at_u - at_v)
-            (x0, y0), (x1, y1) = self.cells.vertices[u], self.cells.vertices[v]
+            (x0, y0), (x1, y1) = self.place[u], self.place[v]
             new = self.cells.insert(u, v, (x0 + share * (x1 - x0), y0 + share * (y1 - y0)))
-            self.around[new] = [one, other]
+            self.place.append(self.cells.vertices[new])
+            self.around[new] = {one, other}
             self._number(new)
 
     def _planes_beside(self, u: int, v: int) -> tuple[int, int]:
@@ -182,7 +247,11 @@ class Levels:
 
     def crowded(self) -> list[int]:
         """Return the vertices where more than two walls would meet in an edge."""
-        return [vertex for vertex in self.around if self._is_crowded(vertex)]
+        found = [vertex for vertex in self.around if self._is_crowded(vertex)]
+        # Four planes and more that nearly meet share a corner, as long as their faces stay plane enough.
+        for vertex in found:
+            self._number(vertex, _NEARLY_SAME_HEIGHT)
+        return [vertex for vertex in found if self._is_crowded(vertex)]
 
     def _is_crowded(self, vertex: int) -> bool:
         planes = [int(self.label[cell]) for cell in self.cells_around(vertex)]
@@ -210,6 +279,53 @@ def turns_around(heights: list[float]) -> int:
     return sum(a * b < 0 for a, b in zip(steps, [*steps[1:], *steps[:1]]))
 
 
+def _common_step(lines: list[tuple[float, float, float]], farthest: float) -> tuple[float, float]:
+    """Return the shortest step (m) onto lines (nx, ny, offset), in this order; those that it can't reach are left out.
+
+    Steps are not longer than ``farthest``.
+    """
+    first, step, is_point = None, (0.0, 0.0), False
+    for line in lines:
+        nx, ny, offset = line
+        if abs(nx * step[0] + ny * step[1] - offset) <= 0.1 * _SAME_HEIGHT:
+            first = first or line
+            continue
+        if is_point:
+            continue
+        if first is None:
+            wanted = nx * offset, ny * offset
+        else:
+            mx, my, other = first
+            turn = mx * ny - my * nx
+            if abs(turn) < _LEAST_TURN:
+                continue
+            wanted = (other * ny - offset * my) / turn, (mx * offset - nx * other) / turn
+        if math.hypot(*wanted) <= farthest:
+            step, is_point = wanted, first is not None
+            first = first or line
+    return step
+
+
+def _loop_area(places: list[tuple[float, float]]) -> float:
+    x0, y0 = places[0]
+    offset = [(x - x0, y - y0) for x, y in places]
+    return 0.5 * sum(xa * yb - xb * ya for (xa, ya), (xb, yb) in zip(offset, [*offset[1:], offset[0]]))
+
+
+@dataclass(frozen=True)
+class _Wall:
+    """A wall: its ring, the vertices in plan from which and to which it runs, and the cells beside it."""
+
+    ring: Ring
+    start: int
+    end: int
+    cells: list[int]
+
+
+# Kind, plane, rings of positions, and cells of a face.
+_Built = tuple[str, int, list[Ring], list[int]]
+
+
 class _Builder:
     """Makes the faces of a solid."""
 
@@ -221,18 +337,23 @@ class _Builder:
         for numbers in self.at.values():
             numbers.sort(key=lambda n: levels.positions[n][2])
 
-    def solid(self) -> Solid:
-        """Return the solid without superfluous vertices."""
-        faces: list[tuple[str, int, list[Ring]]] = []
-        for plane, edges in self._roof_edges().items():
-            faces += [(ROOF, plane[1], rings) for rings in self._polygons(_rings(edges), upward=True)]
-        faces += [(WALL, -1, [ring]) for ring in self._walls()]
-        faces += [(GROUND, -1, rings) for rings in self._polygons(_rings(self._ground_edges()), upward=False)]
-        return _compact(np.array(self.levels.positions), faces)
-
-    def _roof_edges(self) -> dict[tuple[int, int], list[tuple[int, int]]]:
-        """Return the edges around each connected part of a plane, by (part, plane)."""
+    def solid(self) -> tuple[Solid, list[list[int]]]:
+        """Return the solid without superfluous vertices, and the cells beside each face."""
+        faces: list[_Built] = []
         part = self._parts()
+        cells_of: dict[int, list[int]] = defaultdict(list)
+        for cell, root in part.items():
+            cells_of[root].append(cell)
+        for (root, plane), edges in self._roof_edges(part).items():
+            for rings in self._polygons(_rings(edges), upward=True):
+                faces.append((ROOF, plane, rings, cells_of[root]))
+        faces += [(WALL, -1, [ring], cells) for ring, cells in self._walls()]
+        for rings in self._polygons(_rings(self._ground_edges()), upward=False):
+            faces.append((GROUND, -1, rings, []))
+        return _compact(np.array(self.levels.positions), faces), [cells for *_, cells in faces]
+
+    def _roof_edges(self, part: dict[int, int]) -> dict[tuple[int, int], list[tuple[int, int]]]:
+        """Return the edges around each connected part of a plane, by (part, plane)."""
         edges: dict[tuple[int, int], list[tuple[int, int]]] = defaultdict(list)
         number = self.levels.number
         for (u, v), cell in self.cells.cell_of.items():
@@ -243,19 +364,13 @@ class _Builder:
 
     def _parts(self) -> dict[int, int]:
         """Return which connected part of equal planes each cell is in."""
-        parent = {cell: cell for cell in range(len(self.cells)) if self.label[cell] >= 0}
-
-        def root(cell: int) -> int:
-            while parent[cell] != cell:
-                parent[cell] = parent[parent[cell]]
-                cell = parent[cell]
-            return cell
-
+        pairs = [(cell, cell) for cell in np.flatnonzero(self.label >= 0).tolist()]
+        used = len(pairs)
         for (u, v), cell in self.cells.cell_of.items():
-            other = self.cells.cell_of.get((v, u), OUTSIDE)
-            if other != OUTSIDE and self.label[cell] >= 0 and self.label[other] == self.label[cell]:
-                parent[root(cell)] = root(other)
-        return {cell: root(cell) for cell in parent}
+            if self.label[cell] >= 0 and self.levels.plane_beyond(u, v) == self.label[cell]:
+                pairs.append((cell, self.cells.cell_of[v, u]))
+        group = _group_of(pairs, len(self.cells))
+        return {cell: group[cell] for cell, _ in pairs[:used]}
 
     def _ground_edges(self) -> list[tuple[int, int]]:
         number = self.levels.number
@@ -265,8 +380,8 @@ class _Builder:
             if self.label[cell] >= 0 and self.levels.plane_beyond(u, v) == _BASE
         ]
 
-    def _walls(self) -> list[Ring]:
-        """Return the walls, those in line with each other as one."""
+    def _walls(self) -> list[tuple[Ring, list[int]]]:
+        """Return the walls, those in line with each other as one, and the cells beside each."""
         walls = []
         for (u, v), cell in self.cells.cell_of.items():
             plane = int(self.label[cell])
@@ -274,7 +389,8 @@ class _Builder:
             if plane >= 0 and beyond != plane:
                 ring = self._wall(u, v, plane, beyond)
                 if ring:
-                    walls.append((ring, u, v))
+                    cells = [cell] if beyond == _BASE else [cell, self.cells.cell_of[v, u]]
+                    walls.append(_Wall(ring, u, v, cells))
         return self._joined(walls)
 
     def _wall(self, u: int, v: int, plane: int, beyond: int) -> Ring:
@@ -293,38 +409,54 @@ class _Builder:
         numbers = self.at[vertex]
         return numbers[numbers.index(low) : numbers.index(high) + 1]
 
-    def _joined(self, walls: list[tuple[Ring, int, int]]) -> list[Ring]:
-        """Return walls with neighbors in one line joined."""
-        place = np.array(self.cells.vertices)
-        angle = [np.arctan2(*(place[v] - place[u])[::-1]) for _, u, v in walls]
-        owner = {edge: i for i, (ring, _, _) in enumerate(walls) for edge in zip(ring, [*ring[1:], ring[0]])}
-        parent = list(range(len(walls)))
-
-        def root(i: int) -> int:
-            while parent[i] != i:
-                parent[i] = parent[parent[i]]
-                i = parent[i]
-            return i
-
+    def _joined(self, walls: list[_Wall]) -> list[tuple[Ring, list[int]]]:
+        """Return walls with neighbors in one line joined, and the cells beside each."""
+        owner = {edge: i for i, wall in enumerate(walls) for edge in zip(wall.ring, [*wall.ring[1:], wall.ring[0]])}
+        pairs = [(i, i) for i in range(len(walls))]
         for (a, b), i in owner.items():
             j = owner.get((b, a))
-            if j is not None and j != i and self._is_upright(a, b):
-                turn = (angle[i] - angle[j] + np.pi) % (2 * np.pi) - np.pi
-                if abs(turn) < _STRAIGHT:
-                    parent[root(i)] = root(j)
-        edges: dict[int, list[tuple[int, int]]] = defaultdict(list)
-        for (a, b), i in owner.items():
-            j = owner.get((b, a))
-            if j is None or root(j) != root(i):
-                edges[root(i)].append((a, b))
-        joined = []
-        for group, around in edges.items():
-            rings = _rings(around)
+            if j is not None and j > i and self._is_upright(a, b) and self._are_in_line(walls[i], walls[j]):
+                pairs.append((i, j))
+        members: dict[int, list[int]] = defaultdict(list)
+        for i, group in enumerate(_group_of(pairs, len(walls))):
+            members[group].append(i)
+        joined: list[tuple[Ring, list[int]]] = []
+        for numbers in members.values():
+            of_group = [walls[i] for i in numbers]
+            rings = self._around(of_group) if len(numbers) > 1 and self._is_straight(of_group) else []
             # A joint wall around an opening, or one that touches itself, stays in its parts.
-            members = [ring for i, (ring, _, _) in enumerate(walls) if root(i) == group]
-            is_simple = len(rings) == 1 and len(set(rings[0])) == len(rings[0])
-            joined += rings if is_simple else members
+            if len(rings) == 1 and len(set(rings[0])) == len(rings[0]):
+                joined.append((rings[0], [cell for wall in of_group for cell in wall.cells]))
+            else:
+                joined += [(wall.ring, wall.cells) for wall in of_group]
         return joined
+
+    @staticmethod
+    def _around(walls: list[_Wall]) -> list[Ring]:
+        """Return the rings around walls."""
+        edges = {edge for wall in walls for edge in zip(wall.ring, [*wall.ring[1:], wall.ring[0]])}
+        return _rings([(a, b) for a, b in edges if (b, a) not in edges])
+
+    def _are_in_line(self, one: _Wall, other: _Wall) -> bool:
+        """Return whether two walls face the same way in one line."""
+        (ax, ay), (bx, by) = (self._direction(wall) for wall in (one, other))
+        return ax * bx + ay * by > 0 and self._is_straight([one, other])
+
+    def _direction(self, wall: _Wall) -> tuple[float, float]:
+        (x0, y0), (x1, y1) = self.levels.place[wall.start], self.levels.place[wall.end]
+        return x1 - x0, y1 - y0
+
+    def _is_straight(self, walls: list[_Wall]) -> bool:
+        """Return whether the ends of walls lie in one line."""
+        xy = np.array([self.levels.place[end] for wall in walls for end in (wall.start, wall.end)])
+        away = xy - xy[0]
+        far = away[np.argmax((away**2).sum(axis=1))]
+        away = xy - xy[0] - far
+        start = xy[0] + far + away[np.argmax((away**2).sum(axis=1))]
+        along = xy[0] + far - start
+        offset = xy - start
+        across = np.abs(offset[:, 0] * along[1] - offset[:, 1] * along[0]) / max(float(np.hypot(*along)), 1e-9)
+        return bool(across.max() <= _STRAIGHT)
 
     def _is_upright(self, a: int, b: int) -> bool:
         return self.levels.positions[a][:2] == self.levels.positions[b][:2]
@@ -342,10 +474,21 @@ class _Builder:
                 continue
             middle = plan[ring].mean(axis=0)[None]
             for exterior, *_ in polygons.values():
-                if inside_ring(middle, plan[[*exterior, exterior[0]]])[0]:
+                if are_within(middle, edges_of(plan[exterior]))[0]:
                     polygons[rings.index(exterior)].append(ring)
                     break
         return list(polygons.values())
+
+
+def _group_of(pairs: list[tuple[int, int]], count: int) -> list[int]:
+    """Return the group (count,) of each item that pairs hold together."""
+    one, other = np.array(pairs).T
+    return components(one, other, count)[1].tolist()
+
+
+def edges_of(ring: np.ndarray) -> np.ndarray:
+    """Return the edges (n, 2, 2) of an open ring (n, 2)."""
+    return np.stack([ring, np.roll(ring, -1, axis=0)], axis=1)
 
 
 def _rings(edges: list[tuple[int, int]]) -> list[Ring]:
@@ -377,10 +520,10 @@ def _rings(edges: list[tuple[int, int]]) -> list[Ring]:
     return rings
 
 
-def _compact(positions: np.ndarray, faces: list[tuple[str, int, list[Ring]]]) -> Solid:
+def _compact(positions: np.ndarray, faces: list[_Built]) -> Solid:
     """Return the solid of faces without vertices on straight edges and without unused ones."""
     beside: dict[int, set[int]] = defaultdict(set)
-    for _, _, rings in faces:
+    for _, _, rings, _ in faces:
         for ring in rings:
             for a, b in zip(ring, [*ring[1:], ring[0]]):
                 beside[a].add(b)
@@ -388,9 +531,8 @@ def _compact(positions: np.ndarray, faces: list[tuple[str, int, list[Ring]]]) ->
     straight = _straight(positions, beside)
     kept = sorted(set(beside) - straight)
     number = {old: new for new, old in enumerate(kept)}
-    # What is checked is what files hold, which is rounded.
-    solid = Solid(np.round(positions[kept], _DECIMALS))
-    for kind, plane, rings in faces:
+    solid = Solid(positions[kept])
+    for kind, plane, rings, _ in faces:
         solid.faces.append([[number[v] for v in ring if v in number] for ring in rings])
         solid.kinds.append(kind)
         solid.planes.append(plane)
@@ -409,9 +551,7 @@ def _straight(positions: np.ndarray, beside: dict[int, set[int]]) -> set[int]:
             continue
         u, v = positions[vertex] - positions[a], positions[b] - positions[a]
         length = max(float(np.linalg.norm(v)), 1e-12)
-        off = np.linalg.norm(np.cross(u, v)) / length
-        off_in_plan = abs(u[0] * v[1] - u[1] * v[0]) / length
-        if off < _SUPERFLUOUS and off_in_plan < 0.1 * _SUPERFLUOUS and u @ v > 0:
+        if np.linalg.norm(np.cross(u, v)) < _SUPERFLUOUS * length and u @ v > 0:
             straight.add(vertex)
             links[a].remove(vertex)
             links[b].remove(vertex)
@@ -419,52 +559,3 @@ def _straight(positions: np.ndarray, beside: dict[int, set[int]]) -> set[int]:
             links[b].add(a)
             del links[vertex]
     return straight
-
-
-def fault_of(solid: Solid) -> str:
-    """Return what is wrong with a solid, "" where it is closed, oriented, plane and has proper edges."""
-    edges: set[tuple[int, int]] = set()
-    for rings in solid.faces:
-        for ring in rings:
-            if len(ring) < 3 or len(set(ring)) != len(ring):
-                return "a ring is degenerate"
-            for edge in zip(ring, [*ring[1:], ring[0]]):
-                if edge in edges:
-                    return "an edge has more than two faces"
-                edges.add(edge)
-    if any((b, a) not in edges for a, b in edges):
-        return "the surface is open"
-    pairs = np.array(sorted(edges))
-    length = np.linalg.norm(solid.vertices[pairs[:, 0]] - solid.vertices[pairs[:, 1]], axis=1)
-    if length.min() < _APART:
-        return "an edge is too short"
-    for face, rings in enumerate(solid.faces):
-        normal = solid.normal(face)
-        area = float(np.linalg.norm(normal))
-        corners = solid.vertices[[v for ring in rings for v in ring]]
-        if area < 1e-6:
-            return "a face has no area"
-        off = (corners - corners.mean(axis=0)) @ (normal / area)
-        if np.abs(off).max() > PLANAR:
-            return "a face is not plane"
-        if _crosses_itself(solid.vertices, rings, normal / area):
-            return "edges of a face cross"
-    return ""
-
-
-def _crosses_itself(vertices: np.ndarray, rings: list[Ring], normal: np.ndarray) -> bool:
-    """Return whether edges of a face that have no vertex in common cross, seen along its normal."""
-    edge = np.array([pair for ring in rings for pair in zip(ring, [*ring[1:], ring[0]])])
-    axis = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
-    plan = (vertices - vertices[edge[0, 0]]) @ np.column_stack([axis, np.cross(normal, axis)])
-    start, end = plan[edge[:, 0]], plan[edge[:, 1]]
-    step = end - start
-
-    def side(places: np.ndarray) -> np.ndarray:
-        """Return on which side of each edge (k, 1) each place (k,) is, as an area."""
-        offset = places[None] - start[:, None]
-        return step[:, None, 0] * offset[..., 1] - step[:, None, 1] * offset[..., 0]
-
-    parts = side(start) * side(end) < 0
-    apart = (edge[:, None, :, None] != edge[None, :, None, :]).all(axis=(2, 3))
-    return bool((parts & parts.T & apart).any())

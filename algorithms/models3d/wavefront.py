@@ -11,7 +11,7 @@ from ..stage import MapFrame
 from .building_facts import NamedModel
 from .cityjson import unique_names
 from .face_triangles import triangulate_face
-from .solids import Solid
+from .solids import DECIMALS, Solid
 
 OBJ = "Wavefront OBJ"
 FORMATS = {OBJ: (".obj",)}
@@ -39,7 +39,7 @@ def obj_pieces(models: Collection[NamedModel], called: str, frame: MapFrame) -> 
         yield "o building_" + re.sub(r"[^\w.-]+", "_", name) + "\n"
         for solid in one.model.best:
             places = frame.to_map(solid.vertices) - offset
-            yield "".join(f"v {x:.3f} {y:.3f} {z:.3f}\n" for x, y, z in places.tolist())
+            yield "".join(f"v {x:.{DECIMALS}f} {y:.{DECIMALS}f} {z:.{DECIMALS}f}\n" for x, y, z in places.tolist())
             yield from _faces(solid, number)
             number += len(places)
 

@@ -9,25 +9,19 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..geometry.cell_outlines import outline_cells
-from ..geometry.grid import connected_cells, find_cells, grid_over
+from ..geometry.grid import connected_cells, grid_over
 from ..geometry.rings import signed_area
 from ..models3d.model_inputs import TOLERANCE_TEXT, plane_tolerance, require_buildings
 from ..models3d.roof_partition import inside_rings
 from ..models3d.roof_planes import find_roof_planes
+from ..models3d.roof_points import RULES, are_low, are_on_roof, distances, root_mean_square
 from ..report.charts import BLUE, Mark, Series, draw_histogram
 from ..report.page import Row, build_page, percent
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Param, Report, stage
 
-# A point that lies under a face by this (m), with another one of a building as much higher in its cell or one beside,
-# is on a wall or on a floor seen through glass. Cells have this size (m, or spacings).
-_BELOW, _CELL, _CELL_SPACINGS = 1.0, 0.5, 1.5
-
 # A plane is there where this share of its points lies on it, or on the model.
 _THERE = 0.5
-
-# Distances count at most this much (m): a tree that is called building says nothing of the model.
-_FARTHEST = 5.0
 
 # Faces with less than this area in plan (m²) stand on their edge: they are walls.
 _UPRIGHT = 1e-3
@@ -50,9 +44,9 @@ _FACES = Layer(
             f"{MISSING}: a plane of the points that the model has not",
         ),
         Field("points", int, "roof points above or below it"),
-        Field("mean", float, "mean distance of these, positive above the face", "m"),
-        Field("rms", float, "root mean square distance", "m"),
-        Field("p95", float, "95th percentile of the distances", "m"),
+        Field("mean", float, "mean height of these above the face", "m"),
+        Field("rms", float, "root mean square height above or below it", "m"),
+        Field("p95", float, "95th percentile of the heights above or below it", "m"),
     ),
 )
 _BUILDINGS = Layer(
@@ -63,8 +57,8 @@ _BUILDINGS = Layer(
         Field("id", int, "number of the building, from 1"),
         Field("building", str, "the attribute building of the roofs, or empty"),
         Field("points", int, "points of its roof"),
-        Field("rms", float, "root mean square distance of these to the model", "m"),
-        Field("p95", float, "95th percentile of the distances", "m"),
+        Field("rms", float, "root mean square height of these above or below the model", "m"),
+        Field("p95", float, "95th percentile of these heights", "m"),
         Field("faces", int, "faces of its roof"),
         Field("missing", int, "planes of the points that the model has not"),
         Field("invented", int, "faces that most of their points don't lie on"),
@@ -180,7 +174,7 @@ def assess_models(
     points = _RoofPoints(xyz, classification, sampling.spacing)
     min_points = max(5, round(min_plane_area * sampling.density))
     buildings = _compared(faces, points, tolerance, min_points, monitor)
-    values = _values(buildings, tolerance)
+    values = _values(buildings)
     return (
         _face_layer(buildings, points),
         _building_layer(buildings),
@@ -190,12 +184,13 @@ def assess_models(
 
 @dataclass
 class _Face:
-    """A face of a roof, as a plane through its corners: its rings, name, and the distances (m) of its points."""
+    """A face of a roof as a plane through its corners: rings, name, heights (m) of points above it, which lie on it."""
 
     rings: list
     building: str
     plane: np.ndarray
     off: np.ndarray
+    is_on: np.ndarray
 
     def height(self, xy: np.ndarray) -> np.ndarray:
         """Return the height (n,) of the plane (m)."""
@@ -206,11 +201,12 @@ class _Face:
         """The distance off the plane per difference in height."""
         return 1 / float(np.sqrt(1 + self.plane[0] ** 2 + self.plane[1] ** 2))
 
-    def status(self, tolerance: float) -> str:
-        """Return whether its points lie on it."""
+    @property
+    def status(self) -> str:
+        """Whether its points lie on it."""
         if not len(self.off):
             return UNSEEN
-        return MATCHED if np.mean(np.abs(self.off) <= tolerance) >= _THERE else INVENTED
+        return MATCHED if np.mean(self.is_on) >= _THERE else INVENTED
 
 
 @dataclass
@@ -221,17 +217,21 @@ class _Building:
     faces: list[_Face]
     missing: list[np.ndarray]
     volume: float
-    tolerance: float
 
     @property
     def off(self) -> np.ndarray:
-        """Distances (m) of all its roof points."""
+        """Heights (m) of all its roof points above the faces."""
         return np.concatenate([face.off for face in self.faces])
+
+    @property
+    def is_on(self) -> np.ndarray:
+        """Which of these lie on the faces."""
+        return np.concatenate([face.is_on for face in self.faces])
 
     @property
     def n_invented(self) -> int:
         """Faces that are invented."""
-        return sum(face.status(self.tolerance) == INVENTED for face in self.faces)
+        return sum(face.status == INVENTED for face in self.faces)
 
 
 def _faces(roofs: LayerFeatures, monitor: Monitor) -> dict[str, list[_Face]]:
@@ -248,7 +248,7 @@ def _faces(roofs: LayerFeatures, monitor: Monitor) -> dict[str, list[_Face]]:
         slope = np.linalg.lstsq(offset[:, :2], offset[:, 2], rcond=None)[0]
         called = "" if name is None else str(name)
         plane = np.array([*slope, middle[2] - slope @ middle[:2]])
-        found.setdefault(called, []).append(_Face(rings, called, plane, np.zeros(0)))
+        found.setdefault(called, []).append(_Face(rings, called, plane, np.zeros(0), np.zeros(0, bool)))
     count = sum(map(len, found.values()))
     if not count:
         raise ValueError(
@@ -268,7 +268,7 @@ class _RoofPoints:
         order = np.argsort(building[:, 0], kind="stable")
         self.spacing = spacing
         self.xyz = building[order]
-        self.is_low = _is_low(building, max(_CELL, _CELL_SPACINGS * spacing))[order]
+        self.is_low = are_low(building, spacing)[order]
         low = xyz[np.isin(classification, (PointClass.BUILDING, PointClass.GROUND))]
         self._low = low[np.argsort(low[:, 0], kind="stable")]
 
@@ -288,20 +288,6 @@ class _RoofPoints:
         return float(some[inside, 2].min()) if inside.any() else np.nan
 
 
-def _is_low(xyz: np.ndarray, size: float) -> np.ndarray:
-    """Return which points (n,) have another one in their cell, or in one beside, that is clearly higher."""
-    grid = grid_over(xyz, size)
-    number = grid.number(xyz)
-    cells, inverse = np.unique(number, return_inverse=True)
-    top = np.full(len(cells), -np.inf)
-    np.maximum.at(top, inverse, xyz[:, 2])
-    highest = top[inverse]
-    for step in grid.around:
-        position, there = find_cells(cells, number + step)
-        highest = np.where(there, np.maximum(highest, top[position]), highest)
-    return highest > xyz[:, 2] + _BELOW
-
-
 def _compared(
     faces: dict[str, list[_Face]], points: _RoofPoints, tolerance: float, min_points: int, monitor: Monitor
 ) -> list[_Building]:
@@ -313,12 +299,13 @@ def _compared(
             over = points.over(face.rings)
             here = points.xyz[over]
             above = here[:, 2] - face.height(here[:, :2])
-            is_roof = ~points.is_low[over] | (above > -_BELOW)
-            face.off = np.clip(above[is_roof] * face.cosine, -_FARTHEST, _FARTHEST)
+            is_roof = are_on_roof(above, points.is_low[over])
+            face.off = distances(above[is_roof])
+            face.is_on = np.abs(face.off) * face.cosine <= tolerance
             roof.append(here[is_roof])
-        off = np.concatenate([face.off for face in of_one])
-        missing = _missing(np.concatenate(roof), np.abs(off) <= tolerance, tolerance, min_points)
-        buildings.append(_Building(name, of_one, missing, _volume(of_one, points), tolerance))
+        building = _Building(name, of_one, [], _volume(of_one, points))
+        building.missing = _missing(np.concatenate(roof), building.is_on, tolerance, min_points)
+        buildings.append(building)
         monitor.progress((number + 1) / len(faces))
     return buildings
 
@@ -347,24 +334,20 @@ def _volume(faces: list[_Face], points: _RoofPoints) -> float:
     return total
 
 
-def _root_mean_square(off: np.ndarray) -> float:
-    return float(np.sqrt(np.mean(off**2))) if len(off) else np.nan
-
-
 def _high(off: np.ndarray) -> float:
     return float(np.percentile(np.abs(off), _PERCENTILE)) if len(off) else np.nan
 
 
-def _values(buildings: list[_Building], tolerance: float) -> dict[str, float]:
+def _values(buildings: list[_Building]) -> dict[str, float]:
     off = np.concatenate([building.off for building in buildings])
-    each = [rms for rms in (_root_mean_square(building.off) for building in buildings) if np.isfinite(rms)]
+    each = [rms for rms in (root_mean_square(building.off) for building in buildings) if np.isfinite(rms)]
     return {
         "buildings": len(buildings),
         "points": len(off),
-        "rms": _root_mean_square(off),
+        "rms": root_mean_square(off),
         "p95": _high(off),
         "median_rms": float(np.median(each)) if each else np.nan,
-        "on_model": 100.0 * float(np.mean(np.abs(off) <= tolerance)) if len(off) else np.nan,
+        "on_model": 100.0 * float(np.mean(np.concatenate([building.is_on for building in buildings]))),
         "all_faces": sum(len(building.faces) for building in buildings),
         "missing": sum(len(building.missing) for building in buildings),
         "invented": sum(building.n_invented for building in buildings),
@@ -379,9 +362,9 @@ def _face_layer(buildings: list[_Building], points: _RoofPoints) -> LayerFeature
     for building in buildings:
         for face in building.faces:
             geometries.append(face.rings)
-            rows.append(_distances(building.name, face.status(building.tolerance), face.off))
+            rows.append(_distances(building.name, face.status, face.off))
         for xyz in building.missing:
-            outlines = _outlines(xyz, max(_CELL, _CELL_SPACINGS * points.spacing))
+            outlines = _outlines(xyz, RULES.cell_size(points.spacing))
             geometries += outlines
             rows += [_distances(building.name, MISSING, np.zeros(0), len(xyz))] * len(outlines)
     columns = {field.name: [row[field.name] for row in rows] for field in _FACES.fields if field.name != "id"}
@@ -391,7 +374,7 @@ def _face_layer(buildings: list[_Building], points: _RoofPoints) -> LayerFeature
 def _distances(building: str, status: str, off: np.ndarray, n_points: int = 0) -> dict[str, Any]:
     mean = float(off.mean()) if len(off) else np.nan
     facts = {"building": building, "status": status, "points": len(off) or n_points, "mean": mean}
-    return {**facts, "rms": _root_mean_square(off), "p95": _high(off)}
+    return {**facts, "rms": root_mean_square(off), "p95": _high(off)}
 
 
 def _outlines(xyz: np.ndarray, size: float) -> list:
@@ -411,7 +394,7 @@ def _building_layer(buildings: list[_Building]) -> LayerFeatures:
         "id": list(range(1, len(buildings) + 1)),
         "building": [building.name for building in buildings],
         "points": [len(building.off) for building in buildings],
-        "rms": [_root_mean_square(building.off) for building in buildings],
+        "rms": [root_mean_square(building.off) for building in buildings],
         "p95": [_high(building.off) for building in buildings],
         "faces": [len(building.faces) for building in buildings],
         "missing": [len(building.missing) for building in buildings],
@@ -427,7 +410,7 @@ def _page(buildings: list[_Building], values: dict[str, float], tolerance: float
         f"{values['all_faces']:,} faces."
     )
     distances = [
-        Row("RMS", _meters(values["rms"]), "Root mean square distance of all roof points to the faces."),
+        Row("RMS", _meters(values["rms"]), "Root mean square height of all roof points above or below the faces."),
         Row("95th percentile", _meters(values["p95"]), "95 of 100 roof points are nearer."),
         Row("Median of buildings", _meters(values["median_rms"]), "Half of the buildings have a smaller RMS."),
         Row("On the model", percent(values["on_model"]), f"Roof points within {tolerance:.2f} m of a face."),

@@ -40,4 +40,6 @@ def test_solids_are_valid(models):
 def test_roofs_are_near_their_points_and_at_the_level_wanted(models):
     facts = models.layers["buildings"].columns
     assert np.mean(np.array(facts["level"]) == "2.2") >= 0.95
-    assert np.median(facts["rms"]) <= 0.08
+    # Of all roof points: chimneys, plants on terraces and the points of neighbors count.
+    assert np.median(facts["rms"]) <= 0.35
+    assert np.median(facts["off"]) <= 0.08

@@ -79,7 +79,7 @@ def test_every_building_is_modelled_once_and_valid(survey):
 def test_models_stand_where_their_footprints_are(survey):
     outcome, texts = survey
     whole = json.loads(texts["CityJSON"])
-    places = np.array(whole["vertices"]) * 0.001 + whole["transform"]["translate"]
+    places = np.array(whole["vertices"]) * whole["transform"]["scale"] + whole["transform"]["translate"]
     footprints = outcome.layers["footprints"]
     for name, rings in zip(footprints.columns["id"], footprints.geometries):
         shell = whole["CityObjects"][str(name)]["geometry"][-1]["boundaries"][0]

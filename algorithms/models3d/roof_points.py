@@ -1,0 +1,82 @@
+"""The points on top of roofs, and how far models are from them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..geometry.grid import find_cells, grid_over
+
+
+@dataclass(frozen=True)
+class Rules:
+    """Which points lie on top, and which of them lie off a model.
+
+    Attributes
+    ----------
+    below : float
+        A point that lies under another one of a building by this (m), in its cell or in one beside, is on a wall or on
+        a floor seen through glass.
+    cell, cell_spacings : float
+        Size of the cells (m, and point spacings; the larger one counts).
+    farthest : float
+        Distances count at most this much (m): a tree that is classified as building says nothing of the model.
+    off : float
+        A roof point farther from the model than this (m) is off it: the step of a storey's half, more than any noise.
+    """
+
+    below: float = 1.0
+    cell: float = 0.5
+    cell_spacings: float = 1.5
+    farthest: float = 5.0
+    off: float = 0.5
+
+    def cell_size(self, spacing: float) -> float:
+        """Return the size of the cells (m) for a point spacing (m)."""
+        return max(self.cell, self.cell_spacings * spacing)
+
+
+RULES = Rules()
+
+
+def are_low(xyz: np.ndarray, spacing: float) -> np.ndarray:
+    """Return which points (n,) have another one in their cell, or in one beside, that is clearly higher."""
+    grid = grid_over(xyz, RULES.cell_size(spacing))
+    number = grid.number(xyz)
+    cells, inverse = np.unique(number, return_inverse=True)
+    top = np.full(len(cells), -np.inf)
+    np.maximum.at(top, inverse, xyz[:, 2])
+    highest = top.copy()
+    for step in grid.around:
+        position, is_used = find_cells(cells, cells + step)
+        highest = np.where(is_used, np.maximum(highest, top[position]), highest)
+    return highest[inverse] > xyz[:, 2] + RULES.below
+
+
+def are_on_roof(above: np.ndarray, is_low: np.ndarray) -> np.ndarray:
+    """Return which points (n,) are on top of a roof.
+
+    Parameters
+    ----------
+    above : ndarray of shape (n,)
+        Their heights above the face over or under them (m).
+    is_low : ndarray of shape (n,), bool
+        Which points have a higher one beside them; those far under the model lie on walls.
+    """
+    return ~is_low | (above > -RULES.below)
+
+
+def distances(above: np.ndarray) -> np.ndarray:
+    """Return heights above a model (n,), m, none farther off than counts."""
+    return np.clip(above, -RULES.farthest, RULES.farthest)
+
+
+def root_mean_square(off: np.ndarray) -> float:
+    """Return the root mean square of distances, NaN without any."""
+    return float(np.sqrt(np.mean(off**2))) if len(off) else np.nan
+
+
+def share_off(off: np.ndarray) -> float:
+    """Return the share of distances (m) that are off the model, NaN without any."""
+    return float(np.mean(np.abs(off) > RULES.off)) if len(off) else np.nan

@@ -1,0 +1,103 @@
+"""Parts of roofs with a fault get another plane, and the rest of the roof stays."""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.models3d.heights_around import HeightsAround
+from lidar_buildings.algorithms.models3d.mending import mended
+from lidar_buildings.algorithms.models3d.roof_partition import Partition, empty_partition
+from lidar_buildings.algorithms.models3d.roof_planes import RoofPlanes, find_roof_planes, with_level_patches
+from lidar_buildings.algorithms.models3d.solid_faults import fault_of
+from lidar_buildings.algorithms.models3d.solids import ROOF
+
+RING = np.array([[0, 0], [12, 0], [12, 8], [0, 8], [0, 0]], float)
+
+
+def partition(xyz, cuts, planes, label_of):
+    """Return a footprint of 12 m by 8 m, cut at eastings, with planes by the middle of each strip."""
+    cells, _ = empty_partition([RING], xyz[:, :2])
+    for x in cuts:
+        cells.cut(np.array([x, -1.0]), np.array([x, 9.0]))
+    centers = cells.centers()
+    inside = (centers > 0).all(axis=1) & (centers < [12, 8]).all(axis=1)
+    label = np.array([label_of(x) if is_in else -1 for (x, _), is_in in zip(centers, inside)])
+    return Partition(cells, label, np.array(planes, float), np.zeros((len(cells), len(planes))))
+
+
+def level_points(height=6.0):
+    xy = np.random.default_rng(0).uniform((0, 0), (12, 8), (1200, 2))
+    return np.column_stack([xy, np.full(len(xy), height)])
+
+
+def heights_of(solids):
+    return np.unique(
+        np.round([s.vertices[v, 2] for s in solids for f, k in zip(s.faces, s.kinds) if k == ROOF for v in f[0]], 2)
+    )
+
+
+def test_a_cell_far_above_its_points_takes_the_plane_of_a_neighbor():
+    xyz = level_points()
+    parts = partition(xyz, [8.0], [[0, 0, 6.0], [0.5, 0, 6.0]], lambda x: int(x > 8))
+    solids, why = mended(parts, 0.0, xyz, HeightsAround(xyz), 70.0)
+    assert why == ""
+    assert heights_of(solids).tolist() == [6.0]
+
+
+def test_without_limits_it_stays():
+    xyz = level_points()
+    parts = partition(xyz, [8.0], [[0, 0, 6.0], [0.5, 0, 6.0]], lambda x: int(x > 8))
+    solids, _ = mended(parts, 0.0, xyz, None, 70.0)
+    assert heights_of(solids).max() == pytest.approx(12.0)
+
+
+def test_a_narrow_strip_joins_the_neighbor_with_its_points():
+    xyz = level_points()
+    parts = partition(xyz, [5.0, 5.3], [[0, 0, 6.0], [0, 0, 6.1], [0, 0, 9.0]], lambda x: int(x > 5) + int(x > 5.3))
+    solids, why = mended(parts, 0.0, xyz, None, 70.0)
+    assert why == ""
+    assert heights_of(solids).tolist() == [6.0, 9.0]
+
+
+def test_a_fault_stays_where_it_is():
+    """The strip in the middle reaches below the ground: its wall has no height there, and the surface was open."""
+    xyz = level_points()
+    planes = [[0, 0, 6.0], [-3.0, 0, 20.0], [0, 0, 6.5]]
+    parts = partition(xyz, [4.0, 8.0], planes, lambda x: int(x > 4) + int(x > 8))
+    solids, why = mended(parts, 0.0, xyz, None, 70.0)
+    assert why == ""
+    assert all(fault_of(solid) == "" for solid in solids)
+    assert heights_of(solids).tolist() == [6.0, 6.5]
+
+
+def test_planes_meet_where_they_intersect():
+    """The cut lies 3 cm beside the ridge; the corner on the outline moves along it, and there is no step of 5 cm."""
+    xyz = level_points()
+    planes = [[0.8, 0, 2.0], [-0.8, 0, 11.6]]
+    parts = partition(xyz, [6.03], planes, lambda x: int(x > 6))
+    (solid,), _ = mended(parts, 0.0, xyz, None, 70.0)
+    ridge = solid.vertices[solid.vertices[:, 2] > 6]
+    assert ridge[:, 0] == pytest.approx([6.0, 6.0])
+    assert ridge[:, 2] == pytest.approx([6.8, 6.8])
+
+
+def test_no_plane_is_steeper_than_the_limit():
+    """Points choose planes after these have grown: those of a facade made a plane of 89° of a growing one of 70°."""
+    rng = np.random.default_rng(2)
+    y, z = rng.uniform(0, 8, 3000), rng.uniform(0, 8, 3000)
+    roof = np.column_stack([rng.uniform(0, 3, 900), rng.uniform(0, 8, 900)])
+    roof = np.column_stack([roof, 8 + 2.6 * roof[:, 0]])
+    wall = np.column_stack([rng.normal(0, 0.02, 3000), y, z])
+    for limit in (60.0, 75.0):
+        planes = find_roof_planes(np.concatenate([roof, wall]), 0.15, limit, 20)
+        assert np.degrees(np.arccos(planes.cosine)).max(initial=0) <= limit
+
+
+def test_points_on_no_plane_form_a_level_patch():
+    xyz = level_points()
+    xyz[:, 2] += np.where((np.abs(xyz[:, :2] - 4) < 1).all(axis=1), 2.0, 0.0)
+    label = np.where(xyz[:, 2] > 7, -1, 0)
+    planes = with_level_patches(xyz, np.ones(len(xyz), bool), RoofPlanes(np.array([[0, 0, 6.0]]), label), 0.3, 10)
+    assert planes.coefficients[1:].tolist() == [[0, 0, 8.0]]
+    assert (planes.label[label < 0] == 1).mean() > 0.9
+    none = with_level_patches(xyz, np.zeros(len(xyz), bool), RoofPlanes(np.array([[0, 0, 6.0]]), label), 0.3, 10)
+    assert len(none) == 1
