@@ -16,7 +16,8 @@ from . import cityjson
 from .building_facts import BUILDING_FIELDS, ROOF_FIELDS, WALL_FIELDS, NamedModel, face_attributes, face_rings
 from .reconstruct_roofs import reconstruct_roofs
 from .set_openings import DOOR, WINDOW, Opening, with_openings
-from .solids import WALL, Solid, fault_of
+from .solid_faults import fault_of
+from .solids import WALL, Solid
 
 # The level of detail with windows and doors, as CityJSON writes it.
 LEVEL_OF_OPENINGS = "3"

@@ -68,7 +68,7 @@ class _Wall:
 
     def __init__(self, solid: Solid, face: int) -> None:
         self.face = face
-        normal = solid.normal(face)
+        normal = solid.normals[face]
         self.normal = normal / np.linalg.norm(normal)
         level = np.array([-self.normal[1], self.normal[0], 0.0])
         self.along = level / np.linalg.norm(level)

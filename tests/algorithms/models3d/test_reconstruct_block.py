@@ -7,7 +7,8 @@ import pytest
 
 from lidar_buildings.algorithms.models3d.reconstruct_block import reconstruct_block
 from lidar_buildings.algorithms.models3d.set_openings import Opening, with_openings
-from lidar_buildings.algorithms.models3d.solids import Solid, fault_of
+from lidar_buildings.algorithms.models3d.solid_faults import fault_of
+from lidar_buildings.algorithms.models3d.solids import Solid
 from lidar_buildings.algorithms.stage import LayerFeatures, MapFrame, Monitor
 from lidar_buildings.tests.blocks import outlines, seen_from
 
