@@ -46,6 +46,8 @@ def pipeline_help(pipeline: Pipeline, made: Optional[list[str]] = None) -> str:
     parts += [_list(title, items) for title, items in rows.items() if items]
     input_layers = [input_layer_text(input_layer) for input_layer in pipeline.input_layers.values()]
     parts.append(_list("Layers", input_layers))
+    if pipeline.compared is not None:
+        parts.append(_list("Second cloud", [f"<b>REFERENCE</b>: {inline(pipeline.compared.reference)}"]))
     if made is None:
         in_order = sorted(pipeline.outputs, key=lambda output: output.name != "output")
         made = [output_text(pipeline, output) for output in in_order]
@@ -238,7 +240,7 @@ def _dimensions(stage: Stage) -> str:
         optional = f"; if there, {_disk_names(if_there)}" if if_there else ""
         rows.append(f"<b>{'INPUTS' if stage.merges else 'INPUT'}</b>: reads {_disk_names(own)}{optional}.")
     if compared:
-        rows.append(f"<b>REFERENCE</b>: reads {_disk_names(compared)}.")
+        rows.append(f"<b>REFERENCE</b>: reads {_disk_names(compared)}. {inline(stage.reference)}")
     return _list("Inputs", rows + [input_layer_text(input_layer) for input_layer in stage.input_layers])
 
 

@@ -20,7 +20,8 @@ class Step:
     are the defaults that differ from the stage's own. ``cloud`` names an earlier step
     whose cloud it works on instead. ``layers`` says which of its input layers is a layer of an
     earlier step, ``{"new": "walls.footprints"}``; the composite asks for all others,
-    under the input layer's own name. A stage that merges is given all clouds of the composite.
+    under the input layer's own name. A stage that merges is given all clouds of the composite, one that
+    reads a reference the second cloud.
     """
 
     name: str
@@ -123,6 +124,11 @@ class Pipeline:
     def merges(self) -> bool:
         """Whether it is given several clouds."""
         return any(step.stage.merges for step in self.steps)
+
+    @property
+    def compared(self) -> Optional[Stage]:
+        """The stage that reads the second cloud of the composite, None where none does."""
+        return next((step.stage for step in self.steps if step.stage.reads_reference), None)
 
     @property
     def input_layers(self) -> dict[str, InputLayer]:

@@ -228,6 +228,38 @@ _PIPELINES = (
         shown=("planes_min_area", "planes_min_height", "openings_min_size", "boundary", "complete"),
     ),
     Pipeline(
+        name="model_city_block",
+        title="Model city block",
+        group="Models",
+        tags="3D,LoD3,city block,street,facade,window,door,roof,mobile mapping,airborne,CityJSON,registration,Peng",
+        summary="Model a block from an airborne cloud and a street scan: roofs, walls, windows and doors in one model.",
+        description=(
+            "Finds the buildings of the airborne cloud as 'Detect buildings' does. Facades, windows and doors of the "
+            "street scan are moved onto it, by the walls, their ends and the ground that both show; the shift is "
+            "reported. Outlines follow the facades where they were seen, and are footprints elsewhere. Roofs are "
+            "reconstructed on them, and windows and doors set into the walls, as CityJSON at level of detail 3."
+        ),
+        references=(
+            "Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on "
+            f"vehicle LIDAR. EURASIP Journal on Image and Video Processing 2018:121.\n\n{_PETERS}"
+        ),
+        steps=(
+            *_DETECTION,
+            Step("street", "register_street", layers={"footprints": "footprints.footprints"}),
+            Step(
+                "block",
+                "reconstruct_block",
+                layers={
+                    "footprints": "footprints.footprints",
+                    "facades": "street.facades",
+                    "openings": "street.openings",
+                },
+            ),
+        ),
+        shared=_DETECTION_SHARED,
+        shown=("min_area", "street_max_shift", "street_min_size", "block_min_plane_area", "ground_max_building_size"),
+    ),
+    Pipeline(
         name="model_terrain",
         title="Model terrain",
         group="Models",

@@ -311,6 +311,7 @@ def run_pipeline(
     input_layers: Optional[dict[str, Optional[LayerFeatures]]] = None,
     kept: Optional[Collection[str]] = None,
     samplings: Optional[Mapping[str, CloudSampling]] = None,
+    reference: Optional[Cloud] = None,
     **tunables: Any,
 ) -> Results:
     """Run all steps on ``cloud``, in place as far as they do so, and return all that they made.
@@ -324,12 +325,15 @@ def run_pipeline(
     How the cloud was sampled is measured once for all steps, and again where a step has changed the points that it is
     measured on: those that are neither withheld nor noise. ``samplings`` are measured before, on the survey that the
     cloud is a part of: those of the given cloud by the name "", those of clouds that steps make by the steps' names.
+    ``reference`` is the second cloud of a pipeline with a step that reads one.
 
     Raises
     ------
     ValueError
-        If a tunable or layer is unknown, a layer is missing, or a step refuses its data.
+        If a tunable or layer is unknown, a layer or the second cloud is missing, or a step refuses its data.
     """
+    if pipeline.compared is not None and reference is None:
+        raise ValueError(f"{pipeline.title} reads a second point cloud (reference); give one.")
     monitor = monitor or Monitor()
     chosen = {step.name: of_step for step, of_step in pipeline.by_step(tunables)}
     given = given_layers(pipeline.name, pipeline.input_layers.values(), input_layers or {})
@@ -345,9 +349,8 @@ def run_pipeline(
         layers = {name: _layer(step, name, outcomes, given) for name in names}
         works_on = copies[step.cloud].copy() if step.cloud else current if step.stage.reads_cloud else None
         sampled = of_run.of(works_on) if step.stage.samples and isinstance(works_on, Cloud) else None
-        outcome = run_stage(
-            step.stage, works_on, monitor=part, input_layers=layers, sampling=sampled, **chosen[step.name]
-        )
+        second = reference if step.stage.reads_reference else None
+        outcome = run_stage(step.stage, works_on, second, part, layers, sampled, **chosen[step.name])
         return_freed()
         outcomes[step.name] = replace(outcome, cloud=None)
         if step.stage.makes_cloud:

@@ -48,6 +48,11 @@ def input_parameter(several: bool) -> QgsProcessingParameterDefinition:
     return with_help(CloudParameter(INPUT, "Point cloud"), "File or layer of the points.")
 
 
+def reference_parameter(stage: Stage) -> QgsProcessingParameterDefinition:
+    """Return the parameter of the second cloud that a stage reads."""
+    return with_help(CloudParameter(REFERENCE, "Reference point cloud"), f"File or layer. {stage.reference}")
+
+
 def input_paths(
     algorithm: QgsProcessingAlgorithm, several: bool, parameters: dict, context: QgsProcessingContext
 ) -> list[Path]:

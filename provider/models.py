@@ -25,7 +25,7 @@ from ..algorithms.pipeline import Output, Pipeline, Step
 from . import PROVIDER_ID, paths
 from .clouds import FILTER
 from .input_layers import input_layer_name, input_layer_parameter
-from .inputs import INPUT, INPUTS, OUTPUT, cloud_title
+from .inputs import INPUT, INPUTS, OUTPUT, REFERENCE, cloud_title
 from .parameters import parameter, parameter_name
 
 
@@ -100,9 +100,9 @@ def build_model(pipeline: Pipeline) -> QgsProcessingModelAlgorithm:
     model = QgsProcessingModelAlgorithm(pipeline.title, pipeline.group, "")
     layout = _Layout()
     clouds = _clouds(pipeline)
-    for definition in clouds:
+    for column, definition in enumerate(clouds):
         where = QgsProcessingModelParameter(definition.name())
-        where.setPosition(QPointF(layout.right, 60))
+        where.setPosition(QPointF(layout.right - column * layout.cell.width(), 60))
         where.setSize(layout.box)
         model.addModelParameter(definition, where)
     definitions = {input_layer_name(layer): input_layer_parameter(layer) for layer in pipeline.input_layers.values()}
@@ -120,6 +120,9 @@ def _clouds(pipeline: Pipeline) -> list[QgsProcessingParameterDefinition]:
 
     The designer runs a model with QGIS's own parameters; those for layers take no LAS and LAZ where QGIS has no PDAL.
     """
+    if pipeline.compared is not None:
+        both = ((INPUT, "Point cloud"), (REFERENCE, "Reference point cloud"))
+        return [QgsProcessingParameterFile(name, title, fileFilter=FILTER) for name, title in both]
     if pipeline.merges:
         return [QgsProcessingParameterMultipleLayers(INPUTS, "Point clouds", Qgis.ProcessingSourceType.File)]
     return [QgsProcessingParameterFile(INPUT, "Point cloud", fileFilter=FILTER)] if pipeline.reads_cloud else []
@@ -208,6 +211,8 @@ def _sources(pipeline: Pipeline, step: Step) -> dict[str, QgsProcessingModelChil
     name = INPUTS if step.stage.merges else INPUT
     if feeder is not None:
         found[name] = _from_child(feeder, OUTPUT) if feeder else _from_parameter(name)
+    if step.stage.reads_reference:
+        found[REFERENCE] = _from_parameter(REFERENCE)
     for input_layer in step.stage.input_layers:
         if input_layer.name in step.layers:
             found[input_layer_name(input_layer)] = _from_child(*step.layers[input_layer.name].split("."))

@@ -25,7 +25,7 @@ from ..algorithms.cloud.files import check_readable, read_cloud, read_extent, wr
 from ..algorithms.help import pipeline_help
 from ..algorithms.pipeline import Output, Pipeline, Step
 from ..algorithms.stage import Cancelled
-from .clouds import files_read
+from .clouds import cloud_path, files_read
 from .crs import crs_units, make_in_main_thread, renew_in_main_thread
 from .declared import DeclaredAlgorithm, on_command_line
 from .dependencies import missing_sentence
@@ -37,11 +37,13 @@ from .inputs import (
     INPUT,
     INPUTS,
     OUTPUT,
+    REFERENCE,
     REPORT,
     extent_box,
     extent_parameter,
     input_parameter,
     input_paths,
+    reference_parameter,
     subject_of,
 )
 from .models import model_file, pipeline_parameters, step_label
@@ -121,6 +123,8 @@ class PipelineAlgorithm(DeclaredAlgorithm, QgsProcessingModelAlgorithm):
         """Return a parameter of the model with its help, an output under the name that the chain gives it."""
         if definition.name() in (INPUT, INPUTS):
             return input_parameter(self.pipeline.merges)
+        if definition.name() == REFERENCE and self.pipeline.compared is not None:
+            return reference_parameter(self.pipeline.compared)
         mended = definition.clone()
         mended.setHelp(helps.get(definition.name(), definition.help()))
         if definition.isDestination():
@@ -185,9 +189,13 @@ class PipelineAlgorithm(DeclaredAlgorithm, QgsProcessingModelAlgorithm):
             named = {name: self.pipeline.parameter(step, name).upper() for name in step.stage.tunables}
             tunable_values(self, step.stage, given, context, named)
         clouds = input_paths(self, self.pipeline.merges, given, context) if self.pipeline.reads_cloud else []
-        read = [*files_read(clouds), *input_layer_files(self, self.pipeline.input_layers.values(), given, context)]
+        read_too = [cloud_path(self, REFERENCE, given, context)] if self.pipeline.compared else []
+        read = [
+            *files_read([*clouds, *read_too]),
+            *input_layer_files(self, self.pipeline.input_layers.values(), given, context),
+        ]
         check_targets(self.destinationParameterDefinitions(), given, read)
-        for cloud in clouds:
+        for cloud in (*clouds, *read_too):
             # Now, as QGIS opens the input of a model as a layer too, and a damaged COPC can hang it.
             check_readable(cloud, crs_units)
         if clouds:

@@ -26,7 +26,7 @@ from ..algorithms.cloud.outputs import replacing
 from ..algorithms.help import stage_help
 from ..algorithms.run import Outcome, run_stage
 from ..algorithms.stage import Monitor, Raster, RasterSurface, Stage
-from .clouds import CloudParameter, cloud_path, files_read
+from .clouds import cloud_path, files_read
 from .crs import crs_units, make_in_main_thread, renew_in_main_thread
 from .declared import DeclaredAlgorithm
 from .dependencies import missing_sentence
@@ -42,6 +42,7 @@ from .inputs import (
     extent_parameter,
     input_parameter,
     input_paths,
+    reference_parameter,
     subject_of,
     with_help,
 )
@@ -95,8 +96,7 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         if self.stage.reads_cloud:
             self.addParameter(input_parameter(self.stage.merges))
         if self.stage.reads_reference:
-            what = "File or layer to compare with: the same points with the true values."
-            self.addParameter(with_help(CloudParameter(REFERENCE, "Reference point cloud"), what))
+            self.addParameter(reference_parameter(self.stage))
         for input_layer in self.stage.input_layers:
             self.addParameter(input_layer_parameter(input_layer))
         for tunable in self.stage.tunables.values():

@@ -108,7 +108,7 @@ STAGE_IDS = {
     "registerstreet",
 }
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints", "modelbuildings"}
-PIPELINE_IDS |= {"modelfacades", "modelindustry", "modelterrain"}
+PIPELINE_IDS |= {"modelcityblock", "modelfacades", "modelindustry", "modelterrain"}
 
 CLASSIFYING = {"classify", "complete", "refine"}
 VERBS = CLASSIFYING | {"segment", "cluster", "compute", "extract", "regularize", "simplify", "assess", "simulate"}

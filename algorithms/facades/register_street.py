@@ -58,6 +58,7 @@ _MEANINGS = {
         Layer("openings", "Windows and doors", "Polygon", OPENING_FIELDS, style="openings"),
     ),
     measures=_MEASURES,
+    reference="The street scan, from a vehicle or a tripod.",
 )
 def register_street(
     xyz,

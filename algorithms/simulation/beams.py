@@ -11,7 +11,7 @@ from ..cloud.asprs import PointClass
 from .pairs import rank
 from .relief import Relief
 from .scene import Scene
-from .solids import SolidArrays, stack
+from .solids import SolidArrays, dot, stack
 
 # A wire this near (m) to the middle of the beam sends something back.
 _WIRE_REACH = 0.1
@@ -152,8 +152,8 @@ class World:
         center, radius = self.crowns[crown, :3], self.crowns[crown][:, [3, 3, 4]]
         start, way = (beams.origin[beam] - center) / radius, beams.direction[beam] / radius
         # |start + t way| = 1, a quadratic equation.
-        a, b = np.einsum("ij,ij->i", way, way), np.einsum("ij,ij->i", start, way)
-        inside = b * b - a * (np.einsum("ij,ij->i", start, start) - 1.0)
+        a, b = dot(way, way), dot(start, way)
+        inside = b * b - a * (dot(start, start) - 1.0)
         met = inside > 0
         half = np.sqrt(inside[met]) / a[met]
         enter, leave = -b[met] / a[met] - half, -b[met] / a[met] + half
@@ -172,8 +172,8 @@ class World:
         origin, direction = beams.origin[beam], beams.direction[beam]
         # The common perpendicular of two lines: both ends of it from the two scalar products.
         apart = start - origin
-        length2, lean = np.einsum("ij,ij->i", along, along), np.einsum("ij,ij->i", along, direction)
-        on_beam, on_wire = np.einsum("ij,ij->i", apart, direction), np.einsum("ij,ij->i", apart, along)
+        length2, lean = dot(along, along), dot(along, direction)
+        on_beam, on_wire = dot(apart, direction), dot(apart, along)
         share = np.clip((lean * on_beam - on_wire) / (length2 - lean * lean), 0.0, 1.0)
         ranges = on_beam + share * lean
         gap = np.linalg.norm(apart + share[:, None] * along - ranges[:, None] * direction, axis=1)

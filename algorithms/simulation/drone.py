@@ -12,6 +12,7 @@ from .beams import Beams, Echoes, World, join
 from .pairs import in_boxes, rank
 from .scanner import brightness
 from .scene import Scene
+from .solids import dot
 from .street_site import SIZE
 
 # Number of each scanner, which is the source id of its points.
@@ -107,7 +108,8 @@ class Surroundings(World):
         x, y, z = beams.origin.T
         clearance = z - self.relief.plane(x, y)
         east, north = self.relief.plane_gradient
-        sinking = beams.direction @ [east, north, -1.0]
+        x, y, z = beams.direction.T
+        sinking = east * x + north * y - z
         # Level and rising beams never come down; a range just out of reach keeps them apart from all that is met.
         return np.where(
             sinking * self.reach > clearance, clearance / np.where(sinking > 0, sinking, 1.0), 2 * self.reach
@@ -220,7 +222,7 @@ def first_met(world: Surroundings, beams: Beams, rng: np.random.Generator) -> Ec
 
 def recorded(echoes: Echoes, left: np.ndarray, number: int, rng: np.random.Generator) -> dict[str, np.ndarray]:
     """Return the dimensions of echoes but place and time."""
-    side = np.einsum("ij,ij->i", echoes.direction, left[echoes.pulse])
+    side = dot(echoes.direction, left[echoes.pulse])
     nadir = np.rad2deg(np.arccos(np.clip(-echoes.direction[:, 2], -1.0, 1.0)))
     one = np.ones(len(echoes), np.uint8)
     return {

@@ -262,7 +262,8 @@ def _with_numbers(made: dict[str, np.ndarray], truth: Truth, noise: float) -> di
     step = np.array([ring[1] - ring[0] for ring in truth.facades])
     across = np.column_stack([-step[:, 1], step[:, 0]]) / np.hypot(step[:, 0], step[:, 1])[:, None]
     own = on_facade - 1
-    off = np.einsum("ij,ij->i", (made["xyz"] - start[own])[:, :2], across[own])
+    x, y = (made["xyz"] - start[own])[:, :2].T
+    off = x * across[own, 0] + y * across[own, 1]
     on_facade[np.abs(off) > _ON_FRONT + _DEVIATIONS * noise] = 0
     return {**made, "segment_id": on_facade, "cluster_id": opening[number]}
 

@@ -8,6 +8,7 @@ that it comes from the outside of.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Optional
@@ -132,8 +133,8 @@ class SolidArrays:
         far = np.full(len(which), np.inf)
         for face in range(_FACES):
             normal, offset = self.faces[which, face, :3], self.faces[which, face, 3]
-            speed = _dot(normal, direction)
-            left = offset - _dot(normal, origin)
+            speed = dot(normal, direction)
+            left = offset - dot(normal, origin)
             with np.errstate(divide="ignore", invalid="ignore"):
                 crossing = left / speed
             near = np.where(speed < 0, np.maximum(near, crossing), near)
@@ -143,7 +144,7 @@ class SolidArrays:
         return np.where((near < far) & (near > 0), near, np.inf)
 
 
-def _dot(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+def dot(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Return the scalar products (n,) of vectors (n, 3), summed in one order wherever the arrays lie in memory."""
     return one[:, 0] * other[:, 0] + one[:, 1] * other[:, 1] + one[:, 2] * other[:, 2]
 
@@ -160,14 +161,15 @@ def stack(solids: Sequence[Solid]) -> SolidArrays:
     # Faces that a solid doesn't have are (0, 0, 0, 1): every point is inside of them.
     faces = np.zeros((len(solids), _FACES, 4))
     faces[:, :, 3] = 1.0
-    cos, sin = np.cos(rects.angle), np.sin(rects.angle)
+    # One by one: of arrays, numpy's cosines depend in the last bit on where these lie in memory.
+    cos, sin = (np.array([of(angle) for angle in rects.angle.tolist()]) for of in (math.cos, math.sin))
     for i, (side, reach) in enumerate([(1, rects.length), (-1, rects.length), (1, rects.width), (-1, rects.width)]):
         x, y = (side * cos, side * sin) if i < 2 else (-side * sin, side * cos)
         faces[:, i] = np.column_stack([x, y, np.zeros(len(solids)), x * rects.x + y * rects.y + reach / 2])
     under = [(0.0, 0.0, solid.bottom) if solid.under is None else solid.under for solid in solids]
     a, b, c = np.array(under, float).reshape(-1, 3).T
     faces[:, 4] = np.column_stack([a, b, -np.ones(len(solids)), -c])
-    corners = rects.corners()
+    corners = np.stack([solid.rect.corners() for solid in solids], axis=2) if len(solids) else rects.corners()
     top = np.full(len(solids), np.inf)
     for k in range(_MAX_TOPS):
         has = np.array([len(solid.tops) > k for solid in solids], bool)

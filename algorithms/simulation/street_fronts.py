@@ -136,7 +136,9 @@ def build_house(scene: Scene, truth: Truth, line: Line, height: float, kind: str
     scene.solids.append(Solid(rect, tops, top, PointClass.BUILDING, number))
     third, front = line.length / 3, [(0.0, 0.0)]
     if kind == "bay":
-        _block(scene, line, (third, 2 * third), (-_STEP, 0.0), top - _LID, top, number)
+        # Between its walls: a beam never meets two faces at once.
+        lid = (third + _WALL, 2 * third - _WALL), (_WALL - _STEP, 0.0)
+        _block(scene, line, *lid, top - _LID, top, number)
     if kind in ("bay", "recess"):
         off = _STEP if kind == "recess" else -_STEP
         front += [(third, 0.0), (third, off), (2 * third, off), (2 * third, 0.0)]

@@ -48,6 +48,7 @@ class Stage:
     merges: bool = False
     reach: Reach = 0.0
     of_whole: tuple[str, ...] = ()
+    reference: str = ""
 
     @property
     def name(self) -> str:
@@ -138,6 +139,7 @@ def stage(
     merges: bool = False,
     reach: Reach = 0.0,
     of_whole: tuple[str, ...] = (),
+    reference: str = "The same points with the true values, to compare with.",
 ) -> Callable[[Callable], Callable]:
     """Declare a function as a stage.
 
@@ -153,7 +155,7 @@ def stage(
     ``reach`` is how far (m) from a point others may lie that decide on it, a number or a function of all tunables by
     name: where a cloud is worked on in parts, each is seen with the points around it that far. ``of_whole`` names
     values that it measures on its results, and of which parts of a cloud take those of the whole, see
-    :meth:`.CloudSampling.shared`.
+    :meth:`.CloudSampling.shared`. ``reference`` says what the second cloud is, of a stage that reads one.
     """
     makes = {
         "writes": writes,
@@ -167,6 +169,7 @@ def stage(
         "merges": merges,
         "reach": reach,
         "of_whole": of_whole,
+        "reference": reference,
     }
 
     def declare(function: Callable) -> Callable:

@@ -119,6 +119,8 @@ def why_whole(pipeline: Pipeline) -> str:
             return f"{title} works on another cloud than the steps before it"
         if any(one.name in given and one.name not in step.layers for one in stage.input_layers):
             return f"{title} reads points and a layer that it is given"
+        if stage.reads_reference:
+            return f"{title} reads a second cloud"
         if stage.reach == np.inf:
             return f"{title} is decided by the whole cloud"
     return ""

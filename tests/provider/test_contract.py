@@ -104,7 +104,7 @@ TILED_IDS = {
     "modelindustryintiles",
 }
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints", "modelbuildings"}
-PIPELINE_IDS |= {"modelfacades", "modelindustry", "modelterrain"}
+PIPELINE_IDS |= {"modelcityblock", "modelfacades", "modelindustry", "modelterrain"}
 ALL = {**STAGES, **TOYS}
 
 
