@@ -162,7 +162,7 @@ def stack(solids: Sequence[Solid]) -> SolidArrays:
     faces = np.zeros((len(solids), _FACES, 4))
     faces[:, :, 3] = 1.0
     # One by one: of arrays, numpy's cosines depend in the last bit on where these lie in memory.
-    cos, sin = (np.array([of(angle) for angle in rects.angle.tolist()]) for of in (math.cos, math.sin))
+    cos, sin = (np.array([of(angle) for angle in np.asarray(rects.angle).tolist()]) for of in (math.cos, math.sin))
     for i, (side, reach) in enumerate([(1, rects.length), (-1, rects.length), (1, rects.width), (-1, rects.width)]):
         x, y = (side * cos, side * sin) if i < 2 else (-side * sin, side * cos)
         faces[:, i] = np.column_stack([x, y, np.zeros(len(solids)), x * rects.x + y * rects.y + reach / 2])
