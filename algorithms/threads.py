@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from threading import Event
-from typing import Any, Callable
+from typing import Any, Callable, Optional
 
 import numpy as np
 
@@ -35,9 +35,9 @@ def n_threads() -> int:
     return min(cores, _MOST_THREADS)
 
 
-def use_threads(count: int) -> None:
-    """Let this process work with ``count`` threads at once, one of several that share the cores."""
-    _TOLD[:] = [count]
+def use_threads(count: Optional[int]) -> None:
+    """Let this process work with ``count`` threads at once; None is one for each core."""
+    _TOLD[:] = [] if count is None else [count]
 
 
 @contextmanager

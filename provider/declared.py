@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Union
+from typing import Optional, Union
 
 from qgis.core import QgsApplication
 from qgis.PyQt.QtCore import QUrl
 from qgis.PyQt.QtGui import QIcon
+from qgis.PyQt.QtWidgets import QWidget
 
 from ..algorithms.help import as_text, with_picture
 from ..algorithms.pipeline import Pipeline
@@ -64,6 +65,14 @@ class DeclaredAlgorithm:
     def helpUrl(self) -> str:  # noqa: N802
         """Return the help page, which comes with the plugin."""
         return QUrl.fromLocalFile(str(HELP / f"{self.declared.id}.html")).toString()
+
+    def createCustomParametersWidget(self, parent: Optional[QWidget] = None) -> Optional[QWidget]:  # noqa: N802
+        """Return the dialog with parameters in groups; None, which is QGIS's own, where this QGIS has other parts."""
+        try:
+            from .dialog import GroupedDialog
+        except ImportError:
+            return None
+        return GroupedDialog(self, parent=parent)
 
     def shown(self, text: str) -> str:
         """Return its help as dialogs, with the picture, or the command line show it."""

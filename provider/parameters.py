@@ -39,6 +39,12 @@ def label(tunable: Tunable) -> str:
     return f"{tunable.param.label} ({', '.join(facts)})" if facts else tunable.param.label
 
 
+def plain_label(tunable: Tunable) -> str:
+    """Return the label with its unit, for a dialog whose fields show what an empty one means."""
+    param = tunable.param
+    return f"{param.label} ({param.unit})" if param.unit else param.label
+
+
 def help_text(tunable: Tunable) -> str:
     """Return the tooltip: what the tunable does, its range, what automatic means."""
     parts = [tunable.param.help]

@@ -7,6 +7,9 @@ from typing import Any, Callable
 
 from qgis.core import QgsSettings
 
+from ..algorithms.presets import PRESETS
+from ..algorithms.threads import use_threads
+
 GROUP = "LiDAR Buildings"
 
 # Where QGIS's Processing keeps what its options dialog shows.
@@ -20,6 +23,7 @@ class Option:
     name: str
     title: str
     default: str = ""
+    choices: tuple[str, ...] = ()
 
     @property
     def key(self) -> str:
@@ -42,7 +46,24 @@ class Option:
 
 SCHEDULERS = Option("LIDARBUILDINGS_SCHEDULERS", "Dask schedulers that may be used (addresses, with spaces between)")
 
-OPTIONS = (SCHEDULERS,)
+PRESET = Option("LIDARBUILDINGS_PRESET", "Kind of cloud that dialogs begin with", "automatic", tuple(PRESETS))
+THREADS = Option("LIDARBUILDINGS_THREADS", "Threads (empty = one for each core)")
+
+OPTIONS = (PRESET, THREADS, SCHEDULERS)
+
+
+def apply_threads() -> None:
+    """Have runs use as many threads as the user has set.
+
+    Raises
+    ------
+    ValueError
+        If what is set is no number of threads.
+    """
+    text = THREADS.value
+    if text and not (text.isdigit() and int(text)):
+        raise ValueError(f"'{THREADS.title}' in the options of Processing must be a whole number from 1, got {text!r}.")
+    use_threads(int(text) if text else None)
 
 
 def _processing_config() -> Any:
@@ -59,7 +80,8 @@ def add_options() -> Callable[[], None]:
     from processing.core.ProcessingConfig import ProcessingConfig, Setting
 
     for option in OPTIONS:
-        setting = Setting(GROUP, option.name, option.title, option.default)
+        kind = {"valuetype": Setting.SELECTION_STORE_STRING, "options": list(option.choices)} if option.choices else {}
+        setting = Setting(GROUP, option.name, option.title, option.default, **kind)
         setting.read()
         ProcessingConfig.addSetting(setting)
 

@@ -52,6 +52,7 @@ from .outputs import all_in_place, check_targets, write_for_qgis
 from .parameters import automatic_numbers, number_outputs, parameter, tunable_values, used_name
 from .places import Place, place_of_cloud, place_of_layers
 from .rasters import write_raster
+from .settings import apply_threads
 from .styles import cloud_style, layer_style, show_on_load
 from .text_files import file_parameter, write_text
 from .vectors import SOURCE_TYPES, plain
@@ -173,6 +174,7 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         missing = missing_sentence()
         if missing:
             raise ValueError(missing)
+        apply_threads()
         job = _Job(tunable_values(self, self.stage, parameters, context))
         if self.stage.reads_cloud:
             job.inputs = input_paths(self, self.stage.merges, parameters, context)

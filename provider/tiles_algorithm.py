@@ -46,6 +46,7 @@ from .outputs import all_in_place, check_targets, target_path
 from .parameters import tunable_values
 from .rasters import write_mosaic
 from .schedulers import check_scheduler
+from .settings import apply_threads
 from .styles import layer_style, show_on_load
 from .surveys import VPC, WGS84, check_vpc, place_of_survey, write_survey
 from .text_files import file_parameter, write_text
@@ -133,6 +134,7 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         missing = missing_sentence()
         if missing:
             raise ValueError(missing)
+        apply_threads()
         self.paths = survey_paths(self, INPUT, parameters, context)
         check_vpc(target_path(parameters.get(OUTPUT)), self.paths)
         self.files = files_of_survey(self.paths)

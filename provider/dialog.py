@@ -1,0 +1,171 @@
+"""The dialog of composites: parameters in groups that fold, one per step, and presets that fill them."""
+
+from __future__ import annotations
+
+from typing import Any, Optional
+
+from processing.gui.AlgorithmDialog import AlgorithmDialog
+from processing.gui.ParametersPanel import ParametersPanel
+from processing.gui.wrappers import WidgetWrapper
+from qgis.core import Qgis
+from qgis.gui import QgsCollapsibleGroupBox, QgsExtentWidget
+from qgis.PyQt import sip
+from qgis.PyQt.QtWidgets import QAbstractSpinBox, QComboBox, QFormLayout, QLabel, QLayout, QVBoxLayout, QWidget
+
+from ..algorithms.presets import Preset, presets_of
+from .sections import Section, sections_of
+from .settings import PRESET
+from .texts import tr
+
+# Outputs that are shown at once; further ones are folded.
+_OUTPUTS = 3
+
+
+class GroupedDialog(AlgorithmDialog):
+    """QGIS's dialog of an algorithm, with another panel of parameters."""
+
+    def getParametersPanel(self, alg: Any, parent: Any) -> GroupedPanel:  # noqa: N802 - QGIS asks for this name
+        """Return the panel."""
+        return GroupedPanel(parent, alg, self.in_place, self.active_layer)
+
+
+class GroupedPanel(ParametersPanel):
+    """QGIS's panel, whose widgets are put into groups."""
+
+    def initWidgets(self) -> None:  # noqa: N802 - QGIS asks for this name
+        """Make QGIS's widgets, and arrange them."""
+        super().initWidgets()
+        self._presets: list[Preset] = []
+        # What is put into a layout that QGIS made stays Python's, and would go with its last name.
+        self._kept: list[QWidget] = []
+        sections = sections_of(self.algorithm())
+        for section in sections:
+            for name, label in section.labels.items():
+                self._rename(name, label)
+        self._name_automatic(sections)
+        layout = self._layout()
+        if layout is None:
+            return
+        at = layout.indexOf(self._advanced()) if self._advanced() is not None else layout.count() - 1
+        for section in sections:
+            names = [name for name in section.labels if self._is_advanced(name) and name in self.wrappers]
+            if section.title and names:
+                layout.insertWidget(at, self._group(section.title, names))
+                at += 1
+        self._hide_empty_advanced()
+        self._fold_outputs(layout)
+        self._add_presets(layout)
+
+    def _is_advanced(self, name: str) -> bool:
+        definition = self.algorithm().parameterDefinition(name)
+        return bool(definition.flags() & Qgis.ProcessingParameterFlag.Advanced)
+
+    def _parts(self, name: str) -> tuple[Optional[QWidget], Optional[QWidget]]:
+        """Return the label and the widget of a parameter."""
+        wrapper = self.wrappers[name]
+        if isinstance(wrapper, WidgetWrapper):
+            return wrapper.label, wrapper.widget
+        return wrapper.wrappedLabel(), wrapper.wrappedWidget()
+
+    def _layout(self) -> Optional[QVBoxLayout]:
+        """Return the layout that holds the parameters."""
+        for name in self.wrappers:
+            if not self._is_advanced(name):
+                widget = self._parts(name)[1]
+                holder = widget.parentWidget() if widget is not None else None
+                if holder is not None and isinstance(holder.layout(), QVBoxLayout):
+                    return holder.layout()
+        return None
+
+    def _advanced(self) -> Optional[QWidget]:
+        """Return QGIS's own group of advanced parameters."""
+        return next((box for box in self.findChildren(QWidget) if box.objectName() == "grpAdvanced"), None)
+
+    def _group(self, title: str, names: list[str]) -> QgsCollapsibleGroupBox:
+        """Return a folded group of the widgets of some parameters."""
+        box = QgsCollapsibleGroupBox(title)
+        box.setObjectName(f"group{title}")
+        box.setSaveCollapsedState(False)
+        inside = QVBoxLayout(box)
+        for name in names:
+            for part in self._parts(name):
+                if part is not None:
+                    inside.addWidget(part)
+        box.setCollapsed(True)
+        self._kept.append(box)
+        return box
+
+    def _hide_empty_advanced(self) -> None:
+        box = self._advanced()
+        if box is not None:
+            left = [widget for widget in box.findChildren(QWidget) if widget.objectName() != "" or widget.layout()]
+            holds = any(box.isAncestorOf(part) for name in self.wrappers for part in self._parts(name) if part)
+            box.setVisible(bool(left) and holds)
+
+    def _rename(self, name: str, label: str) -> None:
+        """Give a parameter the label that it has within its group."""
+        if name not in self.wrappers:
+            return
+        shown, widget = self._parts(name)
+        for part in (shown, widget):
+            if isinstance(part, QLabel) or (part is widget and shown is None and hasattr(part, "setText")):
+                part.setText(label)
+                return
+
+    def _name_automatic(self, sections: list[Section]) -> None:
+        """Say what an empty field means in the field itself, with one word everywhere."""
+        for section in sections:
+            for name, word in section.unset.items():
+                widget = self._parts(name)[1] if name in self.wrappers else None
+                if widget is None:
+                    continue
+                for spin in (widget, *widget.findChildren(QAbstractSpinBox)):
+                    if isinstance(spin, QAbstractSpinBox) and spin.specialValueText():
+                        spin.setSpecialValueText(word)
+                if widget.metaObject().className() == "QgsExtentWidget":
+                    # Python knows it as a plain widget.
+                    sip.cast(widget, QgsExtentWidget).setNullValueAllowed(True, word)
+                for combo in (widget, *widget.findChildren(QComboBox)):
+                    if isinstance(combo, QComboBox) and combo.count() and combo.itemData(0) is None:
+                        combo.setItemText(0, word)
+
+    def _fold_outputs(self, layout: QLayout) -> None:
+        """Fold all outputs but the first ones."""
+        names = [
+            one.name() for one in self.algorithm().destinationParameterDefinitions() if one.name() in self.wrappers
+        ]
+        if len(names) > _OUTPUTS + 1:
+            layout.insertWidget(layout.count() - 1, self._group(tr("More results"), names[_OUTPUTS:]))
+
+    def _add_presets(self, layout: QVBoxLayout) -> None:
+        """Add the choice of a kind of cloud above all parameters."""
+        pipeline = getattr(self.algorithm(), "pipeline", None) or getattr(
+            getattr(self.algorithm(), "tiled", None), "pipeline", None
+        )
+        self._pipeline, self._presets = pipeline, presets_of(pipeline) if pipeline is not None else []
+        if not self._presets:
+            return
+        self.preset = QComboBox()
+        for preset in self._presets:
+            self.preset.addItem(tr(preset.title), preset.name)
+        self.preset.setToolTip(tr("Sets the parameters that are better set than measured for this kind of cloud."))
+        holder = QWidget()
+        form = QFormLayout(holder)
+        form.setContentsMargins(0, 0, 0, 0)
+        form.addRow(tr("Kind of cloud"), self.preset)
+        self._kept.append(holder)
+        layout.insertWidget(0, holder)
+        self.preset.activated.connect(self.apply_preset)
+        chosen = self.preset.findData(PRESET.value)
+        if chosen > 0:
+            self.preset.setCurrentIndex(chosen)
+            self.apply_preset(chosen)
+
+    def apply_preset(self, index: int) -> None:
+        """Fill in the values of a preset; what another one had set goes back to its default."""
+        names = {name for preset in self._presets for name in preset.of(self._pipeline)}
+        values = self._presets[index].of(self._pipeline)
+        for name in sorted(names):
+            definition = self.algorithm().parameterDefinition(name.upper())
+            value = values.get(name, definition.defaultValue())
+            self.wrappers[name.upper()].setParameterValue(value, self.processing_context)

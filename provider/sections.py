@@ -1,0 +1,72 @@
+"""How the parameters of a composite are grouped in its dialog: those of a step together, under its name."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import Any
+
+from ..algorithms.help import lower_first, step_title
+from ..algorithms.pipeline import Pipeline
+from ..algorithms.stage import Tunable
+from ..algorithms.tiling.settings import SETTINGS
+from .parameters import parameter_name, plain_label
+from .texts import tr
+
+# "Side of a block (m, empty = automatic)": the title, and what an empty field means.
+_EMPTY = re.compile(r"(.*?)(?:[ (]*empty = (.*)\))?$")
+
+
+@dataclass
+class Section:
+    """One group: its title, the labels of its parameters by name, and what an empty field of them means."""
+
+    title: str
+    labels: dict[str, str] = field(default_factory=dict)
+    unset: dict[str, str] = field(default_factory=dict)
+
+    def add(self, name: str, tunable: Tunable, prefix: str = "") -> None:
+        """Add a parameter; a prefix says which step it is of."""
+        label = plain_label(tunable)
+        self.labels[name] = f"{prefix}: {lower_first(label)}" if prefix else label
+        if tunable.is_automatic:
+            self.unset[name] = tr(tunable.param.unset)
+
+    def add_setting(self, name: str) -> None:
+        """Add a parameter that is no tunable; what an empty field means is in its title."""
+        title, empty = _EMPTY.match(SETTINGS[name].title).groups()
+        self.labels[name] = f"{title.rstrip(',')})" if "(" in title else title.rstrip()
+        if empty:
+            self.unset[name] = tr(empty)
+
+
+def sections_of(algorithm: Any) -> list[Section]:
+    """Return the groups of the parameters of an algorithm of this plugin, in the order of its steps."""
+    tiled = getattr(algorithm, "tiled", None)
+    pipeline = tiled.pipeline if tiled is not None else getattr(algorithm, "pipeline", None)
+    if pipeline is None:
+        section = Section("")
+        section.add_setting("EXTENT")
+        for tunable in algorithm.stage.tunables.values():
+            section.add(parameter_name(tunable), tunable)
+        return [section]
+    sections = _of_steps(pipeline)
+    if tiled is not None:
+        sections.append(Section(tr("Survey: blocks, processes, files")))
+        for name in SETTINGS:
+            sections[-1].add_setting(name)
+    else:
+        sections[0].add_setting("EXTENT")
+    return sections
+
+
+def _of_steps(pipeline: Pipeline) -> list[Section]:
+    """Return a group for each step with parameters, after one for those that steps share."""
+    sections = {"": Section(tr("All steps"))}
+    sections.update({step.name: Section(tr(step_title(step))) for step in pipeline.steps})
+    for name, (step, tunable) in pipeline.parameters.items():
+        is_shared = name in pipeline.shared
+        # What is shown at once has no group that says which step it is of.
+        prefix = step_title(step) if name in pipeline.shown and not is_shared else ""
+        sections["" if is_shared else step.name].add(name.upper(), tunable, prefix)
+    return [section for section in sections.values() if section.labels]

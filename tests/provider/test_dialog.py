@@ -1,0 +1,136 @@
+"""The dialog of composites and steps: groups, words and presets."""
+
+from __future__ import annotations
+
+import pytest
+from qgis.gui import QgsCollapsibleGroupBox, QgsFilterLineEdit
+from qgis.PyQt.QtWidgets import QMainWindow
+
+from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.presets import PRESETS
+from lidar_buildings.provider.sections import Section, sections_of
+from lidar_buildings.provider.settings import PRESET, THREADS, apply_threads
+
+
+@pytest.fixture
+def window(qgis_application, monkeypatch):
+    from processing.gui import ParametersPanel
+
+    # That of the tests has no browser.
+    monkeypatch.setattr(ParametersPanel, "iface", None)
+    return QMainWindow()
+
+
+@pytest.fixture
+def dialog(provider, window):
+    return provider.algorithm("detectbuildings").create().createCustomParametersWidget(window)
+
+
+def group(dialog, title):
+    (found,) = [box for box in dialog.findChildren(QgsCollapsibleGroupBox) if box.title() == title]
+    return found
+
+
+def test_parameters_of_a_step_are_a_group_that_is_folded(dialog):
+    titles = [box.title() for box in dialog.findChildren(QgsCollapsibleGroupBox)]
+    assert titles[:4] == ["All steps", "Noise", "Ground", "Bridges"]
+    ground = group(dialog, "Ground")
+    assert ground.isCollapsed()
+    panel = dialog.mainWidget()
+    assert ground.isAncestorOf(panel.wrappers["GROUND_CELL_SIZE"].wrappedWidget())
+    assert panel.wrappers["GROUND_CELL_SIZE"].wrappedLabel().text() == "Grid cell size (m)"
+    assert panel.wrappers["ROOFS_MIN_HEIGHT"].wrappedLabel().text() == "Roofs: minimum height (m)"
+    assert not ground.isAncestorOf(panel.wrappers["GROUND_MAX_BUILDING_SIZE"].wrappedWidget())
+    assert not panel.findChild(type(panel._advanced()), "grpAdvanced").isVisibleTo(panel)
+
+
+def test_an_empty_field_says_automatic_in_one_word(dialog):
+    panel = dialog.mainWidget()
+    assert panel.wrappers["GROUND_CELL_SIZE"].wrappedWidget().specialValueText() == "automatic"
+    assert panel.wrappers["GROUND_TERRAIN"].wrappedWidget().itemText(0) == "automatic"
+    assert panel.wrappers["EXTENT"].wrappedLabel().text() == "Extent"
+    (line,) = panel.wrappers["EXTENT"].wrappedWidget().findChildren(QgsFilterLineEdit)
+    assert line.nullValue() == "the whole cloud"
+    assert panel.wrappers["GROUND_CELL_SIZE"].parameterValue() is None
+    assert panel.wrappers["GROUND_TERRAIN"].parameterValue() is None
+
+
+def test_the_first_results_are_shown_and_the_others_folded(provider, window):
+    dialog = provider.algorithm("mapfootprints").create().createCustomParametersWidget(window)
+    more, panel = group(dialog, "More results"), dialog.mainWidget()
+    outputs = [one.name() for one in panel.algorithm().destinationParameterDefinitions()]
+    folded = [name for name in outputs if more.isAncestorOf(panel.wrappers[name].wrappedWidget())]
+    assert folded == outputs[3:]
+
+
+def test_a_preset_fills_fields_and_another_one_empties_them(dialog):
+    panel = dialog.mainWidget()
+
+    def chosen(name):
+        index = panel.preset.findData(name)
+        panel.apply_preset(index)
+        return [panel.wrappers[one].parameterValue() for one in ("SOURCE", "MIN_AREA")]
+
+    assert chosen("airborne_sparse") == ["laser scanner", 10.0]
+    assert chosen("drone_photogrammetry") == ["matched images", 4.0]
+    assert chosen("automatic") == ["automatic", 4.0]
+
+
+@pytest.fixture
+def options():
+    """The options of the plugin, as they were before afterwards."""
+    before = {one: one.value for one in (PRESET, THREADS)}
+    yield before
+    for one, value in before.items():
+        one.set(value)
+    apply_threads()
+
+
+def test_dialogs_begin_with_the_kind_of_cloud_in_the_options(provider, window, options):
+    PRESET.set("drone_photogrammetry")
+    panel = provider.algorithm("detectbuildings").create().createCustomParametersWidget(window).mainWidget()
+    assert panel.preset.currentData() == "drone_photogrammetry"
+    assert panel.wrappers["SOURCE"].parameterValue() == "matched images"
+
+
+def test_threads_are_those_of_the_options(provider, options):
+    from lidar_buildings.algorithms.threads import n_threads
+
+    THREADS.set("3")
+    apply_threads()
+    assert n_threads() == 3
+    THREADS.set("many")
+    with pytest.raises(ValueError, match="must be a whole number from 1, got 'many'"):
+        apply_threads()
+
+
+@pytest.mark.parametrize("preset", PRESETS.values(), ids=PRESETS)
+def test_presets_set_parameters_that_there_are_to_values_that_they_take(preset):
+    taken = set()
+    for pipeline in PIPELINES.values():
+        for name, value in preset.of(pipeline).items():
+            step, tunable = pipeline.parameters[name]
+            assert step.stage.tunables[tunable.name].check(value) == value
+            taken.add(name)
+    assert taken == set(preset.values)
+
+
+def test_titles_of_settings_say_what_empty_is():
+    section = Section("")
+    for name in ("BLOCK_SIDE", "PROCESSES", "SCHEDULER"):
+        section.add_setting(name)
+    assert list(section.labels.values()) == ["Side of a block (m)", "Processes", "Address of a Dask scheduler"]
+    assert section.unset == {"BLOCK_SIDE": "automatic", "PROCESSES": "one for each core"}
+
+
+def test_every_parameter_of_a_composite_is_in_one_group(provider):
+    for name in ("detectbuildings", "mapfootprintsintiles", "classifygroundtin"):
+        labels = [label for section in sections_of(provider.algorithm(name)) for label in section.labels]
+        assert len(labels) == len(set(labels))
+
+
+def test_without_parts_of_qgis_its_own_dialog_is_shown(provider, window, monkeypatch):
+    import sys
+
+    monkeypatch.setitem(sys.modules, "lidar_buildings.provider.dialog", None)
+    assert provider.algorithm("detectbuildings").create().createCustomParametersWidget(window) is None
