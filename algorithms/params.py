@@ -99,8 +99,8 @@ SurfaceNoise = Annotated[
     Optional[float],
     Param(
         "Surface noise",
-        "Standard deviation of the points across a smooth surface. Roofs and walls may be rougher: by tiles and "
-        "gravel (0.026 m), and by 0.065 point spacings.",
+        "Standard deviation of the points across a smooth surface. Roofs and walls may be rougher, by tiles, gravel "
+        "and the spacing of the points.",
         unit="m",
         low=0,
         high=10,

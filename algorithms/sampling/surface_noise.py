@@ -12,66 +12,51 @@ from ..geometry.grid import plan_box
 from ..neighborhoods.covariance import Nearest, symmetric_eigenvalues
 from ..neighborhoods.wide_in_plan import LEAST_WIDTH, MOST_ACROSS_LINES, Wide
 from ..packages import spatial, special
+from ..rules import rule
 from ..stage import Monitor
 from ..threads import in_chunks, n_threads
 from .density import point_spacing
 
-# Points in the sample, about: their quantiles are good to a percent.
-_SAMPLE = 20_000
 
-# Side of the squares in plan from which the sample is taken (point spacings).
-_SQUARE = 18.0
+@dataclass(frozen=True)
+class SurfaceRules:
+    """What shows the noise of surfaces, and how rough roofs and walls are."""
 
-# Share of that side, in the middle of the square, whose points are in the sample. The 60 points nearest to each are
-# in its square, too.
-_MIDDLE = 0.4
+    sample: int = rule(20_000, "points", "statistics: quantiles of as many are good to a percent")
+    square: float = rule(18.0, "point spacings", "side of the squares in plan from which the sample is taken")
+    middle: float = rule(0.4, "share", "of that side; the 60 points nearest to a point there are in its square, too")
+    least_of_sample: float = rule(0.25, "share", "of the sample; with less, the cloud is taken whole")
+    neighbors: int = rule(12, "points", "few reach no farther than one surface, and more measure its noise no better")
+    smooth_share: float = rule(0.2, "share", "of the neighborhoods, on open ground or roofs in nearly any cloud")
+    smoothest_share: float = rule(0.05, "share", "the same in a closed forest")
+    most_rougher: float = rule(2.4, "ratio", "of the noise by these two: surfaces differ by less, crowns by more")
+    reach: float = rule(6.0, "deviations", "statistics: holds the error of a normal to a few degrees")
+    least_reach: float = rule(0.5, "m", "physics: leaves and twigs look smooth over less, roofs are planes over more")
+    least_neighbors: int = rule(8, "points", "statistics: five degrees of freedom for a plane")
+    most_neighbors: int = rule(100, "points", "half a meter around at 125 points per m²")
+    narrow_share: float = rule(0.2, "share", "of smooth neighborhoods that are narrow where points lie on lines")
+    uneven: float = rule(
+        2.0, "ratio", "of the density around the median point to the cloud's, from which it counts"
+    )
+    least_roughness: float = rule(0.025, "m", "physics: relief of roof tiles, gravel and gutters")
+    roughness_of_spacing: float = rule(
+        0.065, "point spacings", "fitted on five real clouds: surfaces bend between points"
+    )
+    on_plane: float = rule(2.33, "deviations", "statistics: 98 % of normally distributed points lie as near to a plane")
 
-# With less than this share of the points wanted, the sample depends on chance; the cloud is then looked at whole.
-_LEAST_OF_SAMPLE = 0.25
 
-# Points whose plane shows the noise: few reach no farther than one surface, and more measure it no better.
-_NEIGHBORS = 12
+SURFACES = SurfaceRules()
+ON_PLANE, LEAST_NEIGHBORS = SURFACES.on_plane, SURFACES.least_neighbors
+ROUGHNESS_OF_SPACING = SURFACES.roughness_of_spacing
 
 # Parameters of a plane: residuals of k points have k - 3 degrees of freedom.
 _PLANE_PARAMETERS = 3
 
-# Share of the neighborhoods of nearly any cloud that lie on open ground or roofs: the noise is measured on these.
-_SMOOTH_SHARE = 0.2
-
-# The same in a closed forest.
-_SMOOTHEST_SHARE = 0.05
-
-# Largest ratio of the noise by the first share and that by the second: surfaces differ in roughness by less, crowns
-# from surfaces by more.
-_MOST_ROUGHER = 2.4
-
-# Radius of the neighborhood of a plane (deviations of its points), which holds its normal's error to a few degrees.
-_REACH_DEVIATIONS = 6.185
-
-# Least points in the neighborhood of a plane.
-LEAST_NEIGHBORS = 8
-
-# Most points in it: half a meter around holds as many at 125 points/m², and more would cost time and show no more.
-_MOST_NEIGHBORS = 100
-
-# Least radius of it (m): leaves and twigs look smooth over less, roofs are planes over more.
-_LEAST_REACH = 0.5
-
-# Points lie on lines where more than this share of the smooth neighborhoods is narrow.
-_NARROW_SHARE = 0.2
-
-# If the density around the median point exceeds that of the cloud by this factor, it is the one that counts.
-_UNEVEN = 2.0
-
-# Roof tiles, gravel and gutters are rougher than the smoothest surfaces, by which the noise is measured: by this at
-# least (m).
-_LEAST_ROUGHNESS = 0.02587
-
-# And they are the rougher the farther apart the points are, by this share of the point spacing.
-ROUGHNESS_OF_SPACING = 0.06467
-
-# Distance from a plane (standard deviations) within which 98 % of its points lie where they are normally distributed.
-ON_PLANE = 2.3195
+# The roughness of surfaces, for the help of parameters that follow it.
+ROUGHNESS = (
+    f"the measured surface noise, at least {SURFACES.least_roughness:g} m, and {SURFACES.roughness_of_spacing:g} point "
+    "spacings on top"
+)
 
 
 def plane_roughness(noise: float, density: float) -> float:
@@ -84,7 +69,7 @@ def plane_roughness(noise: float, density: float) -> float:
     density : float
         Points per square meter.
     """
-    return float(np.hypot(max(noise, _LEAST_ROUGHNESS), ROUGHNESS_OF_SPACING / np.sqrt(density)))
+    return float(np.hypot(max(noise, SURFACES.least_roughness), ROUGHNESS_OF_SPACING / np.sqrt(density)))
 
 
 def surface_density(xyz: np.ndarray) -> float:
@@ -161,20 +146,20 @@ class SurfaceSample:
         in a closed forest. Of equally rough planes the smoothest seem smoother than they are, by chance: each quantile
         is divided by what it is expected to be of the true deviation, so that a cloud of planes has its true noise.
         """
-        count = min(_NEIGHBORS, len(self))
+        count = min(SURFACES.neighbors, len(self))
         degrees = count - _PLANE_PARAMETERS
         if degrees < 1:
             return resolution
         across = np.sqrt(self._variances(count)[:, 2] * count / degrees)
         smooth, smoothest = (
             max(float(np.quantile(across, share)) / _expected_quantile(share, degrees), resolution)
-            for share in (_SMOOTH_SHARE, _SMOOTHEST_SHARE)
+            for share in (SURFACES.smooth_share, SURFACES.smoothest_share)
         )
-        return min(smooth, _MOST_ROUGHER * smoothest)
+        return min(smooth, SURFACES.most_rougher * smoothest)
 
     def density(self) -> float:
         """Return the points per square meter of the surfaces, see :func:`surface_density`."""
-        count = min(_NEIGHBORS, len(self))
+        count = min(SURFACES.neighbors, len(self))
         own = self.columns[:, self.rows].T
         reach = float(np.median(self.tree.query(own, k=[count], workers=n_threads())[0]))
         return count / (np.pi * reach**2) if reach > 0 else float("inf")
@@ -195,7 +180,7 @@ class SurfaceSample:
         Returns
         -------
         Nearest or Wide
-            As many nearest points as reach half a meter and 6.2 deviations, from 8 to 100 and at most all; and not
+            As many nearest points as reach half a meter and 6 deviations, from 8 to 100 and at most all; and not
             fewer than are wide in plan, where less than four fifths of the smooth neighborhoods of that number are.
         """
         return _neighborhood(len(self), self.density(), self._on_lines, density, deviation)
@@ -216,9 +201,9 @@ class SurfaceSample:
     def _on_lines(self, count: int) -> bool:
         """Return whether smooth neighborhoods of ``count`` points are narrow, because points lie on lines."""
         eigenvalues = self._variances(count)
-        smooth = eigenvalues[:, 2] <= np.quantile(eigenvalues[:, 2], _SMOOTH_SHARE)
+        smooth = eigenvalues[:, 2] <= np.quantile(eigenvalues[:, 2], SURFACES.smooth_share)
         width = np.sqrt(eigenvalues[smooth, 1] / np.maximum(eigenvalues[smooth, 0], 1e-12))
-        return bool(np.quantile(width, _NARROW_SHARE) < LEAST_WIDTH)
+        return bool(np.quantile(width, SURFACES.narrow_share) < LEAST_WIDTH)
 
     def _variances(self, count: int) -> np.ndarray:
         """Return the variances (s, 3), descending, of the ``count`` points nearest to each point of the sample, m²."""
@@ -235,9 +220,9 @@ def _neighborhood(
     n_points: int, own_density: float, on_lines: Callable[[int], bool], density: float, deviation: float
 ) -> Union[Nearest, Wide]:
     """Return which points show the plane of a surface, see :meth:`SurfaceSample.neighborhood`."""
-    reach = max(_LEAST_REACH, _REACH_DEVIATIONS * deviation)
-    expected = np.pi * reach**2 * (own_density if own_density > _UNEVEN * density else density)
-    count = min(max(int(np.ceil(min(expected, _MOST_NEIGHBORS))), LEAST_NEIGHBORS), n_points)
+    reach = max(SURFACES.least_reach, SURFACES.reach * deviation)
+    expected = np.pi * reach**2 * (own_density if own_density > SURFACES.uneven * density else density)
+    count = min(max(int(np.ceil(min(expected, SURFACES.most_neighbors))), LEAST_NEIGHBORS), n_points)
     return Wide(count) if count < min(MOST_ACROSS_LINES, n_points) and on_lines(count) else Nearest(count)
 
 
@@ -253,18 +238,18 @@ def _squares(xyz: np.ndarray, spacing: Optional[float]) -> tuple[np.ndarray, np.
     """Return which points lie in the squares of a sample, and which in the middle of any (n,); all of a small cloud."""
     everything = np.ones(len(xyz), bool)
     low, high = plan_box(xyz)
-    if len(xyz) < 2 * _SAMPLE or not (high > low).any():
+    if len(xyz) < 2 * SURFACES.sample or not (high > low).any():
         return everything, everything
-    side = _SQUARE * (point_spacing(xyz) if spacing is None else spacing)
+    side = SURFACES.square * (point_spacing(xyz) if spacing is None else spacing)
     square, middle = np.zeros(len(xyz), np.uint64), everything.copy()
     # Large odd numbers mix the coordinates; the high bits of the products are the well mixed ones.
     for axis, mixer in enumerate((0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F)):
         position = (xyz[:, axis] - low[axis]) / side
         number = np.floor(position)
-        middle &= np.abs(position - number - 0.5) <= _MIDDLE / 2
+        middle &= np.abs(position - number - 0.5) <= SURFACES.middle / 2
         square += number.astype(np.uint64) * np.uint64(mixer)
-    share = min(1.0, _SAMPLE / (_MIDDLE**2 * len(xyz)))
+    share = min(1.0, SURFACES.sample / (SURFACES.middle**2 * len(xyz)))
     chosen = (square >> np.uint64(40)).astype(np.float64) < share * 2**24
     middle &= chosen
     # A cloud on few squares, a mast or a wall, is looked at whole.
-    return (chosen, middle) if middle.sum() >= _LEAST_OF_SAMPLE * _SAMPLE else (everything, everything)
+    return (chosen, middle) if middle.sum() >= SURFACES.least_of_sample * SURFACES.sample else (everything, everything)

@@ -19,7 +19,7 @@ from ..threads import in_chunks
 _SMOOTH = ON_PLANE
 
 # Two planes are one surface when each holds the other's point within this distance (the same deviations) ...
-_SAME_SURFACE = 3.48
+_SAME_SURFACE = 3.5
 
 # ... and the angle between their normals is no larger (cosine).
 _SAME_DIRECTION = np.cos(np.radians(15.0))

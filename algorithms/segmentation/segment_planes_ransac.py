@@ -9,7 +9,7 @@ import numpy as np
 from ..geometry.boxes import Boxes, by_first_point
 from ..params import MinClusterHeight, Seed
 from ..sampling.cloud_sampling import CloudSampling
-from ..sampling.surface_noise import ON_PLANE
+from ..sampling.surface_noise import ON_PLANE, ROUGHNESS
 from ..stage import Monitor, Param, stage
 from .candidate_points import candidates
 from .least_squares_planes import Planes
@@ -60,8 +60,7 @@ def segment_planes_ransac(
             low=0,
             high=10,
             open_low=True,
-            automatic="2.3 times the roughness: the measured surface noise, at least 0.026 m, and 0.065 point "
-            "spacings on top.",
+            automatic=f"{ON_PLANE:.2g} times the roughness: {ROUGHNESS}.",
         ),
     ] = None,
     min_slope: Annotated[

@@ -59,7 +59,7 @@ _LOW = 0.5
 _DENSE = 10.0
 
 # Additional deviation (point spacings) of points from the planes of their neighbors, to which they are compared.
-_FARTHER = 0.1164
+_FARTHER = 0.12
 
 # Roofs with tiles, ribs and gravel are no rougher than this (m); crops and crowns are, smooth spots of them apart.
 _ROUGHEST = 0.055

@@ -62,7 +62,7 @@ ShapeTolerance = Annotated[
         high=10,
         open_low=True,
         automatic="3 times the roughness of surfaces, which is the root of the sum of the squares of the noise of "
-        "the scan and of 0.065 point spacings.",
+        f"the scan and of {ROUGHNESS_OF_SPACING:g} point spacings.",
     ),
 ]
 

@@ -10,7 +10,7 @@ import numpy as np
 from ..geometry.boxes import Boxes, by_first_point
 from ..geometry.groups import split_groups
 from ..sampling.cloud_sampling import CloudSampling
-from ..sampling.surface_noise import ON_PLANE
+from ..sampling.surface_noise import ON_PLANE, ROUGHNESS_OF_SPACING
 from ..segmentation.plane_merging import joined_planes
 from ..segmentation.segment_clusters import dbscan
 from ..stage import Layer, Monitor, Param, stage
@@ -75,8 +75,8 @@ def segment_planes_hough(
             low=0,
             high=10,
             open_low=True,
-            automatic="2.3 times the roughness of surfaces, which is the root of the sum of the squares of the noise "
-            "of the scan and of 0.065 point spacings.",
+            automatic=f"{ON_PLANE:.2g} times the roughness of surfaces, which is the root of the sum of the squares of "
+            f"the noise of the scan and of {ROUGHNESS_OF_SPACING:g} point spacings.",
         ),
     ] = None,
     distance_bin: Annotated[

@@ -20,13 +20,13 @@ from ..neighborhoods.covariance import (
 from ..packages import spatial
 from ..params import SplitHeight, SurfaceNoise
 from ..sampling.cloud_sampling import CloudSampling
-from ..sampling.surface_noise import ON_PLANE, plane_roughness, surface_density
+from ..sampling.surface_noise import ON_PLANE, SURFACES, plane_roughness, surface_density
 from ..segmentation.candidate_points import NO_OBJECTS
 from ..stage import Monitor, Param, stage
 from ..threads import n_threads
 
 # The points of a normal reach this far (times the roughness), which holds its error to a few degrees.
-_REACH_DEVIATIONS = 6.185
+_REACH_DEVIATIONS = SURFACES.reach
 
 # They are at least this many, ...
 _LEAST_NEIGHBORS = 8
@@ -80,7 +80,8 @@ def classify_walls(
             "Points that a normal is made of, the point itself among them; used by the neighborhood 'nearest'.",
             low=3,
             high=1000,
-            automatic="as many as reach 6.2 times the roughness at the density of low points near roofs, 8 to 30.",
+            automatic=f"as many as reach {_REACH_DEVIATIONS:g} times the roughness at the density of low points near "
+            "roofs, 8 to 30.",
         ),
     ] = None,
     radius: Annotated[

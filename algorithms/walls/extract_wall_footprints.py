@@ -17,6 +17,7 @@ from ..geometry.rings import perimeter, signed_area
 from ..params import MinBuildingArea, Seed
 from ..sampling.cloud_sampling import CloudSampling
 from ..sampling.density import point_spacing
+from ..sampling.surface_noise import ROUGHNESS
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
 from .candidate_corners import ROOF_OUTLINE, TOO_SMALL, CandidateCorners, candidate_corners
 from .cheapest_outline import Limits
@@ -30,7 +31,7 @@ from .wall_report import MEASURES, WALL, point_counts, wall_report
 ROOF = "roof"
 
 # Distance in plan within which points lie on a wall (times the roughness).
-_ON_WALL = 3.09
+_ON_WALL = 3.1
 
 # Least value of that distance (m), that of the tunable.
 _LEAST_TOLERANCE = 0.01
@@ -143,8 +144,7 @@ def extract_wall_footprints(
             unit="m",
             low=0.01,
             high=2,
-            automatic="3.1 times the roughness: the measured surface noise, at least 0.026 m, and 0.065 point "
-            "spacings on top.",
+            automatic=f"{_ON_WALL:g} times the roughness: {ROUGHNESS}.",
         ),
     ] = None,
     seed: Seed = 1,

@@ -59,6 +59,9 @@ TECHNICAL = ("stage.", "cloud.", "report.", "geometry.", "neighborhoods.nearest_
 MOVED = (0.8, 1.2)
 # What a rule may cost and go, in the mean of all clouds and on any (%): less than clouds vary when they are turned.
 LEAST_MEAN, LEAST_ANYWHERE = 0.1, 0.5
+# Steps that decide what is building, and those that are left out unless they are asked for.
+STEPS = ("noise", "ground", "height", "roofs", "buildings", "complete", "refine")
+ON_REQUEST = ("bridges", "water", "vegetation")
 
 
 @dataclass(frozen=True)
@@ -68,7 +71,7 @@ class Scene:
     name: str
     changes: Mapping[str, float] = field(default_factory=dict)
     angle: float = 0.0
-    steps: tuple[str, ...] = tuple(step.name for step in CHAIN.steps if step.name != "footprints")
+    steps: tuple[str, ...] = STEPS
 
     def __str__(self) -> str:
         told = [
@@ -198,7 +201,9 @@ def _imported(module: str) -> tuple[str, ...]:
     return tuple(name for name in found if name.startswith(PACKAGE + ".") and name in sys.modules)
 
 
-def constants(steps: tuple[str, ...] = tuple(step.name for step in CHAIN.steps)) -> list[tuple[str, Any, str]]:
+def constants(
+    steps: tuple[str, ...] = tuple(one.name for one in CHAIN.steps if one.name not in ON_REQUEST),
+) -> list[tuple[str, Any, str]]:
     """Return the constants that steer some steps: "module:name", the value of the name, and which number of it.
 
     Which number is empty for a number, else an index, or a field of a dataclass, with a point between levels.
@@ -218,6 +223,10 @@ def constants(steps: tuple[str, ...] = tuple(step.name for step in CHAIN.steps))
 
 
 def _assigned(node: ast.stmt) -> list[str]:
+    if isinstance(getattr(node, "value", None), (ast.Attribute, ast.Tuple)) and not any(
+        isinstance(part, (ast.Constant, ast.Call)) for part in ast.walk(node.value)
+    ):
+        return []  # Other names of constants that are counted where they are.
     targets = node.targets if isinstance(node, ast.Assign) else [node.target] if isinstance(node, ast.AnnAssign) else []
     names = [name for target in targets for name in (target.elts if isinstance(target, ast.Tuple) else [target])]
     return [name.id for name in names if isinstance(name, ast.Name)]

@@ -9,7 +9,7 @@ from lidar_buildings.algorithms.neighborhoods.covariance import Nearest
 from lidar_buildings.algorithms.neighborhoods.wide_in_plan import Wide
 from lidar_buildings.algorithms.sampling import surface_noise as module
 from lidar_buildings.algorithms.sampling.height_resolution import height_resolution
-from lidar_buildings.algorithms.sampling.surface_noise import SurfaceSample, plane_roughness, surface_density
+from lidar_buildings.algorithms.sampling.surface_noise import SURFACES, SurfaceSample, plane_roughness, surface_density
 from lidar_buildings.tests.builders import FAR
 
 
@@ -242,7 +242,6 @@ def test_points_at_one_place_have_no_density():
 
 
 def test_roofs_are_rougher_than_the_smoothest_surfaces():
-    """By 2 cm and a twentieth of the spacing, of which the smoothest fifth of neighborhoods shows 0.773."""
-    least, of_spacing = 0.02 / 0.7732, 0.05 / 0.7732
+    least, of_spacing = SURFACES.least_roughness, SURFACES.roughness_of_spacing
     assert plane_roughness(0.0, 25.0) == pytest.approx(np.hypot(least, of_spacing / 5), rel=1e-3)
     assert plane_roughness(0.1, 4.0) == pytest.approx(np.hypot(0.1, of_spacing / 2), rel=1e-3)
