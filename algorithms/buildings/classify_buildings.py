@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Annotated, Optional, Union
 
 import numpy as np
@@ -183,14 +183,10 @@ def classify_buildings(
     evidence = ClusterEvidence(xyz, group, numbers, density, min_area, *returns)
     through = evidence.penetration()
     monitor.progress(0.94)
-    decided = by_entropy
-    if sampling.is_closed_surface(source):
-        surface = by_entropy.is_building.astype(float) if segment_id is None else entropies.share_of(segment_id > 0)
-        decided = _decided_in_images(surface, (red, green, blue), evidence, min_share_around, monitor)
-    elif split.separates:
-        decided = with_penetration(by_entropy, through, max_penetration, evidence)
-        monitor.progress(0.98)
-        decided = with_surroundings(decided, by_entropy, min_share_around, evidence)
+    given = _Given(by_entropy, evidence, through, split.separates, max_penetration, min_share_around)
+    surface = by_entropy.is_building.astype(float) if segment_id is None else entropies.share_of(segment_id > 0)
+    decide = sampling.kind(source).choose(laser=_decided_in_scan, images=_decided_in_images)
+    decided = decide(given, surface, (red, green, blue), monitor)
     monitor.progress(1.0)
 
     # 3. All points of a cluster are the same.
@@ -198,17 +194,39 @@ def classify_buildings(
     return written_to_points(classification, reason, entropies, decided, min_area * density, report)
 
 
+@dataclass(frozen=True)
+class _Given:
+    """What clusters are decided by: decisions by entropy, evidence, penetration (m,), and the thresholds of these.
+
+    ``separates`` tells whether the entropies have two means.
+    """
+
+    by_entropy: Decisions
+    evidence: ClusterEvidence
+    through: np.ndarray
+    separates: bool
+    max_penetration: float
+    min_share: float
+
+
+def _decided_in_scan(
+    given: _Given, surface_share: np.ndarray, colors: tuple[Optional[np.ndarray], ...], monitor: Monitor
+) -> Decisions:
+    """Decide on the clusters of a laser scan by entropy, penetration and surroundings."""
+    if not given.separates:
+        return given.by_entropy
+    decided = with_penetration(given.by_entropy, given.through, given.max_penetration, given.evidence)
+    monitor.progress(0.98)
+    return with_surroundings(decided, given.by_entropy, given.min_share, given.evidence)
+
+
 def _decided_in_images(
-    surface_share: np.ndarray,
-    colors: tuple[Optional[np.ndarray], ...],
-    evidence: ClusterEvidence,
-    min_share: float,
-    monitor: Monitor,
+    given: _Given, surface_share: np.ndarray, colors: tuple[Optional[np.ndarray], ...], monitor: Monitor
 ) -> Decisions:
     """Return what :func:`.decide_in_images` does, with the greenness of the scene."""
-    is_green, green_from = green_clusters(colors, evidence.group, len(evidence.numbers))
+    is_green, green_from = green_clusters(colors, given.evidence.group, len(given.evidence.numbers))
     monitor.resolved(matched_images=True, plant_greenness=green_from)
-    return decide_in_images(surface_share, is_green, evidence, min_share)
+    return decide_in_images(surface_share, is_green, given.evidence, given.min_share)
 
 
 def _surface_neighborhood(sampling: CloudSampling, density: float) -> Union[Nearest, Wide]:

@@ -162,11 +162,10 @@ def complete_buildings(
     sampling = sampling or CloudSampling.of(xyz, classification)
     xyz = sampling.from_corner(xyz)
     density = sampling.effective_density if density is None else density
-    spacing = 1 / np.sqrt(density)
-    in_images = sampling.is_closed_surface(source)
+    kind = sampling.kind(source)
     if gap is None:
-        least = COMPLETION.least_gap
-        gap = IMAGE_ROOFS.gap if in_images else float(np.clip(COMPLETION.gap * spacing, least, _MOST_GAP))
+        of_scan = float(np.clip(COMPLETION.gap / np.sqrt(density), COMPLETION.least_gap, _MOST_GAP))
+        gap = kind.choose(laser=of_scan, images=IMAGE_ROOFS.gap)
     monitor.resolved(density=density, gap=gap)
     result = np.where(classification == PointClass.BUILDING, np.uint8(PointClass.UNCLASSIFIED), classification)
     is_roof = classification == PointClass.BUILDING
@@ -176,7 +175,7 @@ def complete_buildings(
     # 1. Where buildings are in plan.
     roofs = _Roofs.of(xyz, height_above_ground, classification, segment_id)
     limits = _Limits(gap, density, min_area, min_roof_share)
-    coverage = _coverage_in_images(roofs, limits) if in_images else _coverage_in_scan(roofs, limits)
+    coverage = kind.choose(laser=_coverage_in_scan, images=_coverage_in_images)(roofs, limits)
     monitor.progress(0.5)
 
     # 2. What stands in their columns.

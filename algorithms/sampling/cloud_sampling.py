@@ -14,6 +14,7 @@ from ..neighborhoods.wide_in_plan import Wide
 from .closed_surface import seen_through_share
 from .density import effective_density, point_density
 from .height_resolution import height_resolution, rounding_deviation
+from .kinds import IMAGES, LASER, CloudKind
 from .surface_noise import SurfaceSample, plane_roughness
 
 # Measurements, each with its name and unit in the log.
@@ -178,6 +179,10 @@ class CloudSampling:
         if source != "automatic":
             return source == "matched images"
         return self.single_returns and self.density >= _LEAST_DENSITY and self.seen_through <= _MOST_SEEN_THROUGH
+
+    def kind(self, source: str = "automatic") -> CloudKind:
+        """Return the kind of the cloud: measured, or by its source."""
+        return IMAGES if self.is_closed_surface(source) else LASER
 
     def neighborhood(self, density: float, deviation: float) -> Union[Nearest, Wide]:
         """Return which points show the plane of a surface, see :meth:`.surface_noise.SurfaceSample.neighborhood`."""

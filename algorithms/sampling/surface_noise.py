@@ -35,9 +35,7 @@ class SurfaceRules:
     least_neighbors: int = rule(8, "points", "statistics: five degrees of freedom for a plane")
     most_neighbors: int = rule(100, "points", "half a meter around at 125 points per m²")
     narrow_share: float = rule(0.2, "share", "of smooth neighborhoods that are narrow where points lie on lines")
-    uneven: float = rule(
-        2.0, "ratio", "of the density around the median point to the cloud's, from which it counts"
-    )
+    uneven: float = rule(2.0, "ratio", "of the density around the median point to the cloud's, from which it counts")
     least_roughness: float = rule(0.025, "m", "physics: relief of roof tiles, gravel and gutters")
     roughness_of_spacing: float = rule(
         0.065, "point spacings", "fitted on five real clouds: surfaces bend between points"

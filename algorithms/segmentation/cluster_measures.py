@@ -7,7 +7,7 @@ from typing import Optional
 
 import numpy as np
 
-from ..geometry.grid import Grid, connected_cells, distinct, find_cells, fixed_grid_over, lattice
+from ..geometry.grid import Grid, distinct, find_cells, fixed_grid_over, lattice
 
 # Side (point spacings) of the cells in which areas, and points beneath a group, are counted.
 _CELL_SPACINGS = 1.5
@@ -189,32 +189,6 @@ def share_around(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray) -> np.n
         around += np.where(found, whole[there], 0)
     size = np.bincount(owner, minlength=len(chosen))
     return np.bincount(owner, (own_around / around)[which], len(chosen)) / np.maximum(size, 1)
-
-
-def share_joined(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray, density: float) -> np.ndarray:
-    """Return the share of the points connected to each group that belong to the chosen groups.
-
-    Parameters
-    ----------
-    xyz, group, density
-        As of :func:`penetration`.
-    chosen : ndarray of shape (group.max() + 1,), bool
-        Which groups are meant.
-
-    Returns
-    -------
-    ndarray of shape (group.max() + 1,)
-        Of the cells that touch one another, seen from above, the share with points of chosen groups; the mean over the
-        cells of a group, 0 for groups without points.
-    """
-    grid, owner, cell = _occupied(xyz, group, density)
-    cells, which = distinct(cell)
-    part = connected_cells(grid, cells)[1]
-    is_chosen = np.zeros(len(cells), bool)
-    is_chosen[which[chosen[owner]]] = True
-    share = np.bincount(part, is_chosen) / np.bincount(part)
-    size = np.maximum(np.bincount(owner, minlength=len(chosen)), 1)
-    return np.bincount(owner, share[part[which]], len(chosen)) / size
 
 
 def _occupied(xyz: np.ndarray, group: np.ndarray, density: float) -> tuple[Grid, np.ndarray, np.ndarray]:

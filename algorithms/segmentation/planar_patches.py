@@ -11,21 +11,24 @@ from ..geometry.boxes import by_first_point
 from ..neighborhoods.covariance import Nearest, smallest_eigenvectors, symmetric_eigenvalues
 from ..neighborhoods.wide_in_plan import Wide
 from ..packages import csgraph, sparse, spatial
+from ..rules import rule
 from ..sampling.surface_noise import LEAST_NEIGHBORS, ON_PLANE
 from ..stage import Monitor
 from ..threads import in_chunks
 
-# A plane is smooth if its own points deviate by less (deviations of points from planes).
-_SMOOTH = ON_PLANE
 
-# Two planes are one surface when each holds the other's point within this distance (the same deviations) ...
-_SAME_SURFACE = 3.5
+@dataclass(frozen=True)
+class PatchRules:
+    """When neighbors share a smooth surface; deviations are those of points from planes."""
 
-# ... and the angle between their normals is no larger (cosine).
-_SAME_DIRECTION = np.cos(np.radians(15.0))
+    same_surface: float = rule(
+        3.5, "deviations", "statistics: points and planes of a surface, each with their own error"
+    )
+    same_direction: float = rule(15.0, "°", "between normals of one surface, whose errors are a few degrees")
+    links: int = rule(8, "points", "neighbors among which links are looked for, on both sides of scan lines")
 
-# Number of neighbors among which links are looked for.
-_LINKS = 8
+
+PATCHES = PatchRules()
 
 # Points, and candidates for their planes, of a chunk: their values stay in the processor's caches.
 _CHUNK, _CHUNK_CANDIDATES = 20_000, 250_000
@@ -53,7 +56,7 @@ class _PointPlanes:
 
 def segment_patches(
     xyz: np.ndarray, neighborhood: Union[Nearest, Wide], off_plane: float, max_slope: float, monitor: Monitor
-) -> tuple[np.ndarray, np.ndarray]:
+) -> np.ndarray:
     """Group points that lie on smooth surfaces.
 
     Each point takes the smoothest plane among those of its neighbors that hold it, so that
@@ -77,11 +80,9 @@ def segment_patches(
     -------
     patch : ndarray of shape (n,), int32
         Patch of each point from 0, -1 where it lies on no smooth surface.
-    roughness : ndarray of shape (n,), float32
-        Standard deviation of points across the plane that each is held by, m; where none holds it, it means nothing.
     """
     if len(xyz) < LEAST_NEIGHBORS:
-        return np.full(len(xyz), -1, np.int32), np.zeros(len(xyz), np.float32)
+        return np.full(len(xyz), -1, np.int32)
     # Points that are near each other follow each other, so that values of neighbors are in the processor's caches.
     order = spatial.cKDTree(xyz, balanced_tree=False).indices.astype(np.int32)
     neighborhood = replace(neighborhood, count=min(neighborhood.count, len(xyz)))
@@ -92,21 +93,16 @@ def segment_patches(
     plane = _smoothest_plane(points, planes, ON_PLANE * off_plane, monitor.part(0.6, 0.8))
     # Links take memory of their own: the other neighbors have done their part.
     planes.neighbors = _linked_neighbors(planes.neighbors)
-    on_surface = (planes.deviation[plane] <= _SMOOTH * off_plane) & (plane >= 0)
+    on_surface = (planes.deviation[plane] <= ON_PLANE * off_plane) & (plane >= 0)
     on_surface &= planes.planes[plane, 2] >= np.sin(np.radians(90 - max_slope))
-    # Three of its points make a plane and tell nothing of how far others lie off it. Wide neighborhoods hold more
-    # points than this: there it is a little too much.
-    across = planes.deviation * np.sqrt(neighborhood.count / (neighborhood.count - 3))
-    roughness = np.empty(len(order), np.float32)
-    roughness[order] = across[plane]
-    links = _links(points, planes, plane, on_surface, _SAME_SURFACE * off_plane, monitor.part(0.8, 1))
+    links = _links(points, planes, plane, on_surface, PATCHES.same_surface * off_plane, monitor.part(0.8, 1))
     # The search for components takes the memory of these.
-    del points, planes, plane, across
+    del points, planes, plane
     component = np.empty(len(order), np.int32)
     component[order] = np.where(on_surface, _components(*links), -1)
     patch = np.full(len(order), -1, np.int32)
     patch[component >= 0] = by_first_point(component[component >= 0])
-    return patch, roughness
+    return patch
 
 
 def _local_planes(xyz: np.ndarray, neighborhood: Union[Nearest, Wide], monitor: Monitor) -> _PointPlanes:
@@ -162,7 +158,7 @@ def _smoothest_plane(points: np.ndarray, planes: _PointPlanes, reach: float, mon
 def _linked_neighbors(neighbors: np.ndarray) -> np.ndarray:
     """Return those of the neighbors (n, k) of points, nearest first, that links are looked for among."""
     # Spread over the ranks, so that links cross from one scan line to the next.
-    ranks = np.unique(np.linspace(1, neighbors.shape[1] - 1, _LINKS - 1).astype(int))
+    ranks = np.unique(np.linspace(1, neighbors.shape[1] - 1, PATCHES.links - 1).astype(int))
     return neighbors[:, ranks]
 
 
@@ -184,7 +180,7 @@ def _links(
         a, b = rows[apart[0]], neighbors[apart]
         of_a, of_b = planes.planes[plane[a]], planes.planes[plane[b]]
         # Normals point upward, those of walls to either side by chance.
-        same = np.abs(np.einsum("ij,ij->i", of_a[:, :3], of_b[:, :3])) >= _SAME_DIRECTION
+        same = np.abs(np.einsum("ij,ij->i", of_a[:, :3], of_b[:, :3])) >= np.cos(np.radians(PATCHES.same_direction))
         same &= np.abs(np.einsum("ij,ij->i", points[b], of_a)) <= reach
         same &= np.abs(np.einsum("ij,ij->i", points[a], of_b)) <= reach
         is_link[apart] = same

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated, Optional, Union
+from typing import Annotated, Optional
 
 import numpy as np
 
@@ -12,70 +12,40 @@ from ..cloud.asprs import NOISE
 from ..cloud.reasons import Reason
 from ..geometry.components import connect, number_large
 from ..neighborhoods.covariance import Nearest
-from ..neighborhoods.wide_in_plan import Wide
 from ..params import PointDensity, PointSource, SurfaceNoise
+from ..rules import rule
 from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.kinds import IMAGES, LASER
 from ..sampling.surface_noise import plane_roughness
 from ..stage import Monitor, Param, stage
 from ..terrain.on_decks import on_bridges
-from .cluster_measures import plan_areas, share_joined
+from .cluster_measures import plan_areas
 from .planar_patches import segment_patches
 from .top_surface import TopSurface, highest_of_cells
 
-# Points lower than this stand on the ground (kerbs, cars' bonnets, low plants), m.
-_RAISED = 1.5
 
-# Mean height (m) of the lowest roof in laser clouds: cars are lower.
-_LOWEST = 2.0
+@dataclass(frozen=True)
+class RoofSurfaceRules:
+    """What is a roof surface."""
 
-# The same in matched images, where sheds and carports of 2 m have rounded edges, which lower the mean over their
-# surface; cars are told from them by their shape.
-_LOWEST_IN_IMAGES = 1.2
+    low_share: float = rule(0.1, "share", "of low points, from which a surface goes on into the ground: a ramp")
+    low: float = rule(0.5, "m", "height above ground up to which points are low")
+    dense: float = rule(10.0, "points/m²", "with fewer, planes reach farther than half a meter")
+    farther: float = rule(0.12, "point spacings", "fitted on real clouds of 4/m²: deviation from these planes")
+    link: float = rule(2.0, "point spacings", "statistics: random points of one object are hardly ever farther apart")
 
-# In matched images, points lower than this (m) are in no cluster: the edge of the lowest roof is as low.
-_RAISED_IN_IMAGES = 1.0
 
-# Radius (m) of the neighborhoods that planes are fitted to in matched images: crowns are smooth over less.
-_REACH_IN_IMAGES = 0.6
+@dataclass(frozen=True)
+class ImageSurfaceRules:
+    """Planes in clouds of matched images."""
 
-# Least standard deviation (m) of points from planes in matched images: errors of matching are shared by neighbors, so
-# that the measured noise does not show them.
-_OFF_PLANE_IN_IMAGES = 0.05
+    reach: float = rule(0.6, "m", "physics: radius that planes are fitted in; crowns are smooth over less")
+    off_plane: float = rule(0.05, "m", "neighbors share errors of matching, which the measured noise does not show")
+    cell: float = rule(0.15, "m", "one point of each is taken: as dense as planes need, which bounds time and memory")
+    fewest: int = rule(12, "points", "of a neighborhood, where less lie within its reach")
 
-# Side (m) of the cells of which one point is taken in matched images: as dense as planes need it, which bounds time
-# and memory.
-_CELL_IN_IMAGES = 0.15
 
-# Points of a neighborhood in matched images, where so few lie within its reach.
-_FEWEST_IN_IMAGES = 12
-
-# Share of low points from which a surface goes on into the ground: a bridge, a ramp, a slope.
-_LOW_SHARE = 0.1
-
-# Height (m) above ground up to which points are low.
-_LOW = 0.5
-
-# With fewer points per square meter than this, planes reach farther than half a meter.
-_DENSE = 10.0
-
-# Additional deviation (point spacings) of points from the planes of their neighbors, to which they are compared.
-_FARTHER = 0.12
-
-# Roofs with tiles, ribs and gravel are no rougher than this (m); crops and crowns are, smooth spots of them apart.
-_ROUGHEST = 0.055
-
-# Where the cloud is noisier, roofs are no rougher than this many times the noise.
-_ROUGHEST_NOISE = 1.1597
-
-# Where it is sparse, they are no rougher than this share of the deviation of points from planes.
-_ROUGHEST_OFF_PLANE = 0.7732
-
-# Least share of smooth surfaces among those connected with a rough or a small one that make it a roof: eaves, dormers,
-# machines.
-_SMOOTH_SHARE = 0.3
-
-# Area (m²) from which a smooth surface is a roof by itself: crops have smaller smooth spots.
-_LARGE = 10.0
+SURFACE, IMAGE_SURFACE = RoofSurfaceRules(), ImageSurfaceRules()
 
 # Reach (m) of the surroundings that decide on a cluster; clusters themselves may be of any size.
 _REACH = 5.0
@@ -101,7 +71,8 @@ def segment_roofs(
             unit="m",
             low=0,
             high=100,
-            automatic="2 m; 1.2 m in clouds of matched images, where edges are rounded.",
+            automatic=f"{LASER.lowest_roof:g} m; {IMAGES.lowest_roof:g} m in clouds of matched images, where edges "
+            "are rounded.",
         ),
     ] = None,
     min_area: Annotated[
@@ -154,7 +125,7 @@ def segment_roofs(
     Notes
     -----
     The noise and the density of the cloud set every tolerance: a plane's neighborhood, and the distance at which
-    a point lies on it, 2.3 times the roughness of roofs (more with less than 10 points/m²). This is the "more robust
+    a point lies on it, 2.3 times the roughness of roofs, more with less than 10 points/m². This is the "more robust
     segmentation" that the paper names as future work.
 
     In clouds of matched images, walls and what else lies below the surface seen from above are left out, and planes
@@ -169,24 +140,26 @@ def segment_roofs(
     xyz = sampling.from_corner(xyz)
     density = sampling.effective_density if density is None else density
     noise = sampling.noise if noise is None else noise
-    in_images = sampling.is_closed_surface(source)
-    if min_height is None:
-        min_height = _LOWEST_IN_IMAGES if in_images else _LOWEST
-    monitor.resolved(density=density, noise=noise, min_height=min_height, matched_images=in_images)
-    off_plane = _off_plane_deviation(noise, density)
-    used = _seen(xyz, classification, height_above_ground, density, in_images)
-    around = None if in_images else sampling.neighborhood(density, off_plane)
-    part = monitor.part(0, 0.75)
-    patch, roughness = _patches_among(xyz, used, around, density, off_plane, max_slope, part)
+    kind = sampling.kind(source)
+    min_height = kind.lowest_roof if min_height is None else min_height
+    monitor.resolved(density=density, noise=noise, min_height=min_height, matched_images=kind.is_surface)
 
+    # 1. Smooth surfaces.
+    is_used = ~np.isin(classification, NOISE) & ~on_bridges(xyz, classification)
+    is_used &= kind.choose(_anywhere, _on_top)(xyz, height_above_ground, is_used, density)
+    used = np.flatnonzero(is_used)
+    patch = np.full(len(xyz), -1, np.int32)
+    find_patches = kind.choose(_patches_of_scan, _patches_of_images)
+    patch[used] = find_patches(xyz[used], sampling, _Planes(density, noise, max_slope), monitor.part(0, 0.75))
+
+    # 2. Those that are high and large enough, and do not go on into the ground.
     patches = _Patches(xyz, patch, height_above_ground, density)
     monitor.progress(0.8)
-    roughest = max(_ROUGHEST, _ROUGHEST_NOISE * noise, _ROUGHEST_OFF_PLANE * off_plane)
-    is_roof = patches.smooth(patches.roofs(min_height, min_area), roughness, roughest)
-    segment_id = _renumbered(patches.number, is_roof)
+    segment_id = _renumbered(patches.number, patches.roofs(min_height, min_area))
     monitor.progress(0.85)
 
-    raised = height_above_ground >= min(_RAISED_IN_IMAGES if in_images else _RAISED, min_height)
+    # 3. Clusters of all other raised points.
+    raised = height_above_ground >= min(kind.raised, min_height)
     goes_on = patches.points_of(patches.is_terrain)
     others = used[(raised & (segment_id == 0) & ~goes_on)[used]]
     part = monitor.part(0.85, 1)
@@ -196,67 +169,57 @@ def segment_roofs(
     return segment_id, cluster_id, np.where(raised & goes_on, np.uint8(Reason.INTO_GROUND), np.uint8(0))
 
 
-def _seen(
-    xyz: np.ndarray, classification: np.ndarray, height: np.ndarray, density: float, in_images: bool
-) -> np.ndarray:
-    """Return the rows of points that may be of roofs or other clusters; in matched images, of the top surface only."""
-    is_used = ~np.isin(classification, NOISE) & ~on_bridges(xyz, classification)
-    if in_images:
-        is_used &= TopSurface(xyz, height, is_used, density).on_top(xyz)
-    return np.flatnonzero(is_used)
+def _anywhere(xyz: np.ndarray, height: np.ndarray, is_used: np.ndarray, density: float) -> np.ndarray:
+    """Return that any point (n,) of a laser scan may be of a roof."""
+    return np.ones(len(xyz), bool)
 
 
-def _patches_among(
-    xyz: np.ndarray,
-    used: np.ndarray,
-    around: Union[Nearest, Wide, None],
-    density: float,
-    off_plane: float,
-    max_slope: float,
-    monitor: Monitor,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the patch (n,) from 0, -1 for none, and the roughness (n,), m, of all points.
+def _on_top(xyz: np.ndarray, height: np.ndarray, is_used: np.ndarray, density: float) -> np.ndarray:
+    """Return which points (n,) of matched images may be of a roof: those of the surface seen from above."""
+    return TopSurface(xyz, height, is_used, density).on_top(xyz)
 
-    Patches are searched for among the ``used`` rows, in neighborhoods ``around`` points, None in matched images.
-    """
-    patch, roughness = np.full(len(xyz), -1, np.int32), np.zeros(len(xyz), np.float32)
-    if around is None:
-        found = _patches_of_images(xyz[used], density, off_plane, max_slope, monitor)
-    else:
-        found = segment_patches(xyz[used], around, off_plane, max_slope, monitor)
-    patch[used], roughness[used] = found
-    return patch, roughness
+
+@dataclass(frozen=True)
+class _Planes:
+    """What smooth surfaces are searched for by: density (points/m²), noise (m), steepest slope (°)."""
+
+    density: float
+    noise: float
+    max_slope: float
+
+    @property
+    def off_plane(self) -> float:
+        """How far points of a roof lie off the planes of their neighbors (one standard deviation), m."""
+        farther = np.sqrt(max(0.0, 1 / self.density - 1 / SURFACE.dense))
+        return float(np.hypot(plane_roughness(self.noise, self.density), SURFACE.farther * farther))
+
+
+def _patches_of_scan(xyz: np.ndarray, sampling: CloudSampling, planes: _Planes, monitor: Monitor) -> np.ndarray:
+    """Return the patch (n,) from 0, -1 for no one, of the points of a laser scan."""
+    around = sampling.neighborhood(planes.density, planes.off_plane)
+    return segment_patches(xyz, around, planes.off_plane, planes.max_slope, monitor)
+
+
+def _patches_of_images(xyz: np.ndarray, sampling: CloudSampling, planes: _Planes, monitor: Monitor) -> np.ndarray:
+    """Return what :func:`_patches_of_scan` does, for the surface (n, 3) that matched images show."""
+    if not len(xyz):
+        return np.zeros(0, np.int32)
+    rules = IMAGE_SURFACE
+    highest, under = highest_of_cells(xyz, rules.cell)
+    # Of cells that hold points at random, with the density's number on the average, these have one.
+    kept = -np.expm1(-planes.density * rules.cell**2) / rules.cell**2
+    count = max(rules.fewest, round(np.pi * rules.reach**2 * kept))
+    deviation = max(planes.off_plane, rules.off_plane)
+    return segment_patches(xyz[highest], Nearest(count), deviation, planes.max_slope, monitor)[under]
 
 
 def _clusters(
     xyz: np.ndarray, height: np.ndarray, min_height: float, min_area: float, density: float, monitor: Monitor
 ) -> np.ndarray:
     """Return the cluster (k,), from 1, of points that are of no roof surface; 0 for low and small ones."""
-    reach = 2 / np.sqrt(density)
+    reach = SURFACE.link / np.sqrt(density)
     component = connect(xyz, reach, reach, monitor)
     return number_large(_high(component, height, min_height), min_area * density)
-
-
-def _patches_of_images(
-    xyz: np.ndarray, density: float, off_plane: float, max_slope: float, monitor: Monitor
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return what :func:`.segment_patches` does, for the surface (n, 3) that matched images show."""
-    if not len(xyz):
-        return np.zeros(0, np.int32), np.zeros(0, np.float32)
-    highest, under = highest_of_cells(xyz, _CELL_IN_IMAGES)
-    thinned = xyz[highest]
-    # Of cells that hold points at random, with the density's number on the average, these have one.
-    kept = -np.expm1(-density * _CELL_IN_IMAGES**2) / _CELL_IN_IMAGES**2
-    count = max(_FEWEST_IN_IMAGES, round(np.pi * _REACH_IN_IMAGES**2 * kept))
-    deviation = max(off_plane, _OFF_PLANE_IN_IMAGES)
-    patch, roughness = segment_patches(thinned, Nearest(count), deviation, max_slope, monitor)
-    return patch[under], roughness[under]
-
-
-def _off_plane_deviation(noise: float, density: float) -> float:
-    """Return how far points of a roof lie off the planes of their neighbors (one standard deviation), m."""
-    farther = np.sqrt(max(0.0, 1 / density - 1 / _DENSE))
-    return float(np.hypot(plane_roughness(noise, density), _FARTHER * farther))
 
 
 @dataclass(frozen=True)
@@ -283,20 +246,11 @@ class _Patches:
     @cached_property
     def is_terrain(self) -> np.ndarray:
         """Which of them go on into the ground."""
-        return self.mean(self.height < _LOW) > _LOW_SHARE
+        return self.mean(self.height < SURFACE.low) > SURFACE.low_share
 
     def roofs(self, min_height: float, min_area: float) -> np.ndarray:
         """Return which of them are high and large enough, and do not go on into the ground."""
         return (self.areas >= min_area) & (self.mean(self.height) >= min_height) & ~self.is_terrain
-
-    def smooth(self, chosen: np.ndarray, roughness: np.ndarray, most: float) -> np.ndarray:
-        """Return which of the chosen are smooth enough: ``roughness`` (n,) of the points and ``most`` of it, in m."""
-        if not chosen.any():
-            return chosen
-        group = np.where(self.points_of(chosen), self.number, -1)
-        is_smooth = chosen & (self.mean(roughness) <= most)
-        share = share_joined(self.xyz, group, is_smooth, self.density)
-        return chosen & ((is_smooth & (self.areas >= _LARGE)) | (share >= _SMOOTH_SHARE))
 
     @cached_property
     def _member(self) -> np.ndarray:

@@ -13,7 +13,7 @@ from ..stage import Param, stage
 from .false_pits import false_pits
 from .ground_points import in_plan_order, last_returns, usable_points, with_ground
 from .ground_seeds import USUAL_BUILDING, seeds_by_opening
-from .smeared_objects import on_smeared_objects
+from .smeared_objects import nowhere, on_smeared_objects
 from .tin_densification import JoinRules, Surface, grow, surface_roughness
 
 # Share of the point spacing by which the surface may bend between points, when they join.
@@ -253,9 +253,9 @@ def classify_ground_tin(
     angle = by_terrain[1] if iteration_angle is None else iteration_angle
 
     # 1. Seeds. Free-standing segments may not join either: the surface would climb noisy roofs a step at a time.
-    in_images = sampling.is_closed_surface(source)
+    kind = sampling.kind(source)
     seeds, stands_free, size = seeds_by_opening(
-        points[last], cell_size, size, monitor.part(0, 0.3), spacing, low_uphill=in_images
+        points[last], cell_size, size, monitor.part(0, 0.3), spacing, low_uphill=kind.is_surface
     )
     may_join = last.copy()
     may_join[last] = ~stands_free
@@ -278,8 +278,7 @@ def classify_ground_tin(
     monitor.resolved(
         iteration_angle=angle, iteration_distance=distance, edge_length=edge_length, sweep_distance=sweep_distance
     )
-    if in_images:
-        is_ground &= ~on_smeared_objects(points, is_ground, spacing)
+    is_ground &= ~kind.choose(laser=nowhere, images=on_smeared_objects)(points, is_ground, spacing)
     if len(low_noise):
         monitor.resolved(low_noise=len(low_noise))
     return with_ground(classification, usable[is_ground], usable[low_noise])

@@ -33,6 +33,11 @@ _BEYOND = 0.8
 _EIGHT = np.ones((3, 3), bool)
 
 
+def nowhere(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -> np.ndarray:
+    """Return that no point (n,) is on a smeared object: laser scans have sharp edges."""
+    return np.zeros(len(xyz), bool)
+
+
 def on_smeared_objects(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -> np.ndarray:
     """Return which points (n,) are ground points on small objects, which a surface climbs where walls are smeared.
 

@@ -9,7 +9,6 @@ from lidar_buildings.algorithms.segmentation.cluster_measures import (
     plan_areas,
     points_below_share,
     share_around,
-    share_joined,
 )
 
 
@@ -129,12 +128,3 @@ def test_what_passes_a_surface_is_the_same_at_any_density(rng, density):
     assert points_below_share(xyz, group, density)[0] == pytest.approx(1 / 3, abs=0.04)
     # Cells hold 2.25 points on the mean; of those with a roof point 1 - exp(-0.75) have one beneath.
     assert penetration(xyz, group, density)[0] == pytest.approx(0.53, abs=0.05)
-
-
-def test_shares_of_connected_points_by_hand():
-    """Four cells in a row, one of them of two groups, and two cells apart: the chosen share of each row."""
-    xyz = at_cells(0, 1, 2, 2, 3, 7, 8, 20)
-    group = np.array([0, 0, 0, 1, 1, 2, 3, -1])
-    np.testing.assert_allclose(share_joined(xyz, group, np.array([0, 1, 0, 1], bool), 1.0), [0.5, 0.5, 0.5, 0.5])
-    np.testing.assert_allclose(share_joined(xyz, group, np.array([1, 0, 0, 0], bool), 1.0), [0.75, 0.75, 0, 0])
-    np.testing.assert_allclose(share_joined(xyz, group, np.ones(4, bool), 1.0), 1)

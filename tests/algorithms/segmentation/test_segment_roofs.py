@@ -155,48 +155,6 @@ def test_roofs_of_very_noisy_clouds_are_found(noise, rng):
     assert (segment[truth > 0] > 0).mean() > 0.75
 
 
-@pytest.mark.parametrize("density", [2, 3, 4, 6, 12])
-def test_crops_are_no_roofs(density, rng):
-    """A field of 40 m, 3 m high, of whose leaves four fifths lie within 0.3 m of the top and the others below."""
-    plan = rng.uniform(0, 60, (3600 * density, 2))
-    is_field = (np.abs(plan - 30) < 20).all(axis=1)
-    top = 3.0 - np.abs(rng.normal(0, 0.25, len(plan))) - (rng.random(len(plan)) < 0.2) * rng.uniform(0, 2, len(plan))
-    height = np.where(is_field, np.maximum(top, 0.3), 0.0)
-    xyz = np.column_stack([plan, height + rng.normal(0, 0.02, len(plan))])
-    assert (segment_roofs(xyz, ones(xyz), height)[0] > 0).sum() < 0.02 * is_field.sum()
-
-
-@pytest.mark.parametrize("noise", [None, 0.03])
-def test_a_house_at_a_field_of_crops_is_found(noise, rng):
-    """A flat roof of 10 m at the edge of a rough field of 40 m as high, 2 points per m²; noise measured or given.
-
-    In so sparse a cloud a noise of 3 cm puts points 9 cm off the planes of their neighbors.
-    """
-    plan = rng.uniform(0, 60, (7200, 2))
-    is_field = (np.abs(plan - 30) < 20).all(axis=1)
-    is_house = (np.abs(plan - [55, 30]) < 5).all(axis=1)
-    height = np.select([is_house, is_field], [3.0, 3.0 - np.abs(rng.normal(0, 0.4, len(plan)))], 0.0)
-    xyz = np.column_stack([plan, height + rng.normal(0, 0.02, len(plan))])
-    segment, _, _ = segment_roofs(xyz, ones(xyz), height, noise=noise)
-    assert (segment[is_house] > 0).mean() > 0.95
-    # Of what touches the house, some hangs together with it.
-    assert (segment[is_field] > 0).mean() < 0.1
-
-
-@pytest.mark.parametrize("beside", [True, False])
-def test_rough_surfaces_are_roofs_beside_smooth_ones_only(beside, rng):
-    """A roof of 8 m by 4 m at 3 m, 9 cm rough, at the wall of a smooth one of 10 m at 5 m, or 4 m away from it."""
-    plan = rng.uniform(0, 40, (6400, 2))
-    is_smooth = (np.abs(plan - 20) < 5).all(axis=1)
-    is_rough = (np.abs(plan[:, 0] - (27 if beside else 31)) < 2) & (np.abs(plan[:, 1] - 20) < 4)
-    height = np.select([is_smooth, is_rough], [5.0, 3.0], 0.0)
-    xyz = np.column_stack([plan, height + rng.normal(0, np.where(is_rough, 0.09, 0.02))])
-    segment, _, _ = segment_roofs(xyz, ones(xyz), height)
-    assert (segment[is_smooth] > 0).mean() > 0.95
-    assert ((segment[is_rough] > 0).mean() > 0.5) == beside
-    assert segment[is_rough].any() == beside
-
-
 def test_roofs_and_crowns_are_given_no_reason_yet(rng):
     xyz, height, _ = village(rng)
     xyz, height, _ = with_tree(rng, xyz, height, (4, 4))

@@ -1,0 +1,33 @@
+"""Kinds of clouds, chosen once per run: what steps do otherwise where points were matched from images."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeVar
+
+from ..rules import rule
+
+Choice = TypeVar("Choice")
+
+
+@dataclass(frozen=True)
+class CloudKind:
+    """How the clouds of one source show roofs and ground.
+
+    ``is_surface`` tells whether a cloud is one surface seen from above: nothing lies beneath roofs and crowns, and
+    edges and walls are smeared.
+    """
+
+    is_surface: bool
+    lowest_roof: float = rule(2.0, "m", "physics: mean height of the lowest roof; cars are lower")
+    raised: float = rule(1.5, "m", "physics: lower points stand on the ground: kerbs, bonnets of cars, low plants")
+
+    def choose(self, laser: Choice, images: Choice) -> Choice:
+        """Return the one of two methods that is for clouds of this kind."""
+        return images if self.is_surface else laser
+
+
+LASER = CloudKind(is_surface=False)
+
+# Sheds and carports of 2 m have rounded edges, which lower the mean over their surface; the shape tells cars.
+IMAGES = CloudKind(is_surface=True, lowest_roof=1.2, raised=1.0)
