@@ -1,5 +1,7 @@
 """The noise of smooth surfaces, put there by construction."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
@@ -112,13 +114,13 @@ def test_order_and_place_change_nothing(rng):
 @pytest.fixture
 def small_sample(monkeypatch):
     """Let clouds of a few thousand points be sampled."""
-    monkeypatch.setattr(module, "_SAMPLE", 2000)
+    monkeypatch.setattr(module, "SURFACES", replace(SURFACES, sample=2000))
 
 
 def test_a_sample_is_enough(rng, small_sample, monkeypatch):
     xyz = plane(rng, 0.04, count=60_000, side=120)
     sample = SurfaceSample(xyz)
-    monkeypatch.setattr(module, "_SAMPLE", len(xyz))
+    monkeypatch.setattr(module, "SURFACES", replace(SURFACES, sample=len(xyz)))
     whole = SurfaceSample(xyz)
     assert len(sample) < len(xyz) / 4 < len(whole)
     assert sample.noise(0.01) == pytest.approx(whole.noise(0.01), rel=0.05)
@@ -180,7 +182,9 @@ def test_scattered_precise_points_need_few_neighbors(rng):
 
 def test_noisy_points_need_as_many_as_reach_six_times_the_noise(rng):
     """6.2 times 20 cm is a circle of 4.8 m², which holds 22 points."""
-    assert surface_neighbors(plane(rng, 0.2), 4.4, 0.2) == Nearest(int(np.ceil(np.pi * 1.24**2 * 4.4)))
+    assert surface_neighbors(plane(rng, 0.2), 4.4, 0.2) == Nearest(
+        int(np.ceil(np.pi * (SURFACES.reach * 0.2) ** 2 * 4.4))
+    )
 
 
 def test_dense_points_need_as_many_as_reach_half_a_meter(rng):
