@@ -92,7 +92,7 @@ def lower_first(text: str) -> str:
 
 
 def as_text(text: str) -> str:
-    """Return a help for the command line: no HTML, nor what QGIS tells there itself, the summary and the parameters."""
+    """Return a help for the command line: no HTML, and no summary and parameters, which QGIS prints itself."""
     sections = re.split(r"\n(?=<h3>)", text)
     kept = "\n".join(section for section in sections if not section.startswith("<h3>Parameters"))
     lines, depth = [], 0
@@ -284,7 +284,7 @@ _ITEM = re.compile(r"^\s*(?:[*-]|\.\. \[\w+\]|(\d+)\.)\s+", re.MULTILINE)
 
 
 def _items(block: str) -> Optional[str]:
-    """Return a block as a list, None when it is none."""
+    """Return a block as a list, None when it is no list."""
     first = _ITEM.match(block)
     if first is None:
         return None

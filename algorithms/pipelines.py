@@ -136,7 +136,7 @@ _PIPELINES = (
         title="Interpret structure",
         group="Models",
         tags="linear,planar,volumetric,dimensionality,voxel,drone,UAV,scanner,scene,structure,Weinmann,wire,power line",
-        summary="Tell lines, surfaces and volumes apart in a cloud, or in those of several scanners merged.",
+        summary="Classify points as linear, planar or volumetric in a cloud, or in those of several scanners merged.",
         description=(
             "Merges the clouds, leaves one point per voxel, so that places that were scanned for long don't count more "
             "than others, describes the neighborhood of each point, and sorts points by the largest of linearity, "

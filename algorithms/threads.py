@@ -1,4 +1,4 @@
-"""Work in chunks on all cores, for numpy and scipy calls that let go of the interpreter."""
+"""Work in chunks on all cores, for numpy and scipy calls that release the interpreter."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _MOST_THREADS = 32
 # Seconds between two looks at whether the user wants to stop.
 _BETWEEN_LOOKS = 0.2
 
-# What a process that shares the machine with others of its kind was told to take.
+# Threads that a process was told to use which shares the machine with others of its kind.
 _TOLD: list[int] = []
 
 
@@ -30,7 +30,7 @@ def n_threads() -> int:
     """Return how many threads work at once: one for each core that this process may use, at most 32."""
     if _TOLD:
         return _TOLD[-1]
-    # Where batch systems and containers give a process some of the cores, only Linux tells which.
+    # Where batch systems and containers give a process some of the cores, only Linux shows which.
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     return min(cores, _MOST_THREADS)
 
@@ -56,7 +56,7 @@ def one_blas_thread() -> Iterator[None]:
 
 
 def in_chunks(work: Callable[[np.ndarray], None], rows: np.ndarray, size: int, monitor: Monitor) -> None:
-    """Call ``work`` with ``size`` of ``rows`` at a time, in threads, and tell the progress.
+    """Call ``work`` with ``size`` of ``rows`` at a time, in threads, and report the progress.
 
     The chunks must not write to the same places; the result then depends on neither their order
     nor the number of threads. An exception, a cancellation among them, ends the rest. A single
@@ -84,7 +84,7 @@ def made_ahead(work: Callable[[int, Monitor], Any], count: int, monitor: Monitor
     Parameters
     ----------
     work : callable
-        Is given the number of an item, from 0, and a monitor. What it tells that one is passed on in order.
+        Is given the number of an item, from 0, and a monitor. What that one receives is passed on in order.
     count : int
         Number of items. No more than there are threads are ready or being made at a time.
     monitor : Monitor
@@ -115,7 +115,7 @@ def made_ahead(work: Callable[[int, Monitor], Any], count: int, monitor: Monitor
 
 
 class _Thread(Monitor):
-    """The monitor of work in a thread: it keeps what it is told, and ends the work when all is to stop."""
+    """The monitor of work in a thread: it keeps messages, and ends the work when all is to stop."""
 
     def __init__(self, stop: Event) -> None:
         super().__init__()
@@ -127,7 +127,7 @@ class _Thread(Monitor):
             raise Cancelled
 
     def pass_on(self, monitor: Monitor) -> None:
-        """Tell another monitor, in the thread of its own, what this one was told."""
+        """Pass the messages of this monitor to another one, in the thread of that one."""
         monitor.resolved(**self.values)
         for sentence in self.warnings:
             monitor.warn(sentence)

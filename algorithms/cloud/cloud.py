@@ -197,7 +197,7 @@ class Cloud:
         Raises
         ------
         ValueError
-            If there is none of that name; says which there are.
+            If the cloud has no dimension of that name; the message names those that it has.
         """
         known = self._known()
         wanted = name.strip().lower()

@@ -40,7 +40,7 @@ class CopcIndex:
 
 
 def has_index(header: Header) -> bool:
-    """Whether a header is that of a COPC file: its first record is the one that tells where the octree lies."""
+    """Whether a header is that of a COPC file: its first record is the one with the position of the octree."""
     first = header.vlrs[0] if header.vlrs else None
     return bool(
         first
@@ -78,13 +78,13 @@ def read_index(path: Path, header: Header, stream: BinaryIO, chunks: np.ndarray)
     found = np.column_stack([nodes[name].astype(np.int64) for name in ("offset", "size", "count")])
     held = chunks[chunks[:, 2] > 0]
     if not np.array_equal(found, held):
-        raise _damaged(path, f"it tells of {len(found)} nodes that are not the {len(held)} chunks of the file")
+        raise _damaged(path, f"it names {len(found)} nodes that are not the {len(held)} chunks of the file")
     level, place = nodes["key"][:, 0], nodes["key"][:, 1:3]
     is_odd = (level < 0) | (level > _DEEPEST)
     is_odd |= ((place < 0) | (place >= 2.0 ** np.clip(level, 0, _DEEPEST)[:, None])).any(axis=1)
     if is_odd.any():
         key = tuple(nodes["key"][is_odd][0, :3].tolist())
-        raise _damaged(path, f"it tells of a node {key} (level, column, row)")
+        raise _damaged(path, f"it names a node {key} (level, column, row)")
     side = (2 * half / 2.0**level)[:, None]
     # Coordinates are rounded to steps of the scale, also those on the faces of nodes.
     margin = np.abs(header.scale[:2])
@@ -109,7 +109,7 @@ def _nodes(path: Path, stream: BinaryIO, at: int, size: int, most: int) -> np.nd
         nodes = page[page["count"] > 0]
         count += len(nodes)
         if (page["count"] < _PAGE).any() or count > most:
-            raise _damaged(path, f"it tells of more nodes than the {most} chunks of the file")
+            raise _damaged(path, f"it names more nodes than the {most} chunks of the file")
         found.append(nodes)
         waiting += [(int(one["offset"]), int(one["size"])) for one in page[page["count"] == _PAGE]]
     return np.concatenate(found)

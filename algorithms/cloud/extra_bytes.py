@@ -141,5 +141,5 @@ def payload_of(fields: tuple[ExtraField, ...]) -> bytes:
 def _descriptors(size: int) -> bytes:
     """Describe bytes of unknown meaning, so that what follows them is found."""
     sizes = [_LONGEST_UNDOCUMENTED] * (size // _LONGEST_UNDOCUMENTED) + [size % _LONGEST_UNDOCUMENTED]
-    # The fourth byte, which has the options of numbers, tells how many bytes there are.
+    # The fourth byte, which has the options of numbers, is the number of bytes.
     return b"".join(bytes((0, 0, 0, part)).ljust(_SIZE, b"\0") for part in sizes if part)

@@ -81,7 +81,7 @@ def read_cloud(
 
 
 def check_readable(path: Union[str, Path], crs_units: Optional[Resolver] = None) -> None:
-    """Refuse what :func:`read_cloud` would refuse, as far as headers and chunk tables tell.
+    """Refuse what :func:`read_cloud` would refuse, as far as headers and chunk tables show.
 
     Raises
     ------
@@ -98,7 +98,7 @@ def check_readable(path: Union[str, Path], crs_units: Optional[Resolver] = None)
 def read_extent(path: Union[str, Path]) -> tuple[np.ndarray, np.ndarray, str]:
     """Return the lowest and the highest coordinates (3,) and the CRS of a file or of all its tiles.
 
-    Coordinates are those of the file, as its headers tell them. The CRS is WKT, "EPSG:code" or "".
+    Coordinates are those of the file, as in its headers. The CRS is WKT, "EPSG:code" or "".
 
     Raises
     ------
@@ -111,7 +111,7 @@ def read_extent(path: Union[str, Path]) -> tuple[np.ndarray, np.ndarray, str]:
 
 
 def count_points(path: Union[str, Path], box: Optional[np.ndarray] = None) -> int:
-    """Return the number of points of a file or of all its tiles, as the headers tell it.
+    """Return the number of points of a file or of all its tiles, by the headers.
 
     In a ``box`` (2, 2), coordinates of the file, it is that of points spread evenly over each tile.
 

@@ -83,7 +83,7 @@ class Vlr:
 
 @dataclass
 class Header:
-    """What a LAS file says of itself; texts and the date are bytes as they stand there, with their padding."""
+    """What a LAS file says of itself; texts and the date are bytes as they are stored, with their padding."""
 
     minor: int = 4
     source_id: int = 0
@@ -296,7 +296,7 @@ class _Reader:
         n_evlrs, start = las.number_of_evlrs, las.start_of_first_evlr
         if n_evlrs * _EVLR.size > max(self.total - start, 0):
             raise truncated(self.path, f"{n_evlrs} EVLRs should start at byte {start} of {self.total}")
-        # Without any, some writers leave a place that is none.
+        # Without EVLRs, some writers store an invalid position.
         if n_evlrs:
             self.stream.seek(start)
             header.evlrs = [self._record(_EVLR, self.total) for _ in range(n_evlrs)]

@@ -24,7 +24,7 @@ _VARIABLE_CHUNKS = 2**32 - 1
 _CHUNK_SIZE_AT, _ITEMS_AT = 12, 34
 # Type, size in bytes and version of an item of the record; the position and the head of the chunk table.
 _ITEM, _TABLE_POSITION, _TABLE_START = struct.Struct("<HHH"), struct.Struct("<q"), struct.Struct("<II")
-# Points of formats 6 to 10 are stored in layers: so many for each type, and one for each byte of extra bytes (type 14).
+# Layers that points of formats 6 to 10 are stored in, by the type of their item; extra bytes (type 14) have one a byte.
 _READ_AT_ONCE = 2**20
 _LAYERS = {10: 9, 11: 1, 12: 2, 13: 1}
 _LAYERED_VERSIONS, _PLAIN_VERSIONS = (3, 4), (1, 2)
@@ -56,10 +56,10 @@ class _Laz:
             raise truncated(self.path, "its LASzip record is too short")
         size, expected = sum(item[1] for item in _items(found.data)), self.header.layout.dtype.itemsize
         if size != expected:
-            raise truncated(self.path, f"its LASzip record tells of points of {size} bytes, its header of {expected}")
+            raise truncated(self.path, f"its LASzip record describes points of {size} bytes, its header of {expected}")
         if not _fit(_items(found.data), self.header.layout.point_format, expected):
             raise truncated(
-                self.path, f"its LASzip record does not tell of point format {self.header.layout.point_format}"
+                self.path, f"its LASzip record does not describe point format {self.header.layout.point_format}"
             )
         return found.data
 
@@ -111,7 +111,7 @@ class _Laz:
     def check_pointwise(self) -> None:
         """Refuse layers in points that are compressed in one go: laszip ends the process on them."""
         if self.header.layout.point_format >= _FIRST_LAYERED_FORMAT:
-            raise truncated(self.path, "its LASzip record tells of points without chunks that are stored in layers")
+            raise truncated(self.path, "its LASzip record describes layered points without chunks")
 
     def _check_layers(self, sizes: np.ndarray, n_layers: int) -> None:
         """Hold the sizes of the layers, which are allocated before they are read, against those of their chunks."""

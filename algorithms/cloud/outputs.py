@@ -243,7 +243,7 @@ class _Entry:
 
 
 def _keep(path: Path, aside: Path) -> None:
-    """Keep a file under a second name until it is replaced: without a moment in which there is none, if possible."""
+    """Keep a file under a second name until it is replaced: without a moment without the file, if possible."""
     try:
         os.link(path, aside)
     except OSError:
@@ -303,7 +303,7 @@ def working_folder(parent: Path) -> Iterator[Path]:
 
 @contextmanager
 def locked_folder(folder: Path) -> Iterator[bool]:
-    """Tell whether no other running program has locked a folder, and lock it for as long as the block lasts.
+    """Yield whether no other running program has locked a folder, and lock it for as long as the block lasts.
 
     The system releases the lock when the program ends, however it ends.
     """

@@ -55,7 +55,7 @@ _FOR_BUILDING = frozenset(
     }
 )
 
-# Reasons of points that belong to a building by the roof beside them: walls, edges, what stands on it.
+# Reasons of points that belong to a building by the roof beside them: walls, edges, equipment on it.
 ADDED = (Reason.ATTACHED, Reason.LIKE_BUILDINGS)
 
 _TEXTS = {

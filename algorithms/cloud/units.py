@@ -135,7 +135,7 @@ def units_of(header: Header, crs_units: Optional[Resolver] = None) -> Units:
     Returns
     -------
     Units
-        Meters where the file does not tell, with a warning. Heights have the
+        Meters where the file names no unit, with a warning. Heights have the
         horizontal unit where nothing is said of theirs.
 
     Raises

@@ -26,7 +26,7 @@ _DATA_ROLE = "data"
 # their dimensions, of 20 kB each.
 _MOST_MEMORY = 450_000_000
 # Memory that one value of JSON takes at most (bytes), a text of a few characters beyond ASCII. One of four characters
-# stands before it, which texts may hold too. Texts take 1 byte for a character of ASCII, and at most 4 for another.
+# precedes it, which texts may hold too. Texts take 1 byte for a character of ASCII, and at most 4 for another.
 _BYTES_PER_VALUE = 90
 _EXTENSIONS = (
     "https://stac-extensions.github.io/pointcloud/v1.0.0/schema.json",

@@ -144,7 +144,7 @@ def connected(boxes: Boxes, is_near: Callable[[np.ndarray], np.ndarray], monitor
     boxes : Boxes
         Boxes so small that all points of one are near each other.
     is_near : callable
-        Tells of offsets (m, 3) between points whether the points are near (m,).
+        Returns for offsets (m, 3) between points whether the points are near (m,).
     monitor : Monitor
         Receives progress.
 

@@ -24,7 +24,7 @@ from .groups import components
 # Places of a tile at most: each takes half the time that it takes among a hundred thousand.
 _PLACES = 3000
 
-# Up to so many places take less time at once than in tiles.
+# Below this number of nodes, one triangulation takes less time than tiles.
 _FEW = 30_000
 
 # Surroundings of a tile, in distances between places: nearly all circles on its border end there.
@@ -43,7 +43,7 @@ class Triangulation:
     plan : ndarray of shape (n, 2), float64
         Places (m).
     facets : ndarray of shape (f, 3), int32
-        The corners of each triangle, as numbers of places, counterclockwise. Of places that are the same, one is used.
+        The corners of each triangle, as numbers of nodes, counterclockwise. Of nodes at one position, one is used.
     neighbors : ndarray of shape (f, 3), int32
         The triangle across from each corner, -1 if unassigned.
     """
@@ -83,13 +83,13 @@ class Triangulation:
 
 
 def triangulate(plan: np.ndarray, monitor: Optional[Monitor] = None) -> Triangulation:
-    """Return the Delaunay triangulation of places (n, 2), m, that are not all on one line."""
+    """Return the Delaunay triangulation of positions (n, 2), m, that are not all on one line."""
     mended = _by_tiles(plan, monitor or Monitor()) if len(plan) > _FEW else None
     return _by_qhull(plan) if mended is None else mended
 
 
 def _by_tiles(plan: np.ndarray, monitor: Monitor) -> Optional[Triangulation]:
-    """Return the triangulation of places made of those of tiles, None where these don't fit together."""
+    """Return the triangulation of positions made of those of tiles, None where these don't fit together."""
     different = np.unique(np.ascontiguousarray(plan, float).view(complex), return_index=True)[1]
     tiles = list(_tiles(plan, different))
     parts: list[Triangulation] = [None] * len(tiles)  # type: ignore[list-item]
@@ -152,7 +152,7 @@ def _within(plan: np.ndarray, box: np.ndarray) -> np.ndarray:
 
 
 def _part(plan: np.ndarray, rows: np.ndarray, box: np.ndarray, seen: np.ndarray) -> Triangulation:
-    """Return those triangles between ``rows`` of the places that have their circles' centers in ``box``.
+    """Return those triangles between ``rows`` of the positions that have their circles' centers in ``box``.
 
     Left out are those whose circles aren't all within what was ``seen``.
     """
@@ -219,7 +219,7 @@ def _mended(part: Triangulation, rows: np.ndarray) -> Optional[Triangulation]:
 
 
 def _is_whole(mesh: Triangulation) -> bool:
-    """Tell by Euler's formula whether facets neither leave holes nor lie on one another."""
+    """Check by Euler's formula whether facets neither leave holes nor lie on one another."""
     used = np.zeros(len(mesh.plan), bool)
     used[mesh.facets] = True
     return len(mesh.facets) == 2 * int(used.sum()) - 2 - int((mesh.neighbors < 0).sum())

@@ -49,7 +49,7 @@ def items(counts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def members(group: np.ndarray) -> dict[int, np.ndarray]:
-    """Return where each number from 1 on stands in ``group`` (n,): positions, int64, ascending, by number."""
+    """Return the positions of each number from 1 on in ``group`` (n,): int64, ascending, by number."""
     positive = np.flatnonzero(group > 0)
     order = positive[np.argsort(group[positive], kind="stable")]
     parts = np.split(order, run_starts(group[order])[1:])

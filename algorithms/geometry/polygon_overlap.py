@@ -9,7 +9,7 @@ import numpy as np
 from ..stage import Monitor
 from .groups import items
 
-# So many pairs of edges are worked on at a time (each takes about 150 bytes).
+# Pairs of edges that are compared at a time (150 bytes each).
 _PAIRS_AT_ONCE = 1_000_000
 
 

@@ -15,10 +15,10 @@ from ..packages import spatial
 from ..threads import n_threads
 from .groups import components, run_starts
 
-# A coordinate this little (m) under the side of a voxel is on it: more than float64 rounds off, less than files tell.
+# A coordinate this little (m) under the side of a voxel is on it: above float64 rounding, below the resolution of files.
 TOUCH = 1e-7
 
-# With more voxels along an axis, float64 could not tell cells apart.
+# With more voxels along an axis, float64 could not separate cells.
 _MOST_ALONG_AXIS = 2.0**46
 
 # Keys of voxels are of 64 bits.
@@ -125,7 +125,7 @@ class Keys:
 
 
 def find_keys(keys: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Return where each ``wanted`` key (k,) stands among ascending ``keys`` (m,), int64; -1 where it does not."""
+    """Return the position of each ``wanted`` key (k,) among ascending ``keys`` (m,), int64; -1 where it does not."""
     if not len(keys):
         return np.full(len(wanted), -1)
     place = np.searchsorted(keys, wanted)
@@ -135,7 +135,7 @@ def find_keys(keys: np.ndarray, wanted: np.ndarray) -> np.ndarray:
 
 
 def locate_voxels(cells: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Return where each ``wanted`` voxel (k, 3) stands among sorted ``cells`` (m, 3), int64 (k,); -1: nowhere."""
+    """Return the position of each ``wanted`` voxel (k, 3) among sorted ``cells`` (m, 3), int64 (k,); -1: nowhere."""
     box = Keys(np.concatenate([cells, wanted]))
     return find_keys(box.of(cells), box.of(wanted))
 
@@ -153,7 +153,7 @@ def neighbor_pairs(cells: np.ndarray, connectivity: int) -> tuple[np.ndarray, np
     Returns
     -------
     one, other : ndarray of shape (k,), int64
-        The two voxels of each pair; ``one`` stands after ``other``.
+        The two voxels of each pair; ``one`` comes after ``other``.
     axes : ndarray of shape (k,), int8
         1, 2 or 3: they share a face, an edge or a corner, and are as many voxel sizes apart as its square root.
     """

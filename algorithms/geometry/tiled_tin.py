@@ -48,7 +48,7 @@ class TiledTin:
     Parameters
     ----------
     nodes : ndarray of shape (m, 3), float64
-        Nodes (m), m >= 1; of nodes at one place in plan, the lowest counts.
+        Nodes (m), m >= 1; of nodes at one position in plan, the lowest counts.
     """
 
     def __init__(self, nodes: np.ndarray) -> None:
@@ -60,7 +60,7 @@ class TiledTin:
         self._tree = spatial.cKDTree(nodes[:, :2] - self._shift, balanced_tree=False)
 
     def elevation(self, places: np.ndarray, monitor: Optional[Monitor] = None) -> np.ndarray:
-        """Return the elevation (n,) of the surface at places (n, 2 or 3), NaN outside the hull of the nodes (m)."""
+        """Return the elevation (n,) of the surface at positions (n, 2 or 3), NaN outside the hull of the nodes (m)."""
         monitor = monitor or Monitor()
         found = np.full(len(places), np.nan)
         tiles = list(_tiles(self.nodes, places))
@@ -87,7 +87,7 @@ class TiledTin:
     def _fill_gaps(
         self, around: np.ndarray, within: np.ndarray, places: np.ndarray, found: np.ndarray, monitor: Monitor
     ) -> None:
-        """Write the elevations at the places ``within`` gaps to ``found``, starting from the nodes ``around`` these."""
+        """Write the elevations at positions ``within`` gaps to ``found``, starting from the nodes ``around`` these."""
         tiles = list(_tiles(self.nodes[around], places[within]))
 
         def fill(some: np.ndarray) -> None:
@@ -102,7 +102,7 @@ class TiledTin:
     def _fill(
         self, rows: np.ndarray, left: np.ndarray, places: np.ndarray, found: np.ndarray, is_start: bool
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Write the elevations at those of the places ``left`` whose triangles between the nodes ``rows`` are right.
+        """Write the elevations at those of the positions ``left`` whose triangles between the nodes ``rows`` are right.
 
         Returns nodes that the others need, at the start with those around them, and these other places.
         """
@@ -123,7 +123,7 @@ class TiledTin:
         return intruders, left
 
     def _fill_edge(self, left: np.ndarray, places: np.ndarray, found: np.ndarray) -> None:
-        """Write the elevations at those of the places ``left`` that lie in the hull of all nodes to ``found``.
+        """Write the elevations at those of the positions ``left`` that lie in the hull of all nodes to ``found``.
 
         The far corners of a :class:`Tin` take away the flat triangles along its hull: these have such large circles
         that a corner lies inside.
@@ -210,7 +210,7 @@ def _close(nodes: np.ndarray, rows: np.ndarray, places: np.ndarray) -> np.ndarra
 
 
 def _lowest_of_each_place(nodes: np.ndarray) -> np.ndarray:
-    """Return nodes in the order of their coordinates, only the lowest of each place in plan."""
+    """Return nodes in the order of their coordinates, only the lowest at each position in plan."""
     x, y, z = nodes.T
     order = np.lexsort((z, y, x))
     is_new = np.ones(len(nodes), bool)

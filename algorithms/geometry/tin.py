@@ -32,12 +32,12 @@ class Tin:
     """Delaunay triangulation of ``nodes`` in plan, defined everywhere.
 
     Four far corners, each as high as the node nearest to it, surround the nodes, so that every
-    point lies in a facet; ``is_extrapolated`` tells the facets that have such a corner.
+    point lies in a facet; ``is_extrapolated`` returns which facets have such a corner.
 
     Parameters
     ----------
     nodes : ndarray of shape (m, 3), float64
-        Nodes (m), m >= 1; of nodes at one place in plan, one counts.
+        Nodes (m), m >= 1; of nodes at one position in plan, one counts.
     box : ndarray of shape (2, 2), float64, optional
         Least and greatest easting and northing (m) that the far corners surround; those of the nodes when absent.
     monitor : Monitor, optional
@@ -95,7 +95,7 @@ class Tin:
         """Take the facets of a triangulation of the nodes, and what is found from them."""
         self._mesh = mesh
         self._weights, self._planes = self._barycentric(), self._gradients()
-        # A facet of each node, -1 of those at the place of another.
+        # A facet of each node, -1 of those at the position of another.
         self._at_node = np.full(len(self.nodes), -1, np.int32)
         self._at_node[self.facets] = np.arange(len(self.facets))[:, None]
 
@@ -126,7 +126,7 @@ class Tin:
     def _located(
         self, xyz: np.ndarray, node: Callable[[np.ndarray, np.ndarray], np.ndarray], monitor: Monitor
     ) -> np.ndarray:
-        """Return the facets under points; ``node`` tells from which nodes the points of some rows and places start."""
+        """Return the facets under points; ``node`` returns the nodes from which points start."""
         found = np.empty(len(xyz), np.int32)
 
         def walk(rows: np.ndarray) -> None:
@@ -160,7 +160,7 @@ class Tin:
         return np.where(least < -_ROUNDING, side, -1)
 
     def _weights_of(self, plan: np.ndarray, facet: np.ndarray) -> np.ndarray:
-        """Return the weights (3, n) of the corners of facets at places, negative beyond the side across from one."""
+        """Return the weights (3, n) of the corners of facets at positions, negative beyond the side across from one."""
         to_weights = self._weights[facet]
         offset = plan - to_weights[:, 4:]
         first = to_weights[:, 0] * offset[:, 0] + to_weights[:, 1] * offset[:, 1]

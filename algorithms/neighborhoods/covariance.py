@@ -2,7 +2,7 @@
 
 Neighborhoods are gathered in chunks, so that the workspace stays small however
 many points there are, and the chunks are shared out among threads: the k-d tree
-and numpy both let go of the interpreter while they work. The result does not
+and numpy both release the interpreter while they work. The result does not
 depend on the number of threads, and on the chunks only by rounding.
 """
 

@@ -183,7 +183,7 @@ def _shapes(
 ) -> Shapes:
     """Return the shapes of the neighborhoods of ``rows`` (m,), from blocks of at most ``size`` of them.
 
-    ``candidates`` tells how many candidates blocks need, of which it is given the middles (b, 3), how far their points
+    ``candidates`` returns how many candidates blocks need, and receives the middles (b, 3), how far their points
     are from these, and the size; ``weigh`` the weight (b, s, c) of each in a neighborhood, and which (b, s) have all.
     """
     made = Shapes(np.empty((len(rows), 6)), np.empty(len(rows), np.int64), *np.empty((2, len(rows) * extents)))
@@ -256,7 +256,7 @@ def _nearest(squares: np.ndarray, count: int, guess: np.ndarray) -> tuple[np.nda
     # Rounding keeps the order: what parts the rounded squares parts the others, and is looked for in half the memory.
     rounded = flat.astype(np.float32)
     limits = _limits(rounded, count, np.repeat(guess, squares.shape[1]))
-    # A little more, for a limit between equal ones is none.
+    # Slightly more: a limit between equal distances would separate equal points.
     inside = rounded <= (limits * (1 + _EQUAL_ROUNDED))[:, None]
     weights = inside.astype(np.float64)
     undecided = (_counts(inside) != count).nonzero()[0]

@@ -17,7 +17,7 @@ LEAST_WIDTH, MOST_ACROSS_LINES = 0.45, 60
 # It grows by this factor until it is.
 _GROWTH = 1.5
 
-# So many of its points stand for all, spread over their ranks.
+# Number of sampled neighbors, spread over their ranks.
 _NAMED = 16
 
 

@@ -156,7 +156,7 @@ def classify_noise_histogram(
 def _automatic(
     cell_size: Optional[float], bin_height: Optional[float], spacing: float, monitor: Monitor
 ) -> tuple[float, float]:
-    """Return the cell size and bin height to use, and tell those that were not given."""
+    """Return the cell size and bin height to use, and log those that were not given."""
     if cell_size is None:
         cell_size = float(np.sqrt(_POINTS_PER_CELL)) * spacing
         monitor.resolved(cell_size=cell_size)
@@ -177,7 +177,7 @@ def _beyond_scene(
 ) -> Optional[tuple[np.ndarray, np.ndarray, np.ndarray]]:
     """Return which points (n,) lie below the scene, which above it, and which not too far above to belong to it.
 
-    None where no bin has enough points to tell the scene.
+    None where no bin has enough points to be the scene.
     """
     grid = fixed_grid_over(points, cell_size)
     cell = grid.number(points)

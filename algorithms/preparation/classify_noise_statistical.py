@@ -147,7 +147,7 @@ def _measured(points: np.ndarray, apart: float, n_neighbors: int) -> tuple[np.nd
     width, depth, _ = step.max(axis=0) + 1
     which = distinct((step[:, 2] * depth + step[:, 1]) * width + step[:, 0])[1]
     is_dense = (np.bincount(which) > n_neighbors)[which]
-    # Told by the coordinates, the sample is the same in whatever order the points come.
+    # Chosen by coordinates, the sample does not depend on the order of the points.
     phase = offsets @ _SAMPLE_WAVE
     is_sampled = is_dense & (phase - np.floor(phase) < share)
     if is_dense.any() and not is_sampled.any():

@@ -20,7 +20,7 @@ _CHUNK = 50_000
 # Places inside a voxel are whole numbers of this fraction of its side, so that sums don't depend on the order.
 _STEPS = 2.0**32
 
-# With more voxels along an axis, float64 could not tell places inside a voxel.
+# With more voxels along an axis, float64 could not resolve positions inside a voxel.
 _MOST_ALONG_AXIS = 2.0**46
 _LARGEST_KEY = 2**63 - 1
 
@@ -101,7 +101,7 @@ def downsample_voxels(
     selected : ndarray of shape (m,), int64
         For each voxel, from west to east, then south to north, then upward, the point nearest to its center of
         gravity. Of points equally near (to 0.1 µm), the one farthest west, then south, then down is taken; of points
-        at one place the earliest by time, then by number of return, then in the cloud.
+        at one position the earliest by time, then by number of return, then in the cloud.
     xyz : ndarray of shape (m, 3), float64
         Centers of gravity (m). A point that is alone in its voxel stays where it is.
     classification : ndarray of shape (m,), uint8
@@ -112,7 +112,7 @@ def downsample_voxels(
     Raises
     ------
     ValueError
-        If the voxels are finer than float64 can tell coordinates apart.
+        If the voxels are finer than the resolution of float64 coordinates.
 
     Notes
     -----
@@ -233,13 +233,13 @@ def _nearest(
     place : ndarray of shape (m, 3), int64
         Of the points, by voxel.
     total : ndarray of shape (k, 3), int64
-        Sum of the places of each voxel.
+        Sum of the positions of each voxel.
     which : ndarray of shape (m,)
         Voxel of each point.
     touch : float
         Difference of distances (steps) below which points are equally near: it comes from rounding.
     times : tuple
-        Further dimensions (n,) of the cloud, or None, by which points at one place are told apart.
+        Further dimensions (n,) of the cloud, or None, by which points at one position are ordered.
     rows : ndarray of shape (m,)
         Where in the cloud the points are.
     """

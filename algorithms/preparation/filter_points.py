@@ -145,7 +145,7 @@ def filter_points(
 def _within(
     values: Optional[np.ndarray], low: Optional[float], high: Optional[float], names: tuple[str, str], monitor: Monitor
 ) -> np.ndarray:
-    """Return which values (n,) lie between two limits, all where none is set; tell the range that they have."""
+    """Return which values (n,) lie between two limits, all without limits; log the range that they have."""
     if values is None:
         return np.array(True)
     defined = values[np.isfinite(values)]

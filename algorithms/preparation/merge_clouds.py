@@ -77,7 +77,7 @@ def merge_clouds(
     ] = "",
     monitor=None,
 ):
-    """Make one cloud of several, each but the first turned and moved if need be; PointSourceId tells them apart.
+    """Make one cloud of several, each but the first turned and moved if need be; PointSourceId identifies them.
 
     The clouds may differ in scale, offset, point format and extra dimensions. The result has the finest scale, the
     smallest point format that holds the colors, times and waveform references of all, and all extra dimensions. What a
@@ -110,10 +110,10 @@ def merge_clouds(
     A point x goes to R x + t, with the rotation R about the zero of the coordinates: the three angles are three
     rotations about fixed axes, one after the other, R = Rz Ry Rx. A matrix must be rigid, that is turn and move only:
     its upper left part times its own transpose may differ from the identity by 0.0002, as with four decimals, and the
-    nearest rotation is taken; a warning tells if that makes more than a millimeter. With coordinates of millions of
+    nearest rotation is taken; a warning is given if that makes more than a millimeter. With coordinates of millions of
     meters, give nine decimals or more.
 
-    Clouds that lie apart are merged all the same; a warning tells of a cloud whose bounding box is more than 1 m away
+    Clouds that lie apart are merged all the same; a warning names a cloud whose bounding box is more than 1 m away
     from those of all the others. Ids of segments and clusters stay as they are, so that two clouds may have the same
     ones. The order of points is kept; withheld points are left out.
 
@@ -167,7 +167,7 @@ def read_transforms(text: str, n_clouds: int) -> list[Optional[Transform]]:
 
 
 def _transform(name: str, text: str) -> Optional[Transform]:
-    """Return the movement that six numbers, the 16 of a matrix or a file of these tell; None for no text."""
+    """Return the movement that six numbers, the 16 of a matrix or a file of these describe; None for no text."""
     if not text:
         return None
     numbers = _numbers(text)
@@ -234,7 +234,7 @@ def _nearest_rotation(name: str, matrix: np.ndarray) -> np.ndarray:
 
 
 def _moved(number: int, xyz: np.ndarray, transform: Transform, monitor: Monitor) -> np.ndarray:
-    """Return a cloud (n, 3) where it belongs, and tell how far that is from where it was."""
+    """Return a cloud (n, 3) in its new position, and log how far it was moved."""
     made = transform(xyz)
     middle = (xyz.min(axis=0) + xyz.max(axis=0)) / 2
     shift = float(np.linalg.norm(transform(middle) - middle))
@@ -254,7 +254,7 @@ def _moved(number: int, xyz: np.ndarray, transform: Transform, monitor: Monitor)
 
 
 def _tell_apart(clouds: list[np.ndarray], monitor: Monitor) -> None:
-    """Tell which clouds lie apart from all others."""
+    """Warn of clouds that lie apart from all others."""
     low = np.array([part.min(axis=0) for part in clouds])
     high = np.array([part.max(axis=0) for part in clouds])
     gap = np.linalg.norm(np.maximum(np.maximum(low[:, None] - high, low - high[:, None]), 0.0), axis=2)

@@ -192,7 +192,7 @@ def _on_wires(points: np.ndarray) -> np.ndarray:
         return on_wire
     count = min(_TUBE_NEIGHBORS, len(points))
     distance, near = spatial.cKDTree(points).query(points, count, distance_upper_bound=_TUBE_REACH)
-    # Missing neighbors stand at infinity.
+    # Missing neighbors are at infinity.
     places = np.concatenate([points, np.full((1, 3), np.inf)])
     for row in np.flatnonzero(np.isfinite(distance).sum(axis=1) >= _TUBE_POINTS).tolist():
         others = near[row][np.isfinite(distance[row])]

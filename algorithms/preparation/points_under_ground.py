@@ -72,7 +72,7 @@ def under_ground(xyz: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarra
     found, n_found = np.zeros(len(xyz), bool), np.zeros(len(cells), np.int64)
     near = np.arange(len(cells))
     for turn in range(UNDER_GROUND.rounds):
-        # Without the points found before, which are the lowest of their cells, their companions stand out.
+        # Without the points found before, which are the lowest of their cells, their companions become the lowest.
         lowest = xyz[order[start + np.minimum(n_found, n_points - 1)]]
         lowest[n_found == n_points] = np.nan
         # Below the surface close by, below the ground around, and not beside others of the same height.

@@ -126,8 +126,8 @@ def assess_buildings(
     TP / (TP + FN), correctness TP / (TP + FP), quality TP / (TP + FN + FP), and F the harmonic mean of the first two.
     Ignored by default are the reference's noise (7, 18), bridges (17; 26 in the Netherlands) and what other agencies
     keep for artefacts, civil works and virtual points (64-67). Objects are groups of building cells that touch by a
-    side or a corner. Parts are told from ragged edges by their size: they have the minimum area and are three cells
-    wide somewhere.
+    side or a corner. Parts are distinguished from ragged edges by their size: they have the minimum area and are
+    three cells wide somewhere.
 
     References
     ----------
@@ -291,12 +291,12 @@ def _rows(values: dict, prefix: str, things: str) -> list[Row]:
         Row(
             "Completeness",
             percent(values[f"{prefix}_completeness"]),
-            f"So much of the reference's buildings was found: {hits:,} of {hits + misses:,} {things}.",
+            f"Share of the reference's buildings was found: {hits:,} of {hits + misses:,} {things}.",
         ),
         Row(
             "Correctness",
             percent(values[f"{prefix}_correctness"]),
-            f"So much of what was called building is building: {hits:,} of {hits + false:,} {things}.",
+            f"Share of the points called building that are building: {hits:,} of {hits + false:,} {things}.",
         ),
         Row(
             "F-score",
@@ -306,7 +306,7 @@ def _rows(values: dict, prefix: str, things: str) -> list[Row]:
         Row(
             "Quality",
             percent(values[f"{prefix}_quality"]),
-            f"Of all {things} that are building on either side, so many are building on both.",
+            f"Share of the {things} called building by either side that both call building.",
         ),
     ]
 
@@ -316,13 +316,13 @@ def _object_rows(values: dict) -> list[Row]:
         Row(
             "Completeness",
             percent(values["objects_completeness"]),
-            f"So many of the reference's {values['objects_true']:,} buildings were found, by at least half; "
+            f"Share of the reference's {values['objects_true']:,} buildings found, by at least half; "
             f"{values['objects_misses']:,} were missed.",
         ),
         Row(
             "Correctness",
             percent(values["objects_correctness"]),
-            f"So many of the {values['objects_predicted']:,} buildings found are true, by half of their area or more; "
+            f"Share of the {values['objects_predicted']:,} buildings found that are true, by half of their area or more; "
             f"{values['objects_false']:,} were invented.",
         ),
         Row(

@@ -23,7 +23,7 @@ from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, P
 # A plane is there where this share of its points lies on it, or on the model.
 _THERE = 0.5
 
-# Faces with less than this area in plan (m²) stand on their edge: they are walls.
+# Faces with less than this area in plan (m²) are upright: walls.
 _UPRIGHT = 1e-3
 
 _PERCENTILE = 95.0
@@ -235,7 +235,7 @@ class _Building:
 
 
 def _faces(roofs: LayerFeatures, monitor: Monitor) -> dict[str, list[_Face]]:
-    """Return the faces by their building; say how many have no heights or stand upright."""
+    """Return the faces by their building; log how many have no heights or are upright."""
     names = roofs.columns.get("building", [""] * len(roofs))
     found: dict[str, list[_Face]] = {}
     for rings, name in zip(roofs.geometries, names):

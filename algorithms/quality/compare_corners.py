@@ -19,7 +19,7 @@ from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, P
 # A vertex at which the outline turns by less is no corner but a point on a straight or round wall, degrees.
 _LEAST_TURN = 20.0
 
-# Corners that are the same face the same way to within so much, degrees.
+# Largest difference in direction between corners that can be the same, degrees.
 _FACING = 60.0
 
 # No corner is looked for farther off (m) while the tolerance isn't known; most walls are longer.
@@ -245,7 +245,7 @@ def _refuse_elsewhere(old: _Map, new: _Map) -> None:
     if apart > _ELSEWHERE:
         raise ValueError(
             f"The footprints and the old map lie {apart / 1000:,.0f} km apart; "
-            "choose a map of the place, or check the coordinate reference systems of both."
+            "choose a map of this area, or check the coordinate reference systems of both."
         )
 
 
@@ -273,7 +273,7 @@ def _linked(old: _Map, new: _Map, min_overlap: float, shift: np.ndarray, monitor
     one, other, shared = overlaps(old.polygons.moved(shift), new.polygons, monitor)
     old_covered = np.minimum(np.bincount(one, shared, len(old.area)) / old.area, 1.0)
     new_covered = np.minimum(np.bincount(other, shared, len(new.area)) / new.area, 1.0)
-    # Rounding must not lose what overlaps by exactly so much.
+    # Rounding must not lose an overlap of exactly the minimum.
     least = min_overlap * (1 - 1e-9)
     is_found = old_covered >= least
     known = np.bincount(other, shared * is_found[one], len(new.area)) / new.area
@@ -346,7 +346,7 @@ def _same_corners(
 
 
 def typical_distance(distance: np.ndarray) -> float:
-    """Return the median of the distances (up to 3 m) that are not by chance, 0 where there are none."""
+    """Return the median of the distances (up to 3 m) that are not by chance, 0 without any."""
     # Pairs by chance are spread evenly in plan: how many there are shows where no others are left, far off.
     ordered = np.sort(distance) / _FARTHEST
     by_chance = min(float((ordered > _FAR_OFF).sum() / (1 - _FAR_OFF**2)), len(ordered))
@@ -491,7 +491,7 @@ def _shift_rows(moved: np.ndarray) -> list[Row]:
     return [
         Row("Eastward", _meters(dx), "Mean of the displacements to the east; negative is to the west."),
         Row("Northward", _meters(dy), "Mean of the displacements to the north; negative is to the south."),
-        Row("Together", _meters(float(np.hypot(dx, dy))), "The new corners lie so far off the old ones as a whole."),
+        Row("Together", _meters(float(np.hypot(dx, dy))), "Length of the mean shift."),
         Row(
             "Without it", _meters(left), "Root mean square of the distances that were left if the shift were taken off."
         ),

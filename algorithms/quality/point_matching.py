@@ -57,7 +57,7 @@ def match_points(xyz: np.ndarray, reference_xyz: np.ndarray) -> np.ndarray:
     -------
     ndarray of shape (n,), int64
         ``reference_xyz[result]`` is ``xyz`` within 1 mm; no row is used twice. Of several points
-        at one place the first goes with the first, the second with the second.
+        at one position the first goes with the first, the second with the second.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def _match_rounded(xyz: np.ndarray, reference_xyz: np.ndarray) -> np.ndarray:
     of_input = order < n
     mine, mine_place = order[of_input], place[of_input]
     theirs, theirs_place = order[~of_input] - n, place[~of_input]
-    # The k-th point at a place goes with the k-th reference point there, if there is one.
+    # The k-th point at a position goes with the k-th reference point there, if there is one.
     rank = np.arange(n) - np.searchsorted(mine_place, mine_place)
     position = np.searchsorted(theirs_place, mine_place) + rank
     there = position < np.searchsorted(theirs_place, mine_place, side="right")

@@ -1,4 +1,4 @@
-"""Charts for the quality pages: SVG that stands in the page itself, readable in gray and in every color vision."""
+"""Charts for the quality pages: SVG within the page, readable in gray and in every color vision."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ BLUE, YELLOW, RED, GRAY = "#004488", "#ddaa33", "#bb5566", "#bbbbbb"
 _WIDTH, _HEIGHT = 720, 320
 _LEFT, _RIGHT, _TOP, _BOTTOM = 70, 20, 50, 50
 
-# Bars that are narrower tell nothing apart, and wider ones hide that there are two groups.
+# Narrower bars are not distinguishable, wider ones hide that there are two groups.
 _MOST_BARS, _FEWEST_BARS = 40, 20
 
 # Smaller values are 0 in a chart: powers of ten of their widths are beyond what float64 holds.

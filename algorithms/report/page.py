@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-# Told apart by people of any color vision and in gray (Tol's high-contrast scheme); the last is the paper.
+# Distinguishable with any color vision and in gray (Tol's high-contrast scheme); the last is the paper.
 _COLORS = ((221, 221, 221), (0, 68, 136), (221, 170, 51), (187, 85, 102), (255, 255, 255))
 REST, HIT, MISS, FALSE, _EMPTY = range(5)
 

@@ -196,11 +196,11 @@ class CloudSampling:
 
     @property
     def measured(self) -> dict[str, float]:
-        """Measurements made so far, by name."""
+        """Measurements already made, by name."""
         return {name: self.__dict__[name] for name in _MEASURES if name in self.__dict__}
 
     def __str__(self) -> str:
-        """Return the measurements made so far, as the log shows them."""
+        """Return the measurements already made, as the log shows them."""
         labeled = ((*_MEASURES[name], value) for name, value in self.measured.items())
         return ", ".join(f"{label} {value:.4g} {unit}".rstrip() for label, unit, value in labeled)
 

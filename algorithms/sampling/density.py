@@ -45,7 +45,7 @@ def point_density(xyz: np.ndarray) -> float:
     Raises
     ------
     ValueError
-        If all points lie at one place in plan, where density means nothing.
+        If all points lie at one position in plan, where density means nothing.
 
     Notes
     -----

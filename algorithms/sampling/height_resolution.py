@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 # Least resolution (m): coordinates are stored to a centimeter or finer, and smaller deviations from a line or a plane
-# can't be told from none.
+# can't be distinguished from zero.
 LEAST_RESOLUTION = 0.01
 
 # Fewer levels than this are those of flat roofs, not of rounded heights.

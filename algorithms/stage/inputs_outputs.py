@@ -36,7 +36,7 @@ class Layer:
     ``"Polygon"``, ``"LineString"`` or ``"Point"``, ``style`` the stem of a file in
     ``resources/styles``.
 
-    The rest tells what becomes of features where a cloud is worked on in overlapping parts. ``deviation`` is the field
+    The others say what becomes of features where a cloud is worked on in overlapping parts. ``deviation`` is the field
     with the root mean square distance of points from the plane of a polygon, for planes in space, which may be upright
     or lie above one another. ``radius`` is the field with the distance (m) of the points from a line or a point in
     space. ``around`` is how far beyond a feature points decide on it, m. ``whole``, where pieces of a long feature can
@@ -110,14 +110,14 @@ class LayerFeatures:
 
 
 def feature_names(features: LayerFeatures) -> list[str]:
-    """Return the attribute "id" or "fid" (in any case) of features as text, their number from 1 where there is none."""
+    """Return the attribute "id" or "fid" (in any case) of features as text, their number from 1 where it is missing."""
     columns = {name.lower(): values for name, values in features.columns.items()}
     ids = columns.get("id", columns.get("fid", [None] * len(features)))
     return [_text(value) or str(number) for number, value in enumerate(ids, start=1)]
 
 
 def _text(value: object) -> str:
-    """Return an attribute as text, "" where there is none; whole numbers come as floats where some are missing."""
+    """Return an attribute as text, "" where it is missing; whole numbers come as floats where some are missing."""
     if isinstance(value, (float, np.floating)):
         return "" if math.isnan(value) else f"{value:.15g}"
     return "" if value is None else str(value)
@@ -205,7 +205,7 @@ class FileItem(Protocol):
 
 @dataclass(frozen=True)
 class TextFile:
-    """A text file that a stage makes, in a format that its name tells.
+    """A text file that a stage makes, in the format of its extension.
 
     ``name`` becomes the output's name (``CITYJSON``); ``formats`` are the formats by what they are called, each with
     the endings of its files, the preferred one first. ``write`` returns the text, in parts, of any number of items in
@@ -221,12 +221,12 @@ class TextFile:
     of: str
 
     def format_of(self, file_name: str) -> str:
-        """Return the format that a file's name tells.
+        """Return the format by a file's extension.
 
         Raises
         ------
         ValueError
-            If it tells none.
+            If the extension is unknown.
         """
         endings = {ending: called for called, endings in self.formats.items() for ending in endings}
         for ending in sorted(endings, key=len, reverse=True):

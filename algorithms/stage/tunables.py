@@ -54,7 +54,7 @@ class Param:
 
     @property
     def unset(self) -> str:
-        """The word for a tunable that is None: its value is automatic, or there is none."""
+        """The word for a tunable that is None: its value is automatic, or it has no effect."""
         return "none" if self.empty else "automatic"
 
     @property
@@ -66,7 +66,7 @@ class Param:
 
     @property
     def bounds(self) -> str:
-        """Bounds of a number in words, empty when there are none."""
+        """Bounds of a number in words, empty without bounds."""
         low = high = ""
         if self.low is not None:
             low = f"{'greater than' if self.open_low else 'at least'} {self.written(self.low)}"
@@ -104,7 +104,7 @@ class Tunable:
     def check(self, value: Any, called: str = "") -> Any:
         """Return ``value`` in the declared type, or raise ValueError in one sentence.
 
-        It names the tunable as it is ``called`` where the value was given, by its own name where nothing is told.
+        It names the tunable as it is ``called`` where the value was given, by its own name unless given.
         """
         if value is None and self.is_automatic:
             return None

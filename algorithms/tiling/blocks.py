@@ -27,7 +27,7 @@ NUMBERED = ("segment_id", "cluster_id")
 # Dimensions that hold the numbers of another one.
 REFERRING = {"wall_of": "cluster_id"}
 
-# Points up to this far (m) outside a block tell which of its segments go on in the next one. Points of one segment are
+# Points up to this far (m) outside a block show which of its segments go on in the next one. Points of one segment are
 # closer together in any cloud that the methods are for (0.1 points/m² and more).
 _BESIDE = 4.0
 
@@ -420,7 +420,7 @@ def _cut_off(boxes: np.ndarray, window: np.ndarray, survey: np.ndarray, around: 
 def feature_boxes(features: LayerFeatures, radius: str = "") -> np.ndarray:
     """Return the least and greatest easting and northing (n, 2, 2) of each feature.
 
-    ``radius`` is the field that tells how far (m) its points lie off its geometry, "" where they lie on it.
+    ``radius`` is the field with the distance (m) of its points from its geometry, "" where they lie on it.
     """
     boxes = np.zeros((len(features), 2, 2))
     for row, geometry in enumerate(features.geometries):

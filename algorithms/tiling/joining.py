@@ -52,7 +52,7 @@ def join_numbers(
         As ``edges`` of :class:`.BlockResult`. Memory: those of a few blocks at a time.
     features : dict of str to list of ndarray, optional
         For each dimension by which points refer to features the numbers of these in each block; they become 0, since
-        features are told to be the same by their geometry.
+        features are recognized as the same by their geometry.
     """
     joined: list[dict[str, np.ndarray]] = [{} for _ in results]
     links = _links(blocks, edges)
@@ -284,7 +284,7 @@ def join_belonging(
     numbers : list of ndarray
         What the cluster numbers of each block become.
     column : str
-        The field that tells what a feature belongs to.
+        The field with the number of what a feature belongs to.
     kept : ndarray of shape (m, 3), int64
         From :func:`join_features` of the other layer.
     """

@@ -168,7 +168,7 @@ class _Process:
             others.close()
 
     def prepare(self, threads: int) -> None:
-        """Tell the process where its package is; wait until it has found it.
+        """Send the process the folder of its package; wait until it has imported it.
 
         Raises
         ------

@@ -320,7 +320,7 @@ class _Run:
     def _task(self, block: Block, halo: float, samplings: dict[str, CloudSampling]) -> BlockTask:
         margin = np.array([[-8 * halo], [8 * halo]])
         near = self.survey.near(block.box + margin)
-        # Results tell files by their numbers, which change when a file is added or taken away.
+        # Results identify files by their numbers, which change when a file is added or taken away.
         key = self._key(
             (self.survey.sources[one].path for one in near),
             near,
@@ -343,7 +343,7 @@ class _Run:
         return BlockTask(block, part, tuple(near), self.pipeline.name, tunables, samplings, halo, result, self.stop)
 
     def _teller(self, blocks: int, points: float) -> Callable[[int], None]:
-        """Return what tells from time to time how many blocks are done, how fast, and how long it will take."""
+        """Return a function that logs from time to time how many blocks are done, how fast, and the time left."""
         start = last = time.monotonic()
         done = 0
 
@@ -523,7 +523,7 @@ def _boxes(blocks: list[Block]) -> np.ndarray:
 
 def _unique_stems(sources: Iterable[Source]) -> list[str]:
     """Return the names of files without extension, each once, also where two folders have files of one name."""
-    # Some file systems don't tell upper from lower case.
+    # Some file systems don't distinguish upper from lower case.
     taken: dict[str, str] = {}
     for source in sources:
         stem = name = stem_of(source.path)
@@ -536,7 +536,7 @@ def _unique_stems(sources: Iterable[Source]) -> list[str]:
 
 
 def _state(path: Path) -> tuple[str, int, int]:
-    """Return what tells one state of a file from another: where it is, its size, when it was written."""
+    """Return what identifies a state of a file: where it is, its size, when it was written."""
     with readable(path):
         stat = path.stat()
     return str(path.resolve()), stat.st_size, stat.st_mtime_ns
@@ -548,7 +548,7 @@ def _minutes(seconds: float) -> str:
 
 @cache
 def _version() -> str:
-    """Return what tells one state of the program from another: a digest of its source."""
+    """Return what identifies a state of the program: a digest of its source."""
     digest = hashlib.sha256()
     for path in sorted(Path(__file__).resolve().parents[1].rglob("*.py")):
         digest.update(path.read_bytes())

@@ -142,7 +142,7 @@ def _shared_lines(
     places = np.stack([start[short] - start[long], end[short] - start[long]], axis=1)
     along = np.einsum("kej,kj->ke", places, way)
     shared = np.minimum(along.max(axis=1), length[long]) - np.maximum(along.min(axis=1), 0.0)
-    # Only where both are they must be at one place: an axis that is extended is less precise.
+    # Only where both are they must be at one position: an axis that is extended is less precise.
     step = np.diff(along, axis=1)[:, 0]
     near = _OFF * np.minimum(radius[one], radius[other])
     is_one = np.abs(radius[one] - radius[other]) < near

@@ -22,7 +22,7 @@ from ..stage import Monitor
 # Local meters begin at a multiple of this (m), as those of a single cloud do.
 _ORIGIN_STEP = 1000.0
 
-# What tells whether two records are the same measurement.
+# Dimensions by which two records are recognized as the same measurement.
 _KEYS = ("gps_time", "return_number", "number_of_returns", "point_source_id", "intensity")
 
 
@@ -99,7 +99,7 @@ class Survey:
 
     @property
     def box(self) -> np.ndarray:
-        """Least and greatest easting and northing (2, 2) of all files, m, as their headers tell."""
+        """Least and greatest easting and northing (2, 2) of all files, m, by their headers."""
         return np.array([self.boxes[:, 0].min(axis=0), self.boxes[:, 1].max(axis=0)])
 
     @property
@@ -297,7 +297,7 @@ def files_of_survey(paths: Iterable[Union[str, Path]]) -> list[Path]:
     Raises
     ------
     ValueError
-        If there are none, or one is no point cloud.
+        If there are no files, or one is no point cloud.
     """
     found: dict[Path, Path] = {}
     for path in map(Path, paths):

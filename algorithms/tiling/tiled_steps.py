@@ -62,7 +62,7 @@ def measuring(pipeline: Pipeline) -> list[Step]:
 
 
 def owners(pipeline: Pipeline) -> dict[str, tuple[str, str]]:
-    """Return for each layer whose features belong to those of another: its field that tells to which, and that layer.
+    """Return for each layer whose features belong to another: the field with the number of the other, and that layer.
 
     Layers go by the composite's names.
     """

@@ -1,6 +1,6 @@
 """The program of a worker process: it calls the functions that it is sent and returns what they return.
 
-:mod:`.processes` runs this file by its path. It imports nothing of the package before it is told where that is, and
+:mod:`.processes` runs this file by its path. It imports nothing of the package before it has received its folder, and
 never searches the current folder for modules: a survey's folder may hold files of any origin.
 """
 

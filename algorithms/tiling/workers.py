@@ -24,7 +24,7 @@ _BETWEEN_LOOKS = 0.5
 # Seconds that a scheduler has to answer.
 _ANSWER = 15
 
-# Seconds that work has to end after it is told to stop. Then its process is ended.
+# Seconds that work has to end after the signal to stop. Then its process is ended.
 _TO_STOP = 1.5
 
 # What Dask raises, by its name, when the workers that were given a task have died one after the other.
@@ -165,7 +165,7 @@ def run_all(
     tasks : list
         What it is called with.
     stop : Path
-        A file that tells running work to stop; it is made when the monitor is told to cancel.
+        A file by which running work stops; it is made when the user cancels.
     monitor : Monitor
         Receives the share of tasks that are done.
     tell : callable
@@ -174,7 +174,7 @@ def run_all(
     Raises
     ------
     Cancelled
-        If the monitor is told to cancel; no work is left running then.
+        If the user cancels; no work is left running then.
     ValueError
         If processes of this machine can't be started.
     """
