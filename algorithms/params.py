@@ -67,8 +67,8 @@ PointSource = Annotated[
     Param(
         "Source of the points",
         "Matched images show one closed surface, crowns included: there, roofs are distinguished from crowns by "
-        "planarity over meters and by color, and low buildings are looked for. 'automatic' takes a cloud for matched images that has "
-        "no second returns, at least 8 points per m² and no points beneath crowns.",
+        "planarity over meters and by color, and low buildings are looked for. 'automatic' takes a cloud for matched "
+        "images that has no second returns, at least 8 points per m² and no points beneath crowns.",
         choices=("automatic", "laser scanner", "matched images"),
     ),
 ]

@@ -84,8 +84,8 @@ def classify_noise_histogram_2019(
     Notes
     -----
     The paper names the filter and its threshold T_f, which is 5 in both of its scenes; cells and bins are not given,
-    and follow the density of the cloud. A cell in which no bin has enough points borrows the histogram of itself and its
-    eight neighbors, and where these have none either, the range of the nearest cell that has one.
+    and follow the density of the cloud. A cell in which no bin has enough points borrows the histogram of itself and
+    its eight neighbors, and where these have none either, the range of the nearest cell that has one.
 
     Tips of trees, chimneys, masts and wires that have few points in a bin are noise by this rule.
     'Classify noise by height histogram' asks for a gap and keeps them, and finds single points between the heights of

@@ -322,7 +322,7 @@ def _object_rows(values: dict) -> list[Row]:
         Row(
             "Correctness",
             percent(values["objects_correctness"]),
-            f"Share of the {values['objects_predicted']:,} buildings found that are true, by half of their area or more; "
+            f"Share of the {values['objects_predicted']:,} buildings found that are true, by half of their area; "
             f"{values['objects_false']:,} were invented.",
         ),
         Row(

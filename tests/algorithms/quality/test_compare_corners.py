@@ -284,7 +284,7 @@ def test_heights_of_the_layers_are_not_used():
 def test_a_map_of_another_place_is_refused(away):
     """All its buildings would be told as gone, which nobody who reads the counts alone would doubt."""
     footprints = layer(house(0, 0), house(30, 0))
-    with pytest.raises(ValueError, match=r"^The footprints and the old map lie 1 km apart; choose a map of the place"):
+    with pytest.raises(ValueError, match=r"^The footprints and the old map lie 1 km apart; choose a map of this area"):
         compare_corners(footprints, layer(house(0, 0) + away, house(30, 0) + away))
     near = layer(house(0, 0) + np.array(away) * 0.9, house(30, 0) + np.array(away) * 0.9)
     assert compare_corners(footprints, near)[2].values["missed"] == 2
