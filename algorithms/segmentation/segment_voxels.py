@@ -18,6 +18,7 @@ from ..geometry.sparse_voxels import (
     open_voxels,
     voxelize,
 )
+from ..geometry.voxel_filters import FILTERS, filter_counts
 from ..geometry.voxel_skeleton import skeleton
 from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..stage import Field, Layer, LayerFeatures, Param, stage
@@ -42,6 +43,7 @@ _OPERATIONS = {"erosion": erode, "dilation": dilate, "opening": open_voxels, "cl
             (
                 Field("segment_id", int, "segment of the voxel; 0 if unassigned"),
                 Field("count", int, "points in the voxel; 0 where the operation added it"),
+                Field("filtered", float, "number of points after the filter; the count without one"),
                 Field("distance", float, "distance from the voxel's center to the nearest empty voxel's", "m"),
             ),
         ),
@@ -71,6 +73,17 @@ def segment_voxels(
             choices=("6", "18", "26"),
         ),
     ] = "26",
+    count_filter: Annotated[
+        str,
+        Param(
+            "Filter of counts",
+            "Applied to the number of points of a voxel and its 26 neighbors before voxels with few points are left "
+            "out. Mean and binomial are convolutions, which smooth; the others are rank orders: the minimum thins and "
+            "the maximum widens, and the median removes single voxels.",
+            choices=("none", *FILTERS),
+            advanced=True,
+        ),
+    ] = "none",
     operation: Annotated[
         str,
         Param(
@@ -96,7 +109,7 @@ def segment_voxels(
         int,
         Param(
             "Minimum points of a voxel",
-            "Voxels with fewer points count as empty: more of them suppress scattered points.",
+            "Voxels with fewer points, after the filter, count as empty: more suppress scattered points.",
             low=1,
             high=1_000_000,
         ),
@@ -117,9 +130,10 @@ def segment_voxels(
 ):
     """Group points by the connected components of the voxels that they occupy.
 
-    The cloud becomes a 3D grid of occupied and empty voxels, to which erosion, dilation, opening or closing may be
-    applied. Voxels that are connected make a segment. The layer has the voxels as points at their centers, with
-    counts and distances to the background (distance transform), or their skeleton.
+    The cloud becomes a 3D grid of numbers of points, which may be filtered, then of occupied and empty voxels, to which
+    erosion, dilation, opening or closing may be applied. Voxels that are connected make a segment. The layer has the
+    voxels as points at their centers, with counts and distances to the background (distance transform), or their
+    skeleton.
 
     Parameters
     ----------
@@ -168,7 +182,9 @@ def segment_voxels(
     """
     used = not_noise(classification)
     if not len(used):
-        return np.zeros(len(xyz), np.int32), LayerFeatures([], {"segment_id": [], "count": [], "distance": []})
+        return np.zeros(len(xyz), np.int32), LayerFeatures(
+            [], {"segment_id": [], "count": [], "filtered": [], "distance": []}
+        )
     if voxel_size is None:
         sampling = sampling or CloudSampling.of(xyz, classification)
         density = sampling.surface_density
@@ -180,7 +196,10 @@ def segment_voxels(
     occupied, voxel, count = voxelize(xyz[used] - low, voxel_size)
     monitor.progress(0.3)
 
-    cells = occupied[count >= min_count]
+    filled, value = occupied, count.astype(float)
+    if count_filter != "none":
+        filled, value = filter_counts(occupied, count, count_filter, monitor.part(0.3, 0.4))
+    cells = filled[value >= min_count]
     if operation != "none":
         cells = _OPERATIONS[operation](cells, int(element), steps)
     monitor.progress(0.5)
@@ -194,11 +213,18 @@ def segment_voxels(
     of_component = np.zeros(len(component) + 1, np.int32)
     of_component[of_point] = segment_id[used]
 
-    layer_count = np.zeros(len(cells), np.int64)
+    layer_count, layer_value = np.zeros(len(cells), np.int64), np.zeros(len(cells))
     layer_count[where[where >= 0]] = count[where >= 0]
+    place = locate_voxels(cells, filled)
+    layer_value[place[place >= 0]] = value[place >= 0]
     distance = distance_to_background(cells) * voxel_size
     shown = skeleton(cells, monitor.part(0.8, 1)) if thin else np.ones(len(cells), bool)
     centers = (cells[shown] + 0.5) * voxel_size + low
-    columns = {"segment_id": of_component[component[shown]], "count": layer_count[shown], "distance": distance[shown]}
+    columns = {
+        "segment_id": of_component[component[shown]],
+        "count": layer_count[shown],
+        "filtered": layer_value[shown],
+        "distance": distance[shown],
+    }
     monitor.progress(1.0)
     return segment_id, LayerFeatures(list(centers), columns)

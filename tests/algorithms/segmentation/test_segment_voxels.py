@@ -112,3 +112,14 @@ def test_a_wire_across_a_valley_takes_no_grid(rng):
 def test_voxels_too_fine_are_refused():
     with pytest.raises(ValueError, match="more than can be numbered; remove points that lie far off"):
         segment_voxels(np.array([[0.0, 0, 0], [1e5, 1e5, 1e5]]), voxel_size=0.001)
+
+
+def test_a_filter_of_counts_removes_scattered_points_and_bridges_a_gap():
+    """A row of full voxels with one empty one, and a voxel with four points aside."""
+    along = np.repeat([0.5, 1.5, 2.5, 4.5, 5.5, 6.5], 9)
+    xyz = np.column_stack([np.append(along, [20.5] * 4), np.full(58, 0.5), np.full(58, 0.5)])
+    assert segment_voxels(xyz, voxel_size=1.0)[0].max() == 3
+    smooth, layer = segment_voxels(xyz, voxel_size=1.0, count_filter="binomial")
+    np.testing.assert_array_equal(smooth, np.repeat([1, 0], [54, 4]))
+    assert max(layer.columns["filtered"]) == pytest.approx(9 / 4)
+    assert not segment_voxels(xyz, voxel_size=1.0, count_filter="median")[0].any()
