@@ -9,7 +9,7 @@ import numpy as np
 from ..geometry.components import number_large
 from ..geometry.delaunay import triangulate
 from ..geometry.groups import items
-from ..params import PointDensity, SurfaceNoise
+from ..params import PointDensity
 from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..stage import Monitor, Param, stage
 from .surface_growing import Criteria, LocalPlanes, grow_planes, grow_surfaces, local_planes
@@ -26,6 +26,9 @@ _BENDS = 0.05
 
 # Distance to a plane within which a point belongs to it (standard deviations): one point in 370 lies farther off.
 _WITHIN = 3.0
+
+# Largest automatic tolerance (radii) where the noise allows it: steps of a scan finer than a centimeter part surfaces.
+_OF_RADIUS = 0.25
 
 # Root mean square distance of the points of a seed (standard deviations): with nine degrees of freedom 1 % of the
 # planes have more (chi-square).
@@ -128,7 +131,20 @@ def segment_surfaces(
     min_points: Annotated[
         int, Param("Minimum points", "Surfaces with fewer points get no id.", low=1, high=10_000_000)
     ] = 20,
-    noise: SurfaceNoise = None,
+    noise: Annotated[
+        Optional[float],
+        Param(
+            "Surface noise",
+            "Standard deviation of the points across a smooth surface.",
+            unit="m",
+            low=0,
+            high=10,
+            open_low=True,
+            automatic="measured on the cloud, on its smoothest fifth; at least 0.01 m, or a twelfth of the radius "
+            "where that is less.",
+            advanced=True,
+        ),
+    ] = None,
     density: PointDensity = None,
     sampling: Optional[CloudSampling] = None,
     monitor=None,
@@ -174,9 +190,9 @@ def segment_surfaces(
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.surface_density if density is None else density
-    noise = sampling.noise if noise is None else noise
     spacing = 1 / float(np.sqrt(density))
     radius = _RADIUS_SPACINGS * spacing if radius is None else radius
+    noise = _noise(sampling, radius) if noise is None else noise
     tolerance = _WITHIN * float(np.hypot(noise, _BENDS * spacing)) if tolerance is None else tolerance
     monitor.resolved(density=density, noise=noise, radius=radius, tolerance=tolerance)
     used = not_noise(classification)
@@ -198,6 +214,12 @@ def segment_surfaces(
     segment_id = np.zeros(len(xyz), np.int32)
     segment_id[used] = number_large(surface, min_points)
     return segment_id
+
+
+def _noise(sampling: CloudSampling, radius: float) -> float:
+    """Return the surface noise (m), less than a centimeter in scans so dense that it would blur neighborhoods."""
+    most = _OF_RADIUS * radius / _WITHIN
+    return sampling.noise if sampling.noise <= most else min(sampling.noise, max(sampling.scan_noise, most))
 
 
 def _grown(

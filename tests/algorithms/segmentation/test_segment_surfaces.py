@@ -359,3 +359,16 @@ def test_noise_few_points_and_lines_give_no_segment(rng):
 def test_cancel_gets_through(tile):
     with pytest.raises(Cancelled):
         stage(tile[0], np.ones(len(tile[0]), np.uint8), monitor=Listening(stop_at=0.5))
+
+
+def test_a_step_of_two_centimeters_parts_surfaces_in_a_scan_of_a_millimeter(rng):
+    """Noise was held at a centimeter: its tolerance of 3 cm was wider than the radius, and both plates were one."""
+    places = rng.uniform(0, 1, (12_000, 2))
+    lower, upper = (
+        np.column_stack([places, np.zeros(len(places))]),
+        np.column_stack([places + [1, 0], np.full(12_000, 0.02)]),
+    )
+    xyz = np.concatenate([lower, upper]) + rng.normal(0, 0.0013, (24_000, 3))
+    ids = segment_surfaces(xyz)
+    assert np.bincount(ids, minlength=3)[1:].min() > 11_000
+    assert (ids[:12_000] > 0).mean() > 0.95
