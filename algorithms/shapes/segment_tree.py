@@ -13,13 +13,20 @@ from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
 from .cylinder_fits import Cylinder
 from .stem_search import BREAST, find_stems, ground_level
 from .surface_normals import refuse_line
-from .tree_structure import Branch, Slices, branches_of, roots_of, slices_of, smooth, voxels_of
+from .tree_structure import Branch, Slices, branches_of, smooth, standing, voxels_of
 
 # Side of a voxel (spacings), and the least (m): bark is not resolved any finer.
 _VOXEL_SPACINGS, _LEAST_VOXEL = 2.0, 0.02
 
 # Gaps that paths cross with nothing set (voxels).
 _GAP_VOXELS = 8.0
+
+# Largest median deviation of the distances of the points of a piece from their median (of that): those of a circle
+# around the line. Stems at breast height are told by the same share.
+_ROUND = 0.2
+
+# Largest measured radius (of that estimated): what is wider is leaves. Simulated branches have 1.4.
+_WIDEST = 3.0
 
 # Length (m) of the pieces of a branch that have a radius of their own, and times that radius within which points lie.
 _PIECE, _WITHIN = 0.5, 2.5
@@ -30,7 +37,8 @@ _FIELDS = (
     Field("branch_order", int, "0 for a stem, 1 for branches of the stem, 2 for theirs"),
     Field("dbh", float, "diameter of a stem at breast height, 1.3 m; empty for branches", "m"),
     Field("length", float, "length along the middle line", "m"),
-    Field("radius", float, "median radius", "m"),
+    Field("radius", float, "median radius of its pieces, measured or estimated", "m"),
+    Field("measured", float, "share of its pieces whose radius is measured, 0 to 1; of the others it is estimated"),
     Field("volume", float, "sum of the volumes of pieces of half a meter, each a cylinder", "m³"),
     Field("points", int, "points on the branch"),
 )
@@ -124,14 +132,18 @@ def segment_tree(
     have holes, and their skeleton is a net; slices by the length of the path have their middle inside the stem.
     The ground below a tree is the lowest point within 1 to 2 m. Gaps up to the maximum are crossed at three times
     their length: shadows part stems and branches in every scan. Points farther from the middle line than 2.5 times the
-    median of their piece of 0.5 m are leaves. The radius of a piece is the median distance of its points from the line.
+    median of their piece of 0.5 m are leaves. The radius of a piece is the median distance of its points from the line,
+    if that is at least half a voxel, at most 3 times the estimated one, and the distances scatter by less than 0.2 of
+    it, as those of a circle do. The estimate is a cone: stem and branches grow thinner toward their tips as the stem
+    does from its diameter at breast height. It counts where points show no circle, unless they lie closer to the line.
+    A stem too slender to stand by itself belongs to the thicker one that it grows from.
     A branch is crooked if its chord is shorter than 0.6 of its length.
 
     References
     ----------
     Gorte, B. G. H., Pfeifer, N., 2004. Structuring laser-scanned trees using 3D mathematical morphology. IAPRS 35 (B5),
     929-933. Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner
-    point clouds, section 5.4.
+    point clouds, section 5.4. McMahon, T. A., 1973. Size and shape in biology. Science 179, 1201-1204.
     """
     refuse_line(xyz)
     rows = candidates(classification, None, 0)
@@ -152,12 +164,14 @@ def segment_tree(
         return segment_id, LayerFeatures([], {field.name: [] for field in _FIELDS})
     voxels = voxels_of(places, voxel_size, min_count, max_gap, monitor.part(0.1, 0.4))
     feet = np.array([_at_breast(stem, level) for stem, level in stems])
-    slices = slices_of(voxels, roots_of(voxels, feet), voxel_size)
+    radii = np.array([stem.radius for stem, _ in stems])
+    slices = standing(voxels, feet, radii, voxel_size)
     monitor.progress(0.7)
     branches, of_slice = branches_of(slices, min_length, monitor.part(0.7, 0.9))
     of_point = np.where(voxels.of_point >= 0, slices.of_voxel[voxels.of_point], -1)
-    cylinders = [stem for stem, _ in stems]
-    label, layer = _measured(places, slices, branches, of_slice, of_point, feet, cylinders, monitor.part(0.9, 1))
+    label, layer = _measured(
+        places, slices, branches, of_slice, of_point, (feet, radii, voxel_size), monitor.part(0.9, 1)
+    )
     segment_id[rows] = label
     layer.geometries = [line + origin for line in layer.geometries]
     monitor.progress(1.0)
@@ -176,11 +190,15 @@ def _measured(
     branches: list[Branch],
     of_slice: np.ndarray,
     of_point: np.ndarray,
-    feet: np.ndarray,
-    stems: list[Cylinder],
+    stems: tuple[np.ndarray, np.ndarray, float],
     monitor: Monitor,
 ) -> tuple[np.ndarray, LayerFeatures]:
-    """Return the branch (n,) of each point from 1, 0 for leaves, and the layer of the branches."""
+    """Return the branch (n,) of each point from 1, 0 for leaves, and the layer of the branches.
+
+    ``stems`` are the places (s, 3) of stems at breast height, their radii (s,), m, and the side of a voxel (m).
+    """
+    feet, radii, voxel_size = stems
+    of_tree: dict[int, float] = {}
     branch = np.where(of_point >= 0, of_slice[of_point], -1)
     parts = split_groups(branch, len(branches))
     label = np.zeros(len(xyz), np.int32)
@@ -199,18 +217,29 @@ def _measured(
         ahead /= np.maximum(np.linalg.norm(ahead, axis=1), 1e-12)[:, None]
         distance = np.linalg.norm(offset - (offset * ahead).sum(axis=1)[:, None] * ahead, axis=1)
         piece, n_pieces = (along[at] / _PIECE).astype(np.int64), int(along[-1] / _PIECE) + 1
-        radius = _medians(distance, piece, n_pieces)
-        label[own[distance <= _WITHIN * radius[piece]]] = number
-        sizes = np.diff(np.append(np.arange(n_pieces) * _PIECE, along[-1]))
+        reach = _medians(distance, piece, n_pieces)
+        label[own[distance <= _WITHIN * reach[piece]]] = number
+        length = float(along[-1])
+        ends = np.append(np.arange(n_pieces) * _PIECE, length)
         stem = int(np.argmin(np.linalg.norm(feet[:, None] - line, axis=2).min(axis=1)))
+        if one.order == 0:
+            breast = float(along[np.argmin(np.linalg.norm(line - feet[stem], axis=1))])
+            of_tree[one.tree] = float(radii[stem]) / max(length - breast, _PIECE)
+        taper = of_tree[one.tree]
+        cone = taper * (length - (ends[1:] + ends[:-1]) / 2)
+        is_round = _medians(np.abs(distance - reach[piece]), piece, n_pieces) <= _ROUND * reach
+        is_round &= (reach >= voxel_size / 2) & (np.bincount(piece, minlength=n_pieces) > 0)
+        is_round &= reach <= _WIDEST * cone
+        radius = np.where(is_round, reach, np.minimum(reach, cone))
         row = {
             "id": number,
             "tree": one.tree + 1,
             "branch_order": one.order,
-            "dbh": 2 * stems[stem].radius if one.order == 0 else float("nan"),
-            "length": float(along[-1]),
+            "dbh": 2 * radii[stem] if one.order == 0 else float("nan"),
+            "length": length,
             "radius": float(np.median(radius)),
-            "volume": float((np.pi * radius**2 * sizes).sum()),
+            "measured": float(is_round.mean()),
+            "volume": float((np.pi * radius**2 * np.diff(ends)).sum()),
         }
         for name, value in row.items():
             columns[name].append(value)

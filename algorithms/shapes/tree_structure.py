@@ -31,6 +31,13 @@ _CHUNK = 1_000
 # Rounds in which a line is smoothed: its steps are those of voxels.
 _SMOOTHINGS = 4
 
+# Height (m) at which a column of wood with a diameter of 1 m buckles under its own weight, growing with the diameter to
+# the power of 2/3 (McMahon 1973: 0.79 times the cube root of elasticity over weight, 1.7e6 m for green wood).
+_BUCKLING = 95.0
+
+# Share of that height that trees do not exceed: forest spruces a hundred diameters high, of 30 cm, reach 0.7 of it.
+_SLENDER = 0.75
+
 # Branches leave their stem at least so high over its root (m): what is lower is grass.
 _CLEAR = 0.5
 
@@ -146,6 +153,37 @@ def roots_of(voxels: Voxels, stems: np.ndarray) -> np.ndarray:
             # Of those as low the one in the middle.
             roots.append(near[np.lexsort((reach[near], voxels.places[near, 2]))[0]])
     return np.unique(np.array(roots, np.int64))
+
+
+def standing(voxels: Voxels, stems: np.ndarray, radii: np.ndarray, voxel_size: float) -> Slices:
+    """Return the slices of the trees over those stems that can stand by themselves.
+
+    Parameters
+    ----------
+    voxels : Voxels
+        Voxels of the trees.
+    stems : ndarray of shape (s, 3)
+        Places of the axes of stems at breast height (m).
+    radii : ndarray of shape (s,)
+        Their radii (m).
+    voxel_size : float
+        Side of a voxel, m.
+    """
+    thickest_first = np.argsort(-radii, kind="stable")
+    stems, radii = stems[thickest_first], radii[thickest_first]
+    while True:
+        slices = slices_of(voxels, roots_of(voxels, stems), voxel_size)
+        foot, tree = slices.places[slices.parent < 0], slices.tree[slices.parent < 0]
+        top = np.full(int(tree.max(initial=-1)) + 1, -np.inf)
+        np.maximum.at(top, slices.tree, slices.places[:, 2])
+        nearest = np.argmin(np.linalg.norm(foot[:, None, :2] - stems[:, :2], axis=2), axis=1)
+        height = np.zeros(len(stems))
+        np.maximum.at(height, nearest, top[tree] - foot[:, 2])
+        is_slender = height > _SLENDER * _BUCKLING * (2 * radii) ** (2 / 3)
+        if not is_slender[1:].any():
+            return slices
+        # The thinnest one goes first: its wood may belong to any of the others.
+        stems, radii = (np.delete(values, np.flatnonzero(is_slender)[-1], axis=0) for values in (stems, radii))
 
 
 def slices_of(voxels: Voxels, roots: np.ndarray, voxel_size: float) -> Slices:

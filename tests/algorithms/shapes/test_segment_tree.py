@@ -52,6 +52,30 @@ def test_the_stem_is_found_with_its_diameter_and_length(found):
     assert np.isnan(columns["dbh"][1:]).all()
 
 
+def test_radii_that_voxels_cannot_carry_are_estimated(tree, found):
+    """With voxels of 13 cm, all branches got radii of 14 cm, and the wood was 12 times as much."""
+    xyz, classification, *_ = tree
+    fine = found[1].columns
+    coarse = segment_tree(xyz, classification, voxel_size=0.13)[1].columns
+    assert sum(coarse["volume"]) == pytest.approx(sum(fine["volume"]), rel=0.4)
+    is_branch = np.array(coarse["branch_order"]) > 0
+    assert np.mean(np.array(coarse["measured"])[is_branch]) < 0.2
+    assert fine["measured"][0] > 0.7
+
+
+def test_a_stem_too_slender_to_stand_is_no_stem(tree, rng):
+    """A branch that hangs to the ground beside a stem took half of its tree."""
+    xyz, classification, *_ = tree
+    count, top = 4000, 8.5
+    up, turn = rng.uniform(0, top, count), rng.uniform(0, 2 * np.pi, count)
+    foot = xyz[xyz[:, 2] < 1][:, :2].mean(axis=0) + [0.6, 0]
+    hanging = np.column_stack([foot + 0.017 * np.column_stack([np.cos(turn), np.sin(turn)]), up])
+    both = np.concatenate([xyz, hanging])
+    layer = segment_tree(both, np.append(classification, np.ones(count, np.uint8)))[1]
+    assert layer.columns["branch_order"].count(0) == 1
+    assert layer.columns["dbh"][0] == pytest.approx(0.2, abs=0.01)
+
+
 def test_branches_are_found_and_leaves_are_none(tree, found):
     xyz, classification, truth, branches = tree
     ids = found[0]
