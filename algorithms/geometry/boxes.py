@@ -22,6 +22,9 @@ _MOST_BOXES = 2**63 - 1
 
 Offset = tuple[int, int, int]
 
+# Points of which all pairs are compared at once, in less time than it takes to look for the boxes around each box.
+_FEW = 300
+
 
 class Boxes:
     """Points sorted by the box of a regular grid that they lie in.
@@ -154,6 +157,10 @@ def connected(boxes: Boxes, is_near: Callable[[np.ndarray], np.ndarray], monitor
     each, which joins most: pairs of points are never all held at once, and memory follows the points.
     """
     component = np.arange(len(boxes))
+    if len(boxes.order) <= _FEW:
+        here, there = np.triu_indices(len(boxes.order), 1)
+        near, box = is_near(boxes.xyz[here] - boxes.xyz[there]), boxes.box()
+        return _joined(component, box[here[near]], box[there[near]])
     half = len(around()) // 2
     left: list[tuple[np.ndarray, np.ndarray]] = []
     for done, pairs in enumerate(boxes.beside_all(), start=1):

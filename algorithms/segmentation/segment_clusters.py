@@ -136,6 +136,9 @@ def dbscan(xyz: np.ndarray, radius: float, min_points: int, monitor: Monitor) ->
     def is_near(offset: np.ndarray) -> np.ndarray:
         return (offset[:, 0] ** 2 + offset[:, 1] ** 2) + offset[:, 2] ** 2 <= radius * radius
 
+    if min_points <= 1:
+        # Every point is its own neighbor, so all are cores.
+        return by_first_point(_in_order(boxes, connected(boxes, is_near, monitor)[boxes.box()]))
     is_core = _cores(boxes, is_near, min_points, monitor.part(0, 0.4))
     if is_core.any():
         cores, others = boxes.of(is_core), boxes.of(~is_core)
@@ -145,6 +148,13 @@ def dbscan(xyz: np.ndarray, radius: float, min_points: int, monitor: Monitor) ->
         cluster[core] = by_first_point(component[core])
         cluster[others.order] = _first_cluster(others, cores, cluster[cores.order], is_near, monitor.part(0.8, 1))
     return cluster
+
+
+def _in_order(boxes: Boxes, values: np.ndarray) -> np.ndarray:
+    """Return values (n,) of points in the order of their boxes in the order of the points."""
+    ordered = np.empty_like(values)
+    ordered[boxes.order] = values
+    return ordered
 
 
 def _cores(boxes: Boxes, is_near, min_points: int, monitor: Monitor) -> np.ndarray:

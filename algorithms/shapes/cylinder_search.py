@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Optional
 
 import numpy as np
@@ -68,6 +69,12 @@ _LEAST_SAGITTA = 6.0
 
 # Least share of the cells of the surface, between the ends and on the circumference seen, that hold points.
 _LEAST_FILLED = 0.5
+
+
+@lru_cache(maxsize=64)
+def _radii(low: float, high: float) -> np.ndarray:
+    """Return the radii (m) that are tried in a level."""
+    return np.geomspace(low, high, _RADII)
 
 
 @dataclass(frozen=True)
@@ -239,15 +246,16 @@ class CylinderSearch:
         places = np.column_stack([(self.xyz[rows] - middle) @ first, (self.xyz[rows] - middle) @ second])
         toward = np.column_stack([self.normals[rows] @ first, self.normals[rows] @ second])
         toward /= np.maximum(np.linalg.norm(toward, axis=1), 1e-12)[:, None]
-        radii = np.geomspace(low, high, _RADII)
+        radii = _radii(low, high)
         signed = np.concatenate([radii, -radii])
-        centers = places[:, None] + signed[:, None] * toward[:, None]
         cell, reach = _CENTER_BIN * low, (WINDOW * low) / 2 + 1.1 * high
         side = int(np.ceil(2 * reach / cell)) + 2
-        index = np.floor((centers + reach) / cell).astype(np.int64)
-        inside = ((index >= 0) & (index < side)).all(axis=2)
-        number = np.broadcast_to(np.tile(np.arange(_RADII), 2), inside.shape)
-        key = (number * side + index[..., 0]) * side + index[..., 1]
+        number = np.tile(np.arange(_RADII), 2)
+        index = [
+            np.floor((places[:, k, None] + signed * toward[:, k, None] + reach) / cell).astype(np.int64) for k in (0, 1)
+        ]
+        inside = (index[0] >= 0) & (index[0] < side) & (index[1] >= 0) & (index[1] < side)
+        key = (number * side + index[0]) * side + index[1]
         votes = np.bincount(key[inside], minlength=_RADII * side * side).reshape(_RADII, side, side)
         votes = votes[:, 1:] + votes[:, :-1]
         votes = votes[:, :, 1:] + votes[:, :, :-1]

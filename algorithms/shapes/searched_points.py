@@ -14,7 +14,7 @@ from ..segmentation.candidate_points import candidates
 from ..stage import Monitor, Param
 from .search_settings import check_radii, point_noise
 from .shape_windows import WINDOW
-from .surface_normals import normal_points, surface_normals
+from .surface_normals import normal_points, normals_of
 
 # Segments are laid out side by side, so that no window holds points of two: this many window sides apart.
 _SIDES_APART = 3.0
@@ -273,7 +273,7 @@ def search_shapes(
     min_radius, max_radius = check_radii(min_radius, max_radius, noise, spacing, xyz)
     n_neighbors = normal_points(sampling) if n_neighbors is None else n_neighbors
     monitor.resolved(tolerance=tolerance, min_radius=min_radius, max_radius=max_radius, n_neighbors=n_neighbors)
-    normals = surface_normals(xyz - xyz.min(axis=0), n_neighbors, monitor.part(0, 0.2))[0]
+    normals = normals_of(xyz, n_neighbors, sampling, monitor.part(0, 0.2))
     points = searched_points(xyz, classification, segment_id, shape, search_in, WINDOW * max_radius)
     label, found = np.zeros(len(points.rows), np.int64), []
     if len(points.rows):

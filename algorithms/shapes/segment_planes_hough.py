@@ -19,7 +19,7 @@ from .joined_pieces import whole_plane
 from .plane_polygons import PLANE_FIELDS, plane_polygons
 from .search_settings import point_noise
 from .searched_points import WHOLE_CLOUD, SearchedPoints, SearchIn, Shape, named, searched_points
-from .surface_normals import NormalPoints, normal_points, refuse_line, surface_normals
+from .surface_normals import NormalPoints, normal_points, normals_of, refuse_line
 
 METHODS = ("points", "normals")
 
@@ -223,7 +223,7 @@ def segment_planes_hough(
     else:
         n_neighbors = None
     points = searched_points(xyz, classification, segment_id, shape, search_in, window_size, sampling.corner)
-    search = _Search(window_size, tolerance, distance_bin, slope_bin, n_neighbors)
+    search = _Search(window_size, tolerance, distance_bin, slope_bin, n_neighbors, sampling)
     plane = search.planes(xyz, points, monitor.part(0, 0.8))
     label = _surfaces(points.xyz, plane, max_gap, min_area * sampling.surface_density, monitor.part(0.8, 1))
     if not label.any():
@@ -241,6 +241,7 @@ class _Search:
     distance_bin: float
     slope_bin: float
     n_neighbors: Optional[int]
+    sampling: CloudSampling
 
     def planes(self, xyz: np.ndarray, points: SearchedPoints, monitor: Monitor) -> np.ndarray:
         """Return the plane (k,), from 0, that each searched point of a cloud (n, 3) is on; -1 for none."""
@@ -259,7 +260,7 @@ class _Search:
         """Return the normals (k, 3) of the points in the order of the boxes, measured in the whole cloud."""
         if self.n_neighbors is None:
             return None
-        return surface_normals(xyz - points.origin, self.n_neighbors, monitor)[0][points.rows[boxes.order]]
+        return normals_of(xyz, self.n_neighbors, self.sampling, monitor)[points.rows[boxes.order]]
 
 
 def _slope_bin(distance_bin: float, window_size: float) -> float:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import zlib
 from typing import Annotated, Optional
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -24,6 +26,9 @@ _LEAST_POINTS, _MOST_POINTS = 12, 80
 
 # Ratio of the two larger variances below which points lie on one line, and the plane through them is undefined.
 _LINE = 1e-8
+
+# Of each sampling: what its normals were measured on, and the normals. They go with the sampling.
+_KEPT: WeakKeyDictionary[CloudSampling, tuple[tuple, np.ndarray]] = WeakKeyDictionary()
 
 NormalPoints = Annotated[
     Optional[int],
@@ -47,6 +52,19 @@ def normal_points(sampling: CloudSampling) -> int:
     """
     needed = 2 * sampling.scan_noise * float(np.sqrt(np.pi * sampling.surface_density)) / _NORMAL_ERROR
     return int(np.clip(np.ceil(min(needed, _MOST_POINTS)), _LEAST_POINTS, _MOST_POINTS))
+
+
+def normals_of(xyz: np.ndarray, count: int, sampling: CloudSampling, monitor: Monitor) -> np.ndarray:
+    """Return the normals (n, 3) of a cloud (n, 3), m, see :func:`surface_normals`; measured once in a run.
+
+    The stages of a run share its ``sampling``, with which the normals of the last cloud are kept.
+    """
+    key = count, xyz.shape, zlib.crc32(np.ascontiguousarray(xyz).data)
+    kept = _KEPT.get(sampling)
+    if kept is None or kept[0] != key:
+        kept = key, surface_normals(xyz - xyz.min(axis=0), count, monitor)[0]
+        _KEPT[sampling] = kept
+    return kept[1]
 
 
 def surface_normals(xyz: np.ndarray, count: int, monitor: Monitor) -> tuple[np.ndarray, np.ndarray]:
