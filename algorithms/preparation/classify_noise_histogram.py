@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Annotated, Optional
 
 import numpy as np
@@ -10,20 +11,24 @@ from ..cloud.asprs import NOISE, PointClass
 from ..geometry.grid import Grid, fixed_grid_over, lattice, plan_box
 from ..packages import spatial
 from ..params import MinFrequency
+from ..rules import rule
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Monitor, Param, stage
 from .height_histograms import Histogram, pooled_histogram, with_borrowed_ranges
 from .points_under_ground import under_ground
 
-# Points per cell on average: with the eight cells around it some 4000 points make a histogram, whatever the density.
-_POINTS_PER_CELL = 450
 
-# Empty bins that part noise from the body: a chimney, a treetop or a rock face leaves no such gap.
-_GAP_BINS = 2
+@dataclass(frozen=True)
+class HistogramRules:
+    """What a gap in a histogram parts from the scene."""
 
-# Number of points close together that are an object, even one as small as the head of a lamp: birds and stray returns
-# are single points. Close: within this many point spacings, and a meter at least.
-_GROUP_SIZE, _GROUP_SPACINGS = 3, 3.0
+    points_per_cell: int = rule(450, "points", "statistics: with the cells around, some 4000 points make a histogram")
+    gap: int = rule(2, "bins", "physics: empty ones; chimneys, treetops and rock faces leave no such gap")
+    group: int = rule(3, "points", "physics: close together they are a lamp or a wire; birds are single points")
+    group_reach: float = rule(3.0, "point spacings", "within which points of a group lie, and a meter at least")
+
+
+HISTOGRAM = HistogramRules()
 
 
 # A cell borrows the histograms of the cells around it, which are some 5 to 10 m wide (m).
@@ -50,7 +55,7 @@ def classify_noise_histogram(
             unit="m",
             low=0.1,
             high=10_000,
-            automatic="cells of 450 points on average.",
+            automatic=f"cells of {HISTOGRAM.points_per_cell:g} points on average.",
             advanced=True,
         ),
     ] = None,
@@ -142,7 +147,7 @@ def classify_noise_histogram(
         return made
     is_low, is_high, is_near = beyond
     hanging = np.flatnonzero(is_high & is_near)
-    is_high[hanging[_in_group(points[hanging], max(1.0, _GROUP_SPACINGS * spacing))]] = False
+    is_high[hanging[_in_group(points[hanging], max(1.0, HISTOGRAM.group_reach * spacing))]] = False
     if isolated:
         rest = np.flatnonzero(~(is_low | is_high))
         is_low[rest[under_ground(points[rest], spacing, monitor.part(0.7, 1.0))]] = True
@@ -158,7 +163,7 @@ def _automatic(
 ) -> tuple[float, float]:
     """Return the cell size and bin height to use, and log those that were not given."""
     if cell_size is None:
-        cell_size = float(np.sqrt(_POINTS_PER_CELL)) * spacing
+        cell_size = float(np.sqrt(HISTOGRAM.points_per_cell)) * spacing
         monitor.resolved(cell_size=cell_size)
     if bin_height is None:
         # On a thin cloud a roof has few points; higher bins keep them together.
@@ -202,7 +207,7 @@ def _scene_range(
     """
     cells, start = np.unique(histogram.cell, return_index=True)
     # Runs of bins without a gap: one full bin makes all bins of its run part of the scene.
-    is_break = np.diff(histogram.level, prepend=0) > _GAP_BINS
+    is_break = np.diff(histogram.level, prepend=0) > HISTOGRAM.gap
     is_break[start] = True
     run = np.cumsum(is_break) - 1
     first = np.flatnonzero(is_break)
@@ -221,11 +226,11 @@ def _scene_range(
     low, high = np.full(len(cells), np.iinfo(np.int64).max), np.full(len(cells), -1)
     np.minimum.at(low, run_cell[near], run_low[near])
     np.maximum.at(high, run_cell[near], run_high[near])
-    return with_borrowed_ranges(grid, cells, low, high, _GAP_BINS)
+    return with_borrowed_ranges(grid, cells, low, high, HISTOGRAM.gap)
 
 
 def _in_group(points: np.ndarray, radius: float) -> np.ndarray:
-    """Return which points have at least ``_GROUP_SIZE`` points, themselves among them, within ``radius`` (m)."""
-    if len(points) < _GROUP_SIZE:
+    """Return which points have at least ``HISTOGRAM.group`` points, themselves among them, within ``radius`` (m)."""
+    if len(points) < HISTOGRAM.group:
         return np.zeros(len(points), bool)
-    return spatial.cKDTree(points).query(points, _GROUP_SIZE)[0][:, -1] <= radius
+    return spatial.cKDTree(points).query(points, HISTOGRAM.group)[0][:, -1] <= radius

@@ -2,31 +2,34 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Optional
 
 import numpy as np
 
 from ..geometry.grid import distinct, grid_over, plan_box
+from ..rules import rule
 
-# Average points per occupied cell of the grid that measures the area. Random sampling leaves one such cell in 150
-# empty; courtyards, water and gaps between strips still show as empty.
-_POINTS_PER_CELL = 5.0
 
-# Smallest cell (m) of that grid. Coordinates are stored to a centimeter or finer, so the points of a wall or a mast
-# share positions, and ever smaller cells would find ever less area.
-_LEAST_CELL = 0.01
+@dataclass(frozen=True)
+class DensityRules:
+    """How the area is measured that points occupy."""
 
-# Cell in which the filling is measured (point spacings): evenly random points leave a tenth of such cells empty.
-_FILLED_CELL_SPACINGS = 1.5
+    points_per_cell: float = rule(5.0, "points", "statistics: random points leave one such cell in 150 empty")
+    least_cell: float = rule(
+        0.01, "m", "files keep a centimeter: in smaller cells, walls and masts would have ever less area"
+    )
+    filled_cell: float = rule(1.5, "point spacings", "statistics: random points leave a tenth of such cells empty")
+    least_filled: float = rule(
+        0.75, "share", "of these that hold points at the right spacing; usual scanners fill four fifths"
+    )
+    step: float = rule(2**0.125, "ratio", "of one trial of the spacing to the next")
+    most_spacing: float = rule(
+        2.0, "ratio", "of effective to mean spacing; beyond it dense parts are seen too coarsely"
+    )
 
-# Share of these cells that holds points where the spacing is the right scale; usual scanners fill four fifths.
-_LEAST_FILLED = 0.75
 
-# Factor from one trial of the spacing to the next.
-_SPACING_STEP = 2**0.125
-
-# Largest factor between effective and mean spacing. Beyond it the dense parts would be seen too coarsely.
-_MOST_SPACING = 2.0
+DENSITY = DensityRules()
 
 
 def point_density(xyz: np.ndarray) -> float:
@@ -62,7 +65,7 @@ def point_density(xyz: np.ndarray) -> float:
         )
     density = len(xyz) / area
     for _ in range(20):
-        size = max(float(np.sqrt(_POINTS_PER_CELL / density)), _LEAST_CELL)
+        size = max(float(np.sqrt(DENSITY.points_per_cell / density)), DENSITY.least_cell)
         occupied = len(distinct(grid_over(xyz, size).number(xyz))[0])
         found = len(xyz) / (occupied * size * size)
         if abs(found - density) < 0.01 * density:
@@ -99,9 +102,9 @@ def effective_density(xyz: np.ndarray, density: Optional[float] = None) -> float
     the spacing with them grow until it is not.
     """
     density = point_density(xyz) if density is None else density
-    size, growth = _FILLED_CELL_SPACINGS / float(np.sqrt(density)), 1.0
-    while growth < _MOST_SPACING and _filled(xyz, size * growth) < _LEAST_FILLED:
-        growth *= _SPACING_STEP
+    size, growth = DENSITY.filled_cell / float(np.sqrt(density)), 1.0
+    while growth < DENSITY.most_spacing and _filled(xyz, size * growth) < DENSITY.least_filled:
+        growth *= DENSITY.step
     return density / growth**2
 
 

@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-# Least resolution (m): coordinates are stored to a centimeter or finer, and smaller deviations from a line or a plane
-# can't be distinguished from zero.
-LEAST_RESOLUTION = 0.01
+from ..rules import rule
 
-# Fewer levels than this are those of flat roofs, not of rounded heights.
-_LEAST_LEVELS = 10
 
-# Larger steps between levels (m) are those of storeys: nobody rounds so coarsely.
-_MOST_STEP = 0.5
+@dataclass(frozen=True)
+class HeightRules:
+    """How coarsely heights are rounded."""
 
-# Least share of the levels of rounded heights that follow the next lower one by the usual step.
-_EVEN_SHARE = 0.5
+    least: float = rule(0.01, "m", "files keep a centimeter; smaller deviations can not be distinguished from zero")
+    levels: int = rule(10, "levels", "fewer are those of flat roofs, not of rounded heights")
+    most_step: float = rule(0.5, "m", "physics: larger steps between levels are those of storeys")
+    even_share: float = rule(
+        0.5, "share", "of the levels of rounded heights that follow the next lower one by the usual step"
+    )
+    even: float = rule(0.01, "share", "of a step, within which steps are the same")
 
-# Steps are the same within this part of them.
-_EVEN = 0.01
+
+HEIGHTS = HeightRules()
+LEAST_RESOLUTION = HEIGHTS.least
 
 
 def rounding_deviation(elevation: np.ndarray) -> float:
@@ -36,13 +41,13 @@ def rounding_deviation(elevation: np.ndarray) -> float:
         uneven, as those of finely measured heights are, few, or as far from one another as storeys.
     """
     steps = np.diff(np.unique(elevation))
-    if len(steps) < _LEAST_LEVELS:
+    if len(steps) < HEIGHTS.levels:
         return 0.0
     step = float(np.median(steps))
-    is_even = np.abs(steps - step) <= _EVEN * step
-    return step / float(np.sqrt(12)) if step <= _MOST_STEP and is_even.mean() >= _EVEN_SHARE else 0.0
+    is_even = np.abs(steps - step) <= HEIGHTS.even * step
+    return step / float(np.sqrt(12)) if step <= HEIGHTS.most_step and is_even.mean() >= HEIGHTS.even_share else 0.0
 
 
 def height_resolution(elevation: np.ndarray) -> float:
     """Return the standard deviation (m) below which no roughness of a cloud of these heights (m) can be measured."""
-    return max(LEAST_RESOLUTION, rounding_deviation(elevation))
+    return max(HEIGHTS.least, rounding_deviation(elevation))

@@ -2,27 +2,31 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import product
 from typing import Optional
 
 import numpy as np
 
 from ..geometry.grid import Grid, distinct, find_cells, fixed_grid_over, lattice
+from ..rules import rule
 
-# Side (point spacings) of the cells in which areas, and points beneath a group, are counted.
-_CELL_SPACINGS = 1.5
 
-# Least side (m) of the cells in which areas are counted.
-_LEAST_CELL = 0.3
+@dataclass(frozen=True)
+class MeasureRules:
+    """How clusters are counted in cells."""
 
-# Distance (m) below a group from which points lie under it and not on it.
-_BENEATH = 1.0
+    cell: float = rule(
+        1.5, "point spacings", "statistics: cells hold two points, by which areas and points beneath are counted"
+    )
+    least_cell: float = rule(0.3, "m", "side of the cells in which areas are counted, at least")
+    beneath: float = rule(1.0, "m", "physics: points deeper below a group lie under it and not on it")
+    least_column: float = rule(1.0, "m", "of columns of points that pass a surface: between two wires most do")
+    beside: float = rule(0.2, "share", "of a group beside others: the edge of a dormer is, the tip of a branch is not")
 
-# Least side (m) of the columns in which points that pass a surface are counted: between two wires most of them pass.
-_LEAST_COLUMN = 1.0
 
-# Share of a group that must lie beside others: the edge of a dormer does, the tip of a branch does not.
-_BESIDE = 0.2
+MEASURES = MeasureRules()
+
 
 # Width, depth and height (m) of the boxes in which points around a group are counted, with the 26 next to each: a house
 # or a tree is as wide, and trees are twice as high.
@@ -31,7 +35,7 @@ _BOX = np.array([2.0, 2.0, 4.0])
 
 def _cell_size(density: float) -> float:
     """Return the side (m) of the cells that area is counted in."""
-    return max(_LEAST_CELL, _CELL_SPACINGS / np.sqrt(density))
+    return max(MEASURES.least_cell, MEASURES.cell / np.sqrt(density))
 
 
 def plan_areas(xyz: np.ndarray, group: np.ndarray, density: float) -> np.ndarray:
@@ -87,7 +91,7 @@ def penetration(
     too, so a roof has a small share and not none. Cells hold as many points at any density: were there more,
     each would sooner have some beneath.
     """
-    owner, _, beneath = _columns(xyz, group, _CELL_SPACINGS / np.sqrt(density))
+    owner, _, beneath = _columns(xyz, group, MEASURES.cell / np.sqrt(density))
     beneath = np.bincount(owner, beneath > 0) / np.maximum(np.bincount(owner), 1)
     if not _numbered(number_of_returns):
         return beneath
@@ -104,7 +108,7 @@ def points_below_share(xyz: np.ndarray, group: np.ndarray, density: float) -> np
     ndarray of shape (group.max() + 1,)
         Of the points of a group and those well beneath them in its cells, the latter's share.
     """
-    owner, own, beneath = _columns(xyz, group, max(_LEAST_COLUMN, _CELL_SPACINGS / np.sqrt(density)))
+    owner, own, beneath = _columns(xyz, group, max(MEASURES.least_column, MEASURES.cell / np.sqrt(density)))
     passed = np.bincount(owner, beneath)
     return passed / np.maximum(passed + np.bincount(owner, own), 1)
 
@@ -153,7 +157,7 @@ def grow_to_adjacent_clusters(
         for step in (0, *grid.around):
             there, found = find_cells(cells, fresh + step)
             near[there[found]] = True
-        joins = weak & ~taken & (np.bincount(owner, near[which], len(strong)) >= _BESIDE * size)
+        joins = weak & ~taken & (np.bincount(owner, near[which], len(strong)) >= MEASURES.beside * size)
         taken |= joins
     return taken
 
@@ -215,5 +219,5 @@ def _columns(xyz: np.ndarray, group: np.ndarray, size: float) -> tuple[np.ndarra
     for nth in range(groups_there.max()):
         some = np.flatnonzero(groups_there > nth)
         pair = first[some] + nth
-        beneath += np.bincount(pair[xyz[some, 2] < bottom[pair] - _BENEATH], minlength=len(pairs))
+        beneath += np.bincount(pair[xyz[some, 2] < bottom[pair] - MEASURES.beneath], minlength=len(pairs))
     return owner, np.bincount(which), beneath

@@ -2,43 +2,47 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Annotated, Optional
 
 import numpy as np
 
 from ..geometry.grid import distinct, fixed_grid_over
 from ..params import PointSource
+from ..rules import rule
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Param, stage
 from .false_pits import false_pits
 from .ground_points import in_plan_order, last_returns, usable_points, with_ground
 from .ground_seeds import USUAL_BUILDING, seeds_by_opening
 from .smeared_objects import nowhere, on_smeared_objects
-from .tin_densification import JoinRules, Surface, grow, surface_roughness
+from .tin_densification import DENSIFICATION, JoinRules, Surface, grow, surface_roughness
 
-# Share of the point spacing by which the surface may bend between points, when they join.
-_GROW_BEND = 0.5
+
+@dataclass(frozen=True)
+class GroundRules:
+    """How points of the ground join its surface, and lie near it."""
+
+    bend: float = rule(0.5, "point spacings", "by which the surface may bend between points")
+    sweep: float = rule(
+        6.0, "deviations", "statistics: roughness of the finished surface within which points are ground"
+    )
+    sweep_noise: float = rule(4.0, "deviations", "beyond which low plants make the roughness larger than noise")
+    sweep_bend: float = rule(0.1, "cells", "of the finished surface, the most beyond that")
+    misfit: float = rule(0.15, "m", "physics: strips that do not fit together lie no farther above one another")
+    region: float = rule(
+        40.0, "point spacings", "side of the squares in which higher strips are told from plants: 1600 points"
+    )
+    over_strip: float = rule(0.1, "share", "physics: the air over a higher strip is empty, over plants it is not")
+    angle: float = rule(20.0, "°", "iteration angle where no kind of terrain is given")
+
+
+GROUND = GroundRules()
+
 
 # Name of what parts of a cloud take of the whole: the roughness (m) of the finished surface.
 _ROUGHNESS = "surface_roughness"
 
-# The final sweep takes points within this many times the roughness of the finished surface, ...
-_SWEEP_DEVIATIONS = 6.0
-
-# ... but beyond this many times the roughness, which low plants make larger than noise, ...
-_SWEEP_NOISE = 4.0
-
-# ... at most this share of a cell or of the point spacing.
-_SWEEP_BEND = 0.1
-
-# Height by which strips that don't fit together lie above one another at most, m: more is no strip but an object.
-_MAX_MISFIT = 0.15
-
-# Side of the squares in which higher strips are told from plants, in point spacings: some 1600 points each.
-_REGION = 40.0
-
-# The air over a higher strip is empty, where plants and cars go on upward: share of the strip's points in it at most.
-_MAX_OVER_STRIP = 0.1
 
 # The kinds of terrain: shorter side of the largest building, m, and iteration angle, °.
 _TERRAINS = {
@@ -49,8 +53,6 @@ _TERRAINS = {
     "industry": (250.0, 20.0),
 }
 
-# Iteration angle where no kind of terrain is given, °.
-_ANGLE = 20.0
 
 # The granularities: least cell, m, and cells per point spacing.
 _GRANULARITIES = {"coarse": (2.0, 1.0), "medium": (1.0, 1.0), "fine": (1.0, 0.5), "extra fine": (0.5, 0.5)}
@@ -103,8 +105,8 @@ def classify_ground_tin(
             unit="m",
             low=1,
             high=1000,
-            automatic="60 m, and any size for segments that are free-standing on nearly all sides; or as the terrain "
-            "says.",
+            automatic=f"{USUAL_BUILDING:g} m, and any size for segments that are free-standing on nearly all sides; or "
+            "as the terrain says.",
         ),
     ] = None,
     cell_size: Annotated[
@@ -129,7 +131,7 @@ def classify_ground_tin(
             low=0,
             high=90,
             open_low=True,
-            automatic="20°, in nature 30°.",
+            automatic=f"{GROUND.angle:g}°, in nature {_TERRAINS['nature'][1]:g}°.",
         ),
     ] = None,
     iteration_distance: Annotated[
@@ -141,8 +143,8 @@ def classify_ground_tin(
             low=0,
             high=100,
             open_low=True,
-            automatic="8 times the roughness of the surface, measured again in each round; or half of that and "
-            "half the point spacing, if that is more.",
+            automatic=f"{DENSIFICATION.deviations:g} times the roughness of the surface, measured again in each round; "
+            f"or half of that and {GROUND.bend:g} point spacings, if that is more.",
             advanced=True,
         ),
     ] = None,
@@ -166,8 +168,9 @@ def classify_ground_tin(
             unit="m",
             low=0,
             high=100,
-            automatic="6 times the roughness of the finished surface, the last third at most a tenth of a cell; where "
-            "a higher flight strip shows, twice that, at most 0.15 m more.",
+            automatic=f"{GROUND.sweep:g} times the roughness of the finished surface, the last third at most "
+            f"{GROUND.sweep_bend:g} cells; where a higher flight strip shows, twice that, at most {GROUND.misfit:g} m "
+            "more.",
             advanced=True,
         ),
     ] = None,
@@ -248,7 +251,7 @@ def classify_ground_tin(
     points, last = xyz[usable], last_returns(return_number, number_of_returns, usable)
     granularity, cell_size = _cell(granularity, cell_size, spacing)
     edge_length = 2 * cell_size if edge_length is None else edge_length
-    by_terrain = _TERRAINS.get(terrain or "", (None, _ANGLE))
+    by_terrain = _TERRAINS.get(terrain or "", (None, GROUND.angle))
     size = by_terrain[0] if max_building_size is None else max_building_size
     angle = by_terrain[1] if iteration_angle is None else iteration_angle
 
@@ -264,7 +267,7 @@ def classify_ground_tin(
 
     # 2. The surface grows from them.
     scale, least = max(cell_size, spacing), sampling.height_resolution
-    rules = JoinRules(angle, iteration_distance, _GROW_BEND * spacing, edge_length, least)
+    rules = JoinRules(angle, iteration_distance, GROUND.bend * spacing, edge_length, least)
     surface, distance, _ = grow(points, np.flatnonzero(last)[seeds], may_join, rules, monitor.part(0.3, 0.85))
 
     # 3. Groups of multipath points under it are no ground.
@@ -308,8 +311,8 @@ def _sweep(
     if distance is not None:
         return surface.within(distance), distance
     roughness = sampling.shared(_ROUGHNESS, lambda: surface_roughness(surface.nodes, sampling.height_resolution))
-    distance = min(_SWEEP_DEVIATIONS * roughness, _SWEEP_NOISE * roughness + _SWEEP_BEND * scale)
-    square = distinct(fixed_grid_over(surface.points, _REGION * sampling.spacing).number(surface.points))[1]
+    distance = min(GROUND.sweep * roughness, GROUND.sweep_noise * roughness + GROUND.sweep_bend * scale)
+    square = distinct(fixed_grid_over(surface.points, GROUND.region * sampling.spacing).number(surface.points))[1]
     return surface.within(distance) | _of_higher_strips(surface.above(), square, distance), distance
 
 
@@ -318,8 +321,8 @@ def _of_higher_strips(above: np.ndarray, square: np.ndarray, distance: float) ->
 
     Squares are numbered from 0, none left out.
     """
-    top = distance + min(distance, _MAX_MISFIT)
+    top = distance + min(distance, GROUND.misfit)
     higher = (above > distance) & (above <= top)
     over = (above > top) & (above <= 2 * top)
     count = [np.bincount(square[band], minlength=square.max() + 1) for band in (higher, over)]
-    return higher & (count[1] <= _MAX_OVER_STRIP * count[0])[square]
+    return higher & (count[1] <= GROUND.over_strip * count[0])[square]

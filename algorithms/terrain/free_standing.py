@@ -10,70 +10,32 @@ import numpy as np
 from ..geometry.adjacent_cells import adjacent_cells
 from ..geometry.groups import components
 from ..packages import ndimage
+from ..rules import rule
 from ..stage import Monitor
-
-# Least height (m) of a step: lower than any eave.
-_STEP = 1.0
-
-# Least slope (tangent) of a step from cell to cell or point to point: 45°, steeper than soil.
-_STEEP = 1.0
-
-# Least height (m) of the steps around a segment that is wider than usual buildings: quays are lower.
-_HALL_STEP = 2.0
-
-# Share of its open edge on which a free-standing segment has steps down: the rest is trees against its walls.
-_FREE_EDGE = 0.9
-
-# Share of its edge that must be open, that is neither hidden behind what is higher nor too rough to tell.
-_OPEN_EDGE = 0.4
-
-# Share of its outline, less what the end of the cloud cuts off, that must be open if much of it is cut off.
-_OPEN_IF_CUT = 0.7
-
-# Share of its steps down that must be as high as its rule asks for: beside the others a wing may be.
-_HIGH = 0.5
-
-# Share of its open edge on which each part of a hall has steps down: more than half, less than a free-standing one.
-_PART_EDGE = 0.5
-
-# Share of its edge beside a roof no lower than itself from which on a rough cell or group of cells is on that roof.
-_ON_ROOF = 0.5
-
-# Fewest cells of a segment; smaller ones are too rough to tell.
-_LEAST_CELLS = 4
 
 
 @dataclass(frozen=True)
-class _CutRule:
-    """What a segment needs to be a roof that the end of the cloud cuts off. Fitted on tiles cut out of real clouds.
+class FreeStandingRules:
+    """Steps at the edge of a segment that make it a building."""
 
-    Attributes
-    ----------
-    most_cut : float
-        Largest share of its outline that the end of the cloud may be.
-    least_step : float
-        Least height of most of its steps, as a multiple of that of any step: the more of it is cut off, the higher,
-        since quays, terraces and slopes are no walls.
-    open_share : float
-        Share of its edge, the end of the cloud included or not, that must be open.
-    is_open_of_rest : bool
-        Whether that is a share of the edge that is left, rather than of all.
-    """
-
-    most_cut: float
-    least_step: float
-    open_share: float
-    is_open_of_rest: bool
+    step: float = rule(1.0, "m", "physics: least height of a step, lower than any eave")
+    steep: float = rule(1.0, "tangent", "physics: least slope of a step, 45°, steeper than soil")
+    hall_step: float = rule(2.0, "m", "physics: steps around a segment wider than usual buildings; quays are lower")
+    free_edge: float = rule(0.9, "share", "of its open edge with steps down; the rest is trees against its walls")
+    open_edge: float = rule(0.4, "share", "of its edge, neither hidden behind what is higher nor too rough to tell")
+    open_if_cut: float = rule(0.7, "share", "the same of what is left of its outline, if much of it is cut off")
+    most: float = rule(
+        0.5, "share", "most: of steps as high as asked for, of the edge of a part of a hall, of a machine"
+    )
+    one_side: float = rule(0.35, "share", "physics: one side of four that the end of the cloud cuts off, and a little")
+    corner: float = rule(0.55, "share", "physics: two sides that the end of the cloud cuts off, and a little")
+    corner_steps: float = rule(4.0, "steps", "physics: height of the walls of such a corner: a house of two floors")
+    cut: float = rule(0.7, "share", "physics: more than half of the outline that is cut off; the rest may be terrain")
+    cut_steps: float = rule(6.0, "steps", "physics: height of the walls of the rest: a house of two floors and a roof")
+    least_cells: int = rule(4, "cells", "of a segment; smaller ones are too rough to tell")
 
 
-_CUT_RULES = (
-    # One side of four is cut off, and a little: as for a whole one.
-    _CutRule(0.35, least_step=1.0, open_share=_OPEN_EDGE, is_open_of_rest=False),
-    # A corner of a roof in a corner of the cloud, with the walls of a house of two floors.
-    _CutRule(0.55, least_step=4.0, open_share=_OPEN_IF_CUT, is_open_of_rest=True),
-    # Less than half of its outline is left, with the walls of a high house.
-    _CutRule(0.7, least_step=6.0, open_share=_OPEN_IF_CUT, is_open_of_rest=True),
-)
+FREE = FreeStandingRules()
 
 
 @dataclass(frozen=True)
@@ -202,7 +164,7 @@ def find_free_standing(
     and platforms are low all round, so that with ``low_uphill`` the mean of the steps tells these from halls.
     """
     monitor = monitor or Monitor()
-    least = max(_STEP, _STEEP * max(cell_size, apart))
+    least = max(FREE.step, FREE.steep * max(cell_size, apart))
     usual_cells, largest_cells = usual / cell_size, largest / cell_size
     number = _smooth_segments(surface, least)
     monitor.progress(0.3)
@@ -237,8 +199,8 @@ def _are_free_standing(segments: _Segments, least: float, usual: float, largest:
     wide segments need high steps only on the mean.
     """
     is_wide = segments.width > usual
-    is_low = is_wide & (segments.mean_step_down(least) < _HALL_STEP) if low_uphill else is_wide
-    least_step = np.where(is_low, max(_HALL_STEP, least), least)
+    is_low = is_wide & (segments.mean_step_down(least) < FREE.hall_step) if low_uphill else is_wide
+    least_step = np.where(is_low, max(FREE.hall_step, least), least)
     least_step[segments.width > largest] = np.inf
     is_free = np.zeros(len(segments.width), bool)
     # The highest come first; what is lower beside their walls is judged by the rest of its edge.
@@ -269,12 +231,16 @@ def _bounded_by_steps(segments: _Segments, is_free: np.ndarray, least_step: np.n
     # The outline of its box is no longer for a jagged edge, nor for other segments inside.
     outline = np.minimum(lengths.whole + segments.ends, 2 * segments.sides.sum(axis=0))
     found = np.zeros(len(is_free), bool)
-    for rule in _CUT_RULES:
-        high = segments.edges.lengths(is_free, np.maximum(least_step, rule.least_step * least))
-        edge = outline - segments.ends if rule.is_open_of_rest else lengths.whole + segments.ends
-        is_seen = (segments.ends <= rule.most_cut * outline) & (lengths.open >= rule.open_share * edge)
-        found |= is_seen & (high.down >= _HIGH * down)
-    return found & (down > 0) & (down >= _FREE_EDGE * lengths.open)
+    # Of a whole segment, or one that is cut off on one side, any steps count; the more is cut off, the higher ones.
+    left = outline - segments.ends
+    for most_cut, storeys, is_open in (
+        (FREE.one_side, 1.0, lengths.open >= FREE.open_edge * (lengths.whole + segments.ends)),
+        (FREE.corner, FREE.corner_steps, lengths.open >= FREE.open_if_cut * left),
+        (FREE.cut, FREE.cut_steps, lengths.open >= FREE.open_if_cut * left),
+    ):
+        high = segments.edges.lengths(is_free, np.maximum(least_step, storeys * least))
+        found |= (segments.ends <= most_cut * outline) & is_open & (high.down >= FREE.most * down)
+    return found & (down > 0) & (down >= FREE.free_edge * lengths.open)
 
 
 def _smooth_segments(surface: np.ndarray, least: float) -> np.ndarray:
@@ -283,7 +249,7 @@ def _smooth_segments(surface: np.ndarray, least: float) -> np.ndarray:
     for here, other in adjacent_cells(surface.ndim):
         beside[here] |= np.abs(surface[here] - surface[other]) >= least
     segment, _ = ndimage.label(~beside)
-    small = np.bincount(segment.ravel()) < _LEAST_CELLS
+    small = np.bincount(segment.ravel()) < FREE.least_cells
     segment[small[segment]] = 0
     # The cells at a step go to the segment beside them from which they differ least.
     for _ in range(2):
@@ -302,9 +268,9 @@ def _reunited(segments: _Segments, is_free: np.ndarray, least: float) -> np.ndar
     """Give segments that meet without the step of a hall one number, if most of the edge of each steps down."""
     count = len(is_free)
     lengths = segments.edges.lengths(is_free, np.full(count, least))
-    is_part = ~is_free & (lengths.down > _PART_EDGE * lengths.open)
+    is_part = ~is_free & (lengths.down > FREE.most * lengths.open)
     own, other = segments.edges.own, segments.edges.other
-    is_level = is_part[own] & is_part[other] & (np.abs(segments.edges.step) < max(_HALL_STEP, least))
+    is_level = is_part[own] & is_part[other] & (np.abs(segments.edges.step) < max(FREE.hall_step, least))
     # Components are numbered by their first segments: that of 0, which is no part, stays 0.
     return components(own[is_level], other[is_level], count)[1][segments.number]
 
@@ -318,7 +284,7 @@ def _on_roof(surface: np.ndarray, is_rough: np.ndarray, is_roof: np.ndarray, lea
         no_higher = edge & is_roof[other] & (surface[other] - surface[here] < least)
         whole += np.bincount(component[here][edge], minlength=count + 1)
         on_roof += np.bincount(component[here][no_higher], minlength=count + 1)
-    return (on_roof > _ON_ROOF * whole)[component]
+    return (on_roof > FREE.most * whole)[component]
 
 
 def _box_sides(segment: np.ndarray) -> np.ndarray:

@@ -10,23 +10,27 @@ import numpy as np
 from ..geometry.grid import lattice, plan_box, refuse_sparse, turned_in_plan
 from ..geometry.raster_opening import open_surface
 from ..packages import ndimage
+from ..rules import rule
 from ..stage import Monitor
 from ..threads import made_ahead
 from .free_standing import find_free_standing
 from .removed_objects import ObjectRemoval, nearest_known
 
-# Slope of all sides of a pit from which it is multipath and no terrain: 5 m deep in a cell of 1 m.
-_PIT_SLOPE = 5.0
 
-# Radius (m) of the surroundings in which cells as deep as a pit are counted.
-_PIT_REACH = 10.0
+@dataclass(frozen=True)
+class SeedRules:
+    """Which lowest points are seeds of the ground."""
 
-# Share of these cells from which a pit is terrain: a tenth of the pulses reach the ground of dense forest, far fewer
-# are those of multipath.
-_PIT_SHARE = 0.1
+    pit_slope: float = rule(5.0, "tangent", "physics: sides of pits of multipath, 5 m deep in a cell of 1 m")
+    pit_reach: float = rule(10.0, "m", "radius of the surroundings in which cells as deep as a pit are counted")
+    pit_share: float = rule(0.1, "share", "physics: more pulses reach the ground of dense forest")
+    pit_steps: int = rule(10, "cells", "up to which each cell is examined; beyond, as many steps")
+    most_turned: float = rule(2.5, "ratio", "of the box of a turned cloud to its own; narrow strips have more")
+    rim: float = rule(0.8, "m", "physics: depth of the rounded rim of a roof in matched images")
 
-# Distance (cells) up to which each cell is examined; beyond it, the same number of steps.
-_PIT_STEPS = 10
+
+SEEDS = SeedRules()
+
 
 # Without a largest building given, windows go up to this size (m); larger halls are found as free-standing segments.
 USUAL_BUILDING = 60.0
@@ -37,12 +41,6 @@ _TURNS = (0.0, 30.0, 60.0)
 
 # Where the cells of each direction begin (parts of their side): no edges of cells meet on a whole side.
 _POSITIONS = ((0.0, 0.0), (1 / 3, 2 / 3), (2 / 3, 1 / 3))
-
-# Largest area of the box of a turned cloud (times its own box): that of a narrow strip is larger and hardly filled.
-_MOST_TURNED = 2.5
-
-# Largest depth (m) of the rounded rim of a roof below it: less than the lowest step.
-_RIM = 0.8
 
 
 @dataclass
@@ -237,7 +235,7 @@ def _view(cells: _Cells, max_building_size: Optional[float], slope: Optional[np.
     stands_free = lowest.at_points(is_free) & (above >= 0)
     if cells.low_uphill:
         below = lowest.at_points(_rim_levels(surface, is_free)) - cells.xyz[:, 2]
-        stands_free |= (below >= 0) & (below <= _RIM)
+        stands_free |= (below >= 0) & (below <= SEEDS.rim)
     return _View(lowest.points(~unknown), says_terrain, stands_free, found, slope)
 
 
@@ -254,7 +252,7 @@ def _is_compact(box: np.ndarray) -> bool:
     """Return whether the boxes around a turned ``box`` (2, 2) are small enough to be covered by cells."""
     sides = np.ptp(box, axis=0)
     turns = ((np.cos(angle), np.sin(angle)) for angle in np.radians(_TURNS))
-    return all((cos * sides + sin * sides[::-1]).prod() <= _MOST_TURNED * sides.prod() for cos, sin in turns)
+    return all((cos * sides + sin * sides[::-1]).prod() <= SEEDS.most_turned * sides.prod() for cos, sin in turns)
 
 
 def seeds_by_lowest(xyz: np.ndarray, max_building_size: float) -> np.ndarray:
@@ -277,12 +275,12 @@ def _pits(height: np.ndarray, cell_size: float, monitor: Monitor) -> np.ndarray:
 
     Ground seen through the gaps of a forest is as far below the crowns beside it, but other gaps are near.
     """
-    depth = _PIT_SLOPE * cell_size
+    depth = SEEDS.pit_slope * cell_size
     surface = nearest_known(height, np.isinf(height))
     pits = (surface + open_surface(-surface, 1) < -depth) & np.isfinite(height)
     row, column = np.nonzero(pits)
-    reach = max(1, round(_PIT_REACH / cell_size))
-    step = -(-reach // _PIT_STEPS)
+    reach = max(1, round(SEEDS.pit_reach / cell_size))
+    step = -(-reach // SEEDS.pit_steps)
     offsets = step * np.arange(-(reach // step), reach // step + 1)
     around = np.pad(height, reach, constant_values=np.inf)
     level = height[row, column] + depth
@@ -294,5 +292,5 @@ def _pits(height: np.ndarray, cell_size: float, monitor: Monitor) -> np.ndarray:
             n_known += np.isfinite(other)
         monitor.progress(done / len(offsets))
     # The cell itself is among them.
-    pits[row, column] = n_deep - 1 < _PIT_SHARE * n_known
+    pits[row, column] = n_deep - 1 < SEEDS.pit_share * n_known
     return pits

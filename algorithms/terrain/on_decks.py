@@ -2,31 +2,32 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..packages import spatial
-
-# What stands on a bridge has points of its deck this near in plan (spacings of the deck's points, and at least so far,
-# m): where they lie at random, one place in 300,000 has none within two spacings.
-_NEAR_SPACINGS, _LEAST_NEAR = 2.0, 0.5
-
-# Neighbors of a point that its spacing is measured with.
-_NEIGHBORS = 8
-
-# Beneath cars and trucks, up to 2.6 m wide, the deck was not seen: there its points lie this near (m) on both sides.
-_HIDDEN = 2.0
-
-# What stands on a deck has no points of its own this far (m) below it.
-_BELOW = 0.3
-
-# Vehicles, parapets and signs are no higher than this over a deck (m): the clearance of roads.
-_TRAFFIC = 4.5
+from ..rules import rule
 
 
-def on_decks(points: np.ndarray, deck: np.ndarray, least: float = -_BELOW) -> tuple[np.ndarray, np.ndarray]:
+@dataclass(frozen=True)
+class DeckRules:
+    """What stands on the deck of a bridge."""
+
+    near: float = rule(2.0, "point spacings", "statistics: one random place in 300,000 has no point as near in plan")
+    least_near: float = rule(0.5, "m", "the same, at least")
+    neighbors: int = rule(8, "points", "statistics: that the spacing of a deck is measured with")
+    hidden: float = rule(2.0, "m", "physics: cars and trucks hide the deck beneath them, to points on both sides")
+    below: float = rule(0.3, "m", "what stands on a deck has no points of its own so far below it")
+    traffic: float = rule(4.5, "m", "physics: the clearance of roads, over vehicles, parapets and signs")
+
+
+DECK = DeckRules()
+
+
+def on_decks(points: np.ndarray, deck: np.ndarray, least: float = -DECK.below) -> tuple[np.ndarray, np.ndarray]:
     """Find the points that stand on bridge decks, such as those of cars and parapets.
 
     Parameters
@@ -45,14 +46,14 @@ def on_decks(points: np.ndarray, deck: np.ndarray, least: float = -_BELOW) -> tu
     level : ndarray of shape (k,), float64
         Elevation of the deck there, m.
     """
-    if len(deck) <= _NEIGHBORS or not len(points):
+    if len(deck) <= DECK.neighbors or not len(points):
         return np.zeros(0, np.int64), np.zeros(0)
-    around = (points[:, :2] >= deck[:, :2].min(axis=0) - _HIDDEN).all(axis=1)
-    around &= (points[:, :2] <= deck[:, :2].max(axis=0) + _HIDDEN).all(axis=1)
+    around = (points[:, :2] >= deck[:, :2].min(axis=0) - DECK.hidden).all(axis=1)
+    around &= (points[:, :2] <= deck[:, :2].max(axis=0) + DECK.hidden).all(axis=1)
     rows = np.flatnonzero(around)
     tree = spatial.cKDTree(deck[:, :2])
-    near = max(_LEAST_NEAR, _NEAR_SPACINGS * _spacing(deck, tree))
-    distance, nearest = tree.query(points[rows, :2], distance_upper_bound=max(near, _HIDDEN))
+    near = max(DECK.least_near, DECK.near * _spacing(deck, tree))
+    distance, nearest = tree.query(points[rows, :2], distance_upper_bound=max(near, DECK.hidden))
     known = np.isfinite(distance)
     rows, distance, nearest = rows[known], distance[known], nearest[known]
     level = deck[nearest, 2]
@@ -69,14 +70,14 @@ def on_bridges(xyz: np.ndarray, classification: np.ndarray) -> np.ndarray:
     if is_deck.any():
         others = np.flatnonzero(~is_deck)
         rows, level = on_decks(xyz[others], xyz[is_deck])
-        result[others[rows]] = xyz[others[rows], 2] <= level + _TRAFFIC
+        result[others[rows]] = xyz[others[rows], 2] <= level + DECK.traffic
     return result
 
 
 def _spacing(deck: np.ndarray, tree: Any) -> float:
     """Return the point spacing (m) of decks in plan, by how far around its points the neighbors lie."""
-    radius = float(np.median(tree.query(deck[:, :2], k=[_NEIGHBORS + 1])[0]))
-    return radius * float(np.sqrt(np.pi / _NEIGHBORS))
+    radius = float(np.median(tree.query(deck[:, :2], k=[DECK.neighbors + 1])[0]))
+    return radius * float(np.sqrt(np.pi / DECK.neighbors))
 
 
 def _has_deck_behind(places: np.ndarray, nearest: np.ndarray, tree: Any) -> np.ndarray:
@@ -87,5 +88,5 @@ def _has_deck_behind(places: np.ndarray, nearest: np.ndarray, tree: Any) -> np.n
     """
     away = places - nearest
     away /= np.linalg.norm(away, axis=1, keepdims=True)
-    distance, _ = tree.query(places + _HIDDEN * away, distance_upper_bound=_HIDDEN)
+    distance, _ = tree.query(places + DECK.hidden * away, distance_upper_bound=DECK.hidden)
     return np.isfinite(distance)

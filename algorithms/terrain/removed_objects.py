@@ -14,50 +14,38 @@ import numpy as np
 from ..geometry.adjacent_cells import adjacent_cells
 from ..geometry.raster_opening import open_surface
 from ..packages import ndimage
+from ..rules import rule
 from ..stage import Monitor
 
-# Step (m) that terrain may make within any window: kerbs, ruts, tussocks.
-_STEP = 0.1
 
-# Slope (tangent) that terrain may have beside the one measured around it.
-_FLAT_SLOPE = 0.1
+@dataclass(frozen=True)
+class RemovalRules:
+    """How steep terrain may be, and what joins it."""
 
-# Share of the measured slope that may come on top of it. Fitted on eight of the ISPRS samples.
-_SLOPE_SHARE = 0.4
+    step: float = rule(0.1, "m", "physics: terrain has kerbs, ruts and tussocks as high within any window")
+    flat_slope: float = rule(0.1, "tangent", "physics: slope that terrain may have besides the one measured around it")
+    slope_share: float = rule(
+        0.4, "share", "fitted on eight ISPRS samples: of the measured slope that may come on top of it"
+    )
+    flat_rise: float = rule(
+        1.0, "m", "physics: rise of flat terrain in any window, less than the lowest of large buildings"
+    )
+    join_slope: float = rule(0.3, "tangent", "physics: of a step at the edge of a region that joins the terrain")
+    join_share: float = rule(0.5, "share", "of the local slope that is added to it")
+    joined: float = rule(0.5, "share", "most of its open edge, on which a region must join the terrain")
+    joined_of_all: float = rule(0.25, "share", "fitted on eight ISPRS samples: the same of its whole edge")
+    steepest_bank: float = rule(2.0, "tangent", "physics: a step beside a slope as steep as itself is a bank up to 63°")
+    large_window: float = rule(
+        0.5, "share", "of the largest window, from which windows remove spits and hilltops, not houses"
+    )
+    growth: float = rule(1.25, "ratio", "of one window to the one before: three windows to a doubling")
+    smoothing: float = rule(2.0, "m", "distance over which a surface is smoothed before its slope is measured")
+    slope_scale: float = rule(
+        4.0, "m", "distance of the mean square of slopes: on crests it is the slope of the flanks"
+    )
 
-# Rise (m) that flat terrain may have within a window of any size: less than the lowest of large buildings.
-_FLAT_RISE = 1.0
 
-# Slope (tangent) that is allowed besides while that of the terrain is not known yet.
-_FIRST_SLOPE = 0.1
-
-# Slope (tangent) of a step at the edge of a region up to which the region joins the terrain there.
-_JOIN_SLOPE = 0.3
-
-# Share of the local slope that is added to it.
-_JOIN_SHARE = 0.5
-
-# Share of its open edge on which a region has to join the terrain to be terrain: most of it.
-_JOINED = 0.5
-
-# Share of its whole edge, other objects beside it included, on which it has to. Fitted on eight of the ISPRS samples.
-_JOINED_OF_ALL = 0.25
-
-# Slope (tangent) up to which a step beside a slope as steep as itself is the flank of a bank rather than a wall: 63°.
-_STEEPEST_BANK = 2.0
-
-# Share of the largest window from which on windows remove spits and hilltops rather than houses.
-_LARGE_WINDOW = 0.5
-
-# Factor by which windows grow from one to the next.
-_GROWTH = 1.25
-
-# Distance (m) over which a surface is smoothed before its slope is measured.
-_SLOPE_SMOOTHING = 2.0
-
-# Distance (m) over which the root mean square of slopes is taken: on crests and beside cliffs, where windows remove
-# terrain, it is the slope of the flanks that counts.
-_SLOPE_SCALE = 4.0
+REMOVAL = RemovalRules()
 
 
 @dataclass(frozen=True)
@@ -89,7 +77,7 @@ class ObjectRemoval:
 
     def slope(self, monitor: Monitor) -> np.ndarray:
         """Return the slope of the terrain (rise over run), measured twice, each time without the objects before."""
-        first = np.full(self.surface.shape, _FIRST_SLOPE)
+        first = np.full(self.surface.shape, REMOVAL.flat_slope)
         # Without free-standing objects, a low roof beside a higher one is as narrow as it is.
         removed = self.is_free_standing | (self.removed_by_opening(first, monitor.part(0, 0.5)) > 0)
         slope = self._slope_without(removed)
@@ -97,11 +85,11 @@ class ObjectRemoval:
 
     def objects(self, slope: np.ndarray, monitor: Monitor) -> np.ndarray:
         """Return which cells are objects on terrain of this slope."""
-        return self.without_joined(self.removed_by_opening(_SLOPE_SHARE * slope, monitor), slope)
+        return self.without_joined(self.removed_by_opening(REMOVAL.slope_share * slope, monitor), slope)
 
     def rise(self, slope: np.ndarray) -> np.ndarray:
         """Return how far (m) terrain of such slopes may rise within a cell."""
-        return _STEP + (_FLAT_SLOPE + slope) * self.cell_size
+        return REMOVAL.step + (REMOVAL.flat_slope + slope) * self.cell_size
 
     def removed_by_opening(self, slope: np.ndarray, monitor: Monitor) -> np.ndarray:
         """Return for each cell the radius (cells) of the first window that removes it, 0 where none does.
@@ -113,7 +101,9 @@ class ObjectRemoval:
         for done, radius in enumerate(self.windows, start=1):
             previous, opened = opened, open_surface(opened, radius, self.is_free_standing)
             reach = radius * self.cell_size
-            is_removed = previous - opened > _STEP + min(_FLAT_SLOPE * reach, _FLAT_RISE) + slope * reach
+            is_removed = (
+                previous - opened > REMOVAL.step + min(REMOVAL.flat_slope * reach, REMOVAL.flat_rise) + slope * reach
+            )
             removed_by[is_removed & (removed_by == 0)] = radius
             monitor.progress(done / len(self.windows))
         return removed_by
@@ -134,7 +124,7 @@ class ObjectRemoval:
         from the spit of land that comes back.
         """
         objects = (removed_by > 0) | self.is_free_standing
-        is_large = removed_by > _LARGE_WINDOW * self.windows[-1]
+        is_large = removed_by > REMOVAL.large_window * self.windows[-1]
         sides = [*_sides(self.surface, slope, self.cell_size, self.spacing)]
         for group in (objects & ~is_large, is_large):
             region, count = ndimage.label(group)
@@ -171,10 +161,12 @@ def _sides(surface: np.ndarray, slope: np.ndarray, cell_size: float, spacing: fl
     """
     bank_cells = max(1, round(spacing / cell_size))
     bank = bank_cells * cell_size
-    allowed = (_JOIN_SLOPE + _JOIN_SHARE * slope) * cell_size
+    allowed = (REMOVAL.join_slope + REMOVAL.join_share * slope) * cell_size
     for (here, beside), (fall, fall_beyond) in zip(adjacent_cells(surface.ndim), _flanks(surface, bank_cells)):
         step = surface[here] - surface[beside]
-        highest_bank = np.minimum(np.maximum(fall, fall_beyond) + _JOIN_SLOPE * bank, _STEEPEST_BANK * bank)
+        highest_bank = np.minimum(
+            np.maximum(fall, fall_beyond) + REMOVAL.join_slope * bank, REMOVAL.steepest_bank * bank
+        )
         yield _Side(here, beside, (step < allowed[here]) | (step < highest_bank))
 
 
@@ -198,8 +190,8 @@ class _RegionEdges:
 
     def join_terrain(self) -> np.ndarray:
         """Return which regions join the terrain on enough of their edge."""
-        is_terrain = self.joined >= _JOINED * np.maximum(self.open, 1)
-        is_terrain &= self.joined >= _JOINED_OF_ALL * self.whole
+        is_terrain = self.joined >= REMOVAL.joined * np.maximum(self.open, 1)
+        is_terrain &= self.joined >= REMOVAL.joined_of_all * self.whole
         is_terrain[0] = False
         return is_terrain
 
@@ -229,7 +221,7 @@ def _windows(largest: float) -> list[int]:
     radii = [1]
     last = max(1, int(np.ceil(largest)))
     while radii[-1] < last:
-        radii.append(min(last, max(radii[-1] + 1, round(radii[-1] * _GROWTH))))
+        radii.append(min(last, max(radii[-1] + 1, round(radii[-1] * REMOVAL.growth))))
     return radii
 
 
@@ -250,12 +242,12 @@ def _interpolated(surface: np.ndarray, unknown: np.ndarray) -> np.ndarray:
 
 def _slope(surface: np.ndarray, cell_size: float) -> np.ndarray:
     """Return the slope (rise over run) that the smoothed surface has around each cell."""
-    smooth = ndimage.gaussian_filter(surface, _SLOPE_SMOOTHING / cell_size, mode="nearest")
+    smooth = ndimage.gaussian_filter(surface, REMOVAL.smoothing / cell_size, mode="nearest")
     # A raster one cell wide has no gradient across.
     axes = [axis for axis in (0, 1) if smooth.shape[axis] > 1]
     gradients = [np.gradient(smooth, cell_size, axis=axis) for axis in axes]
     squares = sum((gradient**2 for gradient in gradients), np.zeros_like(smooth))
-    return np.sqrt(ndimage.gaussian_filter(squares, _SLOPE_SCALE / cell_size, mode="nearest"))
+    return np.sqrt(ndimage.gaussian_filter(squares, REMOVAL.slope_scale / cell_size, mode="nearest"))
 
 
 def _flanks(surface: np.ndarray, apart: int) -> Iterator[tuple[np.ndarray, np.ndarray]]:

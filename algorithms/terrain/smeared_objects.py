@@ -2,33 +2,35 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ..geometry.grid import raster_cells, refuse_sparse
 from ..geometry.raster_opening import open_surface
 from ..packages import ndimage
+from ..rules import rule
 
-# Side of the cells of the surface (point spacings).
-_CELL_SPACINGS = 1.5
 
-# Least side of these cells (m).
-_LEAST_CELL = 0.5
+@dataclass(frozen=True)
+class SmearedRules:
+    """Small objects with smeared walls in matched images."""
 
-# Raised surfaces narrower than this (m) are objects: a shed of 3 m with walls smeared over 0.7 m to both sides.
-_WIDTH = 4.5
+    cell: float = rule(1.5, "point spacings", "side of the cells of the surface: two points in each")
+    least_cell: float = rule(0.5, "m", "the same, at least")
+    width: float = rule(
+        4.5, "m", "physics: narrower raised surfaces are objects: a shed of 3 m, walls smeared over 0.7 m"
+    )
+    height: float = rule(0.5, "m", "above the opened surface, from which points are of objects")
+    length: float = rule(8.0, "m", "physics: of the longest shed with its smeared walls; crests and dikes are longer")
+    beside: float = rule(
+        0.5, "share", "of a longer ring beside other classes, from which it is the walls of a building"
+    )
+    beyond: float = rule(0.8, "share", "of its radius that a window is centered beyond the end of the cloud at most")
 
-# Height (m) above the opened surface from which on points are of objects.
-_HEIGHT = 0.5
 
-# Longest small object (m), with the smeared walls at both of its ends: a shed of 6 m. Crests of ridges and dikes rise
-# as far above the opened surface where slopes of 12° meet in them, but they are longer.
-_LENGTH = 8.0
+SMEARED = SmearedRules()
 
-# Share of a longer ring beside points of other classes, from which on it is the walls of a larger object.
-_BESIDE = 0.5
-
-# A window is centered no farther beyond the end of the cloud than this share of its radius, so that it touches ground.
-_BEYOND = 0.8
 
 _EIGHT = np.ones((3, 3), bool)
 
@@ -59,19 +61,19 @@ def on_smeared_objects(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -
     """
     if not is_ground.any():
         return np.zeros(len(xyz), bool)
-    size = max(_LEAST_CELL, _CELL_SPACINGS * spacing)
+    size = max(SMEARED.least_cell, SMEARED.cell * spacing)
     refuse_sparse(xyz, size)
-    radius = max(1, round(_WIDTH / 2 / size))
+    radius = max(1, round(SMEARED.width / 2 / size))
     row, column = raster_cells(xyz, size, radius + 1)
     lowest = np.full((row.max() + radius + 2, column.max() + radius + 2), np.inf)
     np.minimum.at(lowest, (row[is_ground], column[is_ground]), xyz[is_ground, 2])
     has_ground, is_occupied = np.isfinite(lowest), np.zeros(lowest.shape, bool)
     is_occupied[row, column] = True
-    is_far = ndimage.distance_transform_edt(~has_ground) > _BEYOND * radius
+    is_far = ndimage.distance_transform_edt(~has_ground) > SMEARED.beyond * radius
     opened = open_surface(lowest, radius, is_far | (is_occupied & ~has_ground))
     # Slopes rise within a cell, to no more than the next one has.
     highest = ndimage.maximum_filter(np.where(has_ground, opened, -np.inf), 3)
-    is_above = is_ground & (xyz[:, 2] > highest[row, column] + _HEIGHT)
+    is_above = is_ground & (xyz[:, 2] > highest[row, column] + SMEARED.height)
     above = np.zeros(lowest.shape, bool)
     above[row[is_above], column[is_above]] = True
     return is_above & _of_objects(above, is_occupied & ~has_ground, size)[row, column]
@@ -86,8 +88,8 @@ def _of_objects(above: np.ndarray, is_other: np.ndarray, size: float) -> np.ndar
     part, count = ndimage.label(ndimage.binary_dilation(above, _EIGHT), _EIGHT)
     is_short = np.zeros(count + 1, bool)
     for number, box in enumerate(ndimage.find_objects(part), 1):
-        is_short[number] = max(side.stop - side.start - 2 for side in box) * size <= _LENGTH
+        is_short[number] = max(side.stop - side.start - 2 for side in box) * size <= SMEARED.length
     to_other = ndimage.distance_transform_edt(~is_other) * size if is_other.any() else np.full(above.shape, np.inf)
     cells = np.bincount(part[above], minlength=count + 1)
-    beside = np.bincount(part[above & (to_other <= _WIDTH / 2)], minlength=count + 1)
-    return above & (is_short | (beside >= _BESIDE * np.maximum(cells, 1)))[part]
+    beside = np.bincount(part[above & (to_other <= SMEARED.width / 2)], minlength=count + 1)
+    return above & (is_short | (beside >= SMEARED.beside * np.maximum(cells, 1)))[part]

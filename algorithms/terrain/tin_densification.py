@@ -10,24 +10,26 @@ import numpy as np
 from ..geometry.grid import plan_box
 from ..geometry.tin import Tin, node_residuals, robust_deviation
 from ..packages import spatial
+from ..rules import rule
 from ..sampling.height_resolution import LEAST_RESOLUTION
 from ..stage import Monitor
 
-# A point may join the TIN within this many robust deviations of its nodes: of their distances from the plane of their
-# neighbors, and of the angles under which these appear where angles are estimated.
-_GROW_DEVIATIONS = 8.0
 
-# A point nearer than this share of the edge length to a node makes a sliver and adds no information.
-_MIN_NODE_DISTANCE = 0.25
+@dataclass(frozen=True)
+class DensificationRules:
+    """When points join the TIN, and when rounds end."""
 
-# Where not every point is tried in every round, rounds end when they add at most this share of the nodes, ...
-_MIN_GROWTH = 0.005
+    deviations: float = rule(
+        8.0, "robust deviations", "of the nodes, of distances and of angles, within which points join"
+    )
+    node_distance: float = rule(0.25, "share", "of the edge length: nearer points make slivers and add no information")
+    least_growth: float = rule(0.005, "share", "of the nodes that a round must add to have another one after it")
+    most_rounds: int = rule(50, "rounds", "bound of the time; clouds need some 20")
+    candidate: float = rule(5.0, "largest distances", "from the first TIN, beyond which points are no candidates")
 
-# ... or at this number, ...
-_MAX_ROUNDS = 50
 
-# ... and points farther than this from the first TIN, in its largest distances, are no candidates.
-_CANDIDATE_DISTANCES = 5.0
+DENSIFICATION = DensificationRules()
+
 
 # Nodes whose residuals show the roughness of a surface, about: a median of these is good to 2 %.
 _SAMPLE = 5_000
@@ -78,7 +80,7 @@ class JoinRules:
         """Return whether the round ``step`` (from 1), in which points joined ``n_nodes`` nodes, is the last."""
         if self.is_exhaustive:
             return n_joining == 0
-        return n_joining <= _MIN_GROWTH * n_nodes or step == _MAX_ROUNDS
+        return n_joining <= DENSIFICATION.least_growth * n_nodes or step == DENSIFICATION.most_rounds
 
     def limits(self, nodes: np.ndarray) -> tuple[float, float]:
         """Return the largest distance (m) and angle (°) at which a point joins the TIN of ``nodes``."""
@@ -90,7 +92,7 @@ class JoinRules:
             return self.max_angle
         nearest = spatial.cKDTree(nodes[:, :2]).query(nodes[:, :2], 2)[0][:, 1]
         angles = np.degrees(np.arctan2(np.abs(node_residuals(nodes)), nearest))
-        return min(self.max_angle, _GROW_DEVIATIONS * robust_deviation(angles, 0.0))
+        return min(self.max_angle, DENSIFICATION.deviations * robust_deviation(angles, 0.0))
 
     def distance(self, nodes: np.ndarray) -> float:
         """Return the largest distance (m) at which a point joins the TIN of ``nodes``."""
@@ -98,7 +100,7 @@ class JoinRules:
             return self.max_distance
         if len(nodes) <= 3:
             return np.inf
-        rough = _GROW_DEVIATIONS * surface_roughness(nodes, self.least)
+        rough = DENSIFICATION.deviations * surface_roughness(nodes, self.least)
         return max(rough, rough / 2 + self.bend)
 
 
@@ -168,7 +170,7 @@ def grow(
     """
     surface, step = Surface(points, start, monitor.part(0, 0.5)), 0
     distance, angle = rules.limits(surface.nodes)
-    is_near = np.abs(surface.above()) <= _CANDIDATE_DISTANCES * distance
+    is_near = np.abs(surface.above()) <= DENSIFICATION.candidate * distance
     candidates = np.flatnonzero((is_near | rules.is_exhaustive) & may_join & ~surface.is_node)
     is_last = False
     while not is_last:
@@ -190,7 +192,7 @@ def _joining(
     # Small facets mostly get smaller, and a point beside a node makes a sliver and adds no information.
     is_open = tin.longest_edge()[facet] > rules.edge_length
     candidates, facet = candidates[is_open], facet[is_open]
-    apart = _to_nearest_node(tin, facet, surface.points[candidates]) > _MIN_NODE_DISTANCE * rules.edge_length
+    apart = _to_nearest_node(tin, facet, surface.points[candidates]) > DENSIFICATION.node_distance * rules.edge_length
     candidates, facet = candidates[apart], facet[apart]
     here = surface.points[candidates]
     offset, angle = offset_and_angle(tin, facet, here)

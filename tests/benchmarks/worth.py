@@ -332,9 +332,19 @@ WHOLE = (
         lambda number, numbers, usable: np.ones(len(usable), bool),
     ),
     _out("ground: higher strips", "terrain.classify_ground_tin:_of_higher_strips", _nowhere),
-    _out("ground: banks", "terrain.removed_objects:_STEEPEST_BANK", 0.0),
-    _out("ground: share of the whole edge", "terrain.removed_objects:_JOINED_OF_ALL", 0.0),
-    _out("ground: regions of large windows apart", "terrain.removed_objects:_LARGE_WINDOW", 1.0),
+    _out(
+        "ground: banks", "terrain.removed_objects:REMOVAL", _set("terrain.removed_objects:REMOVAL", steepest_bank=0.0)
+    ),
+    _out(
+        "ground: share of the whole edge",
+        "terrain.removed_objects:REMOVAL",
+        _set("terrain.removed_objects:REMOVAL", joined_of_all=0.0),
+    ),
+    _out(
+        "ground: regions of large windows apart",
+        "terrain.removed_objects:REMOVAL",
+        _set("terrain.removed_objects:REMOVAL", large_window=1.0),
+    ),
     _out(
         "ground: regions that join the terrain",
         "terrain.removed_objects:ObjectRemoval.without_joined",
@@ -345,8 +355,7 @@ WHOLE = (
         "terrain.ground_seeds:find_free_standing",
         lambda surface, *_: (np.zeros(surface.shape, bool), 0.0),
     ),
-    _out("free-standing: most steps are high", "terrain.free_standing:_HIGH", 0.0),
-    _out("free-standing: open edge", "terrain.free_standing:_OPEN_EDGE", 0.0),
+    _out("free-standing: open edge", "terrain.free_standing:FREE", _set("terrain.free_standing:FREE", open_edge=0.0)),
     _out(
         "free-standing: halls in parts",
         "terrain.free_standing:_reunited",
@@ -354,15 +363,15 @@ WHOLE = (
     ),
     _out("free-standing: machines on halls", "terrain.free_standing:_on_roof", _nowhere),
     _out(
-        "free-standing: cut off by two sides",
-        "terrain.free_standing:_CUT_RULES",
-        importlib.import_module(f"{PACKAGE}.terrain.free_standing")._CUT_RULES[:1],
+        "free-standing: cut off by two sides and more",
+        "terrain.free_standing:FREE",
+        _set("terrain.free_standing:FREE", corner=0.0, cut=0.0),
     ),
-    _out("roofs: roughest by noise", "segmentation.segment_roofs:_ROUGHEST_NOISE", 0.0),
-    _out("roofs: roughest by off-plane deviation", "segmentation.segment_roofs:_ROUGHEST_OFF_PLANE", 0.0),
-    _out("roofs: large smooth surfaces", "segmentation.segment_roofs:_LARGE", np.inf),
-    _out("roofs: smooth", "segmentation.segment_roofs:_Patches.smooth", lambda self, chosen, *_: chosen),
-    _out("roofs: surfaces that go on into the ground", "segmentation.segment_roofs:_LOW_SHARE", 1.0),
+    _out(
+        "roofs: surfaces that go on into the ground",
+        "segmentation.segment_roofs:SURFACE",
+        _set("segmentation.segment_roofs:SURFACE", low_share=1.0),
+    ),
     Rule("classify: penetration", tunables={"buildings": {"max_penetration": 1.0}}),
     Rule("classify: surroundings", tunables={"buildings": {"min_share_around": 0.0}}),
     _out(
@@ -373,6 +382,7 @@ WHOLE = (
     _out("classify: edges of roofs", "buildings.cluster_evidence:_MAX_SPLIT_AT_EDGES", 0.0),
     _out("classify: balconies", "buildings.cluster_evidence:_MIN_SHARE_AT_BALCONIES", 2.0),
     _out("classify: weight of the references", "buildings.entropy_split:_REFERENCE_WEIGHT", 10**9),
+    Rule("refine: learned from the scene", tunables={"refine": {"learn": False}}),
     Rule("complete: gaps", tunables={"complete": {"gap": 0.0}}),
     Rule("complete: structures on roofs", tunables={"complete": {"structure_height": 0.0}}),
     Rule("complete: share of roof surfaces", tunables={"complete": {"min_roof_share": 0.0}}),
