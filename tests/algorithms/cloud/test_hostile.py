@@ -146,7 +146,7 @@ def test_a_chunk_that_begins_near_the_end_of_the_file(make_las, tmp_path):
 def test_points_of_another_size_in_the_laszip_record(laz):
     raw, path = laz
     sizes = (patched(raw, record_at(raw) + 36, "<H", size) for size in (65_535, 1, 0))
-    assert_refused(path, "its LASzip record tells of points of", *sizes)
+    assert_refused(path, "its LASzip record describes points of", *sizes)
 
 
 def test_more_items_in_the_laszip_record_than_it_has(laz):
@@ -217,7 +217,7 @@ def test_points_of_other_kinds_in_the_laszip_record(laz):
     first = record_at(raw) + 34
     hostile = [patched(raw, first, "<H", kind) for kind in (0, 7, 11, 12, 13, 14, 300)]
     hostile += [patched(raw, first + 4, "<H", version) for version in (0, 5, 1 if raw[104] & 63 >= 6 else 3)]
-    assert_refused(path, "its LASzip record does not tell of point format", *hostile)
+    assert_refused(path, "its LASzip record does not describe point format", *hostile)
 
 
 @pytest.mark.parametrize("point_format", [0, 1, 3])
