@@ -188,7 +188,7 @@ def test_points_without_chunks_that_tell_of_layers(laz):
     raw, path = laz
     if raw[104] & 63 < 6:
         pytest.skip("points of old formats are not stored in layers")
-    assert_refused(path, "without chunks that are stored in layers", patched(raw, record_at(raw), "<H", 1))
+    assert_refused(path, "describes layered points without chunks", patched(raw, record_at(raw), "<H", 1))
 
 
 def test_waveforms_where_the_header_says_but_none_are(make_las, tmp_path):
