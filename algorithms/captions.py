@@ -42,6 +42,7 @@ CAPTIONS = {
     "classifybuildings": "How sure it is that a cluster is a building, from blue to red.",
     "classifyvegetation": "Crowns, hedges and bushes in green, the darker the higher; buildings red, walls gray.",
     "classifywater": "The river of a simulated town in blue, below its bridges.",
+    "classifywires": "A simulated transmission line and a line along houses: wires yellow, masts brown.",
     "completebuildings": "Whole buildings in red, with walls, dormers and edges.",
     "refinebuildings": "The probability of building that was learned from the scene, from dark to light.",
     "extractfootprints": "Footprints around the points of buildings.",
@@ -59,5 +60,6 @@ CAPTIONS = {
     "simulateplant": "The rack of the plant: pipes, elbows, flanges and beams, each in a color of its own.",
     "simulatetree": "The tree, each branch in a color of its own.",
     "simulatestreet": "One side of the street, each true facade in a color of its own.",
+    "simulatepowerline": "Both lines of the site, in the colors of the true classes.",
     "simulatebridges": "A bridge over a valley, in the colors of the true classes.",
 }

@@ -44,6 +44,7 @@ _DETECTION = (
     Step("refine", "refine_buildings"),
     Step("near_ground", "complete_ground"),
     Step("water", "classify_water"),
+    Step("wires", "classify_wires"),
     Step("vegetation", "classify_vegetation"),
     Step("footprints", "extract_footprints"),
 )
@@ -64,8 +65,8 @@ _PIPELINES = (
             "Noise, ground and heights first, on request bridges; then roof surfaces and clusters of everything else "
             "above the ground. A cluster is a building by its mean entropy, compared with that of planes and volumes, "
             "and by how much of the beam passes through it; then whole buildings with their walls, whose edges are "
-            "corrected by what all buildings of the cloud look like, water, vegetation among the rest, and outlines. "
-            "Distances and tolerances follow the density and the noise of the cloud."
+            "corrected by what all buildings of the cloud look like, water, wires, vegetation among the rest, and "
+            "outlines. Distances and tolerances follow the density and the noise of the cloud."
         ),
         references=_SANTOS,
         steps=_DETECTION,
@@ -76,6 +77,7 @@ _PIPELINES = (
             "ground_max_building_size",
             "bridges_max_width",
             "water_look_for",
+            "wires_look_for",
             "vegetation_look_for",
             "footprints_regularize",
         ),

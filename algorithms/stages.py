@@ -18,6 +18,7 @@ from .features.compute_features import compute_features
 from .footprints.extract_footprints import extract_footprints
 from .landcover.classify_vegetation import classify_vegetation
 from .landcover.classify_water import classify_water
+from .landcover.classify_wires import classify_wires
 from .models3d.export_for_roofer import export_for_roofer
 from .models3d.reconstruct_block import reconstruct_block
 from .models3d.reconstruct_roofs import reconstruct_roofs
@@ -54,6 +55,7 @@ from .simulation.simulate_bridges import simulate_bridges
 from .simulation.simulate_drone_site import simulate_drone_site
 from .simulation.simulate_flight import simulate_flight
 from .simulation.simulate_plant import simulate_plant
+from .simulation.simulate_power_line import simulate_power_line
 from .simulation.simulate_street import simulate_street
 from .simulation.simulate_town import simulate_town
 from .simulation.simulate_tree import simulate_tree
@@ -105,6 +107,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     complete_buildings,
     refine_buildings,
     classify_water,
+    classify_wires,
     classify_vegetation,
     extract_footprints,
     classify_roofs,
@@ -126,6 +129,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     compare_corners,
     simulate_town,
     simulate_bridges,
+    simulate_power_line,
     simulate_flight,
     simulate_plant,
     simulate_tree,

@@ -74,6 +74,7 @@ STREET = ("simulate_street", {"length": 40.0})
 PLANT = ("simulate_plant", {"pipes": 24, "tanks": 0, "spheres": 1, "density": 1500.0})
 TREE = ("simulate_tree", {"leaves": 0.05, "density": 4000.0})
 BRIDGE = ("simulate_bridges", {"kind": "valley", "density": 12.0})
+LINES = ("simulate_power_line", {"size": 130.0, "span": 90.0, "density": 25.0, "forest": 0.05})
 FLIGHT = ("simulate_flight", {})
 
 # One side of the street, seen from the other.
@@ -126,6 +127,9 @@ SCENES = {
     "classifybuildings": Scene(TOWN, (*ROOFS, "classify_buildings"), color="confidence"),
     "classifyvegetation": Scene(TOWN, (*BUILDINGS, "classify_vegetation"), color="classification"),
     "classifywater": Scene(TOWN, (*BUILDINGS, "classify_water"), color="classification"),
+    "classifywires": Scene(
+        LINES, (*BUILDINGS, "classify_wires", "classify_vegetation"), color="classification", azimuth=-30.0, tilt=75.0
+    ),
     "completebuildings": Scene(TOWN, BUILDINGS, color="classification"),
     "refinebuildings": Scene(TOWN, (*BUILDINGS, "refine_buildings"), color="building_probability"),
     "extractfootprints": Scene(TOWN, (*BUILDINGS, "extract_footprints"), color="classification", lines="footprints"),
@@ -147,6 +151,7 @@ SCENES = {
     "simulateplant": Scene(PLANT, **RACK),
     "simulatetree": Scene(TREE, color="segment_id", tilt=80.0, height=560),
     "simulatestreet": Scene(STREET, **FRONT),
+    "simulatepowerline": Scene(LINES, color="classification", keeps_classes=True, azimuth=-30.0, tilt=75.0),
     "simulatebridges": Scene(BRIDGE, color="classification", keeps_classes=True),
 }
 

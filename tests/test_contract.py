@@ -83,6 +83,8 @@ STAGE_IDS = {
     "refinebuildings",
     "classifyvegetation",
     "classifywater",
+    "classifywires",
+    "simulatepowerline",
     "extractfootprints",
     "classifyroofs",
     "classifywalls",
@@ -152,7 +154,7 @@ WITHOUT_UNIT = {
 OWN_CLASSES = {"classify_dimensionality"}
 # Our own, after no publication.
 WITHOUT_REFERENCES = {"simulate_plant", "simulate_town", "simulate_village", "simulate_street", "simulate_drone_site"}
-WITHOUT_REFERENCES |= {"simulate_bridges", "simulate_tree"}
+WITHOUT_REFERENCES |= {"simulate_bridges", "simulate_tree", "simulate_power_line"}
 # Stems are scanned from the ground, and finer than the scene is.
 WITHOUT_FEATURES = {"segment_tree"}
 # Automatic tunables that matter only beside another setting.

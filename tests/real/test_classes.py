@@ -43,3 +43,9 @@ def test_canals_are_found_as_well_as_before(name, reached):
 @pytest.mark.parametrize("name", ["ign-chalet", "ign-stbarth-4", "ahn-amsterdam-1"])
 def test_no_water_is_found_where_there_is_none(name):
     assert not (detected(f"buildings/{name}").classification == PointClass.WATER).any()
+
+
+# A tower crane on the hillside hangs its jib as wires do; the other clouds have neither wires nor cranes.
+@pytest.mark.parametrize("name", ["ign-forest-none", "ign-bridge-none", "ahn3-delft-4", "amsterdam-centre-10"])
+def test_no_wires_are_found_where_there_are_none(name):
+    assert not (detected(f"buildings/{name}").classification == PointClass.WIRE_CONDUCTOR).any()

@@ -1,0 +1,135 @@
+"""Wires and the masts that carry them."""
+
+from __future__ import annotations
+
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from ..params import Seed, SurfaceNoise
+from ..sampling.cloud_sampling import CloudSampling
+from ..stage import Monitor, Param, stage
+from .masts import on_masts
+from .wire_candidates import over_free_space, strands, thinned
+from .wire_spans import RULES, Span, Surroundings, spans_of
+
+# Points of these classes may be of wires and masts.
+_OPEN = (
+    PointClass.NEVER_CLASSIFIED,
+    PointClass.UNCLASSIFIED,
+    PointClass.LOW_VEGETATION,
+    PointClass.MEDIUM_VEGETATION,
+    PointClass.HIGH_VEGETATION,
+    PointClass.WIRE_CONDUCTOR,
+    PointClass.TRANSMISSION_TOWER,
+    PointClass.HIGH_NOISE,
+)
+
+# Distance (m) within which points show the direction of a wire: five points of a wire in a thin
+# cloud, which has one every three to four spacings.
+_LEAST_REACH, _REACH_SPACINGS, _MOST_REACH = 8.0, 20.0, 15.0
+
+
+@stage(
+    "Classify wires",
+    group="Land cover",
+    tags="wire,power line,conductor,cable,catenary,span,pole,mast,pylon,tower,electricity,corridor,RANSAC",
+    writes=("classification",),
+    reach=_MOST_REACH,
+)
+def classify_wires(
+    xyz,
+    classification,
+    height_above_ground,
+    *,
+    look_for: Annotated[
+        bool, Param("Look for wires", "Without it no class changes: for models that have this step.")
+    ] = True,
+    min_height: Annotated[
+        float,
+        Param("Minimum height", "Height above the ground of the lowest wires.", unit="m", low=1, high=100),
+    ] = 4.0,
+    noise: SurfaceNoise = None,
+    seed: Seed = 0,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Classify the wires of power lines (14), of high and low voltage, and the masts and poles at their ends (15).
+
+    A wire is a parabola in an upright plane, as the catenary of a tight wire nearly is: 10 m of it at least, bent
+    upward, with free space below and no building beside it. Spans are found by RANSAC among points that lie on lines;
+    parallel ones one by one. Where spans end, the slender upright object that reaches up to them is a mast. Clouds of
+    matched images are left as they are: wires are thinner than their pixels.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes. Points of 0, 1, vegetation and high noise are looked at, as thin clouds have wires of single
+        points; earlier wires and masts are classified anew.
+    height_above_ground : ndarray of shape (n,), float32
+        Heights, m.
+
+    Returns
+    -------
+    classification : ndarray of shape (n,), uint8
+        The same with wires (14) and masts (15).
+
+    Notes
+    -----
+    At 2 points per m² a wire has a point on 3 m or so, at 50 per m² several on each meter. Wires inside crowns, wires
+    closer than 0.75 m to one another at the same height, and spans seen over less than 10 m are not found.
+
+    References
+    ----------
+    Melzer, T., Briese, C., 2004. Extraction and modeling of power lines from ALS point clouds. 28th Workshop of the
+    Austrian Association for Pattern Recognition, 47-54. Fischler, M. A., Bolles, R. C., 1981. Random sample consensus.
+    Communications of the ACM 24(6), 381-395.
+    """
+    classes = classification.astype(np.uint8)
+    if not look_for:
+        return classes
+    sampling = sampling or CloudSampling.of(xyz, classification)
+    noise = sampling.noise if noise is None else noise
+    monitor.resolved(noise=noise)
+    if sampling.is_closed_surface():
+        return classes
+    classes[np.isin(classes, (PointClass.WIRE_CONDUCTOR, PointClass.TRANSMISSION_TOWER))] = PointClass.UNCLASSIFIED
+    is_open = np.isin(classification, _OPEN) & (height_above_ground > 0)
+    # In one order, whichever the file has: random choices are then the same.
+    rows = np.flatnonzero(is_open)
+    rows = rows[np.lexsort(xyz[rows].T)]
+    points, height = sampling.from_corner(xyz[rows]), height_above_ground[rows]
+    solid = sampling.from_corner(xyz[classification == PointClass.BUILDING])
+    around = Surroundings(points, solid, max(RULES.least_off, RULES.noises * noise))
+    spans = _spans(points, height, around, min_height, sampling.spacing, seed, monitor)
+    for span in spans:
+        classes[rows[around.on_wire(span, beyond=1.0)]] = PointClass.WIRE_CONDUCTOR
+    is_wire = classes[rows] == PointClass.WIRE_CONDUCTOR
+    classes[rows[on_masts(points, height, is_wire, spans)]] = PointClass.TRANSMISSION_TOWER
+    monitor.progress(1.0)
+    return classes
+
+
+def _spans(
+    points: np.ndarray,
+    height: np.ndarray,
+    around: Surroundings,
+    min_height: float,
+    spacing: float,
+    seed: int,
+    monitor: Monitor,
+) -> list[Span]:
+    """Return the spans of the wires among the points (n, 3), m."""
+    free = over_free_space(points, spacing)
+    free = free[height[free] >= min_height]
+    monitor.progress(0.2)
+    if not len(free):
+        return []
+    free = free[thinned(points[free])]
+    reach = min(max(_REACH_SPACINGS * spacing, _LEAST_REACH), _MOST_REACH)
+    strand, direction = strands(points[free], reach)
+    monitor.progress(0.7)
+    return list(spans_of(points[free], strand, direction, around, reach, np.random.default_rng(seed)))

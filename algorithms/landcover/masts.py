@@ -1,0 +1,116 @@
+"""Masts: slender upright objects where the spans of wires end."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..geometry.groups import components, run_starts, split_groups
+from ..packages import spatial
+from .wire_spans import Span
+
+
+@dataclass(frozen=True)
+class _Rules:
+    """What a mast is.
+
+    Attributes
+    ----------
+    search, arms : float
+        Distance (m) from where spans end within which their mast is looked for, and the same as a share of the height
+        of masts: wires hang from arms, and end some meters before them where points are few.
+    radius, spread : float
+        Radius (m) of poles with what is fixed to them, and of towers as a share of their height.
+    above : float
+        Height (m) over the highest wire up to which a mast reaches: insulators and the tip.
+    foot : float
+        Height (m) above the ground from which its points are not those of plants at its foot.
+    part, filled : float
+        Height (m) of the parts of a mast, and least share of those of its upper and of its lower half that hold points.
+    trunk : tuple of float
+        Shares of the height between which a mast has no arms and a tree has its crown: around it there are fewer
+        points than in it.
+    """
+
+    search: float = 3.0
+    arms: float = 0.2
+    radius: float = 0.6
+    spread: float = 0.08
+    above: float = 2.0
+    foot: float = 0.5
+    part: float = 1.5
+    filled: float = 0.5
+    trunk: tuple[float, float] = (0.25, 0.65)
+
+
+_RULES = _Rules()
+
+
+def on_masts(xyz: np.ndarray, height: np.ndarray, is_wire: np.ndarray, spans: list[Span]) -> np.ndarray:
+    """Return the rows (k,) of the points of masts.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points of no class and of wires, m.
+    height : ndarray of shape (n,)
+        Their heights above the ground, m.
+    is_wire : ndarray of shape (n,), bool
+        Which are on wires.
+    spans : list of Span
+        The wires.
+    """
+    if not spans:
+        return np.zeros(0, np.int64)
+    ends = np.array([span.at(along) for span in spans for along in (span.start, span.end)])
+    wires = np.flatnonzero(is_wire)
+    over = height[wires[spatial.cKDTree(xyz[wires, :2]).query(ends[:, :2])[1]]]
+    reach = np.maximum(_RULES.search, _RULES.arms * over)
+    pairs = spatial.cKDTree(ends[:, :2]).query_pairs(2 * float(reach.max()), output_type="ndarray")
+    near = np.hypot(*(ends[pairs[:, 0], :2] - ends[pairs[:, 1], :2]).T) <= reach[pairs[:, 0]] + reach[pairs[:, 1]]
+    count, group = components(pairs[near, 0], pairs[near, 1], len(ends))
+    rows = np.flatnonzero(~is_wire & (height >= _RULES.foot))
+    tree = spatial.cKDTree(xyz[rows, :2])
+    found = [np.zeros(0, np.int64)]
+    for members in split_groups(group, count):
+        top, middle = float(over[members].max()), ends[members, :2].mean(axis=0)
+        around = rows[tree.query_ball_point(middle, 2 * float(reach[members].max()) + _RULES.search)]
+        found.append(around[_mast(xyz[around, :2] - middle, height[around], top)])
+    return np.unique(np.concatenate(found))
+
+
+def _mast(plan: np.ndarray, height: np.ndarray, top: float) -> np.ndarray:
+    """Return which points (n,) are of a mast that carries wires ``top`` (m) above the ground; none where none does."""
+    nothing = np.zeros(len(plan), bool)
+    inside = height <= top + _RULES.above
+    if not inside.any():
+        return nothing
+    radius = max(_RULES.radius, _RULES.spread * top)
+    axis = _axis(plan[inside], height[inside], radius, top)
+    if axis is None:
+        return nothing
+    out = np.hypot(*(plan - axis).T)
+    in_trunk = (height >= _RULES.trunk[0] * top) & (height <= _RULES.trunk[1] * top)
+    beside = in_trunk & (out > radius) & (out <= 2 * radius)
+    if beside.sum() > (in_trunk & (out <= radius)).sum():
+        return nothing
+    return inside & ((out <= radius) | ((height > _RULES.trunk[1] * top) & (out <= _RULES.arms * top)))
+
+
+def _axis(plan: np.ndarray, height: np.ndarray, radius: float, top: float) -> Any:
+    """Return the position (2,) around which most parts of the height have points; None where too few have."""
+    parts = max(round(top / _RULES.part), 2)
+    part = np.clip(height / top * parts, 0, parts - 1).astype(np.int64)
+    # One point of each half radius and part is enough.
+    cell = np.floor(plan / (radius / 2)).astype(np.int64)
+    order = np.lexsort((plan[:, 1], plan[:, 0], part, *cell.T))
+    key = np.column_stack([cell, part])[order]
+    first = order[run_starts(np.unique(key, axis=0, return_inverse=True)[1].ravel())]
+    plan, part = plan[first], part[first]
+    near = np.hypot(*(plan[:, None] - plan[None]).transpose(2, 0, 1)) <= radius
+    filled = np.column_stack([(near & (part == number)).any(axis=1) for number in range(parts)])
+    best = int(filled.sum(axis=1).argmax())
+    shares = [float(half.mean()) for half in np.array_split(filled[best], 2)]
+    return plan[best] if min(shares) >= _RULES.filled else None

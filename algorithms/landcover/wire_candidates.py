@@ -1,0 +1,151 @@
+"""Points that may be on wires: high, nothing close below them, and on a line with others."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..geometry.grid import fixed_grid_over
+from ..geometry.groups import components, items, run_starts
+from ..geometry.sparse_voxels import voxelize
+from ..packages import spatial
+
+
+@dataclass(frozen=True)
+class _Rules:
+    """Where wires are looked for.
+
+    Attributes
+    ----------
+    least_column, column_spacings : float
+        Side of the columns in which heights are compared: 1 m, and 2 point spacings, so that columns in crowns hold
+        several points.
+    free : float
+        Height (m) below a bundle of wires that holds no points: crowns hold some.
+    thickest : float
+        Largest height (m) of a bundle of wires one above the other.
+    thinning : float
+        Side (m) of the voxels of which one point each is looked at.
+    around : float
+        Radius (m) in which other points are counted.
+    most_around : int
+        Most points in it, thinned: three parallel wires have 18 in dense clouds, surfaces 28, crowns more.
+    aside, beyond : float
+        Points within the first distance (m) of a line are on it: the footprint of the beam. Between one and a half and
+        two and a half times of it there are no more than half of their number: parallel wires are farther away,
+        surfaces go on.
+    least : int
+        Least number of points on a line.
+    most_trials : int
+        Lines through each point that are tried.
+    steepest : float
+        Steepest slope of a wire (tangent), at masts in hills.
+    turn : float
+        Largest angle (°) between directions at points of one wire.
+    """
+
+    least_column: float = 1.0
+    column_spacings: float = 2.0
+    free: float = 3.0
+    thickest: float = 1.5
+    thinning: float = 1.0
+    around: float = 3.0
+    most_around: int = 20
+    aside: float = 0.3
+    least: int = 5
+    most_trials: int = 8
+    steepest: float = 0.4
+    turn: float = 8.0
+
+
+_RULES = _Rules()
+
+# Pairs of points that are compared at once.
+_CHUNK = 4000
+
+
+def over_free_space(xyz: np.ndarray, spacing: float) -> np.ndarray:
+    """Return the rows (m,) of points (n, 3), m, in thin layers with free space below them."""
+    if not len(xyz):
+        return np.zeros(0, np.int64)
+    column = fixed_grid_over(xyz, max(_RULES.least_column, _RULES.column_spacings * spacing)).number(xyz)
+    order = np.lexsort((xyz[:, 2], column))
+    z, column = xyz[order, 2], column[order]
+    is_first = np.ones(len(z), bool)
+    is_first[1:] = (column[1:] != column[:-1]) | (np.diff(z) > _RULES.free)
+    start = np.flatnonzero(is_first)
+    thickness = z[np.append(start[1:], len(z)) - 1] - z[start]
+    return np.sort(order[(thickness <= _RULES.thickest)[np.cumsum(is_first) - 1]])
+
+
+def thinned(xyz: np.ndarray) -> np.ndarray:
+    """Return the rows (m,) of one point per voxel, of those with few others around."""
+    _, voxel, _ = voxelize(xyz, _RULES.thinning)
+    order = np.lexsort((xyz[:, 0], xyz[:, 1], xyz[:, 2], voxel))
+    rows = np.sort(order[run_starts(voxel[order])])
+    count = spatial.cKDTree(xyz[rows]).query_ball_point(xyz[rows], _RULES.around, return_length=True)
+    return rows[count <= _RULES.most_around]
+
+
+def strands(xyz: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the number (n,), from 0, of the line that each point is on, -1 for none, and its direction (n, 3).
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Thinned points.
+    reach : float
+        Distance (m) within which points are on a line together.
+    """
+    if len(xyz) < _RULES.least:
+        return np.full(len(xyz), -1), np.zeros((len(xyz), 3))
+    # Wires run far in plan and little in height.
+    pairs = spatial.cKDTree(xyz * [1.0, 1.0, 2.0]).query_pairs(reach, output_type="ndarray")
+    one, other = np.concatenate([pairs, pairs[:, ::-1]]).T
+    order = np.lexsort((other, one))
+    one, other = one[order], other[order]
+    offset = xyz[other] - xyz[one]
+    count, direction = _best_lines(one, offset, len(xyz), reach)
+    is_linear = count >= _RULES.least - 1
+    near = is_linear[one] & is_linear[other]
+    one, other, offset = one[near], other[near], offset[near]
+    aside, off_height, along = _off_line(offset, direction[one])
+    alike = np.abs((direction[one, :2] * direction[other, :2]).sum(axis=1)) > np.cos(np.radians(_RULES.turn))
+    # A wire bends: farther points are higher than its tangent.
+    on_line = (aside <= _RULES.aside) & (off_height <= _RULES.aside + 0.02 * np.abs(along)) & alike
+    _, line = components(one[on_line], other[on_line], len(xyz))
+    return np.where(is_linear, line, -1), direction
+
+
+def _best_lines(one: np.ndarray, offset: np.ndarray, count: int, reach: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return how many neighbors (n,) are on the best line through each point, and its direction (n, 3), 1 m in plan."""
+    distance = np.hypot(offset[:, 0], offset[:, 1])
+    far = np.flatnonzero((distance >= reach / 3) & (np.abs(offset[:, 2]) <= _RULES.steepest * distance))
+    start, size = np.searchsorted(one, np.arange(count)), np.bincount(one, minlength=count)
+    # Evenly spread over the neighbors of a point.
+    first, number = np.searchsorted(one[far], np.arange(count)), np.bincount(one[far], minlength=count)
+    point, trial = items(np.minimum(number, _RULES.most_trials))
+    tried = far[first[point] + trial * number[point] // np.minimum(number[point], _RULES.most_trials)]
+    best, direction = np.zeros(count, np.int64), np.zeros((count, 3))
+    for chunk in np.array_split(np.arange(len(tried)), len(tried) // _CHUNK + 1):
+        rows = point[chunk]
+        line = offset[tried[chunk]] / distance[tried[chunk], None]
+        which, item = items(size[rows])
+        aside, off_height, _ = _off_line(offset[start[rows][which] + item], line[which])
+        on_line = np.bincount(which, (aside <= _RULES.aside) & (off_height <= _RULES.aside), len(rows))
+        in_gap = (aside > 1.5 * _RULES.aside) & (aside <= 2.5 * _RULES.aside) & (off_height <= 1.5 * _RULES.aside)
+        beside = np.bincount(which, in_gap, len(rows))
+        score = np.where(beside <= on_line / 2, on_line - beside, 0).astype(np.int64)
+        order = np.lexsort((-score, rows))
+        leading = order[run_starts(rows[order])]
+        leading = leading[score[leading] > best[rows[leading]]]
+        best[rows[leading]], direction[rows[leading]] = score[leading], line[leading]
+    return best, direction
+
+
+def _off_line(offset: np.ndarray, line: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return how far offsets (m, 3) lie aside of lines (m, 3) in plan, above or below them, and along them, m."""
+    along = offset[:, 0] * line[:, 0] + offset[:, 1] * line[:, 1]
+    aside = np.abs(offset[:, 0] * line[:, 1] - offset[:, 1] * line[:, 0])
+    return aside, np.abs(offset[:, 2] - along * line[:, 2]), along

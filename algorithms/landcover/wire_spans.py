@@ -1,0 +1,282 @@
+"""Spans of wires: parabolas in upright planes, fitted by RANSAC."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Optional
+
+import numpy as np
+
+from ..geometry.groups import split_groups
+
+
+@dataclass(frozen=True)
+class _Rules:
+    """What the span of a wire is.
+
+    Attributes
+    ----------
+    starts, trials : int
+        Points from which a span is looked for along their direction, and parabolas through three points that are tried
+        from each: half of the points there are of one span, an eighth of the trials good.
+    failures : int
+        Wrong spans in a row after which a strand is given up: those of crowns are many.
+    longest : float
+        Distance (m) along the wire within which these points are.
+    apart : float
+        Least distance along the wire between two of these points (m): nearer ones give no curvature.
+    aside : float
+        Points within this distance (m) of the plane of the wire are on it: the radius of the beam's footprint and the
+        swing of the wire.
+    least_off, noises : float
+        And within the larger of this height (m) and this many standard deviations of the noise of the parabola.
+    tightest, most_bent : float
+        Curvature (1/m), half of the second derivative, of the tightest parabola that is tried and of the deepest: a sag
+        of a tenth over a span of 20 m.
+    certain : float
+        A fitted curvature exceeds zero by this many standard errors: beams, rails and edges are straight, wires sag.
+    least_points, least_length : float
+        Least number of thinned points of a span and of all its points, and least length (m).
+    largest_gap : float
+        Largest gap between neighboring points, as a share of the length.
+    rounds, beyond : int, float
+        A span goes on for at most this many times where its parabola meets points within this distance (m) of its ends.
+    below : float
+        Height (m) under the wire in which crowns and roofs have points.
+    most_below : float
+        Largest share of the length of a span (in parts of 1 m) that has points there or of buildings beside it: those
+        of masts and plants under it.
+    beside : float
+        Distance (m) in plan and in height from eaves and ridges within which lines are edges of buildings.
+    """
+
+    starts: int = 10
+    trials: int = 40
+    failures: int = 6
+    longest: float = 60.0
+    apart: float = 1.5
+    aside: float = 0.3
+    least_off: float = 0.1
+    noises: float = 3.0
+    tightest: float = -5e-4
+    most_bent: float = 0.02
+    certain: float = 2.0
+    least_points: int = 6
+    least_length: float = 10.0
+    largest_gap: float = 0.4
+    rounds: int = 10
+    beyond: float = 5.0
+    below: float = 2.0
+    most_below: float = 0.25
+    beside: float = 1.0
+
+
+RULES = _Rules()
+
+
+@dataclass(frozen=True)
+class Span:
+    """A parabola in an upright plane.
+
+    Attributes
+    ----------
+    middle, direction : ndarray of shape (2,)
+        A point of the wire in plan (m), and the unit vector along it.
+    curve : ndarray of shape (3,)
+        Elevation (m) by the distance from the middle (m): coefficients of its square, of it, and the constant.
+    start, end : float
+        Distances (m) from the middle between which the span was seen.
+    """
+
+    middle: np.ndarray
+    direction: np.ndarray
+    curve: np.ndarray
+    start: float
+    end: float
+
+    def local(self, xyz: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return how far along, aside of, and above the wire points (n, 3) are, m."""
+        offset = xyz[:, :2] - self.middle
+        along = offset @ self.direction
+        aside = offset[:, 0] * self.direction[1] - offset[:, 1] * self.direction[0]
+        return along, aside, xyz[:, 2] - np.polyval(self.curve, along)
+
+    def at(self, along: float) -> np.ndarray:
+        """Return the point (3,) of the wire at a distance (m) from its middle."""
+        return np.append(self.middle + along * self.direction, np.polyval(self.curve, along))
+
+
+class Surroundings:
+    """All points that are high enough to be of a wire, and those of buildings, to look at what is around a span.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Points (m) of no class.
+    solid : ndarray of shape (m, 3)
+        Points (m) of buildings.
+    off : float
+        Largest distance (m) in height of points from their wire.
+    """
+
+    def __init__(self, xyz: np.ndarray, solid: np.ndarray, off: float) -> None:
+        self.xyz, self.solid, self.off = xyz, solid, off
+        self._order = [np.argsort(points[:, 0], kind="stable") for points in (xyz, solid)]
+        self._eastward = [points[order] for points, order in zip((xyz, solid), self._order)]
+
+    def on_wire(self, span: Span, beyond: float = 0.0) -> np.ndarray:
+        """Return the rows (k,) of the points on a span, and on it up to ``beyond`` (m) its ends."""
+        rows = self._near(0, span, beyond + 1.0)
+        along, aside, above = span.local(self.xyz[rows])
+        inside = (along >= span.start - beyond) & (along <= span.end + beyond)
+        return rows[inside & (np.abs(aside) <= RULES.aside) & (np.abs(above) <= self.off)]
+
+    def extended(self, span: Span) -> Span:
+        """Return the span fitted anew to all points on it, and beyond its ends as far as they go on."""
+        for _ in range(RULES.rounds):
+            rows = self.on_wire(span, RULES.beyond)
+            longer = fitted(self.xyz[rows])
+            if longer is None or longer.end - longer.start <= span.end - span.start:
+                return span
+            span = longer
+        return span
+
+    def is_free(self, span: Span) -> bool:
+        """Return whether a span has enough points without large gaps, none below it, and no building beside it."""
+        rows = self._near(0, span, 1.0)
+        along, aside, above = span.local(self.xyz[rows])
+        is_left, aside, inside = aside > 0, np.abs(aside), (along >= span.start) & (along <= span.end)
+        is_level = inside & (np.abs(above) <= self.off)
+        on_wire = is_level & (aside <= RULES.aside)
+        # Wires are lines; a strip of half their width beside a line on a surface has half as many points as the line.
+        beside = is_level & (aside > 1.5 * RULES.aside) & (aside <= 2.5 * RULES.aside)
+        sheet = max((beside & is_left).sum(), (beside & ~is_left).sum())
+        below = inside & (aside <= 2 * RULES.aside) & (above < -2 * self.off) & (above > -RULES.below)
+        stops = np.sort(np.concatenate([along[on_wire], [span.start, span.end]]))
+        length = span.end - span.start
+        is_whole = on_wire.sum() >= RULES.least_points and np.diff(stops).max() <= RULES.largest_gap * length
+        occupied = len(np.unique(np.floor(along[below]))) + self._edges(span)
+        return bool(is_whole and sheet <= on_wire.sum() / 4 and occupied <= RULES.most_below * length)
+
+    def _edges(self, span: Span) -> int:
+        """Return along how much of a span (m) buildings are beside it."""
+        solid = self.solid[self._near(1, span, RULES.beside)]
+        along, aside, above = span.local(solid)
+        inside = (along >= span.start) & (along <= span.end)
+        return len(np.unique(np.floor(along[inside & (np.maximum(np.abs(aside), np.abs(above)) <= RULES.beside)])))
+
+    def _near(self, which: int, span: Span, margin: float) -> np.ndarray:
+        """Return the rows of points that may be near a span."""
+        points, order = self._eastward[which], self._order[which]
+        ends = np.array([span.at(span.start), span.at(span.end)])
+        low, high = ends[:, :2].min(axis=0) - margin, ends[:, :2].max(axis=0) + margin
+        first, last = np.searchsorted(points[:, 0], [low[0], high[0]])
+        north = points[first:last, 1]
+        return order[first:last][(north >= low[1]) & (north <= high[1])]
+
+
+def spans_of(
+    xyz: np.ndarray,
+    strand: np.ndarray,
+    direction: np.ndarray,
+    around: Surroundings,
+    reach: float,
+    rng: np.random.Generator,
+) -> Iterator[Span]:
+    """Yield the spans among points (n, 3), m.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Thinned points.
+    strand : ndarray of shape (n,), int
+        The line that each is on, -1 for none.
+    direction : ndarray of shape (n, 3)
+        Direction of the line at each point, 1 m long in plan.
+    around : Surroundings
+        All points.
+    reach : float
+        Largest gap in a span, m.
+    rng : numpy.random.Generator
+        Draws the points.
+    """
+    for rows in split_groups(strand, strand.max(initial=-1) + 1):
+        left, failures = rows, 0
+        while len(left) >= RULES.least_points and failures <= RULES.failures:
+            chosen = _most_points(xyz[left], direction[left], around.off, reach, rng)
+            if not len(chosen):
+                break
+            span = fitted(xyz[left[chosen]])
+            span = span and around.extended(span)
+            failures = 0 if span is not None and around.is_free(span) else failures + 1
+            if span is not None and not failures:
+                yield span
+                chosen = np.union1d(chosen, _on(span, xyz[left], around.off))
+            left = np.delete(left, chosen)
+
+
+def _on(span: Span, xyz: np.ndarray, off: float) -> np.ndarray:
+    """Return the rows (k,) of points (n, 3) on a span."""
+    along, aside, above = span.local(xyz)
+    inside = (along >= span.start) & (along <= span.end)
+    return np.flatnonzero(inside & (np.abs(aside) <= RULES.aside) & (np.abs(above) <= off))
+
+
+def _most_points(
+    xyz: np.ndarray, direction: np.ndarray, off: float, reach: float, rng: np.random.Generator
+) -> np.ndarray:
+    """Return the rows (k,) of the span with the most points that a few starts find; empty for none."""
+    best = np.zeros(0, np.int64)
+    for start in rng.choice(len(xyz), min(RULES.starts, len(xyz)), replace=False):
+        offset = xyz[:, :2] - xyz[start, :2]
+        aside = np.abs(offset[:, 0] * direction[start, 1] - offset[:, 1] * direction[start, 0])
+        near = np.flatnonzero((aside <= 2 * RULES.aside) & (np.abs(offset).max(axis=1) <= RULES.longest))
+        found = _best_parabola(xyz[near], off, reach, rng) if len(near) >= RULES.least_points else None
+        if found is not None and len(found) > len(best):
+            best = near[found]
+    return best
+
+
+def _best_parabola(xyz: np.ndarray, off: float, reach: float, rng: np.random.Generator) -> Optional[np.ndarray]:
+    """Return the rows (k,) on the parabola through three points that has the most without a large gap, or None."""
+    drawn = np.argsort(rng.random((RULES.trials, len(xyz))), axis=1)[:, :3]
+    first, middle, last = (xyz[drawn[:, i]] for i in range(3))
+    direction = last[:, :2] - first[:, :2]
+    length = np.hypot(*direction.T)
+    direction = direction / np.maximum(length, 1e-9)[:, None]
+    offset = xyz[None, :, :2] - first[:, None, :2]
+    along = np.einsum("ijk,ik->ij", offset, direction)
+    aside = np.abs(offset[..., 0] * direction[:, None, 1] - offset[..., 1] * direction[:, None, 0])
+    to_middle = np.einsum("ij,ij->i", middle[:, :2] - first[:, :2], direction)
+    usable = (to_middle >= RULES.apart) & (length - to_middle >= RULES.apart)
+    # The parabola through (0, 0), (to_middle, rise) and (length, end), by divided differences.
+    safe = np.where(usable, to_middle, 1.0)
+    total = np.where(usable, length, 3.0)
+    slope = (middle[:, 2] - first[:, 2]) / safe
+    bend = ((last[:, 2] - middle[:, 2]) / (total - safe) - slope) / total
+    height = first[:, 2, None] + slope[:, None] * along + bend[:, None] * along * (along - safe[:, None])
+    usable &= (bend >= RULES.tightest) & (bend <= RULES.most_bent)
+    on_curve = usable[:, None] & (aside <= RULES.aside) & (np.abs(xyz[:, 2] - height) <= off)
+    best: Any = int(on_curve.sum(axis=1).argmax())
+    rows = np.flatnonzero(on_curve[best])
+    if len(rows) < RULES.least_points:
+        return None
+    rows = rows[np.argsort(along[best, rows])]
+    return np.sort(max(np.split(rows, np.flatnonzero(np.diff(along[best, rows]) > reach) + 1), key=len))
+
+
+def fitted(xyz: np.ndarray) -> Optional[Span]:
+    """Return the span through points (n, 3), m, by least squares; None if too short or not bent as a wire."""
+    if len(xyz) < RULES.least_points:
+        return None
+    middle = xyz[:, :2].mean(axis=0)
+    offset = xyz[:, :2] - middle
+    direction = np.linalg.eigh(offset.T @ offset)[1][:, 1]
+    along = offset @ direction
+    if np.ptp(along) < RULES.least_length:
+        return None
+    curve, covariance = np.polyfit(along, xyz[:, 2], 2, cov=True)
+    if not RULES.certain * np.sqrt(covariance[0, 0]) < curve[0] <= RULES.most_bent:
+        return None
+    return Span(middle, direction, curve, float(along.min()), float(along.max()))

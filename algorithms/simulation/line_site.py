@@ -1,0 +1,122 @@
+"""A site with power lines: towers with six conductors, poles along a row of houses, and the wires between them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from ..stage import Monitor
+from .plants import plant_trees
+from .relief import Relief
+from .scene import Scene
+from .solids import Rect, Solid, flat, gable
+
+# Height of a tower (m), of its three pairs of arms, length of an arm on each side, and half the distance of its legs.
+_TOWER, _ARMS, _ARM, _LEG = 30.0, (29.0, 25.0, 21.0), 5.0, 1.6
+
+# Sag of conductors, as a share of their span: usual at 20 °C.
+_SAG = 0.03
+
+# Height of poles, distance between them, sag of their wires, and how far these hang from the middle (m).
+_POLE, _POLES, _POLE_SAG, _SIDES = 9.0, 40.0, 0.8, (-0.8, 0.0, 0.8)
+
+# Houses lie this far from the poles' line (m); their wires sag so much (m).
+_HOUSE, _DROP_SAG = 16.0, 0.3
+
+# Straight pieces that a wire is made of.
+_PIECES = 24
+
+
+def build_line_site(size: float, span: float, angle: float, trees: float, forest: float, seed: int) -> Scene:
+    """Return a site (m) with both lines, ``angle`` (°) from east; trees per ha, share of forest."""
+    rng = np.random.default_rng([seed, 7])
+    scene = Scene(Relief(size, gradient=0.04, angle=np.deg2rad(90.0)))
+    direction = np.deg2rad(angle)
+    _low_voltage(scene, direction, rng)
+    _high_voltage(scene, direction, span)
+    plant_trees(scene, trees, forest, rng, Monitor())
+    return scene
+
+
+def _line(scene: Scene, direction: float, aside: float, distance: float) -> np.ndarray:
+    """Return the feet (n, 3) of the masts of a line that passes the middle of the site at ``aside`` (m)."""
+    along = np.arange(-scene.size, scene.size, distance)
+    cos, sin = np.cos(direction), np.sin(direction)
+    x, y = scene.size / 2 + along * cos - aside * sin, scene.size / 2 + along * sin + aside * cos
+    return np.column_stack([x, y, scene.relief.ground(x, y)])
+
+
+def _inside(scene: Scene, feet: np.ndarray) -> np.ndarray:
+    return ((feet[:, :2] > 1.0) & (feet[:, :2] < scene.size - 1.0)).all(axis=1)
+
+
+def _high_voltage(scene: Scene, direction: float, span: float) -> None:
+    """Put towers with six conductors and a guard wire; those beyond the site carry the wires that reach into it."""
+    feet = _line(scene, direction, 0.22 * scene.size, span)
+    across = np.array([-np.sin(direction), np.cos(direction), 0.0])
+    for foot in feet[_inside(scene, feet)]:
+        _tower(scene, foot, direction)
+    hangs = [(side * _ARM, height - 1.0) for height in _ARMS for side in (-1, 1)] + [(0.0, _TOWER)]
+    for aside, height in hangs:
+        number = scene.new_id()
+        for start, end in zip(feet, feet[1:]):
+            shift = aside * across + [0.0, 0.0, height]
+            _hang(scene, start + shift, end + shift, _SAG * span, number)
+
+
+def _tower(scene: Scene, foot: np.ndarray, direction: float) -> None:
+    """Put four legs, a body and three arms."""
+    number, (x, y, ground) = scene.new_id(), (float(value) for value in foot)
+    frame = Rect(x, y, 1.0, 1.0, direction)
+    for along in (-_LEG, _LEG):
+        for across in (-_LEG, _LEG):
+            _put(scene, frame.part(along, across, 0.3, 0.3), ground - 1.0, ground + 0.5 * _TOWER, number)
+    _put(scene, frame.part(0.0, 0.0, 0.8, 0.8), ground + 0.5 * _TOWER, ground + _TOWER, number)
+    for height in _ARMS:
+        _put(scene, frame.part(0.0, 0.0, 0.5, 2 * _ARM), ground + height - 0.4, ground + height, number)
+
+
+def _put(scene: Scene, rect: Rect, bottom: float, top: float, number: int) -> None:
+    scene.solids.append(Solid(rect, flat(rect, top), bottom, PointClass.TRANSMISSION_TOWER, number))
+
+
+def _low_voltage(scene: Scene, direction: float, rng: np.random.Generator) -> None:
+    """Put poles with three wires, and to every second pole a house with a wire of its own."""
+    feet = _line(scene, direction, -0.22 * scene.size, _POLES)
+    across = np.array([-np.sin(direction), np.cos(direction), 0.0])
+    for i, foot in enumerate(feet):
+        if not _inside(scene, foot[None])[0]:
+            continue
+        x, y, ground = (float(value) for value in foot)
+        _put(scene, Rect(x, y, 0.3, 0.3, direction), ground - 1.0, ground + _POLE, scene.new_id())
+        middle = foot - _HOUSE * across
+        if i % 2 == 0 and _inside(scene, np.array([middle - 10.0, middle + 10.0])).all():
+            eave = _house(scene, middle, direction, rng)
+            wall = middle + 4.0 * across
+            drop = np.append(wall[:2], eave - 0.2)
+            _hang(scene, foot + [0.0, 0.0, _POLE - 0.6], drop, _DROP_SAG, scene.new_id())
+    for aside in _SIDES:
+        number = scene.new_id()
+        for start, end in zip(feet, feet[1:]):
+            shift = aside * across + [0.0, 0.0, _POLE - 0.2]
+            _hang(scene, start + shift, end + shift, _POLE_SAG, number)
+
+
+def _house(scene: Scene, middle: np.ndarray, direction: float, rng: np.random.Generator) -> float:
+    """Put a gable house; return the elevation (m) of its eaves."""
+    rect = Rect(float(middle[0]), float(middle[1]), float(rng.uniform(9, 13)), 8.0, direction)
+    ground = scene.relief.ground(*rect.corners().T)
+    eave = float(ground.max()) + float(rng.uniform(3.5, 5.5))
+    solid = Solid(rect, gable(rect, eave, 0.7), float(ground.min()) - 1.0, PointClass.BUILDING, scene.new_id())
+    scene.add_building("gable", rect.corners(), [solid])
+    return eave
+
+
+def _hang(scene: Scene, start: np.ndarray, end: np.ndarray, sag: float, number: int) -> None:
+    """Hang a wire between two points (3,) m, with a sag (m) in the middle."""
+    share = np.linspace(0.0, 1.0, _PIECES + 1)[:, None]
+    line = start + share * (end - start) - 4 * sag * share * (1 - share) * [0.0, 0.0, 1.0]
+    inside = _inside(scene, line)
+    for p, q, first, last in zip(line, line[1:], inside, inside[1:]):
+        if first and last:
+            scene.wires.append((*p, *q, number))
