@@ -60,12 +60,17 @@ class CloudParameter(_TakesFiles, QgsProcessingParameterPointCloudLayer):
         return self._as_this(CloudParameter(self.name(), self.description(), self.defaultValue()))
 
 
+# QGIS's own field for several clouds keeps layers alone; folders, and files that it can't open, are lost.
+_LISTED = {"widget_wrapper": {"class": f"{__package__}.file_list.FilesWrapper"}}
+
+
 class CloudsParameter(_TakesFiles, QgsProcessingParameterMultipleLayers):
     """One point cloud or more, each a layer or the path of a file that QGIS itself may be unable to open."""
 
     def __init__(self, name: str, description: str) -> None:
         super().__init__(name, description, Qgis.ProcessingSourceType.PointCloud)
         self.setMinimumNumberInputs(2)
+        self.setMetadata(_LISTED)
 
     def clone(self) -> CloudsParameter:
         """Return a copy of this very type; the base class would return its own."""
@@ -74,7 +79,7 @@ class CloudsParameter(_TakesFiles, QgsProcessingParameterMultipleLayers):
     def valueAsPythonString(self, value: Any, context: QgsProcessingContext) -> str:  # noqa: N802
         """Return the clouds as a script and the log name them."""
         # QGIS writes down the layers that it can open, which leaves nothing of files that it can't.
-        names = _names(value)
+        names = names_of(value)
         return super().valueAsPythonString(value, context) if names is None else repr(names)
 
 
@@ -84,6 +89,7 @@ class SurveyParameter(_TakesFiles, QgsProcessingParameterMultipleLayers):
     def __init__(self, name: str, description: str) -> None:
         super().__init__(name, description, Qgis.ProcessingSourceType.PointCloud)
         self.setMinimumNumberInputs(1)
+        self.setMetadata(_LISTED)
 
     def clone(self) -> SurveyParameter:
         """Return a copy of this very type; the base class would return its own."""
@@ -91,7 +97,7 @@ class SurveyParameter(_TakesFiles, QgsProcessingParameterMultipleLayers):
 
     def valueAsPythonString(self, value: Any, context: QgsProcessingContext) -> str:  # noqa: N802
         """Return the tiles as a script and the log name them."""
-        names = _names(value)
+        names = names_of(value)
         return super().valueAsPythonString(value, context) if names is None else repr(names)
 
 
@@ -178,9 +184,9 @@ def _known(title: str, path: Path) -> Path:
     return path
 
 
-def _names(value: Any) -> Optional[list]:
-    """Return the texts of a list of layers and paths; None of anything else."""
-    values = _flat(value)
+def names_of(value: Any) -> Optional[list]:
+    """Return the texts of a list of layers and paths, without empty ones; None of anything else."""
+    values = [one for one in _flat(value) if one is not None and one != ""]
     if not all(isinstance(one, (str, QgsMapLayer)) for one in values):
         return None
     return [one if isinstance(one, str) else one.source() for one in values]

@@ -15,7 +15,7 @@ from qgis.core import (
 )
 from qgis.PyQt.QtCore import QThread
 
-_FULL = QgsCoordinateReferenceSystem.WktVariant.WKT_PREFERRED
+FULL = QgsCoordinateReferenceSystem.WktVariant.WKT_PREFERRED
 _DISTANCES_UNKNOWN = (Qgis.DistanceUnit.Unknown, Qgis.DistanceUnit.Degrees)
 
 
@@ -88,7 +88,7 @@ def renew_in_main_thread(layers: Iterable[QgsMapLayer]) -> None:
     """Give layers that a run made in its own thread the same CRS made in the main thread, which outlives that."""
     if not is_main_thread():
         return
-    named = [(layer, layer.crs().authid(), layer.crs().toWkt(_FULL)) for layer in layers if layer.crs().isValid()]
+    named = [(layer, layer.crs().authid(), layer.crs().toWkt(FULL)) for layer in layers if layer.crs().isValid()]
     QgsCoordinateReferenceSystem.invalidateCache()
     for layer, code, wkt in named:
         layer.setCrs(QgsCoordinateReferenceSystem(code) if code else QgsCoordinateReferenceSystem.fromWkt(wkt))

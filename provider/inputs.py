@@ -8,9 +8,12 @@ from typing import Optional
 
 import numpy as np
 from qgis.core import (
+    Qgis,
+    QgsCoordinateReferenceSystem,
     QgsProcessingAlgorithm,
     QgsProcessingContext,
     QgsProcessingFeedback,
+    QgsProcessingParameterCrs,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterExtent,
 )
@@ -23,7 +26,7 @@ from .crs import crs_of
 from .feedback import is_step
 
 INPUT, INPUTS, REFERENCE, OUTPUT, REPORT = "INPUT", "INPUTS", "REFERENCE", "OUTPUT", "REPORT"
-EXTENT = "EXTENT"
+EXTENT, CRS = "EXTENT", "CRS"
 
 
 def with_help(definition: QgsProcessingParameterDefinition, text: str) -> QgsProcessingParameterDefinition:
@@ -65,6 +68,38 @@ def input_paths(
 def extent_parameter() -> QgsProcessingParameterDefinition:
     """Return the parameter of the part of the cloud that is worked on."""
     return with_setting(QgsProcessingParameterExtent(EXTENT, "", optional=True), SETTINGS)
+
+
+def crs_parameter(default: Optional[str] = None) -> QgsProcessingParameterDefinition:
+    """Return the parameter of the coordinate reference system of clouds that name none."""
+    definition = QgsProcessingParameterCrs(CRS, "Coordinate reference system", default, optional=True)
+    definition.setFlags(definition.flags() | Qgis.ProcessingParameterFlag.Advanced)
+    of_clouds = "Of clouds that name none, and of what is made of them. Clouds that name one keep it."
+    return with_help(definition, "Of the simulated cloud." if default else of_clouds)
+
+
+def given_crs(
+    algorithm: QgsProcessingAlgorithm, parameters: dict, context: QgsProcessingContext
+) -> QgsCoordinateReferenceSystem:
+    """Return the coordinate reference system that a user gives for clouds that name none; an invalid one if not given.
+
+    Raises
+    ------
+    ValueError
+        If coordinates of it are degrees, or it is unknown.
+    """
+    raw = parameters.get(CRS)
+    crs = algorithm.parameterAsCrs(parameters, CRS, context)
+    if not crs.isValid():
+        if raw not in (None, "") and not (isinstance(raw, QgsCoordinateReferenceSystem) or hasattr(raw, "isNull")):
+            raise ValueError(f"{raw!r} ({CRS}) is no coordinate reference system; give it as EPSG:code.")
+        return crs
+    if crs.isGeographic():
+        raise ValueError(
+            f"Coordinates of {crs.userFriendlyIdentifier()} ({CRS}) are degrees; choose a projected coordinate "
+            "reference system."
+        )
+    return crs
 
 
 def extent_box(

@@ -21,12 +21,12 @@ from qgis.core import (
     QgsProcessingParameterDefinition,
 )
 
-from ..algorithms.cloud.files import check_readable, read_cloud, read_extent, write_cloud
+from ..algorithms.cloud.files import check_readable, read_extent, write_cloud
 from ..algorithms.help import pipeline_help
 from ..algorithms.pipeline import Output, Pipeline, Step
 from ..algorithms.stage import Cancelled
 from .clouds import cloud_path, files_read
-from .crs import crs_units, make_in_main_thread, renew_in_main_thread
+from .crs import FULL, crs_units, make_in_main_thread, renew_in_main_thread
 from .declared import DeclaredAlgorithm, on_command_line
 from .dependencies import missing_sentence
 from .errors import as_processing_errors
@@ -39,14 +39,17 @@ from .inputs import (
     OUTPUT,
     REFERENCE,
     REPORT,
+    crs_parameter,
     extent_box,
     extent_parameter,
+    given_crs,
     input_parameter,
     input_paths,
     reference_parameter,
     subject_of,
 )
 from .models import model_file, pipeline_parameters, step_label
+from .named_clouds import names_of_crs, read_named
 from .outputs import all_in_place, check_targets
 from .parameters import number_outputs, tunable_values
 
@@ -115,6 +118,7 @@ class PipelineAlgorithm(DeclaredAlgorithm, QgsProcessingModelAlgorithm):
         for definition in mended:
             if definition.isDestination() and self.pipeline.reads_cloud and not self.parameterDefinition(EXTENT):
                 self.addParameter(extent_parameter())
+                self.addParameter(crs_parameter())
             self.addParameter(definition)
 
     def _mended(
@@ -200,7 +204,10 @@ class PipelineAlgorithm(DeclaredAlgorithm, QgsProcessingModelAlgorithm):
             check_readable(cloud, crs_units)
         if clouds:
             refuse_elsewhere(self, self.pipeline.input_layers.values(), clouds, given, context)
-            self._box = extent_box(self, read_extent(clouds[0])[2], given, context)
+            self._crs = given_crs(self, given, context)
+            systems = [read_extent(cloud)[2] for cloud in clouds]
+            self._box = extent_box(self, systems[0] or self._crs.toWkt(FULL), given, context)
+            self._is_named = not self._crs.isValid() or all(systems)
         return clouds
 
     def _with_defaults(self, parameters: dict) -> dict:
@@ -224,7 +231,9 @@ class PipelineAlgorithm(DeclaredAlgorithm, QgsProcessingModelAlgorithm):
         """Check, and make the CRS of the clouds while this is still the main thread."""
         with as_processing_errors():
             self._clouds = self._check(parameters, context)
-            self._systems = make_in_main_thread(read_extent(path)[2] for path in self._clouds)
+            systems = [read_extent(path)[2] for path in self._clouds]
+            given = names_of_crs(self._crs) if self._clouds else []
+            self._systems = make_in_main_thread([*systems, *given])
         return super().prepareAlgorithm(self._with_defaults(parameters), context, feedback)
 
     def postProcessAlgorithm(  # noqa: N802
@@ -256,12 +265,12 @@ class PipelineAlgorithm(DeclaredAlgorithm, QgsProcessingModelAlgorithm):
         return results
 
     def _parts(self, folder: Path, feedback: QgsProcessingFeedback) -> dict:
-        """Return the inputs of the model that are parts of clouds, written to a folder; none for whole clouds."""
-        if not self._clouds or self._box is None:
+        """Return the inputs that are parts of clouds or get a CRS, written to a folder; nothing for whole clouds."""
+        if not self._clouds or (self._box is None and self._is_named):
             return {}
         parts = []
         for number, path in enumerate(self._clouds):
-            cloud = read_cloud(path, FeedbackMonitor(feedback).part(0.0, 0.0), crs_units, self._box)
+            cloud = read_named(path, FeedbackMonitor(feedback).part(0.0, 0.0), self._crs, self._box)
             parts.append(str(folder / f"{number}" / f"{path.name.split('.')[0]}.las"))
             Path(parts[-1]).parent.mkdir()
             write_cloud(cloud, parts[-1])

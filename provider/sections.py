@@ -10,6 +10,7 @@ from ..algorithms.help import lower_first, step_title
 from ..algorithms.pipeline import Pipeline
 from ..algorithms.stage import Tunable
 from ..algorithms.tiling.settings import SETTINGS
+from .inputs import CRS
 from .parameters import parameter_name, plain_label
 from .texts import tr
 
@@ -47,6 +48,7 @@ def sections_of(algorithm: Any) -> list[Section]:
     if pipeline is None:
         section = Section("")
         section.add_setting("EXTENT")
+        section.labels[CRS] = tr("Coordinate reference system")
         for tunable in algorithm.stage.tunables.values():
             section.add(parameter_name(tunable), tunable)
         return [section]
@@ -57,6 +59,7 @@ def sections_of(algorithm: Any) -> list[Section]:
             sections[-1].add_setting(name)
     else:
         sections[0].add_setting("EXTENT")
+        sections[0].labels[CRS] = tr("Coordinate reference system (of a cloud that names none)")
     return sections
 
 

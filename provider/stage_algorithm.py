@@ -21,25 +21,28 @@ from qgis.core import (
 
 from ..algorithms.cloud.cloud import Cloud
 from ..algorithms.cloud.dimensions import DIMENSIONS
-from ..algorithms.cloud.files import count_points, read_cloud, read_extent
+from ..algorithms.cloud.files import count_points, read_extent
 from ..algorithms.cloud.outputs import replacing
 from ..algorithms.help import stage_help
 from ..algorithms.run import Outcome, run_stage
 from ..algorithms.stage import Monitor, Raster, RasterSurface, Stage
 from .clouds import cloud_path, files_read
-from .crs import crs_units, make_in_main_thread, renew_in_main_thread
+from .crs import FULL, make_in_main_thread, renew_in_main_thread
 from .declared import DeclaredAlgorithm
 from .dependencies import missing_sentence
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, announce, is_step, warn_unknown_parameters
 from .input_layers import find_input_layer, input_layer_files, input_layer_parameter, read_input_layer, refuse_elsewhere
 from .inputs import (
+    CRS,
     OUTPUT,
     REFERENCE,
     REPORT,
     cloud_title,
+    crs_parameter,
     extent_box,
     extent_parameter,
+    given_crs,
     input_parameter,
     input_paths,
     reference_parameter,
@@ -48,6 +51,7 @@ from .inputs import (
 )
 from .layer_outputs import UNWANTED, write_layer
 from .memory import warn_if_memory_is_short
+from .named_clouds import SIMULATED_CRS, named, names_of_crs, read_named
 from .outputs import all_in_place, check_targets, write_for_qgis
 from .parameters import automatic_numbers, number_outputs, parameter, tunable_values, used_name
 from .places import Place, place_of_cloud, place_of_layers
@@ -70,6 +74,7 @@ class _Job:
     reference: Optional[Path] = None
     systems: list[QgsCoordinateReferenceSystem] = field(default_factory=list)
     box: Optional[np.ndarray] = None
+    crs: QgsCoordinateReferenceSystem = field(default_factory=QgsCoordinateReferenceSystem)
 
     @property
     def paths(self) -> list[Path]:
@@ -104,6 +109,8 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
             self.addParameter(parameter(tunable))
         if self.stage.reads_cloud:
             self.addParameter(extent_parameter())
+        if self.stage.reads_cloud or self.stage.creates:
+            self.addParameter(crs_parameter(SIMULATED_CRS if self.stage.creates else None))
         self._add_destinations()
         self._add_numbers()
 
@@ -159,7 +166,8 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         """
         with as_processing_errors():
             self.job = self._job(parameters, context)
-            self.job.systems = make_in_main_thread(read_extent(path)[2] for path in self.job.paths)
+            systems = [read_extent(path)[2] for path in self.job.paths]
+            self.job.systems = make_in_main_thread([*systems, *names_of_crs(self.job.crs)])
         return True
 
     def postProcessAlgorithm(  # noqa: N802
@@ -180,8 +188,9 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
             job.inputs = input_paths(self, self.stage.merges, parameters, context)
         if self.stage.reads_reference:
             job.reference = cloud_path(self, REFERENCE, parameters, context)
+        job.crs = given_crs(self, parameters, context) if self.parameterDefinition(CRS) else job.crs
         if job.inputs:
-            job.box = extent_box(self, read_extent(job.inputs[0])[2], parameters, context)
+            job.box = extent_box(self, read_extent(job.inputs[0])[2] or job.crs.toWkt(FULL), parameters, context)
         read = [*files_read(job.paths), *input_layer_files(self, self.stage.input_layers, parameters, context)]
         check_targets(self.destinationParameterDefinitions(), parameters, read)
         if job.inputs:
@@ -227,7 +236,7 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         warn_if_memory_is_short(sum(count_points(path, self.job.box) for path in paths), monitor)
         share = _READ / max(1, len(paths))
         parts = [monitor.part(i * share, (i + 1) * share) for i in range(len(paths))]
-        clouds = [read_cloud(path, part, crs_units, self.job.box) for path, part in zip(paths, parts)]
+        clouds = [read_named(path, part, self.job.crs, self.job.box) for path, part in zip(paths, parts)]
         reference = clouds.pop() if self.job.reference else None
         self._tell_what_is_taken(clouds, monitor)
         found = {wanted: find_input_layer(self, wanted, parameters, context) for wanted in self.stage.input_layers}
@@ -240,6 +249,8 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         cloud = clouds if self.stage.merges else clouds[0] if clouds else None
         tunables = self.job.tunables
         outcome = run_stage(self.stage, cloud, reference, monitor.part(_READ, _RUN), input_layers, **tunables)
+        if self.stage.creates and outcome.cloud is not None:
+            outcome.cloud = named(outcome.cloud, self.job.crs)
         return outcome, place_of_cloud(outcome.cloud) if outcome.cloud is not None else place
 
     def _tell_what_is_taken(self, clouds: list[Cloud], monitor: Monitor) -> None:

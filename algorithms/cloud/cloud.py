@@ -173,6 +173,11 @@ class Cloud:
         taken._changes = {name: values[index] for name, values in self._changes.items()}
         return taken
 
+    @property
+    def changed(self) -> tuple[str, ...]:
+        """Names of the dimensions that were set."""
+        return tuple(self._changes)
+
     def copy(self) -> Cloud:
         """Return a cloud of the same points that can be changed apart from this one; arrays are shared."""
         copy = Cloud.__new__(Cloud)

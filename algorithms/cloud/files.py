@@ -80,6 +80,37 @@ def read_cloud(
     return Cloud(header, points, units, files if files == [path] else [*files, path])
 
 
+def with_crs(cloud: Cloud, wkt: str, code: str, crs_units: Optional[Resolver] = None) -> Cloud:
+    """Return a cloud with a coordinate reference system where it names none; one that names its own as it is.
+
+    Parameters
+    ----------
+    cloud : Cloud
+        As it was read or made.
+    wkt : str
+        The system as WKT.
+    code : str
+        "EPSG:n", which point formats 0 to 5 store, or "" where it has none.
+    crs_units : callable, optional
+        As for :func:`read_cloud`.
+
+    Raises
+    ------
+    ValueError
+        If its coordinates are degrees.
+    """
+    if cloud.wkt:
+        return cloud
+    vlrs, bits = crs_records(code if code and cloud.header.layout.is_old else wkt)
+    header = replace(cloud.header, vlrs=[*cloud.header.vlrs, *vlrs], encoding=cloud.header.encoding | bits)
+    named = Cloud(header, cloud.points, units_of(header, crs_units), cloud.files)
+    if named.units.factors.tolist() == cloud.units.factors.tolist():
+        named.origin = cloud.origin
+    for name in cloud.changed:
+        named.set(name, cloud.get(name))
+    return named
+
+
 def check_readable(path: Union[str, Path], crs_units: Optional[Resolver] = None) -> None:
     """Refuse what :func:`read_cloud` would refuse, as far as headers and chunk tables show.
 

@@ -134,3 +134,31 @@ def test_without_parts_of_qgis_its_own_dialog_is_shown(provider, window, monkeyp
 
     monkeypatch.setitem(sys.modules, "lidar_buildings.provider.dialog", None)
     assert provider.algorithm("detectbuildings").create().createCustomParametersWidget(window) is None
+
+
+@pytest.mark.parametrize("name", ["detectbuildingsintiles", "mergeclouds"])
+def test_surveys_and_merged_clouds_come_back_from_the_history(provider, window, context, tmp_path, name):
+    """Opened with the parameters of an earlier run, the field had "0 inputs selected"."""
+    files = [str(tmp_path), str(tmp_path / "a.laz"), str(tmp_path / "b.las"), str(tmp_path / "all.vpc")]
+    algorithm = provider.algorithm(name).create()
+    given = "INPUTS" if name == "mergeclouds" else "INPUT"
+    dialog = algorithm.createCustomParametersWidget(window)
+    dialog.setParameters({given: files})
+    parameters = dialog.createProcessingParameters()
+    assert parameters[given] == files
+    kept = algorithm.asMap(parameters, context)["inputs"]
+    again = provider.algorithm(name).create().createCustomParametersWidget(window)
+    again.setParameters(kept)
+    assert again.createProcessingParameters()[given] == files
+
+
+def test_the_list_of_files_adds_each_once_and_removes_what_is_selected(qgis_application):
+    from lidar_buildings.provider.file_list import FileList
+
+    field = FileList()
+    field.set_names(["a.laz", "b.laz"])
+    field.add(["b.laz", "c.vpc"])
+    assert field.names() == ["a.laz", "b.laz", "c.vpc"]
+    field.list.item(1).setSelected(True)
+    field._remove()
+    assert field.names() == ["a.laz", "c.vpc"]

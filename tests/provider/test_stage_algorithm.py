@@ -23,7 +23,7 @@ from qgis.PyQt.QtCore import Qt
 from lidar_buildings.algorithms import packages
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
-from lidar_buildings.provider import clouds, errors, memory, stage_algorithm
+from lidar_buildings.provider import clouds, errors, memory, named_clouds
 from lidar_buildings.provider.crs import crs_of, crs_units
 from lidar_buildings.tests.provider.helpers import run
 
@@ -284,7 +284,7 @@ def test_it_is_told_before_the_cloud_is_read(provider, context, log, town_file, 
         raise MemoryError
 
     monkeypatch.setattr(memory, "installed_memory", lambda: 1.0)
-    monkeypatch.setattr(stage_algorithm, "read_cloud", read)
+    monkeypatch.setattr(named_clouds, "read_cloud", read)
     with pytest.raises(QgsProcessingException, match="^This needs more memory than there is"):
         run("toylift", {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz")}, context, log)
     assert [warning.split(" may ")[0] for warning in log.warnings] == ["400 points"]

@@ -1,0 +1,126 @@
+"""The field for several point clouds in a dialog: files, folders and layers in one list, which comes back as it was."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from processing.gui.wrappers import DIALOG_BATCH, WidgetWrapper
+from qgis.core import QgsMapLayer, QgsPointCloudLayer, QgsProject, QgsSettings
+from qgis.PyQt.QtWidgets import (
+    QFileDialog,
+    QGridLayout,
+    QLineEdit,
+    QListWidget,
+    QMenu,
+    QPushButton,
+    QToolButton,
+    QWidget,
+)
+
+from .clouds import FILTER, names_of
+from .texts import tr
+
+# Rows that are seen at once.
+_ROWS = 4
+# Where QGIS keeps the folder that was chosen last.
+_LAST_FOLDER = "Processing/LastInputPath"
+
+
+class FileList(QWidget):
+    """A list of files, folders and layers, with buttons that add and remove."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.list = QListWidget()
+        self.list.setSelectionMode(QListWidget.SelectionMode.ExtendedSelection)
+        self.list.setMaximumHeight(_ROWS * self.list.fontMetrics().height() + 12)
+        self.layers = QToolButton()
+        self.layers.setText(tr("Layers"))
+        self.layers.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        self.layers.setMenu(QMenu(self.layers))
+        self.layers.menu().aboutToShow.connect(self._fill_menu)
+        grid = QGridLayout(self)
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.addWidget(self.list, 0, 0, 5, 1)
+        for row, (text, slot) in enumerate(
+            (
+                (tr("Files…"), self._add_files),
+                (tr("Folder…"), self._add_folder),
+                (tr("Remove"), self._remove),
+            )
+        ):
+            button = QPushButton(text)
+            button.clicked.connect(slot)
+            grid.addWidget(button, row, 1)
+        grid.addWidget(self.layers, 3, 1)
+
+    def names(self) -> list[str]:
+        """Return paths and ids of layers, in their order."""
+        return [self.list.item(row).text() for row in range(self.list.count())]
+
+    def set_names(self, names: list[str]) -> None:
+        """Show these."""
+        self.list.clear()
+        self.add(names)
+
+    def add(self, names: list[str]) -> None:
+        """Add those that are not in the list."""
+        known = self.names()
+        self.list.addItems([name for name in dict.fromkeys(names) if name not in known])
+
+    def _add_files(self) -> None:
+        start = QgsSettings().value(_LAST_FOLDER, "")
+        files, _ = QFileDialog.getOpenFileNames(self, tr("Point clouds"), str(start), f"{FILTER};;VPC (*.vpc)")
+        self._keep(files)
+
+    def _add_folder(self) -> None:
+        folder = QFileDialog.getExistingDirectory(
+            self, tr("Folder of point clouds"), str(QgsSettings().value(_LAST_FOLDER, ""))
+        )
+        self._keep([folder] if folder else [])
+
+    def _add_layer(self, source: str, *_: Any) -> None:
+        self.add([source])
+
+    def _keep(self, names: list[str]) -> None:
+        self.add(names)
+        if names:
+            QgsSettings().setValue(_LAST_FOLDER, str(Path(names[0]).parent))
+
+    def _remove(self) -> None:
+        for item in self.list.selectedItems():
+            self.list.takeItem(self.list.row(item))
+
+    def _fill_menu(self) -> None:
+        self.layers.menu().clear()
+        for layer in clouds_of_project():
+            self.layers.menu().addAction(layer.name(), partial(self._add_layer, layer.source()))
+
+
+def clouds_of_project() -> list[QgsMapLayer]:
+    """Return the layers of the project that are point clouds."""
+    return [one for one in QgsProject.instance().mapLayers().values() if isinstance(one, QgsPointCloudLayer)]
+
+
+class FilesWrapper(WidgetWrapper):
+    """The list as QGIS's dialogs use it; a line of text with semicolons in batches."""
+
+    def createWidget(self) -> QWidget:  # noqa: N802 - QGIS asks for these names
+        """Return the field."""
+        return QLineEdit() if self.dialogType == DIALOG_BATCH else FileList()
+
+    def setValue(self, value: Any) -> None:  # noqa: N802
+        """Show a value: of a script, of the history, or of another dialog."""
+        names = names_of(value) or []
+        if isinstance(self.widget, QLineEdit):
+            self.widget.setText(";".join(names))
+        else:
+            self.widget.set_names(names)
+
+    def value(self) -> list[str]:
+        """Return what is in the field."""
+        if isinstance(self.widget, QLineEdit):
+            return [name.strip() for name in self.widget.text().split(";") if name.strip()]
+        return self.widget.names()
