@@ -1,9 +1,8 @@
-"""Points in the columns of buildings: walls and structures belong to a roof, bushes and crowns beside it do not."""
+"""Points in the columns of buildings: walls and structures belong to a roof, bushes beside it do not."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Optional
 
 import numpy as np
 
@@ -22,11 +21,6 @@ class ColumnRules:
     around: int = rule(7, "cells", "side of the square in which these are counted, some 4 m")
     bush_share: float = rule(0.33, "share", "of the roof's height, up to which points beside a roof may be bushes")
     bush_height: float = rule(2.5, "m", "physics: hedges and bushes at walls are trimmed lower than a floor")
-    crown_cells: int = rule(
-        2, "cells", "a patch of cells beside a building that is as wide may be a crown; walls are narrower"
-    )
-    passed_share: float = rule(0.5, "share", "of the points of a crown, those at least that the beam passed")
-    within: int = rule(5, "cells", "side of the square in which this share is measured, some 3 m")
 
 
 COLUMNS = ColumnRules()
@@ -44,15 +38,12 @@ class ColumnPoints:
         Elevation and height above ground, m.
     raised : ndarray of shape (n,), bool
         Higher than the foot of a wall, and no noise.
-    goes_on : ndarray of shape (n,), bool, optional
-        Whether the pulse went on to another return; None where returns are not known.
     """
 
     cell: tuple[np.ndarray, np.ndarray]
     elevation: np.ndarray
     height: np.ndarray
     raised: np.ndarray
-    goes_on: Optional[np.ndarray]
 
 
 class Columns:
@@ -75,11 +66,9 @@ class Columns:
         inside = points.raised & (self.building[points.cell] > 0)
         stands_above = inside & (above > clearance)
         is_chimney = stands_above & (above <= structure_height) & self.is_sparse(points.cell, stands_above)[points.cell]
-        may_be_plant = points.height < np.minimum(COLUMNS.bush_share * (points.height - above), COLUMNS.bush_height)
-        if points.goes_on is not None:
-            may_be_plant |= self.is_beside_crown(points.cell, points.raised, points.goes_on)[points.cell]
+        is_bush = points.height < np.minimum(COLUMNS.bush_share * (points.height - above), COLUMNS.bush_height)
         # Points between a roof and the next higher one are the wall of the higher one.
-        is_wall = points.raised & (points.elevation <= self.highest[points.cell]) & (inside | ~may_be_plant)
+        is_wall = points.raised & (points.elevation <= self.highest[points.cell]) & (inside | ~is_bush)
         owner = np.where(inside, self.building[points.cell], self.beside[points.cell])
         return np.where((inside & (above <= clearance)) | is_chimney | is_wall, owner, 0).astype(np.int32)
 
@@ -91,24 +80,3 @@ class Columns:
         around = ndimage.uniform_filter(standing, COLUMNS.around, mode="constant")
         roof = ndimage.uniform_filter((self.building > 0).astype(float), COLUMNS.around, mode="constant")
         return around < COLUMNS.sparse_share * roof
-
-    def is_beside_crown(
-        self, cell: tuple[np.ndarray, np.ndarray], raised: np.ndarray, goes_on: np.ndarray
-    ) -> np.ndarray:
-        """Return the cells of crowns that stand apart from buildings, and the cells next to them."""
-        row, column = cell
-        apart = raised & (self.building[cell] == 0) & (self.beside[cell] == 0)
-        shape = self.building.shape
-        number = np.ravel_multi_index((row[apart], column[apart]), shape)
-        # Means of whole numbers would be rounded to such.
-        standing, passed = (
-            np.bincount(number, weights, np.prod(shape)).reshape(shape).astype(float)
-            for weights in (None, goes_on[apart])
-        )
-        around, passed_around = (
-            ndimage.uniform_filter(count, COLUMNS.within, mode="constant") for count in (standing, passed)
-        )
-        crown = ndimage.binary_opening(standing > 0, np.ones((COLUMNS.crown_cells,) * 2, bool)) & (
-            passed_around > COLUMNS.passed_share * around
-        )
-        return ndimage.binary_dilation(crown, _EIGHT)

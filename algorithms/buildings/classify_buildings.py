@@ -137,14 +137,12 @@ def classify_buildings(
     K-means moved the threshold by 0.02 at most.
 
     The confidence is the geometric mean of what entropy and penetration say, and nothing with more penetration than
-    the maximum is a building, with two exceptions. Clusters adjacent to a building (dormers, eaves, parapets) are all
-    edge, and points seen past an edge are no evidence: there entropy alone decides, if few of the pulses split. Planes
-    of ten times the minimum area are too large for crowns: they are roofs of glass, or a row of wires, and the share
-    of points that the plane stopped decides. A cluster smaller than the minimum area is a building only beside another.
+    the maximum is a building, with one exception. Clusters adjacent to a building (dormers, eaves, parapets) are all
+    edge, and points seen past an edge are no evidence: there entropy alone decides, if few of the pulses split. A
+    cluster smaller than the minimum area is a building only beside another.
 
     Where points are few, larger spots of crowns are smooth by chance. Most of the points around these are leaves, so
-    clusters with too few building points around them are refused. The reverse holds for balconies and terraces, which
-    the beam seems to penetrate: those of the minimum area are buildings if half of the points around belong to others.
+    clusters with too few building points around them are refused.
 
     In clouds of matched images, crowns are as closed as roofs, and penetration tells nothing. There, roof surfaces are
     buildings, planar over a meter, if the minimum share of the points around them lie on such surfaces; small ones
@@ -217,7 +215,7 @@ def _decided_in_scan(
         return given.by_entropy
     decided = with_penetration(given.by_entropy, given.through, given.max_penetration, given.evidence)
     monitor.progress(0.98)
-    return with_surroundings(decided, given.by_entropy, given.min_share, given.evidence)
+    return with_surroundings(decided, given.min_share, given.evidence)
 
 
 def _decided_in_images(

@@ -9,26 +9,25 @@ from typing import Optional
 import numpy as np
 
 from ..cloud.reasons import Reason
+from ..rules import rule
 from ..segmentation.cluster_measures import (
     grow_to_adjacent_clusters,
     non_last_return_share,
     penetration,
     plan_areas,
-    points_below_share,
     share_around,
 )
 from .cluster_decisions import Decisions
 
-# Planar clusters larger than this, in minimum building areas, are never vegetation: smooth spots of crowns are smaller.
-# If the beam penetrates them they are glass.
-_LARGE_PLANE = 10.0
 
-# Share of a cluster's points that are not last returns, below which it may be the edge of a roof: some pulses split
-# there, in leaves most do.
-_MAX_SPLIT_AT_EDGES = 0.3
+@dataclass(frozen=True)
+class EvidenceRules:
+    """What speaks for a building beside entropy and penetration."""
 
-# Least share of building points around a balcony or terrace, past which walls and lower floors are seen.
-_MIN_SHARE_AT_BALCONIES = 0.5
+    split_at_edges: float = rule(0.3, "share", "of points that are not last returns; at edges some pulses split")
+
+
+EVIDENCE = EvidenceRules()
 
 
 @dataclass(frozen=True)
@@ -70,14 +69,6 @@ class ClusterEvidence:
         through = penetration(self.xyz, self.group, self.density, self.return_number, self.number_of_returns)
         return through[self.numbers]
 
-    def points_below_share(self, is_chosen: np.ndarray) -> np.ndarray:
-        """Return the share (m,) of points that lie below each of the chosen clusters (m,), 0 for others."""
-        shares = np.zeros(len(self.numbers))
-        if is_chosen.any():
-            group = np.where(np.append(self._by_number(is_chosen), False)[self.group], self.group, -1)
-            shares[is_chosen] = points_below_share(self.xyz, group, self.density)[self.numbers[is_chosen]]
-        return shares
-
     def non_last_return_share(self) -> np.ndarray:
         """Return the share (m,) of each cluster's points that are not the last return of their pulse."""
         return non_last_return_share(self.group, self.return_number, self.number_of_returns)[self.numbers]
@@ -108,15 +99,12 @@ def with_penetration(
     is_planar = (confidence > 0.5) & ~undefined
     # A cluster without entropy stays undecided, however solid it is.
     both = np.where(undefined, 0.5, _with_solidity(confidence, through, max_penetration))
-    as_glass = _confidence_of_glass(confidence, is_planar, evidence)
-    is_glass, both = both <= 0.5, np.maximum(both, as_glass)
     is_solid = both > 0.5
-    is_edge = is_planar & (evidence.non_last_return_share() < _MAX_SPLIT_AT_EDGES)
+    is_edge = is_planar & (evidence.non_last_return_share() < EVIDENCE.split_at_edges)
     is_building = evidence.with_adjacent(is_solid, is_edge)
     # The first that applies is the reason.
     found = {
         Reason.WITHOUT_ENTROPY: undefined,
-        Reason.LARGE_PLANE: is_building & is_solid & is_glass,
         Reason.SOLID_PLANE: is_building & is_solid & is_planar,
         Reason.SOLID: is_building & is_solid,
         Reason.BESIDE: is_building,
@@ -127,17 +115,11 @@ def with_penetration(
     return Decisions(np.where(is_building, np.where(is_solid, both, confidence), np.minimum(both, 0.5)), reasons)
 
 
-def with_surroundings(
-    decided: Decisions, by_entropy: Decisions, min_share: float, evidence: ClusterEvidence
-) -> Decisions:
+def with_surroundings(decided: Decisions, min_share: float, evidence: ClusterEvidence) -> Decisions:
     """Decide again, given the share of building points around each cluster."""
-    share = evidence.share_around(decided.is_building)
-    amid_others = decided.is_building & (share < min_share)
-    is_large = evidence.areas >= evidence.min_area
-    amid_buildings = (decided.reasons == Reason.PENETRATED) & is_large & (share >= _MIN_SHARE_AT_BALCONIES)
-    reasons = np.select([amid_others, amid_buildings], [Reason.AMID_OTHERS, Reason.BESIDE], decided.reasons)
-    confidence = np.select([amid_others, amid_buildings], [0.5, by_entropy.confidence], decided.confidence)
-    return Decisions(confidence, reasons.astype(np.uint8))
+    amid_others = decided.is_building & (evidence.share_around(decided.is_building) < min_share)
+    reasons = np.where(amid_others, Reason.AMID_OTHERS, decided.reasons)
+    return Decisions(np.where(amid_others, 0.5, decided.confidence), reasons.astype(np.uint8))
 
 
 def _with_solidity(confidence: np.ndarray, through: np.ndarray, max_penetration: float) -> np.ndarray:
@@ -146,10 +128,3 @@ def _with_solidity(confidence: np.ndarray, through: np.ndarray, max_penetration:
     # Geometric, so that neither makes up for the other: a dense crown stops the beam and is no roof.
     both = np.sqrt(confidence * solid)
     return np.where(through <= max_penetration, both, np.minimum(both, 0.5))
-
-
-def _confidence_of_glass(confidence: np.ndarray, is_planar: np.ndarray, evidence: ClusterEvidence) -> np.ndarray:
-    """Return the confidence (m,) that large planes are roofs of glass, 0 for other clusters."""
-    is_large = is_planar & (evidence.areas >= _LARGE_PLANE * evidence.min_area)
-    stopped = 1 - evidence.points_below_share(is_large)
-    return np.where(is_large, np.sqrt(confidence * stopped), 0)

@@ -14,14 +14,12 @@ class Reason(IntEnum):
     SOLID = 3
     ATTACHED = 4
     BESIDE = 5
-    LARGE_PLANE = 6
     SURFACE = 7
     LIKE_BUILDINGS = 8
     ROUGH = 11
     PENETRATED = 12
     INTO_GROUND = 13
     TOO_SMALL = 14
-    TOO_NARROW = 15
     TOO_LOW = 16
     MOSTLY_OTHER = 17
     AMID_OTHERS = 18
@@ -49,7 +47,6 @@ _FOR_BUILDING = frozenset(
         Reason.SOLID,
         Reason.ATTACHED,
         Reason.BESIDE,
-        Reason.LARGE_PLANE,
         Reason.SURFACE,
         Reason.LIKE_BUILDINGS,
     }
@@ -66,15 +63,12 @@ _TEXTS = {
     Reason.ATTACHED: "Building: connected to the roof above, below or beside it.",
     Reason.BESIDE: "Building: low entropy, and adjacent to or surrounded by buildings, where points seen past an edge "
     "are no evidence of vegetation.",
-    Reason.LARGE_PLANE: "Building: a plane too large for a tree crown, although part of the beam passes, as through "
-    "glass.",
     Reason.SURFACE: "Building: planar over meters, like what surrounds it (matched images).",
     Reason.LIKE_BUILDINGS: "Building: beside a building, and like the buildings of the scene.",
     Reason.ROUGH: "Not a building: high entropy, typical of tree crowns.",
     Reason.PENETRATED: "Not a building: low entropy, but the laser beam penetrates it.",
     Reason.INTO_GROUND: "Not a building: the surface continues into the ground.",
     Reason.TOO_SMALL: "Not a building: smaller than the minimum building area, together with everything it touches.",
-    Reason.TOO_NARROW: "Not a building: narrower than the minimum building width, like walls and railings.",
     Reason.TOO_LOW: "Not a building: too close to the ground to belong to the roof at its location.",
     Reason.MOSTLY_OTHER: "Not a building: too few of the points at roof height lie on surfaces, as in tree crowns.",
     Reason.AMID_OTHERS: "Not a building: surrounded mostly by non-building points, like smooth spots of tree crowns.",

@@ -21,7 +21,6 @@ class MeasureRules:
     )
     least_cell: float = rule(0.3, "m", "side of the cells in which areas are counted, at least")
     beneath: float = rule(1.0, "m", "physics: points deeper below a group lie under it and not on it")
-    least_column: float = rule(1.0, "m", "of columns of points that pass a surface: between two wires most do")
     beside: float = rule(0.2, "share", "of a group beside others: the edge of a dormer is, the tip of a branch is not")
 
 
@@ -96,21 +95,6 @@ def penetration(
     if not _numbered(number_of_returns):
         return beneath
     return (beneath + non_last_return_share(group, return_number, number_of_returns)) / 2
-
-
-def points_below_share(xyz: np.ndarray, group: np.ndarray, density: float) -> np.ndarray:
-    """Return the share of points that passed each group of points, 0 to 1, whatever the density.
-
-    Arguments as of :func:`penetration`.
-
-    Returns
-    -------
-    ndarray of shape (group.max() + 1,)
-        Of the points of a group and those well beneath them in its cells, the latter's share.
-    """
-    owner, own, beneath = _columns(xyz, group, max(MEASURES.least_column, MEASURES.cell / np.sqrt(density)))
-    passed = np.bincount(owner, beneath)
-    return passed / np.maximum(passed + np.bincount(owner, own), 1)
 
 
 def non_last_return_share(

@@ -8,14 +8,12 @@
       <category value="3" label="Building: moderate entropy, but the laser beam hardly penetrates it" color="102,153,204,255" pointSize="0" render="true"/>
       <category value="4" label="Building: connected to the roof above, below or beside it" color="170,200,230,255" pointSize="0" render="true"/>
       <category value="5" label="Building: low entropy, and adjacent to or surrounded by buildings, where points seen past an edge are no evidence of vegetation" color="51,119,187,255" pointSize="0" render="true"/>
-      <category value="6" label="Building: a plane too large for a tree crown, although part of the beam passes, as through glass" color="68,170,187,255" pointSize="0" render="true"/>
       <category value="7" label="Building: planar over meters, like what surrounds it (matched images)" color="17,119,136,255" pointSize="0" render="true"/>
       <category value="8" label="Building: beside a building, and like the buildings of the scene" color="136,221,238,255" pointSize="0" render="true"/>
       <category value="11" label="Not a building: high entropy, typical of tree crowns" color="221,170,51,255" pointSize="0" render="true"/>
       <category value="12" label="Not a building: low entropy, but the laser beam penetrates it" color="153,119,0,255" pointSize="0" render="true"/>
       <category value="13" label="Not a building: the surface continues into the ground" color="170,136,119,255" pointSize="0" render="true"/>
       <category value="14" label="Not a building: smaller than the minimum building area, together with everything it touches" color="238,153,170,255" pointSize="0" render="true"/>
-      <category value="15" label="Not a building: narrower than the minimum building width, like walls and railings" color="187,85,102,255" pointSize="0" render="true"/>
       <category value="16" label="Not a building: too close to the ground to belong to the roof at its location" color="153,68,85,255" pointSize="0" render="true"/>
       <category value="17" label="Not a building: too few of the points at roof height lie on surfaces, as in tree crowns" color="119,51,68,255" pointSize="0" render="true"/>
       <category value="18" label="Not a building: surrounded mostly by non-building points, like smooth spots of tree crowns" color="136,34,85,255" pointSize="0" render="true"/>

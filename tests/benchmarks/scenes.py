@@ -18,9 +18,6 @@ from lidar_buildings.algorithms.stage import Monitor
 
 SIDE = 120.0
 
-# Of the pulses that meet glass so many come back from the floor.
-PASSING = 0.5
-
 # Of strips that were not adjusted to one another, every second lies so much higher (m).
 MISFIT = 0.08
 
@@ -145,19 +142,6 @@ def estate() -> Scene:
     return land
 
 
-def greenhouses() -> Scene:
-    """A nursery of four bays, a hall and a garden house of glass, and two houses."""
-    nursery = Scene(Relief(SIDE, gradient=0.02))
-    for y in (20.0, 28.0, 36.0, 44.0):
-        _house(nursery, Rect(40.0, y, 50.0, 8.0, 0.0), 4.0, 22.0, "glass")
-    _house(nursery, Rect(90.0, 40.0, 20.0, 15.0, 0.1), 8.0, kind="glass")
-    _house(nursery, Rect(90.0, 75.0, 14.0, 8.0, 0.1), 3.0, 30.0, "glass")
-    for x in (30.0, 60.0):
-        _house(nursery, Rect(x, 80.0, 11.0, 8.0, 0.2), 5.0, 35.0)
-    plant_trees(nursery, 20.0, 0.1, np.random.default_rng(7), Monitor())
-    return nursery
-
-
 def churches() -> Scene:
     """Three churches with spires of 68° to 77°, four towers among trees, two of them with spires, and garden walls."""
     parish, rng = Scene(Relief(SIDE, gradient=0.03)), np.random.default_rng(8)
@@ -204,7 +188,6 @@ SCENES: tuple[tuple[str, Callable[[], Scene], bool], ...] = (
     ("houses in a closed forest", forest, False),
     ("huts on a slope of 38°", alps, False),
     ("halls with machines and wings", estate, False),
-    ("halls of glass", greenhouses, False),
     ("churches and towers", churches, False),
     ("farm with a field of maize", farm, False),
     ("solar park, no building", solar_park, False),
@@ -218,10 +201,6 @@ def scanned(make: Callable[[], Scene], misfit: bool, density: float) -> Scan:
     scene = make()
     made = scan(scene, density=density)
     made.xyz[:, 2] += MISFIT * (misfit & (made.point_source_id % 2 == 0))
-    glass = [building.object_id for building in scene.buildings if building.kind == "glass"]
-    passes = np.isin(made.segment_id, glass) & (np.random.default_rng(0).random(len(made.xyz)) < PASSING)
-    made.xyz[passes, 2] = scene.relief.ground(*made.xyz[passes, :2].T)
-    made.classification[passes] = PointClass.GROUND
     if isinstance(scene, Farmland):
         _sow(scene.fields, made)
     return made

@@ -375,12 +375,10 @@ WHOLE = (
     Rule("classify: penetration", tunables={"buildings": {"max_penetration": 1.0}}),
     Rule("classify: surroundings", tunables={"buildings": {"min_share_around": 0.0}}),
     _out(
-        "classify: glass",
-        "buildings.cluster_evidence:_confidence_of_glass",
-        lambda confidence, *_: np.zeros(len(confidence)),
+        "classify: edges of roofs",
+        "buildings.cluster_evidence:EVIDENCE",
+        _set("buildings.cluster_evidence:EVIDENCE", split_at_edges=0.0),
     ),
-    _out("classify: edges of roofs", "buildings.cluster_evidence:_MAX_SPLIT_AT_EDGES", 0.0),
-    _out("classify: balconies", "buildings.cluster_evidence:_MIN_SHARE_AT_BALCONIES", 2.0),
     _out("classify: weight of the references", "buildings.entropy_split:_REFERENCE_WEIGHT", 10**9),
     Rule("refine: learned from the scene", tunables={"refine": {"learn": False}}),
     Rule("complete: gaps", tunables={"complete": {"gap": 0.0}}),
@@ -390,11 +388,6 @@ WHOLE = (
         "complete: bushes",
         "buildings.building_columns:COLUMNS",
         _set("buildings.building_columns:COLUMNS", bush_share=0.0),
-    ),
-    _out(
-        "complete: crowns",
-        "buildings.building_columns:Columns.is_beside_crown",
-        lambda self, *_: np.zeros(self.building.shape, bool),
     ),
     _out(
         "complete: chimneys are sparse",

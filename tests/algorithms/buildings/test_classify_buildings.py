@@ -213,25 +213,6 @@ def test_returns_that_are_not_the_last_tell_penetration_too(rng):
         assert (found[cluster_id == 2] == 6).all() == expected
 
 
-@pytest.mark.parametrize("density", [4.0, 12.0, 40.0, 80.0])
-@pytest.mark.parametrize("is_numbered", [True, False])
-def test_a_roof_of_glass_is_a_building_at_any_density(rng, density, is_numbered):
-    """Half of the beam passes. Of wires in a plane more does, and spots of crowns are smaller."""
-    glass, floor = (roof(rng, 0, 0, 12, 10, z, 0.5 * density) for z in (5, 0))
-    spot, leaves = (roof(rng, 0, 30, 5, 5, z, 0.5 * density) for z in (5, 3))
-    wires, field = roof(rng, 30, 0, 4, 20, 9, 0.1 * density), roof(rng, 30, 0, 4, 20, 0, 0.9 * density)
-    crowns = [crown(rng, 50, y, count=round(30 * density)) for y in (0, 10, 20)]
-    xyz, part = clusters(glass, spot, wires, *crowns, floor, leaves, field)
-    cluster_id = np.where(part > 6, 0, part)
-    # Of pulses that come back from above half go on.
-    first_of_two = np.where((cluster_id > 0) & (rng.random(len(xyz)) < 0.5), 1, 2)
-    returns = (first_of_two, np.full(len(xyz), 2)) if is_numbered else ()
-    tunables = {"density": density}
-    reasons, confidence, _ = reasons_of(classify_buildings, xyz, cluster_id, *returns, **tunables)
-    assert reasons == [Reason.LARGE_PLANE, Reason.PENETRATED, Reason.PENETRATED] + [Reason.ROUGH] * 3
-    assert confidence[0] > 0.6
-
-
 # --- reasons and confidence ------------------------------------------------------------------------------------------
 
 
@@ -311,26 +292,6 @@ def test_a_smooth_spot_amid_leaves_is_no_building_and_a_roof_beside_a_tree_is(rn
     assert reasons[0] == [rough, plane, plane, plane, rough, plane, rough]
     assert reasons[1] == [rough, Reason.AMID_OTHERS, plane, plane, rough, plane, rough]
     assert confidence[1][1] == 0.5 < confidence[0][1]
-
-
-@pytest.mark.parametrize(
-    ("side", "around", "reason"),
-    [(3.0, roof, Reason.BESIDE), (3.0, crown, Reason.PENETRATED), (1.5, roof, Reason.PENETRATED)],
-)
-def test_balconies_amid_buildings_are_part_of_them(rng, side, around, reason):
-    """A floor past which lower points are seen, apart from the roofs around: such spots amid crowns are leaves."""
-    balcony = roof(rng, -side / 2, -side / 2, side, side, density=12)
-    below = balcony - [0, 0, 3]
-    places = [(x, y) for x in (-4, 4) for y in (-4, 0, 4)]
-    if around is roof:
-        parts = [roof(rng, x - 1.5, y - 2, 3, 4, elevation=7.5, density=24) for x, y in places]
-    else:
-        parts = [crown(rng, x, y, 1.5, 7) for x, y in places]
-    far = roof(rng, 30, 0, density=12), crown(rng, 30, 30)
-    xyz, cluster_id = clusters(balcony, *far, *parts, below)
-    cluster_id[-len(below) :] = 0
-    reasons, *_ = reasons_of(classify_buildings, xyz, cluster_id, n_neighbors=12)
-    assert reasons[0] == reason
 
 
 # --- properties ------------------------------------------------------------------------------------------------------

@@ -144,41 +144,10 @@ def test_bushes_at_a_wall_are_low_and_no_higher_at_a_tower(scene, eaves, wall_fr
     assert (found[bush] == 1).all()
 
 
-def test_few_pulses_that_pass_make_no_crown(scene):
-    """A lorry at the wall, past whose edges a fifth of the pulses goes on."""
-    roof = scene.roof(10, 10, 20, 20, 5.0)
-    west = scene.xyz[roof, 0].min()
-    lorry = scene.box([west - 4, 12, 2.5], [west - 0.2, 18, 4.0], 500)
-    at_the_wall = lorry[scene.xyz[lorry, 0] > west - 0.25]
-    returns = np.ones((2, len(scene.xyz)), np.uint8)
-    returns[1, lorry[::5]] = 2
-    found, _ = scene.complete(return_number=returns[0], number_of_returns=returns[1])
-    assert (found[at_the_wall] == 6).all()
-
-
 def test_a_tree_beside_the_house_is_left_out(scene):
     scene.roof(10, 10, 20, 20, 5.0)
     crown = scene.box([21.5, 12, 2], [25, 18, 5], 200)
     assert not (scene.complete()[0][crown] == 6).any()
-
-
-@pytest.mark.parametrize(("first", "crown_is_wall"), [(1, False), (3, True), (None, True)])
-def test_a_crown_that_touches_the_wall_is_told_from_it_by_the_pulses_that_pass(scene, first, crown_is_wall):
-    """Those on the other wall's balcony pass as well, but that is too narrow for a crown."""
-    roof = scene.roof(10, 10, 20, 20, 5.0)
-    west, east = scene.xyz[roof, 0].min(), scene.xyz[roof, 0].max()
-    balcony = scene.box([east + 0.2, 12, 2.5], [east + 0.8, 18, 4.8], 200)
-    crown = scene.box([west - 4, 12, 2.5], [west - 0.2, 18, 4.8], 500)
-    wall, at_the_wall = balcony[scene.xyz[balcony, 0] < east + 0.25], crown[scene.xyz[crown, 0] > west - 0.25]
-    returns = np.ones((2, len(scene.xyz)), np.uint8)
-    returns[1, balcony] = 3
-    returns[:, crown] = [[first or 1], [3]]
-    arrays = {"return_number": returns[0], "number_of_returns": returns[1]} if first else {}
-    found, _ = scene.complete(**arrays)
-    assert (found[wall] == 6).all()
-    assert (found[at_the_wall] == 6).all() == crown_is_wall
-    assert (found[at_the_wall] == 6).mean() < 0.2 or crown_is_wall
-    assert (found[crown[scene.xyz[crown, 0] < west - 1.1]] == 1).all()
 
 
 def test_a_narrow_alley_in_which_the_ground_shows_is_not_closed(scene):

@@ -7,7 +7,6 @@ from lidar_buildings.algorithms.segmentation.cluster_measures import (
     grow_to_adjacent_clusters,
     penetration,
     plan_areas,
-    points_below_share,
     share_around,
 )
 
@@ -60,8 +59,6 @@ def test_areas_do_not_depend_on_a_point_far_away():
     assert areas[0] == pytest.approx(2 * 2.25)
     assert areas[-1] == pytest.approx(2 * 2.25)
     assert areas.sum() == pytest.approx(4 * 2.25)
-    passed = points_below_share(np.append(xyz, xyz[1:2] - [0, 0, 3], axis=0), np.append(group, -1), 1.0)
-    assert passed[0] == pytest.approx(1 / 4)
 
 
 @pytest.mark.parametrize(("depth", "expected"), [(0.9, 0.0), (1.1, 2 / 5)])
@@ -97,26 +94,7 @@ def test_what_lies_beneath_by_hand():
     """Cells of 1.5 m: a group of two points over three more than a meter lower, one less than that, one beside."""
     xyz = np.array([[0, 0, 5], [1, 1, 6], [0, 1, 3.9], [1, 0, 3.9], [0.5, 0.5, 0], [0.2, 0.2, 4.2], [3.2, 0, 0]], float)
     group = np.array([0, 0, -1, -1, -1, -1, -1])
-    np.testing.assert_allclose(points_below_share(xyz, group, density=1.0), [3 / 5])
     np.testing.assert_allclose(penetration(xyz, group, density=1.0), [1])
-    # Over another group, which has less beneath.
-    group = np.array([0, 0, 2, 2, -1, -1, -1])
-    np.testing.assert_allclose(points_below_share(xyz, group, density=1.0), [3 / 5, 0, 1 / 3])
-
-
-@pytest.mark.parametrize(("size", "density"), [(1.0, 6.0), (1.5, 1.0)])
-def test_what_lies_beneath_as_when_every_point_is_compared_with_every_other(rng, size, density):
-    xyz = rng.normal(0, 1, (600, 3)) * [3, 3, 4] + [6e5, 5e6, 100]
-    group = rng.integers(-1, 4, 600)
-    cell = np.floor(xyz[:, :2] / size)
-    same = (cell[:, None] == cell[None]).all(axis=2)
-    expected = []
-    for number in range(4):
-        own = same & (group == number)[None]
-        bottom = np.where(own, xyz[None, :, 2], np.inf).min(axis=1)
-        passed = np.isfinite(bottom) & (xyz[:, 2] < bottom - 1)
-        expected.append(passed.sum() / (passed.sum() + (group == number).sum()))
-    np.testing.assert_allclose(points_below_share(xyz, group, density), expected)
 
 
 @pytest.mark.parametrize("density", [4.0, 12.0, 40.0, 80.0])
@@ -125,6 +103,5 @@ def test_what_passes_a_surface_is_the_same_at_any_density(rng, density):
     plan = rng.uniform(0, 20, (int(400 * density), 2))
     passes = rng.random(len(plan)) < 1 / 3
     xyz, group = np.column_stack([plan, np.where(passes, 0.0, 5.0)]), np.where(passes, -1, 0)
-    assert points_below_share(xyz, group, density)[0] == pytest.approx(1 / 3, abs=0.04)
     # Cells hold 2.25 points on the mean; of those with a roof point 1 - exp(-0.75) have one beneath.
     assert penetration(xyz, group, density)[0] == pytest.approx(0.53, abs=0.05)
