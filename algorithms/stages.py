@@ -10,7 +10,6 @@ from .buildings.complete_buildings import complete_buildings
 from .buildings.refine_buildings import refine_buildings
 from .facades.extract_facades import extract_facades
 from .facades.extract_openings import extract_openings
-from .facades.reconstruct_gables import reconstruct_gables
 from .facades.register_street import register_street
 from .facades.segment_facade_lines import segment_facade_lines
 from .features.classify_dimensionality import classify_dimensionality
@@ -21,6 +20,7 @@ from .landcover.classify_water import classify_water
 from .landcover.classify_wires import classify_wires
 from .models3d.export_for_roofer import export_for_roofer
 from .models3d.reconstruct_block import reconstruct_block
+from .models3d.reconstruct_gables import reconstruct_gables
 from .models3d.reconstruct_roofs import reconstruct_roofs
 from .preparation.classify_noise_air import classify_noise_air
 from .preparation.classify_noise_histogram import classify_noise_histogram

@@ -18,6 +18,7 @@ from .common_borders import with_common_borders
 from .curved_fronts import as_strips
 from .facade_outline import longest_edge
 from .facade_surfaces import Facade, facade_features, plane_of, surfaces_of
+from .segment_facade_lines import are_of_facade_lines
 
 # Plaster, joints and cladding lie this far (standard deviation, m) off the plane of a wall, beside the noise.
 _RELIEF = 0.01
@@ -27,6 +28,9 @@ _PLAN_CELL = 0.5
 
 # Distance within which a point lies on a facade (standard deviations): one point of 400 is farther off.
 _ON_PLANE = 3.0
+
+# Points among which walls are searched.
+ALL_POINTS, FACADE_LINES = "all points", "facade lines"
 
 _MOMENTS = ("count", "center", "covariance")
 
@@ -77,7 +81,18 @@ FACADE_FIELDS = (
 def extract_facades(
     xyz,
     classification,
+    gps_time=None,
+    point_source_id=None,
     *,
+    search_in: Annotated[
+        str,
+        Param(
+            "Search in",
+            "All points, or those of the facade lines of a vehicle's scan: steep lines that are the farthest on their "
+            "side, which cars, trees and people are not. Facade lines need the GPS time of the points.",
+            choices=(ALL_POINTS, FACADE_LINES),
+        ),
+    ] = ALL_POINTS,
     tolerance: Annotated[
         Optional[float],
         Param(
@@ -130,6 +145,10 @@ def extract_facades(
         Coordinates, m.
     classification : ndarray of shape (n,), uint8
         ASPRS classes; ground, water and noise are no facades. All points may be unclassified.
+    gps_time : ndarray of shape (n,), float64, optional
+        Time of each pulse, s, for facade lines.
+    point_source_id : ndarray of shape (n,), uint16, optional
+        Scanner of each point, for facade lines.
 
     Returns
     -------
@@ -141,7 +160,7 @@ def extract_facades(
     Raises
     ------
     ValueError
-        If the points are spread too far for the search of planes.
+        If the points are spread too far for the search of planes, or facade lines are wanted of points without time.
 
     Notes
     -----
@@ -174,7 +193,23 @@ def extract_facades(
     tolerance = _ON_PLANE * float(np.hypot(sampling.noise, _RELIEF)) if tolerance is None else tolerance
     edge_factor = longest_edge(boundary) if edge_factor is None else edge_factor
     monitor.resolved(tolerance=tolerance, edge_factor=edge_factor)
-    plane = _steep_planes(xyz, classification, tolerance, max_tilt, min_area, min_height, seed, sampling, monitor)
+    searched = _is_stacked(xyz, min_height)
+    if search_in == FACADE_LINES:
+        searched &= _in_lines(xyz, gps_time, point_source_id)
+    plane = np.zeros(len(xyz), np.int64)
+    rows = np.flatnonzero(searched)
+    if len(rows):
+        plane[rows] = segment_planes_ransac(
+            xyz[rows],
+            classification[rows],
+            tolerance=tolerance,
+            min_slope=90.0 - max_tilt,
+            max_slope=90.0,
+            min_area=min_area / 2,
+            seed=seed,
+            sampling=sampling,
+            monitor=ProgressOnly(monitor.part(0, 0.6)),
+        )[0]
     walls = as_strips(xyz, merged_planes(xyz, plane, tolerance, monitor.part(0.6, 0.65)), tolerance)
     pieces = split_at_gaps(xyz, walls, max_gap)
     _leave_small(xyz, pieces, min_height)
@@ -197,33 +232,13 @@ def extract_facades(
     return _result(facades, len(xyz), min_area, min_height, monitor)
 
 
-def _steep_planes(
-    xyz: np.ndarray,
-    classification: np.ndarray,
-    tolerance: float,
-    max_tilt: float,
-    min_area: float,
-    min_height: float,
-    seed: int,
-    sampling: CloudSampling,
-    monitor: Monitor,
-) -> np.ndarray:
-    """Return the steep planes (n,) from 1 of points that stand above one another; 0 if unassigned."""
-    plane = np.zeros(len(xyz), np.int64)
-    rows = np.flatnonzero(_is_stacked(xyz, min_height))
-    if len(rows):
-        plane[rows] = segment_planes_ransac(
-            xyz[rows],
-            classification[rows],
-            tolerance=tolerance,
-            min_slope=90.0 - max_tilt,
-            max_slope=90.0,
-            min_area=min_area / 2,
-            seed=seed,
-            sampling=sampling,
-            monitor=ProgressOnly(monitor.part(0, 0.6)),
-        )[0]
-    return plane
+def _in_lines(xyz: np.ndarray, gps_time: Optional[np.ndarray], point_source_id: Optional[np.ndarray]) -> np.ndarray:
+    """Return which points (n,) are of facade lines."""
+    if gps_time is None:
+        raise ValueError(
+            "Facade lines are told by the times of the pulses, and the cloud has no GPS time; search in all points."
+        )
+    return are_of_facade_lines(xyz, gps_time, point_source_id)
 
 
 def _is_stacked(xyz: np.ndarray, min_height: float) -> np.ndarray:

@@ -172,6 +172,19 @@ def segment_facade_lines(
     return segment_id, features
 
 
+def are_of_facade_lines(xyz: np.ndarray, gps_time: np.ndarray, point_source_id: Optional[np.ndarray]) -> np.ndarray:
+    """Return which points (n,) are of the facade lines that :func:`segment_facade_lines` finds by default.
+
+    Raises
+    ------
+    ValueError
+        If all points have the same time.
+    """
+    segment_id, lines = segment_facade_lines(xyz, gps_time, point_source_id)
+    is_facade = np.array([False, *(kind == KINDS[_FACADE] for kind in lines.columns["kind"])])
+    return is_facade[segment_id]
+
+
 def _period(gps_time: np.ndarray, source: np.ndarray) -> float:
     """Return the time (s) of one turn, from times (n,) in order by scanner: that between views of the sky."""
     step = np.diff(gps_time)

@@ -6,9 +6,11 @@ import pytest
 from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.facades.extract_facades import extract_facades, merged_planes, split_at_gaps
 from lidar_buildings.algorithms.facades.facade_outline import key_points, outline_of, pushed_out, ring_area
+from lidar_buildings.algorithms.simulation.simulate_street import simulate_street
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.tests.builders import FAR, turned
 from lidar_buildings.tests.facades import corner_errors, street_floor, wall, without
+from lidar_buildings.tests.real.fronts import frame_on
 
 # A house at a street corner, 8 m by 6 m, 5 m high; the street is south and east of it.
 CORNERS = np.array([[x, y, z] for x, y in ((0, 0), (8, 0), (8, 6)) for z in (0.0, 5.0)])
@@ -249,3 +251,33 @@ def test_a_facade_narrower_than_its_tolerance_keeps_the_boundary_of_its_points(r
     outline = outline_of(places, 4.0, 1.0, "straight edges", True)
     assert len(outline.ring) > 3
     assert outline.seen_area <= ring_area(outline.ring) <= 1.1 * np.prod(np.ptp(places, axis=0))
+
+
+def test_walls_are_found_among_the_facade_lines_of_a_vehicle_and_a_fence_before_them_is_not():
+    """A fence of 3 m stands 4 m before the fronts of a simulated street; it is nearer to the scanner on its side."""
+    made = simulate_street.stage.unpack(
+        simulate_street(length=20.0, line_rate=30.0, angular_step=0.5, clutter=False, seed=2)
+    )
+    points = made.dimensions
+    xyz, true = points["xyz"], points["segment_id"] > 0
+    rings = [ring for (ring,) in made.layers["facades"].geometries]
+    ring = max(rings, key=lambda ring: float(np.hypot(*(ring[1] - ring[0])[:2])))
+    frame = frame_on(ring)
+    along, up, out = frame.local(xyz).T
+    # Points low on the front become those of the fence, which hides the front there.
+    is_fence = true & (up < ring[0, 2] + 3.0 - frame.origin[2]) & (along > 2.0) & (along < 5.0) & (np.abs(out) < 0.1)
+    before = frame.normal
+    fenced = xyz + 4.0 * is_fence[:, None] * before
+    unclassified = np.zeros(len(xyz), np.uint8)
+    times = points["gps_time"], points["point_source_id"]
+    everywhere, _ = extract_facades(fenced, unclassified, *times)
+    in_lines, _ = extract_facades(fenced, unclassified, *times, search_in="facade lines")
+    assert np.mean(everywhere[is_fence] > 0) > 0.5
+    assert np.mean(in_lines[is_fence] > 0) < 0.5
+    assert np.mean(in_lines[true & ~is_fence] > 0) > 0.85
+
+
+def test_facade_lines_need_times(rng):
+    points = wall(rng, (0, 0), (5, 0))
+    with pytest.raises(ValueError, match="the cloud has no GPS time; search in all points"):
+        extract_facades(points, np.zeros(len(points), np.uint8), search_in="facade lines")

@@ -11,7 +11,11 @@ from ..cloud.asprs import PointClass
 from ..geometry.groups import members
 from ..packages import spatial
 from ..segmentation.least_squares_planes import Planes, planes_of
-from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
+from ..stage import Field, Layer, LayerFeatures, Monitor, Param, TextFile, stage
+from . import cityjson
+from .building_facts import NamedModel
+from .building_models import BuildingModel
+from .solids import GROUND, ROOF, WALL, Solid
 
 # A roof plane of a gable is this steep at least (°), and its ridge level within this angle (°).
 _LEAST_SLOPE, _LEVEL = 8.0, 6.0
@@ -28,9 +32,9 @@ _AROUND = 10.0
 
 # The faces of a house by their vertices, from 1 as in the paper, counterclockwise seen from outside.
 FACES = {
-    "roof": ((3, 4, 2, 1), (5, 6, 1, 2)),
-    "wall": ((7, 8, 4, 3), (8, 9, 5, 2, 4), (9, 10, 6, 5), (10, 7, 3, 1, 6)),
-    "ground": ((10, 9, 8, 7),),
+    ROOF: ((3, 4, 2, 1), (5, 6, 1, 2)),
+    WALL: ((7, 8, 4, 3), (8, 9, 5, 2, 4), (9, 10, 6, 5), (10, 7, 3, 1, 6)),
+    GROUND: ((10, 9, 8, 7),),
 }
 
 GABLE_FIELDS = (
@@ -56,6 +60,7 @@ GABLE_FIELDS = (
     group="Facades",
     tags="gable,roof,ridge,eave,house,building,3D,LoD2,reconstruction,Peng",
     layers=(Layer("gables", "Gable houses", "Polygon", GABLE_FIELDS, style="facades"),),
+    files=(TextFile("cityjson", "CityJSON", cityjson.FORMATS, cityjson.cityjson_pieces, NamedModel, "gables"),),
 )
 def reconstruct_gables(
     xyz,
@@ -99,6 +104,8 @@ def reconstruct_gables(
     gables : LayerFeatures
         Seven polygons with Z for each house (two of the roof, four walls, one on the ground), counterclockwise seen
         from outside, with the fifteen parameters of the house.
+    cityjson : list of NamedModel
+        The same for one file: a closed solid for each house, CityJSON 2.0 or CityJSONSeq, level of detail 2.2.
 
     Notes
     -----
@@ -132,19 +139,20 @@ def reconstruct_gables(
             "No two roof planes rise toward each other to a level ridge, so there is no gable; run "
             "'Segment planes (RANSAC)' first, with a smaller minimum plane area if roofs are small."
         )
-    return _features(houses)
+    return _features(houses), [_model(number, house) for number, house in enumerate(houses, start=1)]
 
 
 @dataclass(frozen=True)
 class House:
-    """Ten vertices (10, 3), m, in the order of the paper, and the rms (m) of the points of the roof."""
+    """Ten vertices (10, 3), m, in the order of the paper, and the rms (m) and number of the points of the roof."""
 
     vertices: np.ndarray
     rms: float
+    n_points: int
 
     def moved(self, shift: np.ndarray) -> House:
         """Return the house moved by a vector (3,), m."""
-        return House(self.vertices + shift, self.rms)
+        return House(self.vertices + shift, self.rms, self.n_points)
 
 
 class _Ground:
@@ -247,7 +255,7 @@ def _house(
     feet = plan[2:].copy()
     feet[:, 2] = base
     rms = np.sqrt(np.average(planes.eigenvalues[[a, b], 2], weights=planes.count[[a, b]]))
-    return House(np.concatenate([plan, feet]), float(rms))
+    return House(np.concatenate([plan, feet]), float(rms), len(every))
 
 
 def _ends(positions: np.ndarray) -> tuple[float, float]:
@@ -260,6 +268,16 @@ def _ends(positions: np.ndarray) -> tuple[float, float]:
 def _fall(normal: np.ndarray, across: np.ndarray) -> float:
     """Return the rise (m per m) of a plane in a level direction."""
     return float(-(normal @ across) / normal[2])
+
+
+def _model(number: int, house: House) -> NamedModel:
+    """Return a house as a model of a building."""
+    faces = [([[vertex - 1 for vertex in face]], kind) for kind, of_kind in FACES.items() for face in of_kind]
+    roofs = [number if kind == ROOF else -1 for number, (_, kind) in enumerate(faces)]
+    solid = Solid(house.vertices, [rings for rings, _ in faces], [kind for _, kind in faces], roofs)
+    base = float(house.vertices[6, 2])
+    model = BuildingModel(base, "2.2", solids={"2.2": [solid]}, rms=house.rms, n_points=house.n_points)
+    return NamedModel(str(number), [house.vertices[[6, 7, 8, 9, 6], :2]], model)
 
 
 def _features(houses: list[House]) -> LayerFeatures:

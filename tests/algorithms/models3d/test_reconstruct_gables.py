@@ -1,11 +1,14 @@
 """Gable houses whose fifteen parameters are known."""
 
+import json
+
 import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.cloud.asprs import PointClass
-from lidar_buildings.algorithms.facades.reconstruct_gables import reconstruct_gables
-from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.algorithms.models3d.reconstruct_gables import reconstruct_gables
+from lidar_buildings.algorithms.models3d.solid_faults import fault_of
+from lidar_buildings.algorithms.stage import MapFrame, Monitor
 from lidar_buildings.tests.builders import FAR, turned
 
 # A house of 12 m by 8 m: ridge at 9 m, eaves at 6 m, ground at 1 m.
@@ -30,13 +33,18 @@ def house(rng, density=12, noise=0.03):
     return xyz, classes, plane
 
 
+def gables_of(*arrays, **tunables):
+    """Return the layer of gables."""
+    return reconstruct_gables(*arrays, **tunables)[0]
+
+
 def vertices_of(gables):
     return np.unique(np.concatenate([ring for (ring,) in gables.geometries]).round(6), axis=0)
 
 
 def test_ten_vertices_lie_where_they_are(rng):
     """Heights within 5 cm, corners within 15 cm, at 12 points per m² with 3 cm of noise."""
-    gables = reconstruct_gables(*house(rng))
+    gables = gables_of(*house(rng))
     found = vertices_of(gables)
     assert len(found) == 10
     for true in TRUE.values():
@@ -49,7 +57,7 @@ def test_ten_vertices_lie_where_they_are(rng):
 
 def test_parameters_are_the_vertices_of_the_paper(rng):
     """1 and 2 end the ridge, 3 and 4 one eave, 5 and 6 the other; 1, 3 and 6 are at one end."""
-    gables = reconstruct_gables(*house(rng))
+    gables = gables_of(*house(rng))
     plan = np.array([[gables.columns[f"{axis}{k}"][0] for axis in "xy"] for k in range(1, 7)])
     assert np.abs(plan[:2, 1]).max() < 0.1
     np.testing.assert_allclose(plan[0], (plan[2] + plan[5]) / 2, atol=0.1)
@@ -59,7 +67,7 @@ def test_parameters_are_the_vertices_of_the_paper(rng):
 
 def test_faces_close_a_solid_and_face_outward(rng):
     """Each edge is run once in either direction, and the volume by the divergence theorem is that of the house."""
-    gables = reconstruct_gables(*house(rng))
+    gables = gables_of(*house(rng))
     edges = [
         (tuple(a), tuple(b)) for (ring,) in gables.geometries for a, b in zip(ring[:-1].round(6), ring[1:].round(6))
     ]
@@ -76,7 +84,7 @@ def test_faces_close_a_solid_and_face_outward(rng):
 
 
 def test_faces_are_planar(rng):
-    for (ring,) in reconstruct_gables(*house(rng)).geometries:
+    for (ring,) in gables_of(*house(rng)).geometries:
         places = ring[:-1] - ring[:-1].mean(axis=0)
         assert np.linalg.svd(places)[1][2] < 1e-9
 
@@ -84,15 +92,15 @@ def test_faces_are_planar(rng):
 def test_place_turn_and_order_change_nothing(rng):
     xyz, classes, plane = house(rng)
     order = rng.permutation(len(xyz))
-    expected = vertices_of(reconstruct_gables(xyz, classes, plane))
+    expected = vertices_of(gables_of(xyz, classes, plane))
     for moved, back in ((xyz[order] + FAR, expected + FAR), (turned(xyz[order], 70.0), turned(expected, 70.0))):
-        found = vertices_of(reconstruct_gables(moved, classes[order], plane[order]))
+        found = vertices_of(gables_of(moved, classes[order], plane[order]))
         assert np.linalg.norm(found[:, None] - back, axis=2).min(axis=0).max() < 1e-5
 
 
 def test_without_ground_the_lowest_points_around_are_the_ground(rng):
     xyz, classes, plane = house(rng)
-    found = reconstruct_gables(xyz, np.zeros_like(classes), plane)
+    found = gables_of(xyz, np.zeros_like(classes), plane)
     assert found.columns["z7"][0] == pytest.approx(GROUND, abs=0.1)
 
 
@@ -104,7 +112,7 @@ def test_valleys_single_planes_and_level_roofs_are_no_gables(rng):
     level[plane > 0, 2] = 6.0
     for points, planes in ((valley, plane), (xyz, np.where(plane == 1, 1, 0)), (level, plane), (xyz, 0 * plane)):
         monitor = Monitor()
-        assert not len(reconstruct_gables(points, classes, planes.astype(np.int32), monitor=monitor))
+        assert not len(gables_of(points, classes, planes.astype(np.int32), monitor=monitor))
         assert monitor.warnings == [
             "No two roof planes rise toward each other to a level ridge, so there is no gable; run "
             "'Segment planes (RANSAC)' first, with a smaller minimum plane area if roofs are small."
@@ -113,7 +121,29 @@ def test_valleys_single_planes_and_level_roofs_are_no_gables(rng):
 
 def test_tunables_do_what_they_say(rng):
     xyz, classes, plane = house(rng)
-    assert not len(reconstruct_gables(xyz, classes, plane, min_area=80.0))
+    assert not len(gables_of(xyz, classes, plane, min_area=80.0))
     seen = np.abs(xyz[:, 1]) > 1.0
-    assert not len(reconstruct_gables(xyz[seen], classes[seen], plane[seen]))
-    assert len(reconstruct_gables(xyz[seen], classes[seen], plane[seen], max_gap=4.0)) == 7
+    assert not len(gables_of(xyz[seen], classes[seen], plane[seen]))
+    assert len(gables_of(xyz[seen], classes[seen], plane[seen], max_gap=4.0)) == 7
+
+
+def test_cityjson_has_a_closed_solid_of_each_house(rng):
+    """Far from the origin; ten vertices, two roofs, four walls and the ground, with the heights of the house."""
+    xyz, classes, plane = house(rng)
+    made = reconstruct_gables.stage.unpack(reconstruct_gables(xyz + FAR, classes, plane))
+    (model,) = made.files["cityjson"].items
+    (solid,) = model.model.best
+    assert fault_of(solid) == ""
+    assert solid.volume == pytest.approx(12 * 8 * (5 + 1.5), rel=0.03)
+    written = json.loads("".join(made.files["cityjson"].pieces("CityJSON", MapFrame(np.asarray, "EPSG:25832"))))
+    assert len(written["vertices"]) == 10
+    (building,) = written["CityObjects"].values()
+    (geometry,) = building["geometry"]
+    assert (geometry["type"], geometry["lod"]) == ("Solid", "2.2")
+    kinds = [surface["type"] for surface in geometry["semantics"]["surfaces"]]
+    assert kinds == ["RoofSurface"] * 2 + ["WallSurface"] * 4 + ["GroundSurface"]
+    facts = building["attributes"]
+    assert facts["roof_type"] == "gable"
+    assert facts["eave_height"] == pytest.approx(EAVES - GROUND, abs=0.1)
+    assert facts["ridge_height"] == pytest.approx(RIDGE - GROUND, abs=0.1)
+    assert facts["points"] == 12 * 8 * 12
