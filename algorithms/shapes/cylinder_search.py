@@ -22,8 +22,8 @@ _DIRECTION_BIN = 0.14
 # Largest angle (°) between a normal and a great circle while the circle is searched for: a bin and half a bin.
 _ON_CIRCLE = 12.0
 
-# The same when the circle is fitted to normals: wider, as its first direction is off by up to half a bin.
-_ON_FITTED_CIRCLE = 15.0
+# The same when the circle is fitted to normals, as its sine: 15°, as its first direction is off by up to half a bin.
+_SINE_ON_FITTED = float(np.sin(np.radians(15.0)))
 
 # Fewest bins that the normals of a cylinder fill along their great circle: the faces of a box fill three.
 _LEAST_BINS = 5
@@ -192,10 +192,11 @@ class CylinderSearch:
 
     def _seed(self, rows: np.ndarray, low: float, high: float) -> Optional[tuple[Cylinder, np.ndarray]]:
         """Return the best cylinder of the points of a window, and which points lie on it."""
-        axis = self._axis(rows)
+        normals = self.normals[rows]
+        axis = self._axis(normals, self.bins[rows])
         if axis is None:
             return None
-        on_circle = rows[np.abs(self.normals[rows] @ axis) <= np.sin(np.radians(_ON_FITTED_CIRCLE))]
+        on_circle = rows[np.abs(normals @ axis) <= _SINE_ON_FITTED]
         if len(on_circle) < LEAST_POINTS:
             return None
         cylinder = self._circle(on_circle, axis, low, high)
@@ -220,23 +221,25 @@ class CylinderSearch:
         own, all_near = (Points(self.xyz[rows], self.normals[rows]) for rows in (points, near))
         return self.evidence.is_round(cylinder, own, all_near)
 
-    def _axis(self, rows: np.ndarray) -> Optional[np.ndarray]:
-        """Return the normal of the great circle along which normals fill most of the Gaussian sphere."""
-        occupied, count = np.unique(self.bins[rows], return_counts=True)
-        weight = np.minimum(count, max(1.0, _MOST_IN_BIN * len(rows))).astype(np.float32)
-        is_common = count >= min(2, len(rows) // 20 + 1)
+    def _axis(self, normals: np.ndarray, bins: np.ndarray) -> Optional[np.ndarray]:
+        """Return the normal of the great circle along which normals (k, 3) in bins (k,) fill most of the sphere."""
+        every = np.bincount(bins, minlength=len(self.directions))
+        occupied = np.flatnonzero(every)
+        count = every[occupied]
+        is_common = count >= min(2, len(bins) // 20 + 1)
         if is_common.sum() < _LEAST_BINS:
             return None
+        weight = np.minimum(count, max(1.0, _MOST_IN_BIN * len(bins))).astype(np.float32)
         best = int(np.argmax(weight @ self.on_circle[occupied]))
         if self.on_circle[occupied[is_common], best].sum() < _LEAST_BINS:
             return None
         axis = self.directions.normal[best]
         for _ in range(2):
-            near = rows[np.abs(self.normals[rows] @ axis) <= np.sin(np.radians(_ON_FITTED_CIRCLE))]
+            is_near = np.abs(normals @ axis) <= _SINE_ON_FITTED
+            near, own = normals[is_near], bins[is_near]
             # Bins count alike, so that the normals of a plane beside it don't turn the circle.
-            share = 1 / np.bincount(self.bins[near], minlength=len(self.directions))[self.bins[near]]
-            normals = self.normals[near]
-            axis = np.linalg.eigh((normals * share[:, None]).T @ normals)[1][:, 0]
+            share = 1 / np.bincount(own, minlength=len(self.directions))[own]
+            axis = np.linalg.eigh((near * share[:, None]).T @ near)[1][:, 0]
         return upward(axis)
 
     def _circle(self, rows: np.ndarray, axis: np.ndarray, low: float, high: float) -> Cylinder:
