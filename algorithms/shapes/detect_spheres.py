@@ -41,7 +41,7 @@ def detect_spheres(
         Param(
             "Method",
             "With center first, points vote for a center, and those of the best center for a radius. With four "
-            "dimensions, they vote for both together, which takes more memory. Spheres in each other are not found.",
+            "dimensions, they vote for both together, which takes more memory.",
             choices=METHODS,
         ),
     ] = "center first",
