@@ -53,10 +53,19 @@ def crs_of(wkt: str) -> QgsCoordinateReferenceSystem:
     return crs
 
 
+def code_in_space(wkt: str) -> str:
+    """Return the code of the CRS that a cloud names, with its heights where it has a code with them ("EPSG:7415")."""
+    return _whole(wkt).authid() or crs_of(wkt).authid()
+
+
+def _whole(wkt: str) -> QgsCoordinateReferenceSystem:
+    if not wkt:
+        return QgsCoordinateReferenceSystem()
+    return QgsCoordinateReferenceSystem.fromWkt(wkt) if '"' in wkt else QgsCoordinateReferenceSystem(wkt)
+
+
 def _made(wkt: str) -> QgsCoordinateReferenceSystem:
-    crs = QgsCoordinateReferenceSystem()
-    if wkt:
-        crs = QgsCoordinateReferenceSystem.fromWkt(wkt) if '"' in wkt else QgsCoordinateReferenceSystem(wkt)
+    crs = _whole(wkt)
     # Layers hold heights as an attribute or in meters of the cloud's own vertical system, which GeoPackage can't name.
     horizontal = crs.horizontalCrs()
     return horizontal if horizontal.isValid() else crs

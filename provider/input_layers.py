@@ -23,6 +23,7 @@ from qgis.core import (
     QgsVariantUtils,
     QgsWkbTypes,
 )
+from qgis.PyQt.QtCore import QDate, QDateTime, Qt, QTime
 
 from ..algorithms.cloud.files import read_extent
 from ..algorithms.stage import InputLayer, LayerFeatures, Monitor
@@ -281,9 +282,14 @@ _SHAPES: dict[str, Callable[[list], Any]] = {
 }
 
 
+def _dated(value: Any) -> Any:
+    """Return dates and times as text (ISO 8601), everything else as it is."""
+    return value.toString(Qt.DateFormat.ISODate) if isinstance(value, (QDate, QDateTime, QTime)) else value
+
+
 def _column(values: list) -> Any:
     """Return an attribute's values: int64, or float64 with NaN for NULL, or what they are with None for NULL."""
-    plain = [None if QgsVariantUtils.isNull(value) else value for value in values]
+    plain = [None if QgsVariantUtils.isNull(value) else _dated(value) for value in values]
     kinds = {type(value) for value in plain}
     if kinds == {int}:
         return np.array(plain, np.int64)

@@ -58,7 +58,7 @@ def _fill_sink(
 ) -> str:
     """Write the features of a layer where the parameter ``name`` says; return where that is."""
     sink, target = algorithm.parameterAsSink(
-        parameters, name, context, fields_of(layer), wkb_type(layer, features), place.crs
+        parameters, name, context, fields_of(layer, features), wkb_type(layer, features), place.crs
     )
     if sink is None:
         raise QgsProcessingException(algorithm.invalidSinkError(parameters, name))

@@ -11,24 +11,29 @@ from qgis.core import QgsCoordinateReferenceSystem, QgsProcessingFeatureSource
 from ..algorithms.cloud.cloud import Cloud
 from ..algorithms.cloud.units import NO_CRS
 from ..algorithms.stage import InputLayer, Monitor
-from .crs import crs_of, crs_of_layer, meters_per_unit
+from .crs import code_in_space, crs_of, crs_of_layer, meters_per_unit
 
 _ORIGIN_STEP = 1000.0
 
 
 @dataclass(frozen=True)
 class Place:
-    """A CRS, what turns local meters (m, 2 or 3) into its coordinates and back, and meters per unit in plan."""
+    """A CRS, what turns local meters (m, 2 or 3) into its coordinates and back, and meters per unit in plan.
+
+    ``code`` names it with its heights, where it has a code with them.
+    """
 
     crs: QgsCoordinateReferenceSystem
     to_map: Callable[[np.ndarray], np.ndarray]
     from_map: Callable[[np.ndarray], np.ndarray]
     unit: float = 1.0
+    code: str = ""
 
 
 def place_of_cloud(cloud: Cloud) -> Place:
     """Return the place of what stages make of ``cloud``."""
-    return Place(crs_of(cloud.wkt), cloud.to_map, cloud.from_map, cloud.units.horizontal)
+    crs = crs_of(cloud.wkt)
+    return Place(crs, cloud.to_map, cloud.from_map, cloud.units.horizontal, code_in_space(cloud.wkt))
 
 
 def place_of_layers(layers: dict[InputLayer, QgsProcessingFeatureSource], monitor: Monitor) -> Optional[Place]:
@@ -62,7 +67,7 @@ def place_of_layers(layers: dict[InputLayer, QgsProcessingFeatureSource], monito
         axes = np.shape(there)[-1]
         return np.asarray(there, float) * units[:axes] - origin[:axes]
 
-    return Place(crs, to_map, from_map, plane)
+    return Place(crs, to_map, from_map, plane, crs.authid())
 
 
 def refuse_degrees(title: str, crs: QgsCoordinateReferenceSystem) -> None:

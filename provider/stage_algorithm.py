@@ -121,7 +121,7 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
             cloud = QgsProcessingParameterPointCloudDestination(OUTPUT, cloud_title([stage]))
             self.addParameter(with_help(cloud, "A .las, .laz or .copc.laz file."))
         # Who wants the cloud or the numbers may do without the layers.
-        optional = bool(stage.makes_cloud or stage.measures)
+        optional = bool(stage.makes_cloud or stage.measures or stage.files)
         for layer in stage.layers:
             sink = QgsProcessingParameterFeatureSink(
                 layer.name.upper(), layer.title, SOURCE_TYPES[layer.geometry], optional=optional

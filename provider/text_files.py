@@ -35,7 +35,7 @@ def write_text(
     target = algorithm.parameterAsFileOutput(parameters, name, context) if wanted else ""
     if not target:
         return {}
-    frame = MapFrame(place.to_map, place.crs.authid())
+    frame = MapFrame(place.to_map, place.code)
     with replacing(Path(target)) as stream:
         for number, piece in enumerate(content.pieces(file.format_of(target), frame)):
             if number % BETWEEN_CHECKS == 0:

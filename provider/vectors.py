@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, Callable, Union
 
@@ -39,12 +39,24 @@ def check_layer(path: Path) -> None:
         raise ValueError(f"{path.name} can't be written as a layer: give it the extension .gpkg, .shp or .geojson.")
 
 
-def fields_of(layer: Layer) -> QgsFields:
-    """Return the fields of a layer."""
+def fields_of(layer: Layer, features: LayerFeatures) -> QgsFields:
+    """Return the fields of a layer, and those of other columns that its features have: attributes of a map."""
     fields = QgsFields()
-    for declared in layer.fields:
+    for declared in _all_fields(layer, features):
         fields.append(QgsField(declared.name, _TYPES[declared.type]))
     return fields
+
+
+def _all_fields(layer: Layer, features: LayerFeatures) -> list[Field]:
+    names = {declared.name for declared in layer.fields}
+    others = [Field(name, _type_of(column), "") for name, column in features.columns.items() if name not in names]
+    return [*layer.fields, *others]
+
+
+def _type_of(column: Sequence) -> type:
+    """Return the type that all values of a column have, text where they differ."""
+    types = {type(value) for value in column if value is not None}
+    return next((kind for kind in (int, float) if types and types <= {int, kind}), str)
 
 
 def wkb_type(layer: Layer, features: LayerFeatures) -> Qgis.WkbType:
@@ -71,9 +83,9 @@ def qgis_features(
     to_map : callable
         Turns local meters (m, 2 or 3) into map coordinates.
     """
-    fields = fields_of(layer)
+    fields = fields_of(layer, features)
     make = _GEOMETRIES[layer.geometry]
-    columns = [_column(declared, features, to_map) for declared in layer.fields]
+    columns = [_column(declared, features, to_map) for declared in _all_fields(layer, features)]
     for row, geometry in enumerate(features.geometries):
         feature = QgsFeature(fields)
         feature.setGeometry(QgsGeometry(make(geometry, to_map)))
@@ -86,6 +98,8 @@ def _column(
 ) -> Union[list, np.ndarray]:
     """Return the values of a field, positions in the coordinates of the cloud's CRS."""
     column = features.columns[declared.name]
+    if declared.type is str:
+        return [None if value is None else str(value) for value in column]
     if declared.axis is None:
         return column
     places = np.zeros((len(column), 2))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 # A cut that passes a vertex this closely (m) goes through it.
-SNAP = 0.02
+SNAP = 0.05
 
 # A piece of a line that reaches less far into a cell than this many times the snapping distance does not cut it.
 _LEAST_REACH = 2.5

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, Optional
 
 import numpy as np
 
 from ..stage import Field
 from .building_models import BuildingModel
 from .roof_points import RULES
-from .solids import ROOF, Solid
+from .solids import ROOF, WALL, Solid
 
 # Roofs below this slope (°) are flat: drains need 1 to 3°, and 5° is the least for tiles.
 _FLAT = 5.0
@@ -23,11 +23,37 @@ _SAME_WAY = 20.0
 # Directions of less than this share of the sloping area say nothing of the type.
 _MINOR = 0.03
 
+# Faces with less than this share of the area are dormers, annexes and lean-tos.
+_ANNEX = 0.1
+
 # Roofs with more than this share of level parts are of no simple type.
-_LEVEL = 0.15
+_LEVEL = 0.35
 
 # Two slopes of one direction that differ by more than this (°) make a mansard roof.
 _MANSARD = 12.0
+
+
+@dataclass(frozen=True)
+class Checks:
+    """Which models are to be looked at.
+
+    Attributes
+    ----------
+    doubtful, poor : float
+        Shares of roof points off the model: twice and five times those of the median building on maps.
+    covered : float
+        Share of the area with points: walls hide a strip of narrow courts, water and glass all of a roof.
+    """
+
+    doubtful: float = 0.1
+    poor: float = 0.25
+    covered: float = 0.75
+
+
+CHECKS = Checks()
+
+# Quantile of the heights along the outline that is the eaves', as in 'Extract footprints': gables rise from eaves.
+_EAVE = 0.25
 
 BUILDING_FIELDS = (
     Field("id", int, "number of the building, from 1"),
@@ -35,15 +61,22 @@ BUILDING_FIELDS = (
     Field("level", str, "level of detail that it has: 1.2, 1.3 or 2.2"),
     Field("reason", str, "why it has not the level that was wanted, empty where it has"),
     Field("roof_type", str, "flat, stepped flat, shed, gable, hip, mansard or other"),
-    Field("ground", float, "elevation of its ground", "m"),
-    Field("eave_height", float, "height of the lowest corner of its roof above the ground", "m"),
-    Field("ridge_height", float, "height of the highest corner of its roof above the ground", "m"),
+    Field("ground", float, "elevation of its base, the lowest ground beside it", "m"),
+    Field("eave_height", float, "lower quartile of the heights above the terrain at which its roof ends outside", "m"),
+    Field("ridge_height", float, "98th percentile of the heights of its roof points above the terrain", "m"),
     Field("roof_area", float, "area of its roof, in its slopes", "m²"),
     Field("volume", float, "volume", "m³"),
     Field("rms", float, "root mean square height of its roof points above or below the model", "m"),
     Field("off", float, f"share of its roof points more than {RULES.off} m above or below the model, 0 to 1"),
     Field("explained", float, "share of its roof points that lie on the model, 0 to 1"),
     Field("covered", float, "share of its area that has points, 0 to 1"),
+    Field("gap_area", float, "its area without points", "m²"),
+    Field(
+        "check",
+        int,
+        f"2: a simpler level, or over {CHECKS.poor:.0%} of the roof points off; 1: over {CHECKS.doubtful:.0%} off, or "
+        f"points on less than {CHECKS.covered:.0%} of the area; 0: sound",
+    ),
     Field("confidence", float, "sureness of the model: explained times covered, 0 to 1"),
     Field("points", int, "points over its footprint"),
 )
@@ -67,11 +100,12 @@ WALL_FIELDS = (
 
 @dataclass(frozen=True)
 class NamedModel:
-    """A model with the name of its footprint and the rings of this (m)."""
+    """A model with the name of its footprint, the rings of this (m), and what its map knows of it, if it has a key."""
 
     name: str
     rings: list
     model: BuildingModel
+    attributes: Optional[dict[str, Any]] = None
 
     def record(self) -> dict[str, Any]:
         """Return it as plain values, which JSON keeps to the last bit."""
@@ -79,7 +113,8 @@ class NamedModel:
         solids = {level: [_plain_solid(solid) for solid in some] for level, some in self.model.solids.items()}
         face_rms = [(int(plane), float(rms)) for plane, rms in self.model.face_rms.items()]
         rings = [np.asarray(ring).tolist() for ring in self.rings]
-        return {"rings": rings, "model": {**facts, "face_rms": face_rms}, "solids": solids}
+        model = {**facts, "face_rms": face_rms}
+        return {"rings": rings, "model": model, "solids": solids, "attributes": self.attributes}
 
     @classmethod
     def of_record(cls, record: dict[str, Any], name: str) -> NamedModel:
@@ -89,11 +124,28 @@ class NamedModel:
             for level, some in record["solids"].items()
         }
         facts = {**record["model"], "face_rms": {plane: rms for plane, rms in record["model"]["face_rms"]}}
-        return cls(name, [np.array(ring) for ring in record["rings"]], BuildingModel(**facts, solids=solids))
+        rings = [np.array(ring) for ring in record["rings"]]
+        return cls(name, rings, BuildingModel(**facts, solids=solids), record["attributes"])
 
 
 def _plain_solid(solid: Solid) -> dict[str, Any]:
     return {**{one.name: getattr(solid, one.name) for one in fields(solid)}, "vertices": solid.vertices.tolist()}
+
+
+def map_attributes(facts: dict[str, Any]) -> dict[str, Any]:
+    """Return the attributes of a footprint as plain values; those with a name that models use become ``map_…``."""
+    taken = {field.name for field in BUILDING_FIELDS}
+    return {f"map_{name}" if name.lower() in taken else name: _plain_value(value) for name, value in facts.items()}
+
+
+def _plain_value(value: Any) -> Any:
+    """Return a number as Python's own, None where it is undefined, and what is no number as text."""
+    value = value.item() if isinstance(value, np.generic) else value
+    if value is None or isinstance(value, str):
+        return value
+    if isinstance(value, (bool, int, float)):
+        return None if isinstance(value, float) and math.isnan(value) else value
+    return str(value)
 
 
 def slope_and_azimuth(solid: Solid, face: int) -> tuple[float, float]:
@@ -124,24 +176,51 @@ def building_attributes(one: NamedModel) -> dict[str, Any]:
     """Return what a model says of its building, by the fields of the layer but its number."""
     model = one.model
     roofs = faces_of(model.best, ROOF)
-    z = np.concatenate([solid.vertices[ring][:, 2] for solid, face in roofs for ring in solid.faces[face]])
+    area = sum(float(abs(solid.normals[face, 2])) for solid, face in roofs)
     return {
         "building": one.name,
         "level": model.level,
         "reason": model.reason,
         "roof_type": roof_type(model.best),
         "ground": model.base,
-        "eave_height": float(z.min() - model.base),
-        "ridge_height": float(z.max() - model.base),
+        "eave_height": _eave(model.best) - model.terrain,
+        "ridge_height": model.ridge - model.terrain,
         "roof_area": sum(face_area(solid, face) for solid, face in roofs),
         "volume": sum(solid.volume for solid in model.best),
         "rms": model.rms,
         "off": model.off,
         "explained": model.explained,
         "covered": model.covered,
+        "gap_area": (1 - model.covered) * area,
+        "check": _check(model),
         "confidence": model.explained * model.covered,
         "points": model.n_points,
     }
+
+
+def _check(model: BuildingModel) -> int:
+    """Return 0 for a sound model, 1 for a doubtful and 2 for a poor one."""
+    if model.reason or not model.off <= CHECKS.poor:
+        return 2
+    return int(model.off > CHECKS.doubtful or model.covered < CHECKS.covered)
+
+
+def _eave(solids: Sequence[Solid]) -> float:
+    """Return the height (m) of the eaves: a quantile, by length, of the upper edges of the walls down to the ground."""
+    edges = []
+    for solid, face in faces_of(solids, WALL):
+        ground = solid.vertices[:, 2].min()
+        corner = solid.vertices[solid.faces[face][0]]
+        if corner[:, 2].min() > ground:
+            continue
+        start, end = corner, np.roll(corner, -1, axis=0)
+        is_upper = np.minimum(start[:, 2], end[:, 2]) > ground
+        length = np.hypot(*(end - start)[is_upper, :2].T)
+        # The quarters of an edge stand for its heights.
+        for share in (0.125, 0.375, 0.625, 0.875):
+            edges.append(np.column_stack([(start + share * (end - start))[is_upper, 2], length / 4]))
+    height, length = np.concatenate(edges)[np.argsort(np.concatenate(edges)[:, 0], kind="stable")].T
+    return float(height[np.searchsorted(np.cumsum(length), _EAVE * length.sum())])
 
 
 def face_attributes(one: NamedModel, solid: Solid, face: int) -> dict[str, Any]:
@@ -160,6 +239,24 @@ def roof_type(solids: Sequence[Solid]) -> str:
     roofs = faces_of(solids, ROOF)
     area = np.array([face_area(solid, face) for solid, face in roofs])
     slope, azimuth = np.array([slope_and_azimuth(solid, face) for solid, face in roofs]).T
+    # Annexes and lean-tos do not change the type of a sloping roof: they end below the middle of its largest face.
+    heights = [solid.vertices[solid.faces[face][0], 2] for solid, face in roofs]
+    largest = int(np.argmax(area))
+    if slope[largest] > _FLAT:
+        middle = (heights[largest].min() + heights[largest].max()) / 2
+        is_body = np.array([z.max() >= middle for z in heights])
+        area, slope, azimuth = area[is_body], slope[is_body], azimuth[is_body]
+    kind = _type_of(area, slope, azimuth)
+    if kind != "other":
+        return kind
+    # Neither do dormers; hips are small themselves.
+    is_main = area >= _ANNEX * area.sum()
+    kind = _type_of(area[is_main], slope[is_main], azimuth[is_main])
+    return "other" if kind == "hip" else kind
+
+
+def _type_of(area: np.ndarray, slope: np.ndarray, azimuth: np.ndarray) -> str:
+    """Return the type of faces (n,) with areas (m²), slopes and azimuths (°)."""
     sloping = slope > _FLAT
     if area[sloping].sum() < 0.5 * area.sum():
         return "flat" if len(area) == 1 else "stepped flat" if not sloping.any() else "other"

@@ -24,6 +24,9 @@ _LEAST_EXPLAINED = 0.5
 # Distances off the model count at most this much (m) when levels are compared: what is farther is not roof.
 _FARTHEST = 1.0
 
+# Percentile of the heights of roof points that is the ridge's, as in 'Extract footprints': chimneys rise above it.
+_RIDGE = 98
+
 # A point of the roof is explained by the model within this many tolerances.
 _EXPLAINED = 1.5
 
@@ -59,7 +62,11 @@ class BuildingModel:
     solids : dict of str to list of Solid
         By level; parts of the footprint that only touch in a point are solids of their own.
     base : float
-        Height of the ground (m).
+        Height of the ground (m): that of the base of the solids.
+    terrain : float
+        Median height of the ground along the outline (m).
+    ridge : float
+        98th percentile of the heights of the roof points (m).
     rms : float
         Root mean square height of the roof points above or below the best level (m).
     rms_of : dict of str to float
@@ -76,6 +83,8 @@ class BuildingModel:
     level: str = ""
     reason: str = ""
     solids: dict[str, list[Solid]] = field(default_factory=dict)
+    terrain: float = np.nan
+    ridge: float = np.nan
     rms: float = np.nan
     rms_of: dict[str, float] = field(default_factory=dict)
     explained: float = np.nan
@@ -269,6 +278,8 @@ def _enter(
     model.rms = root_mean_square(off)
     model.explained = float(np.mean(np.abs(off) <= _EXPLAINED * top.settings.tolerance)) if len(off) else np.nan
     model.off = share_off(off)
+    roof = over & are_on_roof(above, top.is_low)
+    model.ridge = float(np.percentile(top.xyz[roof, 2], _RIDGE)) if roof.any() else np.nan
     model.covered = _covered(top, partition)
     model.face_rms = {
         int(plane): root_mean_square(_off(top, above, label == plane)) for plane in np.unique(label[over])

@@ -7,11 +7,12 @@ import math
 import re
 from collections.abc import Collection, Iterable, Iterator
 from typing import Any
+from uuid import NAMESPACE_URL, uuid5
 
 import numpy as np
 
-from ..stage import MapFrame
-from .building_facts import NamedModel, building_attributes, face_attributes
+from ..stage import Field, MapFrame
+from .building_facts import BUILDING_FIELDS, ROOF_FIELDS, NamedModel, building_attributes, face_attributes
 from .set_openings import DOOR, WINDOW
 from .solids import DECIMALS, GROUND, ROOF, WALL, Solid
 
@@ -43,7 +44,7 @@ def cityjson_pieces(models: Collection[NamedModel], called: str, frame: MapFrame
     low, high = _extent(models, frame)
     translate = np.floor(low)
     head = _head(low, high, translate, frame.crs, len(models) > 0)
-    names = unique_names(one.name for one in models)
+    names = object_names(models, frame)
     if called == CITYJSON_SEQ:
         yield _dumped({**head, "CityObjects": {}, "vertices": []}) + "\n"
         for one, name in zip(models, names):
@@ -72,6 +73,21 @@ def _places(one: NamedModel, frame: MapFrame) -> Iterator[np.ndarray]:
     for solids in one.model.solids.values():
         for solid in solids:
             yield frame.to_map(solid.vertices)
+
+
+def object_names(models: Iterable[NamedModel], frame: MapFrame) -> Iterator[str]:
+    """Yield the names of models in files: the keys of their map, or numbers with a part that their position gives.
+
+    Numbers begin anew in each file. With the position, files can be merged, and a second run gives the same names.
+    """
+    return unique_names(_name_in_files(one, frame) for one in models)
+
+
+def _name_in_files(one: NamedModel, frame: MapFrame) -> str:
+    if one.attributes is not None:
+        return one.name
+    corner = frame.to_map(np.append(np.min(one.rings[0][:, :2], axis=0), 0.0)[None])[0]
+    return f"{one.name}-{uuid5(NAMESPACE_URL, f'{frame.crs}/{corner[0]:.1f}/{corner[1]:.1f}').hex[:8]}"
 
 
 def unique_names(names: Iterable[str]) -> Iterator[str]:
@@ -125,7 +141,7 @@ def _building(one: NamedModel, vertices: _Vertices) -> dict[str, Any]:
     """Return the city object of a building with a geometry for each level of detail."""
     geometry = []
     for level, solids in one.model.solids.items():
-        parts = [_shell(one, solid, vertices.numbers(solid.vertices), level == one.model.level) for solid in solids]
+        parts = [_shell(one, solid, vertices, level == one.model.level) for solid in solids]
         first = np.cumsum([0, *(len(of_part) for _, of_part in parts)]).tolist()
         surfaces = [_numbered(surface, start) for (_, some), start in zip(parts, first) for surface in some]
         values = [[list(range(start, end))] for start, end in zip(first, first[1:])]
@@ -139,15 +155,30 @@ def _building(one: NamedModel, vertices: _Vertices) -> dict[str, Any]:
                 "semantics": {"surfaces": surfaces, "values": values[0] if is_single else values},
             }
         )
-    return {"type": "Building", "attributes": _plain(building_attributes(one)), "geometry": geometry}
+    facts = in_units(building_attributes(one), BUILDING_FIELDS, vertices.frame)
+    attributes = {**_plain(facts), **_plain(one.attributes or {})}
+    return {"type": "Building", "attributes": attributes, "geometry": geometry}
 
 
-def _shell(one: NamedModel, solid: Solid, numbers: list[int], is_best: bool) -> tuple[list, list[dict[str, Any]]]:
+def in_units(facts: dict[str, Any], fields: Iterable[Field], frame: MapFrame) -> dict[str, Any]:
+    """Return attributes in the units of the vertices: CityJSON has no place for others."""
+    plan, height = frame.units
+    factor = {"m": height, "m²": plan**2, "m³": plan**2 * height}
+    units = {field.name: factor.get(field.unit, 1.0) for field in fields}
+    return {name: value * units[name] if units.get(name, 1.0) != 1.0 else value for name, value in facts.items()}
+
+
+def _shell(one: NamedModel, solid: Solid, vertices: _Vertices, is_best: bool) -> tuple[list, list[dict[str, Any]]]:
     """Return the faces of a solid as rings of vertices, and what each of them is."""
+    numbers = vertices.numbers(solid.vertices)
     shell = [[[numbers[v] for v in ring] for ring in rings] for rings in solid.faces]
     surfaces = []
     for face, kind in enumerate(solid.kinds):
-        facts = _plain(face_attributes(one, solid, face)) if is_best and kind == ROOF else {}
+        facts = (
+            _plain(in_units(face_attributes(one, solid, face), ROOF_FIELDS[1:], vertices.frame))
+            if is_best and kind == ROOF
+            else {}
+        )
         facts.pop("building", None)
         surfaces.append({"type": _SURFACES[kind], **facts})
     for face, wall in _walls_of_openings(solid).items():

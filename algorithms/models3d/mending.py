@@ -118,16 +118,19 @@ def _cleared(partition: Partition, base: float) -> Optional[Levels]:
         if not crowded:
             return levels
         touched: set[int] = set()
+        is_changed = False
         for vertex in crowded:
             around = levels.cells_around(vertex)
             if touched.isdisjoint(around):
                 touched.update(around)
-                _clear(partition, levels, vertex, around)
+                is_changed |= _clear(partition, levels, vertex, around)
+        if not is_changed:
+            break
     return None
 
 
-def _clear(partition: Partition, levels: Levels, vertex: int, around: list[int]) -> None:
-    """Give one of the cells around a vertex the plane of another one, the cheapest that clears the vertex."""
+def _clear(partition: Partition, levels: Levels, vertex: int, around: list[int]) -> bool:
+    """Give one of the cells around a vertex the plane of another one, the cheapest that clears it, if any does."""
     present = sorted({int(partition.label[cell]) for cell in around})
     height = {label: levels.height(vertex, label) for label in present}
     best: Optional[tuple[float, int, int]] = None
@@ -146,6 +149,7 @@ def _clear(partition: Partition, levels: Levels, vertex: int, around: list[int])
                 best = loss + 0.01 * area, cell, label
     if best is not None:
         partition.label[best[1]] = best[2]
+    return best is not None
 
 
 class _Mending:

@@ -33,6 +33,7 @@ from .building_facts import (
     face_attributes,
     face_rings,
     faces_of,
+    map_attributes,
 )
 from .building_models import LEVELS, Settings, model_building
 from .model_inputs import (
@@ -47,8 +48,8 @@ from .roof_partition import inside_rings
 from .roof_points import are_low
 from .solids import ROOF, WALL
 
-# Fewer points than this over a footprint show no roof.
-_LEAST_POINTS = 4
+# Fewer points than this over a footprint, or a smaller share of its area with points, show no roof.
+_LEAST_POINTS, _LEAST_COVERED = 6, 0.1
 
 # The ground of a building is this percentile of the ground points nearest to places along its outline, and the distance
 # between these places (m).
@@ -145,6 +146,15 @@ def reconstruct_roofs(
             advanced=True,
         ),
     ] = None,
+    id_field: Annotated[
+        str,
+        Param(
+            "Identifier",
+            "Attribute of the footprints that names buildings in all results. With it, the layer of buildings and "
+            "CityJSON keep all attributes of the footprints. If empty, buildings are named by the attribute 'id' or "
+            "'fid', or numbered, and in CityJSON also by their position, so that files can be merged.",
+        ),
+    ] = "",
     sampling: Optional[CloudSampling] = None,
     monitor=None,
 ):
@@ -200,7 +210,7 @@ def reconstruct_roofs(
     Environment and Urban Systems 59.
     """
     building, ground = _points(xyz, classification)
-    outlines = _outlines(footprints, monitor)
+    outlines = _outlines(footprints, id_field, monitor)
     sampling = sampling or CloudSampling.of(xyz, classification)
     if tolerance is None:
         tolerance = plane_tolerance(sampling.roughness)
@@ -215,10 +225,11 @@ def reconstruct_roofs(
 
 @dataclass(frozen=True)
 class _Outline:
-    """A footprint: its name and its closed rings in plan (m)."""
+    """A footprint: its name, its closed rings in plan (m), and what its map knows of it."""
 
     name: str
     rings: list
+    attributes: Optional[dict[str, Any]] = None
 
 
 def _points(xyz: np.ndarray, classification: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -229,14 +240,15 @@ def _points(xyz: np.ndarray, classification: np.ndarray) -> tuple[np.ndarray, np
     return building[np.argsort(building[:, 0], kind="stable")], xyz[classification == PointClass.GROUND]
 
 
-def _outlines(footprints: LayerFeatures, monitor: Monitor) -> list[_Outline]:
+def _outlines(footprints: LayerFeatures, id_field: str, monitor: Monitor) -> list[_Outline]:
     """Return the footprints that have an area; say how many don't."""
     outlines = []
-    for rings, name in zip(footprints.geometries, feature_names(footprints)):
+    for row, (rings, name) in enumerate(zip(footprints.geometries, feature_names(footprints, id_field))):
         plan = [_cleaned(np.asarray(ring, float)[:, :2]) for ring in rings]
         sound = [ring for ring in plan if len(ring) > 3 and np.isfinite(ring).all() and abs(signed_area(ring)) > 1e-6]
         if sound and sound[0] is plan[0] and abs(signed_area(plan[0])) >= NO_AREA:
-            outlines.append(_Outline(name, sound))
+            facts = {field: values[row] for field, values in footprints.columns.items()} if id_field else None
+            outlines.append(_Outline(name, sound, None if facts is None else map_attributes(facts)))
     tell_without_area(len(outlines), len(footprints), monitor)
     return outlines
 
@@ -272,17 +284,19 @@ def _modelled(
 
     The points are those of buildings in the order of their eastings.
     """
-    base_of = _ground_heights(ground)
+    ground_of = _ground_heights(ground)
     models, empty, failed = [], 0, []
     for number, outline in enumerate(outlines):
         over = _rows_over(building, outline.rings)
-        if len(over) < _LEAST_POINTS:
+        area = 2 * abs(signed_area(outline.rings[0])) - sum(abs(signed_area(ring)) for ring in outline.rings)
+        if len(over) < _LEAST_POINTS or len(over) * settings.spacing**2 < _LEAST_COVERED * area:
             empty += 1
         else:
-            base = base_of(outline.rings)
+            base, terrain = ground_of(outline.rings)
             model = model_building(building[over], is_low[over], outline.rings, base, settings)
+            model.terrain = terrain
             if model.level:
-                models.append(NamedModel(outline.name, outline.rings, model))
+                models.append(NamedModel(outline.name, outline.rings, model, outline.attributes))
             else:
                 failed.append((outline.name, model.reason))
         monitor.progress((number + 1) / len(outlines))
@@ -302,7 +316,9 @@ def _inform_of_levels(models: list[NamedModel], count: int, monitor: Monitor) ->
 def _warn_of_others(empty: int, failed: list[tuple[str, str]], count: int, monitor: Monitor) -> None:
     """Say how many footprints have no model, and why."""
     if empty:
-        monitor.warn(f"{empty} of {count} footprints have no points of buildings over them, and so no model.")
+        monitor.warn(
+            f"{empty} of {count} footprints have no points of buildings over them, or hardly any, and so no model."
+        )
     if failed:
         named = "; ".join(f"{name}: {reason}" for name, reason in failed[:_NAMED])
         more = f"; and {len(failed) - _NAMED} more" if len(failed) > _NAMED else ""
@@ -317,14 +333,15 @@ def _rows_over(building: np.ndarray, rings: list) -> np.ndarray:
     return rows[inside_rings(building[rows, :2], rings)]
 
 
-def _ground_heights(ground: np.ndarray) -> Callable[[list], float]:
-    """Return what tells the height of the ground (m) of a footprint."""
+def _ground_heights(ground: np.ndarray) -> Callable[[list], tuple[float, float]]:
+    """Return what gives the heights (m) of the base and of the terrain of a footprint."""
     tree = spatial.cKDTree(ground[:, :2])
 
-    def base_of(rings: list) -> float:
-        return float(np.percentile(ground[tree.query(_along(rings[0]))[1], 2], _GROUND_PERCENTILE))
+    def ground_of(rings: list) -> tuple[float, float]:
+        z = ground[tree.query(_along(rings[0]))[1], 2]
+        return float(np.percentile(z, _GROUND_PERCENTILE)), float(np.median(z))
 
-    return base_of
+    return ground_of
 
 
 def _along(ring: np.ndarray) -> np.ndarray:
@@ -340,7 +357,11 @@ def _building_layer(models: list[NamedModel]) -> LayerFeatures:
     """Return the grounds of buildings."""
     rows = [building_attributes(one) for one in models]
     rings = [[np.column_stack([ring, np.full(len(ring), one.model.base)]) for ring in one.rings] for one in models]
-    return _layer(rings, rows, BUILDING_FIELDS)
+    layer = _layer(rings, rows, BUILDING_FIELDS)
+    of_map = [one.attributes or {} for one in models]
+    names = dict.fromkeys(name for facts in of_map for name in facts)
+    layer.columns.update({name: [facts.get(name) for facts in of_map] for name in names})
+    return layer
 
 
 def _face_layer(models: list[NamedModel], kind: str) -> LayerFeatures:

@@ -23,11 +23,12 @@ DECIMALS = 4
 # Planes that intersect within this distance (m) of a vertex, in plan, meet in it: cuts pass that closely to vertices.
 _MEET = 2 * SNAP
 
-# Heights at one position that differ by at most this (m) become one: planes stay plane to half of that.
-_SAME_HEIGHT = 0.001
+# Heights at one position that differ by at most this (m) become one: planes stay plane to half of that, where more than
+# three nearly meet.
+_SAME_HEIGHT = 0.016
 
-# The same where too many walls would meet in an edge else: faces stay plane to half of that.
-_NEARLY_SAME_HEIGHT = 0.016
+# Vertices stay where planes meet to this (m).
+_EXACT = 0.0001
 
 # A vertex with two edges that is off the line of their other ends by less than this (m) is superfluous.
 _SUPERFLUOUS = 0.0005
@@ -41,6 +42,12 @@ _STRAIGHT = 0.0005
 _BASE = -1
 
 Ring = list[int]
+
+# A line in plan: its unit normal (x, y) and its distance along that from a position (m).
+_Line = tuple[float, float, float]
+
+# More planes than this have no point in common but by chance.
+_IN_A_POINT = 3
 
 
 @dataclass
@@ -165,18 +172,24 @@ class Levels:
         """Move a vertex to where planes intersect, on the outline if it lies on that, or else by less."""
         place = self.place[vertex]
         meeting = self._meeting(planes, place)
-        if not meeting or meeting[-1][0] < 0.1 * _SAME_HEIGHT:
+        if not meeting or meeting[-1][0] < _EXACT:
             return
+        near = sorted({plane for _, _, pair in meeting for plane in pair})
+        if len(near) > _IN_A_POINT and vertex not in self._outline:
+            step = self._nearest_point(near, place)
+            if math.hypot(*step) <= _MEET and self._keeps_cells(vertex, (place[0] + step[0], place[1] + step[1])):
+                self.place[vertex] = place[0] + step[0], place[1] + step[1]
+                return
         along = [self._across(place, self.place[other]) for other in self._outline.get(vertex, ())]
         for lines, farthest in ((along, _MEET), ([], SNAP)) if along else (([], _MEET),):
-            step = _common_step([*lines, *(line for _, line in meeting)], farthest)
+            step = _common_step([*lines, *(line for _, line, _ in meeting)], farthest)
             moved = place[0] + step[0], place[1] + step[1]
             if step != (0.0, 0.0) and self._keeps_cells(vertex, moved):
                 self.place[vertex] = moved
                 return
 
-    def _meeting(self, planes: list[int], place: tuple[float, float]) -> list[tuple[float, tuple[float, float, float]]]:
-        """Return the lines (nx, ny, offset), m from a position, in which planes intersect near it, nearest first."""
+    def _meeting(self, planes: list[int], place: tuple[float, float]) -> list[tuple[float, _Line, tuple[int, int]]]:
+        """Return the lines in which planes intersect near a position, each with its distance (m); nearest first."""
         found = []
         for i, one in enumerate(planes):
             a, b, c = self.coefficients[one]
@@ -185,12 +198,21 @@ class Levels:
                 turn = math.hypot(a - d, b - e)
                 step = (a - d) * place[0] + (b - e) * place[1] + c - f
                 if turn > 0 and abs(step) <= _MEET * turn:
-                    found.append((abs(step) / turn, ((a - d) / turn, (b - e) / turn, -step / turn)))
+                    found.append((abs(step) / turn, ((a - d) / turn, (b - e) / turn, -step / turn), (one, other)))
         return sorted(found)
 
+    def _nearest_point(self, planes: list[int], place: tuple[float, float]) -> tuple[float, float]:
+        """Return the step (m) from a position to where planes are nearest to having one height."""
+        rows = np.array([self.coefficients[plane] for plane in planes])
+        height = rows @ [*place, 1.0]
+        step = np.linalg.lstsq(np.column_stack([rows[:, :2], -np.ones(len(rows))]), height.mean() - height, rcond=None)[
+            0
+        ]
+        return float(step[0]), float(step[1])
+
     @staticmethod
-    def _across(place: tuple[float, float], other: tuple[float, float]) -> tuple[float, float, float]:
-        """Return the line (nx, ny, 0) from a position to another one."""
+    def _across(place: tuple[float, float], other: tuple[float, float]) -> _Line:
+        """Return the line from a position to another one."""
         x, y = other[0] - place[0], other[1] - place[1]
         length = math.hypot(x, y)
         return -y / length, x / length, 0.0
@@ -203,13 +225,13 @@ class Levels:
         self.place[vertex] = before
         return kept
 
-    def _number(self, vertex: int, same: float = _SAME_HEIGHT) -> None:
-        """Give numbers to the positions at a vertex, one for heights that differ by at most ``same`` (m)."""
+    def _number(self, vertex: int) -> None:
+        """Give numbers to the positions at a vertex."""
         x, y = self.place[vertex]
         place = self.place[vertex] = round(x, DECIMALS), round(y, DECIMALS)
         group: list[tuple[float, int]] = []
         for height, plane in sorted((self._height_at(plane, place), plane) for plane in self.around[vertex]):
-            if group and height - group[0][0] > same:
+            if group and height - group[0][0] > _SAME_HEIGHT:
                 self._enter(vertex, group)
                 group = []
             group.append((height, plane))
@@ -247,11 +269,7 @@ class Levels:
 
     def crowded(self) -> list[int]:
         """Return the vertices where more than two walls would meet in an edge."""
-        found = [vertex for vertex in self.around if self._is_crowded(vertex)]
-        # Four planes and more that nearly meet share a corner, as long as their faces stay plane enough.
-        for vertex in found:
-            self._number(vertex, _NEARLY_SAME_HEIGHT)
-        return [vertex for vertex in found if self._is_crowded(vertex)]
+        return [vertex for vertex in self.around if self._is_crowded(vertex)]
 
     def _is_crowded(self, vertex: int) -> bool:
         planes = [int(self.label[cell]) for cell in self.cells_around(vertex)]
@@ -279,7 +297,7 @@ def turns_around(heights: list[float]) -> int:
     return sum(a * b < 0 for a, b in zip(steps, [*steps[1:], *steps[:1]]))
 
 
-def _common_step(lines: list[tuple[float, float, float]], farthest: float) -> tuple[float, float]:
+def _common_step(lines: list[_Line], farthest: float) -> tuple[float, float]:
     """Return the shortest step (m) onto lines (nx, ny, offset), in this order; those that it can't reach are left out.
 
     Steps are not longer than ``farthest``.
@@ -287,7 +305,7 @@ def _common_step(lines: list[tuple[float, float, float]], farthest: float) -> tu
     first, step, is_point = None, (0.0, 0.0), False
     for line in lines:
         nx, ny, offset = line
-        if abs(nx * step[0] + ny * step[1] - offset) <= 0.1 * _SAME_HEIGHT:
+        if abs(nx * step[0] + ny * step[1] - offset) <= _EXACT:
             first = first or line
             continue
         if is_point:

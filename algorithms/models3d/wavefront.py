@@ -9,7 +9,7 @@ import numpy as np
 
 from ..stage import MapFrame
 from .building_facts import NamedModel
-from .cityjson import unique_names
+from .cityjson import object_names
 from .face_triangles import triangulate_face
 from .solids import DECIMALS, Solid
 
@@ -35,7 +35,7 @@ def obj_pieces(models: Collection[NamedModel], called: str, frame: MapFrame) -> 
     yield f"# Buildings at the best level of detail of each, {frame.crs or 'no CRS'}\n"
     yield f"# offset {offset[0]:.0f} {offset[1]:.0f} 0\n"
     number = 1
-    for one, name in zip(models, unique_names(one.name for one in models)):
+    for one, name in zip(models, object_names(models, frame)):
         yield "o building_" + re.sub(r"[^\w.-]+", "_", name) + "\n"
         for solid in one.model.best:
             places = frame.to_map(solid.vertices) - offset

@@ -109,10 +109,22 @@ class LayerFeatures:
         return len(self.geometries)
 
 
-def feature_names(features: LayerFeatures) -> list[str]:
-    """Return the attribute "id" or "fid" (in any case) of features as text, their number from 1 where it is missing."""
+def feature_names(features: LayerFeatures, id_field: str = "") -> list[str]:
+    """Return the attribute ``id_field`` of features as text, their number from 1 where it is missing.
+
+    Without a name it is the attribute "id" or "fid", in any case.
+
+    Raises
+    ------
+    ValueError
+        If the features have no attribute ``id_field``.
+    """
+    if id_field and id_field not in features.columns:
+        raise ValueError(
+            f"The layer has no attribute {id_field!r} (Identifier); choose one of {', '.join(features.columns)}."
+        )
     columns = {name.lower(): values for name, values in features.columns.items()}
-    ids = columns.get("id", columns.get("fid", [None] * len(features)))
+    ids = features.columns[id_field] if id_field else columns.get("id", columns.get("fid", [None] * len(features)))
     return [_text(value) or str(number) for number, value in enumerate(ids, start=1)]
 
 
@@ -182,10 +194,17 @@ class RasterSurface:
 
 @dataclass(frozen=True)
 class MapFrame:
-    """Where local meters are on the map: what turns them (m, 3) into coordinates, and the CRS ("EPSG:28992" or "")."""
+    """Where local meters are on the map: what turns them (m, 3) into coordinates, and the CRS ("EPSG:7415" or "")."""
 
     to_map: Callable[[np.ndarray], np.ndarray]
     crs: str = ""
+
+    @property
+    def units(self) -> tuple[float, float]:
+        """Map units per meter, in plan and in height."""
+        ends = np.asarray(self.to_map(np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 1.0]])))
+        plan, _, height = np.round(ends[1] - ends[0], 6).tolist()
+        return plan, height
 
 
 class FileItem(Protocol):

@@ -138,3 +138,13 @@ def test_a_system_of_a_thread_that_is_gone_is_made_again(wait_for_threads, monke
     given = iter([kept[0], QgsCoordinateReferenceSystem.fromWkt(RD_NEW)])
     monkeypatch.setattr(crs, "_made", lambda wkt: next(given))
     assert "Amersfoort / RD New" in crs.crs_of(RD_NEW).toWkt()
+
+
+def test_a_compound_system_keeps_its_code_for_text_files():
+    """Layers are in the plane system, CityJSON asks for one of three dimensions."""
+    wkt = QgsCoordinateReferenceSystem("EPSG:7415").toWkt(QgsCoordinateReferenceSystem.WktVariant.WKT_PREFERRED)
+    for named in ("EPSG:7415", wkt):
+        assert crs.code_in_space(named) == "EPSG:7415"
+        assert crs.crs_of(named).authid() == "EPSG:28992"
+    assert crs.code_in_space("EPSG:28992") == "EPSG:28992"
+    assert crs.code_in_space("") == ""

@@ -55,7 +55,7 @@ def test_nothing_found_is_an_empty_layer():
     empty = LayerFeatures([], {"id": [], "height": [], "word": []})
     assert list(qgis_features(layer, empty, shifted)) == []
     assert wkb_type(layer, empty) == Qgis.WkbType.Polygon
-    assert fields_of(layer).names() == ["id", "height", "word"]
+    assert fields_of(layer, empty).names() == ["id", "height", "word"]
 
 
 @pytest.mark.parametrize(
@@ -81,3 +81,21 @@ def test_positions_among_the_attributes_are_in_map_coordinates():
     features = LayerFeatures([np.array([1.0, 2.0])], {"id": [1], "x1": [3.0], "y1": np.array([4.0])})
     (feature,) = qgis_features(layer, features, shifted)
     assert feature.attributes() == [1, 103.0, 204.0]
+
+
+def test_other_columns_are_fields_of_their_type():
+    """Attributes of a map that a stage keeps, of which it knows nothing before the run."""
+    layer = Layer("things", "Things", "Polygon", FIELDS)
+    square = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]], float)
+    columns = {"id": [1, 2], "height": [1.0, 2.0], "word": ["a", "b"]}
+    others = {"year": [1652, None], "share": [0.5, 1], "name": ["x", None], "mixed": [1, "y"], "empty": [None, None]}
+    made = LayerFeatures([[square]] * 2, {**columns, **others})
+    fields = fields_of(layer, made)
+    types = {field.name(): field.typeName().lower() for field in fields}
+    assert list(types)[3:] == ["year", "share", "name", "mixed", "empty"]
+    assert types["year"] == types["id"]
+    assert types["share"] == types["height"]
+    assert types["name"] == types["mixed"] == types["empty"] == types["word"]
+    first, second = qgis_features(layer, made, shifted)
+    assert (first["year"], first["share"], first["mixed"]) == (1652, 0.5, "1")
+    assert second["mixed"] == "y"

@@ -49,8 +49,8 @@ def test_ridges_eaves_and_corners_are_where_they_are(name):
     layers, files, _ = reconstructed(*scene(shape, turn=20.0))
     facts = {key: values[0] for key, values in layers["buildings"].columns.items()}
     assert facts["level"] == "2.2", facts["reason"]
-    assert facts["ground"] + facts["ridge_height"] == pytest.approx(shape.ridge, abs=0.05)
-    assert facts["ground"] + facts["eave_height"] == pytest.approx(shape.eave, abs=0.05)
+    assert corners_of(layers)[:, 2].max() == pytest.approx(shape.ridge, abs=0.05)
+    assert corners_of(layers)[:, 2].min() == pytest.approx(shape.eave, abs=0.05)
     true = np.column_stack([moved(shape.corners, 20.0, (0, 0)), shape.corners[:, 2]])
     walls = np.concatenate([ring for rings in layers["walls"].geometries for ring in rings])
     assert distances(true, np.concatenate([corners_of(layers), walls])).max() < 0.15
@@ -109,7 +109,8 @@ def test_cityjson_names_crs_and_place():
     assert whole["metadata"]["geographicalExtent"] == pytest.approx([85000, 446000, 0, 85012, 446008, 7.2], abs=0.05)
     places = np.array(whole["vertices"]) * whole["transform"]["scale"] + whole["transform"]["translate"]
     assert places.max(axis=0) == pytest.approx([85012, 446008, 7.2], abs=0.05)
-    building = whole["CityObjects"]["7"]
+    (name, building), *_ = whole["CityObjects"].items()
+    assert re.fullmatch("7-[0-9a-f]{8}", name)
     assert building["attributes"]["roof_type"] == "gable"
     assert [geometry["lod"] for geometry in building["geometry"]] == ["1.2", "1.3", "2.2"]
     assert "referenceSystem" not in json.loads(written(files, "cityjson", CITYJSON, crs=""))["metadata"]
@@ -122,7 +123,95 @@ def test_cityjsonseq_has_a_line_per_building():
     footprints = LayerFeatures(one[2].geometries + two[2].geometries, {"id": ["a b", "a b"]})
     _, files, _ = reconstructed(xyz, classes, footprints)
     _, *features = assert_valid_sequence(written(files, "cityjson", CITYJSON_SEQ))
-    assert [feature["id"] for feature in features] == ["a b", "a b-2"]
+    names = [feature["id"] for feature in features]
+    assert all(re.fullmatch("a b-[0-9a-f]{8}", name) for name in names)
+    assert names[0] != names[1]
+    # Other houses of another file have other names.
+    _, elsewhere, _ = reconstructed(*scene(SHAPES["gable"], origin=(80.0, 0.0)))
+    assert next(iter(json.loads(written(elsewhere, "cityjson", CITYJSON))["CityObjects"])) not in names
+
+
+def test_map_keys_and_attributes_are_kept():
+    xyz, classes, footprints = scene(SHAPES["gable"])
+    columns = {"lokaalid": ["NL.1"], "year": np.array([1652]), "height": np.array([np.nan]), "Level": ["old"]}
+    house = LayerFeatures(footprints.geometries, {**columns, "surveyed": [None]})
+    layers, files, _ = reconstructed(xyz, classes, house, id_field="lokaalid")
+    facts = layers["buildings"].columns
+    assert (facts["building"], facts["lokaalid"], facts["year"]) == (["NL.1"], ["NL.1"], [1652])
+    assert (facts["height"], facts["map_Level"], facts["level"]) == ([None], ["old"], ["2.2"])
+    ((name, building),) = assert_valid_cityjson(written(files, "cityjson", CITYJSON))["CityObjects"].items()
+    assert (name, building["attributes"]["year"], building["attributes"]["surveyed"]) == ("NL.1", 1652, None)
+    parts = LayerFeatures(footprints.geometries * 2, {"key": ["a", "a"]})
+    _, files, _ = reconstructed(xyz, classes, parts, id_field="key")
+    assert list(json.loads(written(files, "cityjson", CITYJSON))["CityObjects"]) == ["a", "a-2"]
+    with pytest.raises(ValueError, match=re.escape("no attribute 'gid' (Identifier); choose one of lokaalid, year")):
+        reconstructed(xyz, classes, house, id_field="gid")
+
+
+def test_a_file_has_one_unit():
+    """Vertices were in feet and heights in meters."""
+    foot = 0.3048
+    _, files, _ = reconstructed(*scene(SHAPES["gable"]))
+    frame = MapFrame(lambda local: np.asarray(local) / foot, "EPSG:2225")
+    whole = json.loads("".join(files["cityjson"].pieces(CITYJSON, frame)))
+    (building,) = whole["CityObjects"].values()
+    facts = building["attributes"]
+    assert facts["eave_height"] == pytest.approx(4 / foot, abs=0.2)
+    assert facts["volume"] == pytest.approx(12 * 8 * 5.6 / foot**3, rel=0.02)
+    roofs = [surface for surface in building["geometry"][-1]["semantics"]["surfaces"] if "ridge" in surface]
+    assert [surface["ridge"] for surface in roofs] == pytest.approx([7.2 / foot] * 2, abs=0.2)
+    assert facts["check"] == 0
+
+
+def test_eaves_and_ridge_mean_what_they_mean_for_footprints():
+    """A quartile of the heights along the outline, and a percentile of the roof points: a chimney is no ridge."""
+    xyz, classes, footprints = scene(SHAPES["gable"])
+    chimney = np.array([[6.0, 4.0, 12.0]] * 5) + np.random.default_rng(0).uniform(0, 0.3, (5, 3))
+    layers, _, _ = reconstructed(np.concatenate([xyz, chimney]), np.append(classes, [6] * 5), footprints)
+    facts = layers["buildings"].columns
+    assert facts["eave_height"] == pytest.approx([4.0], abs=0.1)
+    assert facts["ridge_height"] == pytest.approx([np.percentile(xyz[classes == 6, 2], 98)], abs=0.06)
+
+
+def test_wrecked_models_sort_apart():
+    """Half of a gable's points lie 2 m higher than the planes that were found: leaves on it."""
+    xyz, classes, footprints = scene(SHAPES["gable"])
+    sound, _, _ = reconstructed(xyz, classes, footprints)
+    rng = np.random.default_rng(1)
+    leaves = (classes == 6) & (rng.random(len(xyz)) < 0.4)
+    xyz[leaves, 2] += rng.uniform(1.0, 4.0, leaves.sum())
+    wrecked, _, _ = reconstructed(xyz, classes, footprints)
+    assert sound["buildings"].columns["check"] == [0]
+    assert sound["buildings"].columns["off"][0] == 0
+    assert wrecked["buildings"].columns["check"] == [2]
+    assert wrecked["buildings"].columns["off"][0] > 0.25
+    assert sound["buildings"].columns["gap_area"][0] < 10
+
+
+def test_five_points_make_no_model():
+    xyz, classes, footprints = scene(SHAPES["flat"])
+    few = np.flatnonzero(classes == 6)[::230]
+    rows = np.concatenate([few, np.flatnonzero(classes == 2)])
+    away = LayerFeatures([*footprints.geometries, [footprints.geometries[0][0] + 40.0]], {"id": [1, 2]})
+    dense = xyz[classes == 6] + [40.0, 40.0, 0.0]
+    layers, _, monitor = reconstructed(
+        np.concatenate([xyz[rows], dense]), np.append(classes[rows], [6] * len(dense)), away
+    )
+    assert layers["buildings"].columns["building"] == ["2"]
+    assert any("1 of 2 footprints have no points of buildings over them, or hardly any" in w for w in monitor.warnings)
+
+
+def test_a_gable_with_a_lean_to_is_a_gable():
+    shape = SHAPES["gable"]
+    xyz, classes, _ = scene(shape)
+    rng = np.random.default_rng(4)
+    xy = rng.uniform((12, 2), (14, 5), (80, 2))
+    lean_to = np.column_stack([xy, 3.0 - 0.3 * (xy[:, 0] - 12)])
+    ring = np.array([[0, 0], [12, 0], [12, 2], [14, 2], [14, 5], [12, 5], [12, 8], [0, 8], [0, 0]], float)
+    features = LayerFeatures([[ring]], {"id": [1]})
+    layers, _, _ = reconstructed(np.concatenate([xyz, lean_to]), np.append(classes, [6] * 80), features)
+    assert len(layers["roofs"]) == 3
+    assert layers["buildings"].columns["roof_type"] == ["gable"]
 
 
 def test_obj_is_closed():
@@ -181,7 +270,7 @@ def test_footprint_that_crosses_itself_gives_valid_solids():
     # Two triangles that touch in a point, one of them larger.
     bow = np.array([[0, 0], [12, 8], [12, 0], [0, 6], [0, 0]], float)
     layers, files, _ = reconstructed(xyz, classes, LayerFeatures([[bow]], {"id": [1]}))
-    building = assert_valid_cityjson(written(files, "cityjson", CITYJSON))["CityObjects"]["1"]
+    (building,) = assert_valid_cityjson(written(files, "cityjson", CITYJSON))["CityObjects"].values()
     assert {geometry["type"] for geometry in building["geometry"]} == {"MultiSolid"}
     share = 6 / 14
     area = 0.5 * 6 * 12 * share + 0.5 * 8 * 12 * (1 - share)
