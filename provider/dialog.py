@@ -10,9 +10,24 @@ from processing.gui.wrappers import WidgetWrapper
 from qgis.core import Qgis
 from qgis.gui import QgsCollapsibleGroupBox, QgsExtentWidget
 from qgis.PyQt import sip
-from qgis.PyQt.QtWidgets import QAbstractSpinBox, QComboBox, QFormLayout, QLabel, QLayout, QVBoxLayout, QWidget
+from qgis.PyQt.QtWidgets import (
+    QAbstractSpinBox,
+    QComboBox,
+    QFormLayout,
+    QLabel,
+    QLayout,
+    QLineEdit,
+    QMenu,
+    QVBoxLayout,
+    QWidget,
+)
 
+from ..algorithms.cloud.files import dimension_names
 from ..algorithms.presets import Preset, presets_of
+from ..algorithms.stage import DIMENSION
+from .clouds import cloud_path
+from .inputs import INPUT
+from .pickers import Picker, fill_with_classes, fill_with_names
 from .sections import Section, sections_of
 from .settings import PRESET
 from .texts import tr
@@ -43,6 +58,7 @@ class GroupedPanel(ParametersPanel):
             for name, label in section.labels.items():
                 self._rename(name, label)
         self._name_automatic(sections)
+        self._add_pickers(sections)
         layout = self._layout()
         if layout is None:
             return
@@ -128,6 +144,31 @@ class GroupedPanel(ParametersPanel):
                 for combo in (widget, *widget.findChildren(QComboBox)):
                     if isinstance(combo, QComboBox) and combo.count() and combo.itemData(0) is None:
                         combo.setItemText(0, word)
+
+    def _add_pickers(self, sections: list[Section]) -> None:
+        """Put buttons beside the fields for classes and dimensions."""
+        for section in sections:
+            for name, kind in section.pickers.items():
+                field = self._parts(name)[1] if name in self.wrappers else None
+                holder = field.parentWidget() if field is not None else None
+                if not isinstance(field, QLineEdit) or holder is None or holder.layout() is None:
+                    continue
+                layout, at = holder.layout(), holder.layout().indexOf(field)
+                if kind == DIMENSION:
+                    picker = Picker(field, tr("Dimensions of the point cloud"), self._fill_with_dimensions)
+                else:
+                    picker = Picker(field, tr("Classes by their names"), fill_with_classes)
+                self._kept.append(picker)
+                layout.insertWidget(at, picker)
+
+    def _fill_with_dimensions(self, menu: QMenu, field: QLineEdit) -> None:
+        """Fill a menu with the dimensions of the cloud that is chosen."""
+        try:
+            given = {INPUT: self.wrappers[INPUT].parameterValue()}
+            names = dimension_names(cloud_path(self.algorithm(), INPUT, given, self.processing_context))
+        except (KeyError, ValueError):
+            names = []
+        fill_with_names(names, menu, field)
 
     def _fold_outputs(self, layout: QLayout) -> None:
         """Fold all outputs but the first ones."""

@@ -8,7 +8,7 @@ from typing import Any
 
 from ..algorithms.help import lower_first, step_title
 from ..algorithms.pipeline import Pipeline
-from ..algorithms.stage import Tunable
+from ..algorithms.stage import DIMENSION, Tunable
 from ..algorithms.tiling.settings import SETTINGS
 from .inputs import CRS
 from .parameters import parameter_name, plain_label
@@ -17,19 +17,30 @@ from .texts import tr
 # "Side of a block (m, empty = automatic)": the title, and what an empty field means.
 _EMPTY = re.compile(r"(.*?)(?:[ (]*empty = (.*)\))?$")
 
+# Tunables that list classes.
+_CLASSES = ("classes", "ignored_classes")
+
 
 @dataclass
 class Section:
-    """One group: its title, the labels of its parameters by name, and what an empty field of them means."""
+    """One group: its title, and by name of its parameters their labels, what an empty field means, what can be picked.
+
+    What can be picked are "classes" or a "dimension".
+    """
 
     title: str
     labels: dict[str, str] = field(default_factory=dict)
     unset: dict[str, str] = field(default_factory=dict)
+    pickers: dict[str, str] = field(default_factory=dict)
 
     def add(self, name: str, tunable: Tunable, prefix: str = "") -> None:
         """Add a parameter; a prefix says which step it is of."""
         label = plain_label(tunable)
         self.labels[name] = f"{prefix}: {lower_first(label)}" if prefix else label
+        if tunable.name == DIMENSION:
+            self.pickers[name] = DIMENSION
+        elif tunable.name in _CLASSES:
+            self.pickers[name] = "classes"
         if tunable.is_automatic:
             self.unset[name] = tr(tunable.param.unset)
 

@@ -208,8 +208,13 @@ class Cloud:
         wanted = name.strip().lower()
         if wanted in known:
             return known[wanted][1]()
-        names = dict.fromkeys(shown for shown, _ in known.values())
-        raise ValueError(f"The cloud has no dimension {name!r}; it has {', '.join(map(shown, names))}.")
+        there = ", ".join(map(shown, self.dimension_names))
+        raise ValueError(f"The cloud has no dimension {name!r}; it has {there}.")
+
+    @property
+    def dimension_names(self) -> list[str]:
+        """Names of all dimensions as people know them, see :meth:`named`."""
+        return list(dict.fromkeys(shown for shown, _ in self._known().values()))
 
     def _known(self) -> dict[str, tuple[str, Callable[[], np.ndarray]]]:
         """Return for every name of a dimension, in lower case, how it is shown and what gives its values."""

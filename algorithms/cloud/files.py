@@ -21,7 +21,7 @@ from .outputs import COPC, LAZ, VPC, check_output, kind_of, replacing
 from .point_formats import WITH_WAVEFORMS
 from .point_records import PointRecords
 from .points import check_points, open_headers, points_within, read_points, write_points
-from .units import Resolver, crs_records, has_wkt, units_of, wkt_of
+from .units import Resolver, Units, crs_records, has_wkt, units_of, wkt_of
 from .vpc import read_tiles, tiles_of
 
 # One sentence for every step of a chain.
@@ -78,6 +78,20 @@ def read_cloud(
     if units.warning:
         monitor.warn(units.warning)
     return Cloud(header, points, units, files if files == [path] else [*files, path])
+
+
+def dimension_names(path: Union[str, Path]) -> list[str]:
+    """Return the names of the dimensions of a file, without reading its points; of the first tile of several.
+
+    Raises
+    ------
+    ValueError
+        In one sentence, what is wrong with the file.
+    """
+    path = Path(path)
+    with readable(path):
+        header = next(iter(open_headers(files_of(path)[:1])[1]))
+    return Cloud(header, np.zeros(1, header.layout.dtype), Units()).dimension_names
 
 
 def with_crs(cloud: Cloud, wkt: str, code: str, crs_units: Optional[Resolver] = None) -> Cloud:

@@ -8,6 +8,7 @@ from qgis.PyQt.QtWidgets import QMainWindow
 
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.presets import PRESETS
+from lidar_buildings.provider.pickers import Picker, fill_with_classes, with_class
 from lidar_buildings.provider.sections import Section, sections_of
 from lidar_buildings.provider.settings import PRESET, THREADS, apply_threads
 
@@ -162,3 +163,43 @@ def test_the_list_of_files_adds_each_once_and_removes_what_is_selected(qgis_appl
     field.list.item(1).setSelected(True)
     field._remove()
     assert field.names() == ["a.laz", "c.vpc"]
+
+
+def test_classes_are_picked_by_their_names(provider, window):
+    from qgis.PyQt.QtWidgets import QMenu
+
+    panel = provider.algorithm("filterpoints").create().createCustomParametersWidget(window).mainWidget()
+    field = panel.wrappers["CLASSES"].wrappedWidget()
+    field.setText("2, 6")
+    assert isinstance(field.parentWidget(), Picker)
+    menu = QMenu()
+    fill_with_classes(menu, field)
+    shown = {action.text(): action for action in menu.actions()}
+    assert [text for text, action in shown.items() if action.isChecked()] == ["2 Ground", "6 Building"]
+    for name in ("3 Low vegetation", "4 Medium vegetation", "6 Building"):
+        shown[name].trigger()
+    assert panel.wrappers["CLASSES"].parameterValue() == "2-4"
+
+
+@pytest.mark.parametrize(
+    ("text", "number", "is_chosen", "wanted"),
+    [("", 6, True, "6"), ("64-67", 65, False, "64, 66, 67"), ("nonsense", 2, True, "2"), ("2,3", 4, True, "2-4")],
+)
+def test_texts_of_classes(text, number, is_chosen, wanted):
+    assert with_class(text, number, is_chosen) == wanted
+
+
+def test_dimensions_are_those_of_the_chosen_cloud(provider, window, town_file):
+    from qgis.PyQt.QtWidgets import QMenu
+
+    panel = provider.algorithm("filterpoints").create().createCustomParametersWidget(window).mainWidget()
+    field, menu = panel.wrappers["DIMENSION"].wrappedWidget(), QMenu()
+    panel._fill_with_dimensions(menu, field)
+    assert [action.isEnabled() for action in menu.actions()] == [False]
+    panel.wrappers["INPUT"].setParameterValue(str(town_file), panel.processing_context)
+    menu = QMenu()
+    panel._fill_with_dimensions(menu, field)
+    shown = {action.text(): action for action in menu.actions()}
+    assert {"Z", "Intensity", "Classification"} <= set(shown)
+    shown["Intensity"].trigger()
+    assert panel.wrappers["DIMENSION"].parameterValue() == "Intensity"
