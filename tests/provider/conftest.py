@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import sys
 from pathlib import Path
 
@@ -61,6 +62,8 @@ def provider(qgis_application, tmp_path_factory):
     yield provider
     registry.removeProvider(provider)
     patch.undo()
+    # What is garbage by now would be taken away after QGIS, which some of its objects don't survive.
+    gc.collect()
 
 
 @pytest.fixture

@@ -36,6 +36,8 @@ IDS = {
     "classifybuildings",
     "classifybuildings2019",
     "classifydimensionality",
+    "classifywires",
+    "simulatepowerline",
     "classifyvegetation",
     "classifywater",
     "completeground",
