@@ -9,38 +9,55 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..cloud.reasons import ADDED
-from ..geometry.grid import connected_cells, find_cells, grid_over
+from ..geometry.grid import connected_cells, find_cells, grid_over, plan_box
 from ..geometry.groups import split_groups
+from ..geometry.polygon_overlap import meeting_boxes
+from ..geometry.ring_directions import direction_weights, main_directions
 from ..params import MinBuildingArea
+from ..sampling.cloud_sampling import CloudSampling
 from ..sampling.density import point_spacing
 from ..stage import Layer, LayerFeatures, Monitor, Param, stage
 from ..threads import made_ahead
-from .alpha_shape import Tracing, trace_outlines
+from .drawn_blocks import Drawing, draw_block
 from .footprint_attributes import FIELDS, PointMeasures, footprint_attributes
-from .roof_points import find_non_building_points, find_roof_points
-from .row_houses import MAX_SPACING
-from .row_houses import split_rows as split_into_houses
-from .shared_borders import outline_faces
+from .outline_pieces import Piece, blocks_of, find_pieces
+from .roof_points import edge_weights, find_non_building_points, find_roof_points, topmost
+from .row_houses import MAX_SPACING, Houses, split_row
+from .soft_shares import Shares, find_shares
 
-# Distance (spacings) beyond which points are never joined: the longest edge within a building. Parts with such
-# gaps between them are outlined one by one.
+# Distance (spacings) beyond which buildings have no effect on each other's outlines but for their directions.
 _APART = 8.0
 
 # Tolerance (spacings) of outlines: samples along an edge lie within one spacing of it, and corners are rounded.
 _TOLERANCE_SPACINGS = 1.75
 
-# Least tolerance (m): gutters and small bays.
-_LEAST_TOLERANCE = 0.4
+# Least spacing (m) that outlines are drawn by: gutters and small bays are no walls.
+_LEAST_SPACING = 0.25
 
-# Share of the progress that tracing takes; drawing takes the rest.
-_TRACING = 0.5
+# Steps of the spacing from one to its double, in which it is rounded: the same cloud with a tenth fewer points, or a
+# part of it, mostly has the same.
+_STEPS_PER_OCTAVE = 4
+
+# Distance (m) up to which the directions of neighbors count: across a street.
+_NEIGHBORS = 30.0
+
+# Weight of all neighbors together, as a share of that of the building itself: a shed has the directions of the houses
+# around, and a house that is turned against them has its own.
+_INFLUENCE = 0.5
+
+# Name of the mean distance of building points of the whole.
+_ROOF_SPACING = "roof_spacing"
+
+# Share of the progress that the evidence takes; drawing takes the rest.
+_TRACING = 0.4
 
 
 @stage(
     "Extract footprints",
     group="Buildings",
-    tags="polygons,outlines,alpha shape,concave hull,vectorize,regularize,right angles,las2building,lasboundary",
+    tags="polygons,outlines,vectorize,regularize,right angles,level line,dynamic programming,las2building,lasboundary",
     layers=(Layer("footprints", "Footprints", "Polygon", FIELDS, style="footprints"),),
+    of_whole=(_ROOF_SPACING,),
 )
 def extract_footprints(
     xyz,
@@ -58,18 +75,6 @@ def extract_footprints(
             "Minimum hole area", "Smaller holes are filled, larger ones are courtyards.", unit="m²", low=0, high=10_000
         ),
     ] = 5.0,
-    max_edge: Annotated[
-        Optional[float],
-        Param(
-            "Maximum edge length",
-            "Points farther apart are not joined. Longer edges close gaps and round off corners that point inward.",
-            unit="m",
-            low=0.01,
-            high=100,
-            automatic="adapted to the spacing of the points of each cluster, from 4 to 8 times the mean spacing.",
-            advanced=True,
-        ),
-    ] = None,
     regularize: Annotated[
         bool,
         Param(
@@ -80,12 +85,11 @@ def extract_footprints(
         Optional[float],
         Param(
             "Tolerance",
-            "Wiggles of the traced outline that are taken for straight; an outline that would have to move by more "
-            "than twice that becomes chords of the traced one.",
+            "Scale of what is straightened: bays and steps up to about this depth are left out where they are short.",
             unit="m",
             low=0.01,
             high=100,
-            automatic="1.75 times the mean spacing of the building points, at least 0.4 m.",
+            automatic="1.75 times the mean spacing of the building points, at least 0.44 m.",
             advanced=True,
         ),
     ] = None,
@@ -97,14 +101,15 @@ def extract_footprints(
             "them show which is which.",
         ),
     ] = False,
+    sampling: Optional[CloudSampling] = None,
     monitor=None,
 ):
     """Outline each building as a polygon with its area, heights, volume, entropy and confidence.
 
-    Building points, seen from above, are divided among the buildings by an alpha shape that adapts to their spacing.
-    Walls are then made straight along the main directions of each group of buildings that touch, where that stays close
-    to the points; diagonals keep their direction. Buildings that touch share their border exactly, and so do the
-    houses of a row that are split.
+    Each place, seen from above, has a share of every building: that of the points around it. Outlines follow the lines
+    where a building has the largest share, in straight walls along the two main directions of the building where that
+    explains the line; other walls keep their own direction. Buildings that touch share their border exactly, and so do
+    the houses of a row that are split.
 
     Parameters
     ----------
@@ -133,14 +138,19 @@ def extract_footprints(
 
     Notes
     -----
-    Points with another of their building more than a meter (or three spacings) higher beside them, at more than 72° or
-    if they were only attached to the building, are walls: they count as points of the building but don't widen its
-    outline. A roof ends half-way between its outermost points and the ground seen beside them, at most half a point
-    spacing from its points. Walls are as few as describe the outline, those in main directions preferred, each fitted
-    to all points along it, and turned to a main direction only where that moves its ends by about a point spacing at
-    most; chords of curves are not. Outlines without a right angle and without parallel walls that are most of them, or
-    that straight walls would change too much, become chords of the traced outline, within about the tolerance. Clusters
-    whose points lie on one line have no area and give no polygon.
+    Points with another of their building more than 0.4 m higher beside them, at more than 72°, are walls, and so are
+    attached points with another one more than a meter (or three spacings) higher. They count as points of the building
+    but don't widen its outline. One point counts for each cell of half a square spacing.
+
+    Shares are of a lattice of half a spacing, with weights of a Gaussian of one spacing: roof points against the ground
+    seen beside them and against emptiness, which is what a place has less than roofs around. Gaps with roofs all around
+    are filled. The spacing is that of the building points of the whole cloud or survey, in steps of a fifth.
+
+    The walls of a ring are found by one dynamic program over all corners and directions: squared distances from the
+    line, a price for each corner by its angle, and a price for walls beside the main directions, which the directions
+    of neighbors within 30 m also count for. Rings with many walls beside these, and round ones, are drawn in chords.
+    The walls of all buildings of a block cut the plane into cells, and a minimum cut gives each cell to a building or
+    to the ground. Clusters whose points lie on one line have no area and give no polygon.
 
     With 'Split rows', houses of a row are parted along straight lines from one side of a building to the other, in its
     main directions, where over 60 % of what is not low two roofs rise away from the line, parallel ones step by 0.4 m
@@ -150,58 +160,45 @@ def extract_footprints(
 
     References
     ----------
-    Santos et al. (2019), Extraction of building roof boundaries from LiDAR data using an adaptive alpha shape.
+    Boykov, Veksler and Zabih (2001), Fast approximate energy minimization via graph cuts.
+    Lorensen and Cline (1987), Marching cubes: a high resolution 3D surface construction algorithm.
     Santos et al. (2019), Building detection from LiDAR data using entropy and the k-means concept.
     Perez and Vidal (1994), Optimum polygonal approximation of digitized curves.
     """
     building = _building_points(classification, cluster_id, monitor)
     if not len(building) or not np.ptp(xyz[building, :2], axis=0).any():
         return _features([], [], min_area)
+    sampling = sampling or CloudSampling.of(xyz, classification)
     # Not the spacing of the cloud: a roof stops every pulse once, while crowns and the ground under them return many.
-    roof_spacing = point_spacing(xyz[building])
-    if split_rows and roof_spacing > MAX_SPACING:
+    spacing = _rounded(sampling.shared(_ROOF_SPACING, lambda: point_spacing(xyz[building])))
+    if split_rows and spacing > MAX_SPACING:
         monitor.warn(
-            f"Points are {roof_spacing:.1f} m apart, too far to see where the houses of a row part; "
-            "they are left in one."
+            f"Points are {spacing:.1f} m apart, too far to see where the houses of a row part; they are left in one."
         )
     if tolerance is None:
-        tolerance = max(_LEAST_TOLERANCE, _TOLERANCE_SPACINGS * roof_spacing)
+        tolerance = _TOLERANCE_SPACINGS * spacing
         monitor.resolved(tolerance=tolerance)
-    how = _Outlining(roof_spacing, tolerance, max_edge, min_area, min_hole_area, regularize, split_rows)
-    measures = PointMeasures(xyz, height_above_ground, cluster_entropy, confidence, reason)
-
+    how = Drawing(spacing, tolerance / _TOLERANCE_SPACINGS, min_area, min_hole_area)
+    measures = PointMeasures(xyz, sampling.corner, height_above_ground, cluster_entropy, confidence, reason)
     cluster = np.ones(len(building), np.int64) if cluster_id is None else cluster_id[building].astype(np.int64)
-    parts = _parts(xyz, classification, building, cluster, reason, how)
+    parts = _parts(measures, classification, building, cluster, spacing)
+    evidence = made_ahead(lambda number, _: _evidence_of(parts[number], measures, how), len(parts), monitor, _TRACING)
+    seen = [one for one in evidence]
+    directions = _shared_directions(seen) if regularize else [dict.fromkeys(one.shares, np.zeros(0)) for one in seen]
     rings: list = []
     attributes: list = []
-    edges = []
-    tracings = made_ahead(
-        lambda number, ahead: _traced(parts[number], measures, how, ahead), len(parts), monitor, _TRACING
-    )
-    for number, (part, traced) in enumerate(zip(parts, tracings)):
-        done = monitor.part((number + _TRACING) / len(parts), (number + 1) / len(parts))
-        if traced is not None:
-            drawing = outline_faces(traced, how.tolerance, how.regularize, done)
-            rings += [drawing.rings[face] for face in range(len(traced.labels))]
-            attributes += footprint_attributes(traced, drawing, part.points, part.members, measures, roof_spacing)
-            edges.append(traced.max_edge)
-        done.progress(1.0)
-    if max_edge is None and edges:
-        monitor.resolved(max_edge=float(np.median(edges)))
+    for number, (part, one, own) in enumerate(zip(parts, seen, directions)):
+        houses = _houses(part, one, own, measures, how) if split_rows else {}
+        outlines = [
+            outlined
+            for block in blocks_of(one.pieces, spacing)
+            for outlined in draw_block(block, one.shares, own, houses, how)
+        ]
+        if outlines:
+            attributes += footprint_attributes(outlines, part.roof, part.members, measures, spacing)
+            rings += [[ring + sampling.corner for ring in outlined.rings] for outlined in outlines]
+        monitor.progress(_TRACING + (1 - _TRACING) * (number + 1) / len(parts))
     return _features(rings, attributes, min_area)
-
-
-@dataclass(frozen=True)
-class _Outlining:
-    """How buildings are outlined: mean distance of their points (m), and the tunables of the stage."""
-
-    roof_spacing: float
-    tolerance: float
-    max_edge: Optional[float]
-    min_area: float
-    min_hole_area: float
-    regularize: bool
-    split_rows: bool
 
 
 @dataclass(frozen=True)
@@ -212,15 +209,32 @@ class _Part:
     ----------
     members : ndarray of shape (m,), int64
         All their points in the cloud.
-    points : ndarray of shape (p,), int64
+    roof, beside : ndarray of shape (p,), (q,), int64
         Points of their roofs in the cloud, and non-building ones beside.
     label : ndarray of shape (p,), int64
-        Cluster of these, 0 for the non-building ones.
+        Cluster of each roof point.
     """
 
     members: np.ndarray
-    points: np.ndarray
+    roof: np.ndarray
+    beside: np.ndarray
     label: np.ndarray
+
+
+@dataclass(frozen=True)
+class _Evidence:
+    """What is known of the buildings of a part: shares, pieces, and of each the box, weights of directions, samples."""
+
+    shares: dict[int, Shares]
+    pieces: list[Piece]
+    boxes: dict[int, np.ndarray]
+    weights: dict[int, np.ndarray]
+    n_samples: dict[int, int]
+
+
+def _rounded(spacing: float) -> float:
+    """Return the spacing (m) in steps that small changes of the points don't reach, and no less than is worth it."""
+    return max(_LEAST_SPACING, 2.0 ** (round(np.log2(spacing) * _STEPS_PER_OCTAVE) / _STEPS_PER_OCTAVE))
 
 
 def _building_points(classification: np.ndarray, cluster_id: Optional[np.ndarray], monitor: Monitor) -> np.ndarray:
@@ -236,24 +250,28 @@ def _building_points(classification: np.ndarray, cluster_id: Optional[np.ndarray
 
 
 def _parts(
-    xyz: np.ndarray,
-    classification: np.ndarray,
-    building: np.ndarray,
-    cluster: np.ndarray,
-    reason: Optional[np.ndarray],
-    how: _Outlining,
+    measures: PointMeasures, classification: np.ndarray, building: np.ndarray, cluster: np.ndarray, spacing: float
 ) -> list[_Part]:
     """Return the parts of building points that lie apart, with the points beside them that show where roofs end."""
+    xyz, reason = measures.xyz, measures.reason
+    # In an order that is theirs, so that sums over points do not depend on that of the cloud.
+    order = np.lexsort((*xyz[building].T, cluster))
+    building, cluster = building[order], cluster[order]
     is_attached = np.zeros(len(building), bool) if reason is None else np.isin(reason[building], ADDED)
-    is_roof = find_roof_points(xyz[building], cluster, is_attached, how.roof_spacing)
-    non_building = find_non_building_points(xyz, classification, building[is_roof], how.roof_spacing)
+    is_roof = find_roof_points(xyz[building], cluster, is_attached, spacing)
+    beside = find_non_building_points(xyz, classification, building[is_roof], spacing)
+    beside = beside[np.lexsort(xyz[beside].T)]
     parts = []
-    for rows, beside in _apart(xyz, building, non_building, max(_APART * how.roof_spacing, how.max_edge or 0.0)):
+    for rows, others in _apart(xyz, building, beside, _APART * spacing):
         roof = rows[is_roof[rows]]
-        points = np.concatenate([building[roof], non_building[beside]])
-        label = np.concatenate([cluster[roof], np.zeros(len(beside), np.int64)])
-        parts.append(_Part(building[rows], points, label))
+        if len(roof) and _has_area(xyz[building[roof], :2]):
+            parts.append(_Part(building[rows], building[roof], beside[others], cluster[roof]))
     return parts
+
+
+def _has_area(plan: np.ndarray) -> bool:
+    """Return whether points (n, 2) are a millimeter wide at least."""
+    return len(plan) > 2 and bool(np.linalg.eigvalsh(np.cov((plan - plan.mean(axis=0)).T))[0] > 1e-6)
 
 
 def _apart(
@@ -280,16 +298,59 @@ def _apart(
     return list(zip(split_groups(own, count), rows_beside))
 
 
-def _traced(part: _Part, measures: PointMeasures, how: _Outlining, monitor: Monitor) -> Optional[Tracing]:
-    """Return the faces of buildings, and of the houses of rows where these are split; None without any."""
-    plan = measures.xyz[part.points, :2]
-    traced = trace_outlines(plan, part.label, how.roof_spacing, how.max_edge, how.min_area, how.min_hole_area)
-    if traced is None or not len(traced.labels):
-        return None
-    if not how.split_rows:
-        return traced
-    height = measures.over_lowest(part.points, part.members)
-    return split_into_houses(traced, height, how.roof_spacing, how.tolerance, monitor)
+def _evidence_of(part: _Part, measures: PointMeasures, how: Drawing) -> _Evidence:
+    """Return the shares, pieces and direction weights of the buildings of a part."""
+    top = topmost(measures.local(part.roof), part.label, how.spacing)
+    other = topmost(measures.local(part.beside), np.zeros(len(part.beside), np.int64), how.spacing)
+    roof, beside = measures.local(part.roof[top]), measures.plan(part.beside[other])
+    walls = np.setdiff1d(part.members, part.roof)
+    weight = edge_weights(roof, measures.local(walls), how.spacing)
+    shares = find_shares(roof[:, :2], weight, part.label[top], beside, how.spacing)
+    pieces = [
+        piece
+        for number, own in shares.items()
+        for piece in find_pieces(number, own, how.spacing, how.min_area, how.min_hole_area)
+    ]
+    rings: dict[int, list[np.ndarray]] = {}
+    for piece in pieces:
+        rings.setdefault(piece.building, []).extend(piece.rings)
+    boxes = {number: plan_box(np.concatenate(own)) for number, own in rings.items()}
+    weights = {number: sum(map(direction_weights, own)) for number, own in rings.items()}
+    n_samples = {number: sum(map(len, own)) for number, own in rings.items()}
+    return _Evidence({number: shares[number] for number in rings}, pieces, boxes, weights, n_samples)
+
+
+def _shared_directions(evidence: list[_Evidence]) -> list[dict[int, np.ndarray]]:
+    """Return the main directions of the buildings of each part: those of their neighbors count, the nearer the more."""
+    if not any(one.boxes for one in evidence):
+        return [{} for _ in evidence]
+    boxes = np.array([box for one in evidence for box in one.boxes.values()]).reshape(-1, 2, 2)
+    weights = np.array([own for one in evidence for own in one.weights.values()]).reshape(len(boxes), -1)
+    reach = boxes + np.array([[-_NEIGHBORS], [_NEIGHBORS]])
+    one, other = meeting_boxes(reach, boxes)
+    gap = np.maximum(boxes[one, 0] - boxes[other, 1], boxes[other, 0] - boxes[one, 1]).clip(0.0)
+    influence = np.where(one == other, 0.0, np.maximum(1 - np.hypot(*gap.T) / _NEIGHBORS, 0.0))
+    around = np.zeros_like(weights)
+    np.add.at(around, one, influence[:, None] * weights[other])
+    total = weights.sum(axis=1, keepdims=True), around.sum(axis=1, keepdims=True)
+    together = weights + _INFLUENCE * around * np.divide(*total, out=np.zeros_like(total[0]), where=total[1] > 0)
+    counts = [count for one in evidence for count in one.n_samples.values()]
+    found = iter([main_directions(*each) for each in zip(together, weights, counts)])
+    return [{number: next(found) for number in own.weights} for own in evidence]
+
+
+def _houses(
+    part: _Part, evidence: _Evidence, directions: dict[int, np.ndarray], measures: PointMeasures, how: Drawing
+) -> dict[int, Houses]:
+    """Return the houses of each building of a part."""
+    height = measures.over_lowest(part.roof, part.members)
+    found = {}
+    for number, shares in evidence.shares.items():
+        own = part.label == number
+        plan = measures.plan(part.roof[own])
+        is_inside = shares.share > shares.rest
+        found[number] = split_row(shares.lattice, is_inside, plan, height[own], directions[number], how.spacing)
+    return found
 
 
 def _features(geometries: list, attributes: list[dict[str, Any]], min_area: float) -> LayerFeatures:

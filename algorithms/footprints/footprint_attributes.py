@@ -10,11 +10,11 @@ import numpy as np
 from ..cloud.reasons import ADDED, Reason
 from ..geometry.groups import split_groups
 from ..geometry.rings import perimeter, signed_area
-from ..packages import spatial
+from ..packages import ndimage, spatial
 from ..stage import Field
 from ..threads import n_threads
-from .alpha_shape import Tracing
-from .block_drawing import Drawing
+from .drawn_blocks import Outlined
+from .soft_shares import Lattice, smoothed
 
 FIELDS = (
     Field("id", int, "number of the footprint, from 1"),
@@ -48,8 +48,11 @@ _PLANE = 12
 # Distance (spacings) of these from the outline, at least: beyond points on the wall.
 _INNER = 2.0
 
-# Distance (spacings) from the point of the outline, at most: points farther away are never joined to it.
+# Distance (spacings) from an outline, at most, of the points of its roof and walls.
 _BESIDE = 8.0
+
+# Least weight of roof points at a place whose height they give: that of one point two spacings away.
+_COVERED = 0.02
 
 # Root mean square (m) of their distances to the plane, at most: more is no roof plane.
 _FLAT = 0.15
@@ -66,6 +69,8 @@ class PointMeasures:
     ----------
     xyz : ndarray of shape (n, 3), float64
         Coordinates (m).
+    corner : ndarray of shape (2,), float64
+        Easting and northing (m) from which outlines are measured.
     height : ndarray of shape (n,), optional
         Height above ground (m).
     entropy, confidence : ndarray of shape (n,), optional
@@ -75,10 +80,19 @@ class PointMeasures:
     """
 
     xyz: np.ndarray
+    corner: np.ndarray
     height: Optional[np.ndarray] = None
     entropy: Optional[np.ndarray] = None
     confidence: Optional[np.ndarray] = None
     reason: Optional[np.ndarray] = None
+
+    def plan(self, points: np.ndarray) -> np.ndarray:
+        """Return easting and northing (p, 2) of points from the corner (m)."""
+        return self.xyz[points, :2] - self.corner
+
+    def local(self, points: np.ndarray) -> np.ndarray:
+        """Return coordinates (p, 3) of points, in plan from the corner (m)."""
+        return self.xyz[points] - np.append(self.corner, 0.0)
 
     def over_ground(self, points: np.ndarray) -> np.ndarray:
         """Return the heights (p,) of points above ground (m), NaN where they were not measured."""
@@ -92,23 +106,16 @@ class PointMeasures:
 
 
 def footprint_attributes(
-    traced: Tracing,
-    drawing: Drawing,
-    points: np.ndarray,
-    members: np.ndarray,
-    measures: PointMeasures,
-    spacing: float,
+    outlines: list[Outlined], points: np.ndarray, members: np.ndarray, measures: PointMeasures, spacing: float
 ) -> list[dict[str, Any]]:
-    """Return the attributes of the faces of a tracing.
+    """Return the attributes of outlines that lie close together.
 
     Parameters
     ----------
-    traced : Tracing
-        Faces of buildings over the points of roofs and those beside them.
-    drawing : Drawing
-        Their polygons.
+    outlines : list of Outlined
+        Outlines of buildings, m from ``measures.corner``.
     points : ndarray of shape (p,), int64
-        Its points in the cloud.
+        Points of their roofs in the cloud.
     members : ndarray of shape (m,), int64
         All points of these buildings in the cloud, walls included.
     measures : PointMeasures
@@ -119,28 +126,27 @@ def footprint_attributes(
     Returns
     -------
     list of dict
-        For each face the values of ``FIELDS`` by name, but for the number.
+        For each outline the values of ``FIELDS`` by name, but for the number.
     """
-    count = len(traced.labels)
-    face_of_point = _face_of_points(traced)
-    face_of_member = _face_of_members(traced, face_of_point, measures.xyz[members])
-    outline_face, outline_point = _outer_points(traced)
-    over_ground = measures.over_ground(points)
-    eaves = _eave_heights(traced, (outline_face, outline_point), face_of_point, over_ground, spacing)
-    mean_height = _mean_heights(traced, over_ground)
-    rows = zip(*(split_groups(face, count) for face in (face_of_point, face_of_member, outline_face)))
+    owners = _Owners(outlines, measures.plan(members), spacing)
+    plan, over_ground = measures.plan(points), measures.over_ground(points)
+    own = split_groups(owners.at(plan), len(outlines))
+    all_own = split_groups(owners.at(measures.plan(members)), len(outlines))
     attributes = []
-    for face, (roof, own, outline) in enumerate(rows):
-        area = sum(map(signed_area, drawing.rings[face]))
+    for face, (outlined, roof, rows) in enumerate(zip(outlines, own, all_own)):
+        area = sum(map(signed_area, outlined.rings))
+        along, is_outer = owners.border(face, outlined.rings)
+        roof = _own_roof(roof, plan, along[~is_outer], spacing)
+        eaves = _eave_heights(along, is_outer, plan[roof], over_ground[roof], spacing)
         attributes.append(
             {
-                "cluster_id": int(traced.labels[face]),
+                "cluster_id": outlined.building,
                 "area": area,
-                "perimeter": sum(map(perimeter, drawing.rings[face])),
-                "volume": area * mean_height[face],
-                "regularized": int(face in drawing.straight),
-                **_roof_heights(measures.xyz[points[roof], 2], over_ground[roof], eaves[outline]),
-                **_evidence(measures, members[own]),
+                "perimeter": sum(map(perimeter, outlined.rings)),
+                "volume": area * _mean_height(outlined.nodes, plan[roof], over_ground[roof], spacing),
+                "regularized": int(outlined.is_straight),
+                **_roof_heights(measures.xyz[points[roof], 2], over_ground[roof], eaves),
+                **_evidence(measures, members[rows]),
             }
         )
     return attributes
@@ -167,55 +173,72 @@ def _evidence(measures: PointMeasures, members: np.ndarray) -> dict[str, Any]:
     }
 
 
-def _face_of_points(traced: Tracing) -> np.ndarray:
-    """Return the face (n,) that has the most of the triangles around a point of it; -1 of those in none or bare."""
-    face, count = np.full(len(traced.xy), -1), len(traced.labels)
-    inside = traced.face >= 0
-    corner, of = traced.triangles[inside].ravel(), np.repeat(traced.face[inside], 3)
-    is_own = traced.label[corner] == traced.labels[of]
-    pairs, inverse = np.unique(corner[is_own] * count + of[is_own], return_inverse=True)
-    # The largest comes last for each point, and stays.
-    pairs = pairs[np.argsort(np.bincount(inverse, np.repeat(traced.areas[inside], 3)[is_own]), kind="stable")]
-    face[pairs // count] = pairs % count
-    return face
+class _Owners:
+    """Which outline each place belongs to: the one that it is in, or the nearest one."""
+
+    def __init__(self, outlines: list[Outlined], plan: np.ndarray, spacing: float) -> None:
+        nodes = np.concatenate([outlined.nodes for outlined in outlines])
+        self.spacing = spacing
+        self.lattice = Lattice.around(np.concatenate([nodes, plan]), spacing)
+        self.face = np.full(self.lattice.shape, -1, np.int64)
+        for number, outlined in enumerate(outlines):
+            self.face[self._nodes(outlined.nodes)] = number
+        distance, nearest = ndimage.distance_transform_edt(self.face < 0, return_indices=True)
+        self.nearest = np.where(distance * self.lattice.step <= _BESIDE * spacing, self.face[tuple(nearest)], -1)
+
+    def _nodes(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        column, row = np.rint(self.lattice.nodes(places)).astype(np.int64).T
+        return row, column
+
+    def at(self, plan: np.ndarray) -> np.ndarray:
+        """Return the outline (n,) that places (n, 2) belong to, -1 of those far from all."""
+        return self.nearest[self._nodes(plan)]
+
+    def border(self, face: int, rings: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        """Return places (b, 2) along an outline, and which of them (b,) are no border with another one, all if it has none."""
+        places, outward = [], []
+        for start, end in zip(*(np.concatenate([ring[part] for ring in rings]) for part in (slice(-1), slice(1, None)))):
+            length = float(np.hypot(*(end - start)))
+            share = np.arange(0.5, max(1.0, length / self.spacing)) / max(1.0, length / self.spacing)
+            places.append(start + share[:, None] * (end - start))
+            outward.append(np.tile(np.array([end[1] - start[1], start[0] - end[0]]) / max(length, 1e-9), (len(share), 1)))
+        along, across = np.concatenate(places), np.concatenate(outward)
+        beyond = self.face[self._nodes(along + self.spacing * across)]
+        is_outer = (beyond < 0) | (beyond == face)
+        return along, is_outer if is_outer.any() else np.ones(len(along), bool)
 
 
-def _face_of_members(traced: Tracing, face_of_point: np.ndarray, xyz: np.ndarray) -> np.ndarray:
-    """Return the face (m,) of points of buildings: that of the nearest roof point, -1 beyond the longest edge of it."""
-    roof = np.flatnonzero(face_of_point >= 0)
-    distance, nearest = spatial.cKDTree(traced.xy[roof]).query(xyz[:, :2], workers=n_threads())
-    return np.where(distance <= traced.max_edge, face_of_point[roof[nearest]], -1)
+def _own_roof(roof: np.ndarray, plan: np.ndarray, shared: np.ndarray, spacing: float) -> np.ndarray:
+    """Return the points (r,) of a roof without those at a border (b, 2) with another one, unless it has no others.
 
-
-def _outer_points(traced: Tracing) -> tuple[np.ndarray, np.ndarray]:
-    """Return faces and points along the outlines; those along borders between buildings only where it has no others."""
-    face, across = np.repeat(traced.face, 3), traced.beyond(traced.face)
-    is_border = (face >= 0) & (face != across)
-    has_outer = np.bincount(face[is_border & (across < 0)], minlength=len(traced.labels)) > 0
-    used = np.flatnonzero(is_border & ((across < 0) | ~has_outer[face]))
-    return face[used], traced.starts[used]
+    Borders are known to a spacing, and points of the other roof on this side would be the highest or the lowest.
+    """
+    if not len(shared) or not len(roof):
+        return roof
+    inner = roof[spatial.cKDTree(shared).query(plan[roof], workers=n_threads())[0] > spacing]
+    return inner if len(inner) else roof
 
 
 def _eave_heights(
-    traced: Tracing, border: tuple, roof_face: np.ndarray, height: np.ndarray, spacing: float
+    along: np.ndarray, is_outer: np.ndarray, plan: np.ndarray, height: np.ndarray, spacing: float
 ) -> np.ndarray:
-    """Return the height (b,) of the roof above each point of the outlines, continued from the roof beside it.
+    """Return the height (b,) of the roof at the outer places of its outline (a, 2), continued from the roof beside them.
 
-    Many points of an outline are those of the wall below, down to where they are no longer taken for a roof's.
+    Many points at an outline are those of the wall below, down to where they are no longer taken for a roof's.
     """
-    face, point = border
-    distance, _ = spatial.cKDTree(traced.xy[np.unique(point)]).query(traced.xy, workers=n_threads())
-    inner = np.flatnonzero((roof_face >= 0) & (distance >= _INNER * spacing) & np.isfinite(height))
-    if not len(inner):
-        return height[point]
-    distance, nearest = spatial.cKDTree(traced.xy[inner]).query(
-        traced.xy[point], min(_PLANE, len(inner)), workers=n_threads()
-    )
-    beside = inner[nearest.reshape(len(point), -1)]
-    is_near = distance.reshape(beside.shape) <= _BESIDE * spacing
-    weight = (is_near & (roof_face[beside] == face[:, None])).astype(float)
-    step = traced.xy[beside] - traced.xy[point][:, None]
-    factors = np.concatenate([np.ones((*weight.shape, 1)), step], axis=2)
+    border, defined = along[is_outer], np.isfinite(height)
+    plan, height = plan[defined], height[defined]
+    if not len(plan):
+        return np.full(len(border), np.nan)
+    at_border = height[spatial.cKDTree(plan).query(border, workers=n_threads())[1]]
+    inner = spatial.cKDTree(along).query(plan, workers=n_threads())[0] >= _INNER * spacing
+    plan, height = plan[inner], height[inner]
+    if not len(plan):
+        return at_border
+    distance, beside = spatial.cKDTree(plan).query(border, min(_PLANE, len(plan)), workers=n_threads())
+    distance, beside = distance.reshape(len(border), -1), beside.reshape(len(border), -1)
+    weight = (distance <= _BESIDE * spacing).astype(float)
+    factors = np.concatenate([np.ones((*weight.shape, 1)), plan[beside] - border[:, None]], axis=2)
     # A pull to the level, which only points in one line feel.
     matrix = np.einsum("ni,nij,nik->njk", weight, factors, factors) + np.diag([1e-6, *[spacing**2 / 10] * 2])
     right = np.einsum("ni,nij,ni->nj", weight, factors, height[beside])
@@ -223,19 +246,21 @@ def _eave_heights(
     off = ((factors @ planes)[..., 0] - height[beside]) ** 2
     is_roof = (weight.sum(axis=1) >= _PLANE / 2) & (np.hypot(*planes[:, 1:, 0].T) <= _STEEPEST)
     is_plane = is_roof & ((weight * off).sum(axis=1) <= _FLAT**2 * weight.sum(axis=1))
-    return np.where(is_plane, planes[:, 0, 0], height[point])
+    return np.where(is_plane, planes[:, 0, 0], at_border)
 
 
-def _mean_heights(traced: Tracing, height: np.ndarray) -> np.ndarray:
-    """Return the mean height (f,) of the roof's surface in each face."""
-    is_roof = (traced.face >= 0) & (traced.label[traced.triangles] > 0).all(axis=1)
-    is_roof &= np.isfinite(height[traced.triangles]).all(axis=1)
-    face, triangles = traced.face[is_roof], traced.triangles[is_roof]
-    a, b = (traced.xy[triangles[:, k]] - traced.xy[triangles[:, 0]] for k in (1, 2))
-    area = np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
-    count = len(traced.labels)
-    volume, total = np.bincount(face, area * height[triangles].mean(axis=1), count), np.bincount(face, area, count)
-    return np.divide(volume, total, out=np.full(count, np.nan), where=total > 0)
+def _mean_height(nodes: np.ndarray, plan: np.ndarray, height: np.ndarray, spacing: float) -> float:
+    """Return the mean height of a roof's surface at nodes (k, 2) of a lattice, from its points (r, 2) and (r,)."""
+    defined = np.isfinite(height)
+    if not defined.any():
+        return float("nan")
+    lattice = Lattice.around(np.concatenate([plan[defined], nodes]), spacing)
+    column, row = np.rint(lattice.nodes(nodes)).astype(np.int64).T
+    weight, total = (
+        smoothed(lattice.spread(plan[defined], values), 1.0)[row, column] for values in (None, height[defined])
+    )
+    is_near = weight > _COVERED
+    return float(np.mean(total[is_near] / weight[is_near])) if is_near.any() else _mean(height, np.arange(len(height)))
 
 
 def _percentile(values: np.ndarray, percent: float) -> float:

@@ -6,18 +6,15 @@ A party wall is seen where, along a straight line from one side of a building to
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass
 from typing import Optional
 
 import numpy as np
 
 from ..geometry.groups import components
 from ..geometry.line_segments import edge_distances, segments_meet
-from ..geometry.polylines import line_along
 from ..packages import ndimage, spatial
-from ..stage import Monitor
-from .alpha_shape import Tracing
-from .regularization import main_directions
+from .soft_shares import Lattice
 
 # Step of the grid that heights are sampled on (m), at least the second figure (point spacings): finer than a fire wall
 # is thick, but no finer than points tell.
@@ -90,165 +87,138 @@ _SAME = 0.8
 # Of these, the one that parts the roofs best is taken from those of at least this share of the greatest strength.
 _STRONG = 0.5
 
-# Largest scrap that a party wall may cut off at the outline (spacings squared, each of them two triangles): it stays
-# with the house beside it.
+# Largest scrap that a party wall may cut off at the outline (spacings squared): it stays with the house beside it.
 _SCRAP = 2.0
 
-# Samples of a grid that are looked up between two calls for progress.
-_AT_ONCE = 200_000
+@dataclass(frozen=True)
+class Houses:
+    """The houses of a building.
+
+    Attributes
+    ----------
+    walls : ndarray of shape (w, 2, 2)
+        Ends of the party walls between them, m.
+    house : ndarray of shape (rows, columns), int64
+        House at each node of the lattice, from 1; 0 outside of the building.
+    """
+
+    walls: np.ndarray
+    house: np.ndarray
 
 
-def split_rows(
-    tracing: Tracing, height: np.ndarray, spacing: float, tolerance: float, monitor: Optional[Monitor] = None
-) -> Tracing:
-    """Return the tracing with the houses of rows as faces of their own, which have the label of the whole.
+def split_row(
+    lattice: Lattice, is_inside: np.ndarray, plan: np.ndarray, height: np.ndarray, angles: np.ndarray, spacing: float
+) -> Houses:
+    """Return the houses of a row, or the building as one.
 
-    A party wall goes from one side of the face to the other and has another one beside it, a house away.
+    A party wall goes from one side of the building to the other and has another one beside it, a house away.
 
     Parameters
     ----------
-    tracing : Tracing
-        Faces of buildings.
+    lattice : Lattice
+        Nodes around the building.
+    is_inside : ndarray of shape (rows, columns), bool
+        Which of these are the building.
+    plan : ndarray of shape (n, 2)
+        Points of its roof, m.
     height : ndarray of shape (n,)
-        Height above ground of its points (m).
-    spacing, tolerance : float
-        Mean distance between neighboring points, and how far wiggles of an outline may go (m). Nothing is split where
-        the spacing is greater than ``MAX_SPACING``.
-    monitor : Monitor, optional
-        Receives progress.
+        Their heights above ground, m; NaN where unknown.
+    angles : ndarray of shape (k,)
+        Its main directions, °.
+    spacing : float
+        Mean distance between neighboring points, m. Nothing is split where it is greater than ``MAX_SPACING``.
     """
-    if spacing > MAX_SPACING:
-        return tracing
-    monitor = monitor or Monitor()
-    face, labels = tracing.face.copy(), list(tracing.labels)
-    starts, area = tracing.starts, tracing.areas
-    rings: list = [[] for _ in labels]
-    for number, edges in tracing.rings(tracing.face):
-        places = tracing.xy[starts[edges]]
-        rings[number].append(np.concatenate([places, places[:1]]))
-    order = np.argsort(tracing.face, kind="stable")
-    rows_of = np.split(order, np.searchsorted(tracing.face[order], np.arange(len(labels) + 1)))[1:-1]
-    for number, (own, rows) in enumerate(zip(rings, rows_of)):
-        if area[rows].sum() >= 3 * _HOUSE:
-            part = monitor.part(number / len(rings), (number + 1) / len(rings))
-            found = _party_walls(tracing, rows, own, height, spacing, tolerance, part.part(0.0, 0.7))
-            pieces = _parted(tracing, rows, area[rows], found, _SCRAP * spacing**2, part.part(0.7, 1.0))
-            face[rows] = np.where(pieces > 0, len(labels) + pieces - 1, number)
-            labels += [tracing.labels[number]] * int(pieces.max())
-        monitor.progress((number + 1) / len(rings))
-    return replace(tracing, face=face, labels=np.array(labels, tracing.labels.dtype))
-
-
-def _party_walls(
-    tracing: Tracing,
-    rows: np.ndarray,
-    rings: list,
-    height: np.ndarray,
-    spacing: float,
-    tolerance: float,
-    monitor: Monitor,
-) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return for each main direction of a face, given by its rows and rings, what :func:`_lines` finds along it."""
-    angles = main_directions([edge for ring in rings for edge in line_along(ring).edges(tolerance)])
-    parts = [monitor.part(k / len(angles), (k + 1) / len(angles)) for k in range(len(angles))]
-    return [_lines(tracing, rows, height, angle, spacing, part) for angle, part in zip(angles, parts)]
+    whole = Houses(np.zeros((0, 2, 2)), is_inside.astype(np.int64))
+    known = np.isfinite(height)
+    if spacing > MAX_SPACING or is_inside.sum() * lattice.step**2 < 3 * _HOUSE or not known.any():
+        return whole
+    found = [_lines(lattice, is_inside, plan[known], height[known], np.radians(angle), spacing) for angle in angles]
+    return _parted(lattice, is_inside, found, spacing) or whole
 
 
 def _lines(
-    tracing: Tracing, rows: np.ndarray, height: np.ndarray, angle: float, spacing: float, monitor: Monitor
+    lattice: Lattice, is_inside: np.ndarray, plan: np.ndarray, height: np.ndarray, angle: float, spacing: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the ends (w, 2, 2) (m) and strengths (w,) (m²) of what may be party walls in a face, given by its rows.
+    """Return the ends (w, 2, 2) (m) and strengths (w,) (m²) of what may be party walls in a building.
 
     They run along a direction (rad) or square to it.
     """
     step = max(_STEP, _STEP_SPACINGS * spacing)
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    places = tracing.xy[np.unique(tracing.triangles[rows])] @ turn
+    places = lattice.positions[is_inside.ravel()] @ turn
     low, high = places.min(axis=0) - 2 * step, places.max(axis=0) + 2 * step
     u, v = (np.arange(a, b, step) for a, b in zip(low, high))
-    roof, is_inside = _sampled(tracing, tracing.face[rows[0]], height, (u, v), turn, monitor.part(0.0, 0.5))
-    # Farther than the face on both sides, so that the line parts it where the outline has a notch, too.
+    inside = _inside(lattice, is_inside, (u, v), turn)
+    roof, seen = _averaged(plan @ turn, height, low, step, inside.shape)
+    # Farther than the building on both sides, so that the line parts it where the outline has a notch, too.
     beyond = _ALONG + spacing
-    column, first, last, strength = _along_first_axis(roof, is_inside, step, monitor.part(0.5, 0.75))
+    column, first, last, strength = _along_first_axis(roof, seen, inside, step)
     along_u = np.stack([[u[first] - beyond, v[column]], [u[last] + beyond, v[column]]])
-    column, first, last, more = _along_first_axis(roof.T, is_inside.T, step, monitor.part(0.75, 1.0))
+    column, first, last, more = _along_first_axis(roof.T, seen.T, inside.T, step)
     along_v = np.stack([[u[column], v[first] - beyond], [u[column], v[last] + beyond]])
     ends = np.concatenate([along_u, along_v], axis=2)
     return np.moveaxis(ends, 2, 0) @ turn.T, np.concatenate([strength, more])
 
 
+def _inside(lattice: Lattice, is_inside: np.ndarray, axes: tuple[np.ndarray, np.ndarray], turn: np.ndarray) -> np.ndarray:
+    """Return which places of a grid lie in the building.
+
+    ``axes`` are those of the grid before it is turned back by the transpose of ``turn`` (2, 2).
+    """
+    places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1) @ turn.T
+    column, row = np.moveaxis(np.rint(lattice.nodes(places)).astype(np.int64), -1, 0)
+    rows, columns = is_inside.shape
+    return is_inside[row.clip(0, rows - 1), column.clip(0, columns - 1)]
+
+
+def _averaged(
+    plan: np.ndarray, height: np.ndarray, low: np.ndarray, step: float, shape: tuple[int, ...]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the mean height, 0 without any, and the number of points at each place of a grid from ``low`` on."""
+    u, v = np.rint((plan - low) / step).astype(np.int64).T
+    own = (u >= 0) & (v >= 0) & (u < shape[0]) & (v < shape[1])
+    number = u[own] * shape[1] + v[own]
+    count, total = (np.bincount(number, weight, shape[0] * shape[1]).reshape(shape) for weight in (None, height[own]))
+    return total / np.maximum(count, 1), count.astype(float)
+
+
 def _along_first_axis(
-    roof: np.ndarray, is_inside: np.ndarray, step: float, monitor: Monitor
+    roof: np.ndarray, seen: np.ndarray, is_inside: np.ndarray, step: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Return column, first and last row, and strength (m²) of what may be party walls along the first axis."""
-    least = _HIGH * np.median(roof[is_inside]) if is_inside.any() else 0.0
-    # What is seen from a column, to both sides.
-    reach = int(np.ceil(_WIDE / step)) + 2
-    width = max(4 * reach, _AT_ONCE // len(roof))
-    found = []
-    for start in range(0, roof.shape[1], width):
-        low = max(0, start - reach)
-        block = slice(low, start + width + reach)
-        column, *more = _runs_of_party_walls(roof[:, block], is_inside[:, block], least, step)
-        own = (column >= start - low) & (column < start - low + width)
-        found.append([column[own] + low, *(values[own] for values in more)])
-        monitor.progress(min(1.0, (start + width) / roof.shape[1]))
-    column, first, last, strength, misfit = (np.concatenate(values) for values in zip(*found))
+    counted = is_inside & (seen > 0)
+    least = _HIGH * np.median(roof[counted]) if counted.any() else 0.0
+    column, first, last, strength, misfit = _runs_of_party_walls(roof, seen, is_inside, least, step)
     chosen = _distinct(column, first, last, strength, misfit, _SAME / step)
     return column[chosen], first[chosen], last[chosen] - 1, strength[chosen]
 
 
-def _runs_of_party_walls(roof: np.ndarray, is_inside: np.ndarray, least: float, step: float) -> tuple[np.ndarray, ...]:
+def _runs_of_party_walls(
+    roof: np.ndarray, seen: np.ndarray, is_inside: np.ndarray, least: float, step: float
+) -> tuple[np.ndarray, ...]:
     """Return column, first row and the one after the last, strength (m²) and mean misfit (m) of runs like a party wall.
 
     Only beside roofs of the ``least`` height (m) a wall has to be seen.
     """
-    weight, beside, misfit = _evidence(roof, is_inside, step)
+    weight, beside, misfit = _evidence(roof, seen, step)
     is_high = beside >= least
     column, first, last = _runs(is_inside)
     length = (last - first) * step
-    seen = ndimage.maximum_filter1d(weight, 3, axis=1) > 0
+    is_seen = ndimage.maximum_filter1d(weight, 3, axis=1) > 0
     counted, supported, strength, misfit = (
-        _sums(values, column, first, last) * step for values in (is_high, seen & is_high, weight, misfit)
+        _sums(values, column, first, last) * step for values in (is_high, is_seen & is_high, weight, misfit)
     )
     good = (length >= _SHORTEST) & (length <= _DEEPEST) & (supported >= np.maximum(_SHORTEST, _SEEN * counted))
     return tuple(values[good] for values in (column, first, last, strength, misfit / length))
 
 
-def _sampled(
-    tracing: Tracing,
-    face: int,
-    height: np.ndarray,
-    axes: tuple[np.ndarray, np.ndarray],
-    turn: np.ndarray,
-    monitor: Monitor,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the height at the places of a grid, 0 outside of a face, and which of them lie in it.
-
-    ``axes`` are those of the grid before it is turned back by the transpose of ``turn`` (2, 2).
-    """
-    u, v = axes
-    roof = np.zeros((len(u), len(v)))
-    is_inside = np.zeros(roof.shape, bool)
-    size = max(1, _AT_ONCE // len(v))
-    for start in range(0, len(u), size):
-        block = slice(start, start + size)
-        places = np.stack(np.meshgrid(u[block], v, indexing="ij"), axis=-1).reshape(-1, 2) @ turn.T
-        triangle, share = tracing.locate(places)
-        here = (height[tracing.triangles[triangle]] * share).sum(axis=1)
-        inside = (triangle >= 0) & (tracing.face[triangle] == face) & np.isfinite(here)
-        roof[block] = np.where(inside, here, 0.0).reshape(-1, len(v))
-        is_inside[block] = inside.reshape(-1, len(v))
-        monitor.progress(min(1.0, (start + size) / len(u)))
-    return roof, is_inside
-
-
-def _evidence(roof: np.ndarray, is_inside: np.ndarray, step: float) -> tuple[np.ndarray, ...]:
+def _evidence(roof: np.ndarray, seen: np.ndarray, step: float) -> tuple[np.ndarray, ...]:
     """Return the strength (m) of party walls along the first axis at samples, the height beside them, and misfits."""
     size = 2 * round(_ALONG / 2 / step) + 1
-    weight = ndimage.uniform_filter1d(is_inside.astype(float), size, axis=0, mode="constant")
-    roof = ndimage.uniform_filter1d(roof * is_inside, size, axis=0, mode="constant") / np.maximum(weight, 1e-9)
-    is_known = weight >= 0.5
+    weight = ndimage.uniform_filter1d(seen.astype(float), size, axis=0, mode="constant")
+    roof = ndimage.uniform_filter1d(roof * seen, size, axis=0, mode="constant") / np.maximum(weight, 1e-9)
+    # One point or more.
+    is_known = weight * size >= 0.99
     left, left_rise, left_rough, left_mean = _side(roof, is_known, step, -1)
     right, right_rise, right_rough, right_mean = _side(roof, is_known, step, 1)
     jump = np.abs(right - left)
@@ -330,36 +300,33 @@ def _distinct(
     return found
 
 
-def _parted(
-    tracing: Tracing, rows: np.ndarray, area: np.ndarray, found: list, scrap: float, monitor: Monitor
-) -> np.ndarray:
-    """Return the house (t,), from 0, of each triangle of a face, given by its rows: pieces between party walls.
-
-    ``found`` are ends and strengths of what may be party walls, ``scrap`` (m²) is too little for a piece of its own.
-    """
+def _parted(lattice: Lattice, is_inside: np.ndarray, found: list, spacing: float) -> Optional[Houses]:
+    """Return the houses between party walls, of which ``found`` are ends and strengths; None without any."""
     ends, strength = (np.concatenate(values) for values in zip(*found)) if found else (np.zeros((0, 2, 2)), np.zeros(0))
     ends = ends[np.argsort(-strength, kind="stable")]
     ends = ends[_in_rows(ends)]
     if not len(ends):
-        return np.zeros(len(rows), np.int64)
-    pairs, middle = _pairs(tracing, rows)
+        return None
+    pairs, middle = _pairs(lattice, is_inside)
+    area = lattice.step**2
     crossed = _crossed(ends, middle[pairs])
-    # Triangles that no wall parts are one cell: there are many fewer of these.
+    # Nodes that no wall parts are one cell: there are many fewer of these.
     is_crossed = np.zeros(len(pairs), bool)
     is_crossed[np.concatenate(crossed)] = True
-    cell = _pieces(pairs[~is_crossed], len(rows))
+    cell = _pieces(pairs[~is_crossed], len(middle))
     pairs, number = cell[pairs[is_crossed]], np.cumsum(is_crossed) - 1
-    crossed, area = [number[own] for own in crossed], np.bincount(cell, area)
-    kept = _kept(ends, crossed, pairs, area, scrap, monitor)
+    crossed, size = [number[own] for own in crossed], area * np.bincount(cell)
+    kept = _kept(ends, crossed, pairs, size, _SCRAP * spacing**2)
+    walls = ends[kept[_in_rows(ends[kept])]]
     is_cut = np.zeros(len(pairs), bool)
     for wall in kept[_in_rows(ends[kept])]:
         is_cut[crossed[wall]] = True
-    return _without_scraps(_pieces(pairs[~is_cut], len(area)), pairs, area, scrap)[cell]
+    house = np.zeros(is_inside.shape, np.int64)
+    house[is_inside] = 1 + _without_scraps(_pieces(pairs[~is_cut], len(size)), pairs, size, _SCRAP * spacing**2)[cell]
+    return Houses(walls, house) if len(walls) else None
 
 
-def _kept(
-    ends: np.ndarray, crossed: list, pairs: np.ndarray, area: np.ndarray, scrap: float, monitor: Monitor
-) -> np.ndarray:
+def _kept(ends: np.ndarray, crossed: list, pairs: np.ndarray, area: np.ndarray, scrap: float) -> np.ndarray:
     """Return the party walls, of those that come first, that leave room between them and no piece smaller than a house.
 
     ``crossed`` are the ``pairs`` of cells that each parts, ``area`` (m²) is that of the cells.
@@ -367,7 +334,6 @@ def _kept(
     kept: list = []
     is_cut = np.zeros(len(pairs), bool)
     for wall, own in enumerate(crossed):
-        monitor.progress(wall / len(ends))
         if kept and _is_close(ends[wall], ends[kept]):
             continue
         more = is_cut.copy()
@@ -391,12 +357,13 @@ def _without_scraps(piece: np.ndarray, pairs: np.ndarray, area: np.ndarray, scra
     return np.unique(target[piece], return_inverse=True)[1]
 
 
-def _pairs(tracing: Tracing, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the triangles (p, 2) of a face that share an edge, counted in its rows, and the middle of each."""
-    beside = tracing.neighbors[rows]
-    position = np.minimum(np.searchsorted(rows, beside), len(rows) - 1)
-    one, side = np.nonzero((rows[position] == beside) & (position > np.arange(len(rows))[:, None]))
-    return np.column_stack([one, position[one, side]]), tracing.xy[tracing.triangles[rows]].mean(axis=1)
+def _pairs(lattice: Lattice, is_inside: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the nodes (p, 2) of a building beside each other, counted among its own, and their positions (m)."""
+    number = np.full(is_inside.shape, -1)
+    number[is_inside] = np.arange(is_inside.sum())
+    beside = [(number[:, :-1], number[:, 1:]), (number[:-1], number[1:])]
+    both = np.concatenate([np.column_stack([one.ravel(), other.ravel()]) for one, other in beside])
+    return both[(both >= 0).all(axis=1)], lattice.positions[is_inside.ravel()]
 
 
 def _pieces(pairs: np.ndarray, count: int) -> np.ndarray:

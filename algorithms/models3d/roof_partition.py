@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..geometry.cheapest_labels import cheapest_labels
 from ..geometry.points_in_polygons import are_within
 from ..geometry.subdivision import SNAP, Subdivision
 from ..packages import spatial
 from .heights_around import HeightsAround
-from .labelling import cheapest_labels
 from .roof_lines import find_roof_lines
 from .roof_planes import RoofPlanes
 

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..footprints.alpha_shape import trace_outlines
-from ..footprints.row_houses import split_rows
-from ..packages import spatial
+from ..footprints.outline_pieces import find_pieces
+from ..footprints.row_houses import split_row
+from ..footprints.soft_shares import find_shares
+from ..geometry.ring_directions import direction_weights, main_directions
+from ..packages import ndimage
 from ..segmentation.top_surface import highest_of_cells
 from ..stage import Monitor
-from ..threads import n_threads
 
 # Side of the cells (m) whose highest points show parapets: these are about as wide.
 _CELL = 0.3
-
-# Tolerance (m) of the outlines that the directions of walls are taken from: eaves that matching has rounded wiggle.
-_TOLERANCE = 0.6
 
 
 def split_blocks(
@@ -46,39 +44,38 @@ def split_blocks(
         return cluster_id
     size = max(_CELL, 2 * spacing)
     top = own[highest_of_cells(xyz[own], size)[0]]
-    tracing = trace_outlines(xyz[top, :2], cluster_id[top].astype(np.int64), size)
-    if tracing is None:
-        return cluster_id
     # Roofs are compared by their elevations: above sloping ground the heights of a level roof differ.
     lowest = np.full(int(cluster_id.max()) + 1, np.inf)
     np.minimum.at(lowest, cluster_id[top], (xyz[:, 2] - height)[top])
-    parted = split_rows(tracing, xyz[top, 2] - lowest[cluster_id[top]], size, _TOLERANCE, monitor)
-    if len(parted.labels) == len(tracing.labels):
-        return cluster_id
-    corner = parted.triangles[parted.face >= 0]
-    face_of = np.full(len(top), -1)
-    face_of[corner] = parted.face[parted.face >= 0][:, None]
-    nearest = _nearest_of_building(xyz[own, :2], cluster_id[own], xyz[top, :2], cluster_id[top], face_of >= 0)
-    # What tracing alone has parted, beside a gap, stays one building.
-    first = len(tracing.labels)
-    building = np.append(tracing.labels, int(cluster_id.max()) + 1 + np.arange(len(parted.labels) - first))
-    # A building without an outline, of a few points or a row of them, stays as it is.
-    house = np.where(nearest >= 0, building[face_of[nearest]], cluster_id[own])
+    corner = xyz[own, :2].min(axis=0)
+    count = int(cluster_id.max())
+    house = cluster_id[own].astype(np.int64)
+    buildings = np.unique(cluster_id[top])
+    for done, number in enumerate(buildings.tolist()):
+        roof, mine = top[cluster_id[top] == number], cluster_id[own] == number
+        over_lowest = xyz[roof, 2] - lowest[number]
+        part = _houses_at(xyz[roof, :2] - corner, over_lowest, xyz[own[mine], :2] - corner, size)
+        house[mine] = np.where(part > 1, count + part - 1, number)
+        count += int(part.max()) - 1
+        monitor.progress((done + 1) / len(buildings))
     result = np.zeros_like(cluster_id)
     result[own] = _from_west_to_east(xyz[own, 0], house)
     return result
 
 
-def _nearest_of_building(
-    xy: np.ndarray, cluster: np.ndarray, places: np.ndarray, of: np.ndarray, known: np.ndarray
-) -> np.ndarray:
-    """Return the nearest of the ``known`` places (m, 2) of its own building for each point (n, 2), -1 without any."""
-    rows = np.flatnonzero(known)
-    # Buildings one above the other, farther apart than any two points of one.
-    apart = 1 + 2 * float(np.ptp(xy, axis=0).sum())
-    tree = spatial.cKDTree(np.column_stack([places[rows], apart * of[rows]]))
-    _, found = tree.query(np.column_stack([xy, apart * cluster]), distance_upper_bound=apart, workers=n_threads())
-    return np.append(rows, -1)[found]
+def _houses_at(plan: np.ndarray, height: np.ndarray, places: np.ndarray, spacing: float) -> np.ndarray:
+    """Return the house (k,), from 1, at places (k, 2) of a building of which roof points and their heights are given."""
+    shares = find_shares(plan, np.ones(len(plan)), np.ones(len(plan), np.int64), np.zeros((0, 2)), spacing)[1]
+    rings = [ring for piece in find_pieces(1, shares, spacing, 0.0, 0.0) for ring in piece.rings]
+    if not rings:
+        return np.ones(len(places), np.int64)
+    weights = np.sum([direction_weights(ring) for ring in rings], axis=0)
+    angles = main_directions(weights, weights, sum(map(len, rings)))
+    house = split_row(shares.lattice, shares.share > shares.rest, plan, height, angles, spacing).house
+    nearest = ndimage.distance_transform_edt(house == 0, return_distances=False, return_indices=True)
+    column, row = np.rint(shares.lattice.nodes(places)).astype(np.int64).T
+    rows, columns = house.shape
+    return house[tuple(nearest)][row.clip(0, rows - 1), column.clip(0, columns - 1)]
 
 
 def _from_west_to_east(x: np.ndarray, building: np.ndarray) -> np.ndarray:

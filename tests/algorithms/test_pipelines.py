@@ -153,11 +153,11 @@ def calls(monkeypatch):
 
 
 def test_tunables_go_to_the_step_that_their_name_begins_with(calls):
-    tunables = {"ground_cell_size": 2.0, "footprints_max_edge": 9.0, "roofs_min_area": 7.0}
+    tunables = {"ground_cell_size": 2.0, "footprints_tolerance": 0.9, "roofs_min_area": 7.0}
     run_pipeline(PIPELINES["detect_buildings"], None, **tunables)
     called = dict(calls)
     assert called["classify_ground_tin"] == {"cell_size": 2.0}
-    assert called["extract_footprints"] == {"max_edge": 9.0}
+    assert called["extract_footprints"] == {"tolerance": 0.9}
     assert called["segment_roofs"] == {"min_area": 7.0}
     assert "min_area" not in called["complete_buildings"]
     assert called["classify_noise_histogram"] == {}

@@ -4,9 +4,7 @@ import numpy as np
 import pytest
 from qgis.core import QgsGeometry, QgsPointXY
 
-from lidar_buildings.algorithms.footprints.block_drawing import Drawing
 from lidar_buildings.algorithms.footprints.extract_footprints import extract_footprints
-from lidar_buildings.algorithms.footprints.shared_borders import Drawn, _is_valid, separate_blocks
 from lidar_buildings.algorithms.simulation.scanner import scan
 from lidar_buildings.algorithms.simulation.town_layout import build_town
 from lidar_buildings.algorithms.stage import Monitor
@@ -130,47 +128,6 @@ def test_houses_with_a_gap_stay_apart_and_do_not_overlap(rng):
     found = extract_footprints(*scanned(houses, 15, rng))
     first, second = (polygon(rings) for rings in found.geometries)
     assert first.distance(second) == pytest.approx(0.8, abs=0.35)
-
-
-def box(west, east, strategy):
-    """A block drawn as a rectangle 10 m high."""
-    ring = np.array([[west, 0], [east, 0], [east, 10], [west, 10], [west, 0]], float)
-    return Drawn(Drawing({0: [ring]}), strategy)
-
-
-def test_an_outline_that_runs_over_the_points_of_a_smaller_one_gives_way():
-    """Whatever becomes of the smaller one, they meet until the larger one has its second strategy."""
-    tried = []
-
-    def draw(block, strategy):
-        tried.append((block, strategy))
-        return box(0, 9 if strategy < 1 else 7, strategy) if block == 0 else box(8, 9.5, strategy)
-
-    drawn = separate_blocks([draw(0, 0), draw(1, 0)], draw, last=3)
-    assert [one.strategy for one in drawn] == [1, 0]
-    assert tried[2:] == [(1, 1), (1, 2), (1, 3), (0, 1), (1, 0)]
-
-
-def test_the_smaller_of_two_blocks_gives_way_first_and_others_stay():
-    def draw(block, strategy):
-        return [box(0, 9, strategy), box(8 + strategy, 12, strategy), box(20, 30, strategy)][block]
-
-    drawn = separate_blocks([draw(block, 0) for block in range(3)], draw, last=3)
-    # At 9 m they still touch.
-    assert [one.strategy for one in drawn] == [0, 2, 0]
-
-
-def test_blocks_that_never_part_end_with_their_last_strategies():
-    drawn = separate_blocks([box(0, 9, 0), box(8, 12, 0)], lambda block, strategy: box(8 * block, 9, strategy), last=2)
-    assert [one.strategy for one in drawn] == [2, 2]
-
-
-def test_a_drawing_whose_polygons_overlap_is_no_good():
-    ring = box(0, 10, 0).drawing.rings[0][0]
-    assert _is_valid(Drawing({0: [ring], 1: [ring + [10, 0]]}))
-    assert not _is_valid(Drawing({0: [ring], 1: [ring + [9, 0]]}))
-    # A bow tie.
-    assert not _is_valid(Drawing({0: [ring[[0, 2, 1, 3, 0]]]}))
 
 
 @pytest.mark.parametrize(("density", "radius"), [(15, 5), (40, 4), (40, 7)])

@@ -170,20 +170,14 @@ def test_where_points_are_too_far_apart_to_see_roofs_this_is_told(rng, spacing):
     assert "too far to see where the houses of a row part" in monitor.warnings[0]
 
 
-def test_large_buildings_are_looked_at_piece_by_piece(rng, monkeypatch):
+def test_a_long_row_tells_its_progress_and_can_be_cancelled(rng):
     xyz, classification, _ = row(rng, steps, 10, houses=12)
-    at_once = extract_footprints(xyz, classification, split_rows=True)
-    monkeypatch.setattr(rows, "_AT_ONCE", 1000)
     monitor = Listening()
     found = extract_footprints(xyz, classification, split_rows=True, monitor=monitor)
     assert len(found) == 12
-    for one, other in zip(found.geometries, at_once.geometries):
-        np.testing.assert_allclose(one[0], other[0], atol=1e-6)
     assert monitor.heard == sorted(monitor.heard)
     assert monitor.heard[-1] == pytest.approx(1)
-    # A grid of 70 m by 15 m has 17,000 places.
-    assert len(set(monitor.heard)) > 25
-    for stop_at in (0.1, 0.3, 0.45):
+    for stop_at in (0.1, 0.45, 0.6):
         with pytest.raises(Cancelled):
             extract_footprints(xyz, classification, split_rows=True, monitor=Listening(stop_at))
 
@@ -247,5 +241,5 @@ def test_how_long_a_wall_is_and_how_much_of_it_is_seen(depth, seen, low, is_wall
     along = 0.25 * np.arange(round(depth / 0.25))[:, None]
     roof = 8 + np.where((np.arange(81) >= 40) & (along < seen), 0.8, 0.0)
     roof[along[:, 0] >= depth - low] = 3.0
-    column, *_ = rows._runs_of_party_walls(roof, np.ones(roof.shape, bool), 4.0, 0.25)
+    column, *_ = rows._runs_of_party_walls(roof, *np.ones((2, *roof.shape), bool), 4.0, 0.25)
     assert (40 in column.tolist()) == is_wall

@@ -1,0 +1,275 @@
+"""Outlines of the buildings of a block: the edges drawn around each cut the plane into cells, which buildings divide.
+
+Borders that two buildings have in common, and polygons that are valid and do not overlap, follow from that.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..geometry.cell_polygons import cell_polygons, connected_cells
+from ..geometry.cheapest_labels import cheapest_labels
+from ..geometry.groups import split_groups
+from ..geometry.ring_directions import along_two_directions
+from ..geometry.ring_drawing import Edge, Prices, aligned, draw_ring
+from ..geometry.subdivision import Subdivision
+from ..packages import ndimage
+from .outline_pieces import Piece
+from .row_houses import Houses
+from .soft_shares import Lattice, Shares
+
+# A corner costs as much as this many cubed spacings of squared distance along an outline: a bay of two spacings by four
+# is not drawn. From 16 on outlines hardly change any more when points do (tried from 4 to 24).
+_CORNER = 10.0
+
+# Edges of two rings on both sides of a border, or of a front that goes on, lie this close (spacings) to one line: that
+# of the longest one. They were drawn from the same points.
+_SAME_LINE = 0.75
+
+# Price (spacings, so that a meter costs that area) of a border where an edge was drawn, and elsewhere.
+_DRAWN, _NOT_DRAWN = 0.1, 1.0
+
+# An outline is straight where more than this share of it runs along a main direction and square to that: of a circle
+# drawn along two main directions it is half.
+_MOST = 0.6
+
+# Room (spacings) around the edges of a block.
+_ROOM = 2.0
+
+# A cell's middle lies this close (m) to an edge that bounds it.
+_ON_EDGE = 0.03
+
+
+@dataclass(frozen=True)
+class Outlined:
+    """The outline of a building or a part of it.
+
+    Attributes
+    ----------
+    building : int
+        Its number.
+    rings : list of ndarray
+        Closed, the exterior first, m.
+    nodes : ndarray of shape (k, 2)
+        Nodes of the lattice within it, m.
+    is_straight : bool
+        Whether most of its edges run along main directions.
+    """
+
+    building: int
+    rings: list[np.ndarray]
+    nodes: np.ndarray
+    is_straight: bool
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """How outlines are drawn: spacing of points and scale of what is straightened (m), least areas (m²)."""
+
+    spacing: float
+    scale: float
+    min_area: float
+    min_hole_area: float
+
+
+def draw_block(
+    pieces: list[Piece],
+    shares: dict[int, Shares],
+    directions: dict[int, np.ndarray],
+    houses: dict[int, Houses],
+    how: Drawing,
+) -> list[Outlined]:
+    """Return the outlines of a block of buildings.
+
+    Parameters
+    ----------
+    pieces : list of Piece
+        What lies close together.
+    shares : dict of int to Shares
+        Of each of their buildings.
+    directions : dict of int to ndarray of shape (k,)
+        Main directions, °, of each of their buildings.
+    houses : dict of int to Houses
+        Houses of those buildings that are rows.
+    how : Drawing
+    """
+    rings = [_drawn(ring, directions[piece.building], how) for piece in pieces for ring in piece.rings]
+    edges = [edge for ring in aligned(rings, _SAME_LINE * how.spacing) for edge in ring]
+    if not edges:
+        return []
+    lattice, share, numbers = _shares_of(pieces, shares, edges, how)
+    walls = [Edge(start, end, True) for number in numbers if number in houses for start, end in houses[number].walls]
+    cells = _cut([*edges, *walls], lattice)
+    label = _without_scraps(cells, _labels(cells, _costs(cells, share, lattice), edges, how), how)
+    building = np.array([0, *numbers])
+    if walls:
+        label, building = _by_house(cells, label, building, houses, shares, lattice)
+        label = _without_scraps(cells, label, how)
+    found = []
+    for polygon in cell_polygons(cells, label):
+        nodes = np.concatenate([cells.members[cell] for cell in polygon.cells])
+        is_straight = _is_straight(polygon.rings, [*edges, *walls])
+        found.append(Outlined(int(building[polygon.label]), polygon.rings, lattice.positions[nodes], is_straight))
+    return found
+
+
+def _by_house(
+    cells: Subdivision,
+    label: np.ndarray,
+    building: np.ndarray,
+    houses: dict[int, Houses],
+    shares: dict[int, Shares],
+    lattice: Lattice,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return labels (cells,) that tell houses apart, and the building of each label.
+
+    A cell is of the house that most of its nodes are of.
+    """
+    found, of_label = label.copy(), building.tolist()
+    for at, number in enumerate(building.tolist()):
+        if number not in houses or len(houses[number].walls) == 0:
+            continue
+        house = np.zeros(lattice.shape, np.int64)
+        _put(house, lattice, shares[number].lattice, houses[number].house)
+        nearest = ndimage.distance_transform_edt(house == 0, return_distances=False, return_indices=True)
+        house = house[tuple(nearest)]
+        flat = house.ravel()
+        for cell in np.flatnonzero(label == at):
+            nodes = cells.members[cell]
+            own = flat[nodes] if len(nodes) else _at_middle(cells, cell, house, lattice)
+            found[cell] = len(of_label) - 1 + np.bincount(own).argmax()
+        of_label += [number] * int(house.max())
+    return found, np.array(of_label)
+
+
+def _at_middle(cells: Subdivision, cell: int, values: np.ndarray, lattice: Lattice) -> np.ndarray:
+    """Return the value (1,) or (..., 1) at the node next to the middle of a cell."""
+    column, row = np.rint(lattice.nodes(np.mean([cells.vertices[v] for v in cells.loops[cell]], axis=0))).astype(int)
+    return values[..., row, column][..., None]
+
+
+def _drawn(ring: np.ndarray, directions: np.ndarray, how: Drawing) -> list[Edge]:
+    """Return the straight edges of a ring of samples."""
+    return draw_ring(ring, directions, Prices(_CORNER * how.scale**3))
+
+
+def _shares_of(
+    pieces: list[Piece], shares: dict[int, Shares], edges: list[Edge], how: Drawing
+) -> tuple[Lattice, np.ndarray, list[int]]:
+    """Return the lattice of a block, the share of the ground and of each building in it, and the buildings.
+
+    Other parts of these buildings, which are not of this block, have no share.
+    """
+    corners = np.array([edge.start for edge in edges])
+    numbers = sorted({piece.building for piece in pieces})
+    lattice = Lattice.around(np.concatenate([corners, *(ring for piece in pieces for ring in piece.rings)]), how.spacing)
+    share = np.zeros((len(numbers) + 1, *lattice.shape), np.float32)
+    for at, number in enumerate(numbers, start=1):
+        own = shares[number]
+        rings = [ring for piece in pieces if piece.building == number for ring in piece.rings]
+        _put(share[at], lattice, own.lattice, np.where(_is_near(own, rings), own.share, 0.0))
+    share[0] = 1 - share[1:].sum(axis=0)
+    return lattice, share, numbers
+
+
+def _is_near(own: Shares, rings: list[np.ndarray]) -> np.ndarray:
+    """Return where (rows, columns) the nearest part of a building is one with some of these rings."""
+    part, count = ndimage.label(own.share > own.rest)
+    if count <= 1:
+        return np.ones(part.shape, bool)
+    # Rings pass between nodes of their part and others.
+    at = own.lattice.nodes(np.concatenate(rings)).astype(np.int64)
+    beside = [part[at[:, 1] + row, at[:, 0] + column] for row in (0, 1) for column in (0, 1)]
+    mine = np.setdiff1d(np.concatenate(beside), 0)
+    nearest = ndimage.distance_transform_edt(part == 0, return_distances=False, return_indices=True)
+    return np.isin(part[tuple(nearest)], mine)
+
+
+def _put(target: np.ndarray, lattice: Lattice, inner: Lattice, values: np.ndarray) -> None:
+    """Put values of one lattice into another where they overlap."""
+    (column, row), (rows, columns) = np.subtract(inner.first, lattice.first).tolist(), lattice.shape
+    low_row, low_column = max(row, 0), max(column, 0)
+    high_row, high_column = min(row + inner.shape[0], rows), min(column + inner.shape[1], columns)
+    if high_row > low_row and high_column > low_column:
+        target[low_row:high_row, low_column:high_column] = values[
+            low_row - row : high_row - row, low_column - column : high_column - column
+        ]
+
+
+def _cut(edges: list[Edge], lattice: Lattice) -> Subdivision:
+    """Return the cells that the edges cut the box of the lattice into; longest edges first."""
+    positions = lattice.positions
+    cells = Subdivision(positions[0] - 0.3 * lattice.step, positions[-1] + 0.3 * lattice.step, positions)
+    length = [-float(np.hypot(*(edge.end - edge.start))) for edge in edges]
+    for number in np.argsort(length, kind="stable"):
+        cells.cut(edges[number].start, edges[number].end)
+    return cells
+
+
+def _costs(cells: Subdivision, share: np.ndarray, lattice: Lattice) -> np.ndarray:
+    """Return what each label costs in each cell (cells, labels), m²: the area that is something else."""
+    flat = share.reshape(len(share), -1)
+    mean = np.empty((len(cells), len(share)))
+    for cell, nodes in enumerate(cells.members):
+        if len(nodes):
+            mean[cell] = flat[:, nodes].mean(axis=1)
+        else:
+            mean[cell] = _at_middle(cells, cell, share, lattice)[:, 0]
+    return cells.areas()[:, None] * np.clip(1 - mean, 0.0, None)
+
+
+def _labels(cells: Subdivision, cost: np.ndarray, edges: list[Edge], how: Drawing) -> np.ndarray:
+    """Return the label of each cell, 0 the ground: those that cost least with the borders between them."""
+    pairs, sides = cells.edges()
+    places = np.array(cells.vertices)
+    start, end = places[pairs[:, 0]], places[pairs[:, 1]]
+    price = np.where(_are_drawn(start, end, edges), _DRAWN, _NOT_DRAWN) * how.spacing
+    weight = price * np.hypot(*(end - start).T)
+    most = np.bincount(sides.ravel(), np.repeat(weight, 2), len(cells))
+    return cheapest_labels(cost, sides, lambda one, other: weight * (one != other), most, cost.argmin(axis=1))
+
+
+def _are_drawn(start: np.ndarray, end: np.ndarray, edges: list[Edge]) -> np.ndarray:
+    """Return which borders of cells (n, 2) to (n, 2) lie on an edge that was drawn."""
+    middle = (start + end) / 2
+    is_drawn = np.zeros(len(middle), bool)
+    for edge in edges:
+        step = edge.end - edge.start
+        length = float(np.hypot(*step))
+        unit = step / length
+        offset = middle - edge.start
+        along, across = offset @ unit, offset @ np.array([-unit[1], unit[0]])
+        own = np.abs((end - start) @ np.array([-unit[1], unit[0]])) <= 2 * _ON_EDGE
+        is_drawn |= (np.abs(across) <= _ON_EDGE) & (along >= 0) & (along <= length) & own
+    return is_drawn
+
+
+def _without_scraps(cells: Subdivision, label: np.ndarray, how: Drawing) -> np.ndarray:
+    """Return the labels with holes and polygons that are too small given to what they share most of their border with."""
+    for is_ground, least in ((True, how.min_hole_area), (False, how.min_area)):
+        piece = connected_cells(cells, label)
+        size = np.bincount(piece, cells.areas())
+        is_open = np.zeros(len(size), bool)
+        is_open[piece[cells.touch_rectangle()]] = True
+        pairs, sides = cells.edges()
+        places = np.array(cells.vertices)
+        length = np.hypot(*(places[pairs[:, 1]] - places[pairs[:, 0]]).T)
+        kind = np.zeros(len(size), label.dtype)
+        kind[piece] = label
+        for number in np.flatnonzero((size < least) & ~is_open & ((kind == 0) == is_ground)):
+            own = piece[sides] == number
+            at_border = own[:, 0] != own[:, 1]
+            others = label[np.where(own[at_border, 0], sides[at_border, 1], sides[at_border, 0])]
+            label = label.copy()
+            label[piece == number] = np.bincount(others, length[at_border]).argmax()
+    return label
+
+
+def _is_straight(rings: list[np.ndarray], edges: list[Edge]) -> bool:
+    """Return whether most of the length of rings was drawn along one main direction and square to it."""
+    start, end = (np.concatenate([ring[part] for ring in rings]) for part in (slice(None, -1), slice(1, None)))
+    length, angle = np.hypot(*(end - start).T), np.degrees(np.arctan2(*(end - start).T[::-1]))
+    is_main = _are_drawn(start, end, [edge for edge in edges if edge.is_main])
+    return along_two_directions(length[is_main], angle[is_main]) > _MOST * length.sum()

@@ -1,0 +1,77 @@
+"""Pieces of buildings on the lattice: what each building has more of than anything else, with the rings around it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..geometry.groups import components
+from ..geometry.level_lines import level_lines
+from ..geometry.line_segments import is_inside
+from ..geometry.rings import perimeter, signed_area
+from ..packages import ndimage, spatial
+from .soft_shares import Shares
+
+# Distance (spacings) of samples along rings.
+_SAMPLE = 1.0
+
+# Fewest samples of a ring.
+_FEWEST = 12
+
+# Pieces closer than this (spacings) are drawn together, since edges move by up to two spacings.
+_TOGETHER = 4.0
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A connected part of a building.
+
+    Attributes
+    ----------
+    building : int
+        Its number.
+    rings : list of ndarray of shape (n, 2)
+        Samples at equal steps (m) along its rings, the exterior first, the first of each not repeated.
+    area : float
+        Area within these, m².
+    """
+
+    building: int
+    rings: list[np.ndarray]
+    area: float
+
+
+def find_pieces(
+    building: int, shares: Shares, spacing: float, min_area: float, min_hole_area: float
+) -> list[Piece]:
+    """Return the pieces of a building of at least ``min_area`` (m²), with their holes of ``min_hole_area`` (m²)."""
+    rings = [shares.lattice.places(ring) for ring in level_lines(shares.share - shares.rest)]
+    sizes = [signed_area(ring) for ring in rings]
+    holes = [ring for ring, size in zip(rings, sizes) if -size >= min_hole_area]
+    pieces = []
+    for ring, size in zip(rings, sizes):
+        if size >= min_area:
+            own = [hole for hole in holes if is_inside(hole[0], ring)]
+            area = size + sum(map(signed_area, own))
+            pieces.append(Piece(building, [_sampled(one, _SAMPLE * spacing) for one in [ring, *own]], area))
+    return pieces
+
+
+def _sampled(ring: np.ndarray, step: float) -> np.ndarray:
+    """Return places (n, 2) at equal steps of about ``step`` (m) along a closed ring."""
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(ring, axis=0).T))])
+    count = max(_FEWEST, round(perimeter(ring) / step))
+    wanted = along[-1] * np.arange(count) / count
+    return np.column_stack([np.interp(wanted, along, ring[:, axis]) for axis in (0, 1)])
+
+
+def blocks_of(pieces: list[Piece], spacing: float) -> list[list[Piece]]:
+    """Return the pieces in blocks that lie apart."""
+    if not pieces:
+        return []
+    samples = np.concatenate([ring for piece in pieces for ring in piece.rings])
+    of_piece = np.repeat(np.arange(len(pieces)), [sum(map(len, piece.rings)) for piece in pieces])
+    near = of_piece[spatial.cKDTree(samples).query_pairs(_TOGETHER * spacing, output_type="ndarray")]
+    count, block = components(*near.T, len(pieces))
+    return [[pieces[i] for i in np.flatnonzero(block == number)] for number in range(count)]

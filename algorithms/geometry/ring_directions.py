@@ -1,0 +1,128 @@
+"""The directions that the walls of buildings run in, from rings along their outlines."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..packages import ndimage
+
+# Lengths (samples) of the pieces of a ring whose directions are taken: from a bay to a long front.
+_LENGTHS = (4, 8, 16, 32, 64)
+
+# Weight of a piece: its length (samples) to this power, so that long walls count more than their length.
+_POWER = 1.5
+
+# Standard deviation (°) of a direction, at least, and that of a piece of one sample, which falls with its length.
+_LEAST_WIDTH, _WIDTH_OF_ONE = 1.0, 28.6
+
+# Standard deviation (samples) across a straight piece; pieces with more bend, and their weight falls.
+_STRAIGHT = 0.25
+
+# Step of the directions (°).
+_STEP, _N_STEPS = 0.5, 180
+
+# No direction stands out where the lower quartile of the weights is more than this share of their mean: 0.76 and more in
+# simulated towers, 0.72 and less in 30 real buildings, all with this many samples or more.
+_EVEN, _ROUND_SAMPLES = 0.74, 50
+
+# An edge runs along a direction within this angle (°): the deviation of an edge of 6 m whose ends lie 0.3 m apart
+# across.
+_ALONG = 3.0
+
+# Angle (°) from the first direction at which a second one begins, and least share of the first's weight it has.
+_APART, _LEAST_SHARE = 12.0, 0.25
+
+
+def direction_weights(samples: np.ndarray) -> np.ndarray:
+    """Return the weights (180,) of directions from 0 to 90°, in steps of half a degree, along a ring.
+
+    Parameters
+    ----------
+    samples : ndarray of shape (n, 2)
+        Places at equal steps along a ring, the first not repeated.
+
+    Notes
+    -----
+    All pieces of a few lengths count, by how straight they are: no piece is chosen, so that the weights change by
+    little with the samples.
+    """
+    weights = np.zeros(_N_STEPS)
+    step = float(np.hypot(*(samples[1] - samples[0])))
+    for length in _LENGTHS:
+        if 2 * length <= len(samples):
+            angle, across = _pieces(samples, length)
+            weight = length ** (_POWER - 1) * np.exp(-((across / (_STRAIGHT * step)) ** 2) / 2)
+            width = np.hypot(_LEAST_WIDTH, _WIDTH_OF_ONE / length)
+            weights += ndimage.gaussian_filter1d(_counted(angle, weight), width / _STEP, mode="wrap")
+    return weights
+
+
+def main_directions(weights: np.ndarray, own: np.ndarray, n_samples: int) -> np.ndarray:
+    """Return the main directions (k,), °, of a building: those from 0 to 90° with the greatest weights, at most two.
+
+    Parameters
+    ----------
+    weights, own : ndarray of shape (180,)
+        Weights of directions with those of its neighbors, and its own.
+    n_samples : int
+        Samples of its rings. A round building has no direction.
+    """
+    if n_samples >= _ROUND_SAMPLES and np.percentile(own, 25) > _EVEN * own.mean():
+        return np.zeros(0)
+    angles = [_peak(weights, int(np.argmax(weights)))]
+    trial = _STEP * np.arange(_N_STEPS)
+    is_top = (weights >= np.roll(weights, 1)) & (weights > np.roll(weights, -1))
+    other = np.where(is_top & (_off(trial, angles[0]) >= _APART), weights, 0.0)
+    if other.max() >= _LEAST_SHARE * weights.max() > 0:
+        angles.append(_peak(weights, int(np.argmax(other))))
+    return np.array(angles)
+
+
+def _pieces(samples: np.ndarray, length: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return direction (°) and standard deviation across (m) of the pieces of so many samples from each sample on."""
+    ring = np.concatenate([samples, samples[:length]]) - samples.mean(axis=0)
+    products = np.column_stack([ring, ring**2, ring[:, 0] * ring[:, 1]])
+    total = np.concatenate([np.zeros((1, 5)), np.cumsum(products, axis=0)])
+    mean = (total[length:] - total[:-length])[: len(samples)] / length
+    x, y, xx, yy, xy = mean.T
+    xx, yy, xy = xx - x * x, yy - y * y, xy - x * y
+    angle = np.degrees(np.arctan2(2 * xy, xx - yy)) / 2
+    across = (xx + yy) / 2 - np.hypot((xx - yy) / 2, xy)
+    return angle, np.sqrt(np.maximum(across, 0.0))
+
+
+def _counted(angle: np.ndarray, weight: np.ndarray) -> np.ndarray:
+    """Return the sums of weights by angle (°) modulo 90, each shared between the two steps around it."""
+    place = (angle % 90.0) / _STEP
+    low = np.floor(place).astype(np.int64)
+    share = place - low
+    numbers = np.concatenate([low % _N_STEPS, (low + 1) % _N_STEPS])
+    return np.bincount(numbers, np.concatenate([weight * (1 - share), weight * share]), _N_STEPS)
+
+
+def _peak(weights: np.ndarray, at: int) -> float:
+    """Return the angle (°) of the top of a parabola through the weight of a step and those beside it."""
+    before, top, after = weights[[at - 1, at, (at + 1) % len(weights)]]
+    bend = before - 2 * top + after
+    shift = 0.5 * (before - after) / bend if bend < 0 else 0.0
+    return float((at + shift) * _STEP % 90.0)
+
+
+def _off(angle: np.ndarray, other: float) -> np.ndarray:
+    """Return the differences (°) between directions modulo 90°."""
+    return np.abs((angle - other + 45.0) % 90.0 - 45.0)
+
+
+def along_two_directions(length: np.ndarray, angle: np.ndarray) -> float:
+    """Return the greatest length (m) of edges along two directions that are square to each other.
+
+    Parameters
+    ----------
+    length : ndarray of shape (n,)
+        Lengths of the edges, m.
+    angle : ndarray of shape (n,)
+        Their directions, °.
+    """
+    trial = _STEP * np.arange(_N_STEPS)
+    off = np.abs((angle - trial[:, None] + 45.0) % 90.0 - 45.0)
+    return float(((off <= _ALONG) * length).sum(axis=1).max())

@@ -1,0 +1,358 @@
+"""A ring drawn as straight edges: the runs of samples, and their directions, that cost least together.
+
+Every run has one of a few oriented directions. A run costs the squared distances of its samples from its line, a corner
+by its angle. One dynamic program decides on all corners and directions at once, so that there is no order of choices in
+which a small change of the samples could change all that follow.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+# Shortest run, in samples: shorter edges are drawn as steps between two runs.
+_SHORTEST = 3
+
+# Angle (°) between directions besides the main ones: any wall is within half of it, and the line is fitted.
+_FAN = 15.0
+
+# A run advances by this share of its length at least: it is an edge, and no bulge.
+_ADVANCE = 0.5
+
+# Turns (°) below which a corner is flat, and above which it is sharp; and differences that rounding leaves.
+_FLAT, _SHARP, _SAME = 20.0, 110.0, 0.5
+
+# First length (samples) in which a corner is looked for to begin at.
+_TRIAL = 64
+
+# Cosine of the angle between edges of one line, at least: 10°.
+_NEARLY = 0.985
+
+# Lines with a smaller sine between them are taken for parallel; their crossing says nothing of where they part.
+_PARALLEL = 0.05
+
+# Greatest distance (steps) of a corner from where the runs part: the corner of a sharp angle lies that far off.
+_FARTHEST = 6.0
+
+
+@dataclass(frozen=True)
+class Prices:
+    """What corners and directions cost; each is a multiple of ``corner``.
+
+    Attributes
+    ----------
+    corner : float
+        Of a right-angled corner, m³: as much as a bay of two spacings by four that is not drawn.
+    flat : float
+        Of a corner that turns by less than 20°, which noise makes more easily than a sharper one.
+    step : float
+        Of a step or a turn by 180°, both of which are drawn with two corners.
+    sharp : float
+        Of a corner that turns by 170° or more; from 110° on the price grows toward it.
+    second : float
+        Of an edge along the second main direction.
+    other : float
+        Of an edge along neither of them.
+    curved, other_curved : float
+        Of a ring with curved walls, and of each of its edges along neither direction, where that is less together.
+    round : float
+        Of a corner of a ring without main directions, which is drawn in chords.
+    """
+
+    corner: float
+    flat: float = 1.5
+    step: float = 2.0
+    sharp: float = 4.0
+    second: float = 1.0
+    other: float = 1.75
+    curved: float = 15.0
+    other_curved: float = 0.5
+    round: float = 0.3
+
+
+@dataclass(frozen=True)
+class Edge:
+    """A straight edge of a ring: from ``start`` to ``end`` (2,), m; ``is_main`` if along a main direction."""
+
+    start: np.ndarray
+    end: np.ndarray
+    is_main: bool
+
+
+def draw_ring(samples: np.ndarray, directions: np.ndarray, prices: Prices) -> list[Edge]:
+    """Return the edges of the ring that costs least.
+
+    Parameters
+    ----------
+    samples : ndarray of shape (n, 2)
+        Places at equal steps along the ring (m), the first not repeated, the inside to the left.
+    directions : ndarray of shape (k,)
+        Main directions of the building, °, at most two, the heavier first; without any all are equally good.
+    prices : Prices
+        What corners and directions cost.
+
+    Returns
+    -------
+    list of Edge
+        In the order of the samples, each beginning where the one before ends. They may cross each other.
+
+    References
+    ----------
+    Perez, J. C., Vidal, E., 1994. Optimum polygonal approximation of digitized curves. Pattern Recognition Letters 15
+    (8), 743-750. Killick, R., Fearnhead, P., Eckley, I. A., 2012. Optimal detection of changepoints with a linear
+    computational cost. Journal of the American Statistical Association 107 (500), 1590-1598 (which starts of runs can
+    be left out).
+    """
+    if not len(directions):
+        return _drawn(samples, _Ways.of(directions, replace(prices, corner=prices.round * prices.corner), 0.0))[1]
+    cost, edges = _drawn(samples, _Ways.of(directions, prices, prices.other))
+    # No ring has less than three corners.
+    if cost > (prices.curved + 3) * prices.corner:
+        curved_cost, curved = _drawn(samples, _Ways.of(directions, prices, prices.other_curved))
+        if curved_cost + prices.curved * prices.corner < cost:
+            return curved
+    return edges
+
+
+def _drawn(samples: np.ndarray, ways: _Ways) -> tuple[float, list[Edge]]:
+    """Return what the cheapest ring along some ways costs, m³, and its edges."""
+    corner, after = _Chain(samples, ways).sure_corner()
+    chain = _Chain(np.roll(samples, -corner, axis=0), ways)
+    cost, runs = chain.closed_runs(after)
+    lines = [chain.line(*run) for run in runs]
+    return cost, _joined(lines, [chain.vertices[run[0]] for run in runs], chain.step)
+
+
+@dataclass(frozen=True)
+class _Ways:
+    """Oriented directions: angles (k,), °, unit vectors (k, 2), whether main (k,), the price (k,) of a run and (k, k) of a
+    turn. The others may turn by half of the angle between them.
+    """
+
+    angle: np.ndarray
+    unit: np.ndarray
+    is_main: np.ndarray
+    price: np.ndarray
+    turn: np.ndarray
+
+    @property
+    def n_fixed(self) -> int:
+        """Number of ways along main directions, which come first."""
+        return int(self.is_main.sum())
+
+    @classmethod
+    def of(cls, directions: np.ndarray, prices: Prices, other: float) -> _Ways:
+        quarter = np.arange(0.0, 360.0, 90.0)
+        main = [angle + quarter for angle in directions]
+        fan = np.arange(0.0, 360.0, _FAN) + (directions[0] if len(main) else 0.0)
+        angle = np.concatenate([*main, fan])
+        sizes = [*(len(one) for one in main), len(fan)]
+        costs = [0.0, prices.second][: len(main)] + [other]
+        price = prices.corner * np.repeat(costs, sizes)
+        turned = (angle - angle[:, None] + 180.0) % 360.0 - 180.0
+        turn = prices.corner * _turn_prices(turned, prices) + price
+        unit = np.column_stack([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
+        return cls(angle, unit, np.arange(len(angle)) < len(angle) - len(fan), price, turn)
+
+
+def _turn_prices(turned: np.ndarray, prices: Prices) -> np.ndarray:
+    """Return what turns by angles (°, -180 to 180) cost, in multiples of a right-angled corner."""
+    size = np.abs(turned)
+    sharp = 1 + (prices.sharp - 1) * np.clip((size - 90) / 80, 0.0, 1.0)
+    cost = np.where(size < _FLAT, prices.flat, np.where(size > _SHARP, sharp, 1.0))
+    return np.where((size < _SAME) | (size > 180 - _SAME), prices.step, cost)
+
+
+class _Chain:
+    """Samples of a ring from the first one on, once around, and sums over the pieces between them."""
+
+    def __init__(self, samples: np.ndarray, ways: _Ways) -> None:
+        self.ways = ways
+        self.vertices = np.concatenate([samples, samples[:1]])
+        self.middles = (self.vertices[1:] + self.vertices[:-1]) / 2
+        origin = samples.mean(axis=0)
+        self.step = float(np.hypot(*np.diff(self.vertices, axis=0).T).mean())
+        fixed = ways.unit[: ways.n_fixed]
+        across = (self.middles - origin) @ np.column_stack([-fixed[:, 1], fixed[:, 0]]).T
+        none = np.zeros((1, len(fixed)))
+        self.sums = np.concatenate([none, np.cumsum(across, axis=0)])
+        self.squares = np.concatenate([none, np.cumsum(across**2, axis=0)])
+        x, y = (self.middles - origin).T
+        self.moments = np.concatenate([np.zeros((1, 5)), np.cumsum(np.column_stack([x, y, x * x, y * y, x * y]), axis=0)])
+        self.along = (self.vertices - origin) @ fixed.T
+
+    def sure_corner(self) -> tuple[int, int]:
+        """Return a sample where a run begins, and its way: one between two long runs."""
+        n = len(self.middles)
+        length = min(n, _TRIAL)
+        while True:
+            _, runs = self._runs(self.ways.price, np.zeros_like(self.ways.price), length)
+            if len(runs) > 1 or length == n:
+                break
+            length = min(n, 2 * length)
+        size = [stop - start for start, stop, _ in runs]
+        if len(runs) == 1:
+            return 0, runs[0][2]
+        best = max(range(1, len(runs)), key=lambda i: min(size[i - 1], size[i]))
+        return runs[best][0], runs[best][2]
+
+    def closed_runs(self, after: int) -> tuple[float, list[tuple[int, int, int]]]:
+        """Return the cheapest runs once around, and their cost, from a corner on, the first by a given way."""
+        start = np.full(len(self.ways.price), np.inf)
+        start[after] = 0.0
+        return self._runs(start, self.ways.turn[:, after], len(self.middles))
+
+    def _runs(
+        self, start: np.ndarray, end: np.ndarray, length: int
+    ) -> tuple[float, list[tuple[int, int, int]]]:
+        """Return the cheapest runs (first sample, last sample, way) from the first sample over a length, and their cost.
+
+        ``start`` and ``end`` (k,) are what it costs to begin and to end by each way.
+        """
+        n_ways, n_fixed = len(start), self.ways.n_fixed
+        cost, begun = np.full((2, length + 1, n_ways), np.inf)
+        came, turned = np.zeros((2, length + 1, n_ways), np.int64)
+        begun[0] = start
+        every = np.arange(n_ways)
+        firsts, is_done = np.zeros(1, np.int64), np.zeros(1, bool)
+        for low in range(_SHORTEST, length + 1, _SHORTEST):
+            ends = np.arange(low, min(low + _SHORTEST, length + 1))
+            fixed, is_run = self._fixed_costs(firsts, ends)
+            free, way, is_free_run = self._free_costs(firsts, ends)
+            before = begun[firsts][:, None]
+            total = np.full((len(firsts), len(ends), n_ways), np.inf)
+            total[..., :n_fixed] = np.where(is_run, before[..., :n_fixed] + fixed, np.inf)
+            rows = np.arange(len(firsts))[:, None], np.arange(len(ends))
+            total[rows[0], rows[1], way] = begun[firsts[:, None], way] + np.where(is_free_run, free, np.inf)
+            best = total.argmin(axis=0)
+            cost[ends] = total[best, rows[1][:, None], every]
+            came[ends] = firsts[best]
+            turns = cost[ends][:, :, None] + self.ways.turn
+            turned[ends] = turns.argmin(axis=1)
+            begun[ends] = turns[rows[1][:, None], turned[ends], every]
+            # A run from a later sample on costs no more: what is farther off begins there. It stays for one more round,
+            # since runs have a least length.
+            least = np.concatenate([fixed, np.broadcast_to(free[..., None], (*free.shape, n_ways - n_fixed))], axis=2)
+            is_behind = (before + least >= begun[ends]).all(axis=2) & (ends - firsts[:, None] >= _SHORTEST)
+            firsts, is_done = firsts[~is_done], is_behind.any(axis=1)[~is_done]
+            firsts, is_done = np.append(firsts, ends), np.append(is_done, np.zeros(len(ends), bool))
+        last = cost[length] + end
+        return float(last.min()), self._traced(last, came, turned)
+
+    def _fixed_costs(self, firsts: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return what runs from samples (a,) to samples (b,) by each main way cost (a, b, k), and which can be."""
+        count = (ends - firsts[:, None])[..., None]
+        sums = self.sums[ends] - self.sums[firsts][:, None]
+        squares = self.squares[ends] - self.squares[firsts][:, None]
+        along = self.along[ends] - self.along[firsts][:, None]
+        is_run = (along >= _ADVANCE * self.step * count) & (count >= _SHORTEST)
+        return self.step * (squares - sums**2 / np.maximum(count, 1)), is_run
+
+    def _free_costs(self, firsts: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return what runs along the lines that fit best cost (a, b), which of the other ways that is, and which can be."""
+        count = np.maximum(ends - firsts[:, None], 1)
+        x, y, xx, yy, xy = np.moveaxis(self.moments[ends] - self.moments[firsts][:, None], -1, 0)
+        xx, yy, xy = xx - x * x / count, yy - y * y / count, xy - x * y / count
+        least = np.maximum((xx + yy) / 2 - np.hypot((xx - yy) / 2, xy), 0.0)
+        angle = np.degrees(np.arctan2(2 * xy, xx - yy)) / 2
+        east, north = np.moveaxis(self.vertices[ends] - self.vertices[firsts][:, None], -1, 0)
+        along = east * np.cos(np.radians(angle)) + north * np.sin(np.radians(angle))
+        is_run = (np.abs(along) >= _ADVANCE * self.step * count) & (ends - firsts[:, None] >= _SHORTEST)
+        n_free = round(360 / _FAN)
+        way = np.rint((angle + 180 * (along < 0) - self.ways.angle[self.ways.n_fixed]) / _FAN).astype(np.int64) % n_free
+        return self.step * least, self.ways.n_fixed + way, is_run
+
+    def _traced(self, cost: np.ndarray, came: np.ndarray, turned: np.ndarray) -> list[tuple[int, int, int]]:
+        """Return the runs that lead to the end, from the tables of where each comes from."""
+        runs, end, way = [], len(came) - 1, int(np.argmin(cost))
+        while end > 0:
+            first = int(came[end, way])
+            runs.append((first, end, way))
+            end, way = first, int(turned[first, way])
+        return runs[::-1]
+
+    def line(self, first: int, last: int, way: int) -> tuple[np.ndarray, np.ndarray, bool]:
+        """Return a place on the line of a run, its direction (2,), and whether that is a main one."""
+        inner = slice(first + 1, last - 1) if last - first > _SHORTEST else slice(first, last)
+        samples, unit, is_main = self.middles[inner], self.ways.unit[way], bool(self.ways.is_main[way])
+        mean = samples.mean(axis=0)
+        if not is_main and len(samples) > _SHORTEST:
+            values, vectors = np.linalg.eigh(np.cov((samples - mean).T))
+            fitted = vectors[:, -1] * np.sign(vectors[:, -1] @ unit)
+            unit = fitted if fitted @ unit > np.cos(np.radians(_FAN / 2)) else unit
+        return mean, unit, is_main
+
+
+def _joined(lines: list, breaks: list[np.ndarray], step: float) -> list[Edge]:
+    """Return the edges along lines, each of which begins near a break and ends near the next one."""
+    corners = [_corner(lines[i - 1], lines[i], breaks[i], step) for i in range(len(lines))]
+    edges = []
+    for (ends, start), line, (end, _) in zip(corners, lines, [*corners[1:], corners[0]]):
+        if (ends != start).any():
+            edges.append(Edge(ends, start, line[2]))
+        edges.append(Edge(start, end, line[2]))
+    return [edge for edge in edges if (edge.start != edge.end).any()]
+
+
+def _corner(before: tuple, after: tuple, at: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return where one line ends and the next begins: where they cross, or beside the break that parts their runs."""
+    (p, u, _), (q, v, _) = before, after
+    sine = float(u[0] * v[1] - u[1] * v[0])
+    offset = q - p
+    if abs(sine) > _PARALLEL:
+        place = p + u * float(offset[0] * v[1] - offset[1] * v[0]) / sine
+        if np.hypot(*(place - at)) <= _FARTHEST * step:
+            return place, place
+    return p + u * float((at - p) @ u), q + v * float((at - q) @ v)
+
+
+def aligned(rings: list[list[Edge]], within: float) -> list[list[Edge]]:
+    """Return rings in which edges along nearly the same line as a longer one of another ring lie on the line of that.
+
+    Parameters
+    ----------
+    rings : list of list of Edge
+        Edges of each, in order.
+    within : float
+        Greatest distance of both ends of an edge from that line, and of the gap between the two edges, m.
+    """
+    edges = [edge for ring in rings for edge in ring]
+    if not edges:
+        return rings
+    ring_of = np.repeat(np.arange(len(rings)), [len(ring) for ring in rings])
+    start, end = (np.array([getattr(edge, name) for edge in edges]) for name in ("start", "end"))
+    length = np.hypot(*(end - start).T)
+    unit = (end - start) / length[:, None]
+    is_free = np.ones(len(edges), bool)
+    line = np.arange(len(edges))
+    for number in np.argsort(-length, kind="stable").tolist():
+        if not is_free[number]:
+            continue
+        is_free[number] = False
+        normal = np.array([-unit[number, 1], unit[number, 0]])
+        off = np.maximum(np.abs((start - start[number]) @ normal), np.abs((end - start[number]) @ normal))
+        along = np.sort([(start - start[number]) @ unit[number], (end - start[number]) @ unit[number]], axis=0)
+        is_beside = (along[0] <= length[number] + within) & (along[1] >= -within)
+        # An edge as short as the distance may cross the line.
+        is_parallel = np.abs(unit @ unit[number]) >= _NEARLY
+        own = is_free & is_beside & is_parallel & (off <= within) & (ring_of != ring_of[number])
+        line[own], is_free[own] = number, False
+    moved, first = [], 0
+    for ring in rings:
+        moved.append(_on_lines(ring, [edges[i] for i in line[first : first + len(ring)]], within))
+        first += len(ring)
+    return moved
+
+
+def _on_lines(ring: list[Edge], lines: list[Edge], within: float) -> list[Edge]:
+    """Return a ring of which each edge lies on the line of another one, unless that is itself."""
+    if all(edge is line for edge, line in zip(ring, lines)):
+        return ring
+    made = []
+    for edge, line in zip(ring, lines):
+        unit = (line.end - line.start) / np.hypot(*(line.end - line.start))
+        unit = unit * np.sign(unit @ (edge.end - edge.start))
+        middle = (edge.start + edge.end) / 2
+        made.append((line.start + unit * float((middle - line.start) @ unit), unit, line.is_main and edge.is_main))
+    return _joined(made, [edge.start for edge in ring], within)
