@@ -1,1 +1,1 @@
-"""Outlines of buildings as polygons: from soft shares on a lattice, straight, with borders shared where buildings touch."""
+"""Outlines of buildings as polygons: soft shares on a lattice, straight walls, borders shared where buildings touch."""

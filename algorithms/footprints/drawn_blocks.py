@@ -11,7 +11,6 @@ import numpy as np
 
 from ..geometry.cell_polygons import cell_polygons, connected_cells
 from ..geometry.cheapest_labels import cheapest_labels
-from ..geometry.groups import split_groups
 from ..geometry.ring_directions import along_two_directions
 from ..geometry.ring_drawing import Edge, Prices, aligned, draw_ring
 from ..geometry.subdivision import Subdivision
@@ -164,7 +163,9 @@ def _shares_of(
     """
     corners = np.array([edge.start for edge in edges])
     numbers = sorted({piece.building for piece in pieces})
-    lattice = Lattice.around(np.concatenate([corners, *(ring for piece in pieces for ring in piece.rings)]), how.spacing)
+    lattice = Lattice.around(
+        np.concatenate([corners, *(ring for piece in pieces for ring in piece.rings)]), how.spacing
+    )
     share = np.zeros((len(numbers) + 1, *lattice.shape), np.float32)
     for at, number in enumerate(numbers, start=1):
         own = shares[number]
@@ -247,7 +248,7 @@ def _are_drawn(start: np.ndarray, end: np.ndarray, edges: list[Edge]) -> np.ndar
 
 
 def _without_scraps(cells: Subdivision, label: np.ndarray, how: Drawing) -> np.ndarray:
-    """Return the labels with holes and polygons that are too small given to what they share most of their border with."""
+    """Return the labels with holes and polygons that are too small given to what is around them."""
     for is_ground, least in ((True, how.min_hole_area), (False, how.min_area)):
         piece = connected_cells(cells, label)
         size = np.bincount(piece, cells.areas())

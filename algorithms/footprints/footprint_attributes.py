@@ -136,16 +136,16 @@ def footprint_attributes(
     for face, (outlined, roof, rows) in enumerate(zip(outlines, own, all_own)):
         area = sum(map(signed_area, outlined.rings))
         along, is_outer = owners.border(face, outlined.rings)
-        roof = _own_roof(roof, plan, along[~is_outer], spacing)
-        eaves = _eave_heights(along, is_outer, plan[roof], over_ground[roof], spacing)
+        inner = _own_roof(roof, plan, along[~is_outer], spacing)
+        eaves = _eave_heights(along, is_outer, plan[inner], over_ground[inner], spacing)
         attributes.append(
             {
                 "cluster_id": outlined.building,
                 "area": area,
                 "perimeter": sum(map(perimeter, outlined.rings)),
-                "volume": area * _mean_height(outlined.nodes, plan[roof], over_ground[roof], spacing),
+                "volume": area * _mean_height(outlined.nodes, plan[inner], over_ground[inner], spacing),
                 "regularized": int(outlined.is_straight),
-                **_roof_heights(measures.xyz[points[roof], 2], over_ground[roof], eaves),
+                **_roof_heights(measures.xyz[points[inner], 2], over_ground[inner], eaves),
                 **_evidence(measures, members[rows]),
             }
         )
@@ -195,13 +195,17 @@ class _Owners:
         return self.nearest[self._nodes(plan)]
 
     def border(self, face: int, rings: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-        """Return places (b, 2) along an outline, and which of them (b,) are no border with another one, all if it has none."""
+        """Return places (b, 2) along an outline, and which (b,) are no border with another one; all if it has none."""
         places, outward = [], []
-        for start, end in zip(*(np.concatenate([ring[part] for ring in rings]) for part in (slice(-1), slice(1, None)))):
+        for start, end in zip(
+            *(np.concatenate([ring[part] for ring in rings]) for part in (slice(-1), slice(1, None)))
+        ):
             length = float(np.hypot(*(end - start)))
             share = np.arange(0.5, max(1.0, length / self.spacing)) / max(1.0, length / self.spacing)
             places.append(start + share[:, None] * (end - start))
-            outward.append(np.tile(np.array([end[1] - start[1], start[0] - end[0]]) / max(length, 1e-9), (len(share), 1)))
+            outward.append(
+                np.tile(np.array([end[1] - start[1], start[0] - end[0]]) / max(length, 1e-9), (len(share), 1))
+            )
         along, across = np.concatenate(places), np.concatenate(outward)
         beyond = self.face[self._nodes(along + self.spacing * across)]
         is_outer = (beyond < 0) | (beyond == face)
@@ -222,7 +226,7 @@ def _own_roof(roof: np.ndarray, plan: np.ndarray, shared: np.ndarray, spacing: f
 def _eave_heights(
     along: np.ndarray, is_outer: np.ndarray, plan: np.ndarray, height: np.ndarray, spacing: float
 ) -> np.ndarray:
-    """Return the height (b,) of the roof at the outer places of its outline (a, 2), continued from the roof beside them.
+    """Return the height (b,) of the roof at the outer places of its outline (a, 2), continued from the roof there.
 
     Many points at an outline are those of the wall below, down to where they are no longer taken for a roof's.
     """

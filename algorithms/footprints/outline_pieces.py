@@ -10,7 +10,7 @@ from ..geometry.groups import components
 from ..geometry.level_lines import level_lines
 from ..geometry.line_segments import is_inside
 from ..geometry.rings import perimeter, signed_area
-from ..packages import ndimage, spatial
+from ..packages import spatial
 from .soft_shares import Shares
 
 # Distance (spacings) of samples along rings.
@@ -42,9 +42,7 @@ class Piece:
     area: float
 
 
-def find_pieces(
-    building: int, shares: Shares, spacing: float, min_area: float, min_hole_area: float
-) -> list[Piece]:
+def find_pieces(building: int, shares: Shares, spacing: float, min_area: float, min_hole_area: float) -> list[Piece]:
     """Return the pieces of a building of at least ``min_area`` (m²), with their holes of ``min_hole_area`` (m²)."""
     rings = [shares.lattice.places(ring) for ring in level_lines(shares.share - shares.rest)]
     sizes = [signed_area(ring) for ring in rings]
@@ -73,5 +71,5 @@ def blocks_of(pieces: list[Piece], spacing: float) -> list[list[Piece]]:
     samples = np.concatenate([ring for piece in pieces for ring in piece.rings])
     of_piece = np.repeat(np.arange(len(pieces)), [sum(map(len, piece.rings)) for piece in pieces])
     near = of_piece[spatial.cKDTree(samples).query_pairs(_TOGETHER * spacing, output_type="ndarray")]
-    count, block = components(*near.T, len(pieces))
+    count, block = components(near[:, 0], near[:, 1], len(pieces))
     return [[pieces[i] for i in np.flatnonzero(block == number)] for number in range(count)]

@@ -90,6 +90,7 @@ _STRONG = 0.5
 # Largest scrap that a party wall may cut off at the outline (spacings squared): it stays with the house beside it.
 _SCRAP = 2.0
 
+
 @dataclass(frozen=True)
 class Houses:
     """The houses of a building.
@@ -160,7 +161,9 @@ def _lines(
     return np.moveaxis(ends, 2, 0) @ turn.T, np.concatenate([strength, more])
 
 
-def _inside(lattice: Lattice, is_inside: np.ndarray, axes: tuple[np.ndarray, np.ndarray], turn: np.ndarray) -> np.ndarray:
+def _inside(
+    lattice: Lattice, is_inside: np.ndarray, axes: tuple[np.ndarray, np.ndarray], turn: np.ndarray
+) -> np.ndarray:
     """Return which places of a grid lie in the building.
 
     ``axes`` are those of the grid before it is turned back by the transpose of ``turn`` (2, 2).

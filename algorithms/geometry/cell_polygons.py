@@ -42,7 +42,9 @@ def cell_polygons(cells: Subdivision, label: np.ndarray) -> list[CellPolygon]:
     corners = _corners(borders, cells.vertices)
     rings: dict[int, list[np.ndarray]] = {}
     for number, loop in _loops(borders, cells.vertices):
-        rings.setdefault(number, []).append(_from_south_west(np.array([cells.vertices[v] for v in loop if v in corners])))
+        rings.setdefault(number, []).append(
+            _from_south_west(np.array([cells.vertices[v] for v in loop if v in corners]))
+        )
     found = []
     for number in sorted(rings):
         members = np.flatnonzero(piece == number)
@@ -60,7 +62,7 @@ def connected_cells(cells: Subdivision, label: np.ndarray) -> np.ndarray:
     """Return the number (cells,) of the piece that each cell is in: cells of one label that share edges."""
     _, sides = cells.edges()
     same = sides[label[sides[:, 0]] == label[sides[:, 1]]]
-    return components(*same.T, len(cells))[1]
+    return components(same[:, 0], same[:, 1], len(cells))[1]
 
 
 def _borders(cells: Subdivision, piece: np.ndarray, label: np.ndarray) -> list[tuple[int, int, int]]:
@@ -78,11 +80,15 @@ def _corners(borders: list[tuple[int, int, int]], vertices: list[tuple[float, fl
     for _, start, end in borders:
         beside.setdefault(start, set()).add(end)
         beside.setdefault(end, set()).add(start)
-    return {
-        vertex
-        for vertex, others in beside.items()
-        if len(others) != 2 or _bend(*(vertices[other] for other in sorted(others)), vertices[vertex]) > _STRAIGHT
-    }
+    corners = set()
+    for vertex, others in beside.items():
+        if len(others) != 2:
+            corners.add(vertex)
+            continue
+        before, after = sorted(others)
+        if _bend(vertices[before], vertices[after], vertices[vertex]) > _STRAIGHT:
+            corners.add(vertex)
+    return corners
 
 
 def _bend(before: tuple, after: tuple, at: tuple) -> float:
@@ -97,11 +103,11 @@ def _loops(borders: list[tuple[int, int, int]], vertices: list[tuple[float, floa
     following: dict[tuple[int, int], list[int]] = {}
     for number, start, end in borders:
         following.setdefault((number, start), []).append(end)
-    for number, start, end in borders:
-        if end not in following.get((number, start), []):
+    for number, start, second in borders:
+        if second not in following.get((number, start), []):
             continue
-        following[number, start].remove(end)
-        loop = [start]
+        following[number, start].remove(second)
+        loop, end = [start], second
         while end != loop[0]:
             loop.append(end)
             ends = following[number, end]

@@ -39,11 +39,11 @@ def level_lines(field: np.ndarray) -> list[np.ndarray]:
     following = order[np.searchsorted(starts[order], ends)].tolist()
     rings, is_used = [], [False] * len(starts)
     for first in range(len(starts)):
-        ring = []
-        while not is_used[first]:
-            is_used[first] = True
-            ring.append(first)
-            first = following[first]
+        ring, number = [], first
+        while not is_used[number]:
+            is_used[number] = True
+            ring.append(number)
+            number = following[number]
         if ring:
             rings.append(places[[*ring, ring[0]]])
     return rings

@@ -21,8 +21,8 @@ _STRAIGHT = 0.25
 # Step of the directions (°).
 _STEP, _N_STEPS = 0.5, 180
 
-# No direction stands out where the lower quartile of the weights is more than this share of their mean: 0.76 and more in
-# simulated towers, 0.72 and less in 30 real buildings, all with this many samples or more.
+# No direction stands out where the lower quartile of the weights is more than this share of their mean: 0.76 and more
+# in simulated towers, 0.72 and less in 30 real buildings, all with this many samples or more.
 _EVEN, _ROUND_SAMPLES = 0.74, 50
 
 # An edge runs along a direction within this angle (°): the deviation of an edge of 6 m whose ends lie 0.3 m apart

@@ -126,8 +126,20 @@ def _drawn(samples: np.ndarray, ways: _Ways) -> tuple[float, list[Edge]]:
 
 @dataclass(frozen=True)
 class _Ways:
-    """Oriented directions: angles (k,), °, unit vectors (k, 2), whether main (k,), the price (k,) of a run and (k, k) of a
-    turn. The others may turn by half of the angle between them.
+    """Oriented directions, the main ones first; others may turn by half of the angle between them.
+
+    Attributes
+    ----------
+    angle : ndarray of shape (k,)
+        Directions, °.
+    unit : ndarray of shape (k, 2)
+        Unit vectors along these.
+    is_main : ndarray of shape (k,), bool
+        Which of these are main directions.
+    price : ndarray of shape (k,)
+        What a run costs, m³.
+    turn : ndarray of shape (k, k)
+        What a turn from one to another and the run after it cost, m³.
     """
 
     angle: np.ndarray
@@ -145,7 +157,7 @@ class _Ways:
     def of(cls, directions: np.ndarray, prices: Prices, other: float) -> _Ways:
         quarter = np.arange(0.0, 360.0, 90.0)
         main = [angle + quarter for angle in directions]
-        fan = np.arange(0.0, 360.0, _FAN) + (directions[0] if len(main) else 0.0)
+        fan = np.arange(0.0, 360.0, _FAN) + (directions[0] if main else 0.0)
         angle = np.concatenate([*main, fan])
         sizes = [*(len(one) for one in main), len(fan)]
         costs = [0.0, prices.second][: len(main)] + [other]
@@ -179,7 +191,9 @@ class _Chain:
         self.sums = np.concatenate([none, np.cumsum(across, axis=0)])
         self.squares = np.concatenate([none, np.cumsum(across**2, axis=0)])
         x, y = (self.middles - origin).T
-        self.moments = np.concatenate([np.zeros((1, 5)), np.cumsum(np.column_stack([x, y, x * x, y * y, x * y]), axis=0)])
+        self.moments = np.concatenate(
+            [np.zeros((1, 5)), np.cumsum(np.column_stack([x, y, x * x, y * y, x * y]), axis=0)]
+        )
         self.along = (self.vertices - origin) @ fixed.T
 
     def sure_corner(self) -> tuple[int, int]:
@@ -203,10 +217,8 @@ class _Chain:
         start[after] = 0.0
         return self._runs(start, self.ways.turn[:, after], len(self.middles))
 
-    def _runs(
-        self, start: np.ndarray, end: np.ndarray, length: int
-    ) -> tuple[float, list[tuple[int, int, int]]]:
-        """Return the cheapest runs (first sample, last sample, way) from the first sample over a length, and their cost.
+    def _runs(self, start: np.ndarray, end: np.ndarray, length: int) -> tuple[float, list[tuple[int, int, int]]]:
+        """Return the cost of the cheapest runs from the first sample over a length, and these: first, last sample, way.
 
         ``start`` and ``end`` (k,) are what it costs to begin and to end by each way.
         """
@@ -250,7 +262,7 @@ class _Chain:
         return self.step * (squares - sums**2 / np.maximum(count, 1)), is_run
 
     def _free_costs(self, firsts: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return what runs along the lines that fit best cost (a, b), which of the other ways that is, and which can be."""
+        """Return what runs along the lines that fit best cost (a, b), by which of the other ways, and which can be."""
         count = np.maximum(ends - firsts[:, None], 1)
         x, y, xx, yy, xy = np.moveaxis(self.moments[ends] - self.moments[firsts][:, None], -1, 0)
         xx, yy, xy = xx - x * x / count, yy - y * y / count, xy - x * y / count

@@ -64,7 +64,7 @@ def split_blocks(
 
 
 def _houses_at(plan: np.ndarray, height: np.ndarray, places: np.ndarray, spacing: float) -> np.ndarray:
-    """Return the house (k,), from 1, at places (k, 2) of a building of which roof points and their heights are given."""
+    """Return the house (k,), from 1, at places (k, 2) of a building with these roof points and heights."""
     shares = find_shares(plan, np.ones(len(plan)), np.ones(len(plan), np.int64), np.zeros((0, 2)), spacing)[1]
     rings = [ring for piece in find_pieces(1, shares, spacing, 0.0, 0.0) for ring in piece.rings]
     if not rings:
