@@ -277,6 +277,7 @@ def _model(number: int, house: House) -> NamedModel:
     solid = Solid(house.vertices, [rings for rings, _ in faces], [kind for _, kind in faces], roofs)
     base = float(house.vertices[6, 2])
     model = BuildingModel(base, "2.2", solids={"2.2": [solid]}, rms=house.rms, n_points=house.n_points)
+    model.terrain, model.ridge = base, float(house.vertices[:, 2].max())
     return NamedModel(str(number), [house.vertices[[6, 7, 8, 9, 6], :2]], model)
 
 

@@ -93,8 +93,9 @@ def _are_inside(cells: Subdivision, rings: list) -> np.ndarray:
 
     Lines along a facade that are nearly in line leave wedges of millimeters between each other.
     """
-    inside = inside_rings(cells.centers(), rings) & ~cells.touch_rectangle()
-    for cell in np.flatnonzero(_mean_widths(cells) < _WEDGE):
+    is_rim = cells.touch_rectangle()
+    inside = inside_rings(cells.centers(), rings) & ~is_rim
+    for cell in np.flatnonzero((_mean_widths(cells) < _WEDGE) & ~is_rim):
         loop = cells.loops[cell]
         edges = [(v, u) for u, v in zip(loop, [*loop[1:], loop[0]]) if (v, u) in cells.cell_of]
         longest = max(edges, key=lambda edge: (math.dist(*(cells.vertices[v] for v in edge)), edge))

@@ -101,3 +101,13 @@ def test_points_on_no_plane_form_a_level_patch():
     assert (planes.label[label < 0] == 1).mean() > 0.9
     none = with_level_patches(xyz, np.zeros(len(xyz), bool), RoofPlanes(np.array([[0, 0, 6.0]]), label), 0.3, 10)
     assert len(none) == 1
+
+
+def test_a_wedge_at_the_edge_of_the_rectangle_stays_outside():
+    """A narrow cell beside the footprint that reached the rectangle took the state of its neighbor inside."""
+    ring = np.array([[0, 0], [12, 0], [12, 8], [6, 8.012], [0, 8], [0, 0]], float)
+    for turn in np.deg2rad(np.arange(0, 90, 7)):
+        turned = ring @ [[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]]
+        cells, inside = empty_partition([turned], np.zeros((0, 2)))
+        assert not (inside & cells.touch_rectangle()).any()
+        assert cells.areas()[inside].sum() == pytest.approx(96.07, abs=0.1)
