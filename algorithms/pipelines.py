@@ -44,6 +44,7 @@ _DETECTION = (
     Step("refine", "refine_buildings"),
     Step("near_ground", "complete_ground"),
     Step("water", "classify_water"),
+    Step("decks", "classify_bridges", {"search": "near water", "max_width": 20.0}),
     Step("wires", "classify_wires"),
     Step("vegetation", "classify_vegetation"),
     Step("footprints", "extract_footprints"),
@@ -65,7 +66,7 @@ _PIPELINES = (
             "Noise, ground and heights first, on request bridges; then roof surfaces and clusters of everything else "
             "above the ground. A cluster is a building by its mean entropy, compared with that of planes and volumes, "
             "and by how much of the beam passes through it; then whole buildings with their walls, whose edges are "
-            "corrected by what all buildings of the cloud look like, water, wires, vegetation among the rest, and "
+            "corrected by what all buildings of the cloud look like, water with its bridges, wires, vegetation among the rest, and "
             "outlines. Distances and tolerances follow the density and the noise of the cloud."
         ),
         references=_SANTOS,
@@ -77,6 +78,7 @@ _PIPELINES = (
             "ground_max_building_size",
             "bridges_max_width",
             "water_look_for",
+            "decks_max_width",
             "wires_look_for",
             "vegetation_look_for",
             "footprints_regularize",

@@ -36,7 +36,7 @@ _LEAST_REACH, _REACH_SPACINGS, _MOST_REACH = 8.0, 20.0, 15.0
     group="Land cover",
     tags="wire,power line,conductor,cable,catenary,span,pole,mast,pylon,tower,electricity,corridor,RANSAC",
     writes=("classification",),
-    reach=_MOST_REACH,
+    reach=_LEAST_REACH,
 )
 def classify_wires(
     xyz,

@@ -14,9 +14,9 @@ from ..sampling.cloud_sampling import CloudSampling
 from ..sampling.surface_noise import LEAST_NEIGHBORS, ON_PLANE
 from ..stage import Monitor
 
-# How far (m) from a point the points of its object are seen in a cloud that is worked on in parts: the length of a car.
-# Of longer objects the part within it decides.
-REACH = 5.0
+# How far (m) from a point the points of its object are seen in a cloud that is worked on in parts: half the
+# length of a car. Of longer objects the part within it decides.
+REACH = 2.5
 
 
 @dataclass(frozen=True)

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Optional
+from typing import Annotated, Optional
 
 import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..params import BridgeArea, BridgeHeight, BridgeWidth, PointDensity, SurfaceNoise
 from ..sampling.cloud_sampling import CloudSampling, not_noise
-from ..stage import stage
+from ..stage import Param, stage
 from ..terrain.on_decks import on_decks
 from .bridge_decks import ABOVE_DECK, Decks
+from .deck_sites import near_water
 
 # No deck is of these classes.
 _NO_DECK = (
@@ -23,12 +24,16 @@ _NO_DECK = (
 )
 
 
+# Where bridges are looked for.
+_EVERYWHERE, _OVER_WATER = "everywhere", "near water"
+
+
 @stage(
     "Classify bridges",
     group="Terrain",
     tags="bridge,fly-over,bridge deck,footbridge,viaduct,ground,terrain,DTM,Sithole,Vosselman",
     writes=("classification",),
-    reach=lambda tunables: 2 * tunables["max_width"],
+    reach=lambda tunables: tunables["max_width"] * (2 if tunables["search"] == _EVERYWHERE else 0.5),
 )
 def classify_bridges(
     xyz,
@@ -37,6 +42,15 @@ def classify_bridges(
     min_height: BridgeHeight = 1.0,
     max_width: BridgeWidth = 40.0,
     min_bridge_area: BridgeArea = 20.0,
+    search: Annotated[
+        str,
+        Param(
+            "Search",
+            "Where bridges are looked for: everywhere, or only within 20 m of classified water (9), in a fraction of "
+            "the time.",
+            choices=(_EVERYWHERE, _OVER_WATER),
+        ),
+    ] = _EVERYWHERE,
     noise: SurfaceNoise = None,
     density: PointDensity = None,
     sampling: Optional[CloudSampling] = None,
@@ -46,8 +60,9 @@ def classify_bridges(
 
     On lines in eight directions the sections of a bridge are smooth, opaque and raised on both sides. Such parts become
     bridge deck (17) if they are large enough and go on into the ground at both ends. Bridges whose ends are not in the
-    cloud, and embankments, are not found. A run in tiles sees twice the maximum width around each block: bridges that
-    go farther beyond its border are not found there; give long ones a larger block or maximum width.
+    cloud, and embankments, are not found. A run in tiles sees twice the maximum width around each block, half
+    of it where bridges are looked for near water only: bridges that go farther beyond its border are not found there;
+    give long ones a larger block or maximum width.
 
     Parameters
     ----------
@@ -55,7 +70,7 @@ def classify_bridges(
         Coordinates, m.
     classification : ndarray of shape (n,), uint8
         ASPRS classes with ground (2); vegetation, buildings and water are no decks, earlier bridge deck (17) is
-        forgotten.
+        forgotten where bridges are looked for.
 
     Returns
     -------
@@ -88,12 +103,18 @@ def classify_bridges(
     monitor.resolved(density=density, noise=noise)
     used = not_noise(classification)
     points = sampling.from_corner(xyz[used])
+    if search == _OVER_WATER:
+        near = near_water(points, classification[used] == PointClass.WATER)
+        if not near.any():
+            monitor.progress(1.0)
+            return classification.astype(np.uint8)
+        used, points = used[near], points[near]
     may_be_deck = ~np.isin(classification[used], _NO_DECK)
     spacing = 1 / float(np.sqrt(density))
     decks = Decks.of(min_height, max_width, min_bridge_area, spacing, noise)
     is_deck = decks.find(points, may_be_deck, classification[used] == PointClass.GROUND, monitor)
     classes = classification.astype(np.uint8)
-    classes[classes == PointClass.BRIDGE_DECK] = PointClass.UNCLASSIFIED
+    classes[used[classification[used] == PointClass.BRIDGE_DECK]] = PointClass.UNCLASSIFIED
     ground = np.flatnonzero((classification[used] == PointClass.GROUND) & ~is_deck)
     # Ground points on a deck are those of cars and parapets; ground that rises beside the deck stays ground.
     classes[used[ground[on_decks(points[ground], points[is_deck], ABOVE_DECK)[0]]]] = PointClass.UNCLASSIFIED

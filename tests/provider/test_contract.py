@@ -40,6 +40,8 @@ IDS = {
     "simulatepowerline",
     "classifyvegetation",
     "classifywater",
+    "simulatepowerline",
+    "classifywires",
     "completeground",
     "classifygroundcloth",
     "classifygroundtin",

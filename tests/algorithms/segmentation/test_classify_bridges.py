@@ -8,6 +8,7 @@ from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.run import run_pipeline
 from lidar_buildings.algorithms.segmentation.classify_bridges import classify_bridges
 from lidar_buildings.algorithms.simulation.simulate_bridges import simulate_bridges
+from lidar_buildings.algorithms.simulation.simulate_town import simulate_town
 from lidar_buildings.algorithms.stage import Cancelled
 from lidar_buildings.tests.builders import FAR
 from lidar_buildings.tests.monitors import Listening
@@ -125,3 +126,37 @@ def test_cancel_gets_through():
     xyz, part = canal()
     with pytest.raises(Cancelled):
         classified(xyz, part, monitor=Listening(stop_at=0.5))
+
+
+def test_near_water_the_bridge_over_it_is_found():
+    xyz, part = canal()
+    classes = np.where(part == EARTH, 2, np.where(part == WATER, 9, 1)).astype(np.uint8)
+    made = classify_bridges(xyz, classes, search="near water", max_width=20.0)
+    assert f_score(made == 17, part == DECK) > 0.95
+
+
+def test_near_water_earlier_decks_far_from_it_stay():
+    xyz, part = canal()
+    classes = np.where(part == EARTH, 2, np.where(part == WATER, 9, 1)).astype(np.uint8)
+    far = np.array([[200.0, 20.0, 5.0], [201.0, 20.0, 5.0]])
+    made = classify_bridges(
+        np.concatenate([xyz, far]), np.append(classes, [17, 17]).astype(np.uint8), search="near water"
+    )
+    assert (made[-2:] == 17).all()
+
+
+def test_near_water_nothing_changes_where_there_is_none():
+    xyz, part = canal()
+    classes = np.where((part == EARTH) | (part == WATER), 2, 1).astype(np.uint8)
+    assert (classify_bridges(xyz, classes) == 17).any()
+    np.testing.assert_array_equal(classify_bridges(xyz, classes, search="near water"), classes)
+
+
+def test_bridges_over_the_river_of_a_town_are_decks_by_default():
+    xyz, true, number, count, *_ = simulate_town(size=120.0, density=6.0, seed=3)
+    cloud = create_cloud({"xyz": xyz, "return_number": number, "number_of_returns": count})
+    run_pipeline(PIPELINES["detect_buildings"], cloud)
+    found, is_deck = cloud.get("classification") == 17, true == 17
+    # What else is called deck are its rails.
+    assert (is_deck & found).sum() / found.sum() > 0.9
+    assert (is_deck & found).sum() / is_deck.sum() > 0.5
