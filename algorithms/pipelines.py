@@ -66,8 +66,8 @@ _PIPELINES = (
             "Noise, ground and heights first, on request bridges; then roof surfaces and clusters of everything else "
             "above the ground. A cluster is a building by its mean entropy, compared with that of planes and volumes, "
             "and by how much of the beam passes through it; then whole buildings with their walls, whose edges are "
-            "corrected by what all buildings of the cloud look like, water with its bridges, wires, vegetation among the rest, and "
-            "outlines. Distances and tolerances follow the density and the noise of the cloud."
+            "corrected by what all buildings of the cloud look like, water with its bridges, wires, vegetation among "
+            "the rest, and outlines. Distances and tolerances follow the density and the noise of the cloud."
         ),
         references=_SANTOS,
         steps=_DETECTION,

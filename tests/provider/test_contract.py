@@ -40,8 +40,6 @@ IDS = {
     "simulatepowerline",
     "classifyvegetation",
     "classifywater",
-    "simulatepowerline",
-    "classifywires",
     "completeground",
     "classifygroundcloth",
     "classifygroundtin",
