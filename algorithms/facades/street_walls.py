@@ -34,6 +34,8 @@ class _Rules:
     step: float = 0.1
     # A row of walls that shares more than this part of its way with a longer one is something before or behind it.
     most: float = 0.3
+    # Edges within this distance (m) of the line of a longer one are on it: fronts beside a recess.
+    in_line: float = 0.05
     # Distance (m) of the positions at which walls are compared with footprints, and shortest wall (m) that is taken.
     sample: float = 0.25
     shortest: float = 1.0
@@ -281,8 +283,22 @@ class _Lines:
                 self._add(*steps[k])
 
     def ring(self) -> np.ndarray:
-        """Return the closed ring (m, 2) of the lines."""
-        return ring_of_lines(np.array(self.points), np.array(self.ways), np.array(self.corners))
+        """Return the closed ring (m, 2) of the lines; edges that are nearly in line are on the line of the longest."""
+        points, ways, corners = np.array(self.points), np.array(self.ways), np.array(self.corners)
+        ring = ring_of_lines(points, ways, corners)
+        length = np.hypot(*np.diff(ring, axis=0).T)
+        is_open = np.ones(len(points), bool)
+        for longest in np.argsort(-length, kind="stable"):
+            across = np.array([-ways[longest][1], ways[longest][0]])
+            off = np.abs((ring - points[longest]) @ across)
+            alike = (
+                is_open
+                & (np.maximum(off[:-1], off[1:]) <= _RULES.in_line)
+                & (ways @ ways[longest] > np.sqrt(1 - _RULES.same_way**2))
+            )
+            points[alike], ways[alike] = points[longest], ways[longest]
+            is_open[alike] = False
+        return ring_of_lines(points, ways, ring[:-1])
 
 
 def _ends_at(end: np.ndarray, way: np.ndarray, point: np.ndarray, edge_way: np.ndarray) -> bool:

@@ -17,9 +17,8 @@ from .solids import ROOF, Levels, Solid, build_solid, turns_around
 # plane, and in which those with faults do.
 _CLEARINGS, _ROUNDS, _MENDINGS = 60, 10, 40
 
-# Parts of a footprint with less than this share of its area are not modelled, unless they are larger than a dormer
-# (m²): a bay of 4 m² is 0.8 % of a row of houses.
-_SLIVER, _DORMER = 0.01, 1.0
+# Parts of a footprint with less than this share of its area are not modelled.
+_SLIVER = 0.01
 
 # Parts of a roof with less area in plan (m²), or a smaller mean width (m), join a neighbor: they are smaller than
 # dormers, and no wider than the distance of points.
@@ -86,7 +85,7 @@ def _pieces(partition: Partition, base: float) -> list[_Piece]:
         before = part.label >= 0
         partition.label[before] = -1
         # Slivers that touch the rest only in a point are no building.
-        if areas[before].sum() <= min(_SLIVER * total, _DORMER):
+        if areas[before].sum() <= _SLIVER * total:
             continue
         levels = _cleared(part, base)
         if levels is None:

@@ -10,8 +10,11 @@ from qgis.core import Qgis, QgsProcessingException, QgsVectorLayer
 from qgis.PyQt import sip
 
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
-from lidar_buildings.algorithms.cloud.files import write_cloud
+from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
+from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.run import run_pipeline
 from lidar_buildings.provider.paths import STYLES
+from lidar_buildings.tests.blocks import seen_from
 from lidar_buildings.tests.provider.helpers import run, vector
 from lidar_buildings.tests.roof_shapes import SHAPES
 from lidar_buildings.tests.solid_validity import assert_valid_cityjson, assert_valid_sequence
@@ -90,3 +93,30 @@ def test_styles_draw_at_their_heights_in_3d(provider, stem):
     assert symbol.altitudeClamping() == Qgis.AltitudeClamping.Absolute
     assert symbol.extrusionHeight() == 0
     assert not symbol.dataDefinedProperties().hasActiveProperties()
+
+
+def test_a_block_from_street_and_air_is_in_qgis_what_it_is_in_memory(provider, context, log, out):
+    """Two files, 1.2 m off each other, become one CityJSON with windows; the shift is an output."""
+    air, street = (seen_from(view)[0] for view in ("airplane", "vehicle"))
+    recorded = ("return_number", "number_of_returns", "scan_angle", "gps_time")
+    place, off = np.array([85_000.0, 446_000.0, 0.0]), np.array([1.0, -0.6, 0.4])
+    write_cloud(create_cloud({"xyz": air["xyz"] + place, **{n: air[n] for n in recorded}}, "EPSG:28992"), out / "a.laz")
+    write_cloud(create_cloud({"xyz": street["xyz"] + place - off}, "EPSG:28992"), out / "s.laz")
+    names = {"OUTPUT": "b.laz", "CITYJSON": "b.city.json", "SET_OPENINGS": "o.gpkg", "WALLS": "w.gpkg"}
+    given = {"INPUT": str(out / "a.laz"), "REFERENCE": str(out / "s.laz")}
+    made = run("modelcityblock", {**given, **{name: str(out / file) for name, file in names.items()}}, context, log)
+    expected = run_pipeline(
+        PIPELINES["model_city_block"], read_cloud(out / "a.laz"), reference=read_cloud(out / "s.laz"), kept=()
+    )
+    openings = list(QgsVectorLayer(made["SET_OPENINGS"], "o", "ogr").getFeatures())
+    assert len(openings) == len(expected.layers["set_openings"]) > 10
+    assert made["STREET_SHIFT_X"] == pytest.approx(expected.report.values["shift_x"], abs=1e-6)
+    assert_valid_cityjson((out / "b.city.json").read_text())
+    written = json.loads((out / "b.city.json").read_text())
+    kinds = [
+        surface["type"]
+        for building in written["CityObjects"].values()
+        for geometry in building["geometry"]
+        for surface in geometry["semantics"]["surfaces"]
+    ]
+    assert kinds.count("Window") + kinds.count("Door") == len(openings)

@@ -10,6 +10,7 @@ from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.run import run_pipeline
 from lidar_buildings.algorithms.stage import MapFrame
 from lidar_buildings.tests.blocks import seen_from
+from lidar_buildings.tests.solid_validity import assert_valid_cityjson
 
 BLOCK = PIPELINES["model_city_block"]
 OFF = np.array([1.1, -0.6, 0.4])
@@ -48,7 +49,9 @@ def test_most_openings_that_were_seen_lie_in_their_wall(made):
     off = np.linalg.norm(found[:, None] - true, axis=2).min(axis=1)
     assert len(found) >= 0.6 * len(true)
     assert np.mean(off < 0.4) >= 0.9
-    written = json.loads("".join(results.files["cityjson"].pieces("CityJSON", MapFrame(np.asarray, "EPSG:25832"))))
+    text = "".join(results.files["cityjson"].pieces("CityJSON", MapFrame(np.asarray, "EPSG:25832")))
+    assert_valid_cityjson(text)
+    written = json.loads(text)
     kinds = [
         surface["type"]
         for building in written["CityObjects"].values()

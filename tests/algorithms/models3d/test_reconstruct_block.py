@@ -11,6 +11,7 @@ from lidar_buildings.algorithms.models3d.solid_faults import fault_of
 from lidar_buildings.algorithms.models3d.solids import Solid
 from lidar_buildings.algorithms.stage import LayerFeatures, MapFrame, Monitor
 from lidar_buildings.tests.blocks import outlines, seen_from
+from lidar_buildings.tests.solid_validity import assert_valid_cityjson
 
 
 @pytest.fixture(scope="module")
@@ -59,6 +60,7 @@ def test_solids_with_openings_are_closed_and_cityjson_says_what_their_faces_are(
     solids = [solid for one in models for solid in one.model.solids["3"]]
     assert not [fault_of(solid) for solid in solids if fault_of(solid)]
     text = "".join(made.files["cityjson"].pieces("CityJSON", MapFrame(np.asarray, "EPSG:25832")))
+    assert_valid_cityjson(text)
     written = json.loads(text)
     assert written["version"] == "2.0"
     openings = 0
