@@ -191,7 +191,7 @@ def read_input_layer(
     for feature in layer.getFeatures(request, Qgis.ProcessingFeatureSourceFlag.SkipGeometryValidityChecks):
         if count % _BETWEEN_CHECKS == 0:
             monitor.progress(min(1.0, count / max(1, layer.featureCount())))
-        parts = _parts(feature.geometry(), input_layer.geometry, transform, place)
+        parts = _parts(feature.geometry(), input_layer, transform, place)
         geometries += parts
         rows += [feature.attributes()] * len(parts)
         count += 1
@@ -231,19 +231,20 @@ def _transform(
     return QgsCoordinateTransform()
 
 
-def _parts(geometry: QgsGeometry, kind: str, transform: QgsCoordinateTransform, place: Place) -> list:
+def _parts(geometry: QgsGeometry, input_layer: InputLayer, transform: QgsCoordinateTransform, place: Place) -> list:
     """Return the parts of a geometry as in :class:`LayerFeatures`; none where it is not valid or of another kind."""
+    kind = input_layer.geometry
     if geometry.isNull() or geometry.isEmpty() or geometry.type() != _TYPES[kind]:
         return []
     straight = QgsGeometry(geometry.constGet().segmentize())
-    if not straight.isGeosValid():
+    if not (input_layer.upright or straight.isGeosValid()):
         return []
     try:
         straight.transform(transform)
     except QgsCsException:
         return []
     straight.get().dropMValue()
-    if kind == "Polygon":
+    if kind == "Polygon" and not input_layer.upright:
         straight = straight.forcePolygonCounterClockwise()
     parts = [_vertices(bytes(part.asWkb()), place) for part in straight.asGeometryCollection()]
     if not all(len(rings) and all(np.isfinite(ring).all() for ring in rings) for rings in parts):

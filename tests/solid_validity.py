@@ -202,6 +202,10 @@ def triangulated(vertices, rings):
     return triangles
 
 
+# Surfaces that levels of detail below 3 don't have, and level 3 may have.
+OPENINGS = {False: (), True: ("Window", "Door")}
+
+
 def assert_valid_cityjson(text):
     """Fail unless a text has the structure of CityJSON 2.0 and its solids are valid; return it."""
     whole = json.loads(text)
@@ -233,14 +237,27 @@ def assert_valid_objects(objects, vertices, transform):
     for thing in objects.values():
         assert thing["type"] == "Building"
         for geometry in thing["geometry"]:
-            assert geometry["lod"] in ("1.2", "1.3", "2.2")
+            assert geometry["lod"] in ("1.2", "1.3", "2.2", "3")
             for shell, values in shells_of(geometry):
                 used |= {v for rings in shell for ring in rings for v in ring}
                 surfaces = geometry["semantics"]["surfaces"]
                 assert len(values) == len(shell)
-                assert {surfaces[value]["type"] for value in values} == {"RoofSurface", "WallSurface", "GroundSurface"}
+                kinds = {surfaces[value]["type"] for value in values}
+                assert {"RoofSurface", "WallSurface", "GroundSurface"} <= kinds
+                assert kinds <= {"RoofSurface", "WallSurface", "GroundSurface", *OPENINGS[geometry["lod"] == "3"]}
+                assert_openings_are_of_walls(surfaces)
                 assert_valid_solid(places, shell)
     assert used == set(range(len(vertices))), "vertices are unused or absent"
+
+
+def assert_openings_are_of_walls(surfaces):
+    """Fail unless each window and door has a wall as its parent, which has it among its children."""
+    for number, surface in enumerate(surfaces):
+        if surface["type"] in OPENINGS[True]:
+            parent = surfaces[surface["parent"]]
+            assert parent["type"] == "WallSurface"
+            assert number in parent["children"]
+        assert all(surfaces[child]["parent"] == number for child in surface.get("children", []))
 
 
 def shells_of(geometry):

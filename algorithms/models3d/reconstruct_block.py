@@ -50,8 +50,9 @@ OPENING_FIELDS = (
             "Polygon",
             "Upright polygons of the walls seen from the street, in the frame of the cloud, as 'Register street scan' "
             "makes them.",
+            upright=True,
         ),
-        InputLayer("openings", "Windows and doors", "Polygon", "Polygons in the planes of the facades."),
+        InputLayer("openings", "Windows and doors", "Polygon", "Polygons in the planes of the facades.", upright=True),
     ),
     layers=(
         Layer("buildings", "Buildings", "Polygon", BUILDING_FIELDS, style="model_grounds"),

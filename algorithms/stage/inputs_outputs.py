@@ -74,7 +74,8 @@ class InputLayer:
     ``name`` is the positional argument and the input (``OLD_MAP``), ``geometry`` is one of
     ``"Polygon"``, ``"LineString"`` and ``"Point"``. The stage is given :class:`LayerFeatures` with
     all attributes of the layer, or None where an ``optional`` one is not given. Parts of a
-    multipart geometry come one by one, each with the attributes of the whole.
+    multipart geometry come one by one, each with the attributes of the whole. ``upright`` polygons have no area in
+    plan: their rings come as they are.
     """
 
     name: str
@@ -82,6 +83,7 @@ class InputLayer:
     geometry: str
     help: str
     optional: bool = False
+    upright: bool = False
 
     @property
     def things(self) -> str:
