@@ -48,6 +48,7 @@ _DETECTION = (
     Step("wires", "classify_wires"),
     Step("vegetation", "classify_vegetation"),
     Step("footprints", "extract_footprints"),
+    Step("report", "report_buildings", layers={"footprints": "footprints.footprints"}),
 )
 _DETECTION_SHARED: dict[str, tuple[str, ...]] = {
     "min_area": ("buildings", "complete", "footprints"),

@@ -216,7 +216,7 @@ def _argument(
         if name in stage.optional and not tunables[DIMENSION]:
             return None
         arrays = [cloud.named(tunables[DIMENSION]) for cloud in clouds]
-    elif name in stage.optional and not all(cloud.has(name) for cloud in clouds):
+    elif name in stage.optional and not (clouds and all(cloud.has(name) for cloud in clouds)):
         return None
     else:
         arrays = [_present(cloud, name) for cloud in clouds]

@@ -36,6 +36,7 @@ from .quality.assess_ground import assess_ground
 from .quality.assess_models import assess_models
 from .quality.assess_segments import assess_segments
 from .quality.compare_corners import compare_corners
+from .quality.report_buildings import report_buildings
 from .segmentation.classify_bridges import classify_bridges
 from .segmentation.classify_ground_segments import classify_ground_segments
 from .segmentation.segment_clusters import segment_clusters
@@ -121,6 +122,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     reconstruct_roofs,
     reconstruct_block,
     export_for_roofer,
+    report_buildings,
     assess_buildings,
     assess_classes,
     assess_ground,

@@ -7,6 +7,7 @@ import html
 import math
 import struct
 import zlib
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,6 +26,9 @@ th, td { padding: .3em .8em; border-bottom: 1px solid #ccc; text-align: left; ve
 td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap }
 svg { max-width: 100%; height: auto }
 img { max-width: 100%; border: 1px solid #ccc; image-rendering: pixelated }
+svg.view { border: 1px solid #ccc; margin-right: 1em }
+.building { break-inside: avoid }
+@media print { body { max-width: none; margin: 0; font-size: 11pt } h2 { break-after: avoid } }
 .swatch { display: inline-block; width: .9em; height: .9em; margin: 0 .4em 0 1em; border: 1px solid #888 }
 """
 
@@ -104,7 +108,7 @@ def draw_map(xyz: np.ndarray, outcome: np.ndarray, names: tuple[str, str, str, s
     order = np.argsort(xyz[:, 2], kind="stable")
     # Of values that go to one pixel the last one stays, which is the highest.
     image[row[order], column[order]] = outcome[order]
-    picture = base64.b64encode(_png(image[::-1])).decode()
+    picture = base64.b64encode(png(image[::-1])).decode()
     legend = "".join(
         f'<span class="swatch" style="background:rgb{_COLORS[code]}"></span>{html.escape(name)}'
         for code, name in enumerate(names)
@@ -117,8 +121,8 @@ def draw_map(xyz: np.ndarray, outcome: np.ndarray, names: tuple[str, str, str, s
     )
 
 
-def _png(image: np.ndarray) -> bytes:
-    """Return a PNG file of an image of color numbers (rows, columns)."""
+def png(image: np.ndarray, colors: Iterable[Iterable[int]] = _COLORS) -> bytes:
+    """Return a PNG file of an image of color numbers (rows, columns), uint8, and of the colors, red, green and blue."""
 
     def chunk(kind: bytes, data: bytes) -> bytes:
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
@@ -127,6 +131,6 @@ def _png(image: np.ndarray) -> bytes:
     # Each line of a PNG begins with the number of its filter; 0 means no filter.
     lines = np.concatenate([np.zeros((height, 1), np.uint8), image], axis=1).tobytes()
     header = struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0)
-    palette = bytes(value for color in _COLORS for value in color)
+    palette = bytes(value for color in colors for value in color)
     parts = (b"IHDR", header), (b"PLTE", palette), (b"IDAT", zlib.compress(lines, 9)), (b"IEND", b"")
     return b"\x89PNG\r\n\x1a\n" + b"".join(chunk(kind, data) for kind, data in parts)

@@ -81,6 +81,11 @@ class Stage:
         return any(not name.startswith(REFERENCE_PREFIX) for name in (*self.reads, *self.optional))
 
     @property
+    def needs_cloud(self) -> bool:
+        """Whether it can't do without a cloud: a report, for example, may be made of layers alone."""
+        return any(not name.startswith(REFERENCE_PREFIX) for name in self.reads)
+
+    @property
     def samples(self) -> bool:
         """Whether it asks how the cloud was sampled."""
         return SAMPLING in inspect.signature(self.function).parameters

@@ -27,7 +27,7 @@ def of_survey(pipeline: Pipeline) -> Pipeline:
 
 def in_blocks(pipeline: Pipeline) -> Pipeline:
     """Return the part of a composite that works on points: it is run on each block."""
-    return part_of(pipeline, [step for step in of_survey(pipeline).steps if step.stage.reads_cloud])
+    return part_of(pipeline, [step for step in of_survey(pipeline).steps if step.stage.needs_cloud])
 
 
 def part_of(pipeline: Pipeline, steps: Iterable[Step]) -> Pipeline:
@@ -36,8 +36,8 @@ def part_of(pipeline: Pipeline, steps: Iterable[Step]) -> Pipeline:
 
 
 def afterwards(pipeline: Pipeline) -> list[Step]:
-    """Return the steps that read layers alone: they are run once, on the layers of the whole survey."""
-    return [step for step in pipeline.steps if not step.stage.reads_cloud]
+    """Return the steps that can do with layers alone: they are run once, on the layers of the whole survey."""
+    return [step for step in pipeline.steps if not step.stage.needs_cloud]
 
 
 def tunables_of(pipeline: Pipeline, tunables: dict) -> dict:

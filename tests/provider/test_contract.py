@@ -30,6 +30,7 @@ from lidar_buildings.tests.toys import TOYS
 # Saved models and scripts hold these ids: one may be added, none may change.
 IDS = {
     "assessbuildings",
+    "reportbuildings",
     "assessground",
     "assessclasses",
     "assessmodels",

@@ -1,0 +1,83 @@
+"""Views of single buildings: their points from above and from the side, as SVG within the page."""
+
+from __future__ import annotations
+
+import base64
+import html
+
+import numpy as np
+
+from ..geometry.grid import fixed_grid_over
+from .page import png
+
+# Pixels of a view, and meters around a building that it shows.
+_WIDTH, _HEIGHT, _AROUND = 340, 240, 4.0
+
+# Colors of a view: paper, other points, points of buildings.
+_COLORS = np.array([[255, 255, 255], [187, 187, 187], [187, 85, 102]])
+
+# Pixels of a dot, from its middle.
+_DOT = ((0, 0), (1, 0), (0, 1), (-1, 0), (0, -1))
+
+# Side of the cells by which the points around a building are found, m.
+_CELL = 25.0
+
+
+class Views:
+    """The points of a cloud (n, 3), m, and which are of buildings (n,), by cells in plan."""
+
+    def __init__(self, xyz: np.ndarray, is_building: np.ndarray) -> None:
+        self.xyz, self.is_building = xyz, is_building
+        self._grid = fixed_grid_over(xyz, _CELL)
+        number = self._grid.number(xyz)
+        self._order = np.argsort(number, kind="stable")
+        self._number = number[self._order]
+
+    def near(self, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+        """Return the rows of the points in a box in plan."""
+        steps = [np.arange(start, end + _CELL, _CELL) for start, end in zip(low, high)]
+        corners = np.stack(np.meshgrid(*(np.append(one[:-1], end) for one, end in zip(steps, high))), axis=-1)
+        cells = np.unique(self._grid.number(corners.reshape(-1, 2)))
+        starts, ends = (np.searchsorted(self._number, cells, side=side) for side in ("left", "right"))
+        rows = np.concatenate([self._order[start:end] for start, end in zip(starts, ends)])
+        plan = self.xyz[rows, :2]
+        return rows[((plan >= low) & (plan <= high)).all(axis=1)]
+
+
+def draw_views(views: Views, geometries: list, captions: list[str]) -> str:
+    """Return the HTML of the views of some buildings (rings of each, m), each under its caption."""
+    parts = ["<h2>Doubtful buildings</h2>"]
+    parts.append("<p>From above with the footprint, and from the south. Points of buildings are red.</p>")
+    for rings, caption in zip(geometries, captions):
+        outer = np.asarray(rings[0])[:, :2]
+        low, high = outer.min(axis=0) - _AROUND, outer.max(axis=0) + _AROUND
+        rows = views.near(low, high)
+        xyz, is_building = views.xyz[rows], views.is_building[rows]
+        parts.append(f'<div class="building"><p>{html.escape(caption)}</p>')
+        parts.append(_view(xyz[:, :2], xyz[:, 2], is_building, low, high, outer))
+        if len(xyz):
+            floor, top = xyz[:, 2].min() - 1.0, xyz[:, 2].max() + 1.0
+            ends = np.array([low[0], floor]), np.array([high[0], top])
+            parts.append(_view(xyz[:, [0, 2]], -xyz[:, 1], is_building, *ends, None))
+        parts.append("</div>")
+    return "\n".join(parts)
+
+
+def _view(plan: np.ndarray, depth: np.ndarray, is_building: np.ndarray, low, high, ring) -> str:
+    """Return points (n, 2) in a box, the nearest drawn last, and a ring (m, 2) over them."""
+    size = float(max((high - low) / (_WIDTH, _HEIGHT)))
+    columns, lines = np.maximum(np.ceil((high - low) / size), 1).astype(int)
+    image = np.zeros((lines, columns), np.uint8)
+    order = np.argsort(depth, kind="stable")
+    column, row = ((plan[order] - low) / size).astype(int).T
+    for right, up in _DOT:
+        image[np.clip(row + up, 0, lines - 1), np.clip(column + right, 0, columns - 1)] = 1 + is_building[order]
+    data = base64.b64encode(png(image[::-1], _COLORS)).decode()
+    outline = ""
+    if ring is not None:
+        points = " ".join(f"{x:.1f},{lines - y:.1f}" for x, y in (ring - low) / size)
+        outline = f'<polygon points="{points}" fill="none" stroke="#222" stroke-width="1.2"/>'
+    return (
+        f'<svg class="view" viewBox="0 0 {columns} {lines}" width="{columns}" height="{lines}">'
+        f'<image width="{columns}" height="{lines}" href="data:image/png;base64,{data}"/>{outline}</svg>'
+    )

@@ -1,0 +1,85 @@
+"""The page on the buildings found: numbers by hand, a map, and the views of the doubtful ones."""
+
+import re
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.quality.report_buildings import report_buildings
+from lidar_buildings.algorithms.run import run_stage
+from lidar_buildings.algorithms.stage import LayerFeatures, Monitor
+from lidar_buildings.algorithms.stages import STAGES
+from lidar_buildings.tests.builders import roof
+
+
+def square(x, y, side, hole=0.0):
+    ring = np.array([[x, y], [x + side, y], [x + side, y + side], [x, y + side], [x, y]], float)
+    if not hole:
+        return [ring]
+    middle = np.array([x + side / 2, y + side / 2])
+    return [ring, middle + np.array([[-1, -1], [-1, 1], [1, 1], [1, -1], [-1, -1]]) * hole / 2]
+
+
+@pytest.fixture
+def footprints():
+    columns = {
+        "id": [7, 8, 9],
+        "height": np.array([5.0, 9.0, np.nan]),
+        "volume": np.array([500.0, 3000.0, 100.0]),
+        "confidence": np.array([0.9, 0.45, 0.65]),
+        "reason": ["Building: <low> entropy.", "Building & more.", None],
+    }
+    return LayerFeatures([square(0, 0, 10), square(30, 0, 20, hole=10), square(0, 40, 5)], columns)
+
+
+@pytest.fixture
+def cloud(rng):
+    ground = np.column_stack([rng.uniform(-10, 60, (4000, 2)), np.zeros(4000)])
+    houses = np.concatenate([roof(rng, 0, 0, 10, 10, 5), roof(rng, 30, 0, 20, 20, 9)])
+    return np.concatenate([ground, houses]), np.repeat([2, 6], [4000, len(houses)]).astype(np.uint8)
+
+
+def test_totals_by_hand(footprints, cloud):
+    monitor = Monitor()
+    report = report_buildings(*cloud, footprints, monitor=monitor)
+    assert report.values == {"buildings": 3, "area": 100 + 400 - 100 + 25, "volume": 3600, "doubtful": 2}
+    assert monitor.infos == ["3 buildings, 425 m², 2 doubtful."]
+    for text in ("3,600 m³", "425 m²", "7.0 m", "from 5.0 to 9.0 m"):
+        assert text in report.html
+
+
+def test_doubtful_buildings_come_least_sure_first_and_their_texts_are_escaped(footprints, cloud):
+    page = report_buildings(*cloud, footprints).html
+    assert re.findall(r"Building (\d+): confidence ([\d.]+)", page) == [("8", "0.45"), ("9", "0.65")]
+    assert "Building &amp; more." in page
+    # Each from above and from the side; a footprint without points has one view.
+    assert page.count('<svg class="view"') == 4
+    assert page.count("<polygon") == 2
+
+
+def test_the_map_has_each_footprint_in_the_color_of_its_confidence(footprints, cloud):
+    page = report_buildings(*cloud, footprints).html
+    fills = re.findall(r'<path d="M[^"]*" fill="(#\w+)" fill-rule', page)
+    assert fills == ["#004488", "#bb5566", "#ddaa33"]
+    assert "<image" in page
+    assert not re.search(r'(?:src|href)="(?!data:)', page)
+
+
+def test_of_footprints_alone_there_is_a_page_without_points(footprints):
+    report = run_stage(STAGES["report_buildings"], input_layers={"footprints": footprints}).report
+    assert report.values["buildings"] == 3
+    assert "<image" not in report.html
+
+
+def test_footprints_of_other_programs_have_areas_at_least():
+    footprints = LayerFeatures([square(0, 0, 10)], {"name": ["hall"], "height": ["tall"]})
+    report = report_buildings(None, None, footprints)
+    assert report.values["area"] == 100
+    assert np.isnan(report.values["volume"])
+    assert report.values["doubtful"] == 0
+
+
+def test_nothing_found_is_a_page_that_says_so(cloud):
+    report = report_buildings(*cloud, LayerFeatures([], {}))
+    assert report.values == {"buildings": 0, "area": 0.0, "volume": 0.0, "doubtful": 0}
+    assert "no footprints to show" in report.html
