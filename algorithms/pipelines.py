@@ -48,7 +48,6 @@ _DETECTION = (
     Step("wires", "classify_wires"),
     Step("vegetation", "classify_vegetation"),
     Step("footprints", "extract_footprints"),
-    Step("report", "report_buildings", layers={"footprints": "footprints.footprints"}),
 )
 _DETECTION_SHARED: dict[str, tuple[str, ...]] = {
     "min_area": ("buildings", "complete", "footprints"),
@@ -71,7 +70,7 @@ _PIPELINES = (
             "the rest, and outlines. Distances and tolerances follow the density and the noise of the cloud."
         ),
         references=_SANTOS,
-        steps=_DETECTION,
+        steps=(*_DETECTION, Step("report", "report_buildings", layers={"footprints": "footprints.footprints"})),
         shared=_DETECTION_SHARED,
         shown=(
             "min_area",

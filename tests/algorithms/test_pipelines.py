@@ -96,8 +96,11 @@ def test_the_published_chain_finds_the_houses_too():
 
 def test_a_chain_is_its_stages_one_after_the_other(detected):
     cloud, _ = made()
-    for step in PIPELINES["detect_buildings"].steps:
+    *on_the_cloud, of_footprints = PIPELINES["detect_buildings"].steps
+    for step in on_the_cloud:
         last = run_stage(step.stage, cloud, **step.tunables)
+    page = run_stage(of_footprints.stage, cloud, input_layers=last.layers).report
+    assert page.html == detected[0].report.html
     theirs = detected[0].cloud
     for name in ("classification", "cluster_id", "segment_id", "height_above_ground", "entropy", "confidence"):
         np.testing.assert_array_equal(cloud.get(name), theirs.get(name))
