@@ -345,6 +345,7 @@ def run_pipeline(
     of_run = _RunSampling(samplings or {}, cloud, monitor)
     for i, step in enumerate(pipeline.steps):
         part = monitor.part(i / len(pipeline.steps), (i + 1) / len(pipeline.steps), f"{step.name}_")
+        part.progress(0.0)
         names = [input_layer.name for input_layer in step.stage.input_layers]
         layers = {name: _layer(step, name, outcomes, given) for name in names}
         works_on = copies[step.cloud].copy() if step.cloud else current if step.stage.reads_cloud else None

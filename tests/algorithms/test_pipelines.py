@@ -147,9 +147,9 @@ def calls(monkeypatch):
     """What each stage of a chain is called with, without running it."""
     called = []
 
-    def record(stage, cloud, monitor=None, input_layers=None, sampling=None, **tunables):
+    def record(stage, cloud, reference=None, monitor=None, input_layers=None, sampling=None, **tunables):
         called.append((stage.name, tunables))
-        return module.Outcome(cloud)
+        return module.Outcome(cloud, dict.fromkeys(layer.name for layer in stage.layers))
 
     monkeypatch.setattr(module, "run_stage", record)
     return called
@@ -233,7 +233,9 @@ def test_the_steps_own_tunables_are_ones_that_their_stages_take():
 @pytest.mark.parametrize("name", PIPELINES)
 def test_progress_only_grows_and_every_step_is_heard_of(name):
     monitor = Listening()
-    run_pipeline(PIPELINES[name], [made()[0], made()[0]] if PIPELINES[name].merges else made()[0], monitor)
+    reference = made()[0] if PIPELINES[name].compared else None
+    cloud = [made()[0], made()[0]] if PIPELINES[name].merges else made()[0]
+    run_pipeline(PIPELINES[name], cloud, monitor, reference=reference)
     assert monitor.heard == sorted(monitor.heard)
     assert monitor.heard[0] >= 0
     assert monitor.heard[-1] <= 1
