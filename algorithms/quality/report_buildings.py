@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Optional
+from typing import Any
 
 import numpy as np
 
@@ -122,7 +122,7 @@ class _Facts:
         ]
 
 
-def _numbers(values: Optional[object], count: int) -> np.ndarray:
+def _numbers(values: Any, count: int) -> np.ndarray:
     """Return an attribute as numbers (n,), NaN where it is missing or no number."""
     if values is None or (isinstance(values, list) and any(isinstance(value, str) for value in values)):
         return np.full(count, np.nan)
