@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Optional
 
 import numpy as np
@@ -129,7 +129,11 @@ def model_building(xyz: np.ndarray, is_low: np.ndarray, rings: list, base: float
         partition, why = tops[level](top)
         if partition is not None:
             limits = HeightsAround(local) if level == "2.2" else None
-            solids, why = mended(partition, base, local, limits, settings.percentile)
+            if level == "1.3" and len(partition.coefficients) == 1 and "1.2" in model.solids:
+                # One part for all is the simplest level.
+                solids, why = [replace(solid) for solid in model.solids["1.2"]], ""
+            else:
+                solids, why = mended(partition, base, local, limits, settings.percentile)
             if not why:
                 above, label = _above_model(top, partition)
                 why = _worse(model, level, top, above)

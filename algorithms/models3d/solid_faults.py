@@ -8,10 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..geometry.groups import components
 from ..geometry.points_in_polygons import are_within
 from ..packages import spatial
-from .solids import Ring, Solid, edges_of
+from .solids import Ring, Solid, edges_of, groups_of
 
 
 @dataclass(frozen=True)
@@ -109,11 +108,9 @@ def _shell_faults(solid: Solid) -> Iterator[tuple[int, str]]:
         yield 0, "there are fewer than four faces"
         return
     owner = {edge: face for face, rings in enumerate(solid.faces) for edge in _edges(rings)}
-    pairs = np.array([(face, owner[b, a]) for (a, b), face in owner.items()])
-    count, piece = components(pairs[:, 0], pairs[:, 1], len(solid.faces))
-    if count > 1:
-        largest = np.argmax(np.bincount(piece))
-        yield from ((int(face), "it is in pieces") for face in np.flatnonzero(piece != largest))
+    piece = groups_of(((face, owner[b, a]) for (a, b), face in owner.items()), len(solid.faces))
+    largest = int(np.argmax(np.bincount(piece)))
+    yield from ((face, "it is in pieces") for face, number in enumerate(piece) if number != largest)
 
 
 def _corner_faults(solid: Solid) -> Iterator[tuple[int, str]]:
@@ -209,14 +206,9 @@ class _Face:
             for corner in ring:
                 rings_at[corner].append(number)
         links = [(ring, len(self.rings) + k) for k, at in enumerate(rings_at.values()) if len(at) > 1 for ring in at]
-        nodes = {node for link in links for node in link}
-        if not links:
-            return False
-        size = len(self.rings) + len(rings_at)
-        one, other = np.array(links).T
-        count, _ = components(one, other, size)
+        group = groups_of(links, len(self.rings) + len(rings_at))
         # A forest has one link less than nodes in each of its trees.
-        return len(links) > len(nodes) - (count - (size - len(nodes)))
+        return len(links) > len(group) - len(set(group))
 
     def holds(self, xyz: np.ndarray) -> np.ndarray:
         """Return which positions (n,) of the plane lie in the face, farther from its edges than corners may be."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
-from ..geometry.groups import components
 from ..geometry.points_in_polygons import are_within
 from ..geometry.rings import signed_area
 from ..geometry.subdivision import OUTSIDE, SNAP, Subdivision
@@ -382,13 +382,12 @@ class _Builder:
 
     def _parts(self) -> dict[int, int]:
         """Return which connected part of equal planes each cell is in."""
-        pairs = [(cell, cell) for cell in np.flatnonzero(self.label >= 0).tolist()]
-        used = len(pairs)
+        pairs = []
         for (u, v), cell in self.cells.cell_of.items():
             if self.label[cell] >= 0 and self.levels.plane_beyond(u, v) == self.label[cell]:
                 pairs.append((cell, self.cells.cell_of[v, u]))
-        group = _group_of(pairs, len(self.cells))
-        return {cell: group[cell] for cell, _ in pairs[:used]}
+        group = groups_of(pairs, len(self.cells))
+        return {cell: group[cell] for cell in np.flatnonzero(self.label >= 0).tolist()}
 
     def _ground_edges(self) -> list[tuple[int, int]]:
         number = self.levels.number
@@ -430,13 +429,13 @@ class _Builder:
     def _joined(self, walls: list[_Wall]) -> list[tuple[Ring, list[int]]]:
         """Return walls with neighbors in one line joined, and the cells beside each."""
         owner = {edge: i for i, wall in enumerate(walls) for edge in zip(wall.ring, [*wall.ring[1:], wall.ring[0]])}
-        pairs = [(i, i) for i in range(len(walls))]
+        pairs = []
         for (a, b), i in owner.items():
             j = owner.get((b, a))
             if j is not None and j > i and self._is_upright(a, b) and self._are_in_line(walls[i], walls[j]):
                 pairs.append((i, j))
         members: dict[int, list[int]] = defaultdict(list)
-        for i, group in enumerate(_group_of(pairs, len(walls))):
+        for i, group in enumerate(groups_of(pairs, len(walls))):
             members[group].append(i)
         joined: list[tuple[Ring, list[int]]] = []
         for numbers in members.values():
@@ -498,10 +497,22 @@ class _Builder:
         return list(polygons.values())
 
 
-def _group_of(pairs: list[tuple[int, int]], count: int) -> list[int]:
-    """Return the group (count,) of each item that pairs hold together."""
-    one, other = np.array(pairs).T
-    return components(one, other, count)[1].tolist()
+def groups_of(pairs: Iterable[tuple[int, int]], count: int) -> list[int]:
+    """Return the group (count,) of each item that pairs hold together: its first item.
+
+    A building has too few items for a sparse matrix to be worth its set-up.
+    """
+    first = list(range(count))
+
+    def of(item: int) -> int:
+        while first[item] != item:
+            first[item] = item = first[first[item]]
+        return item
+
+    for one, other in pairs:
+        low, high = sorted((of(one), of(other)))
+        first[high] = low
+    return [of(item) for item in range(count)]
 
 
 def edges_of(ring: np.ndarray) -> np.ndarray:
