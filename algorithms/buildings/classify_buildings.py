@@ -18,7 +18,7 @@ from .cluster_entropies import cluster_entropies
 from .cluster_evidence import ClusterEvidence, with_penetration, with_surroundings
 from .cluster_report import MEASURES, Clusters, build_report
 from .entropy_split import MEAN_ENTROPIES, held_means, reference_entropies, split_of_whole
-from .surface_evidence import decide_in_images, green_clusters
+from .surface_evidence import decide_in_images, green_clusters, without_green
 
 # Points that an entropy needs, as a multiple of those that show a plane: three shares come from it, not one direction.
 _POINTS_PER_PLANE = 1.5
@@ -107,7 +107,7 @@ def classify_buildings(
     segment_id : ndarray of shape (n,), int32, optional
         Roof surfaces; 0 if unassigned. In matched images they tell roofs from crowns; without them entropy does.
     red, green, blue : ndarray of shape (n,), uint16, optional
-        Color, used in matched images where given.
+        Color, used where no pulse has several returns.
 
     Returns
     -------
@@ -145,10 +145,11 @@ def classify_buildings(
     clusters with too few building points around them are refused.
 
     In clouds of matched images, crowns are as closed as roofs, and penetration tells nothing. There, roof surfaces are
-    buildings, planar over a meter, if the minimum share of the points around them lie on such surfaces; small ones
-    that are as green as plants are refused. The threshold of greenness comes from the scene: it separates the
-    normalized excess green of all its points best into two kinds, if their means differ by 0.1 or more. Shadow hardly
-    changes it.
+    buildings, planar over a meter, if the minimum share of the points around them lie on such surfaces. There, and in
+    scans without second returns, colored clusters that are as green as plants are refused, unless they are large and
+    flat. The threshold of greenness comes from the scene: it is the middle between the medians of rough clusters and of
+    surfaces of ten times the minimum area, if it parts the two; else it separates all points best into two kinds, if
+    their means differ by 0.1 or more. Greenness is the normalized excess green, which shadow hardly changes.
 
     Confidence above 0.5 grows with the size of the cluster, to half at twice the points of the smallest building, as
     small objects such as cars can look like a roof by chance. This changes no decision.
@@ -215,6 +216,10 @@ def _decided_in_scan(
         return given.by_entropy
     decided = with_penetration(given.by_entropy, given.through, given.max_penetration, given.evidence)
     monitor.progress(0.98)
+    if not given.evidence.has_returns:
+        is_green, green_from = green_clusters(colors, given.evidence, surface_share > 0.5)
+        monitor.resolved(plant_greenness=green_from)
+        decided = without_green(decided, is_green, given.evidence)
     return with_surroundings(decided, given.min_share, given.evidence)
 
 
@@ -222,7 +227,7 @@ def _decided_in_images(
     given: _Given, surface_share: np.ndarray, colors: tuple[Optional[np.ndarray], ...], monitor: Monitor
 ) -> Decisions:
     """Return what :func:`.decide_in_images` does, with the greenness of the scene."""
-    is_green, green_from = green_clusters(colors, given.evidence.group, len(given.evidence.numbers))
+    is_green, green_from = green_clusters(colors, given.evidence, surface_share > 0.5)
     monitor.resolved(matched_images=True, plant_greenness=green_from)
     return decide_in_images(surface_share, is_green, given.evidence, given.min_share)
 

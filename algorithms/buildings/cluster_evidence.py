@@ -9,6 +9,8 @@ from typing import Optional
 import numpy as np
 
 from ..cloud.reasons import Reason
+from ..neighborhoods.covariance import symmetric_eigenvalues
+from ..neighborhoods.nearest_blocks import PAIRS
 from ..rules import rule
 from ..segmentation.cluster_measures import (
     grow_to_adjacent_clusters,
@@ -63,6 +65,24 @@ class ClusterEvidence:
         """The area (m,) of each cluster in plan, m²."""
         member = self.group >= 0
         return plan_areas(self.xyz[member], self.group[member], self.density)[self.numbers]
+
+    @cached_property
+    def deviations(self) -> np.ndarray:
+        """How far (m,) the points of each cluster lie off their common plane, one standard deviation, m."""
+        rows = np.flatnonzero(self.group >= 0)
+        group, count = self.group[rows], int(self.numbers[-1]) + 1
+        off = (self.xyz[rows] - self.xyz[rows].mean(axis=0)).T
+        size = np.maximum(np.bincount(group, minlength=count), 1)
+        means = [np.bincount(group, values, count) / size for values in off]
+        # About the middle of each cluster, for the digits that squares of large coordinates lose.
+        off = [values - mean[group] for values, mean in zip(off, means)]
+        products = [np.bincount(group, off[a] * off[b], count) / size for a, b in PAIRS]
+        return np.sqrt(symmetric_eigenvalues(np.column_stack(products))[self.numbers, 2])
+
+    @property
+    def has_returns(self) -> bool:
+        """Whether pulses are known to have several returns."""
+        return self.number_of_returns is not None and int(self.number_of_returns.max(initial=0)) > 1
 
     def penetration(self) -> np.ndarray:
         """Return the share (m,) of the beam that passes through each cluster."""

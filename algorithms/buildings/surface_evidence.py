@@ -1,4 +1,4 @@
-"""What matched images tell of clusters: surfaces that are planar over meters amid such surfaces, and color."""
+"""What is known of clusters without returns: surfaces that are planar over meters amid such surfaces, and color."""
 
 from __future__ import annotations
 
@@ -7,12 +7,15 @@ from typing import Optional
 import numpy as np
 
 from ..cloud.reasons import Reason
-from ..features.greenness import greenness, plant_greenness
+from ..features.greenness import greenness, greenness_between, plant_greenness
 from .cluster_decisions import Decisions
 from .cluster_evidence import ClusterEvidence
 
 # Planes larger than this, in minimum building areas, may be green: roofs of copper and of grass.
 _LARGE_PLANE = 10.0
+
+# Off the plane of so large a roof points lie less than this (m): 40 m² of a crown 20 m wide lie 0.18 m off theirs.
+_FLAT = 0.15
 
 
 def decide_in_images(
@@ -37,7 +40,7 @@ def decide_in_images(
         Crowns are closed and smooth over decimeters, but planar over meters in spots only, with rough leaves around.
     """
     is_surface = surface_share > 0.5
-    is_green = is_surface & green & (evidence.areas < _LARGE_PLANE * evidence.min_area)
+    is_green = is_surface & green & ~are_large_planes(evidence)
     is_candidate = is_surface & ~is_green
     share = evidence.share_around(is_candidate)
     is_building = is_candidate & (share >= min_share)
@@ -51,8 +54,25 @@ def decide_in_images(
     return Decisions(confidence, reasons)
 
 
+def are_large(evidence: ClusterEvidence) -> np.ndarray:
+    """Return which clusters (m,) are larger than most smooth parts of crowns."""
+    return evidence.areas >= _LARGE_PLANE * evidence.min_area
+
+
+def are_large_planes(evidence: ClusterEvidence) -> np.ndarray:
+    """Return which clusters (m,) are too large and too flat for a smooth part of a crown."""
+    return are_large(evidence) & (evidence.deviations < _FLAT)
+
+
+def without_green(decided: Decisions, is_green: np.ndarray, evidence: ClusterEvidence) -> Decisions:
+    """Refuse buildings (m,) that are as green as plants, where no returns tell leaves from roofs."""
+    refused = decided.is_building & is_green & ~are_large_planes(evidence)
+    reasons = np.where(refused, np.uint8(Reason.GREEN), decided.reasons)
+    return Decisions(np.where(refused, 0.5, decided.confidence), reasons)
+
+
 def green_clusters(
-    colors: tuple[Optional[np.ndarray], ...], group: np.ndarray, count: int
+    colors: tuple[Optional[np.ndarray], ...], evidence: ClusterEvidence, is_surface: np.ndarray
 ) -> tuple[np.ndarray, Optional[float]]:
     """Return which clusters (count,) are as green as the plants of the scene, and from which greenness on that is.
 
@@ -60,19 +80,25 @@ def green_clusters(
     ----------
     colors : three ndarrays of shape (n,), or None
         Red, green and blue. Where one is missing, or where the scene has no two kinds of greenness, none is green.
-    group : ndarray of shape (n,), int
-        Cluster of each point from 0, negative for none.
-    count : int
-        Number of clusters.
+    evidence : ClusterEvidence
+        The clusters among the points.
+    is_surface : ndarray of shape (m,), bool
+        Clusters that are smooth, as roofs are. What is rough and what is smooth and large show the colors of plants and
+        of roofs; where these do not differ, or one is missing, all points of the scene do.
     """
+    group, count = evidence.group, len(is_surface)
     nothing = np.zeros(count, bool)
     red, green, blue = colors
     if red is None or green is None or blue is None:
         return nothing, None
     values = greenness(red, green, blue)
-    least = plant_greenness(values)
+    in_cluster = group >= 0
+    rough, large = (in_cluster & np.append(of, False)[group] for of in (~is_surface, is_surface & are_large(evidence)))
+    least = greenness_between(values[rough], values[large])
+    if least is None:
+        least = plant_greenness(values)
     if least is None:
         return nothing, None
-    known = (group >= 0) & np.isfinite(values)
+    known = in_cluster & np.isfinite(values)
     share = np.bincount(group[known], values[known] > least, count)
     return share > 0.5 * np.maximum(np.bincount(group[known], minlength=count), 1), least

@@ -72,7 +72,7 @@ _TEXTS = {
     Reason.TOO_LOW: "Not a building: too close to the ground to belong to the roof at its location.",
     Reason.MOSTLY_OTHER: "Not a building: too few of the points at roof height lie on surfaces, as in tree crowns.",
     Reason.AMID_OTHERS: "Not a building: surrounded mostly by non-building points, like smooth spots of tree crowns.",
-    Reason.GREEN: "Not a building: as green as the vegetation of the scene (matched images).",
+    Reason.GREEN: "Not a building: as green as the vegetation of the scene.",
     Reason.VEHICLE: "Not a building: as wide, long and high as a car, a van or a caravan (matched images).",
     Reason.ALIKE: "Undecided: all clusters have the same entropy.",
     Reason.UNLIKE_BUILDINGS: "Not a building: unlike the other buildings of the scene.",

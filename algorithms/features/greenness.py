@@ -16,6 +16,9 @@ _BINS = 128
 # brown and red materials have -0.1 to 0.05.
 _LEAST_GAP = 0.1
 
+# Share of the leaves over a threshold less that of the roofs: two thirds of the ones and one third of the others.
+_LEAST_PARTED = 1 / 3
+
 # Share of the variance that lies between the two kinds. A single normal distribution has 0.64, cut in the middle.
 _LEAST_BETWEEN = 0.7
 
@@ -35,6 +38,26 @@ def greenness(red: np.ndarray, green: np.ndarray, blue: np.ndarray) -> np.ndarra
     total = r + g + b
     bright = total > _DARK * np.median(total) if len(total) else np.zeros(0, bool)
     return np.divide(2 * g - r - b, total, out=np.full(len(total), np.nan), where=bright)
+
+
+def greenness_between(plants: np.ndarray, roofs: np.ndarray) -> Optional[float]:
+    """Return the greenness that parts points known by their shape; None where it does not part them.
+
+    Parameters
+    ----------
+    plants, roofs : ndarray of shape (n,), (m,)
+        Greenness of points most of which are leaves, and of points most of which are roofs; NaN where unknown.
+
+    Returns
+    -------
+    float or None
+        The middle between the two medians, so that dry crowns, which are hardly green, are told from roofs, too.
+    """
+    plants, roofs = (values[np.isfinite(values)] for values in (plants, roofs))
+    if not len(plants) or not len(roofs):
+        return None
+    least = float(np.median(plants) + np.median(roofs)) / 2
+    return least if np.mean(plants > least) - np.mean(roofs > least) >= _LEAST_PARTED else None
 
 
 def plant_greenness(values: np.ndarray) -> Optional[float]:

@@ -17,7 +17,7 @@
       <category value="16" label="Not a building: too close to the ground to belong to the roof at its location" color="153,68,85,255" pointSize="0" render="true"/>
       <category value="17" label="Not a building: too few of the points at roof height lie on surfaces, as in tree crowns" color="119,51,68,255" pointSize="0" render="true"/>
       <category value="18" label="Not a building: surrounded mostly by non-building points, like smooth spots of tree crowns" color="136,34,85,255" pointSize="0" render="true"/>
-      <category value="19" label="Not a building: as green as the vegetation of the scene (matched images)" color="102,119,34,255" pointSize="0" render="true"/>
+      <category value="19" label="Not a building: as green as the vegetation of the scene" color="102,119,34,255" pointSize="0" render="true"/>
       <category value="20" label="Not a building: as wide, long and high as a car, a van or a caravan (matched images)" color="170,68,153,255" pointSize="0" render="true"/>
       <category value="21" label="Undecided: all clusters have the same entropy" color="120,120,120,255" pointSize="0" render="true"/>
       <category value="22" label="Undecided: the points have no extent, so their entropy is undefined" color="80,80,80,255" pointSize="0" render="true"/>

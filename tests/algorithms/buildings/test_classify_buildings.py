@@ -347,3 +347,25 @@ def test_who_is_more_sure_is_more_often_right(rng, kinds):
     assert low.mean() <= middle.mean() + 0.05
     assert middle.mean() <= high.mean() + 0.05
     assert low.mean() < high.mean() or right.all()
+
+
+def test_without_second_returns_green_clusters_are_refused_and_with_them_the_beam_decides(rng):
+    """Two gray roofs, one of them small, a smooth spot of a dry crown and rough leaves, which are as green as it."""
+    parts = roof(rng, 0, 0, 12, 12), roof(rng, 30, 0, 5, 5), roof(rng, 60, 0, 5, 5), crown(rng, 90, 5, 4.0, 7.0, 800)
+    xyz, number = clusters(*parts)
+    is_plant = number > 2
+    red, green, blue = (np.where(is_plant, of, 30_000).astype(np.uint16) for of in (29_000, 31_500, 28_500))
+    segment = np.where(number < 4, number, 0).astype(np.int32)
+    ones, twos = np.ones(len(xyz), np.uint8), np.full(len(xyz), 2, np.uint8)
+    given = (ones, number, ones)
+    more = (None, segment, red, green, blue)
+
+    def found(returns):
+        made = classify_buildings(xyz, *given, returns, *more, source="laser scanner")
+        return [(int(made[0][number == one][0]), Reason(made[4][number == one][0])) for one in (1, 2, 3)]
+
+    alone = found(ones)
+    assert [kind for kind, _ in alone] == [6, 6, 1]
+    assert alone[2][1] == Reason.GREEN
+    several = found(np.where(number == 4, twos, ones))
+    assert [kind for kind, _ in several] == [6, 6, 6]

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from lidar_buildings.algorithms.buildings.cluster_decisions import Decisions
 from lidar_buildings.algorithms.buildings.cluster_evidence import ClusterEvidence
-from lidar_buildings.algorithms.buildings.surface_evidence import decide_in_images, green_clusters
+from lidar_buildings.algorithms.buildings.surface_evidence import decide_in_images, green_clusters, without_green
 from lidar_buildings.algorithms.cloud.reasons import Reason
 from lidar_buildings.tests.algorithms.buildings.parts import clusters
 from lidar_buildings.tests.builders import crown, roof
@@ -44,6 +45,14 @@ def test_a_smooth_spot_amid_leaves_is_none(rng):
     assert decided((leaves, spot), [0.1, 1.0], min_share=0.0).is_building[1]
 
 
+def test_a_green_dome_is_no_plane_however_large(rng):
+    """40 m² and more of a smooth crown, which is as large as a roof of copper."""
+    plan = rng.uniform(0, 12, (900, 2))
+    dome = np.column_stack([plan, np.sqrt(10.0**2 - ((plan - 6) ** 2).sum(axis=1))])
+    found = decided((dome, roof(rng, 40, 0, 12, 12)), [1.0, 1.0], green=[True, True])
+    assert [Reason(number) for number in found.reasons] == [Reason.GREEN, Reason.SURFACE]
+
+
 def test_green_surfaces_are_plants_unless_they_are_large(rng):
     small, large = roof(rng, 0, 0, 5, 5), roof(rng, 40, 0, 12, 12)
     found = decided((small, large), [1.0, 1.0], green=[True, True])
@@ -63,9 +72,16 @@ def colors(kinds, count):
     return tuple(np.concatenate([np.full(count, kind[band], np.uint16) for kind in kinds]) for band in range(3))
 
 
+def green(bands, group, count, is_surface=None):
+    """Return what is found for clusters without extent: none is large."""
+    xyz = np.zeros((len(group), 3))
+    evidence = ClusterEvidence(xyz, group, np.arange(count), 6.0, 4.0, None, None)
+    return green_clusters(bands, evidence, np.ones(count, bool) if is_surface is None else is_surface)
+
+
 def test_green_clusters_are_told_from_all_other_colors():
     group = np.repeat(np.arange(4), 100)
-    is_green, least = green_clusters(colors((GREEN, GRAY, RED, GREEN), 100), group, 4)
+    is_green, least = green(colors((GREEN, GRAY, RED, GREEN), 100), group, 4)
     np.testing.assert_array_equal(is_green, [True, False, False, True])
     assert 0 < least < (2 * 40 - 20 - 15) / 75
 
@@ -74,19 +90,19 @@ def test_shadow_does_not_change_it():
     group = np.repeat(np.arange(3), 100)
     lit = colors((GREEN, GRAY, RED), 100)
     shadow = np.tile(np.repeat([1.0, 0.4], 50), 3)
-    is_green, _ = green_clusters(tuple((band * shadow).astype(np.uint16) for band in lit), group, 3)
+    is_green, _ = green(tuple((band * shadow).astype(np.uint16) for band in lit), group, 3)
     np.testing.assert_array_equal(is_green, [True, False, False])
 
 
 def test_most_points_of_a_cluster_decide():
     group = np.repeat(np.arange(2), 100)
-    red, green, blue = colors((GREEN, GRAY), 100)
+    bands = colors((GREEN, GRAY), 100)
     # A quarter of the plant's points is gray, and a quarter of the gray cluster's is green; others have no cluster.
-    for band, (of_green, of_gray) in zip((red, green, blue), zip(GREEN, GRAY)):
+    for band, (of_green, of_gray) in zip(bands, zip(GREEN, GRAY)):
         band[:25], band[100:125] = of_gray, of_green
-    is_green, _ = green_clusters((red, green, blue), group, 2)
+    is_green, _ = green(bands, group, 2)
     np.testing.assert_array_equal(is_green, [True, False])
-    is_green, _ = green_clusters((red, green, blue), np.where(group == 0, -1, group), 2)
+    is_green, _ = green(bands, np.where(group == 0, -1, group), 2)
     np.testing.assert_array_equal(is_green, [False, False])
 
 
@@ -94,12 +110,46 @@ def test_most_points_of_a_cluster_decide():
 def test_without_color_nothing_is_green(missing):
     bands = list(colors((GREEN, GRAY), 100))
     bands[missing] = None
-    is_green, least = green_clusters(tuple(bands), np.repeat(np.arange(2), 100), 2)
+    is_green, least = green(tuple(bands), np.repeat(np.arange(2), 100), 2)
     assert least is None
     assert not is_green.any()
 
 
 def test_a_scene_of_one_color_has_no_plants():
-    is_green, least = green_clusters(colors((GRAY, RED), 100), np.repeat(np.arange(2), 100), 2)
+    is_green, least = green(colors((GRAY, RED), 100), np.repeat(np.arange(2), 100), 2)
     assert least is None
     assert not is_green.any()
+
+
+@pytest.fixture
+def dry(rng):
+    """A large roof, a rough crown and a smooth one, both hardly green, and a lawn; evidence and colors."""
+    parts = roof(rng, 0, 0, 12, 12), crown(rng, 30, 5, 3.0), roof(rng, 50, 0, 4, 4)
+    xyz, number = clusters(*parts)
+    kinds = np.repeat(
+        [(30_000, 30_000, 30_000), (29_000, 31_500, 28_500), (29_000, 31_500, 28_500)], list(map(len, parts)), axis=0
+    )
+    lawn = roof(rng, 0, 30, 20, 20, 0.0)
+    xyz = np.concatenate([xyz, lawn])
+    bands = np.concatenate([kinds, np.tile(GREEN, (len(lawn), 1))]) * rng.uniform(0.98, 1.02, (len(xyz), 3))
+    group = np.append(number - 1, np.full(len(lawn), -1))
+    return ClusterEvidence(xyz, group, np.arange(3), 6.0, 4.0, None, None), tuple(bands.T.astype(np.uint16))
+
+
+def test_the_limit_lies_between_rough_crowns_and_large_roofs_and_not_at_the_lawn(dry):
+    evidence, bands = dry
+    is_green, least = green_clusters(bands, evidence, np.array([True, False, True]))
+    np.testing.assert_array_equal(is_green, [False, True, True])
+    assert least == pytest.approx(0.06 / 2, abs=0.015)
+    # Without a rough crown the lawn is the only green, and far greener.
+    is_green, least = green_clusters(bands, evidence, np.array([True, True, True]))
+    assert not is_green.any()
+    assert least > 0.1
+
+
+def test_green_buildings_are_refused_in_scans_without_returns_unless_they_are_large_planes(dry):
+    evidence, _ = dry
+    before = Decisions(np.array([0.9, 0.2, 0.9]), np.array([Reason.SOLID, Reason.ROUGH, Reason.SOLID], np.uint8))
+    found = without_green(before, np.array([True, True, True]), evidence)
+    assert [Reason(number) for number in found.reasons] == [Reason.SOLID, Reason.ROUGH, Reason.GREEN]
+    np.testing.assert_array_equal(found.confidence, [0.9, 0.2, 0.5])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from lidar_buildings.algorithms.features.greenness import greenness, plant_greenness
+from lidar_buildings.algorithms.features.greenness import greenness, greenness_between, plant_greenness
 
 GRASS, ASPHALT = np.array([90.0, 130.0, 60.0]), np.array([128.0, 126.0, 122.0])
 
@@ -44,3 +44,19 @@ def test_scenes_of_one_kind_have_no_threshold():
         colors, _ = mixed(np.random.default_rng(2), share)
         assert plant_greenness(greenness(*colors.T)) is None
     assert plant_greenness(np.full(5, np.nan)) is None
+
+
+def test_leaves_and_roofs_known_by_their_shape_give_the_middle_between_them():
+    rng = np.random.default_rng(4)
+    leaves, roofs = rng.normal(0.06, 0.03, 5000), rng.normal(-0.02, 0.03, 5000)
+    assert abs(greenness_between(leaves, roofs) - 0.02) < 0.003
+    # A fifth of the leaves are edges of roofs, and a fifth of the roofs are crowns.
+    mixed = np.append(leaves[:4000], roofs[:1000]), np.append(roofs[:4000], leaves[:1000])
+    assert abs(greenness_between(*mixed) - 0.02) < 0.01
+
+
+def test_edges_of_gray_roofs_are_no_leaves():
+    rng = np.random.default_rng(5)
+    assert greenness_between(rng.normal(0.01, 0.03, 5000), rng.normal(0, 0.03, 5000)) is None
+    assert greenness_between(np.array([np.nan]), np.array([0.0])) is None
+    assert greenness_between(np.array([0.2]), np.zeros(0)) is None
