@@ -17,14 +17,14 @@ GREENNESS = {"ground": 0.12, "roof": -0.01, "crown": 0.06}
 
 
 def site(rng, gaps):
-    """Return the cloud, and which points are of crowns; ground shows in gaps of half of the crowns, or in none."""
+    """Return the cloud, and which points are of crowns; ground shows in gaps of most crowns, or in none."""
     parts = [box(*roof[:4], roof[4], 0.3) for roof in ROOFS]
     parts += [mound(crown[:2], crown[2], crown[3], 0.1) for crown in CROWNS]
     xyz, part = seen_from_above(rng, *parts, side=80.0, density=30.0)
     is_crown = part > len(ROOFS)
     xyz[:, 2] += rng.normal(0, 0.02, len(xyz))
     patch = np.sin(xyz[:, 0] * 0.9) + np.sin(xyz[:, 1] * 0.8)
-    seen = gaps & is_crown & (patch > 0) & (rng.random(len(xyz)) < 0.4)
+    seen = gaps & is_crown & (patch > -1) & (rng.random(len(xyz)) < 0.4)
     xyz[seen, 2] = 0.0
     is_crown &= ~seen
     kinds = np.select([is_crown, part > 0], [GREENNESS["crown"], GREENNESS["roof"]], GREENNESS["ground"])
