@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Iterator
 from typing import Any
 
 
@@ -18,3 +19,13 @@ def rule(value: Any, unit: str, why: str) -> Any:
     [('step', 1.0, 'm')]
     """
     return dataclasses.field(default=value, metadata={"unit": unit, "why": why})
+
+
+def rules_of(module: Any) -> Iterator[tuple[str, dataclasses.Field]]:
+    """Yield the name and the field of each rule of a module, those of a dataclass that it names in capitals."""
+    for name, value in vars(module).items():
+        is_own = dataclasses.is_dataclass(value) and type(value).__module__ == module.__name__
+        if is_own and not isinstance(value, type):
+            for field in dataclasses.fields(value):
+                if "why" in field.metadata:
+                    yield f"{name}.{field.name}", field

@@ -10,6 +10,7 @@ import numpy as np
 from ..neighborhoods.covariance import Nearest
 from ..neighborhoods.wide_in_plan import Wide
 from ..params import MinBuildingArea, PointDensity, PointSource, nearest_points
+from ..rules import rule
 from ..sampling.cloud_sampling import CloudSampling
 from ..sampling.surface_noise import plane_roughness
 from ..stage import Monitor, Param, stage
@@ -20,11 +21,17 @@ from .cluster_report import MEASURES, Clusters, build_report
 from .entropy_split import MEAN_ENTROPIES, held_means, reference_entropies, split_of_whole
 from .surface_evidence import decide_in_images, green_clusters, without_green
 
-# Points that an entropy needs, as a multiple of those that show a plane: three shares come from it, not one direction.
-_POINTS_PER_PLANE = 1.5
 
-# The same on scan lines, where neighbors along a line tell little that is new.
-_POINTS_PER_PLANE_ON_LINES = 1.75
+@dataclass(frozen=True)
+class EntropyRules:
+    """Neighborhoods of entropies."""
+
+    points: float = rule(1.5, "ratio", "to those that show a plane: three shares come from them, not one direction")
+    points_on_lines: float = rule(1.75, "ratio", "the same on scan lines, along which neighbors say little")
+
+
+ENTROPY = EntropyRules()
+
 
 # Points of each cluster whose entropy is measured, about. Those of a cluster scatter by 0.15: a mean of 256 is good to
 # 0.01, half of what K-means moves the threshold by.
@@ -235,7 +242,7 @@ def _decided_in_images(
 def _surface_neighborhood(sampling: CloudSampling, density: float) -> Union[Nearest, Wide]:
     """Return the smallest neighborhood in which neither noise nor scan lines blur a plane's entropy."""
     plane = sampling.neighborhood(density, sampling.noise)
-    times = _POINTS_PER_PLANE_ON_LINES if isinstance(plane, Wide) else _POINTS_PER_PLANE
+    times = ENTROPY.points_on_lines if isinstance(plane, Wide) else ENTROPY.points
     return replace(plane, count=round(times * plane.count))
 
 

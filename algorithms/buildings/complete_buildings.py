@@ -25,7 +25,7 @@ class CompletionRules:
     """Cells, walls and gaps of buildings in laser scans."""
 
     cell: float = rule(1.2, "point spacings", "statistics: where a roof was seen, cells hold a point in three of four")
-    least_cell: float = rule(0.5, "m", "physics: half the width of the narrowest gutter that parts roofs")
+    least_cell: float = rule(0.5, "m", "the same, at least")
     wall_foot: float = rule(0.5, "m", "physics: lower points stand on the ground: kerbs, plants, steps")
     at_roof: float = rule(1.0, "m", "vertical distance at which points are compared with the surfaces of a roof")
     gap: float = rule(4.0, "point spacings", "statistics: random points hardly ever leave larger gaps in a roof")

@@ -9,26 +9,27 @@ import numpy as np
 
 from ..neighborhoods.covariance import shannon_entropy_lps, symmetric_eigenvalues
 from ..packages import cluster
+from ..rules import rule
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Monitor
 
-# Mean entropies closer together than this count as equal: entropy is 0 to 1.1, and clusters differ by 0.01 and more.
-_SAME_ENTROPY = 1e-3
 
-# Weight of a reference entropy, in clusters: a handful of clusters can't move it, thousands can (chosen, not fitted).
-_REFERENCE_WEIGHT = 100
+@dataclass(frozen=True)
+class SplitRules:
+    """How two mean entropies are found."""
 
-# Random starts of K-means, of which the best counts: scikit-learn's own default of many years.
-_STARTS = 10
+    same: float = rule(1e-3, "entropy", "means closer together are equal: clusters differ by 0.01 and more")
+    weight: int = rule(100, "clusters", "chosen: a handful of clusters can not move a reference, thousands can")
+    starts: int = rule(10, "runs", "of K-means, of which the best counts: the default of scikit-learn for years")
+    rounds: int = rule(100, "rounds", "bound of two means, which settle in a few")
+    simulated: int = rule(500, "points", "statistics: more change the reference entropies by less than 0.01")
 
-# Limit of the rounds of two means; in one dimension they settle in a few.
-_MAX_ROUNDS = 100
+
+SPLIT = SplitRules()
+
 
 # Names of the two means among what parts of a cloud take of the whole.
 MEAN_ENTROPIES = ("building_entropy", "other_entropy")
-
-# Points of a simulated neighborhood at most: with more the reference entropies change by less than 0.01.
-_MAX_SIMULATED_POINTS = 500
 
 
 @dataclass(frozen=True)
@@ -93,14 +94,14 @@ def k_means(means: np.ndarray, monitor: Monitor) -> Split:
     alike = _alike(known, monitor)
     if alike is not None:
         return alike
-    found = cluster.KMeans(n_clusters=2, n_init=_STARTS, random_state=0).fit(known[:, None])
+    found = cluster.KMeans(n_clusters=2, n_init=SPLIT.starts, random_state=0).fit(known[:, None])
     building, other = np.sort(found.cluster_centers_.ravel())
     return Split(float(building), float(other))
 
 
 def _alike(known: np.ndarray, monitor: Monitor) -> Optional[Split]:
     """Return the split of ascending mean entropies that can't be separated, and say so; None where they can."""
-    if len(known) >= 2 and np.ptp(known) >= _SAME_ENTROPY:
+    if len(known) >= 2 and np.ptp(known) >= SPLIT.same:
         return None
     one = "is only one cluster" if len(known) < 2 else "are only clusters of the same entropy"
     monitor.warn(f"There {one}: nothing to separate, so nothing was called a building.")
@@ -111,15 +112,15 @@ def _alike(known: np.ndarray, monitor: Monitor) -> Optional[Split]:
 def held_means(means: np.ndarray, plane: float, volume: float, monitor: Monitor) -> Split:
     """Separate the clusters' mean entropies (m,) as K-means does, from reference entropies and held by them.
 
-    The references of planes and volumes count as ``_REFERENCE_WEIGHT`` clusters each.
+    The references of planes and volumes count as ``SPLIT.weight`` clusters each.
     """
     known = np.sort(means[np.isfinite(means)])
     low, high = plane, volume
-    for _ in range(_MAX_ROUNDS):
+    for _ in range(SPLIT.rounds):
         is_low = known <= (low + high) / 2
         before = low, high
-        low = float((known[is_low].sum() + _REFERENCE_WEIGHT * plane) / (is_low.sum() + _REFERENCE_WEIGHT))
-        high = float((known[~is_low].sum() + _REFERENCE_WEIGHT * volume) / ((~is_low).sum() + _REFERENCE_WEIGHT))
+        low = float((known[is_low].sum() + SPLIT.weight * plane) / (is_low.sum() + SPLIT.weight))
+        high = float((known[~is_low].sum() + SPLIT.weight * volume) / ((~is_low).sum() + SPLIT.weight))
         if (low, high) == before:
             break
     is_one_kind = bool(is_low.all() or not is_low.any())
@@ -152,7 +153,7 @@ def reference_entropies(n_points: int, roughness: float = 0.0, trials: int = 400
         The random numbers are fixed: the same arguments always give the same two figures.
     """
     generator = np.random.default_rng(0)
-    n_points = min(n_points, _MAX_SIMULATED_POINTS)
+    n_points = min(n_points, SPLIT.simulated)
     directions = generator.normal(size=(trials, n_points, 3))
     ball = directions / np.linalg.norm(directions, axis=2, keepdims=True)
     ball *= generator.random((trials, n_points, 1)) ** (1 / 3)

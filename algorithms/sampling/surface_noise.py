@@ -37,9 +37,7 @@ class SurfaceRules:
     narrow_share: float = rule(0.2, "share", "of smooth neighborhoods that are narrow where points lie on lines")
     uneven: float = rule(2.0, "ratio", "of the density around the median point to the cloud's, from which it counts")
     least_roughness: float = rule(0.025, "m", "physics: relief of roof tiles, gravel and gutters")
-    roughness_of_spacing: float = rule(
-        0.065, "point spacings", "fitted on five real clouds: surfaces bend between points"
-    )
+    roughness_of_spacing: float = rule(0.065, "point spacings", "chosen: surfaces bend between points")
     on_plane: float = rule(2.33, "deviations", "statistics: 98 % of normally distributed points lie as near to a plane")
 
 

@@ -31,7 +31,7 @@ class RoofSurfaceRules:
     low_share: float = rule(0.1, "share", "of low points, from which a surface goes on into the ground: a ramp")
     low: float = rule(0.5, "m", "height above ground up to which points are low")
     dense: float = rule(10.0, "points/m²", "with fewer, planes reach farther than half a meter")
-    farther: float = rule(0.12, "point spacings", "fitted on real clouds of 4/m²: deviation from these planes")
+    farther: float = rule(0.12, "point spacings", "fitted on thinned clouds of two towns: deviation from these planes")
     link: float = rule(2.0, "point spacings", "statistics: random points of one object are hardly ever farther apart")
 
 

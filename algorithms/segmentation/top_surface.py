@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
 
 from ..geometry.grid import fixed_grid_over, raster_cells, refuse_sparse
 from ..packages import ndimage
+from ..rules import rule
 
-# Cells hold a point nearly everywhere: this many point spacings, and no less than a quarter of a meter.
-_CELL_SPACINGS, _LEAST_CELL = 1.2, 0.25
 
-# Empty cells no farther than this many cells from others take the height of the nearest one.
-_FILLED = 2.0
+@dataclass(frozen=True)
+class TopSurfaceRules:
+    """The surface seen from above, in cells."""
 
-# A point is of the surface when it lies no deeper than this below the highest one of its cell (m), and what a slope of
-# 45° falls within the cell.
-_DEPTH = 0.2
+    cell: float = rule(1.2, "point spacings", "statistics: cells hold a point nearly everywhere")
+    least_cell: float = rule(0.25, "m", "the same, at least")
+    filled: float = rule(2.0, "cells", "up to which empty cells take the height of the nearest one")
+    depth: float = rule(0.2, "m", "below the highest point of a cell, besides what a slope of 45° falls within it")
+
+
+TOP = TopSurfaceRules()
 
 
 class TopSurface:
@@ -45,7 +50,7 @@ class TopSurface:
     """
 
     def __init__(self, xyz: np.ndarray, height: np.ndarray, counted: np.ndarray, density: float) -> None:
-        self.size = max(_LEAST_CELL, _CELL_SPACINGS / float(np.sqrt(density)))
+        self.size = max(TOP.least_cell, TOP.cell / float(np.sqrt(density)))
         refuse_sparse(xyz, self.size)
         margin = 4
         self.cell = row, column = raster_cells(xyz, self.size, margin)
@@ -54,13 +59,13 @@ class TopSurface:
         np.maximum.at(self.elevation, (row[counted], column[counted]), xyz[counted, 2])
         np.maximum.at(self.height, (row[counted], column[counted]), height[counted])
         distance, nearest = ndimage.distance_transform_edt(~np.isfinite(self.elevation), return_indices=True)
-        is_near = distance <= _FILLED
+        is_near = distance <= TOP.filled
         self.elevation = np.where(is_near, self.elevation[tuple(nearest)], -np.inf)
         self.height = np.where(is_near, self.height[tuple(nearest)], 0.0)
 
     def on_top(self, xyz: np.ndarray) -> np.ndarray:
         """Return which of the points (n,) are of the surface."""
-        return xyz[:, 2] >= self.elevation[self.cell] - (_DEPTH + self.size)
+        return xyz[:, 2] >= self.elevation[self.cell] - (TOP.depth + self.size)
 
     def share_near(self, chosen: np.ndarray, reach: float, tolerance: np.ndarray, raised: float) -> np.ndarray:
         """Return how many of the raised cells near each cell, at about its height, are chosen.

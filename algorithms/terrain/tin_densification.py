@@ -24,7 +24,7 @@ class DensificationRules:
     )
     node_distance: float = rule(0.25, "share", "of the edge length: nearer points make slivers and add no information")
     least_growth: float = rule(0.005, "share", "of the nodes that a round must add to have another one after it")
-    most_rounds: int = rule(50, "rounds", "bound of the time; clouds need some 20")
+    most_rounds: int = rule(50, "rounds", "bound of the time")
     candidate: float = rule(5.0, "largest distances", "from the first TIN, beyond which points are no candidates")
 
 

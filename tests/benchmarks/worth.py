@@ -41,6 +41,7 @@ from lidar_buildings.algorithms.cloud.asprs import PointClass  # noqa: E402
 from lidar_buildings.algorithms.cloud.cloud import Cloud, create_cloud  # noqa: E402
 from lidar_buildings.algorithms.cloud.files import read_cloud  # noqa: E402
 from lidar_buildings.algorithms.geometry.grid import turned_in_plan  # noqa: E402
+from lidar_buildings.algorithms.help import rules_table  # noqa: E402
 from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
 from lidar_buildings.tests.benchmarks.results import FOLDER, ROOT, Table  # noqa: E402
 from lidar_buildings.tests.real.clouds import (  # noqa: E402
@@ -379,7 +380,11 @@ WHOLE = (
         "buildings.cluster_evidence:EVIDENCE",
         _set("buildings.cluster_evidence:EVIDENCE", split_at_edges=0.0),
     ),
-    _out("classify: weight of the references", "buildings.entropy_split:_REFERENCE_WEIGHT", 10**9),
+    _out(
+        "classify: weight of the references",
+        "buildings.entropy_split:SPLIT",
+        _set("buildings.entropy_split:SPLIT", weight=10**9),
+    ),
     Rule("refine: learned from the scene", tunables={"refine": {"learn": False}}),
     Rule("complete: gaps", tunables={"complete": {"gap": 0.0}}),
     Rule("complete: structures on roofs", tunables={"complete": {"structure_height": 0.0}}),
@@ -513,6 +518,7 @@ def page(content: dict[str, Any]) -> str:
     return _PAGE.format(
         least_mean=LEAST_MEAN,
         least=LEAST_ANYWHERE,
+        rules=rules_table(),
         table="\n".join(f"| {line} |" for line in (" | ".join(columns), " | ".join(["---"] * len(columns)), *lines)),
     )
 
@@ -528,6 +534,13 @@ deleted. Differences below about 0.05 are chance: they also appear when a cloud 
 `python tests/benchmarks/worth.py` measures the table, `--page` writes this page.
 
 {table}
+
+## The constants
+
+Each constant of the methods whose module holds its rules in one table, with the reason for its value: physics,
+statistics, a paper, or fitted on what.
+
+{rules}
 """
 
 
