@@ -64,6 +64,7 @@ from .simulation.simulate_village import simulate_village
 from .terrain.classify_ground_cloth import classify_ground_cloth
 from .terrain.classify_ground_tin import classify_ground_tin
 from .terrain.classify_ground_tin_2000 import classify_ground_tin_2000
+from .terrain.classify_multipath import classify_multipath
 from .terrain.complete_ground import complete_ground
 from .terrain.compute_height_above_ground import compute_height_above_ground
 from .terrain.rasterize_terrain import rasterize_terrain
@@ -82,6 +83,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     downsample_voxels,
     classify_ground_tin,
     classify_ground_tin_2000,
+    classify_multipath,
     classify_ground_cloth,
     compute_height_above_ground,
     complete_ground,

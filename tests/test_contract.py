@@ -53,6 +53,7 @@ STAGE_IDS = {
     "mergeclouds",
     "classifygroundtin",
     "classifygroundtin2000",
+    "classifymultipath",
     "classifygroundcloth",
     "computeheightaboveground",
     "rasterizeterrain",

@@ -12,7 +12,6 @@ from ..params import PointSource
 from ..rules import rule
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Param, stage
-from .false_pits import false_pits
 from .ground_points import in_plan_order, last_returns, usable_points, with_ground
 from .ground_seeds import USUAL_BUILDING, seeds_by_opening
 from .smeared_objects import nowhere, on_smeared_objects
@@ -174,25 +173,15 @@ def classify_ground_tin(
             advanced=True,
         ),
     ] = None,
-    find_multipath: Annotated[
-        bool,
-        Param(
-            "Find multipath under the ground",
-            "Groups of multipath points 0.5 m and more below the ground become low noise (class 7) instead of pits. "
-            "Small pools and sunken yards that few pulses reached become noise too, so look at the result.",
-            advanced=True,
-        ),
-    ] = False,
     source: PointSource = "automatic",
     sampling: Optional[CloudSampling] = None,
     monitor=None,
 ):
     """Find the ground by letting a triangulated surface grow through the lowest points.
 
-    Ground points get class 2 and, where it is asked for, groups of multipath points under the ground class 7 (low
-    noise). Points of class 7 and 18 (noise) are never used and keep their class, points that were ground before and
-    are not found again become 1 (unclassified), all others keep their class. Classify noise first: points far below
-    the ground pull any ground filter down.
+    Ground points get class 2. Points of class 7 and 18 (noise) are never used and keep their class, points that were
+    ground before and are not found again become 1 (unclassified), all others keep their class. Classify noise first:
+    points far below the ground pull any ground filter down. 'Classify multipath under the ground' finds pits of noise.
 
     Parameters
     ----------
@@ -206,7 +195,7 @@ def classify_ground_tin(
     Returns
     -------
     classification : ndarray of shape (n,), uint8
-        ASPRS classes, ground 2, low noise 7.
+        ASPRS classes, ground 2.
 
     Raises
     ------
@@ -226,11 +215,6 @@ def classify_ground_tin(
     The final sweep adds the points within the noise of the finished surface, which the paper leaves unclassified.
     Where strips overlap that were not adjusted to one another, the surface follows the lower one. The points of the
     other are told from plants by the empty air over them, and are ground too.
-
-    Multipath points lie under the ground along their beams, and several from one mirror make a pit. A group of points
-    up to 3 m wide, lower by 0.45 m or more than smooth ground all round, is such a pit if no terrain leads down to it
-    and the points do not fill it: other pulses see the ground amid them, they are closer together than pulses are, or
-    fewer than six. Light shafts, cellar stairs and excavations, whose floors stop every pulse, stay ground.
 
     In clouds of matched images walls are smeared to slopes that the surface climbs; ground points on objects narrower
     than 4.5 m, and on the feet of walls, are taken out again. Halls on slopes, whose uphill eaves are 1 m or more above
@@ -268,23 +252,15 @@ def classify_ground_tin(
     # 2. The surface grows from them.
     scale, least = max(cell_size, spacing), sampling.height_resolution
     rules = JoinRules(angle, iteration_distance, GROUND.bend * spacing, edge_length, least)
-    surface, distance, _ = grow(points, np.flatnonzero(last)[seeds], may_join, rules, monitor.part(0.3, 0.85))
+    surface, distance, _ = grow(points, np.flatnonzero(last)[seeds], may_join, rules, monitor.part(0.3, 0.9))
 
-    # 3. Groups of multipath points under it are no ground.
-    low_noise = np.empty(0, np.int64)
-    if find_multipath:
-        low_noise = false_pits(points, surface.is_node, surface.above(), last, spacing, monitor.part(0.85, 0.9))
-        surface = surface.without(low_noise, monitor.part(0.9, 1))
-
-    # 4. Points near the finished surface are ground.
-    is_ground, sweep_distance = _sweep(surface, sweep_distance, scale, sampling)
+    # 3. Points near the finished surface are ground.
+    is_ground, sweep_distance = sweep(surface, sweep_distance, scale, sampling)
     monitor.resolved(
         iteration_angle=angle, iteration_distance=distance, edge_length=edge_length, sweep_distance=sweep_distance
     )
     is_ground &= ~kind.choose(laser=nowhere, images=on_smeared_objects)(points, is_ground, spacing)
-    if len(low_noise):
-        monitor.resolved(low_noise=len(low_noise))
-    return with_ground(classification, usable[is_ground], usable[low_noise])
+    return with_ground(classification, usable[is_ground])
 
 
 def _cell(granularity: Optional[str], cell_size: Optional[float], spacing: float) -> tuple[str, float]:
@@ -301,7 +277,7 @@ def _terrain(size: float) -> str:
     return next((kind for kind in kinds if size <= _TERRAINS[kind][0]), kinds[-1])
 
 
-def _sweep(
+def sweep(
     surface: Surface, distance: Optional[float], scale: float, sampling: CloudSampling
 ) -> tuple[np.ndarray, float]:
     """Return which points lie within ``distance`` of the surface or are its nodes, and that distance.

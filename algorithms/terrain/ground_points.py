@@ -54,13 +54,8 @@ def last_returns(
     return last if last.sum() >= _MIN_POINTS else np.ones(len(usable), bool)
 
 
-def with_ground(classification: np.ndarray, ground: np.ndarray, low_noise: Optional[np.ndarray] = None) -> np.ndarray:
-    """Return the classes with the points of the indices ``ground`` as ground, and no others.
-
-    Those of the indices ``low_noise``, where given, become low noise.
-    """
+def with_ground(classification: np.ndarray, ground: np.ndarray) -> np.ndarray:
+    """Return the classes with the points of the indices ``ground`` as ground, and no others."""
     classes = np.where(classification == PointClass.GROUND, np.uint8(PointClass.UNCLASSIFIED), classification)
     classes[ground] = PointClass.GROUND
-    if low_noise is not None:
-        classes[low_noise] = PointClass.LOW_NOISE
     return classes.astype(np.uint8)

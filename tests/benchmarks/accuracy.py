@@ -359,11 +359,13 @@ def noise_apart() -> list[Table]:
         xyz = cloud.get("xyz")
         is_apart = np.zeros(len(xyz), bool)
         is_apart[is_marked] = cKDTree(xyz[~is_marked]).query(xyz[is_marked])[0] >= APART
-        for after, stage, tunables in (
-            ("heights", "classify_noise_histogram", {}),
-            ("ground", "classify_ground_tin", {"find_multipath": True}),
+        for after, stage in (
+            ("heights", "classify_noise_histogram"),
+            ("air", "classify_noise_air"),
+            ("ground", "classify_ground_tin"),
+            ("multipath", "classify_multipath"),
         ):
-            run_stage(STAGES[stage], cloud, **tunables)
+            run_stage(STAGES[stage], cloud)
             is_noise = np.isin(cloud.get("classification"), NOISE)
             counts = (is_marked, is_apart, is_apart & is_noise, is_noise, is_marked & is_noise)
             table.add(name.split("/")[1], after, *(int(count.sum()) for count in counts))
@@ -405,7 +407,9 @@ def pits() -> list[Table]:
     table = Table("pits", "density, slope", "multipath points", "called ground", "completeness", "correctness")
     for seed, (density, slope) in enumerate(PITS, start=1):
         town = with_pits(density=density, slope=slope, seed=seed)
-        found = run_stage(STAGES["classify_ground_tin"], town.cloud, find_multipath=True).cloud.get("classification")
+        for stage in ("classify_ground_tin", "classify_multipath"):
+            run_stage(STAGES[stage], town.cloud)
+        found = town.cloud.get("classification")
         is_group, is_low = town.group > 0, found == PointClass.LOW_NOISE
         shares = (found[is_group] == PointClass.GROUND).mean(), is_low[is_group].mean(), is_group[is_low].mean()
         table.add(f"{density:g}, {slope:g}°", int(is_group.sum()), *(100 * share for share in shares))

@@ -62,7 +62,7 @@ MOVED = (0.8, 1.2)
 LEAST_MEAN, LEAST_ANYWHERE = 0.1, 0.5
 # Steps that decide what is building, and those that are left out unless they are asked for.
 STEPS = ("noise", "ground", "height", "roofs", "buildings", "complete", "refine")
-ON_REQUEST = ("bridges", "water", "vegetation")
+ON_REQUEST = ("bridges", "water", "wires", "vegetation")
 
 
 @dataclass(frozen=True)

@@ -45,6 +45,7 @@ IDS = {
     "classifygroundcloth",
     "classifygroundtin",
     "classifygroundtin2000",
+    "classifymultipath",
     "classifynoiseair",
     "classifynoisehistogram",
     "classifynoisehistogram2019",

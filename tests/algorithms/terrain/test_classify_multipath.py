@@ -7,6 +7,7 @@ from lidar_buildings.algorithms.run import run_stage
 from lidar_buildings.algorithms.stage import Monitor
 from lidar_buildings.algorithms.stages import STAGES
 from lidar_buildings.algorithms.terrain.classify_ground_tin import classify_ground_tin
+from lidar_buildings.algorithms.terrain.classify_multipath import classify_multipath
 from lidar_buildings.algorithms.terrain.false_pits import false_pits
 from lidar_buildings.tests.builders import FAR
 from lidar_buildings.tests.pits import scene
@@ -35,7 +36,7 @@ def group(rng, count, radius, depth, slope=0.0):
 
 
 def classified(xyz):
-    return classify_ground_tin(xyz, np.ones(len(xyz), np.uint8), find_multipath=True)
+    return classify_multipath(xyz, classify_ground_tin(xyz, np.ones(len(xyz), np.uint8)))
 
 
 @pytest.mark.parametrize("slope", [0.0, 25.0])
@@ -115,7 +116,9 @@ def test_a_surface_without_pits_has_none(rng):
 def test_a_town_with_groups_and_pits(density, slope):
     """Aimed at: four fifths of the points under the ground at a correctness of nine tenths; true pits stay."""
     town = scene(density=density, slope=slope, groups=25, size=120.0, seed=11)
-    found = run_stage(STAGES["classify_ground_tin"], town.cloud, find_multipath=True).cloud.get("classification")
+    for stage in ("classify_ground_tin", "classify_multipath"):
+        run_stage(STAGES[stage], town.cloud)
+    found = town.cloud.get("classification")
     is_low, is_group = found == 7, town.group > 0
     assert is_low[is_group].mean() > 0.8
     assert is_group[is_low].mean() > 0.9
@@ -123,3 +126,9 @@ def test_a_town_with_groups_and_pits(density, slope):
     seen = [number for number in np.unique(town.pit[town.pit > 0]) if (town.pit == number).sum() >= 8]
     assert len(seen) > 5
     assert not is_low[np.isin(town.pit, seen)].any()
+
+
+def test_a_cloud_without_ground_is_refused(rng):
+    xyz = terrain(rng, 2)
+    with pytest.raises(ValueError, match="no ground points"):
+        classify_multipath(xyz, np.ones(len(xyz), np.uint8))

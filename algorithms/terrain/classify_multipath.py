@@ -1,0 +1,105 @@
+"""Groups of multipath points under the ground: low noise instead of pits."""
+
+from __future__ import annotations
+
+from typing import Optional
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from ..packages import spatial
+from ..sampling.cloud_sampling import CloudSampling
+from ..stage import stage
+from .classify_ground_tin import GROUND, sweep
+from .false_pits import false_pits
+from .ground_points import in_plan_order, last_returns, usable_points
+from .ground_seeds import lowest_points
+from .tin_densification import JoinRules, grow
+
+# Least side (m) of the cells whose ground points make the surface, as of the ground filter.
+_LEAST_CELL = 1.0
+
+# Distance (m) in plan from such a group within which points are looked at again: the surface that it drew down.
+_REACH = 10.0
+
+
+@stage(
+    "Classify multipath under the ground",
+    group="Terrain",
+    tags="multipath,noise,low points,pits,ground,DTM",
+    writes=("classification",),
+    reach=2 * _REACH,
+)
+def classify_multipath(
+    xyz,
+    classification,
+    return_number=None,
+    number_of_returns=None,
+    *,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Find groups of multipath points under the ground, which a ground filter takes for pits.
+
+    They become low noise (class 7), and the ground around them that they hid becomes ground (class 2). Small pools and
+    sunken yards that few pulses reached become noise too, so look at the result.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes with ground (2).
+    return_number, number_of_returns : ndarray of shape (n,), uint8, optional
+        Where given, only last returns are looked for.
+
+    Returns
+    -------
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes, ground 2, low noise 7.
+
+    Raises
+    ------
+    ValueError
+        If no point is ground.
+
+    Notes
+    -----
+    Multipath points lie under the ground along their beams, and several from one mirror make a pit. A group of points
+    up to 3 m wide, lower by 0.45 m or more than smooth ground all round, is such a pit if no terrain leads down to it
+    and the points do not fill it: other pulses see the ground amid them, they are closer together than pulses are, or
+    fewer than six. Light shafts, cellar stairs and excavations, whose floors stop every pulse, stay ground. The surface
+    grows from the lowest ground point of each cell onto the others, as in 'Classify ground points (TIN)'.
+
+    References
+    ----------
+    Axelsson, P., 2000. DEM generation from laser scanner data using adaptive TIN models. International Archives of
+    Photogrammetry and Remote Sensing 33 (B4), 110-117. The search for multipath is this project's.
+    """
+    if not (classification == PointClass.GROUND).any():
+        raise ValueError("The cloud has no ground points (class 2); run 'Classify ground points (TIN)' first.")
+    sampling = sampling or CloudSampling.of(xyz, classification)
+    xyz = sampling.from_corner(xyz)
+    usable = in_plan_order(xyz, usable_points(xyz, classification), sampling.spacing)
+    points, classes = xyz[usable], classification[usable].copy()
+    is_last = last_returns(return_number, number_of_returns, usable)
+    scale = max(_LEAST_CELL, sampling.spacing)
+    is_ground = (classes == PointClass.GROUND) & is_last
+    lowest = lowest_points(points[is_ground], scale)
+    seeds = np.flatnonzero(is_ground)[lowest.points(lowest.index >= 0)]
+    least = sampling.height_resolution
+    rules = JoinRules(GROUND.angle, None, GROUND.bend * sampling.spacing, 2 * scale, least)
+    surface, _, _ = grow(points, seeds, is_ground, rules, monitor.part(0, 0.5))
+    low = false_pits(points, surface.is_node, surface.above(), is_last, sampling.spacing, monitor.part(0.5, 0.7))
+    if len(low):
+        # What such a group drew down is looked at again.
+        is_ground, _ = sweep(surface.without(low, monitor.part(0.7, 0.9)), None, scale, sampling)
+        near = np.isfinite(spatial.cKDTree(points[low, :2]).query(points[:, :2], distance_upper_bound=_REACH)[0])
+        undecided = near & np.isin(classes, (PointClass.NEVER_CLASSIFIED, PointClass.UNCLASSIFIED, PointClass.GROUND))
+        classes[undecided] = np.where(is_ground[undecided], PointClass.GROUND, PointClass.UNCLASSIFIED)
+        classes[low] = PointClass.LOW_NOISE
+    monitor.resolved(low_noise=len(low))
+    monitor.progress(1.0)
+    made = classification.astype(np.uint8)
+    made[usable] = classes
+    return made
