@@ -140,7 +140,9 @@ class GroupedPanel(ParametersPanel):
                         spin.setSpecialValueText(word)
                 if widget.metaObject().className() == "QgsExtentWidget":
                     # Python knows it as a plain widget.
-                    sip.cast(widget, QgsExtentWidget).setNullValueAllowed(True, word)
+                    extent = sip.cast(widget, QgsExtentWidget)
+                    extent.setNullValueAllowed(True, word)
+                    extent.clear()
                 for combo in (widget, *widget.findChildren(QComboBox)):
                     if isinstance(combo, QComboBox) and combo.count() and combo.itemData(0) is None:
                         combo.setItemText(0, word)

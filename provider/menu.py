@@ -56,10 +56,9 @@ def _check_installation(iface: Any) -> None:
 
 def open_dialog(iface: Any) -> None:
     """Open the dialog of *Detect buildings* with the cloud and the extent that the map shows."""
-    from processing import createAlgorithmDialog
+    from processing import execAlgorithmDialog
 
-    dialog = createAlgorithmDialog(f"{PROVIDER_ID}:detectbuildings", view_parameters(iface))
-    dialog.show()
+    execAlgorithmDialog(f"{PROVIDER_ID}:detectbuildings", view_parameters(iface))
 
 
 def view_parameters(iface: Any) -> dict[str, Any]:

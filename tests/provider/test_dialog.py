@@ -203,3 +203,9 @@ def test_dimensions_are_those_of_the_chosen_cloud(provider, window, town_file):
     assert {"Z", "Intensity", "Classification"} <= set(shown)
     shown["Intensity"].trigger()
     assert panel.wrappers["DIMENSION"].parameterValue() == "Intensity"
+
+
+def test_an_empty_extent_says_what_that_is(dialog):
+    (line,) = dialog.mainWidget().wrappers["EXTENT"].wrappedWidget().findChildren(QgsFilterLineEdit)
+    assert line.text() in ("", "the whole cloud")
+    assert dialog.mainWidget().wrappers["EXTENT"].parameterValue() in (None, "")

@@ -21,7 +21,7 @@ from lidar_buildings.algorithms import packages
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.provider import dependencies, installation
-from lidar_buildings.provider.menu import view_parameters
+from lidar_buildings.provider.menu import open_dialog, view_parameters
 from lidar_buildings.provider.pipeline_algorithm import PipelineAlgorithm
 from lidar_buildings.provider.plugin import LOG, Plugin
 from lidar_buildings.tests.provider.helpers import run
@@ -267,3 +267,13 @@ def test_the_button_fills_in_the_cloud_and_the_view(provider, town, tmp_path):
     for whole in (QgsRectangle(80_000, 440_000, 90_000, 450_000), QgsRectangle(0, 0, 1, 1)):
         assert view_parameters(Interface(layer, [], whole, "EPSG:28992")) == {"INPUT": layer.id()}
     assert view_parameters(Interface(None, [], part, "EPSG:28992")) == {}
+
+
+def test_the_button_opens_the_dialog_of_detect_buildings_and_keeps_it(provider, monkeypatch):
+    """A dialog that only its window held lost what Python had added, and did nothing on Run."""
+    import processing
+
+    opened = []
+    monkeypatch.setattr(processing, "execAlgorithmDialog", lambda *arguments: opened.append(arguments))
+    open_dialog(Interface(None, [], QgsRectangle(0, 0, 1, 1), "EPSG:28992"))
+    assert opened == [("lidarbuildings:detectbuildings", {})]
