@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any, Optional
 
 from qgis.core import QgsProcessingAlgorithm, QgsProcessingFeedback, QgsProcessingMultiStepFeedback
@@ -62,12 +63,41 @@ class FeedbackMonitor(Monitor):
         return f"{param.label}, {found}: {shown}"
 
 
+# How the log begins a line with measurements of a cloud, and what separates these.
+_SAMPLING, _BETWEEN = "Sampling: ", ", "
+
+
 class ChainFeedback(QgsProcessingMultiStepFeedback):
-    """Passes everything on, but shows a warning once, however many steps of a chain give it."""
+    """Passes everything on, but shows warnings and values once, however many steps of a chain give them.
+
+    Each step ends with the seconds that it took.
+    """
 
     def __init__(self, feedback: QgsProcessingFeedback) -> None:
         super().__init__(1, feedback)
         self._shown: set[str] = set()
+        self._began: Optional[float] = None
+
+    def setProgressText(self, text: str) -> None:  # noqa: N802 - QGIS asks for these names
+        """Log the title of a step, after the seconds of the one before it."""
+        self.end_step()
+        self._began = time.monotonic()
+        super().setProgressText(text)
+
+    def end_step(self) -> None:
+        """Log the seconds of the step that runs."""
+        if self._began is not None:
+            super().pushInfo(f"{time.monotonic() - self._began:.1f} s")
+            self._began = None
+
+    def pushInfo(self, info: str) -> None:  # noqa: N802
+        """Log a sentence or measurements that were not shown yet."""
+        is_sampling = info.startswith(_SAMPLING)
+        facts = info[len(_SAMPLING) :].split(_BETWEEN) if is_sampling else [info]
+        new = [fact for fact in facts if fact not in self._shown]
+        self._shown.update(new)
+        if new:
+            super().pushInfo((_SAMPLING if is_sampling else "") + _BETWEEN.join(new))
 
     def pushWarning(self, warning: str) -> None:  # noqa: N802 - QGIS asks for this name
         """Log a warning that was not shown yet."""

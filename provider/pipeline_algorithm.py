@@ -258,7 +258,9 @@ class PipelineAlgorithm(DeclaredAlgorithm, QgsProcessingModelAlgorithm):
     def _run_steps(self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback) -> dict:
         with _own_steps(context), tempfile.TemporaryDirectory() as folder:
             given = {**parameters, **self._parts(Path(folder), feedback)}
-            results = super().processAlgorithm(given, context, ChainFeedback(feedback))
+            steps = ChainFeedback(feedback)
+            results = super().processAlgorithm(given, context, steps)
+            steps.end_step()
         if feedback.isCanceled():
             # QGIS leaves out the steps that are left and returns what the others made.
             raise Cancelled

@@ -152,10 +152,14 @@ def _key_of(layer: QgsMapLayer, keys: dict[str, int]) -> Optional[int]:
 
 
 def name_after(context: QgsProcessingContext, titles: Collection[str], subject: str) -> None:
-    """Have the layers of two runs told apart: "Footprints (delft)", unless the user has named them."""
-    for path, details in context.layersToLoadOnCompletion().items():
+    """Name the layers of a run after its input, "Footprints (delft)", unless the user has; several make a group."""
+    layers = context.layersToLoadOnCompletion()
+    for path, details in layers.items():
+        loaded = context.layerToLoadOnCompletionDetails(path)
         if details.name in titles:
-            context.layerToLoadOnCompletionDetails(path).name = f"{details.name} ({subject})"
+            loaded.name = f"{details.name} ({subject})"
+        if len(layers) > 1 and not details.groupName:
+            loaded.groupName = subject
 
 
 def _without_styler(details: QgsProcessingContext.LayerDetails) -> QgsProcessingContext.LayerDetails:

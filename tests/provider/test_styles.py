@@ -31,7 +31,15 @@ from lidar_buildings.algorithms.quality.assess_buildings import FOUND, INVENTED,
 from lidar_buildings.algorithms.stage import Field
 from lidar_buildings.algorithms.walls.extract_wall_footprints import ROOF, WALL
 from lidar_buildings.provider.paths import STYLES
-from lidar_buildings.provider.styles import Styler, cloud_style, layer_style, load_from, show_on_load, stack_results
+from lidar_buildings.provider.styles import (
+    Styler,
+    cloud_style,
+    layer_style,
+    load_from,
+    name_after,
+    show_on_load,
+    stack_results,
+)
 from lidar_buildings.tests.toys import TOYS
 
 OF_CLOUDS = sorted(path.stem for path in STYLES.glob("*.qml") if path.stem in DIMENSIONS)
@@ -210,3 +218,27 @@ def test_styles_of_rasters_load(stem, kind, tmp_path, qgis_application):
     message, loaded = layer.loadNamedStyle(str(STYLES / f"{stem}.qml"))
     assert loaded, message
     assert layer.renderer().type() == kind
+
+
+def test_the_layers_of_a_run_are_named_after_its_input_and_make_a_group(context):
+    from qgis.core import QgsProcessingContext, QgsProject
+
+    for path, name in (("a.gpkg", "Footprints"), ("b.laz", "My own name")):
+        details = QgsProcessingContext.LayerDetails(name, QgsProject.instance(), "OUTPUT")
+        context.addLayerToLoadOnCompletion(path, details)
+    name_after(context, ["Footprints", "Classified point cloud"], "delft")
+    layers = context.layersToLoadOnCompletion()
+    assert [(layers[path].name, layers[path].groupName) for path in ("a.gpkg", "b.laz")] == [
+        ("Footprints (delft)", "delft"),
+        ("My own name", "delft"),
+    ]
+
+
+def test_a_single_layer_makes_no_group(context):
+    from qgis.core import QgsProcessingContext, QgsProject
+
+    context.addLayerToLoadOnCompletion(
+        "a.gpkg", QgsProcessingContext.LayerDetails("Footprints", QgsProject.instance(), "OUTPUT")
+    )
+    name_after(context, ["Footprints"], "delft")
+    assert context.layersToLoadOnCompletion()["a.gpkg"].groupName == ""
