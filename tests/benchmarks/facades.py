@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 """Print how good facades and their openings are: ``facades.py [table …]``, all by default.
 
-``streets`` are simulated streets, scanned from a vehicle, whose corners and openings are known, ``lines`` the scan
-lines of such; ``fronts`` are terrestrial scans of shop fronts with the true element of each point.
+``streets`` are simulated streets, scanned from a vehicle, whose corners and openings are known, ``doors`` such with
+stoops and fronts out of line, ``lines`` the scan lines of such; ``blocks`` are streets seen from a vehicle and from an
+airplane whose scans are 1.6 m off each other; ``fronts`` are terrestrial scans of shop fronts with the true element of
+each point.
 """
 
 from __future__ import annotations
@@ -16,17 +18,34 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 import numpy as np  # noqa: E402
 
 import conftest  # noqa: E402, F401 - registers the checkout as the package lidar_buildings
+from lidar_buildings.algorithms.cloud.cloud import create_cloud  # noqa: E402
 from lidar_buildings.algorithms.facades.extract_facades import extract_facades  # noqa: E402
 from lidar_buildings.algorithms.facades.extract_openings import extract_openings  # noqa: E402
 from lidar_buildings.algorithms.facades.segment_facade_lines import segment_facade_lines  # noqa: E402
 from lidar_buildings.algorithms.packages import spatial  # noqa: E402
+from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
+from lidar_buildings.algorithms.run import run_pipeline  # noqa: E402
 from lidar_buildings.algorithms.simulation.simulate_street import simulate_street  # noqa: E402
+from lidar_buildings.algorithms.stage import LayerFeatures  # noqa: E402
 from lidar_buildings.tests.benchmarks.results import FOLDER, Table  # noqa: E402
 from lidar_buildings.tests.real.fronts import FOUND, FRONTS, box_on, frame_on, front_figures, union_share  # noqa: E402
 
 # Seeds of streets, whether things stand before the fronts, and their length (m).
 STREETS = [(seed, clutter) for clutter in (False, True) for seed in (1, 2)]
 LENGTH = 40.0
+
+# Streets whose doors are up stairs or whose fronts are out of line.
+DOORS = {
+    "level": {"seed": 1},
+    "stoops of 2 m, nothing before them": {"seed": 2, "stoops": 2.0, "clutter": False},
+    "stoops of 1 m": {"seed": 3, "stoops": 1.0},
+    "fronts 8 cm out of line, nothing before them": {"seed": 4, "unevenness": 0.08, "clutter": False},
+    "stoops of 2 m, fronts 15 cm out of line": {"seed": 5, "stoops": 2.0, "unevenness": 0.15},
+}
+
+# Seeds of blocks, and how far (m) the scan from the street is off that from the air.
+BLOCKS = (1, 2, 3, 4)
+OFF = np.array([1.3, -0.8, 0.4])
 
 # A corner was seen if so many points of its facade lie within this distance (m).
 SEEN, NEAR = 10, 0.3
@@ -152,7 +171,95 @@ def lines() -> list[Table]:
     return [table]
 
 
-TABLES = {table.__name__: table for table in (streets, fronts, lines)}
+def doors() -> list[Table]:
+    """Print how many doors of simulated streets are doors, and how often openings are drawn more than once."""
+    columns = (
+        "openings seen",
+        "found",
+        "of the right kind",
+        "doors seen",
+        "of these doors",
+        "called doors",
+        "drawn twice",
+    )
+    table = Table("facade_doors", "street", *columns)
+    for name, tunables in DOORS.items():
+        made = simulate_street.stage.unpack(simulate_street(length=LENGTH, line_rate=60.0, **tunables))
+        segment_id, _ = extract_facades(made.dimensions["xyz"], np.zeros(len(made.dimensions["xyz"]), np.uint8))
+        _, holes = extract_openings(made.dimensions["xyz"], segment_id)
+        count = np.bincount(made.dimensions["cluster_id"], minlength=len(made.layers["openings"]) + 1)[1:]
+        best, twice = _matched(made.layers, holes)
+        seen, found = count >= LEAST, best >= 0
+        true = np.array(made.layers["openings"].columns["kind"])
+        right = found & (np.array([*holes.columns["kind"], ""])[best] == true)
+        is_door = seen & (true == "door")
+        figures = (seen.sum(), (seen & found).sum(), (seen & right).sum(), is_door.sum(), (is_door & right).sum())
+        table.add(name, *map(int, figures), holes.columns["kind"].count("door"), twice)
+    return [table]
+
+
+def _matched(layers: dict, holes) -> tuple[np.ndarray, int]:
+    """Return the opening found for each true one, -1 for none, and how many more lie in one than one."""
+    found, twice = [], 0
+    for (ring,), facade in zip(layers["openings"].geometries, layers["openings"].columns["facade"]):
+        frame = frame_on(layers["facades"].geometries[facade - 1][0])
+        box = box_on(frame, ring)
+        near = [k for k, (hole,) in enumerate(holes.geometries) if abs(frame.local(hole)[:, 2]).max() < NEAR]
+        share = [union_share(box, box_on(frame, holes.geometries[k][0])) for k in near]
+        found.append(near[int(np.argmax(share))] if max(share, default=0.0) >= FOUND else -1)
+        middle = [box_on(frame, holes.geometries[k][0]).reshape(2, 2).mean(axis=0) for k in near]
+        twice += max(0, sum(((box[:2] < one) & (one < box[2:])).all() for one in middle) - 1)
+    return np.array(found), twice
+
+
+def blocks() -> list[Table]:
+    """Print how well blocks are modelled from the street and from the air."""
+    columns = ("shift off, cm", "residual, cm", "corners off, median, cm", "greatest, cm")
+    table = Table(
+        "facade_blocks", "block", *columns, "openings seen", "in the right wall, %", "walls", "from the street"
+    )
+    for seed in BLOCKS:
+        air, street = (
+            simulate_street.stage.unpack(
+                simulate_street(length=50.0, line_rate=60.0, houses=True, view=view, seed=seed)
+            )
+            for view in ("airplane", "vehicle")
+        )
+        recorded = ("xyz", "return_number", "number_of_returns", "scan_angle", "gps_time")
+        cloud = create_cloud({name: air.dimensions[name] for name in recorded})
+        second = create_cloud({"xyz": street.dimensions["xyz"] - OFF})
+        made = run_pipeline(PIPELINES["model_city_block"], cloud, reference=second)
+        shift = [made.report.values[f"shift_{axis}"] for axis in "xyz"]
+        corners = np.concatenate([rings[0][:-1, :2] for rings in made.layers["buildings"].geometries])
+        off = np.linalg.norm(_outer_corners(air.layers["outlines"])[:, None] - corners - cloud.origin[:2], axis=2)
+        set_in = LayerFeatures(
+            [[r + cloud.origin for r in rings] for rings in made.layers["set_openings"].geometries], {}
+        )
+        best, _ = _matched(street.layers, set_in)
+        seen = np.bincount(street.dimensions["cluster_id"], minlength=len(best) + 1)[1:] >= LEAST
+        source = made.layers["walls"].columns["source"]
+        table.add(
+            str(seed),
+            100 * float(np.linalg.norm(np.array(shift) - OFF)),
+            100 * made.report.values["residual"],
+            100 * float(np.median(off.min(axis=1))),
+            100 * float(off.min(axis=1).max()),
+            int(seen.sum()),
+            100 * float(np.mean(best[seen] >= 0)),
+            len(source),
+            source.count("street"),
+        )
+    return [table]
+
+
+def _outer_corners(outlines) -> np.ndarray:
+    """Return the corners (m, 2) of houses in plan that are not those of a neighbor, too."""
+    corners = np.concatenate([ring[:-1, :2] for (ring,) in outlines.geometries])
+    near = np.linalg.norm(corners[:, None] - corners, axis=2) < 0.05
+    return corners[near.sum(axis=1) == 1]
+
+
+TABLES = {table.__name__: table for table in (streets, doors, fronts, lines, blocks)}
 
 
 def main() -> None:
