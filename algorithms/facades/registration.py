@@ -123,30 +123,55 @@ def _shift_in_plan(
     walls: PlanSegments, outlines: PlanSegments, max_shift: float
 ) -> tuple[np.ndarray, Optional[_Common]]:
     """Return shift and overhangs (4,), m, and the equations that they solve; None without any."""
-    plan = _searched(walls, outlines, max_shift)
+    beside = _beside(walls, outlines, max_shift)
+    plan = _searched(walls, beside, max_shift)
     common = None
     for near in _RULES.rounds:
-        common = _common(walls, outlines, plan, near)
+        common = _common(walls, beside, plan, near)
         if not common.n_walls:
             return plan, None
         plan = _solved(common)
     return plan, common
 
 
-def _searched(walls: PlanSegments, outlines: PlanSegments, max_shift: float) -> np.ndarray:
+@dataclass(frozen=True)
+class _Beside:
+    """Edges of outlines near each wall that run the same way: both ends (walls, m, 2), m, and which (walls, m) are."""
+
+    start: np.ndarray
+    end: np.ndarray
+    is_edge: np.ndarray
+
+
+def _beside(walls: PlanSegments, outlines: PlanSegments, max_shift: float) -> _Beside:
+    """Return the edges that a shift can bring to each wall."""
+    reach = max_shift + max(_RULES.overhangs) + max(_RULES.rounds)
+    low, high = np.minimum(outlines.start, outlines.end) - reach, np.maximum(outlines.start, outlines.end) + reach
+    way, found = outlines.way, []
+    for start, end, own in zip(walls.start, walls.end, walls.way):
+        is_near = ((np.maximum(start, end) >= low) & (np.minimum(start, end) <= high)).all(axis=1)
+        found.append(np.flatnonzero(is_near & (way @ own >= np.cos(np.radians(_RULES.angle)))))
+    count = np.array([len(edges) for edges in found])
+    is_edge = np.arange(max(1, int(count.max()))) < count[:, None]
+    edge = np.zeros(is_edge.shape, int)
+    edge[is_edge] = np.concatenate(found)
+    return _Beside(outlines.start[edge], outlines.end[edge], is_edge)
+
+
+def _searched(walls: PlanSegments, beside: _Beside, max_shift: float) -> np.ndarray:
     """Return shift and overhangs (4,), m, at which most of the walls lie on outlines, by length; ends count a meter."""
     steps = np.arange(-np.floor(max_shift / _RULES.step), np.floor(max_shift / _RULES.step) + 1) * _RULES.step
     shifts = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
     # Of shifts that are equally good the smallest comes first.
     shifts = shifts[np.argsort(np.hypot(*shifts.T), kind="stable")]
-    score = np.array([_scores(walls.moved(shift), outlines) for shift in shifts])
+    score = np.array([_scores(walls.moved(shift), beside) for shift in shifts])
     overhang, best = np.unravel_index(np.argmax(score.T), score.T.shape)
     return np.array([*shifts[best], _RULES.overhangs[overhang], 0.0])
 
 
-def _scores(walls: PlanSegments, outlines: PlanSegments) -> list[float]:
+def _scores(walls: PlanSegments, beside: _Beside) -> list[float]:
     """Return the length (m) of walls on outlines, and a meter for each of their ends at a corner, by overhang."""
-    across, shared, left, right = _offsets(walls, outlines)
+    across, shared, left, right = _offsets(walls, beside)
     scores = []
     for overhang in _RULES.overhangs:
         is_near = np.abs(across - overhang) <= _RULES.near
@@ -156,16 +181,14 @@ def _scores(walls: PlanSegments, outlines: PlanSegments) -> list[float]:
     return scores
 
 
-def _offsets(walls: PlanSegments, outlines: PlanSegments) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return, of walls and outlines that run the same way, how far outlines are off; NaN (or 0 shared) for others.
+def _offsets(walls: PlanSegments, beside: _Beside) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Return how far the edges near each wall are off; NaN (or 0 shared) where there is no edge.
 
-    Distance across the wall (m), shared length (m), and distances along it of the left and right ends, each (walls,
-    outlines).
+    Distance across the wall (m), shared length (m), and distances along it of the left and right ends, each (walls, m).
     """
-    way, normal = walls.way[:, None], walls.normal[:, None]
-    alike = walls.way @ outlines.way.T >= np.cos(np.radians(_RULES.angle))
+    way, normal, alike = walls.way[:, None], walls.normal[:, None], beside.is_edge
     middle = (walls.start + walls.end)[:, None] / 2
-    first, last = ((ends[None] - middle) for ends in (outlines.start, outlines.end))
+    first, last = (ends - middle for ends in (beside.start, beside.end))
     along = [np.einsum("ijk,ijk->ij", ends, np.broadcast_to(way, ends.shape)) for ends in (first, last)]
     off = [np.einsum("ijk,ijk->ij", ends, np.broadcast_to(normal, ends.shape)) for ends in (first, last)]
     half = walls.length[:, None] / 2
@@ -177,9 +200,9 @@ def _offsets(walls: PlanSegments, outlines: PlanSegments) -> tuple[np.ndarray, n
     return across, shared, left, right
 
 
-def _common(walls: PlanSegments, outlines: PlanSegments, plan: np.ndarray, near: float) -> _Common:
+def _common(walls: PlanSegments, beside: _Beside, plan: np.ndarray, near: float) -> _Common:
     """Return the equations of walls and ends that are within a distance (m) of outlines and corners at a shift."""
-    across, shared, left, right = _offsets(walls.moved(plan[:2]), outlines)
+    across, shared, left, right = _offsets(walls.moved(plan[:2]), beside)
     off = np.where(shared > 0, np.abs(across - plan[2]), np.inf)
     best = off.argmin(axis=1)
     rows = np.flatnonzero(off[np.arange(len(walls)), best] <= near)
@@ -187,9 +210,9 @@ def _common(walls: PlanSegments, outlines: PlanSegments, plan: np.ndarray, near:
     for k in rows:
         # Under gables that overhang, an outline goes on beyond both ends of a wall.
         for along, outward in ((left[k], -1.0), (right[k], 1.0)):
-            beside = np.where(np.abs(across[k] - plan[2]) <= near, np.abs(along - outward * plan[3]), np.inf)
-            if beside.min() <= near:
-                equations.append((*walls.way[k], 0.0, outward, along[beside.argmin()], 1.0))
+            off_end = np.where(np.abs(across[k] - plan[2]) <= near, np.abs(along - outward * plan[3]), np.inf)
+            if off_end.min() <= near:
+                equations.append((*walls.way[k], 0.0, outward, along[off_end.argmin()], 1.0))
     table = np.array(equations).reshape(-1, 6)
     coefficients, values = table[:, :4], table[:, 4] + table[:, :2] @ plan[:2]
     return _Common(coefficients, values, table[:, 5], len(rows))
