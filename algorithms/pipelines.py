@@ -70,7 +70,11 @@ _PIPELINES = (
             "the rest, and outlines. Distances and tolerances follow the density and the noise of the cloud."
         ),
         references=_SANTOS,
-        steps=(*_DETECTION, Step("report", "report_buildings", layers={"footprints": "footprints.footprints"})),
+        steps=(
+            *_DETECTION,
+            Step("report", "report_buildings", layers={"footprints": "footprints.footprints"}),
+            Step("codes", "recode_classes"),
+        ),
         shared=_DETECTION_SHARED,
         shown=(
             "min_area",
@@ -81,6 +85,7 @@ _PIPELINES = (
             "decks_max_width",
             "wires_look_for",
             "vegetation_look_for",
+            "codes_codes",
             "footprints_regularize",
         ),
     ),

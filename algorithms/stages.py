@@ -18,6 +18,7 @@ from .footprints.extract_footprints import extract_footprints
 from .landcover.classify_vegetation import classify_vegetation
 from .landcover.classify_water import classify_water
 from .landcover.classify_wires import classify_wires
+from .landcover.recode_classes import recode_classes
 from .models3d.export_for_roofer import export_for_roofer
 from .models3d.reconstruct_block import reconstruct_block
 from .models3d.reconstruct_gables import reconstruct_gables
@@ -112,6 +113,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     classify_water,
     classify_wires,
     classify_vegetation,
+    recode_classes,
     extract_footprints,
     classify_roofs,
     classify_walls,

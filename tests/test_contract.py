@@ -84,6 +84,7 @@ STAGE_IDS = {
     "refinebuildings",
     "classifyvegetation",
     "classifywater",
+    "recodeclasses",
     "classifywires",
     "simulatepowerline",
     "extractfootprints",
@@ -114,7 +115,7 @@ STAGE_IDS = {
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints", "modelbuildings"}
 PIPELINE_IDS |= {"modelcityblock", "modelfacades", "modelindustry", "modelterrain"}
 
-CLASSIFYING = {"classify", "complete", "refine"}
+CLASSIFYING = {"classify", "complete", "refine", "recode"}
 VERBS = CLASSIFYING | {"segment", "cluster", "compute", "extract", "regularize", "simplify", "assess", "simulate"}
 VERBS |= {
     "detect",

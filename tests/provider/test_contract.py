@@ -41,6 +41,7 @@ IDS = {
     "simulatepowerline",
     "classifyvegetation",
     "classifywater",
+    "recodeclasses",
     "completeground",
     "classifygroundcloth",
     "classifygroundtin",

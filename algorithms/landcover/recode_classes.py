@@ -1,0 +1,122 @@
+"""Class codes of an agency, or of one's own, instead of ASPRS'."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+
+from ..cloud.asprs import PointClass, parse_classes
+from ..stage import Param, stage
+
+_ASPRS = "ASPRS"
+_VEGETATION = (PointClass.LOW_VEGETATION, PointClass.MEDIUM_VEGETATION, PointClass.HIGH_VEGETATION)
+_WIRES = (PointClass.WIRE_CONDUCTOR, PointClass.TRANSMISSION_TOWER)
+_NOISE = (PointClass.LOW_NOISE, PointClass.HIGH_NOISE)
+_OTHER = int(PointClass.UNCLASSIFIED)
+
+# What agencies write for classes of ASPRS; classes that are not named keep their code.
+CODES: dict[str, dict[int, int]] = {
+    _ASPRS: {},
+    # Civil works are 26; plants and noise are "other", wires 14 and their masts "other".
+    "AHN (Netherlands)": {
+        **{int(one): _OTHER for one in (0, *_VEGETATION, *_NOISE, PointClass.TRANSMISSION_TOWER)},
+        int(PointClass.BRIDGE_DECK): 26,
+    },
+    # Lasting objects above the ground are 64, artefacts 65.
+    "IGN LiDAR HD (France)": {
+        0: _OTHER,
+        **{int(one): 64 for one in _WIRES},
+        **{int(one): 65 for one in _NOISE},
+    },
+    # The base specification has no class for plants and wires; buildings are an optional one.
+    "USGS 3DEP (United States)": {int(one): _OTHER for one in (0, *_VEGETATION, *_WIRES)},
+}
+
+
+@stage(
+    "Recode classes",
+    group="Land cover",
+    tags="class,code,mapping,remap,translate,AHN,IGN,USGS,LiDAR HD,3DEP,ASPRS,convert",
+    writes=("classification",),
+)
+def recode_classes(
+    xyz,
+    classification,
+    *,
+    codes: Annotated[
+        str,
+        Param(
+            "Codes to write",
+            "Whose class codes are written: those of ASPRS, which all other steps read, or those of the Dutch, the "
+            "French or the American survey.",
+            choices=tuple(CODES),
+        ),
+    ] = _ASPRS,
+    mapping: Annotated[
+        str,
+        Param(
+            "Own codes",
+            "Classes and the code that each gets instead, over those chosen above: 3-5=5; 17=26. Numbers and ranges "
+            "before the sign, entries separated by semicolons; empty for none.",
+        ),
+    ] = "",
+    monitor=None,
+):
+    """Write the class codes of an agency, or codes of one's own.
+
+    The last step of a chain: every other step reads the codes of ASPRS.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes.
+
+    Returns
+    -------
+    classification : ndarray of shape (n,), uint8
+        The codes.
+
+    Raises
+    ------
+    ValueError
+        If the mapping is no list of classes with a code from 0 to 255 each.
+
+    Notes
+    -----
+    AHN: plants, noise and masts become 1 (other), bridge decks 26 (civil works). IGN: wires and masts become 64
+    (lasting objects above the ground), noise 65 (artefacts). USGS: plants, wires and masts become 1. LAS formats 0 to 5
+    hold codes up to 31 only.
+
+    References
+    ----------
+    ASPRS, 2019. LAS specification 1.4, R15, table 17. IGN, 2023. LiDAR HD: descriptif de contenu des nuages de points
+    classés. USGS, 2024. Lidar base specification, table 5.
+    """
+    table = np.arange(256, dtype=np.uint8)
+    for number, code in {**CODES[codes], **parse_mapping(mapping)}.items():
+        table[number] = code
+    monitor.progress(1.0)
+    return table[classification.astype(np.uint8)]
+
+
+def parse_mapping(text: str) -> dict[int, int]:
+    """Return the code of each class of a text such as ``"3-5=5; 17=26"``.
+
+    Raises
+    ------
+    ValueError
+        If an entry has no sign of equality, or anything else than numbers from 0 to 255.
+    """
+    found: dict[int, int] = {}
+    for entry in filter(None, (part.strip() for part in text.split(";"))):
+        classes, _, code = (part.strip() for part in entry.partition("="))
+        if not code.isdecimal() or int(code) > 255 or not classes:  # noqa: PLR2004 - a byte holds the code
+            raise ValueError(
+                f"Own codes (mapping) must be classes, a sign of equality and a code from 0 to 255, got {entry!r}; "
+                "write, say, 17=26."
+            )
+        found.update(dict.fromkeys(parse_classes(classes, "Own codes").tolist(), int(code)))
+    return found
