@@ -96,15 +96,16 @@ def test_the_published_chain_finds_the_houses_too():
 
 def test_a_chain_is_its_stages_one_after_the_other(detected):
     cloud, _ = made()
-    *on_the_cloud, of_footprints = PIPELINES["detect_buildings"].steps
-    for step in on_the_cloud:
-        last = run_stage(step.stage, cloud, **step.tunables)
-    page = run_stage(of_footprints.stage, cloud, input_layers=last.layers).report
-    assert page.html == detected[0].report.html
+    outcomes = {}
+    for step in PIPELINES["detect_buildings"].steps:
+        sources = {name: source.split(".") for name, source in step.layers.items()}
+        layers = {name: outcomes[earlier].layers[layer] for name, (earlier, layer) in sources.items()}
+        outcomes[step.name] = run_stage(step.stage, cloud, input_layers=layers, **step.tunables)
+    assert outcomes["report"].report.html == detected[0].report.html
     theirs = detected[0].cloud
     for name in ("classification", "cluster_id", "segment_id", "height_above_ground", "entropy", "confidence"):
         np.testing.assert_array_equal(cloud.get(name), theirs.get(name))
-    for name, values in last.layers["footprints"].columns.items():
+    for name, values in outcomes["footprints"].layers["footprints"].columns.items():
         np.testing.assert_array_equal(values, detected[0].layers["footprints"].columns[name])
 
 
@@ -194,8 +195,8 @@ def test_the_chains_own_defaults_hold_until_something_else_is_given(calls):
 
 
 def test_detect_buildings_is_its_stages_with_nothing_set_but_for_bridges_which_are_asked_for():
-    own = {step.stage_name: step.tunables for step in PIPELINES["detect_buildings"].steps if step.tunables}
-    assert own == {"classify_bridges": {"max_width": 0.0}}
+    own = {step.name: step.tunables for step in PIPELINES["detect_buildings"].steps if step.tunables}
+    assert own == {"bridges": {"max_width": 0.0}, "decks": {"search": "near water", "max_width": 20.0}}
 
 
 def test_one_stage_may_be_in_a_chain_twice(calls):
