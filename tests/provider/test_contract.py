@@ -129,6 +129,25 @@ def test_ids_are_frozen():
     assert {tiled.id for tiled in TILED_PIPELINES.values()} == TILED_IDS
 
 
+SAVED_OUTPUTS = {
+    "detectbuildings": {"classified_point_cloud", "footprints", "report"},
+    "modelbuildings": {"classified_point_cloud", "footprints", "buildings", "roofs", "walls", "cityjson"},
+    "detectbuildings2019": {"classified_point_cloud", "footprints", "report"},
+    "interpretstructure": {"point_cloud_with_new_dimensions"},
+    "mapfootprints": {"classified_point_cloud", "wall_footprints", "terrain_model", "report"},
+    "modelfacades": {"point_cloud_with_segmentid", "openings_facades_with_openings", "windows_and_doors"},
+    "modelterrain": {"classified_point_cloud", "terrain_model", "surface_model"},
+    "modelindustry": {"point_cloud_with_new_dimensions", "axes_of_cylinders", "centers_of_spheres", "planes"},
+}
+
+
+@pytest.mark.parametrize("name", SAVED_OUTPUTS)
+def test_names_of_outputs_of_saved_models_are_frozen(provider, name):
+    """QGIS names the outputs of a model that a user saves by their titles: with other ones, scripts would break."""
+    model = provider.algorithm(name).create().as_model()
+    assert SAVED_OUTPUTS[name] <= {one.name() for one in model.destinationParameterDefinitions()}
+
+
 def test_the_toolbox_has_all_and_nothing_else(provider):
     shown = {algorithm.name() for algorithm in provider.algorithms()}
     made = (*ALL.values(), *PIPELINES.values(), *TILED_PIPELINES.values(), CUT_INTO_TILES)
