@@ -6,33 +6,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..rules import rule
+
 
 @dataclass(frozen=True)
 class _Rules:
-    """How the regression is fitted.
+    """How the regression is fitted."""
 
-    Attributes
-    ----------
-    ridge : float
-        Penalty on the square of a weight of standardized features, in samples: one keeps features that say the same
-        from weights that cancel, and hardly changes what thousands of samples say.
-    clip : float
-        Features farther from their mean than this many standard deviations count as so far: 0.3 % of a normal
-        distribution are.
-    steps, change : int, float
-        Newton's method ends after so many steps, or where no weight changes by more than this: it converges in 6 to 9.
-    digits : int
-        Decimals that weights are rounded to, so that the last bits of other processors change nothing.
-    block : int
-        Rows that are multiplied at once: products this small are computed by one thread, in one order.
-    """
-
-    ridge: float = 1.0
-    clip: float = 3.0
-    steps: int = 20
-    change: float = 1e-6
-    digits: int = 6
-    block: int = 64
+    ridge: float = rule(1.0, "samples", "statistics: features that say the same get no weights that cancel")
+    clip: float = rule(
+        3.0, "standard deviations", "statistics: 0.3 % of a normal distribution are farther from the mean"
+    )
+    steps: int = rule(20, "steps", "numerics: Newton's method converges in 6 to 9")
+    change: float = rule(1e-6, "", "numerics: smaller changes of weights end it")
+    digits: int = rule(6, "decimals", "numerics: last bits of other processors change no rounded weight")
+    block: int = rule(64, "rows", "numerics: products this small are computed by one thread, in one order")
 
 
 _RULES = _Rules()

@@ -14,7 +14,7 @@ from .cluster_evidence import ClusterEvidence
 # Planes larger than this, in minimum building areas, may be green: roofs of copper and of grass.
 _LARGE_PLANE = 10.0
 
-# Off the plane of so large a roof points lie less than this (m): 40 m² of a crown 20 m wide lie 0.18 m off theirs.
+# Points of so large a roof lie off its plane by less than this (m): 40 m² of a crown 20 m wide lie 0.18 m off theirs.
 _FLAT = 0.15
 
 
