@@ -56,7 +56,8 @@ class Pipeline:
     report of every step is an output of its own, and so are the clouds of the steps that
     ``kept`` names. ``shared`` names tunables that are one parameter of the composite and go
     to all the steps beside them; they have the same declaration and default there. ``shown``
-    are the parameters that users meet first, in this order; all others are folded away.
+    are the parameters that users meet first, in this order; all others are folded away. ``switched_off`` are layers
+    that are loaded switched off: those of steps that another step has taken further.
     """
 
     name: str
@@ -70,6 +71,7 @@ class Pipeline:
     shared: dict[str, tuple[str, ...]] = field(default_factory=dict)
     shown: tuple[str, ...] = ()
     kept: tuple[str, ...] = ()
+    switched_off: tuple[str, ...] = ()
 
     def parameter(self, step: Step, tunable: str) -> str:
         """Return what the composite calls a step's tunable: ``ground_cell_size``, shared ``min_area``."""

@@ -104,6 +104,7 @@ _PIPELINES = (
         steps=(*_DETECTION, Step("models", "reconstruct_roofs", layers={"footprints": "footprints.footprints"})),
         shared=_DETECTION_SHARED,
         shown=("min_area", "models_level_of_detail", "models_min_plane_area", "ground_max_building_size"),
+        switched_off=("footprints",),
     ),
     Pipeline(
         name="detect_buildings_2019",
@@ -209,6 +210,7 @@ _PIPELINES = (
         },
         shown=("min_area", "voxels_voxel_size", "ground_max_building_size", "split_height", "footprints_min_seen"),
         kept=("noise", "voxels", "ground", "height", "planes", "roofs"),
+        switched_off=("candidate_corners",),
     ),
     Pipeline(
         name="model_facades",
@@ -235,6 +237,7 @@ _PIPELINES = (
             for name in ("max_tilt", "max_gap", "edge_factor", "corner_distance", "boundary", "complete")
         },
         shown=("planes_min_area", "planes_min_height", "openings_min_size", "boundary", "complete"),
+        switched_off=("planes_facades",),
     ),
     Pipeline(
         name="model_city_block",
@@ -267,6 +270,7 @@ _PIPELINES = (
         ),
         shared=_DETECTION_SHARED,
         shown=("min_area", "street_max_shift", "street_min_size", "block_min_plane_area", "ground_max_building_size"),
+        switched_off=("footprints", "facades", "openings"),
     ),
     Pipeline(
         name="model_terrain",

@@ -52,6 +52,7 @@ from .models import model_file, pipeline_parameters, step_label
 from .named_clouds import names_of_crs, read_named
 from .outputs import all_in_place, check_targets
 from .parameters import number_outputs, tunable_values
+from .styles import switch_off
 
 # Outputs of this rank or a higher one are what the result comes from.
 _FROM_BETWEEN = 3
@@ -250,9 +251,13 @@ class PipelineAlgorithm(DeclaredAlgorithm, QgsProcessingModelAlgorithm):
         warn_unknown_parameters(self, parameters, feedback)
         definitions, given = self.destinationParameterDefinitions(), self._with_defaults(parameters)
         subject = subject_of(self._clouds, feedback)
-        with as_processing_errors(feedback), all_in_place(definitions, given, context, subject) as run:
-            results = self._run_steps(run.parameters, context, feedback)
-            return self._finished(run.final(results), parameters)
+        with as_processing_errors(feedback):
+            with all_in_place(definitions, given, context, subject) as run:
+                results = self._run_steps(run.parameters, context, feedback)
+                finished = self._finished(run.final(results), parameters)
+            helpers = (name.upper() for name in self.pipeline.switched_off)
+            switch_off(context, [finished[name] for name in helpers if name in finished])
+            return finished
         return {}
 
     def _run_steps(self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback) -> dict:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from typing import Callable, Optional, Union
 
 from qgis.core import (
@@ -31,15 +31,18 @@ _DECIMALS = 3
 
 
 class Styler(QgsProcessingLayerPostProcessorInterface):
-    """Gives a loaded result the style of one file, and its table the units of the fields and few decimals."""
+    """Gives a loaded result the style of one file, and its table the units of the fields and few decimals.
 
-    def __init__(self, stem: Optional[str], fields: Sequence[Field] = ()) -> None:
+    A layer that ``is_off`` is there, and switched off: the result of a step that another step has taken further.
+    """
+
+    def __init__(self, stem: Optional[str], fields: Sequence[Field] = (), is_off: bool = False) -> None:
         super().__init__()
-        self.stem, self.fields = stem, fields
+        self.stem, self.fields, self.is_off = stem, fields, is_off
 
     def copy(self) -> Styler:
         """Return another one that does the same."""
-        return Styler(self.stem, self.fields)
+        return Styler(self.stem, self.fields, self.is_off)
 
     def postProcessLayer(self, layer, context, feedback) -> None:  # noqa: N802 - QGIS asks for this name
         """Load the style, if there is one, and say so in the log when it can't be."""
@@ -62,6 +65,9 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
                 layer.setEditorWidgetSetup(index, rounded)
         layer.triggerRepaint()
         stack_results(context)
+        node = context.project().layerTreeRoot().findLayer(layer.id()) if self.is_off else None
+        if node is not None:
+            node.setItemVisibilityChecked(False)
 
 
 def _map_tip(fields: Sequence[Field]) -> str:
@@ -113,6 +119,18 @@ def show_on_load(
     details.layerSortKey = _DRAWN.index(kind)
     if stem is not None or fields:
         details.setPostProcessor(_kept(Styler(stem, fields)))
+
+
+def switch_off(context: QgsProcessingContext, targets: Iterable[str]) -> None:
+    """Have results switched off when they are loaded."""
+    for target in targets:
+        if context.willLoadLayerOnCompletion(target):
+            details = context.layerToLoadOnCompletionDetails(target)
+            styler = details.postProcessor()
+            if isinstance(styler, Styler):
+                styler.is_off = True
+            else:
+                details.setPostProcessor(_kept(Styler(None, is_off=True)))
 
 
 def _kept(styler: Styler) -> Styler:

@@ -445,3 +445,10 @@ def test_faults_in_the_wiring_are_seen(toys, wrong, fault):
     found = faults(Pipeline("wrong", "", "", "", "", "", "", **wrong))
     assert bool(found) == bool(fault)
     assert fault in " ".join(found)
+
+
+@pytest.mark.parametrize("pipeline", PIPELINES.values(), ids=lambda pipeline: pipeline.name)
+def test_layers_that_are_switched_off_are_outputs_and_not_all_of_them(pipeline):
+    layers = {one.name for one in pipeline.outputs if one.of in [layer.name for layer in one.step.stage.layers]}
+    assert set(pipeline.switched_off) <= layers
+    assert not layers or set(pipeline.switched_off) != layers

@@ -39,6 +39,7 @@ from lidar_buildings.provider.styles import (
     name_after,
     show_on_load,
     stack_results,
+    switch_off,
 )
 from lidar_buildings.tests.toys import TOYS
 
@@ -242,3 +243,23 @@ def test_a_single_layer_makes_no_group(context):
     )
     name_after(context, ["Footprints"], "delft")
     assert context.layersToLoadOnCompletion()["a.gpkg"].groupName == ""
+
+
+def test_a_layer_that_another_step_has_taken_further_is_loaded_switched_off(context):
+    from qgis.core import QgsProcessingContext, QgsProcessingFeedback, QgsProject, QgsVectorLayer
+
+    context.setProject(QgsProject.instance())
+    layers = [QgsVectorLayer("Polygon", name, "memory") for name in ("helper", "result")]
+    for layer in layers:
+        QgsProject.instance().addMapLayer(layer)
+        details = QgsProcessingContext.LayerDetails(layer.name(), QgsProject.instance(), "OUTPUT")
+        context.addLayerToLoadOnCompletion(layer.id(), details)
+        show_on_load(context, layer.id(), "Polygon", "footprints")
+    switch_off(context, [layers[0].id(), "not loaded"])
+    for layer in layers:
+        context.layerToLoadOnCompletionDetails(layer.id()).postProcessor().postProcessLayer(
+            layer, context, QgsProcessingFeedback()
+        )
+    root = QgsProject.instance().layerTreeRoot()
+    assert [root.findLayer(layer.id()).itemVisibilityChecked() for layer in layers] == [False, True]
+    QgsProject.instance().removeMapLayers([layer.id() for layer in layers])
