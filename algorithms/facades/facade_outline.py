@@ -10,7 +10,7 @@ import numpy as np
 from ..footprints.alpha_shape import Tracing, trace_outlines
 from ..footprints.regularization import regularize_outline
 from ..geometry.groups import items
-from ..geometry.line_segments import edge_distances, is_valid, nearest_edge_distances
+from ..geometry.line_segments import are_inside, edge_distances, is_valid, nearest_edge_distances
 from ..geometry.polylines import simplify_ring
 from ..geometry.rings import signed_area
 from ..packages import spatial
@@ -300,16 +300,11 @@ def _outward(starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
 
 def inside_ring(places: np.ndarray, ring: np.ndarray) -> np.ndarray:
     """Return which places (n, 2) a closed ring holds, its own vertices included."""
-    (x0, y0), (x1, y1) = ring[:-1].T, ring[1:].T
-    odd = np.zeros(len(places), bool)
-    for a, b, c, d in zip(x0, y0, x1, y1):
-        crosses = (b > places[:, 1]) != (d > places[:, 1])
-        with np.errstate(divide="ignore", invalid="ignore"):
-            odd ^= crosses & (places[:, 0] < a + (places[:, 1] - b) * (c - a) / (d - b))
-    rest = np.flatnonzero(~odd)
+    inside = are_inside(places, ring)
+    rest = np.flatnonzero(~inside)
     if len(rest):
-        odd[rest] = nearest_edge_distances(places[rest], ring[:-1], ring[1:]) < 1e-9
-    return odd
+        inside[rest] = nearest_edge_distances(places[rest], ring[:-1], ring[1:]) < 1e-9
+    return inside
 
 
 def ring_of_lines(points: np.ndarray, directions: np.ndarray, corners: np.ndarray) -> np.ndarray:

@@ -46,8 +46,11 @@ _CARS = np.array([(236, 236, 236), (40, 42, 46), (160, 30, 34), (70, 90, 150), (
 # of everything else.
 _DARK, _BRIGHT, _FAILS, _FAILS_ON_CARS, _FAILS_ELSEWHERE = 32.0, 205.0, 0.35, 0.35, 0.005
 
-# Where it fails it finds nothing, or, on this share of the cells, spikes of this deviation (m).
-_SPIKES, _SPIKE = 0.15, 0.5
+# Where it fails it finds nothing, or spikes where smooth noise of unit deviation exceeds this, on 16 % of the cells.
+_SPIKES_ABOVE = 1.0
+
+# Deviation (m) of these spikes.
+_SPIKE = 0.5
 
 
 @dataclass(frozen=True)
@@ -81,7 +84,7 @@ def match(field: HeightField, rounding: float, waves: float, rng: np.random.Gene
     top = top + waves * shared / np.sqrt(sum(share**2 for _, share in _WAVES)) * _by_texture(field)
     top += _leaf_noise(field, rng)
     fails = _fails(field, colors, rng)
-    spike = fails & (smooth_noise(shape, 0.6, rng) > 1.0)
+    spike = fails & (smooth_noise(shape, 0.6, rng) > _SPIKES_ABOVE)
     top = np.where(spike, top + _SPIKE * smooth_noise(shape, 0.5, rng), top)
     return Matched(top, colors, fails & ~spike)
 
