@@ -33,11 +33,8 @@ class RemovalRules:
     join_slope: float = rule(0.3, "tangent", "physics: of a step at the edge of a region that joins the terrain")
     join_share: float = rule(0.5, "share", "of the local slope that is added to it")
     joined: float = rule(0.5, "share", "most of its open edge, on which a region must join the terrain")
-    joined_of_all: float = rule(0.25, "share", "fitted on eight ISPRS samples: the same of its whole edge")
     steepest_bank: float = rule(2.0, "tangent", "physics: a step beside a slope as steep as itself is a bank up to 63°")
-    large_window: float = rule(
-        0.5, "share", "of the largest window, from which windows remove spits and hilltops, not houses"
-    )
+    large_window: float = rule(0.5, "share", "of the largest window; larger ones remove spits, not houses")
     growth: float = rule(1.25, "ratio", "of one window to the one before: three windows to a doubling")
     smoothing: float = rule(2.0, "m", "distance over which a surface is smoothed before its slope is measured")
     slope_scale: float = rule(
@@ -176,34 +173,29 @@ class _RegionEdges:
 
     Attributes
     ----------
-    whole : ndarray of shape (r,), int64
-        Cells along its edge, one for each side.
     open : ndarray of shape (r,), int64
-        Those that have no other object beside them.
+        Cells along its edge that have no other object beside them, one for each side.
     joined : ndarray of shape (r,), int64
         Those that join the terrain.
     """
 
-    whole: np.ndarray
     open: np.ndarray
     joined: np.ndarray
 
     def join_terrain(self) -> np.ndarray:
         """Return which regions join the terrain on enough of their edge."""
         is_terrain = self.joined >= REMOVAL.joined * np.maximum(self.open, 1)
-        is_terrain &= self.joined >= REMOVAL.joined_of_all * self.whole
         is_terrain[0] = False
         return is_terrain
 
 
 def _region_edges(region: np.ndarray, count: int, objects: np.ndarray, sides: list[_Side]) -> _RegionEdges:
     """Return the edges of regions, numbered from 1 to ``count``, among all objects."""
-    counts = np.zeros((3, count + 1), np.int64)
+    counts = np.zeros((2, count + 1), np.int64)
     for side in sides:
         own = region[side.here]
-        at_edge = (own > 0) & (region[side.beside] != own)
-        at_open_edge = at_edge & ~objects[side.beside]
-        kinds = (at_edge, at_open_edge, at_open_edge & side.joins)
+        at_open_edge = (own > 0) & (region[side.beside] != own) & ~objects[side.beside]
+        kinds = (at_open_edge, at_open_edge & side.joins)
         counts += [np.bincount(own[cells], minlength=count + 1) for cells in kinds]
     return _RegionEdges(*counts)
 

@@ -337,11 +337,6 @@ WHOLE = (
         "ground: banks", "terrain.removed_objects:REMOVAL", _set("terrain.removed_objects:REMOVAL", steepest_bank=0.0)
     ),
     _out(
-        "ground: share of the whole edge",
-        "terrain.removed_objects:REMOVAL",
-        _set("terrain.removed_objects:REMOVAL", joined_of_all=0.0),
-    ),
-    _out(
         "ground: regions of large windows apart",
         "terrain.removed_objects:REMOVAL",
         _set("terrain.removed_objects:REMOVAL", large_window=1.0),

@@ -49,16 +49,6 @@ def test_what_joins_the_terrain_on_half_of_its_edge_comes_back(smooth, stays):
     np.testing.assert_array_equal(objects_of(surface, removed_by), (removed_by > 0) & stays)
 
 
-@pytest.mark.parametrize(("smooth", "stays"), [(10, False), (9, True)])
-def test_what_comes_back_joins_the_terrain_on_a_quarter_of_all_its_edge(smooth, stays):
-    """Beside the terrain there is nothing but other objects, which the largest windows removed."""
-    surface, removed_by = removed_square()
-    removed_by[10:15, 10:30] = removed_by[10:30, 10:15] = removed_by[10:30, 25:30] = 25
-    removed_by[25:30, 15 + smooth : 25] = 25
-    surface[removed_by == 25] = 8.0
-    np.testing.assert_array_equal(objects_of(surface, removed_by), (removed_by == 25) | ((removed_by == 4) & stays))
-
-
 def test_what_stands_on_a_spit_objects_of_where_the_spit_comes_back():
     surface, removed_by = removed_square(side=20, radius=16)
     removed_by[20:26, 20:26] = 4
