@@ -33,6 +33,7 @@ from .preparation.filter_points import filter_points
 from .preparation.merge_clouds import merge_clouds
 from .quality.assess_buildings import assess_buildings
 from .quality.assess_classes import assess_classes
+from .quality.assess_footprints import assess_footprints
 from .quality.assess_ground import assess_ground
 from .quality.assess_models import assess_models
 from .quality.assess_segments import assess_segments
@@ -129,6 +130,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     report_buildings,
     assess_buildings,
     assess_classes,
+    assess_footprints,
     assess_ground,
     assess_models,
     assess_segments,

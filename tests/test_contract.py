@@ -99,6 +99,7 @@ STAGE_IDS = {
     "assessground",
     "assessclasses",
     "assessmodels",
+    "assessfootprints",
     "comparecorners",
     "simulatetown",
     "simulatebridges",

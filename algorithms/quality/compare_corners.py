@@ -8,46 +8,17 @@ from typing import Annotated, Optional
 
 import numpy as np
 
-from ..geometry.grid import find_cells
-from ..geometry.polygon_overlap import Polygons, as_polygons, overlaps, shared_areas
-from ..geometry.rings import signed_area
-from ..packages import spatial
 from ..report.charts import BLUE, Mark, Series, draw_histogram, draw_scatter
 from ..report.page import Row, build_page
-from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Param, Report, feature_names, stage
-
-# A vertex at which the outline turns by less is no corner but a point on a straight or round wall, degrees.
-_LEAST_TURN = 20.0
-
-# Largest difference in direction between corners that can be the same, degrees.
-_FACING = 60.0
-
-# No corner is looked for farther off (m) while the tolerance isn't known; most walls are longer.
-_FARTHEST = 3.0
-
-# Automatic tolerance (medians of the distances): where errors are normal, 99.8 % of the distances are less.
-_MEDIANS = 3.0
-
-# Least automatic tolerance (m), half of a short wall: corners that have moved since the map was made are still matched.
-_LEAST_TOLERANCE = 1.0
-
-# Pairs farther apart than this share of the farthest are by chance.
-_FAR_OFF = 2 / 3
+from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Param, Report, stage
+from .building_maps import BuildingMap, clean_map, measure_overlap, refuse_elsewhere, rounded_down
+from .corner_matching import FARTHEST, NO_LENGTH, Corners, automatic_tolerance, corners_of, nearest_corners
 
 # Change (m) of the shift between two maps in one round, below which it is known.
 _STILL = 1e-3
 
 # Most rounds in which the shift is searched for.
 _MOST_ROUNDS = 10
-
-# Footprints and a map that lie farther apart (m) show different places, whatever of one place each of them lacks.
-_ELSEWHERE = 1000.0
-
-# Area (m²) below which a polygon is left out.
-_NO_AREA = 1e-6
-
-# Length (m) below which a line is left out.
-_NO_LENGTH = 1e-3
 
 FOUND, MISSED, NEW = "found", "missed", "new"
 
@@ -191,10 +162,10 @@ def compare_corners(
     if old_map is None:
         monitor.warn("There is no old map to compare with" + (", so all footprints are new." if footprints else "."))
         old_map = LayerFeatures([], {})
-    new, old = _cleaned(footprints, "footprints", monitor), _cleaned(old_map, "buildings of the old map", monitor)
-    _refuse_elsewhere(old, new)
-    corners, others = _corners(old.rings), _corners(new.rings)
-    reach = max(_FARTHEST, tolerance or 0.0)
+    new, old = clean_map(footprints, "footprints", monitor), clean_map(old_map, "buildings of the old map", monitor)
+    refuse_elsewhere(old, new, "footprints", "old map")
+    corners, others = corners_of(old.rings), corners_of(new.rings)
+    reach = max(FARTHEST, tolerance or 0.0)
     shift = _shift(corners, others, _linked(old, new, min_overlap, np.zeros(2), monitor.part(0.0, 0.4)), reach)
     link = _linked(old, new, min_overlap, shift, monitor.part(0.4, 0.8))
     if len(old.area) and len(new.area) and not link.old_covered.any():
@@ -205,55 +176,6 @@ def compare_corners(
     values = _values(corners, link, moved)
     layers = _displacements(old, new, corners, others, pairs), _buildings(old, new, corners, others, link, pairs)
     return (*layers, Report(values, _page(values, moved)))
-
-
-@dataclass(frozen=True)
-class _Map:
-    """The usable polygons of a layer: their rings, the same as edges, their areas (m²) and what they are called."""
-
-    rings: list
-    polygons: Polygons
-    area: np.ndarray
-    names: list[str]
-
-
-def _cleaned(features: LayerFeatures, called: str, monitor: Monitor) -> _Map:
-    """Return the polygons of a layer that have an area; say how many don't, and how many cross themselves."""
-    usable = [(rings, name) for rings, name in zip(map(_proper, features.geometries), feature_names(features)) if rings]
-    if len(usable) < len(features):
-        monitor.warn(f"{len(features) - len(usable)} of {len(features)} {called} have no area and were left out.")
-    rings = [rings for rings, _ in usable]
-    polygons = as_polygons(rings)
-    area, every = polygons.area, np.arange(len(rings))
-    # Places around which the rings wind twice, or the wrong way, count otherwise in the overlap with itself.
-    crossing = int((np.abs(shared_areas(polygons, polygons, every, every, Monitor()) - area) > 0.01 * area).sum())
-    if crossing:
-        monitor.warn(
-            f"{crossing} of {len(features)} {called} cross themselves, so that their areas may be wrong; "
-            "run 'Fix geometries' on the layer first."
-        )
-    return _Map(rings, polygons, np.maximum(area, _NO_AREA), [name for _, name in usable])
-
-
-def _refuse_elsewhere(old: _Map, new: _Map) -> None:
-    """Refuse maps of which the one lies far from the other."""
-    if not old.rings or not new.rings:
-        return
-    boxes = [np.concatenate([rings[0] for rings in one.rings]) for one in (old, new)]
-    (low, high), (other_low, other_high) = [(box.min(axis=0), box.max(axis=0)) for box in boxes]
-    apart = float(np.hypot(*np.maximum(0.0, np.maximum(low - other_high, other_low - high))))
-    if apart > _ELSEWHERE:
-        raise ValueError(
-            f"The footprints and the old map lie {apart / 1000:,.0f} km apart; "
-            "choose a map of this area, or check the coordinate reference systems of both."
-        )
-
-
-def _proper(rings: list) -> list:
-    """Return the rings in plan that have an area, none without an exterior."""
-    plan = [np.asarray(ring, float)[:, :2] for ring in rings]
-    sound = [len(ring) > 3 and np.isfinite(ring).all() and abs(signed_area(ring)) > _NO_AREA for ring in plan]
-    return [ring for ring, is_sound in zip(plan, sound) if is_sound] if sound and sound[0] else []
 
 
 @dataclass(frozen=True)
@@ -268,58 +190,22 @@ class _Link:
     is_new: np.ndarray
 
 
-def _linked(old: _Map, new: _Map, min_overlap: float, shift: np.ndarray, monitor: Monitor) -> _Link:
+def _linked(old: BuildingMap, new: BuildingMap, min_overlap: float, shift: np.ndarray, monitor: Monitor) -> _Link:
     """Find the buildings that are the same in both maps, the old one moved by ``shift`` (2,)."""
-    one, other, shared = overlaps(old.polygons.moved(shift), new.polygons, monitor)
-    old_covered = np.minimum(np.bincount(one, shared, len(old.area)) / old.area, 1.0)
-    new_covered = np.minimum(np.bincount(other, shared, len(new.area)) / new.area, 1.0)
-    # Rounding must not lose an overlap of exactly the minimum.
-    least = min_overlap * (1 - 1e-9)
+    overlap = measure_overlap(old, new, shift, monitor)
+    least = rounded_down(min_overlap)
+    old_covered = overlap.covered
     is_found = old_covered >= least
-    known = np.bincount(other, shared * is_found[one], len(new.area)) / new.area
-    same = is_found[one] & (shared >= least * np.minimum(old.area[one], new.area[other]))
-    return _Link(one[same], other[same], old_covered, new_covered, is_found, known < least)
+    same = is_found[overlap.one] & (overlap.of_smaller >= least)
+    is_new = overlap.other_covered_by(is_found) < least
+    return _Link(overlap.one[same], overlap.other[same], old_covered, overlap.other_covered, is_found, is_new)
 
 
-@dataclass(frozen=True)
-class _Corners:
-    """Corners (n, 2) of polygons, the polygon of each, and the unit vector that it faces."""
-
-    xy: np.ndarray
-    building: np.ndarray
-    facing: np.ndarray
-
-
-def _corners(polygons: list) -> _Corners:
-    """Return the corners of polygons: the vertices at which their outlines turn."""
-    every = [(number, ring) for number, rings in enumerate(polygons) for ring in rings]
-    found = [(number, *_turns(ring)) for number, ring in every]
-    counts = [len(xy) for _, xy, _ in found]
-    return _Corners(
-        np.concatenate([np.zeros((0, 2)), *(xy for _, xy, _ in found)]),
-        np.repeat([number for number, *_ in found], counts).astype(np.int64),
-        np.concatenate([np.zeros((0, 2)), *(facing for *_, facing in found)]),
-    )
-
-
-def _turns(ring: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the corners of a closed ring, and the way each faces."""
-    step = np.diff(ring, axis=0)
-    is_long = np.hypot(*step.T) > _NO_LENGTH
-    xy, step = ring[:-1][is_long], step[is_long]
-    after = step / np.hypot(*step.T)[:, None]
-    before = np.roll(after, 1, axis=0)
-    turn = np.arctan2(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], (before * after).sum(axis=1))
-    chosen = np.abs(turn) >= np.deg2rad(_LEAST_TURN)
-    facing = (before - after)[chosen]
-    return xy[chosen], facing / np.hypot(*facing.T)[:, None]
-
-
-def _shift(old: _Corners, new: _Corners, link: _Link, reach: float) -> np.ndarray:
+def _shift(old: Corners, new: Corners, link: _Link, reach: float) -> np.ndarray:
     """Return by how much (2,), m, the new map is off the old one: the median of what the corners of both say."""
     shift = np.zeros(2)
     for _ in range(_MOST_ROUNDS):
-        one, other, _ = _nearest_first(old, new, link, shift, reach)
+        one, other, _ = nearest_corners(old, new, (link.old, link.new), shift, reach)
         before = shift
         shift = np.median(new.xy[other] - old.xy[one], axis=0) if len(one) else shift
         if np.hypot(*(shift - before)) < _STILL:
@@ -328,8 +214,8 @@ def _shift(old: _Corners, new: _Corners, link: _Link, reach: float) -> np.ndarra
 
 
 def _same_corners(
-    old: _Corners,
-    new: _Corners,
+    old: Corners,
+    new: Corners,
     link: _Link,
     tolerance: Optional[float],
     shift: np.ndarray,
@@ -337,50 +223,15 @@ def _same_corners(
     monitor: Monitor,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Match corners of the same buildings one to one, the shift between the maps taken off."""
-    one, other, distance = _nearest_first(old, new, link, shift, reach)
+    one, other, distance = nearest_corners(old, new, (link.old, link.new), shift, reach)
     if tolerance is None:
-        tolerance = float(np.clip(_MEDIANS * typical_distance(distance), _LEAST_TOLERANCE, _FARTHEST))
+        tolerance = automatic_tolerance(distance)
         monitor.resolved(tolerance=tolerance)
     near = distance <= tolerance
     return one[near], other[near]
 
 
-def typical_distance(distance: np.ndarray) -> float:
-    """Return the median of the distances (up to 3 m) that are not by chance, 0 without any."""
-    # Pairs by chance are spread evenly in plan: how many there are shows where no others are left, far off.
-    ordered = np.sort(distance) / _FARTHEST
-    by_chance = min(float((ordered > _FAR_OFF).sum() / (1 - _FAR_OFF**2)), len(ordered))
-    others = np.arange(1, len(ordered) + 1) - by_chance * ordered**2
-    reached = np.flatnonzero(others >= (len(ordered) - by_chance) / 2)
-    return float(ordered[reached[0]]) * _FARTHEST if len(reached) else 0.0
-
-
-def _nearest_first(
-    old: _Corners, new: _Corners, link: _Link, shift: np.ndarray, reach: float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return pairs of corners within ``reach`` (m) that can be the same, each corner once, the nearest pairs first."""
-    if not len(link.old) or not len(old.xy) or not len(new.xy):
-        return np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0)
-    trees = spatial.cKDTree(old.xy + shift), spatial.cKDTree(new.xy)
-    near = trees[0].sparse_distance_matrix(trees[1], reach, output_type="ndarray")
-    one, other, distance = near["i"], near["j"], near["v"]
-    count = len(link.is_new)
-    linked = find_cells(link.old * count + link.new, old.building[one] * count + new.building[other])[1]
-    facing = (old.facing[one] * new.facing[other]).sum(axis=1) >= np.cos(np.deg2rad(_FACING))
-    alike = linked & facing
-    one, other, distance = one[alike], other[alike], distance[alike]
-    order = np.lexsort((other, one, distance))
-    taken: tuple[set, set] = set(), set()
-    kept = []
-    for row, i, j in zip(order.tolist(), one[order].tolist(), other[order].tolist()):
-        if i not in taken[0] and j not in taken[1]:
-            taken[0].add(i)
-            taken[1].add(j)
-            kept.append(row)
-    return one[kept], other[kept], distance[kept]
-
-
-def _values(old: _Corners, link: _Link, moved: np.ndarray) -> dict[str, float]:
+def _values(old: Corners, link: _Link, moved: np.ndarray) -> dict[str, float]:
     """Return the measures of the comparison; those of distances are NaN without corners that match."""
     distance = np.hypot(*moved.T)
     undefined = not len(distance)
@@ -407,14 +258,16 @@ def _values(old: _Corners, link: _Link, moved: np.ndarray) -> dict[str, float]:
     }
 
 
-def _displacements(old: _Map, new: _Map, corners: _Corners, others: _Corners, pairs: tuple) -> LayerFeatures:
+def _displacements(
+    old: BuildingMap, new: BuildingMap, corners: Corners, others: Corners, pairs: tuple
+) -> LayerFeatures:
     """Return the layer of arrows, by building of the old map."""
     order = np.lexsort((pairs[1], pairs[0]))
     layer = LayerFeatures([], {declared.name: [] for declared in _DISPLACEMENTS.fields})
     for i, j in zip(pairs[0][order].tolist(), pairs[1][order].tolist()):
         dx, dy = (others.xy[j] - corners.xy[i]).tolist()
         length = float(np.hypot(dx, dy))
-        if length <= _NO_LENGTH:
+        if length <= NO_LENGTH:
             continue
         row = (len(layer) + 1, old.names[corners.building[i]], new.names[others.building[j]], length, dx, dy)
         layer.geometries.append(np.stack([corners.xy[i], others.xy[j]]))
@@ -424,7 +277,12 @@ def _displacements(old: _Map, new: _Map, corners: _Corners, others: _Corners, pa
 
 
 def _buildings(
-    old: _Map, new: _Map, corners: _Corners, others: _Corners, link: _Link, pairs: tuple[np.ndarray, np.ndarray]
+    old: BuildingMap,
+    new: BuildingMap,
+    corners: Corners,
+    others: Corners,
+    link: _Link,
+    pairs: tuple[np.ndarray, np.ndarray],
 ) -> LayerFeatures:
     """Return the layer of buildings: those of the old map, then the new ones."""
     distance = np.hypot(*(others.xy[pairs[1]] - corners.xy[pairs[0]]).T)

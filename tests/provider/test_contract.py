@@ -34,6 +34,7 @@ IDS = {
     "assessground",
     "assessclasses",
     "assessmodels",
+    "assessfootprints",
     "classifybuildings",
     "classifybuildings2019",
     "classifydimensionality",

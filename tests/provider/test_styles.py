@@ -26,6 +26,7 @@ from lidar_buildings.algorithms.cloud.dimensions import DIMENSIONS
 from lidar_buildings.algorithms.cloud.files import write_cloud
 from lidar_buildings.algorithms.cloud.reasons import Reason
 from lidar_buildings.algorithms.features.classify_dimensionality import Dimensionality
+from lidar_buildings.algorithms.quality import assess_footprints as footprints
 from lidar_buildings.algorithms.quality import compare_corners as corners
 from lidar_buildings.algorithms.quality.assess_buildings import FOUND, INVENTED, INVENTED_PART, MISSED, MISSED_PART
 from lidar_buildings.algorithms.stage import Field
@@ -153,6 +154,7 @@ def test_a_feature_is_called_by_its_number_and_tells_all_where_the_mouse_rests(c
     ("stem", "field", "kinds"),
     [
         ("objects", "kind", {FOUND, MISSED, INVENTED, MISSED_PART, INVENTED_PART}),
+        ("assessed_footprints", "status", set(footprints.COLORS)),
         ("compared_buildings", "status", {corners.FOUND, corners.MISSED, corners.NEW}),
     ],
 )

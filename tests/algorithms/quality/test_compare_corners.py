@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import linear_sum_assignment
 
-from lidar_buildings.algorithms.quality.compare_corners import FOUND, MISSED, NEW, compare_corners, typical_distance
+from lidar_buildings.algorithms.quality.compare_corners import FOUND, MISSED, NEW, compare_corners
+from lidar_buildings.algorithms.quality.corner_matching import typical_distance
 from lidar_buildings.algorithms.simulation.simulate_village import simulate_village
 from lidar_buildings.algorithms.stage import LayerFeatures, Monitor
 from lidar_buildings.tests.aged_maps import aged, with_plain_corners

@@ -1,0 +1,409 @@
+"""How good the outlines of buildings are, building by building, against polygons that are trusted."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..report.charts import BLUE, RED, YELLOW, Mark, Series, draw_histogram
+from ..report.page import Row, build_page, draw_table, percent
+from ..report.polygon_map import draw_polygons
+from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Param, Report, stage
+from .building_maps import BuildingMap, Overlap, clean_map, measure_overlap, refuse_elsewhere, rounded_down
+from .corner_matching import FARTHEST, Corners, automatic_tolerance, corners_of, nearest_corners
+from .outline_measures import hausdorff, squareness
+
+FOUND, MERGED, SPLIT, MISSED, INVENTED = "found", "merged", "split", "missed", "invented"
+
+# Colors of the page that are told apart in all color visions (Tol's high-contrast and bright schemes).
+COLORS = {FOUND: BLUE, MERGED: "#228833", SPLIT: "#66ccee", MISSED: YELLOW, INVENTED: RED}
+
+# Rows of the table of the buildings that agree least: one screen.
+_WORST = 10
+
+_BUILDINGS = Layer(
+    "buildings",
+    "Buildings found, merged, split, missed and invented",
+    "Polygon",
+    (
+        Field("id", int, "number of the building, from 1"),
+        Field(
+            "status",
+            str,
+            f"{FOUND}: a building of the reference with one footprint of its own; {MERGED}: it shares its footprint "
+            f"with others; {SPLIT}: it has several; {MISSED}: it has none; "
+            f"{INVENTED}: a footprint that isn't in the reference",
+        ),
+        Field("building", str, "its attribute id in its own layer, or its number there"),
+        Field("counterpart", str, "what it was compared with in the other layer, the best first, separated by commas"),
+        Field("area", float, "area", "m²"),
+        Field("covered", float, "share of it that the other layer has too, 0 to 1"),
+        Field("iou", float, "intersection over union with the best counterpart, 0 to 1"),
+        Field("hausdorff", float, "greatest distance between its outline and that of the best counterpart", "m"),
+        Field("corners", int, "its corners"),
+        Field("counterpart_corners", int, "corners of the best counterpart"),
+        Field("matched", int, "its corners that the other layer has too"),
+        Field("corner_distance", float, "mean distance of these", "m"),
+        Field("squareness", float, "share of its edges' length along two directions square to each other, 0 to 1"),
+        Field("counterpart_squareness", float, "the same of the best counterpart"),
+    ),
+    style="assessed_footprints",
+)
+_MEASURES = (
+    Measure("reference_buildings", "Buildings in the reference"),
+    Measure("all_footprints", "Footprints"),
+    Measure("found", "Buildings found one to one"),
+    Measure("merged", "Buildings merged with others"),
+    Measure("split", "Buildings split"),
+    Measure("missed", "Buildings missed"),
+    Measure("invented", "Footprints invented"),
+    Measure("completeness", "Buildings found, merged or split", "%"),
+    Measure("correctness", "Footprints that are in the reference", "%"),
+    Measure("iou", "Median IoU of the buildings found one to one"),
+    Measure("hausdorff", "Median Hausdorff distance of these", "m"),
+    Measure("corners", "Corners of the buildings that have footprints"),
+    Measure("footprint_corners", "Corners of the footprints"),
+    Measure("matched", "Corners matched"),
+    Measure("corner_distance", "Median distance of matched corners", "m"),
+    Measure("shift_east", "Median shift of the footprints eastward", "m"),
+    Measure("shift_north", "Median shift of the footprints northward", "m"),
+    Measure("squareness", "Median squareness of the footprints"),
+    Measure("reference_squareness", "Median squareness of the reference"),
+)
+
+
+@stage(
+    "Assess footprints",
+    group="Quality",
+    tags="assess,validation,cadastre,base map,change detection,accuracy,evaluation,reference,polygons,outlines,IoU,"
+    "Hausdorff,corners,squareness,merged,split,completeness,correctness",
+    input_layers=(
+        InputLayer("footprints", "Footprints", "Polygon", "Outlines of buildings that are to be assessed."),
+        InputLayer(
+            "reference",
+            "Reference",
+            "Polygon",
+            "Buildings that are trusted: a cadastre, a base map, an earlier result; cut to the same area.",
+        ),
+    ),
+    layers=(_BUILDINGS,),
+    measures=_MEASURES,
+)
+def assess_footprints(
+    footprints,
+    reference,
+    *,
+    min_overlap: Annotated[
+        float,
+        Param(
+            "Minimum overlap",
+            "Share of a building that the other layer must cover for the building to be in it.",
+            low=0,
+            high=1,
+            open_low=True,
+        ),
+    ] = 0.5,
+    tolerance: Annotated[
+        Optional[float],
+        Param(
+            "Tolerance",
+            "Corners farther apart are not the same corner.",
+            unit="m",
+            low=0,
+            high=100,
+            open_low=True,
+            automatic="three times the median distance of nearest corners that are not so by chance, 1 to 3 m.",
+            advanced=True,
+        ),
+    ] = None,
+    monitor=None,
+):
+    """Compare footprints with polygons of a reference, building by building, and mark what agrees and what doesn't.
+
+    Any two polygon layers can be compared: footprints with a cadastre or base map, or with an earlier result. Each
+    building is found, merged, split, missed or invented; its IoU, Hausdorff distance, corners and squareness are
+    attributes.
+
+    Parameters
+    ----------
+    footprints : LayerFeatures
+        Polygons to assess.
+    reference : LayerFeatures
+        Polygons that are trusted.
+
+    Returns
+    -------
+    buildings : LayerFeatures
+        All buildings of the reference, then the footprints that are not in it.
+    report : Report
+        Counts and medians, and a page with charts and a map. What there is nothing to compute from is NaN.
+
+    Raises
+    ------
+    ValueError
+        If the layers lie more than a kilometer apart.
+
+    Notes
+    -----
+    A footprint belongs to a building where both share the minimum overlap of the smaller one, and where all
+    footprints together cover the minimum overlap of the building. A building is missed if no footprint belongs to it.
+    It is merged if one of its footprints belongs to other buildings too, and split if it has several footprints that
+    don't. A footprint is invented if less of it than the minimum overlap lies in buildings that are not missed.
+
+    The best counterpart is the footprint with the greatest IoU. Hausdorff distances are measured every 0.1 m along
+    both outlines, courtyards included. A corner is a vertex where the outline turns by 20° or more; corners are matched
+    one to one, the nearest first, if they face the same way to 60°. Squareness counts edges within 3° of two directions
+    of the building's own. Positions are compared as they are: no shift between the layers is taken off.
+    """
+    new = clean_map(footprints, "footprints", monitor)
+    true = clean_map(reference, "buildings of the reference", monitor)
+    refuse_elsewhere(true, new, "footprints", "reference")
+    if len(true.area) and not len(new.area):
+        monitor.warn("There are no footprints, so all buildings of the reference are missed.")
+    if len(new.area) and not len(true.area):
+        monitor.warn("There are no buildings in the reference, so all footprints are invented.")
+    match = _match(measure_overlap(true, new, np.zeros(2), monitor.part(0.0, 0.3)), min_overlap)
+    corners = corners_of(true.rings), corners_of(new.rings)
+    pairs = _same_corners(*corners, match, tolerance, monitor)
+    table = _table(true, new, match, corners, pairs, monitor.part(0.4, 0.95))
+    moved = corners[1].xy[pairs[1]] - corners[0].xy[pairs[0]]
+    values = _values(table, match, corners, moved)
+    rings = true.rings + [new.rings[row] for row in np.flatnonzero(match.is_invented)]
+    return LayerFeatures(rings, table), Report(values, _page(rings, table, values))
+
+
+@dataclass(frozen=True)
+class _Match:
+    """Which footprints belong to which buildings of the reference.
+
+    ``building[k]`` and ``footprint[k]`` belong together, by the first and then by the second, with their ``iou``.
+    ``best`` is the footprint with the greatest IoU for each building, -1 without one.
+    """
+
+    overlap: Overlap
+    building: np.ndarray
+    footprint: np.ndarray
+    iou: np.ndarray
+    best: np.ndarray
+    status: list[str]
+    is_invented: np.ndarray
+
+
+def _match(overlap: Overlap, min_overlap: float) -> _Match:
+    """Decide which buildings are found, merged, split and missed, and which footprints are invented."""
+    least = rounded_down(min_overlap)
+    same = (overlap.of_smaller >= least) & (overlap.covered >= least)[overlap.one]
+    building, footprint, iou = overlap.one[same], overlap.other[same], overlap.iou[same]
+    n_footprints = np.bincount(building, minlength=len(overlap.area))
+    n_buildings = np.bincount(footprint, minlength=len(overlap.other_area))
+    shares = np.bincount(building, n_buildings[footprint] > 1, len(overlap.area)) > 0
+    status = np.select([n_footprints == 0, shares, n_footprints > 1], [MISSED, MERGED, SPLIT], FOUND)
+    best = np.full(len(overlap.area), -1)
+    # Of values that go to one position the last one stays, which has the greatest IoU.
+    order = np.argsort(iou, kind="stable")
+    best[building[order]] = footprint[order]
+    is_invented = overlap.other_covered_by(n_footprints > 0) < least
+    return _Match(overlap, building, footprint, iou, best, status.tolist(), is_invented)
+
+
+def _same_corners(
+    true: Corners, new: Corners, match: _Match, tolerance: Optional[float], monitor: Monitor
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the pairs of corners of buildings and their footprints that are the same."""
+    reach = max(FARTHEST, tolerance or 0.0)
+    one, other, distance = nearest_corners(true, new, (match.building, match.footprint), np.zeros(2), reach)
+    if tolerance is None:
+        tolerance = automatic_tolerance(distance)
+        monitor.resolved(tolerance=tolerance)
+    near = distance <= tolerance
+    return one[near], other[near]
+
+
+def _table(
+    true: BuildingMap,
+    new: BuildingMap,
+    match: _Match,
+    corners: tuple[Corners, Corners],
+    pairs: tuple[np.ndarray, np.ndarray],
+    monitor: Monitor,
+) -> dict:
+    """Return the attributes of all buildings: those of the reference, then the footprints that are invented."""
+    n, invented = len(true.area), np.flatnonzero(match.is_invented)
+    nothing, zero = np.full(len(invented), np.nan), np.zeros(len(invented), np.int64)
+    has_footprint = match.best >= 0
+    counts = [np.bincount(one.building, minlength=len(area)) for one, area in zip(corners, (true.area, new.area))]
+    square = [np.array([squareness(rings) for rings in one.rings]) for one in (true, new)]
+    iou = np.full(n, np.nan)
+    np.fmax.at(iou, match.building, match.iou)
+    matched, distance = _of_buildings(corners, pairs, n)
+    return {
+        "id": np.arange(1, n + len(invented) + 1),
+        "status": match.status + [INVENTED] * len(invented),
+        "building": true.names + [new.names[row] for row in invented],
+        "counterpart": _counterparts(match, new.names) + [""] * len(invented),
+        "area": np.append(true.area, new.area[invented]),
+        "covered": np.append(match.overlap.covered, match.overlap.other_covered[invented]),
+        "iou": np.append(iou, nothing),
+        "hausdorff": np.append(_distances(true, new, match.best, monitor), nothing),
+        "corners": np.append(counts[0], counts[1][invented]),
+        "counterpart_corners": np.append(_taken(counts[1], match.best, has_footprint, 0), zero),
+        "matched": np.append(matched, zero),
+        "corner_distance": np.append(distance, nothing),
+        "squareness": np.append(square[0], square[1][invented]),
+        "counterpart_squareness": np.append(_taken(square[1], match.best, has_footprint, np.nan), nothing),
+    }
+
+
+def _taken(values: np.ndarray, rows: np.ndarray, chosen: np.ndarray, otherwise: float) -> np.ndarray:
+    """Return the values (m,) at ``rows`` (n,) where these are chosen, another value elsewhere."""
+    taken = np.full(len(rows), otherwise, values.dtype)
+    taken[chosen] = values[rows[chosen]]
+    return taken
+
+
+def _distances(true: BuildingMap, new: BuildingMap, best: np.ndarray, monitor: Monitor) -> np.ndarray:
+    """Return the Hausdorff distance (m) of each building from its best counterpart, NaN without one."""
+    distance = np.full(len(best), np.nan)
+    for row, other in enumerate(best.tolist()):
+        if other >= 0:
+            distance[row] = hausdorff(true.rings[row], new.rings[other])
+        monitor.progress((row + 1) / len(best))
+    return distance
+
+
+def _of_buildings(
+    corners: tuple[Corners, Corners], pairs: tuple[np.ndarray, np.ndarray], n: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return how many corners of each building of the reference are matched, and their mean distance (m)."""
+    building = corners[0].building[pairs[0]]
+    distance = np.hypot(*(corners[1].xy[pairs[1]] - corners[0].xy[pairs[0]]).T)
+    matched = np.bincount(building, minlength=n)
+    mean = np.where(matched > 0, np.bincount(building, distance, n) / np.maximum(matched, 1), np.nan)
+    return matched, mean
+
+
+def _counterparts(match: _Match, names: list[str]) -> list[str]:
+    """Return the names of the footprints of each building, the greatest IoU first."""
+    partners: list[list[str]] = [[] for _ in match.best]
+    order = np.lexsort((match.footprint, -match.iou, match.building))
+    for building, footprint in zip(match.building[order].tolist(), match.footprint[order].tolist()):
+        partners[building].append(names[footprint])
+    return [", ".join(one) for one in partners]
+
+
+def _values(table: dict, match: _Match, corners: tuple[Corners, Corners], moved: np.ndarray) -> dict[str, float]:
+    """Return the measures; medians of nothing are NaN."""
+    n, n_new = len(match.best), len(match.is_invented)
+    status = np.array(table["status"], dtype=object)
+    found, has_footprint = status[:n] == FOUND, match.best >= 0
+    n_invented = int(match.is_invented.sum())
+    counts = {name: int((status == name).sum()) for name in (FOUND, MERGED, SPLIT, MISSED, INVENTED)}
+    return {
+        "reference_buildings": n,
+        "all_footprints": n_new,
+        **counts,
+        "completeness": 100.0 * float(has_footprint.mean()) if n else np.nan,
+        "correctness": 100.0 * (n_new - n_invented) / n_new if n_new else np.nan,
+        "iou": _median(table["iou"][:n][found]),
+        "hausdorff": _median(table["hausdorff"][:n][found]),
+        "corners": int(has_footprint[corners[0].building].sum()),
+        "footprint_corners": int(np.isin(corners[1].building, match.footprint).sum()),
+        "matched": len(moved),
+        "corner_distance": _median(np.hypot(*moved.T)),
+        "shift_east": _median(moved[:, 0]),
+        "shift_north": _median(moved[:, 1]),
+        "squareness": _median(table["counterpart_squareness"][:n][has_footprint]),
+        "reference_squareness": _median(table["squareness"][:n][has_footprint]),
+    }
+
+
+def _median(values: np.ndarray) -> float:
+    return float(np.median(values)) if len(values) else np.nan
+
+
+def _page(rings: list, table: dict, values: dict[str, float]) -> str:
+    lead = (
+        f"Of {values['reference_buildings']:,} buildings of the reference, {values['found']:,} have one footprint of "
+        f"their own, {values['merged']:,} are merged, {values['split']:,} split and {values['missed']:,} missed. "
+        f"Of {values['all_footprints']:,} footprints, {values['invented']:,} are invented."
+    )
+    tables = {"Buildings": _building_rows(values), "Outlines": _outline_rows(values), "Corners": _corner_rows(values)}
+    is_found = np.array(table["status"], dtype=object) == FOUND
+    pictures = [draw_polygons(rings, table["status"], COLORS)]
+    for name, heading, axis in (("iou", "IoU", "IoU"), ("hausdorff", "Distances", "Hausdorff distance (m)")):
+        series = [Series("buildings found one to one", BLUE, table[name][is_found])]
+        bars = draw_histogram(series, axis, "Buildings", [Mark("median", values[name])])
+        pictures.append(f"<h2>{heading}</h2>\n{bars}")
+    pictures.append(_worst(table))
+    return build_page("Quality of the footprints", lead, tables, "\n".join(pictures))
+
+
+def _building_rows(values: dict[str, float]) -> list[Row]:
+    return [
+        Row("Found", f"{values['found']:,}", "Buildings of the reference with one footprint of their own."),
+        Row("Merged", f"{values['merged']:,}", "Buildings that share a footprint with others."),
+        Row("Split", f"{values['split']:,}", "Buildings with several footprints."),
+        Row("Missed", f"{values['missed']:,}", "Buildings without a footprint."),
+        Row("Invented", f"{values['invented']:,}", "Footprints that are not in the reference."),
+        Row("Completeness", percent(values["completeness"]), "Share of the buildings found, merged or split."),
+        Row("Correctness", percent(values["correctness"]), "Share of the footprints that are in the reference."),
+    ]
+
+
+def _outline_rows(values: dict[str, float]) -> list[Row]:
+    return [
+        Row("IoU", _number(values["iou"]), "Median intersection over union of the buildings found one to one."),
+        Row(
+            "Hausdorff distance",
+            _meters(values["hausdorff"]),
+            "Median of these: where two outlines are farthest apart.",
+        ),
+        Row(
+            "Squareness",
+            _number(values["squareness"]),
+            "Median share of a footprint's edges along two directions square to each other; "
+            f"{_number(values['reference_squareness'])} in the reference.",
+        ),
+    ]
+
+
+def _corner_rows(values: dict[str, float]) -> list[Row]:
+    return [
+        Row(
+            "Corners", f"{values['footprint_corners']:,}", f"Of the footprints; {values['corners']:,} in the reference."
+        ),
+        Row("Matched", f"{values['matched']:,}", "Corners that both layers have."),
+        Row("Distance", _meters(values["corner_distance"]), "Median distance between matched corners."),
+        Row(
+            "Shift eastward", _meters(values["shift_east"]), "Median displacement to the east; negative is to the west."
+        ),
+        Row("Shift northward", _meters(values["shift_north"]), "Median displacement to the north."),
+    ]
+
+
+def _worst(table: dict) -> str:
+    """Return the table of the buildings that agree least with their footprints."""
+    order = [row for row in np.argsort(table["iou"], kind="stable").tolist() if np.isfinite(table["iou"][row])]
+    rows = [
+        [
+            table["building"][row],
+            table["status"][row],
+            f"{table['area'][row]:,.0f}",
+            f"{table['iou'][row]:.2f}",
+            f"{table['hausdorff'][row]:.2f}",
+        ]
+        for row in order[:_WORST]
+    ]
+    head = ["Building", "Status", "Area (m²)", "IoU", "Hausdorff distance (m)"]
+    return draw_table("Buildings that agree least", head, rows) if rows else ""
+
+
+def _number(value: float) -> str:
+    return "undefined" if math.isnan(value) else f"{value:.3f}"
+
+
+def _meters(value: float) -> str:
+    return "undefined" if math.isnan(value) else f"{value:.2f} m"

@@ -1,0 +1,123 @@
+"""Layers of buildings that are compared with each other: their usable polygons."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..geometry.polygon_overlap import Polygons, as_polygons, overlaps, shared_areas
+from ..geometry.rings import signed_area
+from ..stage import LayerFeatures, Monitor, feature_names
+
+# Footprints and a map that lie farther apart (m) show different places, whatever of one place each of them lacks.
+_ELSEWHERE = 1000.0
+
+# Area (m²) below which a polygon is left out.
+_NO_AREA = 1e-6
+
+
+@dataclass(frozen=True)
+class BuildingMap:
+    """The usable polygons of a layer: their rings, the same as edges, their areas (m²) and what they are called."""
+
+    rings: list
+    polygons: Polygons
+    area: np.ndarray
+    names: list[str]
+
+
+def clean_map(features: LayerFeatures, called: str, monitor: Monitor) -> BuildingMap:
+    """Return the polygons of a layer that have an area; say how many don't, and how many cross themselves."""
+    usable = [(rings, name) for rings, name in zip(map(_proper, features.geometries), feature_names(features)) if rings]
+    if len(usable) < len(features):
+        monitor.warn(f"{len(features) - len(usable)} of {len(features)} {called} have no area and were left out.")
+    rings = [rings for rings, _ in usable]
+    polygons = as_polygons(rings)
+    area, every = polygons.area, np.arange(len(rings))
+    # Places around which the rings wind twice, or the wrong way, count otherwise in the overlap with itself.
+    crossing = int((np.abs(shared_areas(polygons, polygons, every, every, Monitor()) - area) > 0.01 * area).sum())
+    if crossing:
+        monitor.warn(
+            f"{crossing} of {len(features)} {called} cross themselves, so that their areas may be wrong; "
+            "run 'Fix geometries' on the layer first."
+        )
+    return BuildingMap(rings, polygons, np.maximum(area, _NO_AREA), [name for _, name in usable])
+
+
+def refuse_elsewhere(old: BuildingMap, new: BuildingMap, called: str, other: str) -> None:
+    """Refuse maps of which the one lies far from the other."""
+    if not old.rings or not new.rings:
+        return
+    boxes = [np.concatenate([rings[0] for rings in one.rings]) for one in (old, new)]
+    (low, high), (other_low, other_high) = [(box.min(axis=0), box.max(axis=0)) for box in boxes]
+    apart = float(np.hypot(*np.maximum(0.0, np.maximum(low - other_high, other_low - high))))
+    if apart > _ELSEWHERE:
+        raise ValueError(
+            f"The {called} and the {other} lie {apart / 1000:,.0f} km apart; "
+            "choose a map of this area, or check the coordinate reference systems of both."
+        )
+
+
+def _proper(rings: list) -> list:
+    """Return the rings in plan that have an area, none without an exterior."""
+    plan = [np.asarray(ring, float)[:, :2] for ring in rings]
+    sound = [len(ring) > 3 and np.isfinite(ring).all() and abs(signed_area(ring)) > _NO_AREA for ring in plan]
+    return [ring for ring, is_sound in zip(plan, sound) if is_sound] if sound and sound[0] else []
+
+
+@dataclass(frozen=True)
+class Overlap:
+    """What two layers of buildings share.
+
+    Attributes
+    ----------
+    one, other : ndarray of shape (k,), int64
+        Pairs of buildings whose boxes meet, by the first layer, then by the second.
+    shared : ndarray of shape (k,)
+        Area that both have, m².
+    area, other_area : ndarray
+        Areas of all buildings of the two layers, m².
+    """
+
+    one: np.ndarray
+    other: np.ndarray
+    shared: np.ndarray
+    area: np.ndarray
+    other_area: np.ndarray
+
+    @property
+    def covered(self) -> np.ndarray:
+        """Share (0 to 1) of each building of the first layer that the second one has too."""
+        return np.minimum(np.bincount(self.one, self.shared, len(self.area)) / self.area, 1.0)
+
+    @property
+    def other_covered(self) -> np.ndarray:
+        """Share (0 to 1) of each building of the second layer that the first one has too."""
+        return self.other_covered_by(np.ones(len(self.area)))
+
+    def other_covered_by(self, counts: np.ndarray) -> np.ndarray:
+        """Return the share (0 to 1) of each building of the second layer that chosen ones of the first have too."""
+        shared = np.bincount(self.other, self.shared * counts[self.one], len(self.other_area))
+        return np.minimum(shared / self.other_area, 1.0)
+
+    @property
+    def of_smaller(self) -> np.ndarray:
+        """Share (k,) of the smaller building of each pair that both have."""
+        return self.shared / np.minimum(self.area[self.one], self.other_area[self.other])
+
+    @property
+    def iou(self) -> np.ndarray:
+        """Intersection over union (k,) of each pair."""
+        return self.shared / (self.area[self.one] + self.other_area[self.other] - self.shared)
+
+
+def measure_overlap(first: BuildingMap, second: BuildingMap, shift: np.ndarray, monitor: Monitor) -> Overlap:
+    """Return what two layers of buildings share, the first one moved by ``shift`` (2,), m."""
+    pairs = overlaps(first.polygons.moved(shift), second.polygons, monitor)
+    return Overlap(*pairs, first.area, second.area)
+
+
+def rounded_down(share: float) -> float:
+    """Return a least share (0 to 1) that an overlap of exactly this share reaches in spite of rounding."""
+    return share * (1 - 1e-9)

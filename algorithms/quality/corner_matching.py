@@ -1,0 +1,117 @@
+"""Corners of buildings, and which corners of two layers are the same."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..geometry.grid import find_cells
+from ..packages import spatial
+
+# A vertex at which the outline turns by less is no corner but a point on a straight or round wall, degrees.
+_LEAST_TURN = 20.0
+
+# Largest difference in direction between corners that can be the same, degrees.
+_FACING = 60.0
+
+# No corner is looked for farther off (m) while the tolerance isn't known; most walls are longer.
+FARTHEST = 3.0
+
+# Automatic tolerance (medians of the distances): where errors are normal, 99.8 % of the distances are less.
+_MEDIANS = 3.0
+
+# Least automatic tolerance (m), half of a short wall: corners that have moved since the map was made are still matched.
+_LEAST_TOLERANCE = 1.0
+
+# Pairs farther apart than this share of the farthest are by chance.
+_FAR_OFF = 2 / 3
+
+# Length (m) below which a line is left out.
+NO_LENGTH = 1e-3
+
+
+@dataclass(frozen=True)
+class Corners:
+    """Corners (n, 2) of polygons, the polygon of each, and the unit vector that it faces."""
+
+    xy: np.ndarray
+    building: np.ndarray
+    facing: np.ndarray
+
+
+def corners_of(polygons: list) -> Corners:
+    """Return the corners of polygons: the vertices at which their outlines turn."""
+    every = [(number, ring) for number, rings in enumerate(polygons) for ring in rings]
+    found = [(number, *_turns(ring)) for number, ring in every]
+    counts = [len(xy) for _, xy, _ in found]
+    return Corners(
+        np.concatenate([np.zeros((0, 2)), *(xy for _, xy, _ in found)]),
+        np.repeat([number for number, *_ in found], counts).astype(np.int64),
+        np.concatenate([np.zeros((0, 2)), *(facing for *_, facing in found)]),
+    )
+
+
+def _turns(ring: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the corners of a closed ring, and the way each faces."""
+    step = np.diff(ring, axis=0)
+    is_long = np.hypot(*step.T) > NO_LENGTH
+    xy, step = ring[:-1][is_long], step[is_long]
+    after = step / np.hypot(*step.T)[:, None]
+    before = np.roll(after, 1, axis=0)
+    turn = np.arctan2(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], (before * after).sum(axis=1))
+    chosen = np.abs(turn) >= np.deg2rad(_LEAST_TURN)
+    facing = (before - after)[chosen]
+    return xy[chosen], facing / np.hypot(*facing.T)[:, None]
+
+
+def automatic_tolerance(distance: np.ndarray) -> float:
+    """Return the distance (m) up to which nearest corners are the same, from the distances of all of these."""
+    return float(np.clip(_MEDIANS * typical_distance(distance), _LEAST_TOLERANCE, FARTHEST))
+
+
+def typical_distance(distance: np.ndarray) -> float:
+    """Return the median of the distances (up to 3 m) that are not by chance, 0 without any."""
+    # Pairs by chance are spread evenly in plan: how many there are shows where no others are left, far off.
+    ordered = np.sort(distance) / FARTHEST
+    by_chance = min(float((ordered > _FAR_OFF).sum() / (1 - _FAR_OFF**2)), len(ordered))
+    others = np.arange(1, len(ordered) + 1) - by_chance * ordered**2
+    reached = np.flatnonzero(others >= (len(ordered) - by_chance) / 2)
+    return float(ordered[reached[0]]) * FARTHEST if len(reached) else 0.0
+
+
+def nearest_corners(
+    old: Corners, new: Corners, same: tuple[np.ndarray, np.ndarray], shift: np.ndarray, reach: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return pairs of corners within ``reach`` (m) that can be the same, each corner once, the nearest pairs first.
+
+    Parameters
+    ----------
+    old, new : Corners
+        Corners of two layers.
+    same : tuple of ndarray of shape (k,), int64
+        Buildings of the one and of the other that are the same, in this order.
+    shift : ndarray of shape (2,)
+        By how much the new layer is off the old one, m.
+    reach : float
+        Greatest distance, m.
+    """
+    if not len(same[0]) or not len(old.xy) or not len(new.xy):
+        return np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0)
+    trees = spatial.cKDTree(old.xy + shift), spatial.cKDTree(new.xy)
+    near = trees[0].sparse_distance_matrix(trees[1], reach, output_type="ndarray")
+    one, other, distance = near["i"], near["j"], near["v"]
+    count = int(max(same[1].max(), new.building.max())) + 1
+    linked = find_cells(same[0] * count + same[1], old.building[one] * count + new.building[other])[1]
+    facing = (old.facing[one] * new.facing[other]).sum(axis=1) >= np.cos(np.deg2rad(_FACING))
+    alike = linked & facing
+    one, other, distance = one[alike], other[alike], distance[alike]
+    order = np.lexsort((other, one, distance))
+    taken: tuple[set, set] = set(), set()
+    kept = []
+    for row, i, j in zip(order.tolist(), one[order].tolist(), other[order].tolist()):
+        if i not in taken[0] and j not in taken[1]:
+            taken[0].add(i)
+            taken[1].add(j)
+            kept.append(row)
+    return one[kept], other[kept], distance[kept]
