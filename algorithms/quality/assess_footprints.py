@@ -83,7 +83,7 @@ _MEASURES = (
     input_layers=(
         InputLayer("footprints", "Footprints", "Polygon", "Outlines of buildings that are to be assessed."),
         InputLayer(
-            "reference",
+            "reference_map",
             "Reference",
             "Polygon",
             "Buildings that are trusted: a cadastre, a base map, an earlier result; cut to the same area.",
@@ -94,7 +94,7 @@ _MEASURES = (
 )
 def assess_footprints(
     footprints,
-    reference,
+    reference_map,
     *,
     min_overlap: Annotated[
         float,
@@ -131,7 +131,7 @@ def assess_footprints(
     ----------
     footprints : LayerFeatures
         Polygons to assess.
-    reference : LayerFeatures
+    reference_map : LayerFeatures
         Polygons that are trusted.
 
     Returns
@@ -157,9 +157,16 @@ def assess_footprints(
     both outlines, courtyards included. A corner is a vertex where the outline turns by 20° or more; corners are matched
     one to one, the nearest first, if they face the same way to 60°. Squareness counts edges within 3° of two directions
     of the building's own. Positions are compared as they are: no shift between the layers is taken off.
+
+    References
+    ----------
+    Rutzinger, M., Rottensteiner, F., Pfeifer, N., 2009. A comparison of evaluation techniques for building extraction
+    from airborne laser scanning. IEEE Journal of Selected Topics in Applied Earth Observations and Remote Sensing 2(1).
+    Huttenlocher, D. P., Klanderman, G. A., Rucklidge, W. J., 1993. Comparing images using the Hausdorff distance. IEEE
+    Transactions on Pattern Analysis and Machine Intelligence 15(9).
     """
     new = clean_map(footprints, "footprints", monitor)
-    true = clean_map(reference, "buildings of the reference", monitor)
+    true = clean_map(reference_map, "buildings of the reference", monitor)
     refuse_elsewhere(true, new, "footprints", "reference")
     if len(true.area) and not len(new.area):
         monitor.warn("There are no footprints, so all buildings of the reference are missed.")
