@@ -14,7 +14,7 @@ from ..report.polygon_map import draw_polygons
 from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Param, Report, stage
 from .building_maps import BuildingMap, Overlap, clean_map, measure_overlap, refuse_elsewhere, rounded_down
 from .corner_matching import FARTHEST, Corners, automatic_tolerance, corners_of, nearest_corners
-from .outline_measures import hausdorff, squareness
+from .polygon_comparison import hausdorff, squareness
 
 FOUND, MERGED, SPLIT, MISSED, INVENTED = "found", "merged", "split", "missed", "invented"
 

@@ -90,9 +90,18 @@ def hausdorff(first: list[np.ndarray], second: list[np.ndarray]) -> float:
 
 
 def _farthest(rings: list[np.ndarray], others: list[np.ndarray]) -> float:
-    starts, ends = (np.concatenate([ring[part] for ring in others]) for part in (slice(None, -1), slice(1, None)))
-    samples = np.concatenate([_sampled(ring) for ring in rings])
-    return float(nearest_edge_distances(samples, starts, ends).max())
+    return float(distances_from(positions_along(rings), others).max())
+
+
+def distances_from(positions: np.ndarray, rings: list[np.ndarray]) -> np.ndarray:
+    """Return the distances (n,), m, of positions (n, 2) from rings."""
+    starts, ends = (np.concatenate([ring[part] for ring in rings]) for part in (slice(None, -1), slice(1, None)))
+    return nearest_edge_distances(positions, starts, ends)
+
+
+def positions_along(rings: list[np.ndarray]) -> np.ndarray:
+    """Return positions (n, 2) along closed rings, at most 0.1 m apart, vertices among these."""
+    return np.concatenate([_sampled(ring) for ring in rings])
 
 
 def _sampled(ring: np.ndarray) -> np.ndarray:
@@ -101,6 +110,15 @@ def _sampled(ring: np.ndarray) -> np.ndarray:
     edge, number = items(np.ceil(np.hypot(*step.T) / _STEP).astype(np.int64).clip(1))
     share = number / np.bincount(edge)[edge]
     return ring[edge] + share[:, None] * step[edge]
+
+
+def squareness(rings: list[np.ndarray]) -> float:
+    """Return the share (0 to 1) of the length of a polygon's edges along two directions that are square to each other.
+
+    The two directions are those for which the share is greatest, within 3°.
+    """
+    length, angle = _polar(np.concatenate([np.diff(ring, axis=0) for ring in rings]))
+    return along_two_directions(length, angle) / float(length.sum())
 
 
 def regularity(geometries: list) -> Regularity:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.distance import directed_hausdorff
 
-from lidar_buildings.algorithms.quality.outline_measures import hausdorff, positions_along, squareness
+from lidar_buildings.algorithms.quality.polygon_comparison import hausdorff, positions_along, squareness
 
 
 def ring(*corners):
@@ -62,8 +62,8 @@ def test_an_edge_across_the_corner_is_not_along_the_directions():
     assert squareness([cut]) == pytest.approx(32 / (32 + skew))
 
 
-@pytest.mark.parametrize(("turn", "counts"), [(2.9, True), (3.1, False)])
-def test_edges_within_three_degrees_count(turn, counts):
+@pytest.mark.parametrize(("turn", "counts"), [(5.4, True), (6.6, False)])
+def test_edges_within_three_degrees_of_the_directions_count(turn, counts):
     rise = 10 * np.tan(np.deg2rad(turn))
     tilted = 20 / np.cos(np.deg2rad(turn))
     expected = 1.0 if counts else tilted / (20 + tilted)
