@@ -86,6 +86,7 @@ _PIPELINES = (
             "wires_look_for",
             "vegetation_look_for",
             "codes_codes",
+            "ground_keep_ground",
             "footprints_regularize",
         ),
     ),

@@ -7,6 +7,7 @@ from typing import Annotated, Optional
 
 import numpy as np
 
+from ..cloud.asprs import PointClass
 from ..geometry.grid import distinct, fixed_grid_over
 from ..params import PointSource
 from ..rules import rule
@@ -173,6 +174,13 @@ def classify_ground_tin(
             advanced=True,
         ),
     ] = None,
+    keep_ground: Annotated[
+        bool,
+        Param(
+            "Keep existing ground",
+            "Where the cloud has ground (2) already, it stays as it is and no other is looked for.",
+        ),
+    ] = False,
     source: PointSource = "automatic",
     sampling: Optional[CloudSampling] = None,
     monitor=None,
@@ -228,6 +236,9 @@ def classify_ground_tin(
     Axelsson, P., 2000. DEM generation from laser scanner data using adaptive TIN models. International Archives of
     Photogrammetry and Remote Sensing 33 (B4), 110-117.
     """
+    if keep_ground and (classification == PointClass.GROUND).any():
+        monitor.progress(1.0)
+        return classification.astype(np.uint8)
     sampling = sampling or CloudSampling.of(xyz, classification)
     xyz = sampling.from_corner(xyz)
     usable, spacing = usable_points(xyz, classification), sampling.spacing

@@ -453,3 +453,12 @@ def test_progress_only_grows_and_a_cancel_gets_through(rng):
 
     with pytest.raises(Cancelled):
         classify_ground_tin(xyz, unclassified(xyz), monitor=Listening(stop_at=0.5))
+
+
+def test_existing_ground_is_kept_where_asked_for_and_looked_for_where_there_is_none():
+    xy = np.stack(np.meshgrid(np.arange(30.0), np.arange(30.0)), axis=-1).reshape(-1, 2)
+    xyz = np.column_stack([xy, np.zeros(len(xy))])
+    given = np.where(xy[:, 0] < 10, 2, 6).astype(np.uint8)
+    np.testing.assert_array_equal(classify_ground_tin(xyz, given, keep_ground=True), given)
+    assert (classify_ground_tin(xyz, given) == 2).sum() > (given == 2).sum()
+    assert (classify_ground_tin(xyz, np.zeros(len(xyz), np.uint8), keep_ground=True) == 2).mean() > 0.9
