@@ -10,6 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from lidar_buildings.algorithms.terrain import free_standing
+from lidar_buildings.tests.benchmarks import worth
 from lidar_buildings.tests.benchmarks.results import Table
 from lidar_buildings.tests.benchmarks.surveys import Job, simulate
 
@@ -66,3 +68,21 @@ def test_the_simulation_of_a_survey_agrees_with_what_is_known_without_it():
     seconds, busy = simulate(moving, 200, 10.0)
     assert seconds == pytest.approx(40 * 5, rel=0.01)
     assert busy == pytest.approx(1.0, abs=0.01)
+
+
+def test_worth_finds_constants_by_imports_and_moves_them_for_a_while():
+    constants = {where: value for where, value, _ in worth.constants()}
+    assert "terrain.free_standing:FREE" in constants
+    assert "models3d.roof_planes:_RULES" not in constants
+    rule = next(rule for rule in worth.rules() if rule.name == "terrain.free_standing:FREE.step +20 %")
+    assert rule.first_step(worth.STEPS) == worth.STEPS.index("ground")
+    before = free_standing.FREE.step
+    with rule.applied():
+        assert free_standing.FREE.step == pytest.approx(1.2 * before)
+    assert free_standing.FREE.step == before
+
+
+def test_every_whole_rule_of_worth_names_what_there_is():
+    for rule in worth.WHOLE:
+        with rule.applied():
+            pass

@@ -54,15 +54,18 @@ from lidar_buildings.tests.real.clouds import (  # noqa: E402
 
 CHAIN = PIPELINES["detect_buildings"]
 PACKAGE = "lidar_buildings.algorithms"
-# Rooms whose constants describe the machine, files and pages rather than buildings.
-TECHNICAL = ("stage.", "cloud.", "report.", "geometry.", "neighborhoods.nearest_blocks", "threads", "params")
+# Modules whose constants describe memory, rounding, files, pages and codes of classes rather than buildings.
+TECHNICAL = (
+    *("stage.", "cloud.", "report.", "geometry.", "threads", "params", "landcover.recode_classes"),
+    *("neighborhoods.nearest_blocks", "neighborhoods.covariance", "neighborhoods.optimal_size"),
+)
 # Factors by which constants are moved.
 MOVED = (0.8, 1.2)
 # What a rule may cost and go, in the mean of all clouds and on any (%): less than clouds vary when they are turned.
 LEAST_MEAN, LEAST_ANYWHERE = 0.1, 0.5
 # Steps that decide what is building, and those that are left out unless they are asked for.
-STEPS = ("noise", "ground", "height", "roofs", "buildings", "complete", "refine")
-ON_REQUEST = ("bridges", "water", "wires", "vegetation")
+STEPS = ("noise", "ground", "bridges", "height", "roofs", "buildings", "complete", "refine")
+ON_REQUEST = ("water", "wires", "vegetation")
 
 
 @dataclass(frozen=True)

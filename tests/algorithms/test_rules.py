@@ -1,0 +1,34 @@
+"""Every rule of a method has a unit and a reason, and stands in one table."""
+
+from __future__ import annotations
+
+import sys
+
+from lidar_buildings.algorithms.help import rules_table
+from lidar_buildings.algorithms.rules import rules_of
+from lidar_buildings.algorithms.stages import STAGES
+from lidar_buildings.algorithms.terrain import free_standing
+
+
+def test_the_rules_of_a_module_are_its_own_with_unit_and_reason():
+    rules = dict(rules_of(free_standing))
+    assert rules["FREE.step"].default == free_standing.FREE.step
+    assert rules["FREE.step"].metadata["unit"] == "m"
+
+
+def test_every_rule_has_a_reason_and_a_unit_which_is_empty_for_plain_numbers():
+    assert STAGES
+    rules = [
+        rule for module in list(sys.modules.values()) if "algorithms" in module.__name__ for rule in rules_of(module)
+    ]
+    assert len(rules) > 100
+    for name, field in rules:
+        assert isinstance(field.metadata["unit"], str), name
+        assert field.metadata["why"], name
+        assert "|" not in field.metadata["why"], name
+
+
+def test_the_table_has_a_row_for_each():
+    assert "| terrain.free_standing | FREE.step | 1 | m | physics: least height of a step, lower than any eave |" in (
+        rules_table().splitlines()
+    )
