@@ -38,6 +38,7 @@ from .quality.assess_ground import assess_ground
 from .quality.assess_models import assess_models
 from .quality.assess_segments import assess_segments
 from .quality.compare_corners import compare_corners
+from .quality.compare_surveys import compare_surveys
 from .quality.report_buildings import report_buildings
 from .segmentation.classify_bridges import classify_bridges
 from .segmentation.classify_ground_segments import classify_ground_segments
@@ -135,6 +136,7 @@ _FUNCTIONS: tuple[Any, ...] = (
     assess_models,
     assess_segments,
     compare_corners,
+    compare_surveys,
     simulate_town,
     simulate_bridges,
     simulate_power_line,

@@ -101,6 +101,7 @@ STAGE_IDS = {
     "assessmodels",
     "assessfootprints",
     "comparecorners",
+    "comparesurveys",
     "simulatetown",
     "simulatebridges",
     "simulateflight",

@@ -19,20 +19,26 @@ _NO_AREA = 1e-6
 
 @dataclass(frozen=True)
 class BuildingMap:
-    """The usable polygons of a layer: their rings, the same as edges, their areas (m²) and what they are called."""
+    """The usable polygons of a layer: their rings, the same as edges, their areas (m²) and what they are called.
+
+    ``rows`` (n,) are their positions in the layer.
+    """
 
     rings: list
     polygons: Polygons
     area: np.ndarray
     names: list[str]
+    rows: np.ndarray
 
 
 def clean_map(features: LayerFeatures, called: str, monitor: Monitor) -> BuildingMap:
     """Return the polygons of a layer that have an area; say how many don't, and how many cross themselves."""
-    usable = [(rings, name) for rings, name in zip(map(_proper, features.geometries), feature_names(features)) if rings]
+    every_name = feature_names(features)
+    proper = [_proper(rings) for rings in features.geometries]
+    usable = [row for row, rings in enumerate(proper) if rings]
     if len(usable) < len(features):
         monitor.warn(f"{len(features) - len(usable)} of {len(features)} {called} have no area and were left out.")
-    rings = [rings for rings, _ in usable]
+    rings = [proper[row] for row in usable]
     polygons = as_polygons(rings)
     area, every = polygons.area, np.arange(len(rings))
     # Places around which the rings wind twice, or the wrong way, count otherwise in the overlap with itself.
@@ -42,7 +48,9 @@ def clean_map(features: LayerFeatures, called: str, monitor: Monitor) -> Buildin
             f"{crossing} of {len(features)} {called} cross themselves, so that their areas may be wrong; "
             "run 'Fix geometries' on the layer first."
         )
-    return BuildingMap(rings, polygons, np.maximum(area, _NO_AREA), [name for _, name in usable])
+    return BuildingMap(
+        rings, polygons, np.maximum(area, _NO_AREA), [every_name[row] for row in usable], np.array(usable, np.int64)
+    )
 
 
 def refuse_elsewhere(old: BuildingMap, new: BuildingMap, called: str, other: str) -> None:

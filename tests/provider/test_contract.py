@@ -53,6 +53,7 @@ IDS = {
     "classifynoisehistogram2019",
     "classifynoisestatistical",
     "comparecorners",
+    "comparesurveys",
     "downsamplevoxels",
     "mergeclouds",
     "completebuildings",

@@ -28,6 +28,7 @@ from lidar_buildings.algorithms.cloud.reasons import Reason
 from lidar_buildings.algorithms.features.classify_dimensionality import Dimensionality
 from lidar_buildings.algorithms.quality import assess_footprints as footprints
 from lidar_buildings.algorithms.quality import compare_corners as corners
+from lidar_buildings.algorithms.quality import compare_surveys as surveys
 from lidar_buildings.algorithms.quality.assess_buildings import FOUND, INVENTED, INVENTED_PART, MISSED, MISSED_PART
 from lidar_buildings.algorithms.stage import Field
 from lidar_buildings.algorithms.walls.extract_wall_footprints import ROOF, WALL
@@ -155,6 +156,7 @@ def test_a_feature_is_called_by_its_number_and_tells_all_where_the_mouse_rests(c
     [
         ("objects", "kind", {FOUND, MISSED, INVENTED, MISSED_PART, INVENTED_PART}),
         ("assessed_footprints", "status", set(footprints.COLORS)),
+        ("compared_surveys", "status", set(surveys.COLORS)),
         ("compared_buildings", "status", {corners.FOUND, corners.MISSED, corners.NEW}),
     ],
 )

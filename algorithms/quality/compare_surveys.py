@@ -1,0 +1,374 @@
+"""What has changed between the footprints of two surveys: buildings new, gone, or of another height or outline."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Optional
+
+import numpy as np
+
+from ..geometry.groups import components
+from ..report.charts import BLUE, RED, YELLOW, Mark, Series, draw_histogram
+from ..report.page import Row, build_page
+from ..report.polygon_map import draw_polygons
+from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Monitor, Param, Report, stage
+from .building_maps import BuildingMap, Overlap, clean_map, measure_overlap, refuse_elsewhere, rounded_down
+from .polygon_comparison import distances_from, positions_along
+
+UNCHANGED, HEIGHT, OUTLINE, BOTH = "unchanged", "height changed", "outline changed", "height and outline changed"
+NEW, GONE = "new", "gone"
+
+# Colors of the page that are told apart in all color visions (Tol's high-contrast and bright schemes).
+COLORS = {UNCHANGED: BLUE, HEIGHT: "#66ccee", OUTLINE: "#228833", BOTH: "#aa3377", NEW: RED, GONE: YELLOW}
+
+# Attributes of heights (m); the first one that both layers have is compared.
+_HEIGHTS = ("ridge_height", "height")
+
+
+@dataclass(frozen=True)
+class _Rules:
+    """How changes are told from the scatter between two surveys.
+
+    Attributes
+    ----------
+    deviations : float
+        Changes exceed the median of all differences by this multiple of it: 3 times the median of normal errors is
+        two standard deviations.
+    least_outline, least_height : float
+        Least automatic tolerances, m: smaller changes are not built.
+    most_outline, most_height : float
+        Greatest automatic tolerances, m, a room and the height of a storey: larger differences are changes even where
+        most buildings have changed.
+    wall : float
+        Outlines nearer to a neighbor of the same group are walls between these, m: the width of a double wall.
+    """
+
+    deviations: float = 3.0
+    least_outline: float = 1.0
+    most_outline: float = 4.0
+    least_height: float = 0.5
+    most_height: float = 3.0
+    wall: float = 0.5
+
+
+RULES = _Rules()
+
+_BUILDINGS = Layer(
+    "buildings",
+    "Buildings new, gone and changed",
+    "Polygon",
+    (
+        Field("id", int, "number of the building, from 1"),
+        Field(
+            "status",
+            str,
+            f"{NEW} or {GONE}: in the new or in the earlier survey only; {HEIGHT}, {OUTLINE}, {BOTH}; {UNCHANGED}",
+        ),
+        Field("building", str, "its attribute id in its own layer, or its number there"),
+        Field("counterpart", str, "buildings of the other survey that it was compared with, separated by commas"),
+        Field("area", float, "area", "m²"),
+        Field("gained", float, "area that it and those compared with it have gained", "m²"),
+        Field("lost", float, "area that these have lost", "m²"),
+        Field("outline_change", float, "greatest distance between the outlines of both surveys", "m"),
+        Field("height_change", float, "height in the new survey less that in the earlier one", "m"),
+    ),
+    style="compared_surveys",
+)
+_MEASURES = (
+    Measure("new_footprints", "Buildings in the new survey"),
+    Measure("old_footprints", "Buildings in the earlier survey"),
+    Measure("new", "New buildings"),
+    Measure("gone", "Buildings gone"),
+    Measure("height_changed", "Buildings changed in height"),
+    Measure("outline_changed", "Buildings changed in outline"),
+    Measure("unchanged", "Buildings unchanged"),
+    Measure("new_area", "Area of the new buildings", "m²"),
+    Measure("gone_area", "Area of the buildings gone", "m²"),
+)
+
+
+@stage(
+    "Compare surveys",
+    group="Quality",
+    tags="change detection,changes,update,new,demolished,epochs,earlier survey,monitoring,cadastre,footprints,height",
+    input_layers=(
+        InputLayer("footprints", "Footprints", "Polygon", "Buildings of the new survey, cut to the area of both."),
+        InputLayer(
+            "earlier",
+            "Footprints of the earlier survey",
+            "Polygon",
+            "Buildings of the earlier survey, cut to the area of both.",
+        ),
+    ),
+    layers=(_BUILDINGS,),
+    measures=_MEASURES,
+)
+def compare_surveys(
+    footprints,
+    earlier,
+    *,
+    min_overlap: Annotated[
+        float,
+        Param(
+            "Minimum overlap",
+            "Share of the smaller building that both surveys must have for two buildings to be the same.",
+            low=0,
+            high=1,
+            open_low=True,
+        ),
+    ] = 0.5,
+    outline_tolerance: Annotated[
+        Optional[float],
+        Param(
+            "Outline tolerance",
+            "An outline has changed if it is farther off somewhere.",
+            unit="m",
+            low=0,
+            high=100,
+            automatic="three times the median distance between the outlines of both surveys, 1 to 4 m.",
+        ),
+    ] = None,
+    height_tolerance: Annotated[
+        Optional[float],
+        Param(
+            "Height tolerance",
+            "A height has changed if it differs by more.",
+            unit="m",
+            low=0,
+            high=100,
+            automatic="three times the median difference between the heights of both surveys, 0.5 to 3 m.",
+        ),
+    ] = None,
+    monitor=None,
+):
+    """Find the buildings that are new, gone, or changed in height or outline since an earlier survey.
+
+    Both surveys are layers of footprints, as *Extract footprints* and *Detect buildings* make them from a cloud.
+    Heights are compared where both have the attribute 'ridge_height', or else 'height'.
+
+    Parameters
+    ----------
+    footprints : LayerFeatures
+        Polygons of the new survey.
+    earlier : LayerFeatures
+        Polygons of the earlier survey.
+
+    Returns
+    -------
+    buildings : LayerFeatures
+        All buildings of the new survey, then those that are gone.
+    report : Report
+        Counts, and a page with a map. What there is nothing to compute from is NaN.
+
+    Raises
+    ------
+    ValueError
+        If the surveys lie more than a kilometer apart.
+
+    Notes
+    -----
+    Buildings that share the minimum overlap of the smaller one are compared. Where several of one survey are one in the
+    other, they are compared as a group: a house that was drawn as two has not changed. The height of a group is the
+    mean by area. Distances of outlines are measured every 0.1 m, walls between buildings of a group left out.
+
+    References
+    ----------
+    Murakami, H., Nakagawa, K., Hasegawa, H., Shibata, T., Iwanami, E., 1999. Change detection of buildings using an
+    airborne laser scanner. ISPRS Journal of Photogrammetry and Remote Sensing 54(2-3).
+    """
+    new = clean_map(footprints, "footprints", monitor)
+    old = clean_map(earlier, "footprints of the earlier survey", monitor)
+    refuse_elsewhere(old, new, "footprints", "earlier survey")
+    overlap = measure_overlap(old, new, np.zeros(2), monitor.part(0.0, 0.3))
+    groups = _groups(overlap, min_overlap)
+    heights = _heights(footprints, earlier, (new, old), monitor)
+    changes = _changes(old, new, overlap, groups, heights, monitor.part(0.3, 0.95))
+    tolerances = {
+        "outline_tolerance": _tolerance(outline_tolerance, changes.outline, RULES.least_outline, RULES.most_outline),
+        "height_tolerance": _tolerance(height_tolerance, changes.height, RULES.least_height, RULES.most_height),
+    }
+    monitor.resolved(**tolerances)
+    status = _status(changes, *tolerances.values())
+    gone = np.flatnonzero(~np.isin(groups.old, groups.new))
+    table = _table(old, new, groups, changes, status, gone)
+    rings = new.rings + [old.rings[row] for row in gone]
+    values = _values(table, len(old.area), len(new.area))
+    return LayerFeatures(rings, table), Report(values, _page(rings, table, values, tolerances))
+
+
+@dataclass(frozen=True)
+class _Groups:
+    """The group of each building of the earlier and of the new survey: those that are the same have one number."""
+
+    old: np.ndarray
+    new: np.ndarray
+    count: int
+
+
+@dataclass(frozen=True)
+class _Changes:
+    """What has changed in each group: area gained and lost (m²), distance of outlines and difference in height (m).
+
+    Distances and differences are NaN in groups that one survey lacks, and where heights are unknown.
+    """
+
+    gained: np.ndarray
+    lost: np.ndarray
+    outline: np.ndarray
+    height: np.ndarray
+    in_old: np.ndarray
+    in_new: np.ndarray
+
+
+def _groups(overlap: Overlap, min_overlap: float) -> _Groups:
+    same = overlap.of_smaller >= rounded_down(min_overlap)
+    n = len(overlap.area)
+    count, group = components(overlap.one[same], n + overlap.other[same], n + len(overlap.other_area))
+    return _Groups(group[:n], group[n:], count)
+
+
+def _heights(
+    footprints: LayerFeatures, earlier: LayerFeatures, maps: tuple[BuildingMap, BuildingMap], monitor: Monitor
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the heights (m) of the buildings of the new and of the earlier survey, NaN where they are unknown."""
+    layers = (footprints, earlier)
+    known = [name for name in _HEIGHTS if all(name in layer.columns for layer in layers)]
+    if not known:
+        monitor.warn("Heights are not compared: no attribute 'ridge_height' or 'height' is in both layers.")
+        return np.full(len(maps[0].area), np.nan), np.full(len(maps[1].area), np.nan)
+    columns = [np.array(layer.columns[known[0]], float) for layer in layers]
+    return columns[0][maps[0].rows], columns[1][maps[1].rows]
+
+
+def _changes(
+    old: BuildingMap,
+    new: BuildingMap,
+    overlap: Overlap,
+    groups: _Groups,
+    heights: tuple[np.ndarray, np.ndarray],
+    monitor: Monitor,
+) -> _Changes:
+    """Compare the buildings of each group."""
+    one, other = groups.old[overlap.one], groups.new[overlap.other]
+    shared = np.bincount(one[one == other], overlap.shared[one == other], groups.count)
+    areas = [np.bincount(group, area, groups.count) for group, area in ((groups.old, old.area), (groups.new, new.area))]
+    counts = [np.bincount(group, minlength=groups.count) for group in (groups.old, groups.new)]
+    in_old, in_new = counts[0] > 0, counts[1] > 0
+    height = _group_heights(heights[0], new.area, groups.new, groups.count)
+    height = height - _group_heights(heights[1], old.area, groups.old, groups.count)
+    gained, lost = (np.maximum(area - shared, 0.0) for area in (areas[1], areas[0]))
+    return _Changes(gained, lost, _outline_changes(old, new, groups, in_old & in_new, monitor), height, in_old, in_new)
+
+
+def _group_heights(height: np.ndarray, area: np.ndarray, group: np.ndarray, count: int) -> np.ndarray:
+    """Return the mean height (m) of each group by area, NaN without heights."""
+    known = np.isfinite(height)
+    total = np.bincount(group[known], (height * area)[known], count)
+    weight = np.bincount(group[known], area[known], count)
+    return np.where(weight > 0, total / np.where(weight > 0, weight, 1.0), np.nan)
+
+
+def _outline_changes(
+    old: BuildingMap, new: BuildingMap, groups: _Groups, chosen: np.ndarray, monitor: Monitor
+) -> np.ndarray:
+    """Return the greatest distance (m) between the outlines of both surveys in chosen groups, NaN in the others."""
+    distance = np.full(groups.count, np.nan)
+    members: list[tuple[list, list]] = [([], []) for _ in range(groups.count)]
+    for side, (one, group) in enumerate(((old, groups.old), (new, groups.new))):
+        for row, number in enumerate(group.tolist()):
+            members[number][side].append(one.rings[row])
+    for step, number in enumerate(np.flatnonzero(chosen).tolist()):
+        first, second = members[number]
+        distance[number] = max(_farthest(first, second), _farthest(second, first))
+        monitor.progress(step / len(distance))
+    return distance
+
+
+def _farthest(buildings: list, others: list) -> float:
+    """Return the greatest distance (m) of the outer walls of buildings from the outlines of others."""
+    rings = [ring for building in others for ring in building]
+    off = 0.0
+    for row, building in enumerate(buildings):
+        positions = positions_along(building)
+        neighbors = [ring for other in buildings[:row] + buildings[row + 1 :] for ring in other]
+        if neighbors:
+            positions = positions[distances_from(positions, neighbors) > RULES.wall]
+        if len(positions):
+            off = max(off, float(distances_from(positions, rings).max()))
+    return off
+
+
+def _tolerance(given: Optional[float], differences: np.ndarray, least: float, most: float) -> float:
+    """Return the given tolerance (m), or one from the differences of all groups."""
+    if given is not None:
+        return given
+    known = np.abs(differences[np.isfinite(differences)])
+    return float(np.clip(RULES.deviations * np.median(known), least, most)) if len(known) else least
+
+
+def _status(changes: _Changes, outline_tolerance: float, height_tolerance: float) -> np.ndarray:
+    """Return the status of each group."""
+    outline = changes.outline > outline_tolerance
+    height = np.abs(changes.height) > height_tolerance
+    chosen = [~changes.in_old, ~changes.in_new, outline & height, outline, height]
+    return np.select(chosen, [NEW, GONE, BOTH, OUTLINE, HEIGHT], UNCHANGED)
+
+
+def _table(
+    old: BuildingMap, new: BuildingMap, groups: _Groups, changes: _Changes, status: np.ndarray, gone: np.ndarray
+) -> dict:
+    """Return the attributes of the buildings of the new survey, then of those that are gone."""
+    group = np.append(groups.new, groups.old[gone])
+    names: list[list[str]] = [[] for _ in range(groups.count)]
+    for name, number in zip(old.names, groups.old.tolist()):
+        names[number].append(name)
+    return {
+        "id": np.arange(1, len(group) + 1),
+        "status": status[group].tolist(),
+        "building": new.names + [old.names[row] for row in gone],
+        "counterpart": [", ".join(names[number]) for number in groups.new.tolist()] + [""] * len(gone),
+        "area": np.append(new.area, old.area[gone]),
+        "gained": changes.gained[group],
+        "lost": changes.lost[group],
+        "outline_change": changes.outline[group],
+        "height_change": changes.height[group],
+    }
+
+
+def _values(table: dict, n_old: int, n_new: int) -> dict[str, float]:
+    status = np.array(table["status"], dtype=object)
+    return {
+        "new_footprints": n_new,
+        "old_footprints": n_old,
+        "new": int((status == NEW).sum()),
+        "gone": int((status == GONE).sum()),
+        "height_changed": int(np.isin(status, [HEIGHT, BOTH]).sum()),
+        "outline_changed": int(np.isin(status, [OUTLINE, BOTH]).sum()),
+        "unchanged": int((status == UNCHANGED).sum()),
+        "new_area": float(table["area"][status == NEW].sum()),
+        "gone_area": float(table["area"][status == GONE].sum()),
+    }
+
+
+def _page(rings: list, table: dict, values: dict[str, float], tolerances: dict[str, float]) -> str:
+    lead = (
+        f"Of {values['new_footprints']:,} buildings, {values['new']:,} are new and {values['unchanged']:,} unchanged; "
+        f"{values['gone']:,} of {values['old_footprints']:,} buildings of the earlier survey are gone."
+    )
+    outline, height = tolerances["outline_tolerance"], tolerances["height_tolerance"]
+    rows = [
+        Row("New", f"{values['new']:,}", f"Buildings of the new survey only, {values['new_area']:,.0f} m²."),
+        Row("Gone", f"{values['gone']:,}", f"Buildings of the earlier survey only, {values['gone_area']:,.0f} m²."),
+        Row("Outline changed", f"{values['outline_changed']:,}", f"By more than {outline:.2f} m somewhere."),
+        Row("Height changed", f"{values['height_changed']:,}", f"By more than {height:.2f} m."),
+        Row("Unchanged", f"{values['unchanged']:,}", "Buildings of both surveys within these tolerances."),
+    ]
+    pictures = [draw_polygons(rings, table["status"], COLORS)]
+    for name, heading, limits in (
+        ("outline_change", "Distance of the outlines (m)", [Mark("tolerance", outline)]),
+        ("height_change", "Difference in height (m)", [Mark("tolerance", height), Mark("tolerance", -height)]),
+    ):
+        if np.isfinite(table[name]).any():
+            bars = draw_histogram([Series("buildings", BLUE, table[name])], heading, "Buildings", limits)
+            pictures.append(f"<h2>{heading}</h2>\n{bars}")
+    return build_page("Changes since the earlier survey", lead, {"Buildings": rows}, "\n".join(pictures))
