@@ -160,6 +160,7 @@ def connected(boxes: Boxes, is_near: Callable[[np.ndarray], np.ndarray], monitor
     if len(boxes.order) <= _FEW:
         here, there = np.triu_indices(len(boxes.order), 1)
         near, box = is_near(boxes.xyz[here] - boxes.xyz[there]), boxes.box()
+        monitor.progress(1.0)
         return _joined(component, box[here[near]], box[there[near]])
     half = len(around()) // 2
     left: list[tuple[np.ndarray, np.ndarray]] = []
