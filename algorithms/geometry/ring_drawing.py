@@ -286,7 +286,8 @@ class _Chain:
 
     def line(self, first: int, last: int, way: int) -> tuple[np.ndarray, np.ndarray, bool]:
         """Return a place on the line of a run, its direction (2,), and whether that is a main one."""
-        inner = slice(first + 1, last - 1) if last - first > _SHORTEST else slice(first, last)
+        left_out = min(2, (last - first - 1) // 3)
+        inner = slice(first + left_out, last - left_out)
         samples, unit, is_main = self.middles[inner], self.ways.unit[way], bool(self.ways.is_main[way])
         mean = samples.mean(axis=0)
         if not is_main and len(samples) > _SHORTEST:
