@@ -146,7 +146,8 @@ def _by_house(
 def _at_middle(cells: Subdivision, cell: int, values: np.ndarray, lattice: Lattice) -> np.ndarray:
     """Return the value (1,) or (..., 1) at the node next to the middle of a cell."""
     column, row = np.rint(lattice.nodes(np.mean([cells.vertices[v] for v in cells.loops[cell]], axis=0))).astype(int)
-    return values[..., row, column][..., None]
+    rows, columns = lattice.shape
+    return values[..., min(max(row, 0), rows - 1), min(max(column, 0), columns - 1)][..., None]
 
 
 def _drawn(ring: np.ndarray, directions: np.ndarray, how: Drawing) -> list[Edge]:

@@ -188,7 +188,8 @@ class _Owners:
 
     def _nodes(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         column, row = np.rint(self.lattice.nodes(places)).astype(np.int64).T
-        return row, column
+        rows, columns = self.lattice.shape
+        return row.clip(0, rows - 1), column.clip(0, columns - 1)
 
     def at(self, plan: np.ndarray) -> np.ndarray:
         """Return the outline (n,) that places (n, 2) belong to, -1 of those far from all."""

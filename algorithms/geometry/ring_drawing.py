@@ -68,7 +68,7 @@ class Prices:
     other: float = 1.75
     curved: float = 15.0
     other_curved: float = 0.5
-    round: float = 0.3
+    round: float = 0.2
 
 
 @dataclass(frozen=True)
