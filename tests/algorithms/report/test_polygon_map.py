@@ -1,0 +1,40 @@
+"""The map of polygons in the colors of their kinds."""
+
+import re
+
+import numpy as np
+
+from lidar_buildings.algorithms.report.polygon_map import draw_polygons
+
+COLORS = {"kept": "#004488", "<lost>": "#ddaa33"}
+
+
+def box(west, south, size=10.0):
+    return np.array([[0, 0], [size, 0], [size, size], [0, size], [0, 0]]) + [west, south]
+
+
+def test_polygons_have_the_colors_of_their_kinds_the_last_kind_on_top():
+    drawn = draw_polygons([[box(0, 0)], [box(20, 0)], [box(40, 0)]], ["<lost>", "kept", "kept"], COLORS)
+    assert re.findall('<path fill="([^"]+)"', drawn) == ["#004488", "#004488", "#ddaa33"]
+    assert "&lt;lost&gt;" in drawn
+    assert "50 m wide and 10 m high" in drawn
+
+
+def test_north_is_up_and_scale_is_kept():
+    drawn = draw_polygons([[box(0, 0)], [box(0, 30)]], ["kept", "kept"], COLORS)
+    south, north = (
+        np.array([point.split(",") for point in path.split()], float) for path in re.findall('d="M([^Z]+)Z"', drawn)
+    )
+    assert north[:, 1].max() < south[:, 1].min()
+    assert np.allclose(np.ptp(north, axis=0), np.ptp(south, axis=0), atol=0.2)
+    assert np.isclose(*np.ptp(south, axis=0), atol=0.2)
+
+
+def test_courtyards_are_rings_of_the_same_path():
+    drawn = draw_polygons([[box(0, 0), box(4, 4, 2)[::-1]]], ["kept"], COLORS)
+    assert drawn.count("<path") == 1
+    assert drawn.count("Z") == 2
+
+
+def test_without_polygons_there_is_no_map():
+    assert draw_polygons([], [], COLORS) == ""
