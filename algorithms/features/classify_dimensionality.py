@@ -25,7 +25,7 @@ class Dimensionality(IntEnum):
     writes=("dimensionality",),
 )
 def classify_dimensionality(linearity, planarity, scattering, *, monitor=None):
-    """Tell linear, planar and volumetric points apart by the largest of linearity, planarity and scattering.
+    """Classify points as linear, planar or volumetric by the largest of linearity, planarity and scattering.
 
     Wires, poles and edges are linear, ground, roofs and walls planar, crowns and bushes volumetric. Nothing has
     to be trained; what is small, and what is noise, is decided by the neighborhood of 'Compute features', which

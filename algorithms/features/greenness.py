@@ -51,7 +51,7 @@ def greenness_between(plants: np.ndarray, roofs: np.ndarray) -> Optional[float]:
     Returns
     -------
     float or None
-        The middle between the two medians, so that dry crowns, which are hardly green, are told from roofs, too.
+        The middle between the two medians, so that dry crowns, hardly green, are distinguished from roofs, too.
     """
     plants, roofs = (values[np.isfinite(values)] for values in (plants, roofs))
     if not len(plants) or not len(roofs):
@@ -61,7 +61,7 @@ def greenness_between(plants: np.ndarray, roofs: np.ndarray) -> Optional[float]:
 
 
 def plant_greenness(values: np.ndarray) -> Optional[float]:
-    """Return the greenness from which on points of a scene are plants; None where it does not tell two kinds apart.
+    """Return the greenness from which on points of a scene are plants; None where it does not separate two kinds.
 
     Parameters
     ----------

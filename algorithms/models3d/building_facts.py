@@ -57,7 +57,7 @@ _EAVE = 0.25
 
 BUILDING_FIELDS = (
     Field("id", int, "number of the building, from 1"),
-    Field("building", str, "footprint that it stands on: its attribute id, or its number", of="footprints"),
+    Field("building", str, "footprint below it: its attribute id, or its number", of="footprints"),
     Field("level", str, "level of detail that it has: 1.2, 1.3 or 2.2"),
     Field("reason", str, "why it has not the level that was wanted, empty where it has"),
     Field("roof_type", str, "flat, stepped flat, shed, gable, hip, mansard or other"),

@@ -167,7 +167,7 @@ class _Top:
 
     @property
     def roof(self) -> Optional[Partition]:
-        """The footprint divided among the planes, None where there is none."""
+        """The footprint divided among the planes, None without planes."""
         if self._roof is None and len(self.planes):
             s = self.settings
             self._roof = divide_footprint(

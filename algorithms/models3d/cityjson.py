@@ -126,7 +126,7 @@ class _Vertices:
         self._number: dict[tuple[int, ...], int] = {}
 
     def numbers(self, local: np.ndarray) -> list[int]:
-        """Return the numbers of places (n, 3), local m; new ones are added."""
+        """Return the numbers of positions (n, 3), local m; new ones are added."""
         found = []
         for row in np.rint((self.frame.to_map(local) - self.translate) / _SCALE).astype(np.int64).tolist():
             key = tuple(row)

@@ -40,7 +40,7 @@ class _Piece:
 def mended(
     partition: Partition, base: float, xyz: np.ndarray, limits: Optional[HeightsAround], percentile: float
 ) -> tuple[list[Solid], str]:
-    """Return valid solids of a partition, whose labels change where a fault is mended, and why there are none.
+    """Return valid solids of a partition, whose labels change where a fault is mended, and why there are no solids.
 
     Parameters
     ----------

@@ -23,7 +23,7 @@ _LEAST_SLOPE, _LEVEL = 8.0, 6.0
 # Both planes of a gable rise toward each other within this angle (°).
 _OPPOSITE = 15.0
 
-# Edges of a roof are told from the quantile of its points that leaves this share out, so that stray points do not move
+# Edges of a roof are taken at the quantile of its points that leaves this share out, so that stray points do not move
 # them; evenly spread points leave the same share of the width beyond.
 _EDGE = 0.02
 

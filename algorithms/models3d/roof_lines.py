@@ -31,7 +31,7 @@ _BEYOND_SPACINGS, _BEYOND = 2.0, 0.5
 # Lines that turn by less than this (rad) and lie no farther apart (m) are the same.
 _SAME_TURN, _SAME_OFFSET = 0.04, 0.10
 
-# Points no farther than this from a step (m, spacings) tell where it is.
+# Points no farther than this from a step (m, spacings) locate it.
 _NEAR, _NEAR_SPACINGS = 0.6, 2.0
 
 # Main directions are preferred by this share of the contacts.

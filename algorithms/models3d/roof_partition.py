@@ -196,7 +196,7 @@ def _costs(
     of_cell = np.concatenate([cell[counted], place])
     weight = np.full(len(sample), spacing**2)
     weight[len(counted) :] = _GAP_WEIGHT * _GAP_CELL**2
-    # Of a gap its nearest point tells the plane, not the height.
+    # The nearest point of a gap decides its plane, not its height.
     for plane in range(len(planes)):
         off = np.abs(xyz[sample, 2] - planes.height(plane, xyz[sample, :2])) * planes.cosine[plane]
         share = on_plane[sample] * np.minimum(off / (_FAR_OFF * tolerance), 1.0) ** 2

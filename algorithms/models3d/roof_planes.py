@@ -11,7 +11,7 @@ from ..neighborhoods.covariance import Nearest, smallest_eigenvectors, symmetric
 from ..packages import spatial
 from ..segmentation.least_squares_planes import planes_of
 
-# Points of the neighborhood whose plane tells which way a roof faces: two rings around a point.
+# Points of the neighborhood whose plane shows which way a roof faces: two rings around a point.
 _NEIGHBORS = 12
 
 # Points of a plane face the same way to this (°); normals of a dozen points with 3 cm of noise vary by less than half.
@@ -41,7 +41,7 @@ class RoofPlanes:
         return len(self.coefficients)
 
     def height(self, plane, xy: np.ndarray) -> np.ndarray:
-        """Return the height (n,), m, of planes at places (n, 2); one plane, or one per place."""
+        """Return the height (n,), m, of planes at positions (n, 2); one plane, or one per position."""
         a, b, c = self.coefficients[plane].T
         return a * xy[..., 0] + b * xy[..., 1] + c
 

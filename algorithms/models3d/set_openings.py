@@ -77,7 +77,7 @@ class _Wall:
         self.rings = [self.flat(solid.vertices[[*ring, ring[0]]]) for ring in solid.faces[face]]
 
     def flat(self, places: np.ndarray) -> np.ndarray:
-        """Return positions (m, 2) along and up the wall of places (m, 3)."""
+        """Return positions (m, 2) along and up the wall of positions (m, 3)."""
         return (places - self.origin) @ np.column_stack([self.along, self.up])
 
     def space(self, flat: np.ndarray) -> np.ndarray:

@@ -114,7 +114,7 @@ def _shell_faults(solid: Solid) -> Iterator[tuple[int, str]]:
 
 
 def _corner_faults(solid: Solid) -> Iterator[tuple[int, str]]:
-    """Yield the faces at corners that are nearer to each other than programs can tell."""
+    """Yield the faces at corners that are nearer to each other than programs resolve."""
     close = spatial.cKDTree(solid.vertices).query_pairs(RULES.apart, output_type="ndarray")
     if len(close):
         corners = set(close.ravel().tolist())

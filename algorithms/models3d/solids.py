@@ -154,7 +154,7 @@ class Levels:
             self._number(vertex)
 
     def plane_beyond(self, u: int, v: int) -> int:
-        """Return the plane to the right of an edge, the ground where there is none."""
+        """Return the plane to the right of an edge, the ground beyond the outline."""
         cell = self.cells.cell_of.get((v, u), OUTSIDE)
         return _BASE if cell == OUTSIDE else int(self.label[cell])
 

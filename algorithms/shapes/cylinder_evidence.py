@@ -49,7 +49,7 @@ class _Rules:
     stray : float
         Share of the points that lie at either end of the arc by chance.
     length, short : float
-        Least length (diameters): shorter pieces cannot be told from elbows, and not from spheres at all.
+        Least length (diameters): shorter pieces cannot be distinguished from elbows, or from spheres.
     long_enough : float
         Length (m) that is enough for any diameter: of a tank less may be seen.
     """
@@ -116,7 +116,7 @@ class Evidence:
         return bends(cylinder, own.xyz[:: len(along) // MOST_LOOKED_AT + 1]) <= most
 
     def is_long(self, along: np.ndarray, cylinder: Cylinder) -> bool:
-        """Return whether points at positions ``along`` the axis (k,), m, tell a cylinder from an elbow or a sphere."""
+        """Return whether points at positions ``along`` the axis (k,), m, are of a cylinder, not of an elbow or sphere."""
         diameter = 2 * cylinder.radius
         least = max(min(_RULES.length * diameter, _RULES.long_enough), _RULES.short * diameter)
         return bool(np.ptp(along) >= least)

@@ -83,7 +83,7 @@ def fit_cylinder(xyz: np.ndarray, start: Cylinder, rounds: int = _ROUNDS) -> Cyl
 
 
 def _solved(design: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Return the least-squares solution, NaN where there is none: columns are scaled, so that products stay precise."""
+    """Return the least-squares solution, NaN where undefined: columns are scaled, so that products stay precise."""
     scale = np.maximum(np.sqrt((design * design).sum(axis=0)), 1e-300)
     scaled = design / scale
     try:

@@ -148,7 +148,7 @@ def _as_one(one: Found, other: Found, xyz: np.ndarray, noise: float, spacing: fl
 
     The cylinder with the least squares on the points of both must be as close to the points of each as the cylinder of
     its own, but for chance: five unknowns of k points explain 5 / k of the variance. So radius, offset and direction
-    are compared at once, each as precisely as the lengths and the arcs of the pieces tell it.
+    are compared at once, each as precisely as the lengths and the arcs of the pieces allow.
     """
     points = np.sort(np.concatenate([one.points, other.points]))
     longer = one if len(one.points) >= len(other.points) else other

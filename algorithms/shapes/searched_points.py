@@ -277,7 +277,7 @@ def search_shapes(
     points = searched_points(xyz, classification, segment_id, shape, search_in, WINDOW * max_radius)
     label, found = np.zeros(len(points.rows), np.int64), []
     if len(points.rows):
-        # A tolerance that is set tells the noise, too.
+        # A tolerance that is set implies the noise, too.
         around = Surroundings(
             points.xyz, normals[points.rows], max(noise, tolerance / 3), tolerance, spacing, points.shift
         )

@@ -22,7 +22,7 @@ _VOXEL_SPACINGS, _LEAST_VOXEL = 2.0, 0.02
 _GAP_VOXELS = 8.0
 
 # Largest median deviation of the distances of the points of a piece from their median (of that): those of a circle
-# around the line. Stems at breast height are told by the same share.
+# around the line. Stems at breast height are recognized by the same share.
 _ROUND = 0.2
 
 # Largest measured radius (of that estimated): what is wider is leaves. Simulated branches have 1.4.

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..geometry.boxes import Boxes
 
-# Radii of one level: from the least to so many times it.
+# Ratio of the largest to the least radius of a level.
 OCTAVE = 2.0
 
 # Side of a window and spacing of its points (times the least radius of the level).

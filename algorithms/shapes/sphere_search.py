@@ -30,7 +30,7 @@ _LEAST_SPREAD = 0.02
 # Largest deviation of the points (times the noise), and of what another shape explains of it.
 _MOST_ROUGH, _MOST_BENT = 1.25, 0.6
 
-# Points inside a sphere and around it (up to so many radii), per point on it: it is empty, and stands in the air.
+# Points inside a sphere and around it (up to this number of radii), per point on it: it is empty, and in the air.
 _MOST_INSIDE, _AROUND, _MOST_AROUND = 0.15, 1.5, 0.6
 
 # Points at which a fit or a test looks at most: more don't change it.
@@ -134,7 +134,7 @@ class SphereSearch:
     def _fitted(
         self, rows: np.ndarray, center: np.ndarray, radius: float, low: float, high: float
     ) -> Optional[tuple[np.ndarray, float]]:
-        """Return the least-squares sphere of the points around a start, None where there is none of the range."""
+        """Return the least-squares sphere of the points around a start, None where its radius is out of range."""
         for reach in (*(share * low for share in _FIRST_FITS), 2 * self.tolerance, self.tolerance):
             points = rows[self._is_on(rows, center, radius, max(reach, self.tolerance))]
             if len(points) < LEAST_POINTS:

@@ -29,7 +29,7 @@ _GROUND_CELL = 1.0
 
 
 def ground_level(xyz: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """Return the height (m) of the lowest of points (n, 3) in the cell of each place (m, 2) and the cells around it.
+    """Return the height (m) of the lowest of points (n, 3) in the cell of each position (m, 2) and the cells around it.
 
     Each place is that of one of the points.
     """

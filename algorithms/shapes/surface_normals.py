@@ -18,7 +18,7 @@ from ..neighborhoods.nearest_blocks import Shapes
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Monitor, Param
 
-# Standard deviation (radians) that normals may have from the noise: 3°, so that directions tell surfaces apart.
+# Standard deviation (radians) that normals may have from the noise: 3°, so that directions distinguish surfaces.
 _NORMAL_ERROR = 0.05
 
 # Points of the smallest and the largest neighborhood of a normal. Fewer follow the noise; more cost time.

@@ -12,7 +12,7 @@ from ..packages import csgraph, sparse, spatial
 from ..stage import Monitor
 from ..threads import n_threads
 
-# A step over a gap costs so many times its length, so that paths keep to the wood where there is some.
+# Cost of a step over a gap, in multiples of its length, so that paths keep to the wood where there is some.
 _GAP_PRICE = 3.0
 
 # Thickness of a slice (voxels): thinner ones have no place of their own, thicker ones hold two forks.
@@ -144,7 +144,7 @@ def _shortest(places: np.ndarray, piece: np.ndarray, pairs: np.ndarray) -> np.nd
 
 
 def roots_of(voxels: Voxels, stems: np.ndarray) -> np.ndarray:
-    """Return the lowest voxel of each of the stems at places (s, 3) of their axes at breast height (m)."""
+    """Return the lowest voxel of each of the stems at positions (s, 3) of their axes at breast height (m)."""
     roots = []
     for stem in stems:
         reach = np.linalg.norm(voxels.places[:, :2] - stem[:2], axis=1)

@@ -86,7 +86,7 @@ _TUNNEL, _ROAD = 30.0, 0.16
 
 @dataclass(frozen=True)
 class Lot:
-    """One kind at one place: its middle (m) and the angle (rad) of decks to the shortest way across."""
+    """One kind at one site: its middle (m) and the angle (rad) of decks to the shortest way across."""
 
     kind: str
     x: float
@@ -206,7 +206,7 @@ class Deck:
 
 
 def land(scene: Scene, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Return the elevation (m) of the land of a site with its quays, of the bottom under water, at places (n,)."""
+    """Return the elevation (m) of the land of a site with its quays, of the bottom under water, at positions (n,)."""
     z = np.array(scene.relief.ground(x, y))
     for lot in scene.relief.lots if isinstance(scene.relief, BridgeRelief) else ():
         kind = KINDS[lot.kind]

@@ -15,7 +15,7 @@ _HALL_SIZES = (10.0, 100.0)
 _HALL_HEIGHTS = (3.0, 9.0)
 _PARAPET_HEIGHT, _PARAPET_WIDTH = 0.6, 0.35
 
-# Blocks: so many flat roofs touch, each a little higher or lower than the next (m).
+# Blocks: number of flat roofs that touch, each a little higher or lower than the next (m).
 _BLOCK_ROOFS, _BLOCK_DEPTH, _BLOCK_STEP = 4, 12.0, 0.8
 
 # Vans (m).

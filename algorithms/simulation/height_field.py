@@ -40,7 +40,7 @@ class HeightField:
     object_id: np.ndarray
 
     def at(self, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return row and column of the cells of places (n, 2), m."""
+        """Return row and column of the cells of positions (n, 2), m."""
         column, row = np.floor(xy / CELL).astype(np.int64).T
         return np.clip(row, 0, self.top.shape[0] - 1), np.clip(column, 0, self.top.shape[1] - 1)
 

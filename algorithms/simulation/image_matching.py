@@ -14,7 +14,7 @@ from .height_field import CELL, HeightField, smooth_noise
 # Waves of matching (m): their length, and their share of the whole; the whole is a tunable.
 _WAVES = ((0.6, 0.4), (1.5, 0.5), (4.0, 0.6), (9.0, 0.7))
 
-# Edges are rounded more and less over so many meters.
+# Distance over which the rounding of edges varies, m.
 _ROUNDING_CHANGES = 8.0
 
 # Crowns are matched worse than roofs, since leaves move and differ from view to view: length and standard deviation of
@@ -167,7 +167,7 @@ def _shadowed(top: np.ndarray, azimuth: float, elevation: float) -> np.ndarray:
 
 
 def _moved(values: np.ndarray, rows: int, columns: int) -> np.ndarray:
-    """Return the values so many rows and columns farther, those of the edge beyond it."""
+    """Return the values shifted by rows and columns, those of the edge beyond it."""
     row = np.clip(np.arange(values.shape[0]) + rows, 0, values.shape[0] - 1)
     column = np.clip(np.arange(values.shape[1]) + columns, 0, values.shape[1] - 1)
     return values[np.ix_(row, column)]
@@ -215,7 +215,7 @@ def sample(
 
 
 def _height_at(top: np.ndarray, xy: np.ndarray) -> np.ndarray:
-    """Return the elevation at places (n, 2), m, between the middles of cells."""
+    """Return the elevation at positions (n, 2), m, between the middles of cells."""
     return ndimage.map_coordinates(top, (xy / CELL - 0.5).T[::-1], order=1, mode="nearest")
 
 

@@ -20,7 +20,7 @@ _SAG = 0.03
 # Height of poles, distance between them, sag of their wires, and how far these hang from the middle (m).
 _POLE, _POLES, _POLE_SAG, _SIDES = 9.0, 40.0, 0.8, (-0.8, 0.0, 0.8)
 
-# Houses lie this far from the poles' line (m); their wires sag so much (m).
+# Houses lie this far from the poles' line (m); and the sag of their wires (m).
 _HOUSE, _DROP_SAG = 16.0, 0.3
 
 # Straight pieces that a wire is made of.

@@ -36,7 +36,7 @@ class Plant:
 
 
 def build_plant(pipes: int, tanks: int, spheres: int, clutter: bool, rng: np.random.Generator) -> Plant:
-    """Return a plant with so many straight pipes, tanks and spherical vessels."""
+    """Return a plant with given numbers of straight pipes, tanks and spherical vessels."""
     plant, bay = Plant(), 0
     left = pipes
     columns = max(1, int(np.ceil(np.sqrt(max(1, pipes / 9)))))
@@ -54,7 +54,7 @@ def build_plant(pipes: int, tanks: int, spheres: int, clutter: bool, rng: np.ran
 
 
 def _rack(plant: Plant, middle: np.ndarray, most: int, clutter: bool, rng: np.random.Generator) -> int:
-    """Add a rack with at most so many pipes; return how many it has."""
+    """Add a rack with at most a number of pipes; return how many it has."""
     turn = rng.uniform(0, np.pi)
     along, across = np.array([np.cos(turn), np.sin(turn), 0.0]), np.array([-np.sin(turn), np.cos(turn), 0.0])
     made = 0

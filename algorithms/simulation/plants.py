@@ -62,7 +62,7 @@ def _plant_forest(scene: Scene, share: float, rng: np.random.Generator, monitor:
 
 
 def _feet(scene: Scene, places: np.ndarray) -> list[tuple[float, float, float]]:
-    """Return x, y and elevation of the ground (m) at places (n, 2)."""
+    """Return x, y and elevation of the ground (m) at positions (n, 2)."""
     return [(float(x), float(y), float(z)) for (x, y), z in zip(places, scene.relief.ground(*places.T))]
 
 

@@ -30,7 +30,7 @@ RECORDED = (
     "segment_id",
 )
 
-# So many pulses (about 100 bytes each) still fit into the memory of an office computer.
+# Largest number of pulses: at about 100 bytes each they fit into the memory of an office computer.
 MAX_PULSES = 5e7
 
 # Height over the ground (m) and speed (m/s) of a survey flight, and what a strip takes beside the way (s).
@@ -44,7 +44,7 @@ _BEAM_RADIUS = 0.1
 # Pulses worked on at once, which bounds memory.
 _BLOCK = 50_000
 
-# The scanner tells echoes apart that are this far from one another (m), and hears five.
+# The scanner separates echoes at this distance from each other (m), and records five.
 _DEAD_ZONE = 0.7
 _MAX_RETURNS = 5
 
@@ -255,7 +255,7 @@ def _heard(world: World, pulses: Beams, strip: _Strip, returns: bool, rng: np.ra
 
 
 def _separate(echoes: Echoes, n_pulses: int, rng: np.random.Generator) -> np.ndarray:
-    """Return which echoes, in order, a scanner tells apart before the pulse is used up."""
+    """Return which echoes, in order, a scanner separates before the pulse is used up."""
     pulse = echoes.pulse
     number = rank(pulse)
     is_porous = np.isin(echoes.classification, _LEAFY)
@@ -279,7 +279,7 @@ def _noise(n_pulses: int, n_noise: int, rng: np.random.Generator) -> tuple[np.nd
 
 
 def _noise_echoes(world: World, pulses: Beams, height: np.ndarray) -> Echoes:
-    """Return the echoes of pulses that a bird or a detour answers, so far (m) over the ground."""
+    """Return the echoes of pulses that a bird or a detour returns, at a height (m) over the ground."""
     ranges = world.ground(pulses) + height / pulses.direction[:, 2]
     classes = np.where(height > 0, PointClass.HIGH_NOISE, PointClass.LOW_NOISE)
     return pulses.echoes(slice(None), ranges, classes, np.zeros(len(pulses)))

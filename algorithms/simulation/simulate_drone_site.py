@@ -14,11 +14,11 @@ from .height_field import HeightField, see_from_above
 from .image_matching import match, sample
 from .scene import Building
 
-# So many points (about 200 bytes each while they are made) still fit into the memory of an office computer.
+# Largest number of points: at about 200 bytes each they fit into the memory of an office computer.
 _MAX_POINTS = 3e7
 
-# Points so far above the ground (m) where there is only ground are of the object beside, smeared; plants and cars whose
-# points lie lower than this (m) are ground there.
+# Points at this height above the ground (m) where there is only ground are of the adjacent object, smeared; plants and cars
+# whose points lie lower than this (m) are ground there.
 _SMEARED, _GROUND = 0.3, 0.1
 
 _FIELDS = (

@@ -80,7 +80,7 @@ def simulate_flight(
         The truth: 2 ground; 3, 4, 5 vegetation under 0.5 m, under 2 m and higher (stems are 5); 6 buildings with their
         balconies; 1 cars and lamps.
     return_number, number_of_returns : ndarray of shape (n,), uint8
-        1: the scanners hear the first echo only.
+        1: the scanners record the first echo only.
     intensity : ndarray of shape (n,), uint16
         Brightness by material.
     scan_angle : ndarray of shape (n,), float32

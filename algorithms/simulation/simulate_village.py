@@ -17,10 +17,10 @@ from .scene import Building
 from .solids import Rect
 from .village_layout import MAX_HOMES, Village, build_village
 
-# So many points (about 200 bytes each while they are made) still fit into the memory of an office computer.
+# Largest number of points: at about 200 bytes each they fit into the memory of an office computer.
 _MAX_POINTS = 3e7
 
-# Where matching fails, nothing is found so far around (m); places to fail are looked for in cells of that size.
+# Where matching fails, nothing is found within this distance (m); places to fail are looked for in cells of that size.
 _HOLE = 0.5
 
 _CREATED = (

@@ -30,7 +30,7 @@ class Rect:
     angle: float
 
     def at(self, along, across) -> tuple:
-        """Return the point that lies so far (m) from the center along the length and to the left of it."""
+        """Return the point at distances (m) from the center along the length and to the left of it."""
         cos, sin = np.cos(self.angle), np.sin(self.angle)
         return self.x + along * cos - across * sin, self.y + along * sin + across * cos
 
@@ -87,7 +87,7 @@ class Solid:
 
 
 def inclined(rect: Rect, along: float, across: float, z: float, rise_along: float, rise_across: float) -> np.ndarray:
-    """Return the plane of elevation ``z`` at a place of ``rect``, with these rises per meter along and across it."""
+    """Return the plane of elevation ``z`` at a position in ``rect``, with these rises per meter along and across it."""
     cos, sin = np.cos(rect.angle), np.sin(rect.angle)
     a, b = rise_along * cos - rise_across * sin, rise_along * sin + rise_across * cos
     x, y = rect.at(along, across)

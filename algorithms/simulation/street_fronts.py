@@ -12,7 +12,7 @@ from .solids import Rect, Solid, flat, gable
 
 KINDS = ("plain", "recess", "bay", "curved", "balconies")
 
-# Walls are this thick (m); below ground they go on so far (m).
+# Thickness of walls, and their depth below ground (m).
 _WALL, _BELOW = 0.3, 1.0
 
 # Heights of a storey, of a sill over the floor, of windows and doors, and their widths (m).
@@ -82,7 +82,7 @@ def _ring(walls: list[tuple[np.ndarray, np.ndarray, float]]) -> np.ndarray:
     for start, end, top in reversed(walls):
         for x, y, _ in (end, start):
             corner = np.array([x, y, top])
-            # Of walls of one height the corner between them is none.
+            # Between walls of one height there is no corner.
             if len(ring) > 3 and np.allclose(ring[-1], corner):
                 ring.pop()
             else:
@@ -92,14 +92,14 @@ def _ring(walls: list[tuple[np.ndarray, np.ndarray, float]]) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Line:
-    """The foot of a wall: from a point (2,), m, so far in a direction (2,), the street on its right."""
+    """The foot of a wall: from a point (2,), m, a distance in a direction (2,), the street on its right."""
 
     start: np.ndarray
     way: np.ndarray
     length: float
 
     def at(self, along: float, inward: float = 0.0) -> np.ndarray:
-        """Return the point (2,) so far along the wall and behind its front (m)."""
+        """Return the point (2,) at distances along the wall and behind its front (m)."""
         return self.start + along * self.way + inward * np.array([-self.way[1], self.way[0]])
 
     def rect(self, along: tuple[float, float], inward: tuple[float, float]) -> Rect:

@@ -69,7 +69,7 @@ def build_site(trees: int, slope: float, seed: int) -> Scene:
 
 
 def _place(x: float, y: float) -> tuple[float, float]:
-    """Return the coordinates (m) of a place told from the middle of the site."""
+    """Return the coordinates (m) of a position relative to the middle of the site."""
     return SIZE / 2 + x, SIZE / 2 + y
 
 

@@ -121,7 +121,7 @@ def _row(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
 
 
 def _shed(scene: Scene, plot: Rect, houses: list[Building], rng: np.random.Generator) -> None:
-    """Put a shed into a back corner of the garden, if the house doesn't reach so far."""
+    """Put a shed into a back corner of the garden, if the house leaves room for it."""
     rect = plot.part(rng.choice((-1, 1)) * (plot.length / 2 - 2.2), plot.width / 2 - 1.7, *rng.uniform(2.2, 3.0, 2))
     height, pitch = rng.uniform(2.0, 2.4), np.tan(np.deg2rad(rng.uniform(0.0, 15.0)))
     if any(house.contains(*rect.corners(0.5).T).any() for house in houses):

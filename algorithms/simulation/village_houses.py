@@ -17,14 +17,14 @@ _EAVES = (2.9, 5.6)
 
 
 class Home(Site):
-    """A site whose roof has an object id of its own, so that roof and walls can be told apart."""
+    """A site whose roof has an object id of its own, so that roof and walls can be distinguished."""
 
     def __init__(self, scene: Scene, rect: Rect, eave: float) -> None:
         super().__init__(scene, rect, eave)
         self.roof_id = scene.new_id()
 
     def slab(self, rect: Rect, tops: np.ndarray, under: np.ndarray) -> Solid:
-        """Return a piece of roof: between its top planes and ``under``, a plane so far below the first of them."""
+        """Return a piece of roof, between its top planes and ``under``, a plane below the first one."""
         a, b, c = under
         lowest = float((rect.corners() @ [a, b]).min() + c)
         return Solid(rect, tops, lowest, PointClass.BUILDING, self.roof_id, under)
