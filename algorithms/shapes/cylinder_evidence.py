@@ -116,7 +116,7 @@ class Evidence:
         return bends(cylinder, own.xyz[:: len(along) // MOST_LOOKED_AT + 1]) <= most
 
     def is_long(self, along: np.ndarray, cylinder: Cylinder) -> bool:
-        """Return whether points at positions ``along`` the axis (k,), m, are of a cylinder, not of an elbow or sphere."""
+        """Return whether points at positions ``along`` the axis (k,), m, are of a cylinder, not of an elbow."""
         diameter = 2 * cylinder.radius
         least = max(min(_RULES.length * diameter, _RULES.long_enough), _RULES.short * diameter)
         return bool(np.ptp(along) >= least)

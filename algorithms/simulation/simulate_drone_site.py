@@ -17,8 +17,8 @@ from .scene import Building
 # Largest number of points: at about 200 bytes each they fit into the memory of an office computer.
 _MAX_POINTS = 3e7
 
-# Points at this height above the ground (m) where there is only ground are of the adjacent object, smeared; plants and cars
-# whose points lie lower than this (m) are ground there.
+# Points at this height above the ground (m) where there is only ground are of an adjacent object, smeared; plants and
+# cars whose points lie lower than this (m) are ground there.
 _SMEARED, _GROUND = 0.3, 0.1
 
 _FIELDS = (
