@@ -117,8 +117,8 @@ def detect_cylinders(
     normals, so that planes don't decide the direction. A cylinder is at least 1.5 diameters long, or one meter if its
     diameter is larger, and 0.3 diameters in any case: shorter pieces can't be distinguished from elbows and spheres. A
     bend, a cone or a bulge shows in the distances of the points from the cylinder, which must not follow their position
-    on it by more than 0.6 of the noise and 0.3 % of the radius, the tolerance to which tanks are built. The inside is counted
-    in ten slices along the axis, of which the middle one decides, so that a roof within the wall does not matter.
+    on it by more than 0.6 of the noise and 0.3 % of the radius, the tolerance to which tanks are built. The inside is
+    counted in ten slices along the axis, of which the middle one decides, so that a roof within the wall has no effect.
     The paper does not put pieces together; here they are also where they lie in different segments.
 
     References

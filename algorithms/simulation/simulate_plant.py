@@ -168,7 +168,7 @@ class _Candidates:
     part : ndarray of shape (n,), int32
         Numbers of the parts they lie on.
     reach : ndarray of shape (n,), float32
-        Largest distance (m) of a station that looks at a position. The share of positions on a surface that a station sees
+        Largest distance (m) of a station that looks at a position. The share of a surface that a station samples
         falls with the square of its distance, as the density of its points does.
     """
 
