@@ -1,0 +1,53 @@
+"""Rings drawn from samples along known shapes."""
+
+import numpy as np
+import pytest
+
+from lidar_buildings.algorithms.geometry.ring_directions import direction_weights, main_directions
+from lidar_buildings.algorithms.geometry.ring_drawing import Prices, draw_ring
+from lidar_buildings.tests.builders import L_SHAPE, turned
+
+SPACING = 0.5
+
+
+def sampled(corners):
+    """Return samples a spacing apart along a ring, with deviations of a tenth of that."""
+    ring = np.concatenate([corners, corners[:1]])
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(ring, axis=0).T))])
+    wanted = np.arange(0, along[-1], SPACING)
+    samples = np.column_stack([np.interp(wanted, along, ring[:, axis]) for axis in (0, 1)])
+    return samples + np.random.default_rng(3).normal(0, 0.1 * SPACING, samples.shape)
+
+
+@pytest.mark.parametrize("degrees", [0, 20, 33, 77])
+def test_an_l_has_six_edges_along_its_directions_wherever_its_samples_begin(degrees):
+    shape = turned(np.asarray(L_SHAPE, float)[:6], degrees)
+    samples = sampled(shape)
+    weights = direction_weights(samples)
+    directions = main_directions(weights, weights, len(samples))
+    assert min(abs((directions[0] - degrees + 45) % 90 - 45), 90) < 1.0
+    for first in (0, 17, 40):
+        edges = draw_ring(np.roll(samples, first, axis=0), directions, Prices(10 * SPACING**3))
+        assert len(edges) == 6
+        assert all(edge.is_main for edge in edges)
+        corners = np.array([edge.start for edge in edges])
+        assert np.hypot(*(shape[:, None] - corners).transpose(2, 0, 1)).min(axis=1).max() < 0.5 * SPACING
+
+
+def test_a_dearer_corner_leaves_out_a_bay():
+    """A bay 1 m deep and 2 m wide in a front of 20 m."""
+    shape = np.array([[0, 0], [9, 0], [9, -1], [11, -1], [11, 0], [20, 0], [20, 10], [0, 10]], float)
+    samples = sampled(shape)
+    sizes = [len(draw_ring(samples, np.zeros(1), Prices(price))) for price in (0.1, 5.0)]
+    assert sizes == [8, 4]
+
+
+def test_a_circle_has_no_direction_and_is_drawn_in_chords():
+    angle = np.linspace(0, 2 * np.pi, 100, endpoint=False)
+    samples = 8 * np.column_stack([np.cos(angle), np.sin(angle)])
+    weights = direction_weights(samples)
+    directions = main_directions(weights, weights, len(samples))
+    assert len(directions) == 0
+    edges = draw_ring(samples, directions, Prices(10 * SPACING**3))
+    assert 8 <= len(edges) <= 30
+    assert max(abs(np.hypot(*edge.start) - 8) for edge in edges) < SPACING
