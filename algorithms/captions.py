@@ -8,7 +8,10 @@ from __future__ import annotations
 _SEGMENTS = "Each segment in a color of its own, points of none in gray."
 
 CAPTIONS = {
-    "detectbuildings": "A simulated town: ground brown, plants green, buildings red with footprints, the rest gray.",
+    "detectbuildings": (
+        "A simulated town: ground brown, plants green, buildings red with footprints, water and the bridges over it "
+        "blue, wires yellow, the rest gray."
+    ),
     "mapfootprints": "A simulated village from a drone's images: roofs red, and the walls below them as footprints.",
     "modelbuildings": "Edges of the closed models over the points they were made of.",
     "modelfacades": "One side of a simulated street: each facade in a color, windows and doors outlined.",
@@ -44,7 +47,7 @@ CAPTIONS = {
     "classifywater": "The river of a simulated town in blue, below its bridges.",
     "classifywires": "A simulated transmission line and a line along houses: wires yellow, masts brown.",
     "completebuildings": "Whole buildings in red, with walls, dormers and edges.",
-    "refinebuildings": "The probability of building that was learned from the scene, from dark to light.",
+    "refinebuildings": "The probability of building that was learned from the scene, from blue to red.",
     "extractfootprints": "Footprints around the points of buildings.",
     "classifyroofs": "Roofs of a simulated village in red; plants at their height are gray.",
     "classifywalls": "Roofs with the walls below their eaves.",

@@ -194,9 +194,12 @@ def drawn(scene: Scene) -> QImage:
     painter = QPainter(image)
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     painter.setPen(QPen(LINE, 1.6))
+    # Crowns over the corner of a roof would lift its outline.
+    is_building = cloud.get("classification") == 6
+    below = xyz[is_building] if is_building.any() else xyz
     for name in scene.lines.split():
         for ring in rings(outcome.layers[name], scene.box):
-            painter.drawPolyline(QPolygonF([QPointF(*place) for place in view.pixels(with_heights(ring, xyz))]))
+            painter.drawPolyline(QPolygonF([QPointF(*place) for place in view.pixels(with_heights(ring, below))]))
     painter.end()
     return image
 
@@ -293,7 +296,7 @@ def rings(features: Any, box: tuple[float, float, float, float]) -> Iterable[np.
 
 
 def with_heights(line: np.ndarray, xyz: np.ndarray) -> np.ndarray:
-    """Return a line with elevations; without its own it lies on the highest points near its vertices."""
+    """Return a line with elevations; without its own it lies on the highest of the given points near its vertices."""
     if line.shape[1] == 3:
         return line
     from scipy.spatial import cKDTree
