@@ -35,6 +35,7 @@ WITH_BUILDINGS = (
     "buildings/ign-stbarth-4",
     "buildings/ahn-amsterdam-1",
     "buildings/ign-chalet",
+    "buildings/amsterdam-centre-10",
 )
 WITHOUT_BUILDINGS = ("buildings/ign-forest-none", "buildings/ign-bridge-none")
 
