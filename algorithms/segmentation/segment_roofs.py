@@ -40,7 +40,7 @@ class ImageSurfaceRules:
     """Planes in clouds of matched images."""
 
     reach: float = rule(0.6, "m", "physics: radius that planes are fitted in; crowns are smooth over less")
-    off_plane: float = rule(0.05, "m", "neighbors share errors of matching, which the measured noise does not show")
+    off_plane: float = rule(0.04, "m", "of matching, shared by neighbors; roofs F 93.9 %, at 0.05 m 92.8 % with hedges")
     cell: float = rule(0.15, "m", "one point of each is taken: as dense as planes need, which bounds time and memory")
     fewest: int = rule(12, "points", "of a neighborhood, where less lie within its reach")
 
