@@ -33,7 +33,15 @@ def scene(name):
 
 def modeled(name, cloud, monitor=None):
     merges = PIPELINES[name].merges
-    return run_pipeline(PIPELINES[name], [cloud.copy(), cloud.copy()] if merges else cloud.copy(), monitor)
+    given = [cloud.copy(), cloud.copy()] if merges else cloud.copy()
+    return run_pipeline(PIPELINES[name], given, monitor, reference=street() if PIPELINES[name].compared else None)
+
+
+@cache
+def street():
+    """The second cloud of a composite that reads one."""
+    simulation, tunables = SCENES["model_facades"]
+    return run_stage(STAGES[simulation], **tunables).cloud
 
 
 def written(name):
