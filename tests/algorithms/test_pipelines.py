@@ -194,9 +194,13 @@ def test_the_chains_own_defaults_hold_until_something_else_is_given(calls):
     assert [tunables for _, tunables in calls] == [own, {**own, "plan_distance": 3.0}, own]
 
 
-def test_detect_buildings_is_its_stages_with_nothing_set_but_for_bridges_which_are_asked_for():
+def test_detect_buildings_is_its_stages_with_nothing_set_but_for_bridges_and_classes_of_earlier_runs():
     own = {step.name: step.tunables for step in PIPELINES["detect_buildings"].steps if step.tunables}
-    assert own == {"bridges": {"max_width": 0.0}, "decks": {"search": "near water", "max_width": 20.0}}
+    assert own == {
+        "earlier": {"mapping": "3-5, 9, 14-15, 17=1"},
+        "bridges": {"max_width": 0.0},
+        "decks": {"search": "near water", "max_width": 20.0},
+    }
 
 
 def test_one_stage_may_be_in_a_chain_twice(calls):
