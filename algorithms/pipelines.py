@@ -33,7 +33,7 @@ _PETERS = (
 # From the raw cloud to footprints.
 _DETECTION = (
     Step("noise", "classify_noise_histogram"),
-    # Plants, water, wires and bridges of an earlier run are looked for anew; ground and buildings are by their own steps.
+    # Plants, water, wires and bridges are looked for anew; steps of their own do so for ground and buildings.
     Step("earlier", "recode_classes", {"mapping": "3-5, 9, 14-15, 17=1"}),
     Step("ground", "classify_ground_tin"),
     # Off by default: in the clouds with truth no bridge becomes a building without this step, which takes a quarter
