@@ -33,6 +33,10 @@ class RemovalRules:
     join_slope: float = rule(0.3, "tangent", "physics: of a step at the edge of a region that joins the terrain")
     join_share: float = rule(0.5, "share", "of the local slope that is added to it")
     joined: float = rule(0.5, "share", "most of its open edge, on which a region must join the terrain")
+    level_share: float = rule(
+        0.25, "share", "physics: of a region level with the terrain around, as are banks beside a cut; objects are not"
+    )
+    least_level: int = rule(4, "cells", "of such a region: the lowest leaf of a crown may be near the ground")
     steepest_bank: float = rule(2.0, "tangent", "physics: a step beside a slope as steep as itself is a bank up to 63°")
     large_window: float = rule(0.5, "share", "of the largest window; larger ones remove spits, not houses")
     growth: float = rule(1.25, "ratio", "of one window to the one before: three windows to a doubling")
@@ -82,7 +86,8 @@ class ObjectRemoval:
 
     def objects(self, slope: np.ndarray, monitor: Monitor) -> np.ndarray:
         """Return which cells are objects on terrain of this slope."""
-        return self.without_joined(self.removed_by_opening(REMOVAL.slope_share * slope, monitor), slope)
+        objects = self.without_joined(self.removed_by_opening(REMOVAL.slope_share * slope, monitor), slope)
+        return _without_level(objects, self.is_free_standing, self.surface)
 
     def rise(self, slope: np.ndarray) -> np.ndarray:
         """Return how far (m) terrain of such slopes may rise within a cell."""
@@ -240,6 +245,19 @@ def _slope(surface: np.ndarray, cell_size: float) -> np.ndarray:
     gradients = [np.gradient(smooth, cell_size, axis=axis) for axis in axes]
     squares = sum((gradient**2 for gradient in gradients), np.zeros_like(smooth))
     return np.sqrt(ndimage.gaussian_filter(squares, REMOVAL.slope_scale / cell_size, mode="nearest"))
+
+
+def _without_level(objects: np.ndarray, is_free_standing: np.ndarray, surface: np.ndarray) -> np.ndarray:
+    """Return the objects but for regions that are no higher than the terrain around on a share of their area.
+
+    Free-standing objects stay.
+    """
+    region, _ = ndimage.label(objects & ~is_free_standing)
+    above = surface - _interpolated(surface, objects)
+    level, area = np.bincount(region.ravel(), (above <= REMOVAL.step).ravel()), np.bincount(region.ravel())
+    is_terrain = (level >= REMOVAL.level_share * area) & (area >= REMOVAL.least_level)
+    is_terrain[0] = False
+    return objects & ~is_terrain[region]
 
 
 def _flanks(surface: np.ndarray, apart: int) -> Iterator[tuple[np.ndarray, np.ndarray]]:
