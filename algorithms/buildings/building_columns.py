@@ -1,4 +1,4 @@
-"""Points in the columns of buildings: walls and structures belong to a roof, bushes beside it do not."""
+"""Points in the columns of buildings: walls and structures belong to a roof, bushes and crowns beside it do not."""
 
 from __future__ import annotations
 
@@ -11,6 +11,9 @@ from ..rules import rule
 
 _EIGHT = np.ones((3, 3), bool)
 
+# Sums of points that cancel out differ from zero by less.
+_ROUNDING = 1e-9
+
 
 @dataclass(frozen=True)
 class ColumnRules:
@@ -20,6 +23,8 @@ class ColumnRules:
     sparse_share: float = rule(0.3, "share", "chimneys and dormers cover less of the cells around, crowns more")
     around: int = rule(7, "cells", "side of the square in which these are counted, some 4 m")
     bush_share: float = rule(0.33, "share", "of the roof's height, up to which points beside a roof may be bushes")
+    passed: float = rule(0.5, "share", "physics: of points around that the beam passed: most of a crown, few of a wall")
+    crown_cells: int = rule(2, "cells", "physics: least width of crowns; balconies and walls are narrower")
     bush_height: float = rule(2.5, "m", "physics: hedges and bushes at walls are trimmed lower than a floor")
 
 
@@ -38,12 +43,15 @@ class ColumnPoints:
         Elevation and height above ground, m.
     raised : ndarray of shape (n,), bool
         Higher than the foot of a wall, and no noise.
+    goes_on : ndarray of shape (n,), bool
+        Whether the pulse went on to another return, as it does in crowns; walls stop it.
     """
 
     cell: tuple[np.ndarray, np.ndarray]
     elevation: np.ndarray
     height: np.ndarray
     raised: np.ndarray
+    goes_on: np.ndarray
 
 
 class Columns:
@@ -67,8 +75,9 @@ class Columns:
         stands_above = inside & (above > clearance)
         is_chimney = stands_above & (above <= structure_height) & self.is_sparse(points.cell, stands_above)[points.cell]
         is_bush = points.height < np.minimum(COLUMNS.bush_share * (points.height - above), COLUMNS.bush_height)
+        is_plant = is_bush | self.is_beside_crown(points)[points.cell]
         # Points between a roof and the next higher one are the wall of the higher one.
-        is_wall = points.raised & (points.elevation <= self.highest[points.cell]) & (inside | ~is_bush)
+        is_wall = points.raised & (points.elevation <= self.highest[points.cell]) & (inside | ~is_plant)
         owner = np.where(inside, self.building[points.cell], self.beside[points.cell])
         return np.where((inside & (above <= clearance)) | is_chimney | is_wall, owner, 0).astype(np.int32)
 
@@ -80,3 +89,15 @@ class Columns:
         around = ndimage.uniform_filter(standing, COLUMNS.around, mode="constant")
         roof = ndimage.uniform_filter((self.building > 0).astype(float), COLUMNS.around, mode="constant")
         return around < COLUMNS.sparse_share * roof
+
+    def is_beside_crown(self, points: ColumnPoints) -> np.ndarray:
+        """Return the cells of crowns that stand apart from buildings, and the cells next to them."""
+        apart = points.raised & (self.building[points.cell] == 0) & (self.beside[points.cell] == 0)
+        shape = self.building.shape
+        number = np.ravel_multi_index(points.cell, shape)[apart]
+        # Each point that the beam passed speaks for a crown, each other one against it.
+        says = points.goes_on[apart] - COLUMNS.passed
+        crown, size = (np.bincount(number, of, np.prod(shape)).reshape(shape) for of in (says, None))
+        is_wide = ndimage.binary_opening(size > 0, np.ones((COLUMNS.crown_cells,) * 2, bool))
+        is_crown = is_wide & (ndimage.uniform_filter(crown, COLUMNS.around, mode="constant") > _ROUNDING)
+        return ndimage.binary_dilation(is_crown, _EIGHT)
