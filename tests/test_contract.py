@@ -39,7 +39,7 @@ from lidar_buildings.tests.monitors import Listening
 
 SOURCES = [path for room in ("algorithms", "provider") for path in (Path(__file__).parent.parent / room).rglob("*.py")]
 # Algorithms of QGIS itself that sentences name.
-TITLES_OF_QGIS = {"Fix geometries"}
+TITLES_OF_QGIS = {"Fix geometries", "Open in Model Designer"}
 
 # Released ids: people's saved models and scripts call them. A new one is added, none is ever changed.
 STAGE_IDS = {
@@ -136,7 +136,7 @@ VERBS |= {
     "export",
 }
 # Words that keep their capitals inside a title or label.
-NAMES = {"Gauss", "Delaunay", "Shannon", "Hough"}
+NAMES = {"Gauss", "Delaunay", "Shannon", "Hough", "3D"}
 # Shares (0 to 1), multiples of what the data show, and limits of whatever dimension is named.
 WITHOUT_UNIT = {
     "time_step",
@@ -427,6 +427,8 @@ def assert_same(made: StageResults, expected: StageResults) -> None:
 
 def is_sentence_case(text: str) -> bool:
     """Whether only the first word has a capital, but for names and abbreviations (TIN, k-means, 3D)."""
+    if text in NAMES:
+        return True
     first, *others = re.findall(r"[^\W\d_][\w-]*", text)
     return text[0].isupper() and all(
         word.islower() or word in NAMES or (len(word) > 1 and word.isupper()) for word in others

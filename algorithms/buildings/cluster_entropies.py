@@ -75,8 +75,8 @@ def cluster_entropies(
     monitor : Monitor
         Receives the progress.
     measured : int, optional
-        Points of each cluster, about, that are measured: the mean needs no more. Each other point has the
-        entropy of a measured one near it.
+        Points of each cluster, about, that are measured: the mean needs no more. All others have the mean of
+        their cluster.
     """
     rows = np.flatnonzero(cluster_id > 0)
     ids, position, sizes = np.unique(cluster_id[rows], return_inverse=True, return_counts=True)
@@ -86,7 +86,7 @@ def cluster_entropies(
     values = shannon_entropy_lps(neighborhood_eigenvalues(clustered, around, tree, monitor, chosen))
     means = _means(values, position, len(ids))
     if chosen is not None:
-        _spread(values, chosen, tree.indices)
+        values = np.where(chosen, values, means[position])
     return ClusterEntropies(rows, position, values, ids, sizes, means)
 
 
@@ -104,13 +104,6 @@ def _sample(xyz: np.ndarray, share: np.ndarray) -> np.ndarray:
     chosen = (mixed >> np.uint64(64 - _BITS)) < share * 2.0**_BITS
     # Without any, the mean of a small cluster would be undefined by chance.
     return chosen if chosen.any() else np.ones(len(xyz), bool)
-
-
-def _spread(values: np.ndarray, chosen: np.ndarray, order: np.ndarray) -> None:
-    """Give each other point the value of the chosen one before it in an order (n,) in which near points are near."""
-    at = np.where(chosen[order], np.arange(len(order)), -1)
-    at[0] = max(int(at[0]), int(np.argmax(at >= 0)))
-    values[order] = values[order[np.maximum.accumulate(at)]]
 
 
 def _means(values: np.ndarray, position: np.ndarray, count: int) -> np.ndarray:

@@ -46,4 +46,4 @@ def with_tunables(doc: str, tunables: Collection[Tunable], samples: bool = False
     if samples:
         rows.append("sampling : CloudSampling, optional\n    Measured on the points that are not noise if not given.")
     rows.append("monitor : Monitor, optional\n    Receives progress, automatic values and warnings.")
-    return f"{doc}\n\n" + "\n".join(rows) + "\n" if tunables else doc
+    return f"{doc}\n\n" + "\n".join(rows) + "\n" if tunables or samples else doc

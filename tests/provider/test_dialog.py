@@ -34,7 +34,7 @@ def group(dialog, title):
 
 def test_parameters_of_a_step_are_a_group_that_is_folded(dialog):
     titles = [box.title() for box in dialog.findChildren(QgsCollapsibleGroupBox)]
-    assert titles[:4] == ["All steps", "Noise", "Ground", "Bridges"]
+    assert titles[:4] == ["All steps", "Noise", "Earlier", "Ground"]
     ground = group(dialog, "Ground")
     assert ground.isCollapsed()
     panel = dialog.mainWidget()
