@@ -83,7 +83,7 @@ def test_without_its_packages_it_says_how_to_get_them(tmp_path_factory, field, t
     done = bare("run", STAGE, "--", f"INPUT={field}", f"OUTPUT={tmp_path / 'out.laz'}")
     assert done.returncode == 1
     said = done.stdout + done.stderr
-    assert "missing: laspy, lazrs" in said
+    assert "Python package is missing: laspy." in said
     assert "-m pip install --no-deps --target" in said
     assert f"{bare.folder}/config/profiles/default/python laspy lazrs" in said
     assert "Traceback" not in said
