@@ -17,9 +17,9 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class ColumnRules:
-    """What belongs to a roof, and what stands beside it."""
+    """Which cells belong to a roof, and which adjoin it."""
 
-    wall_reach: float = rule(1.0, "m", "physics: eaves reach out so far, and roof surfaces end before them")
+    wall_reach: float = rule(1.0, "m", "physics: eaves reach out by up to this, and roof surfaces end before them")
     sparse_share: float = rule(0.3, "share", "chimneys and dormers cover less of the cells around, crowns more")
     around: int = rule(7, "cells", "side of the square in which these are counted, some 4 m")
     bush_share: float = rule(0.33, "share", "of the roof's height, up to which points beside a roof may be bushes")
@@ -55,7 +55,7 @@ class ColumnPoints:
 
 
 class Columns:
-    """The cells of buildings: whose they are, whose roof they stand beside, and how high it and the highest near is."""
+    """The cells of buildings: whose they are, whose roof they adjoin, and how high it and the highest near is."""
 
     def __init__(self, building: np.ndarray, top: np.ndarray, cell_size: float) -> None:
         self.building = building
@@ -82,7 +82,7 @@ class Columns:
         return np.where((inside & (above <= clearance)) | is_chimney | is_wall, owner, 0).astype(np.int32)
 
     def is_sparse(self, cell: tuple[np.ndarray, np.ndarray], stands_above: np.ndarray) -> np.ndarray:
-        """Return the cells around which the points that stand above the roof cover a small part of it."""
+        """Return the cells around which the points above the roof cover a small part of it."""
         row, column = cell
         standing = np.zeros(self.building.shape)
         standing[row[stands_above], column[stands_above]] = 1
@@ -91,7 +91,7 @@ class Columns:
         return around < COLUMNS.sparse_share * roof
 
     def is_beside_crown(self, points: ColumnPoints) -> np.ndarray:
-        """Return the cells of crowns that stand apart from buildings, and the cells next to them."""
+        """Return the cells of crowns apart from buildings, and the cells next to them."""
         apart = points.raised & (self.building[points.cell] == 0) & (self.beside[points.cell] == 0)
         shape = self.building.shape
         number = np.ravel_multi_index(points.cell, shape)[apart]

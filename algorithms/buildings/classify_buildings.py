@@ -112,7 +112,7 @@ def classify_buildings(
     reason : ndarray of shape (n,), uint8, optional
         Reasons that the segmentation gave to points outside clusters, which they keep.
     segment_id : ndarray of shape (n,), int32, optional
-        Roof surfaces; 0 if unassigned. In matched images they tell roofs from crowns; without them entropy does.
+        Roof surfaces; 0 if unassigned. In matched images they distinguish roofs from crowns; without them entropy does.
     red, green, blue : ndarray of shape (n,), uint16, optional
         Color, used where no pulse has several returns.
 

@@ -205,6 +205,35 @@ def test_workers_end_with_their_program(survey, tmp_path):
     assert run(survey, tmp_path / "out", workers=Workers(processes=1)).failures == []
 
 
+SLEEPING = """
+import sys, time
+from pathlib import Path
+sys.path.insert(0, sys.argv[1])
+import conftest
+from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.algorithms.tiling.workers import Workers, run_all
+with Workers(processes=2).open() as executor:
+    run_all(executor, time.sleep, [60.0] * 2, Path(sys.argv[2]), Monitor(), lambda number: None)
+"""
+
+
+def test_workers_end_with_their_program_in_the_middle_of_long_work(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(SLEEPING)
+    with subprocess.Popen([sys.executable, str(script), str(ROOT), str(tmp_path / "stop")]) as main:
+        deadline = time.monotonic() + 60
+        while len(found := workers_of(main.pid)) < 2 and time.monotonic() < deadline:
+            time.sleep(0.05)
+        # Both have their calls by then.
+        time.sleep(3)
+        main.kill()
+    assert len(found) == 2
+    deadline = time.monotonic() + 5
+    while any(map(is_running, found)) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert not any(map(is_running, found))
+
+
 def test_no_file_of_the_current_folder_or_the_survey_is_imported(survey, tmp_path):
     """A module beside the tiles was run by every worker; a script without a main guard was run again in each."""
     data = tmp_path / "survey"
