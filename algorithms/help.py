@@ -249,9 +249,7 @@ def _dimensions(stage: Stage) -> str:
 def input_layer_text(input_layer: InputLayer) -> str:
     """Return what a vector layer that is read is for, as HTML."""
     needed = "; may be left empty" if input_layer.optional else ""
-    title = (
-        f"<b>{input_layer.name.upper()}</b>: {html.escape(input_layer.title)}, a layer of {input_layer.things}{needed}."
-    )
+    title = f"<b>{input_layer.name.upper()}</b>: {html.escape(input_layer.title)}, a layer of {input_layer.objects}{needed}."
     return f"{title} {inline(input_layer.help)}"
 
 

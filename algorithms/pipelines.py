@@ -151,7 +151,7 @@ _PIPELINES = (
         tags="linear,planar,volumetric,dimensionality,voxel,drone,UAV,scanner,scene,structure,Weinmann,wire,power line",
         summary="Classify points as linear, planar or volumetric in a cloud, or in those of several scanners merged.",
         description=(
-            "Merges the clouds, leaves one point per voxel, so that places that were scanned for long don't count more "
+            "Merges the clouds, leaves one point per voxel, so that areas scanned for long don't count more "
             "than others, describes the neighborhood of each point, and sorts points by the largest of linearity, "
             "planarity and scattering: wires and edges, ground and walls, crowns and bushes. The features stay in the "
             "cloud. The neighborhood of 50 points gives smooth results on noisy scans; 'optimal' chooses a number for "

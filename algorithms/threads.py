@@ -58,7 +58,7 @@ def one_blas_thread() -> Iterator[None]:
 def in_chunks(work: Callable[[np.ndarray], None], rows: np.ndarray, size: int, monitor: Monitor) -> None:
     """Call ``work`` with ``size`` of ``rows`` at a time, in threads, and report the progress.
 
-    The chunks must not write to the same places; the result then depends on neither their order
+    The chunks must not write to the same positions; the result then depends on neither their order
     nor the number of threads. An exception, a cancellation among them, ends the rest. A single
     chunk is worked on where it is: what runs in a thread already makes no more of them.
     """

@@ -127,7 +127,7 @@ def _draw_chart(painter: QPainter, chart: Panel, pens: dict[str, QPen]) -> None:
     values = [value for curve in chart.curves.values() for value in curve if value is not None]
     scale = math.log10 if chart.is_logarithmic else float
     low, high = (0.5 * min(values), 1.5 * max(values)) if chart.is_logarithmic else (0.0, 1.08 * max(values))
-    first, last = scale(chart.places[0]), scale(chart.places[-1])
+    first, last = scale(chart.positions[0]), scale(chart.positions[-1])
 
     def at(place: float, value: float) -> QPointF:
         along = (scale(place) - first) / (last - first)
@@ -138,12 +138,12 @@ def _draw_chart(painter: QPainter, chart: Panel, pens: dict[str, QPen]) -> None:
     painter.drawText(QPointF(left, top - 12), chart.title)
     painter.setFont(QFont("sans-serif", 9))
     for tick in _ticks(low, high, chart.is_logarithmic):
-        y = at(chart.places[0], tick).y()
+        y = at(chart.positions[0], tick).y()
         painter.setPen(QPen(QColor("#dddddd"), 1))
         painter.drawLine(QPointF(area.left(), y), QPointF(area.right(), y))
         painter.setPen(Qt.GlobalColor.black)
         painter.drawText(QRectF(0, y - 9, left - 6, 18), Qt.AlignmentFlag.AlignRight, f"{tick:g}")
-    for place, name in zip(chart.places, chart.names):
+    for place, name in zip(chart.positions, chart.names):
         painter.drawText(
             QRectF(at(place, high).x() - 40, area.bottom() + 5, 80, 18),
             Qt.AlignmentFlag.AlignHCenter,
@@ -157,7 +157,7 @@ def _draw_chart(painter: QPainter, chart: Panel, pens: dict[str, QPen]) -> None:
     painter.drawLine(area.bottomLeft(), area.bottomRight())
     for name, curve in chart.curves.items():
         painter.setPen(pens[name])
-        known = [at(place, value) for place, value in zip(chart.places, curve) if value is not None]
+        known = [at(place, value) for place, value in zip(chart.positions, curve) if value is not None]
         painter.drawPolyline(QPolygonF(known)) if len(known) > 1 else painter.drawEllipse(
             known[0], 3, 3
         ) if known else None

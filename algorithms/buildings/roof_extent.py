@@ -177,10 +177,10 @@ class RoofExtent:
 
 def smallest_rectangle(inside: np.ndarray, size: float) -> tuple[float, float, float]:
     """Return width and length (m) of the smallest rectangle around cells of ``size`` (m), and how much they fill."""
-    places = np.argwhere(inside) * size
+    positions = np.argwhere(inside) * size
     along = np.column_stack([np.cos(_DIRECTIONS), np.sin(_DIRECTIONS)])
     across = np.column_stack([-np.sin(_DIRECTIONS), np.cos(_DIRECTIONS)])
-    sides = np.array([np.ptp(places @ axis.T, axis=0) + size for axis in (along, across)])
+    sides = np.array([np.ptp(positions @ axis.T, axis=0) + size for axis in (along, across)])
     best = int(np.argmin(sides[0] * sides[1]))
     width, length = np.sort(sides[:, best]).tolist()
     return width, length, float(inside.sum() * size**2 / (width * length))

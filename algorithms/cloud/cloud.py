@@ -13,8 +13,8 @@ from .dimensions import DIMENSIONS, Dimension
 from .header import Header
 from .point_formats import OF_COPC, Layout
 from .point_records import PointRecords, find_extra, unit_factor
+from .printable import shown
 from .units import Units, crs_records, units_of, wkt_of
-from .wording import shown
 
 _ORIGIN_STEP = 1000.0
 _NEW_SCALE = 0.001

@@ -79,16 +79,16 @@ def read_index(path: Path, header: Header, stream: BinaryIO, chunks: np.ndarray)
     held = chunks[chunks[:, 2] > 0]
     if not np.array_equal(found, held):
         raise _damaged(path, f"it names {len(found)} nodes that are not the {len(held)} chunks of the file")
-    level, place = nodes["key"][:, 0], nodes["key"][:, 1:3]
+    level, position = nodes["key"][:, 0], nodes["key"][:, 1:3]
     is_odd = (level < 0) | (level > _DEEPEST)
-    is_odd |= ((place < 0) | (place >= 2.0 ** np.clip(level, 0, _DEEPEST)[:, None])).any(axis=1)
+    is_odd |= ((position < 0) | (position >= 2.0 ** np.clip(level, 0, _DEEPEST)[:, None])).any(axis=1)
     if is_odd.any():
         key = tuple(nodes["key"][is_odd][0, :3].tolist())
         raise _damaged(path, f"it names a node {key} (level, column, row)")
     side = (2 * half / 2.0**level)[:, None]
     # Coordinates are rounded to steps of the scale, also those on the faces of nodes.
     margin = np.abs(header.scale[:2])
-    low = np.array([x, y]) - half + place * side
+    low = np.array([x, y]) - half + position * side
     return CopcIndex(low - margin, low + side + margin)
 
 

@@ -17,7 +17,7 @@ from .outputs import COPC, LAS, same_file
 
 # What the header of a view says of the program that wrote it.
 VIEW_SOFTWARE = "LiDAR Buildings view"
-# Places in the header of LAS 1.4; the project id (GUID) of a view holds the digest.
+# Positions in the header of LAS 1.4; the project id (GUID) of a view holds the digest.
 _DIGEST_AT, _DIGEST_SIZE = 8, 16
 _SOFTWARE_AT, _POINTS_AT, _EVLRS_AT, _HEADER_SIZE = 58, 96, 235, 375
 _BLOCK = 1 << 20

@@ -10,7 +10,7 @@ import numpy as np
 from .laspy_library import need_laspy
 
 _SIZE = 192
-# Places in a descriptor: the number that means "no data", then minimum and maximum, of 8 bytes for up to 3 axes each.
+# Offsets in a descriptor: the number that means "no data", then minimum and maximum, of 8 bytes for up to 3 axes each.
 _NO_DATA, _RANGE = slice(40, 48), slice(64, 112)
 # Name and description.
 _TEXTS = (slice(4, 36), slice(160, 192))

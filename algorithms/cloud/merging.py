@@ -44,14 +44,14 @@ def merge_records(clouds: list[Cloud], xyz: Optional[np.ndarray], monitor: Optio
     monitor = monitor or Monitor()
     leader = _leader(clouds, monitor)
     records = [_records(cloud, leader.units) for cloud in clouds]
-    places = _places(clouds, xyz, leader.units)
-    headers = [_header(*one, leader.units) for one in zip(clouds, records, places)]
+    positions = _positions(clouds, xyz, leader.units)
+    headers = [_header(*one, leader.units) for one in zip(clouds, records, positions)]
     header = merged_header(headers, "clouds", monitor)
     points = np.zeros(header.count, header.layout.dtype)
     start = 0
-    for one, place in zip(records, places):
-        _fill(points[start : start + len(place)], one, place, header)
-        start += len(place)
+    for one, position in zip(records, positions):
+        _fill(points[start : start + len(position)], one, position, header)
+        start += len(position)
     merged = Cloud(header, points, leader.units, [path for cloud in clouds for path in cloud.files])
     merged.wkt, merged.origin = leader.wkt, clouds[0].origin
     return merged
@@ -98,7 +98,7 @@ def _records(cloud: Cloud, units: Units) -> PointRecords:
     return cloud.records()
 
 
-def _places(clouds: list[Cloud], xyz: Optional[np.ndarray], units: Units) -> list[np.ndarray]:
+def _positions(clouds: list[Cloud], xyz: Optional[np.ndarray], units: Units) -> list[np.ndarray]:
     """Return the coordinates of each cloud (m, 3), on the map of the union."""
     ends = np.cumsum([len(cloud) for cloud in clouds])[:-1]
     parts = [cloud.get("xyz") for cloud in clouds] if xyz is None else np.split(xyz, ends)
@@ -107,17 +107,17 @@ def _places(clouds: list[Cloud], xyz: Optional[np.ndarray], units: Units) -> lis
     return [part if is_there else (part + origin) / factors for part in parts]
 
 
-def _header(cloud: Cloud, records: PointRecords, place: np.ndarray, units: Units) -> Header:
+def _header(cloud: Cloud, records: PointRecords, position: np.ndarray, units: Units) -> Header:
     """Return the cloud's header as if its file were one of the union's units, with the points where they are now."""
     scale = cloud.header.scale * (cloud.units.factors / units.factors)
-    low, high = place.min(axis=0), place.max(axis=0)
-    return replace(cloud.header, layout=records.layout, count=len(place), scale=scale, low=low, high=high)
+    low, high = position.min(axis=0), position.max(axis=0)
+    return replace(cloud.header, layout=records.layout, count=len(position), scale=scale, low=low, high=high)
 
 
-def _fill(out: np.ndarray, records: PointRecords, place: np.ndarray, header: Header) -> None:
+def _fill(out: np.ndarray, records: PointRecords, position: np.ndarray, header: Header) -> None:
     """Write the records of one cloud, with its new coordinates, to their part of the union."""
     for start in range(0, len(out), _CHUNK):
         chunk = slice(start, start + _CHUNK)
         convert(records.take(chunk), records.layout, header.layout, out[chunk])
         for i, axis in enumerate("XYZ"):
-            out[axis][chunk] = np.rint((place[chunk, i] - header.offset[i]) / header.scale[i])
+            out[axis][chunk] = np.rint((position[chunk, i] - header.offset[i]) / header.scale[i])

@@ -216,7 +216,7 @@ class _Entry:
         self.folder = self._working.path
 
     def put_in_place(self, undo: ExitStack) -> None:
-        """Move the files to their places, and note how to undo that."""
+        """Move the files to their targets, and note how to undo that."""
         made = {self.final.with_name(new.name): new for new in self.folder.iterdir() if new.name != LOCK}
         if not made:
             return

@@ -20,7 +20,7 @@ _NAMES = {"scan_angle_rank": "scan_angle"}
 
 # The smallest format of LAS 1.4 that holds everything of an older one.
 UPGRADED = {0: 6, 1: 6, 2: 7, 3: 7, 4: 9, 5: 10}
-# COPC allows 6, 7 and 8 only; waveform references have no place there.
+# COPC allows 6, 7 and 8 only; waveform references have no field there.
 OF_COPC = {**UPGRADED, 4: 6, 5: 7, 6: 6, 7: 7, 8: 8, 9: 6, 10: 8}
 WITH_WAVEFORMS = (4, 5, 9, 10)
 

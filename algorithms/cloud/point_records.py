@@ -98,7 +98,7 @@ def _needed_format(layout: Layout, standard: dict[str, np.ndarray]) -> int:
 def _extras(
     layout: Layout, added: dict[str, np.ndarray], units: Units
 ) -> tuple[tuple[ExtraField, ...], dict[int, tuple[np.ndarray, float]]]:
-    """Return the output's extra fields, old ones in their old places, and by place what was set and its unit (m)."""
+    """Return the output's extra fields, old ones in their old positions, and by place what was set and its unit (m)."""
     fields, values_at = list(layout.extras), {}
     for name, values in added.items():
         dimension = DIMENSIONS[name]

@@ -168,8 +168,8 @@ def is_within(records: np.ndarray, header: Header, box: np.ndarray) -> np.ndarra
     """Return which records (n,) lie within a box (2, 2) in plan, in the coordinates of the file."""
     within = np.ones(len(records), bool)
     for i, axis in enumerate("XY"):
-        place = records[axis] * header.scale[i] + header.offset[i]
-        within &= (place >= box[0, i]) & (place <= box[1, i])
+        position = records[axis] * header.scale[i] + header.offset[i]
+        within &= (position >= box[0, i]) & (position <= box[1, i])
     return within
 
 

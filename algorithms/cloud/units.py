@@ -10,7 +10,7 @@ from typing import Any, Callable, Optional, Union
 import numpy as np
 
 from .header import WKT_BIT, Header, Vlr
-from .wording import shown
+from .printable import shown
 
 # EPSG code -> (meters per horizontal unit, meters per vertical unit, whether it is geographic), or None if unknown.
 Resolver = Callable[[int], Optional[tuple[float, float, bool]]]
@@ -246,10 +246,10 @@ def _geokeys(header: Header) -> dict[int, Any]:
     numbers = struct.unpack(f"<{len(directory.data) // 2}H", directory.data[: len(directory.data) // 2 * 2])
     keys: dict[int, Any] = {}
     for start in range(4, len(numbers) - 3, 4):
-        key, place, _, value = numbers[start : start + 4]
-        if place == 0:
+        key, position, _, value = numbers[start : start + 4]
+        if position == 0:
             keys[key] = value
-        elif place == _DOUBLES[1] and doubles is not None and doubles.data and len(doubles.data) >= 8 * (value + 1):
+        elif position == _DOUBLES[1] and doubles is not None and doubles.data and len(doubles.data) >= 8 * (value + 1):
             keys[key] = struct.unpack_from("<d", doubles.data, 8 * value)[0]
     return keys
 

@@ -16,8 +16,8 @@ from .header import COPC_HIERARCHY, COPC_INFO, LASZIP, WAVEFORMS, WKT_BIT, Heade
 from .outputs import COPC, LAS, LAZ, kind_of, replacing, stem_of
 from .point_records import convert, merged_layout
 from .points import open_header, points_within, read_chunks
+from .printable import shown
 from .units import crs_identity, wkt_of
-from .wording import shown
 
 _LARGEST_INT = 2**31 - 1
 _GPS_TIME_BIT = 1

@@ -70,18 +70,18 @@ class Approach:
         return float(min(np.quantile(near, _RULES.foot), box[0, 1])) if len(near) else float(box[0, 1])
 
 
-def _between(places: np.ndarray, box: np.ndarray) -> np.ndarray:
+def _between(positions: np.ndarray, box: np.ndarray) -> np.ndarray:
     """Return the positions (k, 2), of those in order along the wall, between the sides of a box."""
-    first, last = np.searchsorted(places[:, 0], box[:, 0])
-    return places[first:last]
+    first, last = np.searchsorted(positions[:, 0], box[:, 0])
+    return positions[first:last]
 
 
-def _highest(places: np.ndarray, box: np.ndarray, limit: float) -> np.ndarray:
+def _highest(positions: np.ndarray, box: np.ndarray, limit: float) -> np.ndarray:
     """Return the highest position up to a limit (m) in each column of a box, -inf where there are no points."""
     left, right = box[:, 0]
     count = max(1, int((right - left) / _RULES.column))
     top = np.full(count, -np.inf)
-    low = places[places[:, 1] <= limit]
+    low = positions[positions[:, 1] <= limit]
     column = np.minimum(((low[:, 0] - left) / (right - left) * count).astype(np.int64), count - 1)
     np.maximum.at(top, column, low[:, 1])
     return top

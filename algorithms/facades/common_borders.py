@@ -70,17 +70,17 @@ def _box(facade: Facade, margin: float) -> tuple[np.ndarray, np.ndarray]:
 
 def _flat(frame: Frame, point: np.ndarray, direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return point and direction (2,) of a line of the plane in its own frame."""
-    place = frame.local(point[None])[0, :2]
-    return place, np.array([direction @ frame.along, direction @ frame.up])
+    position = frame.local(point[None])[0, :2]
+    return position, np.array([direction @ frame.along, direction @ frame.up])
 
 
 def _edges_along(facade: Facade, point: np.ndarray, direction: np.ndarray, reach: float) -> list[tuple[int, float]]:
     """Return the edges of a facade that run along a line, with their distance (m) from it."""
-    place, way = _flat(facade.frame, point, direction)
+    position, way = _flat(facade.frame, point, direction)
     steps = np.diff(facade.ring, axis=0)
     length = np.linalg.norm(steps, axis=1)
     across = np.array([-way[1], way[0]])
-    off = np.abs((facade.ring - place) @ across)
+    off = np.abs((facade.ring - position) @ across)
     off = np.maximum(off[:-1], off[1:])
     found = (np.abs(steps @ way) >= _ALONG * length) & (off <= reach) & (length >= _LEAST_COMMON)
     return [(int(edge), float(off[edge])) for edge in np.flatnonzero(found)]
@@ -108,7 +108,7 @@ def _moved(facade: Facade, lines: dict[int, tuple]) -> np.ndarray:
         return facade.ring
     points, ways = facade.ring[:-1].copy(), np.diff(facade.ring, axis=0)
     for edge, (_, point, direction) in lines.items():
-        place, way = _flat(facade.frame, point, direction)
-        points[edge], ways[edge] = place, way if way @ ways[edge] > 0 else -way
+        position, way = _flat(facade.frame, point, direction)
+        points[edge], ways[edge] = position, way if way @ ways[edge] > 0 else -way
     ring = ring_of_lines(points, ways, facade.ring[:-1])
     return ring if is_valid([ring]) else facade.ring

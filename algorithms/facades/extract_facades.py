@@ -304,9 +304,9 @@ def split_at_gaps(xyz: np.ndarray, segment_id: np.ndarray, gap: float) -> np.nda
     """Return new numbers (n,) from 1 of segments, each divided where its points leave a gap (m); 0 stays 0."""
     result, count = np.zeros(len(xyz), np.int64), 0
     for points in members(segment_id).values():
-        places = plane_of(xyz[points])[0].local(xyz[points])[:, :2]
-        grid = grid_over(places, gap / 2)
-        number = grid.number(places)
+        positions = plane_of(xyz[points])[0].local(xyz[points])[:, :2]
+        grid = grid_over(positions, gap / 2)
+        number = grid.number(positions)
         cells = distinct(number)[0]
         found, group = connected_cells(grid, cells)
         result[points] = count + 1 + group[find_cells(cells, number)[0]]

@@ -200,14 +200,15 @@ def _features(found: list[tuple[Facade, list[Opening]]]) -> LayerFeatures:
     columns: dict[str, list] = {field.name: [] for field in OPENING_FIELDS}
     geometries = []
     for facade, openings in found:
-        rows, places = _arrangement(openings)
-        for opening, row, place in zip(openings, rows, places):
+        rows, positions = _arrangement(openings)
+        for opening, row, position in zip(openings, rows, positions):
             geometries.append([facade.frame.space(opening.ring)])
             left, low = opening.box[0] - facade.ring.min(axis=0)
             width, height = opening.size
             x, y = (opening.ring - opening.ring[0]).T
             area = 0.5 * abs(float(np.sum(x[:-1] * y[1:] - x[1:] * y[:-1])))
-            values: tuple = (len(geometries), facade.number, opening.kind, row, place, width, height, area, left, low)
+            size = (width, height, area)
+            values: tuple = (len(geometries), facade.number, opening.kind, row, position, *size, left, low)
             values += (opening.depth, opening.enclosed, opening.seen)
             for name, value in zip(columns, values):
                 columns[name].append(value.item() if isinstance(value, np.generic) else value)
@@ -217,9 +218,9 @@ def _features(found: list[tuple[Facade, list[Opening]]]) -> LayerFeatures:
 def _arrangement(openings: list[Opening]) -> tuple[np.ndarray, np.ndarray]:
     """Return row from the bottom and place from the left, both from 1, of each opening."""
     count = len(openings)
-    rows, places = np.zeros(count, np.int64), np.zeros(count, np.int64)
+    rows, positions = np.zeros(count, np.int64), np.zeros(count, np.int64)
     if not count:
-        return rows, places
+        return rows, positions
     middle = np.array([opening.box[:, 1].mean() for opening in openings])
     height = np.array([opening.size[1] for opening in openings])
     order = np.argsort(middle, kind="stable")
@@ -227,5 +228,5 @@ def _arrangement(openings: list[Opening]) -> tuple[np.ndarray, np.ndarray]:
     rows[order] = 1 + np.concatenate([[0], np.cumsum(step)])
     for row in np.unique(rows):
         own = np.flatnonzero(rows == row)
-        places[own[np.argsort([openings[k].box[0, 0] for k in own], kind="stable")]] = np.arange(1, len(own) + 1)
-    return rows, places
+        positions[own[np.argsort([openings[k].box[0, 0] for k in own], kind="stable")]] = np.arange(1, len(own) + 1)
+    return rows, positions

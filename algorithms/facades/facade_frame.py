@@ -34,9 +34,9 @@ class Frame:
         """Return positions (n, 3) along, up and out of the facade (m) of points (n, 3)."""
         return (xyz - self.origin) @ np.column_stack([self.along, self.up, self.normal])
 
-    def space(self, places: np.ndarray) -> np.ndarray:
+    def space(self, positions: np.ndarray) -> np.ndarray:
         """Return the points (m, 3) at positions (m, 2) along and up the facade (m)."""
-        return self.origin + places[:, :1] * self.along + places[:, 1:] * self.up
+        return self.origin + positions[:, :1] * self.along + positions[:, 1:] * self.up
 
     @property
     def azimuth(self) -> float:

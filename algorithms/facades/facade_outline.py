@@ -79,13 +79,13 @@ def longest_edge(boundary: str) -> float:
 
 
 def outline_of(
-    places: np.ndarray, edge_factor: float, max_gap: float, boundary: str, complete: bool
+    positions: np.ndarray, edge_factor: float, max_gap: float, boundary: str, complete: bool
 ) -> Optional[Outline]:
     """Return the boundary of points on a plane, None where they have no area.
 
     Parameters
     ----------
-    places : ndarray of shape (n, 2)
+    positions : ndarray of shape (n, 2)
         Positions along and up the facade (m).
     edge_factor : float
         Longest edge of a triangle, in spacings.
@@ -96,15 +96,15 @@ def outline_of(
     complete : bool
         Whether what cars and trees hide of the foot and the sides is filled.
     """
-    spacing = sparse_spacing(places)
-    traced = _traced(places, spacing, edge_factor, max_gap) if spacing else None
+    spacing = sparse_spacing(positions)
+    traced = _traced(positions, spacing, edge_factor, max_gap) if spacing else None
     if traced is None:
         return None
     seen = ring_area(traced)
     if complete:
         traced = _divided(completed(traced), spacing)
-    hull = spatial.ConvexHull(places)
-    width = float(hull.volume) / float(np.linalg.norm(np.ptp(places, axis=0)))
+    hull = spatial.ConvexHull(positions)
+    width = float(hull.volume) / float(np.linalg.norm(np.ptp(positions, axis=0)))
     tolerance = max(min(_TOLERANCE_SPACINGS * spacing, _TOLERANCE_SHARE * width), _LEAST_TOLERANCE)
     if boundary == "key points":
         ring, limit = key_points(traced), np.inf
@@ -128,23 +128,23 @@ def completed(ring: np.ndarray) -> np.ndarray:
     ring : ndarray of shape (m, 2)
         Closed, counterclockwise, along and up the facade (m).
     """
-    places = ring[:-1]
-    corners = np.sort(spatial.ConvexHull(places).vertices)
-    lids = np.roll(places[corners], -1, axis=0) - places[corners]
+    positions = ring[:-1]
+    corners = np.sort(spatial.ConvexHull(positions).vertices)
+    lids = np.roll(positions[corners], -1, axis=0) - positions[corners]
     length = np.linalg.norm(lids, axis=1)
     is_foot = lids[:, 0] >= np.cos(_FOOT_ANGLE) * length
     is_side = np.abs(lids[:, 1]) >= np.cos(_SIDE_ANGLE) * length
     if not is_foot.any():
         return ring
-    hidden = _hidden_corners(places[corners], lids, length, is_foot, is_side)
+    hidden = _hidden_corners(positions[corners], lids, length, is_foot, is_side)
     made = []
     for k, start in enumerate(corners):
         end = corners[(k + 1) % len(corners)]
-        made.append(places[start][None])
+        made.append(positions[start][None])
         if k in hidden:
             made.append(hidden[k])
         elif not (is_foot[k] or is_side[k]):
-            made.append(places[np.arange(start + 1, end if end > start else end + len(places)) % len(places)])
+            made.append(positions[np.arange(start + 1, end if end > start else end + len(positions)) % len(positions)])
     found = np.concatenate(made)
     found = np.concatenate([found, found[:1]])
     return found if is_valid([found]) else ring
@@ -190,27 +190,27 @@ def _hidden_corners(
     return hidden
 
 
-def sparse_spacing(places: np.ndarray) -> float:
+def sparse_spacing(positions: np.ndarray) -> float:
     """Return the distance (m) between points (n, 2) where they are farthest apart; 0 where they have no area.
 
     It is the longest edge of the smallest triangle at a point, over the square root of two, so that a square grid has
     its own spacing, and scan lines have that between the lines.
     """
-    if len(places) < 3 or np.linalg.eigvalsh(np.cov(places.T))[0] < 1e-6:
+    if len(positions) < 3 or np.linalg.eigvalsh(np.cov(positions.T))[0] < 1e-6:
         return 0.0
-    triangles = spatial.Delaunay(places - places.mean(axis=0)).simplices
-    corners = places[triangles]
+    triangles = spatial.Delaunay(positions - positions.mean(axis=0)).simplices
+    corners = positions[triangles]
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
-    smallest = np.full(len(places), np.inf)
+    smallest = np.full(len(positions), np.inf)
     np.minimum.at(smallest, triangles.ravel(), np.repeat(longest, 3))
     return float(np.percentile(smallest[np.isfinite(smallest)], _PERCENTILE)) / np.sqrt(2)
 
 
-def _traced(places: np.ndarray, spacing: float, edge_factor: float, max_gap: float) -> Optional[np.ndarray]:
+def _traced(positions: np.ndarray, spacing: float, edge_factor: float, max_gap: float) -> Optional[np.ndarray]:
     """Return the exterior ring of the largest piece of triangles without long edges."""
-    label, max_edge = np.ones(len(places), np.int64), edge_factor * spacing
+    label, max_edge = np.ones(len(positions), np.int64), edge_factor * spacing
     while True:
-        tracing = trace_outlines(places, label, spacing, max_edge, min_hole_area=np.inf)
+        tracing = trace_outlines(positions, label, spacing, max_edge, min_hole_area=np.inf)
         piece = None if tracing is None else _largest(tracing)
         if max_edge >= max_gap or (tracing is not None and piece is not None and _share(tracing, piece) >= _WHOLE):
             break
@@ -235,41 +235,41 @@ def key_points(ring: np.ndarray) -> np.ndarray:
     goes from 10° up by one degree a round. Of two neighbors only one is removed at a time, so that the angles are those
     of what is left.
     """
-    places = ring[:-1]
+    positions = ring[:-1]
     for angle in _FIRST_ANGLE + np.arange(_ROUNDS + 1):
-        while len(places) > 4:
-            turn = _turns(places)
+        while len(positions) > 4:
+            turn = _turns(positions)
             flat = turn < np.radians(angle)
             # The flattest of a run goes first.
             flat &= (turn <= np.roll(turn, 1)) & (turn < np.roll(turn, -1))
-            if not flat.any() or len(places) - flat.sum() < 3:
+            if not flat.any() or len(positions) - flat.sum() < 3:
                 break
-            places = places[~flat]
-    return np.concatenate([places, places[:1]])
+            positions = positions[~flat]
+    return np.concatenate([positions, positions[:1]])
 
 
-def _turns(places: np.ndarray) -> np.ndarray:
+def _turns(positions: np.ndarray) -> np.ndarray:
     """Return the angle (rad), 0 to pi, between the edges before and after each vertex (m, 2) of an open ring."""
-    before, after = places - np.roll(places, 1, axis=0), np.roll(places, -1, axis=0) - places
+    before, after = positions - np.roll(positions, 1, axis=0), np.roll(positions, -1, axis=0) - positions
     cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     return np.abs(np.arctan2(cross, np.einsum("ij,ij->i", before, after)))
 
 
-def pushed_out(ring: np.ndarray, places: np.ndarray, limit: float) -> np.ndarray:
-    """Return a ring whose edges are moved outward, parallel, until it holds all places.
+def pushed_out(ring: np.ndarray, positions: np.ndarray, limit: float) -> np.ndarray:
+    """Return a ring whose edges are moved outward, parallel, until it holds all positions.
 
     Parameters
     ----------
     ring : ndarray of shape (m, 2)
         Closed, counterclockwise.
-    places : ndarray of shape (n, 2)
+    positions : ndarray of shape (n, 2)
         Vertices of the traced boundary (m).
     limit : float
-        Places farther outside than this (m) are spikes, which stay outside; infinite: none stays outside.
+        Positions farther outside than this (m) are spikes, which stay outside; infinite: none stays outside.
     """
     for _ in range(_PUSHES):
         starts, ends = ring[:-1], ring[1:]
-        outside = places[~inside_ring(places, ring)]
+        outside = positions[~inside_ring(positions, ring)]
         if not len(outside):
             break
         distance = edge_distances(outside, starts, ends)
@@ -287,10 +287,10 @@ def pushed_out(ring: np.ndarray, places: np.ndarray, limit: float) -> np.ndarray
     return ring
 
 
-def signed_offsets(places: np.ndarray, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
-    """Return how far (n, m) (m) places lie outside the lines of the edges of a counterclockwise ring."""
+def signed_offsets(positions: np.ndarray, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
+    """Return how far (n, m) (m) positions lie outside the lines of the edges of a counterclockwise ring."""
     outward = _outward(starts, ends)
-    return places @ outward.T - np.einsum("ij,ij->i", starts, outward)
+    return positions @ outward.T - np.einsum("ij,ij->i", starts, outward)
 
 
 def _outward(starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
@@ -298,12 +298,12 @@ def _outward(starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
     return np.column_stack([step[:, 1], -step[:, 0]]) / np.linalg.norm(step, axis=1)[:, None]
 
 
-def inside_ring(places: np.ndarray, ring: np.ndarray) -> np.ndarray:
-    """Return which places (n, 2) a closed ring holds, its own vertices included."""
-    inside = are_inside(places, ring)
+def inside_ring(positions: np.ndarray, ring: np.ndarray) -> np.ndarray:
+    """Return which positions (n, 2) a closed ring holds, its own vertices included."""
+    inside = are_inside(positions, ring)
     rest = np.flatnonzero(~inside)
     if len(rest):
-        inside[rest] = nearest_edge_distances(places[rest], ring[:-1], ring[1:]) < 1e-9
+        inside[rest] = nearest_edge_distances(positions[rest], ring[:-1], ring[1:]) < 1e-9
     return inside
 
 

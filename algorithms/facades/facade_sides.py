@@ -84,22 +84,22 @@ def facing_outside(
 
 def _evidence(frame: Frame, own: np.ndarray, near: np.ndarray, thickness: float) -> _Evidence:
     """Return what the points (n, 3) of a facade and those around it (m, 3) tell about its outside."""
-    own, places = frame.local(own), frame.local(near)
+    own, positions = frame.local(own), frame.local(near)
     low = own[:, :2].min(axis=0)
-    cell, own_cell = (np.floor((some[:, :2] - low) / _CELL).astype(np.int64) for some in (places, own))
+    cell, own_cell = (np.floor((some[:, :2] - low) / _CELL).astype(np.int64) for some in (positions, own))
     count = own_cell.max(axis=0) + 1
     # Ground lies at the foot of the facade or a little below.
     cell[:, 1] += cell[:, 1] == -1
     inside = ((cell >= 0) & (cell < count)).all(axis=1)
     if count[0] > _LEAST_COLUMNS:
         # Walls at a right angle stand behind the ends of the facade.
-        inside &= (places[:, 0] > own[:, 0].min() + _CELL) & (places[:, 0] < own[:, 0].max() - _CELL)
-    off = np.abs(places[:, 2])
+        inside &= (positions[:, 0] > own[:, 0].min() + _CELL) & (positions[:, 0] < own[:, 0].max() - _CELL)
+    off = np.abs(positions[:, 2])
     inside &= (off > thickness) & (off <= _FARTHEST)
     points = np.bincount(own_cell @ [count[1], 1], minlength=int(count.prod()))
     # A cell at the rim of an opening has fewer points than half of the usual.
     is_wall = points >= 0.5 * np.median(points[points > 0])
-    cell, off, side = cell[inside], off[inside], np.sign(places[inside, 2])
+    cell, off, side = cell[inside], off[inside], np.sign(positions[inside, 2])
     votes = np.where(off <= _DEPTH, -side, np.where(is_wall[cell @ [count[1], 1]], side, 0.0))
     total = float(np.abs(votes).sum())
     return _Evidence(float(votes.sum()) / total if total else 0.0, float(is_wall.sum()) * _CELL**2)

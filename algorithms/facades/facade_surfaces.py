@@ -109,8 +109,8 @@ def surfaces_of(
     frames = facing_outside([planes[n][0] for n in steep], xyz, rows, thickness, monitor.part(0, 0.3))
     facades = []
     for done, (number, frame) in enumerate(zip(steep, frames), start=1):
-        places = frame.local(xyz[groups[number]])[:, :2]
-        outline = outline_of(places, edge_factor, max_gap, boundary, complete)
+        positions = frame.local(xyz[groups[number]])[:, :2]
+        outline = outline_of(positions, edge_factor, max_gap, boundary, complete)
         if outline is not None:
             found = outline.ring, groups[number], planes[number][1], outline.spacing
             facades.append(Facade(number, frame, *found, outline.hull_area, outline.seen_area))

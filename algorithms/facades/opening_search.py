@@ -114,15 +114,15 @@ class Raster:
         closed = ndimage.binary_closing(self.wall, np.ones((3, 3), bool))
         self.wall |= closed & ~self.behind
 
-    def cell(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def cell(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the cells of positions (n, 2), along and up."""
-        along, up = np.floor((places - self.low) / self.size).astype(np.int64).T
+        along, up = np.floor((positions - self.low) / self.size).astype(np.int64).T
         return along, up
 
-    def mask(self, places: np.ndarray) -> np.ndarray:
+    def mask(self, positions: np.ndarray) -> np.ndarray:
         """Return which cells hold positions (n, 2)."""
         mask = np.zeros(self.shape, bool)
-        mask[self.cell(places)] = True
+        mask[self.cell(positions)] = True
         return mask
 
     def groups(self) -> tuple[np.ndarray, int]:
@@ -178,11 +178,11 @@ def find_openings(
     return sorted(_apart(found), key=lambda opening: tuple(opening.box[0]))
 
 
-def _joined(places: np.ndarray, group: np.ndarray, count: int) -> np.ndarray:
-    """Return groups (n,) from 1 of places (n, 2), those joined that are parts of one opening; 0 stays 0."""
+def _joined(positions: np.ndarray, group: np.ndarray, count: int) -> np.ndarray:
+    """Return groups (n,) from 1 of positions (n, 2), those joined that are parts of one opening; 0 stays 0."""
     boxes = np.full((count + 1, 2, 2), np.nan)
     for number, rows in members(group).items():
-        boxes[number] = places[rows].min(axis=0), places[rows].max(axis=0)
+        boxes[number] = positions[rows].min(axis=0), positions[rows].max(axis=0)
     low, high = boxes[:, 0], boxes[:, 1]
     shared = np.minimum(high[:, None], high) - np.maximum(low[:, None], low)
     area = np.prod(high - low, axis=1)
@@ -251,12 +251,12 @@ def _bounded(box: np.ndarray, wall: np.ndarray, cell: float, spacing: float) -> 
     return bounded, shares
 
 
-def _shape(box: np.ndarray, places: np.ndarray, spacing: float) -> tuple[np.ndarray, float]:
+def _shape(box: np.ndarray, positions: np.ndarray, spacing: float) -> tuple[np.ndarray, float]:
     """Return the ring of an opening, its rectangle or its convex hull, and its share of the rectangle."""
     (west, low), (east, high) = box
     rectangle = np.array([[west, low], [east, low], [east, high], [west, high], [west, low]])
-    inside = np.clip(places, box[0], box[1])
-    if len(places) < 4 or (np.ptp(inside, axis=0) < 1e-6).any():
+    inside = np.clip(positions, box[0], box[1])
+    if len(positions) < 4 or (np.ptp(inside, axis=0) < 1e-6).any():
         return rectangle, 1.0
     hull = spatial.ConvexHull(inside, qhull_options="QJ")
     share = float(hull.volume) / float(np.prod(box[1] - box[0]))
@@ -281,15 +281,15 @@ def _enclosure(raster: Raster, ring: np.ndarray, sill: Optional[float]) -> float
     if sill is not None:
         counted = ~((ring[:-1, 1] <= sill + 0.05) & (ring[1:, 1] <= sill + 0.05))
     pieces = np.maximum(np.ceil(length / raster.size), 1).astype(int)
-    places = [
+    positions = [
         start + (np.arange(n)[:, None] + 0.5) / n * step
         for start, step, n, is_counted in zip(ring[:-1], steps, pieces, counted)
         if is_counted
     ]
-    if not places:
+    if not positions:
         return 0.0
     distance = ndimage.distance_transform_edt(~raster.wall) * raster.size
-    along, up = (np.clip(cell, 0, size - 1) for cell, size in zip(raster.cell(np.concatenate(places)), raster.shape))
+    along, up = (np.clip(cell, 0, size - 1) for cell, size in zip(raster.cell(np.concatenate(positions)), raster.shape))
     return float(np.mean(distance[along, up] <= _REACH / 2 + raster.size))
 
 

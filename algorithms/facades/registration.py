@@ -194,8 +194,8 @@ def _offsets(walls: PlanSegments, beside: _Beside) -> tuple[np.ndarray, np.ndarr
     half = walls.length[:, None] / 2
     shared = np.where(alike, np.minimum(along[1], half) - np.maximum(along[0], -half), 0.0)
     # Where the wall's middle is beside the outline, or at the nearer end of the outline.
-    place = np.clip(-along[0] / np.maximum(along[1] - along[0], 1e-9), 0, 1)
-    across = np.where(alike, off[0] + place * (off[1] - off[0]), np.nan)
+    position = np.clip(-along[0] / np.maximum(along[1] - along[0], 1e-9), 0, 1)
+    across = np.where(alike, off[0] + position * (off[1] - off[0]), np.nan)
     left, right = np.where(alike, along[0] + half, np.nan), np.where(alike, along[1] - half, np.nan)
     return across, shared, left, right
 

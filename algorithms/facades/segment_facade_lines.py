@@ -225,13 +225,13 @@ def _pieces(xyz: np.ndarray, line: np.ndarray, tolerance: float, monitor: Monito
 
 def _splits(xyz: np.ndarray, tolerance: float) -> np.ndarray:
     """Return the first points of the straight pieces of one line, in the plane that the scanner turns in."""
-    places = np.column_stack([_across(xyz), xyz[:, 2]])
-    step = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    positions = np.column_stack([_across(xyz), xyz[:, 2]])
+    step = np.linalg.norm(np.diff(positions, axis=0), axis=1)
     gap = max(_GAP_STEPS * float(np.median(step)), _LEAST_GAP) if len(step) else _LEAST_GAP
     ends = np.concatenate([[0], np.flatnonzero(step > gap) + 1, [len(xyz)]])
     found = []
     for first, last in zip(ends[:-1], ends[1:]):
-        bends = simplify(places[first:last], tolerance, is_closed=False) if last - first > 2 else np.zeros(1, int)
+        bends = simplify(positions[first:last], tolerance, is_closed=False) if last - first > 2 else np.zeros(1, int)
         # The last vertex is the end of the last piece.
         found.append(first + (bends[:-1] if len(bends) > 1 else bends))
     return np.concatenate(found)

@@ -73,7 +73,7 @@ class Tracing:
     max_edge : float
         Longest edge (m) that joins two points of one building.
     triangulation : scipy.spatial.Delaunay
-        The triangles, to find places in; its points are ``xy`` less their mean.
+        The triangles, to find positions in; its points are ``xy`` less their mean.
     """
 
     xy: np.ndarray
@@ -105,12 +105,12 @@ class Tracing:
         """Area (m²) of each triangle."""
         return _areas(self.xy, self.triangles)
 
-    def locate(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the triangle (n,) that each place (n, 2) lies in, -1 outside, and the shares (n, 3) of its corners."""
-        places = places - self.xy.mean(axis=0)
-        triangle = self.triangulation.find_simplex(places)
+    def locate(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the triangle (n,) around each position (n, 2), -1 outside, and the shares (n, 3) of its corners."""
+        positions = positions - self.xy.mean(axis=0)
+        triangle = self.triangulation.find_simplex(positions)
         transform = self.triangulation.transform[triangle]
-        share = np.einsum("nij,nj->ni", transform[:, :2], places - transform[:, 2])
+        share = np.einsum("nij,nj->ni", transform[:, :2], positions - transform[:, 2])
         return triangle, np.column_stack([share, 1 - share.sum(axis=1)])
 
     @property
@@ -251,7 +251,7 @@ def without_inside(xy: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarr
     is_inner = np.ones(len(cells), bool)
     around = [find_cells(cells, cells + step) for step in grid.around]
     for _ in range(_DEEP_CELLS):
-        is_inner &= np.all([found & is_inner[place] for place, found in around], axis=0)
+        is_inner &= np.all([found & is_inner[row] for row, found in around], axis=0)
     rest = xy[~is_inner[which]]
     count = np.bincount(which, minlength=len(cells))[is_inner]
     points = np.concatenate([rest, grid.center(cells[is_inner])])

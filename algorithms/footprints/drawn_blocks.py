@@ -225,8 +225,8 @@ def _costs(cells: Subdivision, share: np.ndarray, lattice: Lattice) -> np.ndarra
 def _labels(cells: Subdivision, cost: np.ndarray, edges: list[Edge], how: Drawing) -> np.ndarray:
     """Return the label of each cell, 0 the ground: those that cost least with the borders between them."""
     pairs, sides = cells.edges()
-    places = np.array(cells.vertices)
-    start, end = places[pairs[:, 0]], places[pairs[:, 1]]
+    vertices = np.array(cells.vertices)
+    start, end = vertices[pairs[:, 0]], vertices[pairs[:, 1]]
     price = np.where(_are_drawn(start, end, edges), _DRAWN, _NOT_DRAWN) * how.spacing
     weight = price * np.hypot(*(end - start).T)
     most = np.bincount(sides.ravel(), np.repeat(weight, 2), len(cells))
@@ -256,8 +256,8 @@ def _without_scraps(cells: Subdivision, label: np.ndarray, how: Drawing) -> np.n
         is_open = np.zeros(len(size), bool)
         is_open[piece[cells.touch_rectangle()]] = True
         pairs, sides = cells.edges()
-        places = np.array(cells.vertices)
-        length = np.hypot(*(places[pairs[:, 1]] - places[pairs[:, 0]]).T)
+        vertices = np.array(cells.vertices)
+        length = np.hypot(*(vertices[pairs[:, 1]] - vertices[pairs[:, 0]]).T)
         kind = np.zeros(len(size), label.dtype)
         kind[piece] = label
         for number in np.flatnonzero((size < least) & ~is_open & ((kind == 0) == is_ground)):

@@ -143,7 +143,7 @@ def extract_footprints(
     but don't widen its outline. One point counts for each cell of half a square spacing.
 
     Shares are of a lattice of half a spacing, with weights of a Gaussian of one spacing: roof points against the ground
-    seen beside them and against emptiness, which is what a place has less than roofs around. Gaps with roofs all around
+    seen beside them and against emptiness, by which a position falls short of roofs around. Gaps with roofs all around
     are filled. The spacing is that of the building points of the whole cloud or survey, in steps of a fifth.
 
     The walls of a ring are found by one dynamic program over all corners and directions: squared distances from the

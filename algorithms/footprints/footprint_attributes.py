@@ -51,7 +51,7 @@ _INNER = 2.0
 # Distance (spacings) from an outline, at most, of the points of its roof and walls.
 _BESIDE = 8.0
 
-# Least weight of roof points at a place whose height they give: that of one point two spacings away.
+# Least weight of roof points at a position whose height they give: that of one point two spacings away.
 _COVERED = 0.02
 
 # Root mean square (m) of their distances to the plane, at most: more is no roof plane.
@@ -174,7 +174,7 @@ def _evidence(measures: PointMeasures, members: np.ndarray) -> dict[str, Any]:
 
 
 class _Owners:
-    """Which outline each place belongs to: the one that it is in, or the nearest one."""
+    """Which outline each position belongs to: the one that it is in, or the nearest one."""
 
     def __init__(self, outlines: list[Outlined], plan: np.ndarray, spacing: float) -> None:
         nodes = np.concatenate([outlined.nodes for outlined in outlines])
@@ -186,28 +186,28 @@ class _Owners:
         distance, nearest = ndimage.distance_transform_edt(self.face < 0, return_indices=True)
         self.nearest = np.where(distance * self.lattice.step <= _BESIDE * spacing, self.face[tuple(nearest)], -1)
 
-    def _nodes(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        column, row = np.rint(self.lattice.nodes(places)).astype(np.int64).T
+    def _nodes(self, positions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        column, row = np.rint(self.lattice.nodes(positions)).astype(np.int64).T
         rows, columns = self.lattice.shape
         return row.clip(0, rows - 1), column.clip(0, columns - 1)
 
     def at(self, plan: np.ndarray) -> np.ndarray:
-        """Return the outline (n,) that places (n, 2) belong to, -1 of those far from all."""
+        """Return the outline (n,) that positions (n, 2) belong to, -1 of those far from all."""
         return self.nearest[self._nodes(plan)]
 
     def border(self, face: int, rings: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-        """Return places (b, 2) along an outline, and which (b,) are no border with another one; all if it has none."""
-        places, outward = [], []
+        """Return positions (b, 2) along an outline, and which (b,) are not on a border with another; all if none is."""
+        positions, outward = [], []
         for start, end in zip(
             *(np.concatenate([ring[part] for ring in rings]) for part in (slice(-1), slice(1, None)))
         ):
             length = float(np.hypot(*(end - start)))
             share = np.arange(0.5, max(1.0, length / self.spacing)) / max(1.0, length / self.spacing)
-            places.append(start + share[:, None] * (end - start))
+            positions.append(start + share[:, None] * (end - start))
             outward.append(
                 np.tile(np.array([end[1] - start[1], start[0] - end[0]]) / max(length, 1e-9), (len(share), 1))
             )
-        along, across = np.concatenate(places), np.concatenate(outward)
+        along, across = np.concatenate(positions), np.concatenate(outward)
         beyond = self.face[self._nodes(along + self.spacing * across)]
         is_outer = (beyond < 0) | (beyond == face)
         return along, is_outer if is_outer.any() else np.ones(len(along), bool)
@@ -227,7 +227,7 @@ def _own_roof(roof: np.ndarray, plan: np.ndarray, shared: np.ndarray, spacing: f
 def _eave_heights(
     along: np.ndarray, is_outer: np.ndarray, plan: np.ndarray, height: np.ndarray, spacing: float
 ) -> np.ndarray:
-    """Return the height (b,) of the roof at the outer places of its outline (a, 2), continued from the roof there.
+    """Return the height (b,) of the roof at the outer positions of its outline (a, 2), continued from the roof there.
 
     Many points at an outline are those of the wall below, down to where they are no longer taken for a roof's.
     """

@@ -44,7 +44,7 @@ class Piece:
 
 def find_pieces(building: int, shares: Shares, spacing: float, min_area: float, min_hole_area: float) -> list[Piece]:
     """Return the pieces of a building of at least ``min_area`` (m²), with their holes of ``min_hole_area`` (m²)."""
-    rings = [shares.lattice.places(ring) for ring in level_lines(shares.share - shares.rest)]
+    rings = [shares.lattice.in_plan(ring) for ring in level_lines(shares.share - shares.rest)]
     sizes = [signed_area(ring) for ring in rings]
     holes = [ring for ring, size in zip(rings, sizes) if -size >= min_hole_area]
     pieces = []
@@ -57,7 +57,7 @@ def find_pieces(building: int, shares: Shares, spacing: float, min_area: float, 
 
 
 def _sampled(ring: np.ndarray, step: float) -> np.ndarray:
-    """Return places (n, 2) at equal steps of about ``step`` (m) along a closed ring."""
+    """Return positions (n, 2) at equal steps of about ``step`` (m) along a closed ring."""
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(ring, axis=0).T))])
     count = max(_FEWEST, round(perimeter(ring) / step))
     wanted = along[-1] * np.arange(count) / count

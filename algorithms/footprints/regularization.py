@@ -106,18 +106,18 @@ def regularize_outline(rings: list, tolerance: float, outset: float = 0.0) -> Op
     return made if is_valid(made) else None
 
 
-def is_near(places: np.ndarray, line: Line, limit: float) -> bool:
+def is_near(positions: np.ndarray, line: Line, limit: float) -> bool:
     """Return whether a straight line stays within ``limit`` (m) of a traced one, and nearly all of that one of it."""
     raw = line.samples
-    if len(places) < (3 if line.is_closed else 2):
+    if len(positions) < (3 if line.is_closed else 2):
         return False
     if line.is_closed:
-        places, raw = (np.concatenate([one, one[:1]]) for one in (places, raw))
-        if signed_area(places) * signed_area(raw) <= 0:
+        positions, raw = (np.concatenate([one, one[:1]]) for one in (positions, raw))
+        if signed_area(positions) * signed_area(raw) <= 0:
             return False
-    far = distances_to(line.samples, places) > limit
+    far = distances_to(line.samples, positions) > limit
     # Spikes, which have no area, are left out: they are a small part of a building, or it is no good.
-    return bool((distances_to(places, raw) <= limit).all() and line.weights[far].sum() <= 0.1 * line.weights.sum())
+    return bool((distances_to(positions, raw) <= limit).all() and line.weights[far].sum() <= 0.1 * line.weights.sum())
 
 
 def main_directions(edges: list) -> list:
@@ -204,8 +204,8 @@ def chords(line: Line, tolerance: float) -> np.ndarray:
     made = np.array(straighten(line, line.edges(tolerance), [], tolerance)[1]).reshape(-1, 2)
     if is_near(made, line, 2 * tolerance) and is_valid([np.concatenate([made, made[:1]])]):
         return made
-    places = line.samples[simplify(line.samples, tolerance, line.is_closed)]
-    return np.array(_without_loops(list(places), _LOOP_OF_CHORDS * tolerance))
+    positions = line.samples[simplify(line.samples, tolerance, line.is_closed)]
+    return np.array(_without_loops(list(positions), _LOOP_OF_CHORDS * tolerance))
 
 
 def _following(edges: list, line: Line) -> list:
@@ -335,8 +335,8 @@ def _without_following(items: list, number: int, count: int) -> tuple[list, int]
 def _is_small(line: Line, here: OutlineEdge, there: OutlineEdge, tolerance: float) -> bool:
     """Return whether what the line encloses between two edges is too small for a bay or a recess."""
     first, last = here.last, there.first + len(line.samples) * (there.first < here.last)
-    places = line.samples[line.rows(first, last)]
-    return abs(signed_area(np.concatenate([places, places[:1]]))) < (_SMALL * tolerance) ** 2
+    positions = line.samples[line.rows(first, last)]
+    return abs(signed_area(np.concatenate([positions, positions[:1]]))) < (_SMALL * tolerance) ** 2
 
 
 def _rebroken(line: Line, edges: list, tolerance: float) -> list:

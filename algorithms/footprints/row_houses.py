@@ -147,8 +147,8 @@ def _lines(
     """
     step = max(_STEP, _STEP_SPACINGS * spacing)
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    places = lattice.positions[is_inside.ravel()] @ turn
-    low, high = places.min(axis=0) - 2 * step, places.max(axis=0) + 2 * step
+    positions = lattice.positions[is_inside.ravel()] @ turn
+    low, high = positions.min(axis=0) - 2 * step, positions.max(axis=0) + 2 * step
     u, v = (np.arange(a, b, step) for a, b in zip(low, high))
     inside = _inside(lattice, is_inside, (u, v), turn)
     roof, seen = _averaged(plan @ turn, height, low, step, inside.shape)
@@ -165,12 +165,12 @@ def _lines(
 def _inside(
     lattice: Lattice, is_inside: np.ndarray, axes: tuple[np.ndarray, np.ndarray], turn: np.ndarray
 ) -> np.ndarray:
-    """Return which places of a grid lie in the building.
+    """Return which positions of a grid lie in the building.
 
     ``axes`` are those of the grid before it is turned back by the transpose of ``turn`` (2, 2).
     """
-    places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1) @ turn.T
-    column, row = np.moveaxis(np.rint(lattice.nodes(places)).astype(np.int64), -1, 0)
+    positions = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1) @ turn.T
+    column, row = np.moveaxis(np.rint(lattice.nodes(positions)).astype(np.int64), -1, 0)
     rows, columns = is_inside.shape
     return is_inside[row.clip(0, rows - 1), column.clip(0, columns - 1)]
 
@@ -178,7 +178,7 @@ def _inside(
 def _averaged(
     plan: np.ndarray, height: np.ndarray, low: np.ndarray, step: float, shape: tuple[int, ...]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the mean height, 0 without any, and the number of points at each place of a grid from ``low`` on."""
+    """Return the mean height, 0 without any, and the number of points at each position of a grid from ``low`` on."""
     u, v = np.rint((plan - low) / step).astype(np.int64).T
     own = (u >= 0) & (v >= 0) & (u < shape[0]) & (v < shape[1])
     number = u[own] * shape[1] + v[own]
@@ -252,7 +252,7 @@ def _goes_on(roof: np.ndarray, is_known: np.ndarray, jump: np.ndarray, step: flo
 def _side(
     roof: np.ndarray, is_known: np.ndarray, step: float, sign: int, near: float = _NEAR
 ) -> tuple[np.ndarray, ...]:
-    """Return the line fitted to the roof on one side of each place: height here, rise outward, deviation, mean."""
+    """Return the line fitted to the roof on one side of each position: height here, rise outward, deviation, mean."""
     offsets = np.arange(max(1, int(np.ceil(near / step))), int(_FAR / step) + 1)
     far = offsets * step
 
@@ -273,7 +273,7 @@ def _side(
 
 
 def _runs(is_inside: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the column of each run of places inside along the first axis, its first row and the one after its last."""
+    """Return the column of each run of cells inside along the first axis, its first row and the one after its last."""
     change = np.diff(np.pad(is_inside.T, ((0, 0), (1, 1))).astype(np.int8), axis=1)
     column, first = np.nonzero(change == 1)
     return column, first, np.nonzero(change == -1)[1]

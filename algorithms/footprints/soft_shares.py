@@ -1,4 +1,4 @@
-"""How much of each place belongs to which building: shares on a lattice, in which points count with their surroundings.
+"""Share of each building at each position: a lattice, in which points count with their surroundings.
 
 A share is soft: it changes by little when points move or when some of them are missing.
 """
@@ -28,7 +28,7 @@ _TRUNCATE = 3.0
 # Room (spacings) around the points of a building, so that its shares have fallen to nothing at the edge.
 _MARGIN = 4.0
 
-# Least density of roofs, as a share of the usual density of one point per square spacing, below which a place is far
+# Least density of roofs, as a share of the usual density of one point per square spacing, below which a position is far
 # from any.
 _NOWHERE = 1e-3
 
@@ -50,12 +50,12 @@ class Lattice:
         columns, rows = (high - low + 1).tolist()
         return cls(step, (int(low[0]), int(low[1])), (rows, columns))
 
-    def places(self, columns_rows: np.ndarray) -> np.ndarray:
+    def in_plan(self, columns_rows: np.ndarray) -> np.ndarray:
         """Return easting and northing (n, 2), m, of columns and rows (n, 2)."""
         return (columns_rows + self.first) * self.step
 
     def nodes(self, plan: np.ndarray) -> np.ndarray:
-        """Return column and row (n, 2) of places (m), fractions of them included."""
+        """Return column and row (n, 2) of positions (m), fractions of them included."""
         return plan / self.step - self.first
 
     @property
@@ -63,12 +63,12 @@ class Lattice:
         """Easting and northing (rows * columns, 2), m, of all nodes, row by row."""
         rows, columns = self.shape
         row, column = np.divmod(np.arange(rows * columns), columns)
-        return self.places(np.column_stack([column, row]))
+        return self.in_plan(np.column_stack([column, row]))
 
     def holds(self, plan: np.ndarray) -> np.ndarray:
-        """Return which places (n, 2), m, lie within the lattice."""
-        place = self.nodes(plan)
-        return ((place >= 0) & (place < np.subtract(self.shape[::-1], 1))).all(axis=1)
+        """Return which positions (n, 2), m, lie within the lattice."""
+        node = self.nodes(plan)
+        return ((node >= 0) & (node < np.subtract(self.shape[::-1], 1))).all(axis=1)
 
     def window(self, inner: Lattice) -> tuple[slice, slice]:
         """Return the rows and columns of another lattice of the same step that lies in this one."""
@@ -77,9 +77,9 @@ class Lattice:
 
     def spread(self, plan: np.ndarray, weight: Optional[np.ndarray] = None) -> np.ndarray:
         """Return the weights (rows, columns) of points in the lattice, each shared among the four nodes around it."""
-        place = self.nodes(plan)
-        low = np.floor(place).astype(np.int64)
-        (column, row), (east, north) = low.T, (place - low).T
+        node = self.nodes(plan)
+        low = np.floor(node).astype(np.int64)
+        (column, row), (east, north) = low.T, (node - low).T
         total = np.zeros(self.shape)
         for x, along in ((0, 1 - east), (1, east)):
             for y, up in ((0, 1 - north), (1, north)):
@@ -106,9 +106,9 @@ class Shares:
     share: np.ndarray
     rest: np.ndarray
 
-    def at(self, places: np.ndarray) -> np.ndarray:
-        """Return the share (n,) at places (n, 2), m; 0 beyond the lattice."""
-        nodes = self.lattice.nodes(places)[:, ::-1].T
+    def at(self, positions: np.ndarray) -> np.ndarray:
+        """Return the share (n,) at positions (n, 2), m; 0 beyond the lattice."""
+        nodes = self.lattice.nodes(positions)[:, ::-1].T
         return ndimage.map_coordinates(self.share, nodes, order=1, mode="constant", cval=0.0)
 
 

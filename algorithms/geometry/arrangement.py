@@ -57,7 +57,7 @@ class Arrangement:
         Which cells touch the sides of the rectangle.
     crossing : ndarray of shape (k, 2), int64
         The two lines that meet in each crossing; those numbered from ``k`` on are the ends of lines at the sides.
-    places : ndarray of shape (k + ends, 2)
+    positions : ndarray of shape (k + ends, 2)
         Where crossings and ends are (m).
     around : ndarray of shape (k, 4), int64
         The cells around a crossing: left and right of its first line before it, left and right of that line after it.
@@ -78,11 +78,11 @@ class Arrangement:
 
     def _build(self, low: np.ndarray, high: np.ndarray) -> None:
         numbers = _numbers(len(self.points))
-        self.crossing, places, ways = _crossings(self.points, self.directions, low, high)
+        self.crossing, positions, ways = _crossings(self.points, self.directions, low, high)
         entry, leave = _clipped(self.points, self.directions, low, high)
         own, k = np.flatnonzero(entry < leave), len(self.crossing)
         none, ends = np.full(len(own), -1), k + np.arange(2 * len(own))
-        # All places on each line in order: where it enters the rectangle, crossings, where it leaves.
+        # All positions on each line in order: where it enters the rectangle, crossings, where it leaves.
         line = np.concatenate([own, *self.crossing.T, own])
         other = np.concatenate([none, *self.crossing.T[::-1], none])
         node = np.concatenate([ends[: len(own)], np.tile(np.arange(k), 2), ends[len(own) :]])
@@ -90,7 +90,7 @@ class Arrangement:
         order = np.lexsort((way, line))
         line, other, node, way = line[order], other[order], node[order], way[order]
         at_sides = [self.points[own] + at[own, None] * self.directions[own] for at in (entry, leave)]
-        self.places = np.concatenate([places, *at_sides])
+        self.positions = np.concatenate([positions, *at_sides])
         first = np.flatnonzero(line[1:] == line[:-1])
         right = self._right_keys(line, way, other, numbers)[first]
         corner = sides_of(low[None], self.points, self.directions) @ numbers
@@ -102,7 +102,7 @@ class Arrangement:
         self.around = self._cells_around(k)
 
     def _right_keys(self, line: np.ndarray, way: np.ndarray, other: np.ndarray, numbers: np.ndarray) -> np.ndarray:
-        """Return the number of the cell to the right of each line behind each of the places on it."""
+        """Return the number of the cell to the right of each line behind each of the positions on it."""
         is_first = np.append(True, line[1:] != line[:-1])[: len(line)]
         starts, group = np.flatnonzero(is_first), np.cumsum(is_first) - 1
         own = line[starts]
@@ -113,7 +113,7 @@ class Arrangement:
         u, v = self.directions[line], self.directions[other]
         rises = np.sign(v[:, 0] * u[:, 1] - v[:, 1] * u[:, 0]).astype(np.int64)
         change = np.where(other >= 0, rises * numbers[other], 0)
-        # Behind the first place of a line, where it enters, the number is measured.
+        # Behind the first position of a line, where it enters, the number is measured.
         total = np.cumsum(change)
         return total - total[starts][group] + (sides @ numbers)[group]
 
@@ -247,9 +247,9 @@ def _crossings(
     with np.errstate(divide="ignore", invalid="ignore"):
         way = (apart[:, 0] * v[:, 1] - apart[:, 1] * v[:, 0]) / turn
         other = (apart[:, 0] * u[:, 1] - apart[:, 1] * u[:, 0]) / turn
-        places = points[first] + way[:, None] * u
-        meets = (turn != 0) & ((places > low) & (places < high)).all(axis=1)
-    return np.column_stack([first, second])[meets], places[meets], np.column_stack([way, other])[meets]
+        positions = points[first] + way[:, None] * u
+        meets = (turn != 0) & ((positions > low) & (positions < high)).all(axis=1)
+    return np.column_stack([first, second])[meets], positions[meets], np.column_stack([way, other])[meets]
 
 
 def _clipped(

@@ -109,7 +109,7 @@ class Boxes:
             for _ in range(lowest, _REACH + 1):
                 here = np.flatnonzero(self.keys[np.minimum(there, len(self) - 1)] == wanted)
                 yield here, there[here]
-                # Numbers count on upward: the next box is the next number, or the place stays.
+                # Numbers count on upward: the next box is the next number, or the position stays.
                 there[here] += 1
                 wanted += 1
 

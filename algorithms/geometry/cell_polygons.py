@@ -92,7 +92,7 @@ def _corners(borders: list[tuple[int, int, int]], vertices: list[tuple[float, fl
 
 
 def _bend(before: tuple, after: tuple, at: tuple) -> float:
-    """Return the distance (m) of a place from the line through the one before and the one after it."""
+    """Return the distance (m) of a position from the line through the one before and the one after it."""
     (x0, y0), (x1, y1), (x, y) = before, after, at
     length = float(np.hypot(x1 - x0, y1 - y0))
     return abs((x1 - x0) * (y - y0) - (y1 - y0) * (x - x0)) / length if length > 0 else np.inf

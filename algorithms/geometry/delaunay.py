@@ -1,9 +1,9 @@
-"""Delaunay triangulations of many places in plan: made tile by tile on all cores, and mended where places are added.
+"""Delaunay triangulations of many points in plan: made tile by tile on all cores, and mended where points are added.
 
-A triangle belongs to the triangulation of all places when none of them lies inside its circle, whichever places it was
+A triangle belongs to the triangulation of all points when none of them lies inside its circle, whichever points it was
 found among. So tiles are triangulated one by one, with their surroundings, and of each the triangles are kept
-whose circles lie within what it saw. What is left are holes, few and mostly where no places are; the places
-around them make up one more, small triangulation, of which the triangles in the holes are taken. What new places
+whose circles lie within what it saw. What is left are holes, few and mostly where no positions are; the positions
+around them make up one more, small triangulation, of which the triangles in the holes are taken. What new positions
 spoil, the triangles with one of them in their circles, are such holes too.
 """
 
@@ -21,27 +21,27 @@ from ..threads import in_chunks
 from .grid import find_cells, plan_box
 from .groups import components
 
-# Places of a tile at most: each takes half the time that it takes among a hundred thousand.
+# Positions of a tile at most: each takes half the time that it takes among a hundred thousand.
 _PLACES = 3000
 
 # Below this number of nodes, one triangulation takes less time than tiles.
 _FEW = 30_000
 
-# Surroundings of a tile, in distances between places: nearly all circles on its border end there.
+# Surroundings of a tile, in distances between positions: nearly all circles on its border end there.
 _MARGIN = 3.0
 
-# Places on a circle, as those of regular grids are, count as inside: triangles with one circle stay or go together.
+# Positions on a circle, as those of regular grids are, count as inside: triangles with one circle stay or go together.
 _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
 class Triangulation:
-    """Triangles between places in plan.
+    """Triangles between positions in plan.
 
     Attributes
     ----------
     plan : ndarray of shape (n, 2), float64
-        Places (m).
+        Positions (m).
     facets : ndarray of shape (f, 3), int32
         The corners of each triangle, as numbers of nodes, counterclockwise. Of nodes at one position, one is used.
     neighbors : ndarray of shape (f, 3), int32
@@ -52,10 +52,10 @@ class Triangulation:
     facets: np.ndarray
     neighbors: np.ndarray
 
-    def with_places(self, plan: np.ndarray, facet: np.ndarray) -> tuple[Triangulation, np.ndarray]:
-        """Return the triangulation with more places (m, 2), and what each of its facets (f,) became, -1 what is gone.
+    def with_positions(self, plan: np.ndarray, facet: np.ndarray) -> tuple[Triangulation, np.ndarray]:
+        """Return the triangulation with more positions (m, 2), and the new number of each facet (f,), -1 if it is gone.
 
-        ``facet`` (m,) are the facets that the new places lie in.
+        ``facet`` (m,) are the facets that the new positions lie in.
         """
         stays = ~self._spoilt(plan, facet) & (self.neighbors >= 0).all(axis=1)
         rows = np.append(np.unique(self.facets[~stays]), len(self.plan) + np.arange(len(plan)))
@@ -65,18 +65,18 @@ class Triangulation:
         return (_by_qhull(whole), np.full_like(became, -1)) if mended is None else (mended, became)
 
     def _spoilt(self, plan: np.ndarray, facet: np.ndarray) -> np.ndarray:
-        """Return the facets (f,) that have one of the new places in their circles, found from one to the next."""
+        """Return the facets (f,) that have one of the new positions in their circles, found from one to the next."""
         spoilt = np.zeros(len(self.facets), bool)
         pairs, before = np.arange(len(plan)) * len(spoilt) + facet, np.empty(0, np.int64)
         while len(pairs):
-            place, facet = np.divmod(pairs, len(spoilt))
+            position, facet = np.divmod(pairs, len(spoilt))
             center, radius = circles(self.plan, self.facets[facet])
-            distance = np.linalg.norm(plan[place] - center, axis=1)
+            distance = np.linalg.norm(plan[position] - center, axis=1)
             # A new place lies in a facet without a circle, whose corners are on a line, at its edge.
             inside = ~(distance > radius * (1 + _ROUNDING))
             spoilt[facet[inside]] = True
             around = self.neighbors[facet[inside]].ravel()
-            beside = (np.repeat(place[inside], 3) * len(spoilt) + around)[around >= 0]
+            beside = (np.repeat(position[inside], 3) * len(spoilt) + around)[around >= 0]
             # What lies beside the facets of a step was found in that step, in the one before, or is new.
             pairs, before = np.setdiff1d(beside, np.concatenate([pairs, before])), pairs
         return spoilt
@@ -123,7 +123,7 @@ def _by_qhull(plan: np.ndarray) -> Triangulation:
 
 
 def _tiles(plan: np.ndarray, rows: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """Halve the plane until each part has few places; yield the rows of these and those around, and both boxes."""
+    """Halve the plane until each part has few positions; yield the rows of these and those around, and both boxes."""
     everywhere = np.array([[-np.inf, -np.inf], [np.inf, np.inf]])
     left = [(rows.astype(np.int32), plan[rows], everywhere, everywhere)]
     while left:
@@ -145,7 +145,7 @@ def _tiles(plan: np.ndarray, rows: np.ndarray) -> Iterator[tuple[np.ndarray, np.
 
 
 def _within(plan: np.ndarray, box: np.ndarray) -> np.ndarray:
-    """Return which places lie in a box, its upper sides not in it."""
+    """Return which positions lie in a box, its upper sides not in it."""
     (left, bottom), (right, top) = box
     x, y = plan.T
     return (x >= left) & (x < right) & (y >= bottom) & (y < top)
@@ -167,7 +167,7 @@ def _part(plan: np.ndarray, rows: np.ndarray, box: np.ndarray, seen: np.ndarray)
     x, y = center.T
     (left, bottom), (right, top) = seen
     is_known = (x - radius > left) & (x + radius < right) & (y - radius > bottom) & (y + radius < top)
-    # What closes the hull of all places has no other side, by which it would fit to the rest.
+    # What closes the hull of all positions has no other side, by which it would fit to the rest.
     is_known &= (found.neighbors >= 0).all(axis=1)
     return _chosen(plan, facets, found.neighbors, is_known & _within(center, box))[0]
 
@@ -182,7 +182,7 @@ def _chosen(
 
 
 def _joined(parts: list[Triangulation]) -> Triangulation:
-    """Return triangulations of the same places as one, neighbors where they have the same side."""
+    """Return triangulations of the same positions as one, neighbors where they have the same side."""
     facets = np.concatenate([part.facets for part in parts])
     first = np.cumsum([0] + [len(part.facets) for part in parts[:-1]], dtype=np.int32)
     neighbors = np.concatenate([part.neighbors + (part.neighbors >= 0) * start for part, start in zip(parts, first)])
@@ -202,7 +202,7 @@ def _open_sides(mesh: Triangulation) -> tuple[np.ndarray, np.ndarray, np.ndarray
 
 
 def _mended(part: Triangulation, rows: np.ndarray) -> Optional[Triangulation]:
-    """Return a triangulation with its holes filled, whose places are ``rows``; None where rounding left a seam open."""
+    """Return a triangulation with holes filled, whose positions are ``rows``; None where rounding left a seam open."""
     patch = _by_qhull(part.plan[rows] - part.plan[rows[0]])
     facets = rows[patch.facets].astype(np.int32)
     sides = _open_sides(Triangulation(part.plan, facets, np.full_like(facets, -1)))[2]

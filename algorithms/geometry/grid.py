@@ -65,7 +65,7 @@ def grid_over(xyz: np.ndarray, size: float) -> Grid:
 def fixed_grid_over(xyz: np.ndarray, size: float) -> Grid:
     """Return the grid of those cells of ``size`` (m) at multiples of it that points lie in.
 
-    A part of a cloud has the cells of the whole, so that results do not depend on where a cloud was cut. Places
+    A part of a cloud has the cells of the whole, so that results do not depend on where a cloud was cut. Positions
     are to be measured from the corner of the whole, see :meth:`.CloudSampling.from_corner`.
     """
     (west, south), (east, north) = lattice(plan_box(xyz), size).tolist()
@@ -93,11 +93,11 @@ def plan_box(xyz: np.ndarray) -> np.ndarray:
     return np.array([[column.min() for column in columns], [column.max() for column in columns]])
 
 
-def turned_in_plan(places: np.ndarray, angle: float) -> np.ndarray:
-    """Return places (n, 2 or 3) turned counterclockwise by an angle (°) about the vertical through zero."""
+def turned_in_plan(positions: np.ndarray, angle: float) -> np.ndarray:
+    """Return positions (n, 2 or 3) turned counterclockwise by an angle (°) about the vertical through zero."""
     if not angle:
-        return places
-    x, y, *z = places.T
+        return positions
+    x, y, *z = positions.T
     cos, sin = np.cos(np.radians(angle)), np.sin(np.radians(angle))
     return np.column_stack([cos * x - sin * y, sin * x + cos * y, *z])
 
@@ -122,8 +122,8 @@ def distinct(numbers: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         return np.unique(numbers, return_inverse=True)
     is_there = np.zeros(length, bool)
     is_there[numbers - least] = True
-    place = np.cumsum(is_there, dtype=np.int32) - np.int32(1)
-    return np.flatnonzero(is_there) + least, place[numbers - least]
+    rank = np.cumsum(is_there, dtype=np.int32) - np.int32(1)
+    return np.flatnonzero(is_there) + least, rank[numbers - least]
 
 
 class SparsePointsError(ValueError):

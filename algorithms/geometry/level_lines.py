@@ -34,7 +34,7 @@ def level_lines(field: np.ndarray) -> list[np.ndarray]:
     starts, ends = _segments(padded)
     if not len(starts):
         return []
-    places = _crossings(padded, starts) - 1.0
+    positions = _crossings(padded, starts) - 1.0
     order = np.argsort(starts)
     following = order[np.searchsorted(starts[order], ends)].tolist()
     rings, is_used = [], [False] * len(starts)
@@ -45,7 +45,7 @@ def level_lines(field: np.ndarray) -> list[np.ndarray]:
             ring.append(number)
             number = following[number]
         if ring:
-            rings.append(places[[*ring, ring[0]]])
+            rings.append(positions[[*ring, ring[0]]])
     return rings
 
 

@@ -68,12 +68,12 @@ def are_inside(points: np.ndarray, ring: np.ndarray) -> np.ndarray:
 
 
 def distances_to(points: np.ndarray, line: np.ndarray) -> np.ndarray:
-    """Return the distances (n,) (m) of points (n, 2) to the nearest place on a line (m, 2)."""
+    """Return the distances (n,) (m) of points (n, 2) to the nearest position on a line (m, 2)."""
     return nearest_edge_distances(points, line[:-1], line[1:])
 
 
 def farthest(points: np.ndarray, line: np.ndarray) -> float:
-    """Return the largest distance (m) of points (n, 2) to the nearest place on a line."""
+    """Return the largest distance (m) of points (n, 2) to the nearest position on a line."""
     return float(distances_to(points, line).max())
 
 

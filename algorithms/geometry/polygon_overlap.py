@@ -65,7 +65,7 @@ def overlaps(first: Polygons, second: Polygons, monitor: Monitor) -> tuple[np.nd
     one, other : ndarrays of shape (k,), int64
         Positions in ``first`` and in ``second``.
     area : ndarray of shape (k,), float64
-        Area that is in both, each place as often as the rings wind around it (once in a valid polygon).
+        Area that is in both, each position as often as the rings wind around it (once in a valid polygon).
 
     Notes
     -----

@@ -59,7 +59,7 @@ class OutlineEdge:
         return cross(self.direction, point - self.point)
 
     def foot(self, point: np.ndarray) -> np.ndarray:
-        """Return the place on this line that is nearest to a point."""
+        """Return the position on this line that is nearest to a point."""
         return self.point + ((point - self.point) @ self.direction) * self.direction
 
 
@@ -80,13 +80,13 @@ class Line:
 
     def _between(self, first: int, last: int) -> tuple[np.ndarray, np.ndarray]:
         """Return the samples from ``first`` to ``last`` and their weights."""
-        places, weights = self._twice
+        positions, weights = self._twice
         start = first % len(self.samples)
         stop = start + last + 1 - first
-        if stop > len(places):
+        if stop > len(positions):
             rows = self.rows(first, last)
             return self.samples[rows], self.weights[rows]
-        return places[start:stop], weights[start:stop]
+        return positions[start:stop], weights[start:stop]
 
     @cached_property
     def _twice(self) -> tuple[np.ndarray, np.ndarray]:
@@ -131,22 +131,22 @@ class Line:
 
     def fitted(self, first: int, last: int, tolerance: float, direction: Optional[np.ndarray] = None) -> OutlineEdge:
         """Return the edge along the samples from ``first`` to ``last``, of a given direction or their own."""
-        places, weights = self._between(first, last)
-        offset = places - places[0]
+        positions, weights = self._between(first, last)
+        offset = positions - positions[0]
         chord = offset[-1]
         length = float(np.hypot(chord[0], chord[1]))
         along = offset @ (chord / max(length, 1e-9))
         # Corners are rounded by half the tolerance, a spacing: what lies there belongs to no edge.
         inner = np.abs(along - length / 2) <= length / 2 - tolerance / 2
         if np.count_nonzero(inner) >= 3:
-            places, weights = places[inner], weights[inner]
-            offset = places - places[0]
+            positions, weights = positions[inner], weights[inner]
+            offset = positions - positions[0]
         if direction is None:
-            direction = _principal(places, weights, chord)
+            direction = _principal(positions, weights, chord)
         east, north = direction.tolist()
         middle = _median(east * offset[:, 1] - north * offset[:, 0], weights)
-        center = np.add.reduce(places) / len(places) - places[0]
-        point = places[0] + (center @ direction) * direction + middle * np.array([-north, east])
+        center = np.add.reduce(positions) / len(positions) - positions[0]
+        point = positions[0] + (center @ direction) * direction + middle * np.array([-north, east])
         return OutlineEdge(direction, point, length, first, last)
 
 
@@ -164,12 +164,12 @@ def simplify_ring(ring: np.ndarray, tolerance: float) -> np.ndarray:
     return ring[np.append(rows, rows[0])]
 
 
-def simplify(places: np.ndarray, tolerance: float, is_closed: bool) -> np.ndarray:
+def simplify(positions: np.ndarray, tolerance: float, is_closed: bool) -> np.ndarray:
     """Return the rows of the vertices of Douglas and Peucker that keep a line within ``tolerance`` (m), ascending."""
-    count = len(places)
+    count = len(positions)
     # The two ends of the longest extent are corners of a closed line in any case.
-    start = int(np.argmax(((places - places.mean(axis=0)) ** 2).sum(axis=1))) if is_closed else 0
-    turned = np.roll(places, -start, axis=0)
+    start = int(np.argmax(((positions - positions.mean(axis=0)) ** 2).sum(axis=1))) if is_closed else 0
+    turned = np.roll(positions, -start, axis=0)
     if is_closed:
         turned = np.concatenate([turned, turned[:1]])
     last = len(turned) - 1
@@ -265,9 +265,9 @@ def cross(a: np.ndarray, b: np.ndarray) -> float:
     return float(a[0] * b[1] - a[1] * b[0])
 
 
-def _principal(places: np.ndarray, weights: np.ndarray, chord: np.ndarray) -> np.ndarray:
-    """Return the unit direction of places, along the chord where they have none of their own."""
-    x, y = (places - np.add.reduce(places * weights[:, None]) / np.add.reduce(weights)).T
+def _principal(positions: np.ndarray, weights: np.ndarray, chord: np.ndarray) -> np.ndarray:
+    """Return the unit direction of positions, along the chord where they have none of their own."""
+    x, y = (positions - np.add.reduce(positions * weights[:, None]) / np.add.reduce(weights)).T
     xx, yy, xy = weights @ (x * x), weights @ (y * y), weights @ (x * y)
     angle = 0.5 * np.arctan2(2 * xy, xx - yy)
     direction = np.array([np.cos(angle), np.sin(angle)])

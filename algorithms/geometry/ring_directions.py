@@ -39,7 +39,7 @@ def direction_weights(samples: np.ndarray) -> np.ndarray:
     Parameters
     ----------
     samples : ndarray of shape (n, 2)
-        Places at equal steps along a ring, the first not repeated.
+        Positions at equal steps along a ring, the first not repeated.
 
     Notes
     -----
@@ -93,9 +93,9 @@ def _pieces(samples: np.ndarray, length: int) -> tuple[np.ndarray, np.ndarray]:
 
 def _counted(angle: np.ndarray, weight: np.ndarray) -> np.ndarray:
     """Return the sums of weights by angle (°) modulo 90, each shared between the two steps around it."""
-    place = (angle % 90.0) / _STEP
-    low = np.floor(place).astype(np.int64)
-    share = place - low
+    position = (angle % 90.0) / _STEP
+    low = np.floor(position).astype(np.int64)
+    share = position - low
     numbers = np.concatenate([low % _N_STEPS, (low + 1) % _N_STEPS])
     return np.bincount(numbers, np.concatenate([weight * (1 - share), weight * share]), _N_STEPS)
 

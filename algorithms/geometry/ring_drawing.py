@@ -86,7 +86,7 @@ def draw_ring(samples: np.ndarray, directions: np.ndarray, prices: Prices) -> li
     Parameters
     ----------
     samples : ndarray of shape (n, 2)
-        Places at equal steps along the ring (m), the first not repeated, the inside to the left.
+        Positions at equal steps along the ring (m), the first not repeated, the inside to the left.
     directions : ndarray of shape (k,)
         Main directions of the building, °, at most two, the heavier first; without any all are equally good.
     prices : Prices
@@ -285,7 +285,7 @@ class _Chain:
         return runs[::-1]
 
     def line(self, first: int, last: int, way: int) -> tuple[np.ndarray, np.ndarray, bool]:
-        """Return a place on the line of a run, its direction (2,), and whether that is a main one."""
+        """Return a position on the line of a run, its direction (2,), and whether that is a main one."""
         left_out = min(2, (last - first - 1) // 3)
         inner = slice(first + left_out, last - left_out)
         samples, unit, is_main = self.middles[inner], self.ways.unit[way], bool(self.ways.is_main[way])
@@ -314,9 +314,9 @@ def _corner(before: tuple, after: tuple, at: np.ndarray, step: float) -> tuple[n
     sine = float(u[0] * v[1] - u[1] * v[0])
     offset = q - p
     if abs(sine) > _PARALLEL:
-        place = p + u * float(offset[0] * v[1] - offset[1] * v[0]) / sine
-        if np.hypot(*(place - at)) <= _FARTHEST * step:
-            return place, place
+        position = p + u * float(offset[0] * v[1] - offset[1] * v[0]) / sine
+        if np.hypot(*(position - at)) <= _FARTHEST * step:
+            return position, position
     return p + u * float((at - p) @ u), q + v * float((at - q) @ v)
 
 

@@ -128,10 +128,10 @@ def find_keys(keys: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     """Return the position of each ``wanted`` key (k,) among ascending ``keys`` (m,), int64; -1 where it does not."""
     if not len(keys):
         return np.full(len(wanted), -1)
-    place = np.searchsorted(keys, wanted)
-    place[place == len(keys)] = 0
-    place[keys[place] != wanted] = -1
-    return place
+    position = np.searchsorted(keys, wanted)
+    position[position == len(keys)] = 0
+    position[keys[position] != wanted] = -1
+    return position
 
 
 def locate_voxels(cells: np.ndarray, wanted: np.ndarray) -> np.ndarray:

@@ -82,8 +82,8 @@ class Subdivision:
         """Split one cell where the line crosses it within its length."""
         x0, y0, ux, uy = line
         loop = self.loops[cell]
-        places = [self.vertices[v] for v in loop]
-        across = [ux * (y - y0) - uy * (x - x0) for x, y in places]
+        positions = [self.vertices[v] for v in loop]
+        across = [ux * (y - y0) - uy * (x - x0) for x, y in positions]
         if max(across) <= snap or min(across) >= -snap:
             return
         side = [0 if abs(d) <= snap else 1 if d > 0 else -1 for d in across]
@@ -92,7 +92,7 @@ class Subdivision:
             return
         along = []
         for i, j in crossings:
-            (xa, ya), (xb, yb) = places[i], places[j]
+            (xa, ya), (xb, yb) = positions[i], positions[j]
             share = 0.0 if i == j else across[i] / (across[i] - across[j])
             along.append(ux * (xa + share * (xb - xa) - x0) + uy * (ya + share * (yb - ya) - y0))
         first, last = min(along), max(along)
@@ -111,10 +111,10 @@ class Subdivision:
         share = from_u / (from_u - from_v)
         return self.insert(u, v, (xa + share * (xb - xa), ya + share * (yb - ya)))
 
-    def insert(self, u: int, v: int, place: tuple[float, float]) -> int:
+    def insert(self, u: int, v: int, position: tuple[float, float]) -> int:
         """Put a vertex on the edge from ``u`` to ``v`` of the cells on both sides; return its number."""
         new = len(self.vertices)
-        self.vertices.append(place)
+        self.vertices.append(position)
         for start, end in ((u, v), (v, u)):
             cell = self.cell_of.pop((start, end), None)
             if cell is not None:
@@ -165,13 +165,13 @@ class Subdivision:
     def area(self, loop: list[int]) -> float:
         """Return the area (m²) within a ring of vertices."""
         x0, y0 = self.vertices[loop[0]]
-        places = [(self.vertices[v][0] - x0, self.vertices[v][1] - y0) for v in loop]
-        return 0.5 * sum(xa * yb - xb * ya for (xa, ya), (xb, yb) in zip(places, [*places[1:], places[0]]))
+        positions = [(self.vertices[v][0] - x0, self.vertices[v][1] - y0) for v in loop]
+        return 0.5 * sum(xa * yb - xb * ya for (xa, ya), (xb, yb) in zip(positions, [*positions[1:], positions[0]]))
 
     def centers(self) -> np.ndarray:
         """Return the means of the vertices (cells, 2), m, which lie inside."""
-        places = np.array(self.vertices)
-        return np.array([places[loop].mean(axis=0) for loop in self.loops])
+        positions = np.array(self.vertices)
+        return np.array([positions[loop].mean(axis=0) for loop in self.loops])
 
     def edges(self) -> tuple[np.ndarray, np.ndarray]:
         """Return each edge between two cells once: its vertices (m, 2), and the cells to its left and right (m, 2)."""

@@ -1,7 +1,7 @@
-"""The elevation of a triangulated surface at many places, made tile by tile: any number of nodes in little memory.
+"""The elevation of a triangulated surface at many positions, made tile by tile: any number of nodes in little memory.
 
 A triangle belongs to the Delaunay triangulation of all nodes when none of them lies inside its circle, whichever nodes
-it was found among. So only the nodes close to the places of a tile are triangulated, and every triangle under a place
+it was found among. So only the nodes close to the points of a tile are triangulated, and every triangle under a point
 is held to that rule: the surface is that of one triangulation, without seams.
 
 The far corners that surround the nodes of a tile take no part: where one of them spoils the flat triangles along the
@@ -22,20 +22,20 @@ from .delaunay import circles
 from .grid import grid_over, plan_box
 from .tin import CORNERS, Tin
 
-# Nodes and places of a tile at most: of few nodes each is triangulated in less than half the time that it takes among
+# Nodes and points of a tile at most: of few nodes each is triangulated in less than half the time that it takes among
 # twenty thousand, and of fewer the surroundings of tiles count.
 _NODES, _PLACES = 5_000, 20_000
 
 # Tiles that a thread works on between two reports.
 _TILES_AT_ONCE = 4
 
-# Cells around places, in distances between nodes: most triangles have their corners in such a cell or the next.
+# Cells around positions, in distances between nodes: most triangles have their corners in such a cell or the next.
 _CELL = 1.5
 
 # Nodes inside a circle that are taken in at once.
 _INTRUDERS = 8
 
-# Nodes whose width in plan is a smaller share of their length than this lie on a line, and no place lies between them.
+# Nodes whose width in plan is a smaller share of their length than this lie on a line, and no point lies between them.
 _LEAST_WIDTH = 1e-9
 
 # Nodes on a circle, as those of regular grids are, lie inside it by rounding.
@@ -43,7 +43,7 @@ _ROUNDING = 1e-9
 
 
 class TiledTin:
-    """The surface of :class:`Tin`, for places that are all known beforehand.
+    """The surface of :class:`Tin`, for positions that are all known beforehand.
 
     Parameters
     ----------
@@ -53,76 +53,78 @@ class TiledTin:
 
     def __init__(self, nodes: np.ndarray) -> None:
         # In this order rows, ascending, are in the same one however the nodes came.
-        self.nodes = nodes = _lowest_of_each_place(nodes)
+        self.nodes = nodes = _lowest_of_each_position(nodes)
         self._box = plan_box(nodes)
         # Small numbers keep their digits when they are squared. Triangulations of tiles, of the same box, have it too.
         self._shift = self._box.mean(axis=0)
         self._tree = spatial.cKDTree(nodes[:, :2] - self._shift, balanced_tree=False)
 
-    def elevation(self, places: np.ndarray, monitor: Optional[Monitor] = None) -> np.ndarray:
+    def elevation(self, positions: np.ndarray, monitor: Optional[Monitor] = None) -> np.ndarray:
         """Return the elevation (n,) of the surface at positions (n, 2 or 3), NaN outside the hull of the nodes (m)."""
         monitor = monitor or Monitor()
-        found = np.full(len(places), np.nan)
-        tiles = list(_tiles(self.nodes, places))
+        found = np.full(len(positions), np.nan)
+        tiles = list(_tiles(self.nodes, positions))
         gaps: list[tuple[np.ndarray, np.ndarray]] = [(np.zeros(0, np.int64), np.zeros(0, np.int64))] * len(tiles)
 
         def fill(some: np.ndarray) -> None:
             for tile in some:
                 rows, left = tiles[tile]
-                gaps[tile] = self._fill(_close(self.nodes, rows, places[left]), left, places, found, is_start=True)
+                close = _close(self.nodes, rows, positions[left])
+                gaps[tile] = self._fill(close, left, positions, found, is_start=True)
 
         in_chunks(fill, np.arange(len(tiles)), _TILES_AT_ONCE, monitor.part(0, 0.7))
-        # The few places that are left, in gaps of the ground, need the nodes around the gaps only.
+        # The few positions that are left, in gaps of the ground, need the nodes around the gaps only.
         if tiles:
             around, within = (np.unique(np.concatenate(parts)) for parts in zip(*gaps))
-            self._fill_gaps(around, within, places, found, monitor.part(0.7, 1))
-        self._fill_edge(np.flatnonzero(np.isnan(found)), places, found)
+            self._fill_gaps(around, within, positions, found, monitor.part(0.7, 1))
+        self._fill_edge(np.flatnonzero(np.isnan(found)), positions, found)
         monitor.progress(1.0)
         return found
 
-    def nearest_elevation(self, places: np.ndarray) -> np.ndarray:
-        """Return the elevation (n,) of the node nearest in plan to each place (n, 2 or 3), m."""
-        return self.nodes[self._tree.query(places[:, :2] - self._shift, workers=n_threads())[1], 2]
+    def nearest_elevation(self, positions: np.ndarray) -> np.ndarray:
+        """Return the elevation (n,) of the node nearest in plan to each position (n, 2 or 3), m."""
+        return self.nodes[self._tree.query(positions[:, :2] - self._shift, workers=n_threads())[1], 2]
 
     def _fill_gaps(
-        self, around: np.ndarray, within: np.ndarray, places: np.ndarray, found: np.ndarray, monitor: Monitor
+        self, around: np.ndarray, within: np.ndarray, positions: np.ndarray, found: np.ndarray, monitor: Monitor
     ) -> None:
         """Write the elevations at positions ``within`` gaps to ``found``, starting from the nodes ``around`` these."""
-        tiles = list(_tiles(self.nodes[around], places[within]))
+        tiles = list(_tiles(self.nodes[around], positions[within]))
 
         def fill(some: np.ndarray) -> None:
             for tile in some:
                 rows, left = around[tiles[tile][0]], within[tiles[tile][1]]
                 while len(left):
-                    more, left = self._fill(rows, left, places, found, is_start=False)
+                    more, left = self._fill(rows, left, positions, found, is_start=False)
                     rows = np.union1d(rows, more)
 
         in_chunks(fill, np.arange(len(tiles)), 1, monitor)
 
     def _fill(
-        self, rows: np.ndarray, left: np.ndarray, places: np.ndarray, found: np.ndarray, is_start: bool
+        self, rows: np.ndarray, left: np.ndarray, positions: np.ndarray, found: np.ndarray, is_start: bool
     ) -> tuple[np.ndarray, np.ndarray]:
         """Write the elevations at those of the positions ``left`` whose triangles between the nodes ``rows`` are right.
 
-        Returns nodes that the others need, at the start with those around them, and these other places.
+        Returns nodes that the others need, at the start with those around them, and these other positions.
         """
         if not len(rows):
-            rows = self._nearest(places[left])
+            rows = self._nearest(positions[left])
         tin = Tin(self.nodes[rows], self._box)
-        facet = tin.locate(places[left])
+        facet = tin.locate(positions[left])
         facets, of = np.unique(facet, return_inverse=True)
         intruders, is_wrong = self._intruders(*tin.circles(facets), rows)
         wrong = is_wrong[of]
         right = left[~wrong]
-        elevation = tin.elevation(places[right], facet[~wrong])
+        elevation = tin.elevation(positions[right], facet[~wrong])
         found[right] = np.where(tin.is_extrapolated()[facet[~wrong]], np.nan, elevation)
         left = left[wrong]
         if is_start and len(left):
             ends = np.unique(tin.facets[facets[is_wrong]])
-            intruders = np.concatenate([rows[ends[ends >= CORNERS] - CORNERS], intruders, self._nearest(places[left])])
+            nearest = self._nearest(positions[left])
+            intruders = np.concatenate([rows[ends[ends >= CORNERS] - CORNERS], intruders, nearest])
         return intruders, left
 
-    def _fill_edge(self, left: np.ndarray, places: np.ndarray, found: np.ndarray) -> None:
+    def _fill_edge(self, left: np.ndarray, positions: np.ndarray, found: np.ndarray) -> None:
         """Write the elevations at those of the positions ``left`` that lie in the hull of all nodes to ``found``.
 
         The far corners of a :class:`Tin` take away the flat triangles along its hull: these have such large circles
@@ -134,14 +136,14 @@ class TiledTin:
         rows = spatial.ConvexHull(plan).vertices
         while len(left):
             mesh = spatial.Delaunay(plan[rows])
-            facet = mesh.find_simplex(places[left, :2] - self._shift)
+            facet = mesh.find_simplex(positions[left, :2] - self._shift)
             left, facet = left[facet >= 0], facet[facet >= 0]
             facets, of = np.unique(facet, return_inverse=True)
             intruders, is_wrong = self._intruders(*circles(mesh.points, mesh.simplices[facets]), rows)
             right, left = left[~is_wrong[of]], left[is_wrong[of]]
             surface = interpolate.LinearNDInterpolator(mesh, self.nodes[rows, 2])
-            found[right] = surface(places[right, :2] - self._shift)
-            rows = np.unique(np.concatenate([rows, intruders, self._nearest(places[left])]))
+            found[right] = surface(positions[right, :2] - self._shift)
+            rows = np.unique(np.concatenate([rows, intruders, self._nearest(positions[left])]))
 
     def _intruders(self, center: np.ndarray, radius: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the rows of nodes inside circles that ``rows`` lack, and which circles have such.
@@ -149,7 +151,7 @@ class TiledTin:
         Circles have a ``center`` (c, 2), from the shift, and a ``radius`` (c,), m, both NaN for nodes on a line.
         """
         limit = radius * (1 - _ROUNDING)
-        # Nodes on a line have no circle, and no place lies between them.
+        # Nodes on a line have no circle, and no position lies between them.
         center[~np.isfinite(radius)], limit[~np.isfinite(radius)] = 0.0, 0.0
         is_wrong = self._tree.query(center)[0] < limit
         distance, node = self._tree.query(center[is_wrong], np.arange(1, min(_INTRUDERS, len(self.nodes)) + 1))
@@ -158,9 +160,9 @@ class TiledTin:
         is_wrong[is_wrong] = is_new.any(axis=1)
         return node[is_new], is_wrong
 
-    def _nearest(self, places: np.ndarray) -> np.ndarray:
-        """Return the rows of the nodes that are nearest to places, each once."""
-        return np.unique(self._tree.query(places[:, :2] - self._shift)[1])
+    def _nearest(self, positions: np.ndarray) -> np.ndarray:
+        """Return the rows of the nodes that are nearest to positions, each once."""
+        return np.unique(self._tree.query(positions[:, :2] - self._shift)[1])
 
 
 def _has_area(plan: np.ndarray) -> bool:
@@ -169,24 +171,24 @@ def _has_area(plan: np.ndarray) -> bool:
     return len(plan) > 2 and bool(extents[1] > _LEAST_WIDTH * extents[0])
 
 
-def _tiles(nodes: np.ndarray, places: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Halve the plane until each part has few nodes and places; yield the rows of both where there are places.
+def _tiles(nodes: np.ndarray, positions: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Halve the plane until each part has few nodes and positions; yield the rows of both where there are positions.
 
     Nodes close to a part are in it too.
     """
-    left = [(np.arange(len(nodes), dtype=np.int32), np.arange(len(places), dtype=np.int32))]
+    left = [(np.arange(len(nodes), dtype=np.int32), np.arange(len(positions), dtype=np.int32))]
     while left:
         rows, own = left.pop()
         if not len(own):
             continue
-        low, high = plan_box(nodes[rows] if len(rows) > _NODES else places[own])
+        low, high = plan_box(nodes[rows] if len(rows) > _NODES else positions[own])
         axis = int(np.argmax(high - low))
         middle = (low[axis] + high[axis]) / 2
         if (len(rows) <= _NODES and len(own) <= _PLACES) or not low[axis] < middle:
             yield rows, own
             continue
         margin = 2 * _cell_size(nodes, rows)
-        along, is_lower = nodes[rows, axis], places[own, axis] < middle
+        along, is_lower = nodes[rows, axis], positions[own, axis] < middle
         left += [(rows[along < middle + margin], own[is_lower]), (rows[along >= middle - margin], own[~is_lower])]
 
 
@@ -198,18 +200,18 @@ def _cell_size(nodes: np.ndarray, rows: np.ndarray) -> float:
     return _CELL * float(np.sqrt((high - low).prod() / len(rows)))
 
 
-def _close(nodes: np.ndarray, rows: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """Return those of the ``rows`` of nodes that lie in a cell with places, or next to such a cell."""
+def _close(nodes: np.ndarray, rows: np.ndarray, positions: np.ndarray) -> np.ndarray:
+    """Return those of the ``rows`` of nodes that lie in a cell with positions, or next to such a cell."""
     size = _cell_size(nodes, rows)
     if not size:
         return rows
-    grid = grid_over(places, size)
-    cells = np.unique(grid.number(places))
+    grid = grid_over(positions, size)
+    cells = np.unique(grid.number(positions))
     # Nodes outside the grid may take the number of a cell far off, which does no harm.
     return rows[np.isin(grid.number(nodes[rows]), cells[:, None] + [0, *grid.around])]
 
 
-def _lowest_of_each_place(nodes: np.ndarray) -> np.ndarray:
+def _lowest_of_each_position(nodes: np.ndarray) -> np.ndarray:
     """Return nodes in the order of their coordinates, only the lowest at each position in plan."""
     x, y, z = nodes.T
     order = np.lexsort((z, y, x))

@@ -82,7 +82,7 @@ class Tin:
             The facet that is under each point then.
         """
         new = points[joining] - self.shift
-        mesh, became = self._mesh.with_places(new[:, :2], facet[joining])
+        mesh, became = self._mesh.with_positions(new[:, :2], facet[joining])
         corner = self.facets[:, 0]
         self.nodes = np.vstack([self.nodes, new])
         self._take(mesh)
@@ -137,7 +137,7 @@ class Tin:
         return found
 
     def _walk(self, plan: np.ndarray, facet: np.ndarray) -> np.ndarray:
-        """Return the facets (n,) under places (n, 2), m from the shift; the walks begin at ``facet`` (n,)."""
+        """Return the facets (n,) under positions (n, 2), m from the shift; the walks begin at ``facet`` (n,)."""
         walking = np.arange(len(plan))
         for _ in range(_MAX_STEPS):
             across = self._leaving(plan[walking], facet[walking])

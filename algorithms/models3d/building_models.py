@@ -223,11 +223,11 @@ def _joined_parts(roof: Partition, min_step: float) -> np.ndarray:
     ends, beside = roof.cells.edges()
     one, other = roof.label[beside[:, 0]], roof.label[beside[:, 1]]
     rows = (one >= 0) & (other >= 0)
-    places = np.array(roof.cells.vertices)
+    positions = np.array(roof.cells.vertices)
     planes = roof.coefficients
     step = np.zeros(len(ends))
     for k in (0, 1):
-        xy = places[ends[:, k]]
+        xy = positions[ends[:, k]]
         difference = planes[one] - planes[other]
         step = step + np.abs((difference[:, :2] * xy).sum(axis=1) + difference[:, 2]) / 2
     rows &= (one == other) | (step < min_step)

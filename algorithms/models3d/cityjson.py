@@ -61,14 +61,14 @@ def cityjson_pieces(models: Collection[NamedModel], called: str, frame: MapFrame
 
 def _extent(models: Iterable[NamedModel], frame: MapFrame) -> tuple[np.ndarray, np.ndarray]:
     """Return the least and greatest coordinates of all models, in map units; 0 without any."""
-    ends = [(places.min(axis=0), places.max(axis=0)) for one in models for places in _places(one, frame)]
+    ends = [(positions.min(axis=0), positions.max(axis=0)) for one in models for positions in _positions(one, frame)]
     if not ends:
         return np.zeros(3), np.zeros(3)
     low, high = zip(*ends)
     return np.min(low, axis=0), np.max(high, axis=0)
 
 
-def _places(one: NamedModel, frame: MapFrame) -> Iterator[np.ndarray]:
+def _positions(one: NamedModel, frame: MapFrame) -> Iterator[np.ndarray]:
     """Yield the vertices of the solids of a model, in map units."""
     for solids in one.model.solids.values():
         for solid in solids:
@@ -118,7 +118,7 @@ def _head(low: np.ndarray, high: np.ndarray, translate: np.ndarray, crs: str, is
 
 
 class _Vertices:
-    """The vertices of a file or feature, each place once."""
+    """The vertices of a file or feature, each position once."""
 
     def __init__(self, translate: np.ndarray, frame: MapFrame) -> None:
         self.translate, self.frame = translate, frame
@@ -161,7 +161,7 @@ def _building(one: NamedModel, vertices: _Vertices) -> dict[str, Any]:
 
 
 def in_units(facts: dict[str, Any], fields: Iterable[Field], frame: MapFrame) -> dict[str, Any]:
-    """Return attributes in the units of the vertices: CityJSON has no place for others."""
+    """Return attributes in the units of the vertices: CityJSON has no field for other units."""
     plan, height = frame.units
     factor = {"m": height, "m²": plan**2, "m³": plan**2 * height}
     units = {field.name: factor.get(field.unit, 1.0) for field in fields}

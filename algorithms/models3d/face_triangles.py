@@ -20,17 +20,17 @@ def triangulate_face(vertices: np.ndarray, rings: list[list[int]]) -> list[list[
     Held, M., 2001. FIST: fast industrial-strength triangulation of polygons (bridges to holes, then ears).
     """
     used = sorted({v for ring in rings for v in ring})
-    places = dict(zip(used, _in_plane(vertices, rings, used).tolist()))
+    positions = dict(zip(used, _in_plane(vertices, rings, used).tolist()))
     ring = list(rings[0])
     # The rightmost hole first: its bridge then crosses no other hole.
-    for hole in sorted(rings[1:], key=lambda hole: -max(places[v][0] for v in hole)):
-        ring = _bridged(ring, hole, places)
+    for hole in sorted(rings[1:], key=lambda hole: -max(positions[v][0] for v in hole)):
+        ring = _bridged(ring, hole, positions)
     triangles = []
     while len(ring) > 3:
-        ear = next((i for i in range(len(ring)) if _is_ear(ring, i, places)), None)
+        ear = next((i for i in range(len(ring)) if _is_ear(ring, i, positions)), None)
         if ear is None:
             # Only vertices on straight edges are left over by rounding.
-            ear = int(np.argmax([_turn(*(places[v] for v in _corner(ring, i))) for i in range(len(ring))]))
+            ear = int(np.argmax([_turn(*(positions[v] for v in _corner(ring, i))) for i in range(len(ring))]))
         triangles.append(list(_corner(ring, ear)))
         ring.pop(ear)
     return [*triangles, ring]
@@ -54,23 +54,23 @@ def _turn(a, b, c) -> float:
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
-def _is_ear(ring: list[int], i: int, places: dict) -> bool:
+def _is_ear(ring: list[int], i: int, positions: dict) -> bool:
     names = _corner(ring, i)
-    a, b, c = (places[v] for v in names)
+    a, b, c = (positions[v] for v in names)
     if _turn(a, b, c) <= 1e-9:
         return False
     return not any(
         _turn(a, b, p) >= 0 and _turn(b, c, p) >= 0 and _turn(c, a, p) >= 0
-        for p in (places[v] for v in ring if v not in names)
+        for p in (positions[v] for v in ring if v not in names)
     )
 
 
-def _bridged(ring: list[int], hole: list[int], places: dict) -> list[int]:
+def _bridged(ring: list[int], hole: list[int], positions: dict) -> list[int]:
     """Return one ring of a ring and a hole in it, joined along a line that crosses neither."""
-    start = max(range(len(hole)), key=lambda i: places[hole[i]])
-    order = sorted(range(len(ring)), key=lambda i: _distance(places[ring[i]], places[hole[start]]))
+    start = max(range(len(hole)), key=lambda i: positions[hole[i]])
+    order = sorted(range(len(ring)), key=lambda i: _distance(positions[ring[i]], positions[hole[start]]))
     # Only a hole that touches the ring is seen from none of its vertices, or one that rounding put there.
-    i = next((i for i in order if _sees(ring, i, hole, places[hole[start]], places)), order[0])
+    i = next((i for i in order if _sees(ring, i, hole, positions[hole[start]], positions)), order[0])
     return [*ring[: i + 1], *hole[start:], *hole[: start + 1], *ring[i:]]
 
 
@@ -78,15 +78,15 @@ def _distance(a, b) -> float:
     return (a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2
 
 
-def _sees(ring: list[int], i: int, hole: list[int], place, places: dict) -> bool:
-    before, here, after = (places[v] for v in _corner(ring, i))
+def _sees(ring: list[int], i: int, hole: list[int], position, positions: dict) -> bool:
+    before, here, after = (positions[v] for v in _corner(ring, i))
     # Of a vertex that an earlier bridge doubled, the corner that faces the hole counts.
     is_convex = _turn(before, here, after) >= 0
-    within = (_turn(before, here, place) > 0, _turn(here, after, place) > 0)
+    within = (_turn(before, here, position) > 0, _turn(here, after, position) > 0)
     if not (all(within) if is_convex else any(within)):
         return False
     edges = [*zip(ring, [*ring[1:], ring[0]]), *zip(hole, [*hole[1:], hole[0]])]
-    return not any(_cross(here, place, places[u], places[v]) for u, v in edges)
+    return not any(_cross(here, position, positions[u], positions[v]) for u, v in edges)
 
 
 def _cross(a, b, c, d) -> bool:

@@ -161,9 +161,9 @@ class _Mending:
         cells = partition.cells
         self.areas = cells.areas()
         ends, self.beside = cells.edges()
-        self.places = np.array(cells.vertices)
-        self.length = np.hypot(*(self.places[ends[:, 0]] - self.places[ends[:, 1]]).T)
-        self.highest = np.full(len(self.places), np.inf) if limits is None else limits.highest(self.places)
+        self.positions = np.array(cells.vertices)
+        self.length = np.hypot(*(self.positions[ends[:, 0]] - self.positions[ends[:, 1]]).T)
+        self.highest = np.full(len(self.positions), np.inf) if limits is None else limits.highest(self.positions)
         self.loops = [np.array(loop) for loop in cells.loops]
         self.level: set[int] = set()
 
@@ -199,7 +199,7 @@ class _Mending:
         corner = np.concatenate([self.loops[cell] for cell in used])
         for _ in range(_ROUNDS):
             a, b, c = self.partition.coefficients[np.repeat(label[used], size)].T
-            above = a * self.places[corner, 0] + b * self.places[corner, 1] + c - self.highest[corner]
+            above = a * self.positions[corner, 0] + b * self.positions[corner, 1] + c - self.highest[corner]
             is_high = np.maximum.reduceat(above, np.cumsum(size) - size) > 0
             parts = used[is_high, None]
             changes = [self._take(part, [int(label[part[0]]), *self._neighbors(part)], True) for part in parts]
@@ -251,7 +251,7 @@ class _Mending:
     def _level_plane(self, rows: np.ndarray, corners: np.ndarray, own: int) -> np.ndarray:
         """Return the level plane (3,) at the height of some points, not above what corners may have."""
         a, b, c = self.partition.coefficients[own]
-        height = float(np.mean(self.places[corners] @ [a, b]) + c)
+        height = float(np.mean(self.positions[corners] @ [a, b]) + c)
         if len(rows):
             height = float(np.percentile(self.xyz[rows, 2], self.percentile))
         return np.array([0.0, 0.0, min(height, float(self.highest[corners].min()))])
@@ -261,4 +261,4 @@ class _Mending:
         a, b, c = plane
         off = np.abs(self.xyz[rows, 2] - self.xyz[rows, :2] @ [a, b] - c)
         loss = float(np.minimum(off, _FARTHEST).mean()) * area if len(rows) else 0.0
-        return loss + float(np.maximum(self.places[corners] @ [a, b] + c - self.highest[corners], 0.0).max())
+        return loss + float(np.maximum(self.positions[corners] @ [a, b] + c - self.highest[corners], 0.0).max())

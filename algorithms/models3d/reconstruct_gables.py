@@ -238,11 +238,11 @@ def _house(
     # Plane a lies to the right of the ridge.
     if (planes.center[a] - point) @ across > 0:
         across, along = -across, -along
-    places = [np.column_stack([(xyz[groups[k]] - point) @ way for way in (along, across)]) for k in (a, b)]
-    every = np.concatenate(places)
+    positions = [np.column_stack([(xyz[groups[k]] - point) @ way for way in (along, across)]) for k in (a, b)]
+    every = np.concatenate(positions)
     west, east = _ends(every[:, 0])
     falls = [-_fall(planes.normal[k], across) for k in (a, b)]
-    right, left = _ends(places[0][:, 1])[0], _ends(places[1][:, 1])[1]
+    right, left = _ends(positions[0][:, 1])[0], _ends(positions[1][:, 1])[1]
     # One height for both eaves; each moves along its plane to it.
     drop = (abs(right * falls[0]) + abs(left * falls[1])) / 2
     right, left = -drop / abs(falls[0]), drop / abs(falls[1])

@@ -51,8 +51,8 @@ from .solids import ROOF, WALL
 # Fewer points than this over a footprint, or a smaller share of its area with points, show no roof.
 _LEAST_POINTS, _LEAST_COVERED = 6, 0.1
 
-# The ground of a building is this percentile of the ground points nearest to places along its outline, and the distance
-# between these places (m).
+# The ground of a building is this percentile of the ground points nearest to positions along its outline;
+# the distance between these positions (m).
 _GROUND_PERCENTILE, _GROUND_STEP = 5.0, 2.0
 
 # Footprints without a model that a warning names.
@@ -256,18 +256,18 @@ def _outlines(footprints: LayerFeatures, id_field: str, monitor: Monitor) -> lis
 def _cleaned(ring: np.ndarray) -> np.ndarray:
     """Return a closed ring without the vertices that are too close to another one or to the line of their neighbors."""
     kept = [ring[0]]
-    for place, following in zip(ring[1:-1], ring[2:]):
-        is_apart = np.hypot(*(place - kept[-1])) >= _CLOSE and np.hypot(*(place - ring[0])) >= _CLOSE
-        if is_apart and _off_line(place, kept[-1], following) >= _CLOSE:
-            kept.append(place)
+    for position, following in zip(ring[1:-1], ring[2:]):
+        is_apart = np.hypot(*(position - kept[-1])) >= _CLOSE and np.hypot(*(position - ring[0])) >= _CLOSE
+        if is_apart and _off_line(position, kept[-1], following) >= _CLOSE:
+            kept.append(position)
     if len(kept) > 2 and _off_line(kept[0], kept[-1], kept[1]) < _CLOSE:
         kept.pop(0)
     return np.array([*kept, kept[0]])
 
 
-def _off_line(place: np.ndarray, start: np.ndarray, end: np.ndarray) -> float:
+def _off_line(position: np.ndarray, start: np.ndarray, end: np.ndarray) -> float:
     """Return the distance (m) of a position to the line between two others."""
-    along, offset = end - start, place - start
+    along, offset = end - start, position - start
     length = float(np.hypot(*along))
     return abs(along[0] * offset[1] - along[1] * offset[0]) / length if length > 0 else float(np.hypot(*offset))
 
@@ -345,7 +345,7 @@ def _ground_heights(ground: np.ndarray) -> Callable[[list], tuple[float, float]]
 
 
 def _along(ring: np.ndarray) -> np.ndarray:
-    """Return places (k, 2) along a ring, its vertices and as many as needed between them."""
+    """Return positions (k, 2) along a ring, its vertices and as many as needed between them."""
     parts = []
     for start, end in zip(ring[:-1], ring[1:]):
         count = max(1, int(np.ceil(np.hypot(*(end - start)) / _GROUND_STEP)))

@@ -121,32 +121,32 @@ def _contacts(xy: np.ndarray, label: np.ndarray, spacing: float) -> tuple[np.nda
 
 
 class _Border:
-    """Where two planes are beside each other: places (m, 2) between their points, and the points of both (k, 2)."""
+    """Where two planes are beside each other: positions (m, 2) between their points, and the points of both (k, 2)."""
 
     def __init__(
-        self, planes: RoofPlanes, pair: tuple[int, int], places: np.ndarray, points: list[np.ndarray], spacing: float
+        self, planes: RoofPlanes, pair: tuple[int, int], positions: np.ndarray, points: list[np.ndarray], spacing: float
     ) -> None:
         one, other = pair
         self.points = points
         self.difference = planes.coefficients[one] - planes.coefficients[other]
         self.slopes = planes.coefficients[[one, other], :2]
-        self.places, self.spacing = places, spacing
+        self.positions, self.spacing = positions, spacing
         self.turn = float(np.hypot(*self.difference[:2]))
-        step = np.abs(places @ self.difference[:2] + self.difference[2])
+        step = np.abs(positions @ self.difference[:2] + self.difference[2])
         limit = max(_AT_LINE, _AT_LINE_SPACINGS * spacing)
-        self.at_line = step <= limit * self.turn if self.turn > _LEAST_TURN else np.zeros(len(places), bool)
+        self.at_line = step <= limit * self.turn if self.turn > _LEAST_TURN else np.zeros(len(positions), bool)
 
     def intersection(self) -> list[Piece]:
         """Return the piece of the line in which the planes intersect, if they meet there."""
         if self.at_line.sum() < _LEAST_CONTACTS:
             return []
         normal = self.difference[:2] / self.turn
-        place = -normal * self.difference[2] / self.turn
-        return [self._piece(place, np.array([-normal[1], normal[0]]), self.places[self.at_line])]
+        position = -normal * self.difference[2] / self.turn
+        return [self._piece(position, np.array([-normal[1], normal[0]]), self.positions[self.at_line])]
 
     def steps(self, main: np.ndarray) -> list[Piece]:
         """Return lines along the contacts where one plane is above the other."""
-        left = self.places[~self.at_line]
+        left = self.positions[~self.at_line]
         directions, weight = self._directions(main)
         found: list[Piece] = []
         width = max(0.3, self.spacing)
@@ -164,8 +164,8 @@ class _Border:
             if on_best is None or on_best[2].sum() < _LEAST_CONTACTS:
                 break
             direction, normal, chosen = on_best
-            place = normal * self._between(normal, direction, left[chosen])
-            found.append(self._piece(place, direction, left[chosen]))
+            position = normal * self._between(normal, direction, left[chosen])
+            found.append(self._piece(position, direction, left[chosen]))
             left = left[~chosen]
         return found
 
@@ -201,11 +201,11 @@ class _Border:
         weight += [1.0] * 12
         return np.array(found), np.array(weight)
 
-    def _piece(self, place: np.ndarray, direction: np.ndarray, contacts: np.ndarray) -> Piece:
-        along = (contacts - place) @ direction
+    def _piece(self, position: np.ndarray, direction: np.ndarray, contacts: np.ndarray) -> Piece:
+        along = (contacts - position) @ direction
         beyond = max(_BEYOND, _BEYOND_SPACINGS * self.spacing)
         low, high = along.min() - beyond, along.max() + beyond
-        return Piece(place + low * direction, place + high * direction, float(len(contacts)))
+        return Piece(position + low * direction, position + high * direction, float(len(contacts)))
 
 
 def _without_doubles(pieces: list[Piece]) -> list[Piece]:
@@ -220,8 +220,8 @@ def _without_doubles(pieces: list[Piece]) -> list[Piece]:
         u = direction[kept]
         is_parallel = np.abs(u[:, 0] * direction[i, 1] - u[:, 1] * direction[i, 0]) <= _SAME_TURN
         covers = is_parallel.copy()
-        for place in (start[i], end[i]):
-            offset = place - start[kept]
+        for position in (start[i], end[i]):
+            offset = position - start[kept]
             along = np.einsum("ij,ij->i", offset, u)
             across = np.abs(u[:, 0] * offset[:, 1] - u[:, 1] * offset[:, 0])
             covers &= (across <= _SAME_OFFSET) & (along >= -_BEYOND) & (along <= length[kept] + _BEYOND)

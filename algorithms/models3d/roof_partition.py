@@ -32,7 +32,7 @@ _FARTHEST, _FAR_WEIGHT = 1.0, 0.5
 # square meter of the wall between them, up to a step of 1 m. A dormer of 1.5 m by 1.5 m has 6 m of border.
 _BORDER, _STEP, _MOST_STEP = 0.10, 0.05, 1.0
 
-# Places farther from the points of planes (spacings) than this are gaps; what the nearest point tells of them counts
+# Positions farther from the points of planes (spacings) than this are gaps; what the nearest point tells of them counts
 # for this share of their area.
 _GAP_SPACINGS, _GAP_WEIGHT = 2.0, 0.3
 
@@ -70,7 +70,7 @@ class Partition:
 
 
 def inside_rings(xy: np.ndarray, rings: list) -> np.ndarray:
-    """Return which places (n, 2) a polygon holds."""
+    """Return which positions (n, 2) a polygon holds."""
     return are_within(xy, np.concatenate([np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings]))
 
 
@@ -105,10 +105,10 @@ def _are_inside(cells: Subdivision, rings: list) -> np.ndarray:
 
 def _mean_widths(cells: Subdivision) -> np.ndarray:
     """Return the mean widths (cells,), m: twice the areas over the perimeters."""
-    places = np.array(cells.vertices)
+    positions = np.array(cells.vertices)
     width = np.zeros(len(cells))
     for cell, area in enumerate(cells.areas()):
-        corner = places[cells.loops[cell]]
+        corner = positions[cells.loops[cell]]
         width[cell] = 2 * area / np.hypot(*(corner - np.roll(corner, 1, axis=0)).T).sum()
     return width
 
@@ -160,9 +160,9 @@ def _labels(planes: RoofPlanes, cells: Subdivision, used: np.ndarray, cost: np.n
     beside = number[beside]
     between = (beside >= 0).all(axis=1)
     ends, beside = ends[between], beside[between]
-    places = np.array(cells.vertices)
-    length = np.hypot(*(places[ends[:, 0]] - places[ends[:, 1]]).T)
-    heights = [planes.coefficients[:, :2] @ places[ends[:, k]].T + planes.coefficients[:, 2:] for k in (0, 1)]
+    positions = np.array(cells.vertices)
+    length = np.hypot(*(positions[ends[:, 0]] - positions[ends[:, 1]]).T)
+    heights = [planes.coefficients[:, :2] @ positions[ends[:, k]].T + planes.coefficients[:, 2:] for k in (0, 1)]
     rows = np.arange(len(ends))
 
     def border(one: np.ndarray, other: np.ndarray) -> np.ndarray:
@@ -191,9 +191,9 @@ def _costs(
     cost = np.zeros((len(used), len(planes)))
     if not len(counted):
         return cost
-    place, nearest = _gaps(xyz[counted], cells, used, spacing)
+    of_gap, nearest = _gaps(xyz[counted], cells, used, spacing)
     sample = np.concatenate([counted, counted[nearest]])
-    of_cell = np.concatenate([cell[counted], place])
+    of_cell = np.concatenate([cell[counted], of_gap])
     weight = np.full(len(sample), spacing**2)
     weight[len(counted) :] = _GAP_WEIGHT * _GAP_CELL**2
     # The nearest point of a gap decides its plane, not its height.
@@ -208,24 +208,24 @@ def _costs(
 def _gaps(xyz: np.ndarray, cells: Subdivision, used: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray]:
     """Return the cell of each sample of gaps, numbered as in ``used``, and the nearest of the points ``xyz``."""
     tree = spatial.cKDTree(xyz[:, :2])
-    places, of_cell = [], []
+    positions, of_cell = [], []
     for number, c in enumerate(used):
         corners = np.array([cells.vertices[v] for v in cells.loops[c]])
         if len(cells.members[c]) * spacing**2 > 0.5 * cells.area(cells.loops[c]):
             continue
         inside = _lattice_in(corners)
-        places.append(inside)
+        positions.append(inside)
         of_cell.append(np.full(len(inside), number))
-    if not places:
+    if not positions:
         return np.zeros(0, int), np.zeros(0, int)
-    xy, of = np.concatenate(places), np.concatenate(of_cell)
+    xy, of = np.concatenate(positions), np.concatenate(of_cell)
     distance, nearest = tree.query(xy)
     far = distance > _GAP_SPACINGS * spacing
     return of[far], nearest[far]
 
 
 def _lattice_in(corners: np.ndarray) -> np.ndarray:
-    """Return the places (k, 2) of a lattice in a convex cell."""
+    """Return the positions (k, 2) of a lattice in a convex cell."""
     low, high = corners.min(axis=0), corners.max(axis=0)
     axes = [np.arange(np.ceil(a / _GAP_CELL), np.floor(b / _GAP_CELL) + 1) * _GAP_CELL for a, b in zip(low, high)]
     xy = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 2)

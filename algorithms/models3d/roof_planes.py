@@ -1,4 +1,4 @@
-"""The planes of one building's roof, grown from its smoothest places."""
+"""The planes of one building's roof, grown from its smoothest positions."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def find_roof_planes(xyz: np.ndarray, tolerance: float, max_slope: float, min_po
     Parameters
     ----------
     xyz : ndarray of shape (n, 3)
-        Points of the building (m), relative to a place nearby.
+        Points of the building (m), relative to a position nearby.
     tolerance : float
         Distance at which a point lies on a plane (m).
     max_slope : float

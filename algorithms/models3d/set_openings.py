@@ -76,12 +76,12 @@ class _Wall:
         self.origin = solid.vertices[solid.faces[face][0][0]]
         self.rings = [self.flat(solid.vertices[[*ring, ring[0]]]) for ring in solid.faces[face]]
 
-    def flat(self, places: np.ndarray) -> np.ndarray:
+    def flat(self, positions: np.ndarray) -> np.ndarray:
         """Return positions (m, 2) along and up the wall of positions (m, 3)."""
-        return (places - self.origin) @ np.column_stack([self.along, self.up])
+        return (positions - self.origin) @ np.column_stack([self.along, self.up])
 
     def space(self, flat: np.ndarray) -> np.ndarray:
-        """Return the places (m, 3) on the wall of positions (m, 2)."""
+        """Return the positions (m, 3) on the wall of positions (m, 2)."""
         return self.origin + flat[:, :1] * self.along + flat[:, 1:] * self.up
 
 

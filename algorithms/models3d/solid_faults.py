@@ -176,9 +176,9 @@ class _Face:
         """Return whether edges that have no corner in common cross."""
         step = self.end - self.start
 
-        def side(places: np.ndarray) -> np.ndarray:
+        def side(positions: np.ndarray) -> np.ndarray:
             """Return on which side of each edge (k, 1) each position (k,) is, as an area."""
-            offset = places[None] - self.start[:, None]
+            offset = positions[None] - self.start[:, None]
             return step[:, None, 0] * offset[..., 1] - step[:, None, 1] * offset[..., 0]
 
         parts = side(self.start) * side(self.end) < 0
@@ -296,8 +296,8 @@ def _is_crossed(face: _Face, one: np.ndarray, two: np.ndarray) -> bool:
     lies = np.maximum(np.abs(above), np.abs(beyond)) <= RULES.apart
     share = np.where(through, above / np.where(through, above - beyond, 1.0), 0.5)
     rows = np.flatnonzero(through | lies)
-    place = one[rows] + share[rows, None] * (two[rows] - one[rows])
-    return bool(len(rows)) and bool(face.holds(place).any())
+    crossings = one[rows] + share[rows, None] * (two[rows] - one[rows])
+    return bool(len(rows)) and bool(face.holds(crossings).any())
 
 
 def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:

@@ -142,7 +142,7 @@ class Levels:
                 if self.plane_beyond(u, v) == _BASE:
                     self._outline[u].append(v)
                     self._outline[v].append(u)
-        self.place = list(cells.vertices)
+        self.plan = list(cells.vertices)
         self.number: dict[tuple[int, int], int] = {}
         self.positions: list[tuple[float, float, float]] = []
         for vertex, planes in self.around.items():
@@ -162,33 +162,33 @@ class Levels:
         """Return the height (m) at which a plane, or the ground, is at a vertex."""
         return self.positions[self.number[vertex, plane]][2]
 
-    def _height_at(self, plane: int, place: tuple[float, float]) -> float:
+    def _height_at(self, plane: int, plan: tuple[float, float]) -> float:
         if plane == _BASE:
             return self.base
         a, b, c = self.coefficients[plane]
-        return a * place[0] + b * place[1] + c
+        return a * plan[0] + b * plan[1] + c
 
     def _move_to_intersection(self, vertex: int, planes: list[int]) -> None:
         """Move a vertex to where planes intersect, on the outline if it lies on that, or else by less."""
-        place = self.place[vertex]
-        meeting = self._meeting(planes, place)
+        plan = self.plan[vertex]
+        meeting = self._meeting(planes, plan)
         if not meeting or meeting[-1][0] < _EXACT:
             return
         near = sorted({plane for _, _, pair in meeting for plane in pair})
         if len(near) > _IN_A_POINT and vertex not in self._outline:
-            step = self._nearest_point(near, place)
-            if math.hypot(*step) <= _MEET and self._keeps_cells(vertex, (place[0] + step[0], place[1] + step[1])):
-                self.place[vertex] = place[0] + step[0], place[1] + step[1]
+            step = self._nearest_point(near, plan)
+            if math.hypot(*step) <= _MEET and self._keeps_cells(vertex, (plan[0] + step[0], plan[1] + step[1])):
+                self.plan[vertex] = plan[0] + step[0], plan[1] + step[1]
                 return
-        along = [self._across(place, self.place[other]) for other in self._outline.get(vertex, ())]
+        along = [self._across(plan, self.plan[other]) for other in self._outline.get(vertex, ())]
         for lines, farthest in ((along, _MEET), ([], SNAP)) if along else (([], _MEET),):
             step = _common_step([*lines, *(line for _, line, _ in meeting)], farthest)
-            moved = place[0] + step[0], place[1] + step[1]
+            moved = plan[0] + step[0], plan[1] + step[1]
             if step != (0.0, 0.0) and self._keeps_cells(vertex, moved):
-                self.place[vertex] = moved
+                self.plan[vertex] = moved
                 return
 
-    def _meeting(self, planes: list[int], place: tuple[float, float]) -> list[tuple[float, _Line, tuple[int, int]]]:
+    def _meeting(self, planes: list[int], plan: tuple[float, float]) -> list[tuple[float, _Line, tuple[int, int]]]:
         """Return the lines in which planes intersect near a position, each with its distance (m); nearest first."""
         found = []
         for i, one in enumerate(planes):
@@ -196,41 +196,41 @@ class Levels:
             for other in planes[i + 1 :]:
                 d, e, f = self.coefficients[other]
                 turn = math.hypot(a - d, b - e)
-                step = (a - d) * place[0] + (b - e) * place[1] + c - f
+                step = (a - d) * plan[0] + (b - e) * plan[1] + c - f
                 if turn > 0 and abs(step) <= _MEET * turn:
                     found.append((abs(step) / turn, ((a - d) / turn, (b - e) / turn, -step / turn), (one, other)))
         return sorted(found)
 
-    def _nearest_point(self, planes: list[int], place: tuple[float, float]) -> tuple[float, float]:
+    def _nearest_point(self, planes: list[int], plan: tuple[float, float]) -> tuple[float, float]:
         """Return the step (m) from a position to where planes are nearest to having one height."""
         rows = np.array([self.coefficients[plane] for plane in planes])
-        height = rows @ [*place, 1.0]
+        height = rows @ [*plan, 1.0]
         step = np.linalg.lstsq(np.column_stack([rows[:, :2], -np.ones(len(rows))]), height.mean() - height, rcond=None)[
             0
         ]
         return float(step[0]), float(step[1])
 
     @staticmethod
-    def _across(place: tuple[float, float], other: tuple[float, float]) -> _Line:
+    def _across(plan: tuple[float, float], other: tuple[float, float]) -> _Line:
         """Return the line from a position to another one."""
-        x, y = other[0] - place[0], other[1] - place[1]
+        x, y = other[0] - plan[0], other[1] - plan[1]
         length = math.hypot(x, y)
         return -y / length, x / length, 0.0
 
     def _keeps_cells(self, vertex: int, moved: tuple[float, float]) -> bool:
         """Return whether the cells around a vertex keep their orientation when it is moved."""
-        before, self.place[vertex] = self.place[vertex], moved
+        before, self.plan[vertex] = self.plan[vertex], moved
         loops = [self.cells.loops[self.cells.cell_of[vertex, other]] for other in self._spokes[vertex]]
-        kept = all(_loop_area([self.place[v] for v in loop]) > 0 for loop in loops)
-        self.place[vertex] = before
+        kept = all(_loop_area([self.plan[v] for v in loop]) > 0 for loop in loops)
+        self.plan[vertex] = before
         return kept
 
     def _number(self, vertex: int) -> None:
         """Give numbers to the positions at a vertex."""
-        x, y = self.place[vertex]
-        place = self.place[vertex] = round(x, DECIMALS), round(y, DECIMALS)
+        x, y = self.plan[vertex]
+        plan = self.plan[vertex] = round(x, DECIMALS), round(y, DECIMALS)
         group: list[tuple[float, int]] = []
-        for height, plane in sorted((self._height_at(plane, place), plane) for plane in self.around[vertex]):
+        for height, plane in sorted((self._height_at(plane, plan), plane) for plane in self.around[vertex]):
             if group and height - group[0][0] > _SAME_HEIGHT:
                 self._enter(vertex, group)
                 group = []
@@ -242,7 +242,7 @@ class Levels:
         z = self.base if is_ground else round(sum(height for height, _ in group) / len(group), DECIMALS)
         for _, plane in group:
             self.number[vertex, plane] = len(self.positions)
-        self.positions.append((*self.place[vertex], z))
+        self.positions.append((*self.plan[vertex], z))
 
     def part_crossing_roofs(self) -> None:
         """Put a vertex where one of two planes beside an edge comes from below the other."""
@@ -257,9 +257,9 @@ class Levels:
             if at_u * at_v >= 0:
                 continue
             share = at_u / (at_u - at_v)
-            (x0, y0), (x1, y1) = self.place[u], self.place[v]
+            (x0, y0), (x1, y1) = self.plan[u], self.plan[v]
             new = self.cells.insert(u, v, (x0 + share * (x1 - x0), y0 + share * (y1 - y0)))
-            self.place.append(self.cells.vertices[new])
+            self.plan.append(self.cells.vertices[new])
             self.around[new] = {one, other}
             self._number(new)
 
@@ -324,9 +324,9 @@ def _common_step(lines: list[_Line], farthest: float) -> tuple[float, float]:
     return step
 
 
-def _loop_area(places: list[tuple[float, float]]) -> float:
-    x0, y0 = places[0]
-    offset = [(x - x0, y - y0) for x, y in places]
+def _loop_area(positions: list[tuple[float, float]]) -> float:
+    x0, y0 = positions[0]
+    offset = [(x - x0, y - y0) for x, y in positions]
     return 0.5 * sum(xa * yb - xb * ya for (xa, ya), (xb, yb) in zip(offset, [*offset[1:], offset[0]]))
 
 
@@ -460,12 +460,12 @@ class _Builder:
         return ax * bx + ay * by > 0 and self._is_straight([one, other])
 
     def _direction(self, wall: _Wall) -> tuple[float, float]:
-        (x0, y0), (x1, y1) = self.levels.place[wall.start], self.levels.place[wall.end]
+        (x0, y0), (x1, y1) = self.levels.plan[wall.start], self.levels.plan[wall.end]
         return x1 - x0, y1 - y0
 
     def _is_straight(self, walls: list[_Wall]) -> bool:
         """Return whether the ends of walls lie in one line."""
-        xy = np.array([self.levels.place[end] for wall in walls for end in (wall.start, wall.end)])
+        xy = np.array([self.levels.plan[end] for wall in walls for end in (wall.start, wall.end)])
         away = xy - xy[0]
         far = away[np.argmax((away**2).sum(axis=1))]
         away = xy - xy[0] - far

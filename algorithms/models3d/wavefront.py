@@ -38,10 +38,10 @@ def obj_pieces(models: Collection[NamedModel], called: str, frame: MapFrame) -> 
     for one, name in zip(models, object_names(models, frame)):
         yield "o building_" + re.sub(r"[^\w.-]+", "_", name) + "\n"
         for solid in one.model.best:
-            places = frame.to_map(solid.vertices) - offset
-            yield "".join(f"v {x:.{DECIMALS}f} {y:.{DECIMALS}f} {z:.{DECIMALS}f}\n" for x, y, z in places.tolist())
+            positions = frame.to_map(solid.vertices) - offset
+            yield "".join(f"v {x:.{DECIMALS}f} {y:.{DECIMALS}f} {z:.{DECIMALS}f}\n" for x, y, z in positions.tolist())
             yield from _faces(solid, number)
-            number += len(places)
+            number += len(positions)
 
 
 def _faces(solid: Solid, number: int) -> Iterator[str]:

@@ -151,7 +151,7 @@ def _measured(points: np.ndarray, apart: float, n_neighbors: int) -> tuple[np.nd
     phase = offsets @ _SAMPLE_WAVE
     is_sampled = is_dense & (phase - np.floor(phase) < share)
     if is_dense.any() and not is_sampled.any():
-        # All lie at few places, none of them in a sheet.
+        # All lie at few positions, none of them in a sheet.
         is_sampled = is_dense
     rows = np.flatnonzero(is_sampled | ~is_dense)
     weight = np.where(is_dense[rows], np.count_nonzero(is_dense) / max(np.count_nonzero(is_sampled), 1), 1.0)
@@ -165,9 +165,9 @@ def _neighbor_distances(
     tree = spatial.cKDTree(points, balanced_tree=False)
     nearest, distance, rise = np.empty((3, len(rows)))
     # In the order of the tree's leaves the neighbors of a chunk lie together.
-    place = np.full(len(points), -1, np.int64)
-    place[rows] = np.arange(len(rows))
-    order = place[tree.indices]
+    position = np.full(len(points), -1, np.int64)
+    position[rows] = np.arange(len(rows))
+    order = position[tree.indices]
     order = order[order >= 0]
     for start in range(0, len(order), _CHUNK):
         chunk = order[start : start + _CHUNK]

@@ -17,7 +17,7 @@ from ..threads import in_chunks
 # Points of a chunk: values gathered for them stay in the processor's cache.
 _CHUNK = 50_000
 
-# Places inside a voxel are whole numbers of this fraction of its side, so that sums don't depend on the order.
+# Positions inside a voxel are whole numbers of this fraction of its side, so that sums don't depend on the order.
 _STEPS = 2.0**32
 
 # With more voxels along an axis, float64 could not resolve positions inside a voxel.
@@ -94,7 +94,7 @@ def downsample_voxels(
     classification : ndarray of shape (n,), optional
         Classes. Noise counts like any other class; alone as it mostly is, it keeps voxels of its own.
     gps_time, return_number : ndarray of shape (n,), optional
-        They choose between points at the same place, and for nothing else.
+        They choose between points at the same position, and for nothing else.
 
     Returns
     -------
@@ -147,12 +147,12 @@ def downsample_voxels(
         these = chunks[chunk[0]]
         rows, count = voxels.rows(these), voxels.count[these]
         which = np.repeat(np.arange(len(these)), count)
-        # The places inside each voxel, their sum, and the point nearest to their mean.
-        place = _places(xyz.take(rows, axis=0), voxel_size)
-        total = np.add.reduceat(place, run_starts(which), axis=0)
-        nearest = _nearest(place, total, which, TOUCH / voxel_size * _STEPS, (gps_time, return_number), rows)
+        # The positions inside each voxel, their sum, and the point nearest to their mean.
+        position = _positions(xyz.take(rows, axis=0), voxel_size)
+        total = np.add.reduceat(position, run_starts(which), axis=0)
+        nearest = _nearest(position, total, which, TOUCH / voxel_size * _STEPS, (gps_time, return_number), rows)
         selected[these] = rows[nearest]
-        shift = total / count[:, None] - place[nearest]
+        shift = total / count[:, None] - position[nearest]
         center[these] = xyz.take(rows[nearest], axis=0) + shift * (voxel_size / _STEPS)
         if majority is not None:
             majority[these] = _majority(classification.take(rows), which)
@@ -210,7 +210,7 @@ def _renumbered(key: np.ndarray) -> tuple[np.ndarray, int]:
     return key, len(used)
 
 
-def _places(points: np.ndarray, size: float) -> np.ndarray:
+def _positions(points: np.ndarray, size: float) -> np.ndarray:
     """Return where points lie in their voxels, int64 (m, 3), in steps."""
     scaled = points / size
     scaled -= voxel_index(scaled, size)
@@ -219,7 +219,7 @@ def _places(points: np.ndarray, size: float) -> np.ndarray:
 
 
 def _nearest(
-    place: np.ndarray,
+    position: np.ndarray,
     total: np.ndarray,
     which: np.ndarray,
     touch: float,
@@ -230,7 +230,7 @@ def _nearest(
 
     Parameters
     ----------
-    place : ndarray of shape (m, 3), int64
+    position : ndarray of shape (m, 3), int64
         Of the points, by voxel.
     total : ndarray of shape (k, 3), int64
         Sum of the positions of each voxel.
@@ -245,11 +245,11 @@ def _nearest(
     """
     count = np.bincount(which)[which]
     # Whole numbers: the two points of a pair are equally near to the last bit.
-    away = (place * count[:, None] - total[which]).astype(float)
+    away = (position * count[:, None] - total[which]).astype(float)
     distance = np.sqrt(np.einsum("ij,ij->i", away, away)) / count
     least = np.minimum.reduceat(distance, run_starts(which))
     left = np.flatnonzero(distance <= (least + touch)[which])
-    for values in _criteria(place, times, rows):
+    for values in _criteria(position, times, rows):
         if len(left) == len(total):
             break
         least = np.minimum.reduceat(values[left], run_starts(which[left]))
@@ -257,9 +257,9 @@ def _nearest(
     return left[run_starts(which[left])]
 
 
-def _criteria(place: np.ndarray, times: tuple, rows: np.ndarray) -> Iterator[np.ndarray]:
+def _criteria(position: np.ndarray, times: tuple, rows: np.ndarray) -> Iterator[np.ndarray]:
     """Yield the numbers (m,) that decide between points equally near, the next ones only if some are still alike."""
-    yield from place.T
+    yield from position.T
     for dimension in times:
         if dimension is not None:
             yield np.nan_to_num(dimension[rows])

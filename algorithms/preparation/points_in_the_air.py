@@ -91,8 +91,8 @@ def in_the_air(xyz: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarray:
         Receives progress.
     """
     link = link_length(spacing)
-    thing = _things(xyz, link)
-    is_loose = (_loose(xyz, thing, spacing, monitor) & ~_is_cut(xyz, thing, link))[thing]
+    component = _components(xyz, link)
+    is_loose = (_loose(xyz, component, spacing, monitor) & ~_is_cut(xyz, component, link))[component]
     rows = np.flatnonzero(is_loose)
     rows = rows[_is_open(xyz, is_loose, rows, link)]
     rows = rows[~_on_wires(xyz[rows])]
@@ -101,7 +101,7 @@ def in_the_air(xyz: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarray:
     return found
 
 
-def _things(xyz: np.ndarray, link: float) -> np.ndarray:
+def _components(xyz: np.ndarray, link: float) -> np.ndarray:
     """Return the thing (n,) that each point belongs to, from 0: occupied voxels of side ``link`` that touch."""
     steps = [np.floor((axis - axis.min()) / link).astype(np.int32) + 1 for axis in xyz.T]
     shape = [int(step.max()) + 2 for step in steps]
@@ -119,21 +119,21 @@ def _things(xyz: np.ndarray, link: float) -> np.ndarray:
     return components(np.concatenate(here), np.concatenate(there), len(voxels))[1][voxel]
 
 
-def _loose(xyz: np.ndarray, thing: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarray:
+def _loose(xyz: np.ndarray, component: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarray:
     """Return which things let most pulses pass and are neither compact, nor lines, nor planes."""
-    n_points = np.bincount(thing)
-    small = np.flatnonzero((n_points < n_points.max())[thing])
+    n_points = np.bincount(component)
+    small = np.flatnonzero((n_points < n_points.max())[component])
     cell = fixed_grid_over(xyz, _SHARE_SPACINGS * spacing).number(xyz)
     cells, which = distinct(cell)
     in_cell = np.bincount(which)
-    pairs = np.unique(thing[small].astype(np.int64) * len(cells) + which[small])
+    pairs = np.unique(component[small].astype(np.int64) * len(cells) + which[small])
     in_columns = np.bincount(
         pairs // len(cells), np.maximum(in_cell[pairs % len(cells)], _LEAST_IN_COLUMN), len(n_points)
     )
     is_loose = (in_columns > 0) & (n_points < _SOLID_SHARE * in_columns)
 
-    order = small[np.argsort(thing[small], kind="stable")]
-    ends = np.searchsorted(thing[order], np.arange(len(n_points) + 1))
+    order = small[np.argsort(component[small], kind="stable")]
+    ends = np.searchsorted(component[order], np.arange(len(n_points) + 1))
     for number in np.flatnonzero(is_loose & (n_points >= 3)).tolist():
         points = xyz[order[ends[number] : ends[number + 1]]]
         is_loose[number] = not _has_form(points, max(_COMPACT, _COMPACT_SPACINGS * spacing))
@@ -141,12 +141,12 @@ def _loose(xyz: np.ndarray, thing: np.ndarray, spacing: float, monitor: Monitor)
     return is_loose
 
 
-def _is_cut(xyz: np.ndarray, thing: np.ndarray, link: float) -> np.ndarray:
+def _is_cut(xyz: np.ndarray, component: np.ndarray, link: float) -> np.ndarray:
     """Return which things of three points or more reach the border of the cloud: they may be parts of larger ones."""
     low, high = plan_box(xyz)
     x, y = xyz[:, 0], xyz[:, 1]
     is_outer = (x < low[0] + link) | (x > high[0] - link) | (y < low[1] + link) | (y > high[1] - link)
-    return (np.bincount(thing, is_outer) > 0) & (np.bincount(thing) >= 3)
+    return (np.bincount(component, is_outer) > 0) & (np.bincount(component) >= 3)
 
 
 def _has_form(points: np.ndarray, compact: float) -> bool:
@@ -193,10 +193,10 @@ def _on_wires(points: np.ndarray) -> np.ndarray:
     count = min(_TUBE_NEIGHBORS, len(points))
     distance, near = spatial.cKDTree(points).query(points, count, distance_upper_bound=_TUBE_REACH)
     # Missing neighbors are at infinity.
-    places = np.concatenate([points, np.full((1, 3), np.inf)])
+    positions = np.concatenate([points, np.full((1, 3), np.inf)])
     for row in np.flatnonzero(np.isfinite(distance).sum(axis=1) >= _TUBE_POINTS).tolist():
         others = near[row][np.isfinite(distance[row])]
-        off = places[others] - points[row]
+        off = positions[others] - points[row]
         along = off[1:, :2]
         length = np.linalg.norm(along, axis=1)
         usable = length > _TUBE_NEAREST

@@ -94,10 +94,10 @@ def under_ground(xyz: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarra
     return found
 
 
-def mask_of(length: int, places: np.ndarray) -> np.ndarray:
-    """Return a mask (length,) that is true at some places."""
+def mask_of(length: int, positions: np.ndarray) -> np.ndarray:
+    """Return a mask (length,) that is true at some positions."""
     mask = np.zeros(length, bool)
-    mask[places] = True
+    mask[positions] = True
     return mask
 
 
@@ -119,7 +119,7 @@ def _deep(xyz: np.ndarray, which: np.ndarray, rows: np.ndarray, surface: _Surfac
 
 
 def near_cells(grid: Grid, cells: np.ndarray, which: np.ndarray) -> np.ndarray:
-    """Return the places in ``cells`` of some cells and those around them, ascending."""
+    """Return the positions in ``cells`` of some cells and those around them, ascending."""
     at, is_cell = find_cells(cells, (cells[np.unique(which)][:, None] + [0, *grid.around]).ravel())
     return np.unique(at[is_cell])
 
@@ -170,7 +170,7 @@ class _Surface:
 def _close_surface(
     grid: Grid, cells: np.ndarray, lowest: np.ndarray, middle: np.ndarray, wanted: np.ndarray
 ) -> _Surface:
-    """Return the lowest surface around the ``wanted`` cells (places in ``cells``).
+    """Return the lowest surface around the ``wanted`` cells (positions in ``cells``).
 
     ``lowest`` and ``middle`` are the points of each cell at these ranks in height. Up to three neighbors may hold
     companions of a low point; most points of such a cell are on the surface, though, unlike those of a cell
@@ -246,8 +246,8 @@ def _is_floor(low: np.ndarray) -> np.ndarray:
     """Return which low points (n, 3) belong to a floor: others lie at their level, spread over meters."""
     # Heights are stretched so that the neighborhood is a flat disk.
     stretch = np.array([1.0, 1.0, UNDER_GROUND.floor_reach / UNDER_GROUND.floor_level])
-    places = low * stretch
-    near = spatial.cKDTree(places).query_ball_point(places, UNDER_GROUND.floor_reach, return_sorted=True)
+    positions = low * stretch
+    near = spatial.cKDTree(positions).query_ball_point(positions, UNDER_GROUND.floor_reach, return_sorted=True)
     is_floor = np.zeros(len(low), bool)
     for row, others in enumerate(near):
         if len(others) > UNDER_GROUND.floor_points:

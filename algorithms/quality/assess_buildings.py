@@ -285,18 +285,18 @@ def _page(xyz: np.ndarray, predicted: np.ndarray, true: np.ndarray, values: dict
     return build_page("Quality of the buildings", lead, tables, draw_map(xyz, outcome_of(predicted, true), legend))
 
 
-def _rows(values: dict, prefix: str, things: str) -> list[Row]:
+def _rows(values: dict, prefix: str, objects: str) -> list[Row]:
     hits, misses, false = (values[f"{prefix}_{name}"] for name in ("hits", "misses", "false"))
     return [
         Row(
             "Completeness",
             percent(values[f"{prefix}_completeness"]),
-            f"Share of the reference's buildings was found: {hits:,} of {hits + misses:,} {things}.",
+            f"Share of the reference's buildings was found: {hits:,} of {hits + misses:,} {objects}.",
         ),
         Row(
             "Correctness",
             percent(values[f"{prefix}_correctness"]),
-            f"Share of the points called building that are building: {hits:,} of {hits + false:,} {things}.",
+            f"Share of the points called building that are building: {hits:,} of {hits + false:,} {objects}.",
         ),
         Row(
             "F-score",
@@ -306,7 +306,7 @@ def _rows(values: dict, prefix: str, things: str) -> list[Row]:
         Row(
             "Quality",
             percent(values[f"{prefix}_quality"]),
-            f"Share of the {things} called building by either side that both call building.",
+            f"Share of the {objects} called building by either side that both call building.",
         ),
     ]
 

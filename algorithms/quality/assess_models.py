@@ -326,8 +326,8 @@ def _volume(faces: list[_Face], points: _RoofPoints) -> float:
     total = 0.0
     for face in faces:
         for ring in face.rings:
-            place = ring[:, :2] - ring[0, :2]
-            cross = place[:-1, 0] * place[1:, 1] - place[1:, 0] * place[:-1, 1]
+            position = ring[:, :2] - ring[0, :2]
+            cross = position[:-1, 0] * position[1:, 1] - position[1:, 0] * position[:-1, 1]
             # Triangles from the first corner; a plane's mean over each is that of its corners.
             height = (face.height(ring[:-1, :2]) + face.height(ring[1:, :2]) + face.height(ring[:1, :2])) / 3 - base
             total += float((0.5 * cross * height).sum())
@@ -389,7 +389,7 @@ def _outlines(xyz: np.ndarray, size: float) -> list:
 
 def _building_layer(buildings: list[_Building]) -> LayerFeatures:
     """Return a point per building."""
-    places = [np.concatenate([face.rings[0][:-1] for face in building.faces]).mean(axis=0) for building in buildings]
+    positions = [np.concatenate([face.rings[0][:-1] for face in building.faces]).mean(axis=0) for building in buildings]
     columns = {
         "id": list(range(1, len(buildings) + 1)),
         "building": [building.name for building in buildings],
@@ -401,7 +401,7 @@ def _building_layer(buildings: list[_Building]) -> LayerFeatures:
         "invented": [building.n_invented for building in buildings],
         "volume": [building.volume for building in buildings],
     }
-    return LayerFeatures(places, columns)
+    return LayerFeatures(positions, columns)
 
 
 def _page(buildings: list[_Building], values: dict[str, float], tolerance: float) -> str:

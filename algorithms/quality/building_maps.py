@@ -10,7 +10,7 @@ from ..geometry.polygon_overlap import Polygons, as_polygons, overlaps, shared_a
 from ..geometry.rings import signed_area
 from ..stage import LayerFeatures, Monitor, feature_names
 
-# Footprints and a map that lie farther apart (m) show different places, whatever of one place each of them lacks.
+# Footprints and a map that lie farther apart (m) show different areas, however incomplete each is.
 _ELSEWHERE = 1000.0
 
 # Area (m²) below which a polygon is left out.
@@ -41,7 +41,7 @@ def clean_map(features: LayerFeatures, called: str, monitor: Monitor) -> Buildin
     rings = [proper[row] for row in usable]
     polygons = as_polygons(rings)
     area, every = polygons.area, np.arange(len(rings))
-    # Places around which the rings wind twice, or the wrong way, count otherwise in the overlap with itself.
+    # Positions around which the rings wind twice, or the wrong way, count otherwise in the overlap with itself.
     crossing = int((np.abs(shared_areas(polygons, polygons, every, every, Monitor()) - area) > 0.01 * area).sum())
     if crossing:
         monitor.warn(

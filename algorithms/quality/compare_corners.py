@@ -169,7 +169,7 @@ def compare_corners(
     shift = _shift(corners, others, _linked(old, new, min_overlap, np.zeros(2), monitor.part(0.0, 0.4)), reach)
     link = _linked(old, new, min_overlap, shift, monitor.part(0.4, 0.8))
     if len(old.area) and len(new.area) and not link.old_covered.any():
-        monitor.warn("No footprint overlaps a building of the old map; check that both show the same place.")
+        monitor.warn("No footprint overlaps a building of the old map; check that both show the same area.")
     pairs = _same_corners(corners, others, link, tolerance, shift, reach, monitor)
     monitor.progress(0.9)
     moved = others.xy[pairs[1]] - corners.xy[pairs[0]]

@@ -83,17 +83,17 @@ def _match_rounded(xyz: np.ndarray, reference_xyz: np.ndarray) -> np.ndarray:
     n = len(xyz)
     both = np.concatenate([xyz, reference_xyz])
     keys = np.rint((both - both.min(axis=0)) / _TOLERANCE).astype(np.int64)
-    # Stable: within a place the points of the input come first, each cloud in its own order.
+    # Stable: within a position the points of the input come first, each cloud in its own order.
     order = np.lexsort(keys.T)
     starts = np.flatnonzero((np.diff(keys[order], axis=0, prepend=-1) != 0).any(axis=1))
-    place = np.repeat(np.arange(len(starts)), np.diff(starts, append=len(both)))
+    group = np.repeat(np.arange(len(starts)), np.diff(starts, append=len(both)))
     of_input = order < n
-    mine, mine_place = order[of_input], place[of_input]
-    theirs, theirs_place = order[~of_input] - n, place[~of_input]
+    mine, group_of_mine = order[of_input], group[of_input]
+    theirs, group_of_theirs = order[~of_input] - n, group[~of_input]
     # The k-th point at a position goes with the k-th reference point there, if there is one.
-    rank = np.arange(n) - np.searchsorted(mine_place, mine_place)
-    position = np.searchsorted(theirs_place, mine_place) + rank
-    there = position < np.searchsorted(theirs_place, mine_place, side="right")
+    rank = np.arange(n) - np.searchsorted(group_of_mine, group_of_mine)
+    position = np.searchsorted(group_of_theirs, group_of_mine) + rank
+    there = position < np.searchsorted(group_of_theirs, group_of_mine, side="right")
     found = np.full(n, -1)
     found[mine[there]] = theirs[position[there]]
     return found

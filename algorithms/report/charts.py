@@ -108,11 +108,11 @@ def draw_scatter(xy: np.ndarray, axis: str, unit: str, mean_name: str) -> str:
         for share in (0.5, 1.0)
     )
     cross = f"M{_MARGIN} {middle}H{_SIDE - _MARGIN}M{middle} {_MARGIN}V{_SIDE - _MARGIN}"
-    places = np.column_stack([middle + xy[:, 0] * scale, middle - xy[:, 1] * scale])
+    positions = np.column_stack([middle + xy[:, 0] * scale, middle - xy[:, 1] * scale])
     every = -(-len(xy) // _MOST_DOTS)
-    dots = "".join(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3"/>' for x, y in places[::every].tolist())
+    dots = "".join(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3"/>' for x, y in positions[::every].tolist())
     shown = axis if every == 1 else f"{axis} (one in {every} is drawn)"
-    x, y = places.mean(axis=0).tolist()
+    x, y = positions.mean(axis=0).tolist()
     mean = (
         f'<path d="M{x - 9:.1f} {y:.1f}h18M{x:.1f} {y - 9:.1f}v18" stroke="#fff" stroke-width="6"/>'
         f'<path d="M{x - 8:.1f} {y:.1f}h16M{x:.1f} {y - 8:.1f}v16" stroke="{RED}" stroke-width="3"/>'

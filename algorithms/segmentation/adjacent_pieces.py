@@ -60,8 +60,8 @@ class Adjacency:
         first = np.ones(len(beside), bool)
         first[1:] = one[1:] != one[:-1]
         best = beside[first]
-        place = np.cumsum(first) - 1
-        opposite = np.einsum("ij,ij->i", self.offset[beside], self.offset[best][place]) < 0
+        position = np.cumsum(first) - 1
+        opposite = np.einsum("ij,ij->i", self.offset[beside], self.offset[best][position]) < 0
         across = beside[opposite]
         middle, at = np.unique(self.one[across], return_index=True)
         partner = best[np.searchsorted(self.one[best], middle)]
@@ -113,14 +113,14 @@ def _beside(
     across = way - length[..., None] * along[:, None]
     square = np.einsum("ijk,ijk->ij", across, across)
     is_beside = (square > length * length) & (piece[found] != piece[rows][:, None])
-    place = np.arange(len(rows))
+    position = np.arange(len(rows))
     first = is_beside.argmax(axis=1)
-    opposite = is_beside & (np.einsum("ijk,ik->ij", across, across[place, first]) < 0)
+    opposite = is_beside & (np.einsum("ijk,ik->ij", across, across[position, first]) < 0)
     second = opposite.argmax(axis=1)
     return np.column_stack(
         [
-            np.where(is_beside.any(axis=1), found[place, first], -1),
-            np.where(opposite.any(axis=1), found[place, second], -1),
+            np.where(is_beside.any(axis=1), found[position, first], -1),
+            np.where(opposite.any(axis=1), found[position, second], -1),
         ]
     )
 

@@ -88,8 +88,8 @@ def _adjacent(one: np.ndarray, other: np.ndarray, price: np.ndarray, n: int) -> 
     """Return each pair of two different planes once, with one of its prices."""
     low, high = np.minimum(one, other), np.maximum(one, other)
     apart = low != high
-    key, place = np.unique(low[apart] * n + high[apart], return_index=True)
-    return (*np.divmod(key, n), price[apart][place])
+    key, position = np.unique(low[apart] * n + high[apart], return_index=True)
+    return (*np.divmod(key, n), price[apart][position])
 
 
 def common_deviation(planes: Planes, one: np.ndarray, other: np.ndarray) -> np.ndarray:

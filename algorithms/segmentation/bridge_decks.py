@@ -247,8 +247,8 @@ class Decks:
         to_tip = (along.max() - along)[:, None]
         forward = np.append(axis, 0.0)
         for step in _AHEAD:
-            places = end + (to_tip + step * self.reach) * forward
-            distance, _ = ground.query(places * self._stretch, distance_upper_bound=self.reach / 2)
+            positions = end + (to_tip + step * self.reach) * forward
+            distance, _ = ground.query(positions * self._stretch, distance_upper_bound=self.reach / 2)
             if np.isfinite(distance).mean() >= _LEAST_AHEAD:
                 return True
         return False
@@ -270,8 +270,8 @@ class Decks:
         grid = fixed_grid_over(xyz[np.concatenate([rows, others])], self.reach / 2)
         cells, which = distinct(grid.number(xyz[rows]))
         level = np.bincount(which, xyz[rows, 2]) / np.bincount(which)
-        place, found = find_cells(cells, grid.number(xyz[others]))
-        same = found & (np.abs(xyz[others, 2] - level[place]) <= _SAME_LEVEL)
+        position, found = find_cells(cells, grid.number(xyz[others]))
+        same = found & (np.abs(xyz[others, 2] - level[position]) <= _SAME_LEVEL)
         return np.concatenate([rows, others[same]])
 
 

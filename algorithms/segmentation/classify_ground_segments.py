@@ -142,8 +142,8 @@ def _bare_earth(
     member = np.flatnonzero(segment > 0)
     # Other programs number segments as they like.
     segments, of = distinct(segment[member].astype(np.int64))
-    own, place = distinct(of * room + grid.number(points[member]))
-    level = np.bincount(place, points[member, 2]) / np.bincount(place)
+    own, position = distinct(of * room + grid.number(points[member]))
+    level = np.bincount(position, points[member, 2]) / np.bincount(position)
     number = own // room
     border, raised = np.zeros(len(own), bool), np.zeros(len(own), bool)
     for step in grid.around:

@@ -185,8 +185,8 @@ def _occupied(xyz: np.ndarray, group: np.ndarray, density: float) -> tuple[Grid,
     member = group >= 0
     # Numbers of occupied cells are small, those of cells between far points times the groups may be too large.
     cells, which = distinct(grid.number(xyz)[member])
-    owner, place = np.divmod(np.unique(group[member].astype(np.int64) * len(cells) + which), max(len(cells), 1))
-    return grid, owner, cells[place]
+    owner, position = np.divmod(np.unique(group[member].astype(np.int64) * len(cells) + which), max(len(cells), 1))
+    return grid, owner, cells[position]
 
 
 def _columns(xyz: np.ndarray, group: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

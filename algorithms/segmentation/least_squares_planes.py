@@ -33,7 +33,7 @@ class Planes:
 
     @cached_property
     def normal(self) -> np.ndarray:
-        """Unit normals (m, 3), upward; NaN where all points lie at one place."""
+        """Unit normals (m, 3), upward; NaN where all points lie at one position."""
         return smallest_eigenvectors(self.covariance, self.eigenvalues)
 
     @property

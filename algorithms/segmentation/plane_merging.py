@@ -148,8 +148,8 @@ def _product(
     here: np.ndarray, there: np.ndarray, start: np.ndarray, count: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return every piece of the voxels ``here`` with every piece of those ``there``."""
-    which, place = items(count[here] * count[there])
-    first, second = np.divmod(place, count[there][which])
+    which, position = items(count[here] * count[there])
+    first, second = np.divmod(position, count[there][which])
     return start[here[which]] + first, start[there[which]] + second
 
 
@@ -259,6 +259,6 @@ def _planes_around(
     start = np.cumsum(count) - count
     keys = []
     for here, there in around_each:
-        which, place = items(count[there])
-        keys.append(here[which] * n_planes + group[start[there[which]] + place])
+        which, position = items(count[there])
+        keys.append(here[which] * n_planes + group[start[there[which]] + position])
     return np.divmod(np.unique(np.concatenate(keys)), max(n_planes, 1))

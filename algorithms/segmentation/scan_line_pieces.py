@@ -62,9 +62,9 @@ def slices(xyz: np.ndarray, direction: float, width: float) -> tuple[np.ndarray,
     line = lattice(across + width / 2, width)
     line -= line.min(initial=0)
     # All lines one behind the other: one key is sorted in a fraction of the time of three.
-    place = along + line * (np.ptp(along) + 1)
-    # Points at one place on a line go upward.
-    order = ordered(place, xyz[:, 2], across)
+    position = along + line * (np.ptp(along) + 1)
+    # Points at one position on a line go upward.
+    order = ordered(position, xyz[:, 2], across)
     return order, line[order]
 
 

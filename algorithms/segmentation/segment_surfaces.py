@@ -84,7 +84,7 @@ def segment_surfaces(
         Param(
             "Proximity",
             "Points are near if they are among the nearest within the radius, or joined by an edge of the "
-            "triangulation in plan that is no longer (for clouds with one surface above each place).",
+            "triangulation in plan that is no longer (for clouds with one surface above each position).",
             choices=("radius", "edges"),
         ),
     ] = "radius",

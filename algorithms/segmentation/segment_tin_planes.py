@@ -74,7 +74,7 @@ def segment_tin_planes(
 
     Each triangle of the Delaunay triangulation in plan starts as a surface. The two adjacent surfaces that are most
     similar merge and get a common plane, until no two are similar enough. For clouds with one surface above each
-    place, such as airborne ones.
+    position, such as airborne ones.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def segment_tin_planes(
     -----
     Dissimilarity is the distance, as root mean square over the area of the triangles, of the worse of the two surfaces
     from their common plane. The queue is worked off in rounds of mutually best pairs, see :mod:`.best_pairs`.
-    Of points at one place in plan one counts, and the others get no id.
+    Of points at one position in plan one counts, and the others get no id.
 
     References
     ----------
@@ -157,8 +157,8 @@ def _of_points(facets: np.ndarray, group: np.ndarray, area: np.ndarray, n: int) 
     inside = group >= 0
     point, which = facets[inside].ravel().astype(np.int64), np.repeat(group[inside], 3)
     weight = np.repeat(area[inside], 3)
-    key, place = np.unique(point * (int(group.max(initial=0)) + 1) + which, return_inverse=True)
-    total = np.bincount(place, weight)
+    key, position = np.unique(point * (int(group.max(initial=0)) + 1) + which, return_inverse=True)
+    total = np.bincount(position, weight)
     point, which = np.divmod(key, int(group.max(initial=0)) + 1)
     order = np.lexsort((which, -total, point))
     first = order[np.unique(point[order], return_index=True)[1]]

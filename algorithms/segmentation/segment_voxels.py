@@ -154,7 +154,7 @@ def segment_voxels(
     Raises
     ------
     ValueError
-        If the points are spread over more voxels than can be numbered, or all lie at one place and no size is given.
+        If the points are spread over more voxels than can be numbered, or all lie at one position and no size is given.
 
     Notes
     -----
@@ -189,7 +189,7 @@ def segment_voxels(
         sampling = sampling or CloudSampling.of(xyz, classification)
         density = sampling.surface_density
         if not np.isfinite(density):
-            raise ValueError("All points lie at one place, so they have no spacing; set the voxel size.")
+            raise ValueError("All points lie at one position, so they have no spacing; set the voxel size.")
         voxel_size = _VOXEL_SPACINGS / float(np.sqrt(density))
     monitor.resolved(voxel_size=voxel_size)
     low = xyz[used].min(axis=0)
@@ -215,8 +215,8 @@ def segment_voxels(
 
     layer_count, layer_value = np.zeros(len(cells), np.int64), np.zeros(len(cells))
     layer_count[where[where >= 0]] = count[where >= 0]
-    place = locate_voxels(cells, filled)
-    layer_value[place[place >= 0]] = value[place >= 0]
+    position = locate_voxels(cells, filled)
+    layer_value[position[position >= 0]] = value[position >= 0]
     distance = distance_to_background(cells) * voxel_size
     shown = skeleton(cells, monitor.part(0.8, 1)) if thin else np.ones(len(cells), bool)
     centers = (cells[shown] + 0.5) * voxel_size + low

@@ -47,7 +47,7 @@ class VoxelPlanes:
         """Return the plane (n,), int16, of each point in the order of the boxes: from 1 in each voxel, or 0."""
         plane = np.zeros(len(self.boxes.order), np.int16)
         voxels = np.flatnonzero(self.boxes.size > 3)
-        # Voxels with about as many points go together, so that hardly any place is left empty.
+        # Voxels with about as many points go together, so that hardly any position is left empty.
         voxels = voxels[np.argsort(self.boxes.size[voxels], kind="stable")]
         most = np.maximum(1, _DISTANCES_AT_ONCE // (self.boxes.size[voxels] * self.shares.shape[1]))
         chunks = _chunks(most)
@@ -78,9 +78,9 @@ class VoxelPlanes:
     def _padded(self, voxels: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return the points (v, k, 3) around each voxel's middle, their index, and which are no padding (v, k)."""
         boxes, size = self.boxes, self.boxes.size[voxels, None]
-        place = np.arange(int(size.max()))
-        is_point = place < size
-        index = boxes.start[voxels, None] + np.minimum(place, size - 1)
+        position = np.arange(int(size.max()))
+        is_point = position < size
+        index = boxes.start[voxels, None] + np.minimum(position, size - 1)
         xyz = boxes.xyz[index]
         # Their own order in place of that of the cloud, which must not matter.
         order = np.lexsort([np.where(is_point, xyz[..., axis], np.inf) for axis in (2, 1, 0)], axis=-1)

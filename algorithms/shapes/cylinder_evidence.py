@@ -86,14 +86,14 @@ class Evidence:
 
     Attributes
     ----------
-    places : ndarray of shape (n, 3)
+    positions : ndarray of shape (n, 3)
         All points, m, sorted by elevation, those of all segments where they are.
     """
 
     noise: float
     tolerance: float
     spacing: float
-    places: np.ndarray
+    positions: np.ndarray
 
     def is_round(self, cylinder: Cylinder, own: Points, near: Points) -> bool:
         """Return whether points (k) look like those of a cylinder among all points (m) near it."""
@@ -139,7 +139,7 @@ class Evidence:
         Parameters
         ----------
         cylinder : Cylinder
-            In the coordinates of ``places``.
+            In the coordinates of ``positions``.
         along : ndarray of shape (k,)
             Positions of its points along the axis (m).
 
@@ -166,7 +166,7 @@ class Evidence:
         """Return position along, distance from (m) and angle around the axis of all points up to ``reach`` (m) off."""
         ends = cylinder.center + np.outer([along.min(), along.max()], cylinder.axis)
         low, high = ends.min(axis=0) - cylinder.radius - reach, ends.max(axis=0) + cylinder.radius + reach
-        near = self.places[slice(*np.searchsorted(self.places[:, 2], [low[2], high[2]]))]
+        near = self.positions[slice(*np.searchsorted(self.positions[:, 2], [low[2], high[2]]))]
         near = near[((near[:, :2] >= low[:2]) & (near[:, :2] <= high[:2])).all(axis=1)]
         at, distance, away = cylinder.local(near)
         between = (at >= along.min()) & (at <= along.max())

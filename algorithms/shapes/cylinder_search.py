@@ -119,7 +119,7 @@ class CylinderSearch:
     xyz, normals : ndarray of shape (n, 3)
         Points (m), sorted by elevation, and their unit normals; zero if undefined.
     shift : ndarray of shape (n,)
-        How far (m) each was moved along x from where it lies in ``evidence.places``.
+        How far (m) each was moved along x from where it lies in ``evidence.positions``.
     evidence : Evidence
         Noise, tolerance and spacing, and what makes points those of a cylinder.
     min_seen : float
@@ -246,7 +246,7 @@ class CylinderSearch:
         """Return the circle across an axis for which most points vote: each along its normal, to both sides."""
         first, second = across_axis(axis)
         middle = self.xyz[rows].mean(axis=0)
-        places = np.column_stack([(self.xyz[rows] - middle) @ first, (self.xyz[rows] - middle) @ second])
+        positions = np.column_stack([(self.xyz[rows] - middle) @ first, (self.xyz[rows] - middle) @ second])
         toward = np.column_stack([self.normals[rows] @ first, self.normals[rows] @ second])
         toward /= np.maximum(np.linalg.norm(toward, axis=1), 1e-12)[:, None]
         radii = _radii(low, high)
@@ -255,7 +255,8 @@ class CylinderSearch:
         side = int(np.ceil(2 * reach / cell)) + 2
         number = np.tile(np.arange(_RADII), 2)
         index = [
-            np.floor((places[:, k, None] + signed * toward[:, k, None] + reach) / cell).astype(np.int64) for k in (0, 1)
+            np.floor((axis + signed * way + reach) / cell).astype(np.int64)
+            for axis, way in ((positions[:, k, None], toward[:, k, None]) for k in (0, 1))
         ]
         inside = (index[0] >= 0) & (index[0] < side) & (index[1] >= 0) & (index[1] < side)
         key = (number * side + index[0]) * side + index[1]

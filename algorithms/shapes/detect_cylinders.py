@@ -131,12 +131,12 @@ def detect_cylinders(
 
     def search(around: Surroundings, low: float, high: float, monitor: Monitor) -> list[Found]:
         # Segments are searched apart; what is around a cylinder, and other pieces of it, lies in several.
-        places = around.xyz - np.column_stack([around.shift, np.zeros((len(around.shift), 2))])
-        evidence = Evidence(around.noise, around.tolerance, around.spacing, places)
+        positions = around.xyz - np.column_stack([around.shift, np.zeros((len(around.shift), 2))])
+        evidence = Evidence(around.noise, around.tolerance, around.spacing, positions)
         search = CylinderSearch(around.xyz, around.normals, around.shift, evidence, min_seen, min_points)
         apart = [one.moved(-around.shift[one.points[0]]) for one in search.find(low, high, monitor)]
         apart = without_nested(apart)
-        return joined(apart, places, around.noise, around.spacing, max_gap)
+        return joined(apart, positions, around.noise, around.spacing, max_gap)
 
     found = search_shapes(
         (xyz, classification, segment_id, shape),

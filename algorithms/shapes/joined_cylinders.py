@@ -99,13 +99,13 @@ def joined(found: list[Found], xyz: np.ndarray, noise: float, spacing: float, ma
 
 def _neighbors(found: list[Found], max_gap: float) -> dict[int, set[int]]:
     """Return for each cylinder the numbers of those whose axes come as close as pieces of one do."""
-    # Places along each axis, its ends among them, at most the gap apart.
-    places, of = [], []
+    # Positions along each axis, its ends among them, at most the gap apart.
+    positions, of = [], []
     for number, one in enumerate(found):
         count = int(np.ceil((one.high - one.low) / max_gap)) + 1
-        places.append(np.linspace(*one.ends, count))
+        positions.append(np.linspace(*one.ends, count))
         of += [number] * count
-    owner, every = np.array(of), np.concatenate(places)
+    owner, every = np.array(of), np.concatenate(positions)
     reach = max_gap + _BESIDE * np.array([one.cylinder.radius for one in found])[owner]
     near = spatial.cKDTree(every).query_ball_point(every, reach)
     beside: dict[int, set[int]] = {number: set() for number in range(len(found))}
@@ -182,7 +182,7 @@ def _seen(cylinder: Cylinder, pieces: tuple[Found, Found], xyz: np.ndarray, spac
 
 
 def _is_capped(found: Found, first: float, last: float, xyz: np.ndarray, spacing: float) -> bool:
-    """Return whether an end cap lies inside a cylinder between two places along its axis (m from its center)."""
+    """Return whether an end cap lies inside a cylinder between two positions along its axis (m from its center)."""
     cylinder = found.cylinder
     low, high = min(first, last) - cylinder.radius, max(first, last) + cylinder.radius
     corners = cylinder.center + np.outer([low, high], cylinder.axis)

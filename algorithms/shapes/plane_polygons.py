@@ -79,9 +79,9 @@ def plane_axes(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def _outline(xyz: np.ndarray, center: np.ndarray, normal: np.ndarray, cell: float) -> list:
     """Return the rings (m, 2) on the plane of the largest group of cells that hold points."""
     first, second, _ = plane_axes(normal)
-    places = np.column_stack([(xyz - center) @ first, (xyz - center) @ second])
-    grid = grid_over(places, cell)
-    cells, count = np.unique(grid.number(places), return_counts=True)
+    positions = np.column_stack([(xyz - center) @ first, (xyz - center) @ second])
+    grid = grid_over(positions, cell)
+    cells, count = np.unique(grid.number(positions), return_counts=True)
     n_groups, group = connected_cells(grid, cells)
     largest = int(np.argmax(np.bincount(group, count, n_groups)))
     cells = cells[group == largest]

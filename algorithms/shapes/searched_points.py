@@ -75,9 +75,9 @@ class SearchedPoints:
     shift: np.ndarray
     origin: np.ndarray
 
-    def in_place(self, places: np.ndarray, point: int) -> np.ndarray:
-        """Return places (..., 3) found beside the point numbered ``point`` in the coordinates of the cloud, m."""
-        return places - np.array([self.shift[point], 0.0, 0.0]) + self.origin
+    def in_place(self, positions: np.ndarray, point: int) -> np.ndarray:
+        """Return positions (..., 3) found beside the point numbered ``point`` in the coordinates of the cloud, m."""
+        return positions - np.array([self.shift[point], 0.0, 0.0]) + self.origin
 
 
 def searched_points(
@@ -123,16 +123,16 @@ def searched_points(
     if corner is not None:
         start = np.append(corner, side / 2)
         origin, apart = start + np.floor((origin - start) / side) * side, np.ceil(apart / side + 1) * side
-    places = xyz[rows] - origin
-    order = np.lexsort(places.T)
-    rows, places = rows[order], places[order]
+    positions = xyz[rows] - origin
+    order = np.lexsort(positions.T)
+    rows, positions = rows[order], positions[order]
     shift = np.zeros(len(rows))
     if search_in == EACH_SEGMENT and segment_id is not None and len(rows):
         # Numbers of segments follow the first points in this order, as the order of the cloud must not matter.
         number = by_first_point(segment_id[rows])
         shift = number * apart
-        places[:, 0] += shift
-    return SearchedPoints(rows, places, shift, origin)
+        positions[:, 0] += shift
+    return SearchedPoints(rows, positions, shift, origin)
 
 
 def named(

@@ -155,14 +155,14 @@ def segment_tree(
     origin = xyz.min(axis=0)
     everything = xyz - origin
     rows = rows[np.lexsort(everything[rows].T)]
-    places = everything[rows]
+    positions = everything[rows]
     segment_id = np.zeros(len(xyz), np.int32)
-    level = ground_level(everything, places[:, :2])
-    stems = find_stems(places, level, monitor.part(0, 0.1)) if len(rows) else []
+    level = ground_level(everything, positions[:, :2])
+    stems = find_stems(positions, level, monitor.part(0, 0.1)) if len(rows) else []
     if not stems:
         monitor.none_found("No stem was found at a height of 1.3 m; no point has a SegmentID.")
         return segment_id, LayerFeatures([], {field.name: [] for field in _FIELDS})
-    voxels = voxels_of(places, voxel_size, min_count, max_gap, monitor.part(0.1, 0.4))
+    voxels = voxels_of(positions, voxel_size, min_count, max_gap, monitor.part(0.1, 0.4))
     feet = np.array([_at_breast(stem, level) for stem, level in stems])
     radii = np.array([stem.radius for stem, _ in stems])
     slices = standing(voxels, feet, radii, voxel_size)
@@ -170,7 +170,7 @@ def segment_tree(
     branches, of_slice = branches_of(slices, min_length, monitor.part(0.7, 0.9))
     of_point = np.where(voxels.of_point >= 0, slices.of_voxel[voxels.of_point], -1)
     label, layer = _measured(
-        places, slices, branches, of_slice, of_point, (feet, radii, voxel_size), monitor.part(0.9, 1)
+        positions, slices, branches, of_slice, of_point, (feet, radii, voxel_size), monitor.part(0.9, 1)
     )
     segment_id[rows] = label
     layer.geometries = [line + origin for line in layer.geometries]
@@ -179,7 +179,7 @@ def segment_tree(
 
 
 def _at_breast(stem: Cylinder, level: float) -> np.ndarray:
-    """Return the place (3,) on the axis of a stem at breast height above the ground."""
+    """Return the position (3,) on the axis of a stem at breast height above the ground."""
     up = level + BREAST - stem.center[2]
     return stem.center + up / stem.axis[2] * stem.axis
 
@@ -195,7 +195,7 @@ def _measured(
 ) -> tuple[np.ndarray, LayerFeatures]:
     """Return the branch (n,) of each point from 1, 0 for leaves, and the layer of the branches.
 
-    ``stems`` are the places (s, 3) of stems at breast height, their radii (s,), m, and the side of a voxel (m).
+    ``stems`` are the positions (s, 3) of stems at breast height, their radii (s,), m, and the side of a voxel (m).
     """
     feet, radii, voxel_size = stems
     of_tree: dict[int, float] = {}
@@ -204,10 +204,10 @@ def _measured(
     label = np.zeros(len(xyz), np.int32)
     columns: dict[str, list] = {field.name: [] for field in _FIELDS}
     lines = []
-    position = np.zeros(len(slices.places), np.int64)
+    position = np.zeros(len(slices.positions), np.int64)
     for number, (one, own) in enumerate(zip(branches, parts), start=1):
         monitor.progress(number / len(branches))
-        line = smooth(slices.places[one.slices])
+        line = smooth(slices.positions[one.slices])
         position[one.slices] = np.arange(len(line))
         steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
         along = np.concatenate([[0.0], np.cumsum(steps)])

@@ -119,14 +119,14 @@ class SphereSearch:
         side = int(np.ceil(2 * reach / cell)) + 2
         index = np.floor((centers + reach) / cell).astype(np.int64)
         inside = ((index >= 0) & (index < side)).all(axis=2)
-        place = (index[..., 0] * side + index[..., 1]) * side + index[..., 2]
+        position = (index[..., 0] * side + index[..., 1]) * side + index[..., 2]
         number = np.broadcast_to(np.tile(np.arange(_RADII), 2), inside.shape)
         if self.centers_first:
-            best = int(np.argmax(np.bincount(place[inside])))
-            here = inside & (place == best)
+            best = int(np.argmax(np.bincount(position[inside])))
+            here = inside & (position == best)
             radius = float(radii[np.argmax(np.bincount(number[here], minlength=_RADII))])
         else:
-            best, k = divmod(int(np.argmax(np.bincount((place * _RADII + number)[inside]))), _RADII)
+            best, k = divmod(int(np.argmax(np.bincount((position * _RADII + number)[inside]))), _RADII)
             radius = float(radii[k])
         center = middle + (np.array([best // side**2, best // side % side, best % side]) + 0.5) * cell - reach
         return self._fitted(rows, center, radius, low, high)

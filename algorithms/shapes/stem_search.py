@@ -28,7 +28,7 @@ _RADII, _ROUGH, _ROUGHNESS = (0.015, 1.0), 0.2, 0.01
 _GROUND_CELL = 1.0
 
 
-def ground_level(xyz: np.ndarray, places: np.ndarray) -> np.ndarray:
+def ground_level(xyz: np.ndarray, positions: np.ndarray) -> np.ndarray:
     """Return the height (m) of the lowest of points (n, 3) in the cell of each position (m, 2) and the cells around it.
 
     Each place is that of one of the points.
@@ -41,7 +41,7 @@ def ground_level(xyz: np.ndarray, places: np.ndarray) -> np.ndarray:
     for step in grid.around:
         beside, known = find_cells(cells, cells + step)
         around[known] = np.minimum(around[known], lowest[beside[known]])
-    at, known = find_cells(cells, grid.number(places))
+    at, known = find_cells(cells, grid.number(positions))
     return np.where(known, around[at], xyz[:, 2].min())
 
 

@@ -96,8 +96,8 @@ def surface_normals(xyz: np.ndarray, count: int, monitor: Monitor) -> tuple[np.n
     # In an order of their own, so that rounding does not depend on that of the cloud.
     order = np.lexsort(xyz.T)
 
-    def keep(places: np.ndarray, shapes: Shapes) -> None:
-        rows = order[places]
+    def keep(positions: np.ndarray, shapes: Shapes) -> None:
+        rows = order[positions]
         eigenvalues = defined_eigenvalues(shapes.covariances, shapes.counts)
         is_plane = eigenvalues[:, 1] > _LINE * np.maximum(eigenvalues[:, 0], 1e-300)
         normal[rows[is_plane]] = smallest_eigenvectors(shapes.covariances[is_plane], eigenvalues[is_plane])

@@ -15,7 +15,7 @@ from ..threads import n_threads
 # Cost of a step over a gap, in multiples of its length, so that paths keep to the wood where there is some.
 _GAP_PRICE = 3.0
 
-# Thickness of a slice (voxels): thinner ones have no place of their own, thicker ones hold two forks.
+# Thickness of a slice (voxels): thinner ones don't define a position, thicker ones hold two forks.
 _SLICE = 3.0
 
 # The lowest part of a stem, in which its root is looked for, reaches so high above the breast (m).
@@ -48,7 +48,7 @@ class Voxels:
 
     Attributes
     ----------
-    places : ndarray of shape (m, 3)
+    positions : ndarray of shape (m, 3)
         Centers of the voxels (m).
     of_point : ndarray of shape (n,)
         The voxel of each point, -1 if unassigned.
@@ -58,7 +58,7 @@ class Voxels:
         Lengths of the steps (m), gaps at their price.
     """
 
-    places: np.ndarray
+    positions: np.ndarray
     of_point: np.ndarray
     one: np.ndarray
     other: np.ndarray
@@ -71,7 +71,7 @@ class Slices:
 
     Attributes
     ----------
-    places : ndarray of shape (s, 3)
+    positions : ndarray of shape (s, 3)
         Means of their voxels (m).
     parent : ndarray of shape (s,)
         The slice on the way to the root, before it in the order; -1 for roots.
@@ -81,7 +81,7 @@ class Slices:
         Slice of each voxel, -1 where no root reaches it.
     """
 
-    places: np.ndarray
+    positions: np.ndarray
     parent: np.ndarray
     tree: np.ndarray
     of_voxel: np.ndarray
@@ -103,13 +103,13 @@ def voxels_of(xyz: np.ndarray, voxel_size: float, min_count: int, max_gap: float
     """
     occupied, voxel, count = voxelize(xyz, voxel_size)
     cells = close_voxels(occupied[count >= min_count], 26, 1)
-    places = (cells + 0.5) * voxel_size
+    positions = (cells + 0.5) * voxel_size
     one, other, axes = neighbor_pairs(cells, 26)
-    piece = components(one, other, len(places))[1]
-    gaps = _gaps(places, piece, max_gap, monitor)
-    gap = np.linalg.norm(places[gaps[:, 0]] - places[gaps[:, 1]], axis=1)
+    piece = components(one, other, len(positions))[1]
+    gaps = _gaps(positions, piece, max_gap, monitor)
+    gap = np.linalg.norm(positions[gaps[:, 0]] - positions[gaps[:, 1]], axis=1)
     return Voxels(
-        places,
+        positions,
         locate_voxels(cells, occupied)[voxel],
         np.concatenate([one, gaps[:, 0]]),
         np.concatenate([other, gaps[:, 1]]),
@@ -117,41 +117,41 @@ def voxels_of(xyz: np.ndarray, voxel_size: float, min_count: int, max_gap: float
     )
 
 
-def _gaps(places: np.ndarray, piece: np.ndarray, max_gap: float, monitor: Monitor) -> np.ndarray:
+def _gaps(positions: np.ndarray, piece: np.ndarray, max_gap: float, monitor: Monitor) -> np.ndarray:
     """Return the shortest pair (k, 2) of voxels between any two pieces at most ``max_gap`` (m) apart."""
     shortest = [np.zeros((0, 2), np.int64)]
-    tree = spatial.cKDTree(places)
+    tree = spatial.cKDTree(positions)
     is_small = piece != np.argmax(np.bincount(piece)) if len(piece) else np.zeros(0, bool)
     small = np.flatnonzero(is_small)
     for start in range(0, len(small), _CHUNK):
         monitor.progress(start / len(small))
         own = small[start : start + _CHUNK]
-        near = tree.query_ball_point(places[own], max_gap, workers=n_threads())
+        near = tree.query_ball_point(positions[own], max_gap, workers=n_threads())
         there = np.concatenate([np.array(one, np.int64) for one in near])
         here = np.repeat(own, [len(one) for one in near])
         # Two voxels of small pieces see each other.
         is_pair = (piece[here] != piece[there]) & ((here < there) | ~is_small[there])
-        shortest.append(_shortest(places, piece, np.column_stack([here[is_pair], there[is_pair]])))
-    return _shortest(places, piece, np.concatenate(shortest))
+        shortest.append(_shortest(positions, piece, np.column_stack([here[is_pair], there[is_pair]])))
+    return _shortest(positions, piece, np.concatenate(shortest))
 
 
-def _shortest(places: np.ndarray, piece: np.ndarray, pairs: np.ndarray) -> np.ndarray:
+def _shortest(positions: np.ndarray, piece: np.ndarray, pairs: np.ndarray) -> np.ndarray:
     """Return of pairs (k, 2) of voxels the shortest one between any two pieces."""
     ends = np.sort(piece[pairs], axis=1)
-    distance = np.linalg.norm(places[pairs[:, 0]] - places[pairs[:, 1]], axis=1)
+    distance = np.linalg.norm(positions[pairs[:, 0]] - positions[pairs[:, 1]], axis=1)
     order = np.lexsort((pairs[:, 1], pairs[:, 0], distance, ends[:, 1], ends[:, 0]))
-    return pairs[order[run_starts(ends[order, 0].astype(np.int64) * len(places) + ends[order, 1])]]
+    return pairs[order[run_starts(ends[order, 0].astype(np.int64) * len(positions) + ends[order, 1])]]
 
 
 def roots_of(voxels: Voxels, stems: np.ndarray) -> np.ndarray:
     """Return the lowest voxel of each of the stems at positions (s, 3) of their axes at breast height (m)."""
     roots = []
     for stem in stems:
-        reach = np.linalg.norm(voxels.places[:, :2] - stem[:2], axis=1)
-        near = np.flatnonzero((reach <= _SAME_STEM) & (voxels.places[:, 2] <= stem[2] + _SAME_STEM))
+        reach = np.linalg.norm(voxels.positions[:, :2] - stem[:2], axis=1)
+        near = np.flatnonzero((reach <= _SAME_STEM) & (voxels.positions[:, 2] <= stem[2] + _SAME_STEM))
         if len(near):
             # Of those as low the one in the middle.
-            roots.append(near[np.lexsort((reach[near], voxels.places[near, 2]))[0]])
+            roots.append(near[np.lexsort((reach[near], voxels.positions[near, 2]))[0]])
     return np.unique(np.array(roots, np.int64))
 
 
@@ -163,7 +163,7 @@ def standing(voxels: Voxels, stems: np.ndarray, radii: np.ndarray, voxel_size: f
     voxels : Voxels
         Voxels of the trees.
     stems : ndarray of shape (s, 3)
-        Places of the axes of stems at breast height (m).
+        Positions of the axes of stems at breast height (m).
     radii : ndarray of shape (s,)
         Their radii (m).
     voxel_size : float
@@ -173,9 +173,9 @@ def standing(voxels: Voxels, stems: np.ndarray, radii: np.ndarray, voxel_size: f
     stems, radii = stems[thickest_first], radii[thickest_first]
     while True:
         slices = slices_of(voxels, roots_of(voxels, stems), voxel_size)
-        foot, tree = slices.places[slices.parent < 0], slices.tree[slices.parent < 0]
+        foot, tree = slices.positions[slices.parent < 0], slices.tree[slices.parent < 0]
         top = np.full(int(tree.max(initial=-1)) + 1, -np.inf)
-        np.maximum.at(top, slices.tree, slices.places[:, 2])
+        np.maximum.at(top, slices.tree, slices.positions[:, 2])
         nearest = np.argmin(np.linalg.norm(foot[:, None, :2] - stems[:, :2], axis=2), axis=1)
         height = np.zeros(len(stems))
         np.maximum.at(height, nearest, top[tree] - foot[:, 2])
@@ -191,7 +191,7 @@ def slices_of(voxels: Voxels, roots: np.ndarray, voxel_size: float) -> Slices:
 
     A scanned stem is a hollow tube. Thinned, it would be a net; levels of equal length of the path cut across it.
     """
-    n = len(voxels.places)
+    n = len(voxels.positions)
     graph = sparse.coo_matrix((voxels.length, (voxels.one, voxels.other)), (n, n)).tocsr()
     distance, before, source = csgraph.dijkstra(
         graph, directed=False, indices=roots, return_predecessors=True, min_only=True
@@ -211,11 +211,11 @@ def slices_of(voxels: Voxels, roots: np.ndarray, voxel_size: float) -> Slices:
     of_group[numbers[rank]] = np.arange(len(rank))
     of_voxel = np.where(reached, of_group[group], -1)
     count = np.bincount(of_voxel[reached], minlength=len(rank))
-    places = np.column_stack(
-        [np.bincount(of_voxel[reached], column[reached], len(rank)) / count for column in voxels.places.T]
+    positions = np.column_stack(
+        [np.bincount(of_voxel[reached], column[reached], len(rank)) / count for column in voxels.positions.T]
     )
     parent = np.where(before[nearest] >= 0, of_voxel[np.maximum(before[nearest], 0)], -1)
-    return Slices(places, parent, np.searchsorted(roots, source[nearest]), of_voxel)
+    return Slices(positions, parent, np.searchsorted(roots, source[nearest]), of_voxel)
 
 
 def branches_of(slices: Slices, min_length: float, monitor: Monitor) -> tuple[list[Branch], np.ndarray]:
@@ -224,16 +224,16 @@ def branches_of(slices: Slices, min_length: float, monitor: Monitor) -> tuple[li
     At a fork the branch goes on where the way to the farthest tip is longest; the others are branches of the next
     order. Branches shorter than ``min_length`` (m), and crooked ones, are left out with all that grows on them.
     """
-    places, parent = slices.places, slices.parent
-    step = np.where(parent >= 0, np.linalg.norm(places - places[parent], axis=1), 0.0)
-    n = len(places)
+    positions, parent = slices.positions, slices.parent
+    step = np.where(parent >= 0, np.linalg.norm(positions - positions[parent], axis=1), 0.0)
+    n = len(positions)
     beyond, heir = np.zeros(n), np.full(n, -1)
     for one in range(n - 1, -1, -1):
         above = parent[one]
         if above >= 0 and (heir[above] < 0 or beyond[one] + step[one] > beyond[above]):
             beyond[above], heir[above] = beyond[one] + step[one], one
     monitor.progress(0.5)
-    branch, order, foot = np.full(n, -1), np.zeros(n, np.int64), places[parent < 0]
+    branch, order, foot = np.full(n, -1), np.zeros(n, np.int64), positions[parent < 0]
     branches: list[Branch] = []
     for first in range(n):
         base = int(parent[first])
@@ -243,9 +243,9 @@ def branches_of(slices: Slices, min_length: float, monitor: Monitor) -> tuple[li
         while heir[line[-1]] >= 0:
             line.append(int(heir[line[-1]]))
         if base >= 0:
-            low = places[base, 2] < foot[slices.tree[first], 2] + _CLEAR if len(foot) > slices.tree[first] else False
+            low = positions[base, 2] < foot[slices.tree[first], 2] + _CLEAR if len(foot) > slices.tree[first] else False
             length = beyond[first] + step[first]
-            if low or length < min_length or not _is_straight(places[[base, *line]]):
+            if low or length < min_length or not _is_straight(positions[[base, *line]]):
                 continue
             order[line] = order[base] + 1
         branch[line] = len(branches)

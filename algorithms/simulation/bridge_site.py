@@ -95,7 +95,7 @@ class Lot:
     skew: float
 
     def contains(self, x, y) -> np.ndarray:
-        """Return which places (m) lie on the lot."""
+        """Return which positions (m) lie on the lot."""
         return (np.abs(x - self.x) < LOT / 2) & (np.abs(y - self.y) < LOT / 2)
 
     def local(self, x, y) -> tuple[np.ndarray, np.ndarray]:

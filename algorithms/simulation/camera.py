@@ -42,7 +42,7 @@ def photograph(
     Returns
     -------
     xyz : ndarray of shape (n, 3)
-        Exact places (m), within the square of the scene in plan.
+        Exact positions (m), within the square of the scene in plan.
     seen : Echoes
         What is there, in the same order.
     """
@@ -51,16 +51,16 @@ def photograph(
     world = World(scene)
     directions = [(0.0, 0.0), *((np.deg2rad(oblique), scene.relief.angle + k * np.pi / 2) for k in range(4))]
     blocks = list(itertools.product(directions, _blocks(scene.size, density / len(directions))))
-    places, parts = [], []
+    positions, parts = [], []
     for i, ((tilt, heading), (low, high, count)) in enumerate(blocks):
         rays = _rays(scene.relief, rng.uniform(low, high, (count, 2)), tilt, heading)
         seen = _first_met(world, rays, rng)
         xyz = rays.at(seen.pulse, seen.range)
         inside = ((xyz[:, :2] >= 0) & (xyz[:, :2] <= scene.size)).all(axis=1)
-        places.append(xyz[inside])
+        positions.append(xyz[inside])
         parts.append(seen.take(inside))
         monitor.progress((i + 1) / len(blocks))
-    return np.concatenate(places), join(parts)
+    return np.concatenate(positions), join(parts)
 
 
 def _blocks(size: float, density: float) -> Iterator[tuple[np.ndarray, np.ndarray, int]]:

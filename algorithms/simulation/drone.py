@@ -128,8 +128,8 @@ class Surroundings(World):
         # Seen all around, the azimuth goes on after a full turn.
         turn = np.repeat([-2 * np.pi, 0.0, 2 * np.pi], len(near))[:, None] * [1.0, 0.0]
         middles, half = np.tile(middles, (3, 1)) + turn, np.tile(half, (3, 1))
-        beam, thing = in_boxes(beams.aim, middles - half, middles + half)
-        return beam, np.tile(near, 3)[thing]
+        beam, target = in_boxes(beams.aim, middles - half, middles + half)
+        return beam, np.tile(near, 3)[target]
 
 
 def bearing(direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -22,7 +22,7 @@ _BLOCK_ROOFS, _BLOCK_DEPTH, _BLOCK_STEP = 4, 12.0, 0.8
 _VAN = (5.4, 2.0)
 _VAN_HEIGHT = (1.9, 2.6)
 
-# Places that are tried for each thing before it is left out, and the room it keeps to buildings (m).
+# Positions that are tried for each thing before it is left out, and the room it keeps to buildings (m).
 _TRIES, _ROOM = 60, 3.0
 
 
@@ -60,7 +60,7 @@ def build_site(
     return scene
 
 
-def _free_place(scene: Scene, long: float, wide: float, rng: np.random.Generator) -> Rect | None:
+def _free_position(scene: Scene, long: float, wide: float, rng: np.random.Generator) -> Rect | None:
     """Return a free rectangle of these sides (m) anywhere on the site, None where none was found."""
     reach = np.hypot(long, wide) / 2 + 1.0
     if 2 * reach >= scene.size:
@@ -90,7 +90,7 @@ def _add_hall(scene: Scene, k: int, rng: np.random.Generator) -> None:
     """Put a flat roof with a parapet, the k-th of sides spread evenly from the least to the greatest."""
     least, most = _HALL_SIZES
     long = min(least * (most / least) ** float(np.mod(0.35 + 0.382 * k, 1.0)), 0.6 * scene.size)
-    rect = _free_place(scene, long, long * rng.uniform(0.5, 0.8), rng)
+    rect = _free_position(scene, long, long * rng.uniform(0.5, 0.8), rng)
     if rect is None:
         return
     _clear(scene, rect)
@@ -114,7 +114,7 @@ def _parapets(site: Site, rect: Rect, top: float) -> list[Solid]:
 def _add_block(scene: Scene, rng: np.random.Generator) -> None:
     """Put a block of touching flat roofs."""
     wide = rng.uniform(7.0, 11.0)
-    rect = _free_place(scene, _BLOCK_ROOFS * wide, _BLOCK_DEPTH, rng)
+    rect = _free_position(scene, _BLOCK_ROOFS * wide, _BLOCK_DEPTH, rng)
     if rect is None:
         return
     _clear(scene, rect)
@@ -128,7 +128,7 @@ def _add_block(scene: Scene, rng: np.random.Generator) -> None:
 
 def _add_van(scene: Scene, rng: np.random.Generator) -> None:
     """Park a van or a car where there is room."""
-    rect = _free_place(scene, *_VAN, rng)
+    rect = _free_position(scene, *_VAN, rng)
     if rect is None:
         return
     if rng.random() < 0.5:

@@ -87,7 +87,7 @@ def smooth_noise(shape: tuple[int, int], wavelength: float, rng: np.random.Gener
 def _window(
     field: HeightField, low: np.ndarray, high: np.ndarray
 ) -> tuple[tuple[slice, slice], np.ndarray, np.ndarray]:
-    """Return the cells between two places (m), and the easting and northing of their middles."""
+    """Return the cells between two positions (m), and the easting and northing of their middles."""
     shape = field.top.shape
     first = np.clip(np.floor(low / CELL).astype(int), 0, [shape[1], shape[0]])
     last = np.clip(np.ceil(high / CELL).astype(int), 0, [shape[1], shape[0]])

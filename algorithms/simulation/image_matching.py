@@ -236,7 +236,7 @@ def _faces(matched: Matched, density: float, rng: np.random.Generator) -> np.nda
         row, column = np.repeat(row, times), np.repeat(column, times)
         share = rng.random(len(row))
         z = low[row, column] * (1 - share) + high[row, column] * share
-        place = np.column_stack([column, row]) + rng.random((len(row), 2))
-        place[:, 1 - axis] = np.column_stack([column, row])[:, 1 - axis] + 0.5 + share
-        parts.append(np.column_stack([place * CELL, z]))
+        position = np.column_stack([column, row]) + rng.random((len(row), 2))
+        position[:, 1 - axis] = np.column_stack([column, row])[:, 1 - axis] + 0.5 + share
+        parts.append(np.column_stack([position * CELL, z]))
     return np.concatenate(parts)

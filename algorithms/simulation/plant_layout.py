@@ -105,13 +105,13 @@ def _pipe_run(
 def _frame(plant: Plant, middle: np.ndarray, along: np.ndarray, across: np.ndarray) -> None:
     """Add the columns and the beams that carry a rack, and a grating beside it."""
     for share in (-0.35, 0.35):
-        place = middle + share * _LENGTH * along
+        position = middle + share * _LENGTH * along
         for side in (-1, 1):
-            foot = place + side * (_WIDTH / 2 + 0.3) * across
+            foot = position + side * (_WIDTH / 2 + 0.3) * across
             plant.parts += beam(foot, foot + 4.2 * _UP, 0.2, 0.2, along)
         for height in _LEVELS:
             # Beams lie under the widest pipe.
-            first, last = (place + sign * (_WIDTH / 2 + 0.2) * across + (height - 0.45) * _UP for sign in (-1, 1))
+            first, last = (position + sign * (_WIDTH / 2 + 0.2) * across + (height - 0.45) * _UP for sign in (-1, 1))
             plant.parts += beam(first, last, 0.2, 0.15, _UP)
     corner = middle - 0.4 * _LENGTH * along + (_WIDTH / 2 + 0.5) * across + 1.0 * _UP
     plant.parts.append(grating(corner, 0.8 * _LENGTH * along, 0.8 * across))
@@ -120,11 +120,11 @@ def _frame(plant: Plant, middle: np.ndarray, along: np.ndarray, across: np.ndarr
 def _stations(plant: Plant, corner: np.ndarray) -> None:
     """Let the scanner stand at the four corners of a bay, low and high in turn, where it does not stand yet."""
     for i, j in ((0, 0), (1, 0), (0, 1), (1, 1)):
-        place = corner + PITCH * np.array([i, j, 0.0])
-        high = round(place[0] / PITCH + place[1] / PITCH) % 2
-        place = place + (5.5 if high else 1.7) * _UP
-        if not any(np.allclose(place, other) for other in plant.stations):
-            plant.stations.append(place)
+        position = corner + PITCH * np.array([i, j, 0.0])
+        high = round(position[0] / PITCH + position[1] / PITCH) % 2
+        position = position + (5.5 if high else 1.7) * _UP
+        if not any(np.allclose(position, other) for other in plant.stations):
+            plant.stations.append(position)
 
 
 def _tanks(plant: Plant, count: int, depth: float, rng: np.random.Generator) -> float:

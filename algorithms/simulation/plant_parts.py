@@ -10,7 +10,7 @@ import numpy as np
 from ..shapes.cylinder_fits import across_axis
 from ..shapes.searched_points import Shape
 
-# What a surface gives: places (k, 3) and outward normals (k, 3) of k random points on it.
+# What a surface gives: positions (k, 3) and outward normals (k, 3) of k random points on it.
 Sampler = Callable[[np.random.Generator, int], tuple[np.ndarray, np.ndarray]]
 
 
@@ -46,7 +46,7 @@ class Part:
 
 
 def cylinder(kind: str, start: np.ndarray, end: np.ndarray, radius: float) -> Part:
-    """Return the side of a cylinder between two places (3,), m."""
+    """Return the side of a cylinder between two positions (3,), m."""
     length = float(np.linalg.norm(end - start))
     axis = (end - start) / length
     first, second = across_axis(axis)
@@ -68,8 +68,8 @@ def disk(kind: str, center: np.ndarray, normal: np.ndarray, inner: float, outer:
     def sample(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:
         angle = rng.uniform(0, 2 * np.pi, count)[:, None]
         reach = np.sqrt(rng.uniform(inner**2, outer**2, count))[:, None]
-        places = center + reach * (np.cos(angle) * first + np.sin(angle) * second)
-        return places, np.broadcast_to(normal, places.shape)
+        positions = center + reach * (np.cos(angle) * first + np.sin(angle) * second)
+        return positions, np.broadcast_to(normal, positions.shape)
 
     shape = Shape.PLANE if kind == "roof" else Shape.NONE
     return Part(kind, shape, float(np.pi * (outer**2 - inner**2)), center, sample)
@@ -123,14 +123,14 @@ def plate(kind: str, corner: np.ndarray, first: np.ndarray, second: np.ndarray) 
         share = rng.uniform(0, 1, (count, 2))
         side = np.where(rng.random(count) < 0.5, 1.0, -1.0)[:, None]
         # A plate is a centimeter thick.
-        places = corner + share[:, :1] * first + share[:, 1:] * second + 0.005 * side * normal
-        return places, side * normal
+        positions = corner + share[:, :1] * first + share[:, 1:] * second + 0.005 * side * normal
+        return positions, side * normal
 
     return Part(kind, Shape.PLANE, 2 * area, corner + (first + second) / 2, sample)
 
 
 def beam(start: np.ndarray, end: np.ndarray, height: float, width: float, up: np.ndarray) -> list[Part]:
-    """Return the web and the two flanges of an I-beam between two places (3,), m; its web stands along ``up``."""
+    """Return the web and the two flanges of an I-beam between two positions (3,), m; its web stands along ``up``."""
     along = end - start
     side = np.cross(along, up)
     side *= width / np.linalg.norm(side)
@@ -149,8 +149,8 @@ def grating(corner: np.ndarray, first: np.ndarray, second: np.ndarray, mesh: flo
         bar = (rng.integers(0, n_bars, count) / n_bars)[:, None]
         down = rng.uniform(0, 0.03, count)[:, None]
         side = np.where(rng.random(count) < 0.5, 1.0, -1.0)[:, None]
-        places = corner + along * first + bar * second + 0.002 * side * second / wide - down * [0.0, 0.0, 1.0]
-        return places, side * second / wide
+        positions = corner + along * first + bar * second + 0.002 * side * second / wide - down * [0.0, 0.0, 1.0]
+        return positions, side * second / wide
 
     return Part("grating", Shape.NONE, 2 * n_bars * long * 0.03, corner + (first + second) / 2, sample)
 

@@ -26,8 +26,8 @@ def plant_trees(scene: Scene, per_hectare: float, forest: float, rng: np.random.
     size = scene.size
     n_trees = round(per_hectare * size**2 / 1e4 * (1 - forest))
     n_alone = n_trees - round(_CLUMP_SHARE * n_trees) // _CLUMP_SIZE * _CLUMP_SIZE
-    open_ground = _open_places(scene, n_alone, forest, rng)
-    clumps = _open_places(scene, (n_trees - n_alone) // _CLUMP_SIZE, forest, rng)
+    open_ground = _open_positions(scene, n_alone, forest, rng)
+    clumps = _open_positions(scene, (n_trees - n_alone) // _CLUMP_SIZE, forest, rng)
     clumps = np.repeat(clumps, _CLUMP_SIZE, axis=0) + rng.normal(0.0, 2.5, (len(clumps) * _CLUMP_SIZE, 2))
     clumps = clumps[_is_free(scene, clumps)]
     feet = _feet(scene, np.concatenate([open_ground, clumps]))
@@ -37,21 +37,21 @@ def plant_trees(scene: Scene, per_hectare: float, forest: float, rng: np.random.
     _plant_forest(scene, forest, rng, monitor.part(1 - forest, 1.0))
 
 
-def in_forest(scene: Scene, places: np.ndarray, share: float) -> np.ndarray:
+def in_forest(scene: Scene, positions: np.ndarray, share: float) -> np.ndarray:
     """Which points (n, 2) (m) lie in the forest: the eastern ``share`` of the square, behind a wavy edge."""
     size = scene.size
     # The wave covers two whole periods, so that it takes nothing from the share; it is flat where there is no room.
-    wave = 0.2 * size * share * (1 - share) * np.sin(4 * np.pi * places[:, 1] / size)
-    return places[:, 0] > size * (1 - share) + wave
+    wave = 0.2 * size * share * (1 - share) * np.sin(4 * np.pi * positions[:, 1] / size)
+    return positions[:, 0] > size * (1 - share) + wave
 
 
 def _plant_forest(scene: Scene, share: float, rng: np.random.Generator, monitor: Monitor) -> None:
     """Plant trees and bushes over a share of the scene, one about every few meters where there is room."""
     steps = np.arange(_FOREST_SPACING / 2, scene.size, _FOREST_SPACING)
-    places = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
-    places = places + rng.uniform(-0.35, 0.35, places.shape) * _FOREST_SPACING
-    places = places[in_forest(scene, places, share) & _is_free(scene, places)]
-    feet = _feet(scene, places)
+    positions = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
+    positions = positions + rng.uniform(-0.35, 0.35, positions.shape) * _FOREST_SPACING
+    positions = positions[in_forest(scene, positions, share) & _is_free(scene, positions)]
+    feet = _feet(scene, positions)
     for i, foot in enumerate(feet):
         kind = rng.random()
         if kind < 0.9:
@@ -61,27 +61,27 @@ def _plant_forest(scene: Scene, share: float, rng: np.random.Generator, monitor:
         monitor.progress(i / len(feet))
 
 
-def _feet(scene: Scene, places: np.ndarray) -> list[tuple[float, float, float]]:
+def _feet(scene: Scene, positions: np.ndarray) -> list[tuple[float, float, float]]:
     """Return x, y and elevation of the ground (m) at positions (n, 2)."""
-    return [(float(x), float(y), float(z)) for (x, y), z in zip(places, scene.relief.ground(*places.T))]
+    return [(float(x), float(y), float(z)) for (x, y), z in zip(positions, scene.relief.ground(*positions.T))]
 
 
-def _open_places(scene: Scene, count: int, forest: float, rng: np.random.Generator) -> np.ndarray:
-    """Return up to ``count`` random places (m) where a tree can stand outside the forest."""
-    places = np.zeros((0, 2))
+def _open_positions(scene: Scene, count: int, forest: float, rng: np.random.Generator) -> np.ndarray:
+    """Return up to ``count`` random positions (m) where a tree can stand outside the forest."""
+    positions = np.zeros((0, 2))
     # A town that is all houses or all forest has no room: it then stays at what these tries found.
     for _ in range(20):
         tries = rng.uniform(0.0, scene.size, (count, 2))
         free = _is_free(scene, tries) & ~in_forest(scene, tries, forest)
-        places = np.concatenate([places, tries[free]])[:count]
-        if len(places) == count:
+        positions = np.concatenate([positions, tries[free]])[:count]
+        if len(positions) == count:
             break
-    return places
+    return positions
 
 
-def _is_free(scene: Scene, places: np.ndarray) -> np.ndarray:
-    inside = ((places > 0) & (places < scene.size)).all(axis=1)
-    return inside & ~scene.near_building(places, 1.5) & ~scene.near_water(*places.T)
+def _is_free(scene: Scene, positions: np.ndarray) -> np.ndarray:
+    inside = ((positions > 0) & (positions < scene.size)).all(axis=1)
+    return inside & ~scene.near_building(positions, 1.5) & ~scene.near_water(*positions.T)
 
 
 def plant_tree(scene: Scene, foot: tuple[float, float, float], height: float, rng: np.random.Generator) -> None:

@@ -114,15 +114,15 @@ class Scene:
         self.buildings.append(building)
         self.solids.extend(solids)
 
-    def near_building(self, places: np.ndarray, margin: float) -> np.ndarray:
+    def near_building(self, positions: np.ndarray, margin: float) -> np.ndarray:
         """Which points (n, 2) (m) lie within a margin (m) of a building."""
         parts = rectangles([solid for building in self.buildings for solid in building.solids])
         reach = np.hypot(parts.length, parts.width) / 2 + margin
         center = np.column_stack([parts.x, parts.y])
-        place, part = in_boxes(places, center - reach[:, None], center + reach[:, None])
+        position, part = in_boxes(positions, center - reach[:, None], center + reach[:, None])
         rows = Rect(*(getattr(parts, field.name)[part] for field in fields(Rect)))
-        found = np.zeros(len(places), bool)
-        found[place[rows.contains(places[place, 0], places[place, 1], margin)]] = True
+        found = np.zeros(len(positions), bool)
+        found[position[rows.contains(positions[position, 0], positions[position, 1], margin)]] = True
         return found
 
     def near_water(self, x, y) -> np.ndarray:

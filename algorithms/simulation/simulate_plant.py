@@ -18,7 +18,7 @@ from .plant_parts import Part
 # Most candidates for a point: at 44 bytes each they take 1.8 GB, which fits into the memory of an office computer.
 _MAX_POINTS = 4e7
 
-# Candidates for a point: by three on average, few places of a surface are left without one.
+# Candidates for a point: by three on average, few positions of a surface are left without one.
 _CANDIDATES = 3.0
 
 # Candidates that are drawn at once: about 100 bytes each while they are drawn.
@@ -157,12 +157,12 @@ def simulate_plant(
 
 @dataclass(frozen=True)
 class _Candidates:
-    """Places on surfaces that a scanner may see.
+    """Positions on surfaces that a scanner may see.
 
     Attributes
     ----------
     xyz : ndarray of shape (n, 3), float64
-        Places (m).
+        Positions (m).
     normal : ndarray of shape (n, 3), float32
         Outward normals of the surfaces.
     part : ndarray of shape (n,), int32
@@ -179,7 +179,7 @@ class _Candidates:
 
 
 def _candidates(plant: Plant, density: float, rng: np.random.Generator, monitor: Monitor) -> _Candidates:
-    """Return places that may be seen, as densely as the station nearest to each asks for."""
+    """Return positions that may be seen, as densely as the station nearest to each asks for."""
     stations = spatial.cKDTree(np.array(plant.stations))
     drawn: list[tuple[np.ndarray, ...]] = []
     total = 0
@@ -189,9 +189,9 @@ def _candidates(plant: Plant, density: float, rng: np.random.Generator, monitor:
         falling = min(1.0, (_FULL_DENSITY / nearest) ** 2)
         count = max(20, round(_CANDIDATES * density * falling * part.area * (_FLOOR if part.kind == "floor" else 1.0)))
         for start in range(0, count, _DRAWN):
-            places, normals = part.sample(rng, min(_DRAWN, count - start))
-            distance = np.maximum(stations.query(places, workers=n_threads())[0], _FULL_DENSITY)
-            kept = rng.random(len(places)) * falling < (_FULL_DENSITY / distance) ** 2
+            positions, normals = part.sample(rng, min(_DRAWN, count - start))
+            distance = np.maximum(stations.query(positions, workers=n_threads())[0], _FULL_DENSITY)
+            kept = rng.random(len(positions)) * falling < (_FULL_DENSITY / distance) ** 2
             reach = distance[kept] / np.sqrt(1 - rng.random(int(kept.sum())))
             total += len(reach)
             if total > _MAX_POINTS:
@@ -200,7 +200,7 @@ def _candidates(plant: Plant, density: float, rng: np.random.Generator, monitor:
                     "density or the number of pipes and tanks."
                 )
             numbers = np.full(len(reach), number, np.int32)
-            drawn.append((places[kept], normals[kept].astype(np.float32), numbers, reach.astype(np.float32)))
+            drawn.append((positions[kept], normals[kept].astype(np.float32), numbers, reach.astype(np.float32)))
     return _Candidates(*(np.concatenate(column) for column in zip(*drawn)))
 
 
@@ -231,7 +231,7 @@ def _seen(candidates: _Candidates, station: np.ndarray, step: float) -> np.ndarr
 
 
 def _looked_at(candidates: _Candidates, station: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the places (k,) that a station looks at, and their offsets (k, 3), float32, from it (m)."""
+    """Return the positions (k,) that a station looks at, and their offsets (k, 3), float32, from it (m)."""
     rows, offsets = [], []
     for start in range(0, len(candidates.xyz), _DRAWN):
         offset = (candidates.xyz[start : start + _DRAWN] - station).astype(np.float32)

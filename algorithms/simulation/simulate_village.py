@@ -20,7 +20,7 @@ from .village_layout import MAX_HOMES, Village, build_village
 # Largest number of points: at about 200 bytes each they fit into the memory of an office computer.
 _MAX_POINTS = 3e7
 
-# Where matching fails, nothing is found within this distance (m); places to fail are looked for in cells of that size.
+# Where matching fails, nothing is found within this distance (m); these areas are looked for in cells of that size.
 _HOLE = 0.5
 
 _CREATED = (
@@ -217,7 +217,7 @@ def simulate_village(
 
 
 def _outside_holes(xyz: np.ndarray, share: float, rng: np.random.Generator) -> np.ndarray:
-    """Return which points (n,) lie in none of the random places where matching failed."""
+    """Return which points (n,) lie in none of the random positions where matching failed."""
     if not share:
         return np.full(len(xyz), True)
     cells = np.floor(xyz / _HOLE).astype(np.int64)
@@ -250,7 +250,7 @@ def _colors(seen: Echoes, village: Village, rng: np.random.Generator) -> np.ndar
 
 
 def _wrong_matches(relief: Relief, count: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """Return places (count, 3) of noise, half above and half below the ground, and their classes."""
+    """Return positions (count, 3) of noise, half above and half below the ground, and their classes."""
     xy = rng.uniform(0.0, relief.size, (count, 2))
     is_high = np.arange(count) % 2 == 0
     height = np.where(is_high, rng.uniform(20.0, 60.0, count), -rng.uniform(2.0, 10.0, count))
@@ -293,7 +293,7 @@ def _old_map(village: Village, shift: float, noise: float, changes: float, rng: 
     count = round(changes * len(buildings))
     missing = set(rng.permutation(len(buildings))[:count].tolist())
     known = [(b.outline[:-1], b.object_id) for i, b in enumerate(buildings) if i not in missing]
-    known += [(place.corners(), 0) for place in _demolished(village.free, count, rng)]
+    known += [(position.corners(), 0) for position in _demolished(village.free, count, rng)]
     rings = [ring + shift + noise * rng.standard_normal(ring.shape) for ring, _ in known]
     numbers = [number for _, number in known]
     return LayerFeatures(

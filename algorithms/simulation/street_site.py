@@ -57,18 +57,18 @@ def build_site(trees: int, slope: float, seed: int) -> Scene:
     angle = float(rng.uniform(0.0, 2 * np.pi))
     scene = Scene(Relief(SIZE, angle, float(np.tan(np.deg2rad(slope)))))
     for x, y, length, width, turn, eave, has_gable in _HOUSES:
-        _build_house(scene, Rect(*_place(x, y), length, width, np.deg2rad(turn)), eave, has_gable, rng)
+        _build_house(scene, Rect(*_position(x, y), length, width, np.deg2rad(turn)), eave, has_gable, rng)
     for x, y in _CARS:
-        park_car(scene, Rect(*_place(x + rng.uniform(-0.4, 0.4), y), 4.3, 1.8, np.deg2rad(rng.uniform(-3.0, 3.0))))
+        park_car(scene, Rect(*_position(x + rng.uniform(-0.4, 0.4), y), 4.3, 1.8, np.deg2rad(rng.uniform(-3.0, 3.0))))
     for x, y in _LAMPS:
-        _put_lamp(scene, Rect(*_place(x, y), _LAMP[0], _LAMP[0], 0.0))
-    for x, y in _tree_places(trees, rng):
-        foot = (*_place(x, y), float(scene.relief.ground(*_place(x, y))))
+        _put_lamp(scene, Rect(*_position(x, y), _LAMP[0], _LAMP[0], 0.0))
+    for x, y in _tree_positions(trees, rng):
+        foot = (*_position(x, y), float(scene.relief.ground(*_position(x, y))))
         plant_tree(scene, foot, rng.uniform(*_TREE_HEIGHTS), rng)
     return scene
 
 
-def _place(x: float, y: float) -> tuple[float, float]:
+def _position(x: float, y: float) -> tuple[float, float]:
     """Return the coordinates (m) of a position relative to the middle of the site."""
     return SIZE / 2 + x, SIZE / 2 + y
 
@@ -94,8 +94,8 @@ def _put_lamp(scene: Scene, rect: Rect) -> None:
     scene.solids.append(Solid(rect, top, ground - 1.0, PointClass.UNCLASSIFIED, scene.new_id()))
 
 
-def _tree_places(count: int, rng: np.random.Generator) -> list[tuple[float, float]]:
-    """Return places (m from the middle): first in front of the houses, then in a row, then behind it."""
+def _tree_positions(count: int, rng: np.random.Generator) -> list[tuple[float, float]]:
+    """Return positions (m from the middle): first in front of the houses, then in a row, then behind it."""
     behind = [(x, _ROW_OF_TREES - 6.0 * line) for line in range(4) for x in (-6.0, 6.0, 0.0, -12.0, 12.0)]
-    places = [*_TREES_IN_FRONT, *behind][:count]
-    return [(float(x + rng.uniform(-0.8, 0.8)), float(y + rng.uniform(-0.8, 0.8))) for x, y in places]
+    positions = [*_TREES_IN_FRONT, *behind][:count]
+    return [(float(x + rng.uniform(-0.8, 0.8)), float(y + rng.uniform(-0.8, 0.8))) for x, y in positions]

@@ -63,8 +63,8 @@ def _gable_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
     eave += site.floor
     solids = [site.solid(rect, gable(rect, eave, pitch)), _chimney(site, rect, eave + pitch * rect.width / 2, rng)]
     if pitch > 0.7:
-        places = rng.choice([-0.25, 0.0, 0.25], int(rng.integers(0, 3)), replace=False) * rect.length
-        solids += [_dormer(site, rect, eave, pitch, place, side) for place in places for side in (-1, 1)]
+        positions = rng.choice([-0.25, 0.0, 0.25], int(rng.integers(0, 3)), replace=False) * rect.length
+        solids += [_dormer(site, rect, eave, pitch, position, side) for position in positions for side in (-1, 1)]
     scene.add_building("gable", rect.corners(), solids)
 
 
@@ -137,8 +137,8 @@ def build_hall(scene: Scene, rect: Rect) -> None:
     eave += site.floor
     solids = [site.solid(rect, gable(rect, eave, pitch))]
     ridge = eave + pitch * rect.width / 2
-    for place in (-0.3, 0.0, 0.3):
-        light = rect.part(place * rect.length, 0.0, 3.0, 0.7 * rect.width)
+    for position in (-0.3, 0.0, 0.3):
+        light = rect.part(position * rect.length, 0.0, 3.0, 0.7 * rect.width)
         solids.append(site.solid(light, flat(light, ridge + 0.8)))
     scene.add_building("hall", rect.corners(), solids)
 

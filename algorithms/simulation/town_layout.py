@@ -53,7 +53,7 @@ def build_town(
     scene = Scene(make_relief(size, slope, relief, terrace_height, river, rng))
     plots = _plots(scene, forest)
     if buildings:
-        hall = _hall_place(scene, plots)
+        hall = _hall_position(scene, plots)
         if hall is not None:
             build_hall(scene, hall)
             plots = [plot for plot in plots if not hall.contains(*plot.corners(-1.0).T).any()]
@@ -93,14 +93,14 @@ def _plots(scene: Scene, forest: float) -> list[Rect]:
     return found
 
 
-def _hall_place(scene: Scene, plots: list[Rect]) -> Optional[Rect]:
+def _hall_position(scene: Scene, plots: list[Rect]) -> Optional[Rect]:
     """Return room for a hall in the middle of a block of plots back to back, None without any that is level enough."""
     x, y = np.array([(plot.x, plot.y) for plot in plots]).reshape(-1, 2).T
     for plot in plots:
-        place = plot.part(0.0, plot.width / 2, *_HALL)
+        position = plot.part(0.0, plot.width / 2, *_HALL)
         # Three plots on both sides, all of them free: the hall stands on plots only.
-        if place.contains(x, y).sum() == 6 and np.ptp(scene.relief.ground(*place.corners().T)) < _HALL_STEP:
-            return place
+        if position.contains(x, y).sum() == 6 and np.ptp(scene.relief.ground(*position.corners().T)) < _HALL_STEP:
+            return position
     return None
 
 
@@ -125,9 +125,9 @@ def _clutter(scene: Scene, plots: list[Rect], rng: np.random.Generator, monitor:
     corners = np.array([line.corners() for line in lines]).reshape(-1, 2)
     is_free = ~scene.near_building(corners, 0.2).reshape(-1, 4).any(axis=1)
     for i, (plot, line, free) in enumerate(zip(plots, lines, is_free)):
-        car, border, place = rng.random(3)
+        car, border, position = rng.random(3)
         if car < 0.5:
-            park_car(scene, plot.part(8.0 * place - 4.0, -plot.width / 2 - 1.4, 4.3, 1.8))
+            park_car(scene, plot.part(8.0 * position - 4.0, -plot.width / 2 - 1.4, 4.3, 1.8))
         if free and border < 0.3:
             plant_hedge(scene, line, 1.7)
         elif free and border < 0.5:
@@ -161,7 +161,7 @@ def _string_wires(scene: Scene) -> None:
     along = float(_street_lines(scene)[len(_street_lines(scene)) // 2]) + _STREET_WIDTH / 2 - 0.4
     across = np.arange(-scene.size, scene.size, span)
     x, y = relief.world(across, along)
-    # The bed of the river is no place for a pole.
+    # No pole is in the bed of the river.
     inside = (np.minimum(x, y) > 1.0) & (np.maximum(x, y) < scene.size - 1.0) & ~scene.near_water(x, y)
     feet = np.column_stack([x, y, relief.ground(x, y)])[inside]
     for foot in feet:

@@ -86,7 +86,7 @@ class InputLayer:
     upright: bool = False
 
     @property
-    def things(self) -> str:
+    def objects(self) -> str:
         """What people call its geometries: polygons, lines or points."""
         return {"Polygon": "polygons", "LineString": "lines", "Point": "points"}[self.geometry]
 

@@ -153,8 +153,8 @@ class _Particles:
     rows: int
     columns: int
 
-    def _places(self, points: np.ndarray) -> np.ndarray:
-        """Return the places (n, 2) of points in columns and rows.
+    def _positions(self, points: np.ndarray) -> np.ndarray:
+        """Return the positions (n, 2) of points in columns and rows.
 
         Many coordinates are multiples of a centimeter and lie just between two particles. What is added first decides
         where rounding takes them, so that it is done as in the authors' program on coordinates from the corner.
@@ -163,10 +163,10 @@ class _Particles:
 
     def floor(self, points: np.ndarray) -> np.ndarray:
         """Return the height (rows, columns) of the point nearest to each particle, upside down, m."""
-        place = self._places(points)
-        column, row = np.floor(place + 0.5).astype(np.int64).T
+        position = self._positions(points)
+        column, row = np.floor(position + 0.5).astype(np.int64).T
         number = row * self.columns + column
-        off = (place[:, 0] - column) ** 2 + (place[:, 1] - row) ** 2
+        off = (position[:, 0] - column) ** 2 + (position[:, 1] - row) ** 2
         # Of two equally near ones the lower.
         order = np.lexsort((points[:, 2], off, number))
         held, first = np.unique(number[order], return_index=True)
@@ -176,9 +176,9 @@ class _Particles:
 
     def at(self, points: np.ndarray, height: np.ndarray) -> np.ndarray:
         """Return the height of the cloth (n,) at points, between the four particles around."""
-        place = self._places(points)
-        column, row = place.astype(np.int64).T
-        east, north = place[:, 0] - column, place[:, 1] - row
+        position = self._positions(points)
+        column, row = position.astype(np.int64).T
+        east, north = position[:, 0] - column, position[:, 1] - row
         south_side = height[row, column] * (1 - east) + height[row, column + 1] * east
         north_side = height[row + 1, column] * (1 - east) + height[row + 1, column + 1] * east
         return south_side * (1 - north) + north_side * north
@@ -231,7 +231,7 @@ def _hops() -> Iterator[np.ndarray]:
 
 
 def _carried(floor: np.ndarray, axis: int, backward: bool) -> np.ndarray:
-    """Return the last value before each place along an axis, NaN where there is none; backward: the next after it."""
+    """Return the last value before each cell along an axis, NaN at the start; backward: the next one after it."""
     lines = np.moveaxis(floor, axis, 1)
     lines = lines[:, ::-1] if backward else lines
     last = np.maximum.accumulate(np.where(np.isnan(lines), 0, np.arange(lines.shape[1])), axis=1)

@@ -113,7 +113,7 @@ class _Order:
         turn, rest = divmod(diagonal + _MARGIN, _STEP_LAG)
         return ((phase * _STEP_LAG + rest) * self.turns + turn) * self.breadth + _MARGIN + position
 
-    def places(self) -> np.ndarray:
+    def positions(self) -> np.ndarray:
         """Return where the particles (rows, columns) are stored."""
         row, column = np.mgrid[: self.rows, : self.columns]
         block, phase = np.divmod(column, _APART)
@@ -203,13 +203,13 @@ class Cloth:
         both, one = (1 - (1 - 2 * _SHARE) ** rigidness) / 2, 1 - (1 - _SHARE) ** rigidness
         self._motion = _Motion(_GRAVITY * time_step**4, both, one)
         self._order = _Order(*floor.shape)
-        self._places = self._order.places()
+        self._positions = self._order.positions()
         zero = np.zeros(self._order.size)
         self._state = _State(zero, zero.copy(), np.full(self._order.size, -np.inf), zero.copy(), zero.copy())
         start = (floor.max() if top is None else top) + _ABOVE
         values = {"height": start, "before": start, "floor": floor, "movable": 1.0, "draw": both}
         for name, value in values.items():
-            getattr(self._state, name)[self._places] = value
+            getattr(self._state, name)[self._positions] = value
         room = _STEPS_AT_ONCE * self._order.breadth
         self._own, self._off, self._part = np.zeros(room), np.zeros(room), np.zeros(room)
         lags = range(_STEP_LAG)
@@ -218,12 +218,12 @@ class Cloth:
     @property
     def height(self) -> np.ndarray:
         """Height (rows, columns) of each particle, m."""
-        return self._state.height[self._places]
+        return self._state.height[self._positions]
 
     @property
     def is_movable(self) -> np.ndarray:
         """Which particles (rows, columns) hang freely."""
-        return self._state.movable[self._places] > 0
+        return self._state.movable[self._positions] > 0
 
     def settle(self, steps: int, monitor: Monitor) -> int:
         """Let the cloth fall until it hardly moves, at most ``steps`` times; return how often."""

@@ -137,7 +137,7 @@ def _sunk(
 
 @dataclass(frozen=True)
 class _Levels:
-    """The ground around some places: its height (m,) there, slope (m, 2) and deviation (m,), in meters."""
+    """The ground around some positions: its height (m,) there, slope (m, 2) and deviation (m,), in meters."""
 
     height: np.ndarray
     slope: np.ndarray
@@ -148,13 +148,13 @@ class _Levels:
         return _Levels(self.height[chosen], self.slope[chosen], self.deviation[chosen])
 
 
-def _levels(ground: np.ndarray, places: np.ndarray, monitor: Monitor) -> _Levels:
-    """Return the planes of the nodes ``ground`` (k, 3) around places (m, 3), on which most of them agree."""
+def _levels(ground: np.ndarray, positions: np.ndarray, monitor: Monitor) -> _Levels:
+    """Return the planes of the nodes ``ground`` (k, 3) around positions (m, 3), on which most of them agree."""
     tree = spatial.cKDTree(ground[:, :2])
-    made = _Levels(np.empty(len(places)), np.empty((len(places), 2)), np.empty(len(places)))
+    made = _Levels(np.empty(len(positions)), np.empty((len(positions), 2)), np.empty(len(positions)))
 
     def fit(rows: np.ndarray) -> None:
-        off = ground[tree.query(places[rows, :2], _AROUND)[1]] - places[rows, None]
+        off = ground[tree.query(positions[rows, :2], _AROUND)[1]] - positions[rows, None]
         design = np.concatenate([off[..., :2], np.ones((*off.shape[:2], 1))], axis=2)
         weight = np.ones(off.shape[:2])
         for _ in range(_ROUNDS):
@@ -165,10 +165,10 @@ def _levels(ground: np.ndarray, places: np.ndarray, monitor: Monitor) -> _Levels
             residual = np.abs(off[..., 2] - np.einsum("mki,mi->mk", design, plane))
             # Least sum of absolute residuals: a few nodes far off do not count for more than others.
             weight = 1 / np.maximum(residual, _FULL_WEIGHT)
-        made.height[rows], made.slope[rows] = places[rows, 2] + plane[:, 2], plane[:, :2]
+        made.height[rows], made.slope[rows] = positions[rows, 2] + plane[:, 2], plane[:, :2]
         made.deviation[rows] = 1.4826 * np.median(residual, axis=1)
 
-    in_chunks(fit, np.arange(len(places)), _CHUNK, monitor)
+    in_chunks(fit, np.arange(len(positions)), _CHUNK, monitor)
     return made
 
 
@@ -222,7 +222,7 @@ class _Near:
         return spatial.cKDTree(self.xyz[:, :2])
 
     def groups(self) -> list[np.ndarray]:
-        """Return the groups of points under the ground, by their places here."""
+        """Return the groups of points under the ground, by their positions here."""
         low = np.flatnonzero(self.height < -self.limit)
         grid = grid_over(self.xyz[low], max(_LINK, _LINK_SPACINGS * self.spacing))
         cells, which = distinct(grid.number(self.xyz[low]))
@@ -248,7 +248,7 @@ class _Near:
         return len(sectors) >= _LEAST_SECTORS and not self._is_floor(plan, self.xyz[rim[is_ground], :2])
 
     def _rim(self, group: np.ndarray) -> np.ndarray:
-        """Return the places of the points around those of a group."""
+        """Return the positions of the points around those of a group."""
         width = max(_RIM, _RIM_SPACINGS * self.spacing)
         found = self._tree.query_ball_point(self.xyz[group, :2], width)
         return np.setdiff1d(np.concatenate(found).astype(np.int64), group)
@@ -267,8 +267,8 @@ class _Near:
         is_crowded = len(plan) > expected + _CROWDED_DEVIATIONS * np.sqrt(expected)
         return inside.sum() <= _MIXED * min(len(plan), density * hull.volume) and not is_crowded
 
-    def _density(self, place: np.ndarray) -> float:
-        """Return the density of last returns around a place (2,), points/m², at least that of the cloud."""
+    def _density(self, position: np.ndarray) -> float:
+        """Return the density of last returns around a position (2,), points/m², at least that of the cloud."""
         radius = max(_RIM, _RIM_SPACINGS * self.spacing)
-        count = self._tree.query_ball_point(place, radius, return_length=True)
+        count = self._tree.query_ball_point(position, radius, return_length=True)
         return max(count / (np.pi * radius**2), self.spacing**-2)

@@ -29,7 +29,7 @@ def usable_points(xyz: np.ndarray, classification: np.ndarray) -> np.ndarray:
     extent = np.linalg.svd(centered.T @ centered, compute_uv=False)
     if extent[1] <= LEAST_RESOLUTION**2 * len(usable):
         raise ValueError(
-            f"All {len(usable)} points lie on one line or at one place in plan; ground needs an area, "
+            f"All {len(usable)} points lie on one line or at one position in plan; ground needs an area, "
             "choose a larger cloud, or reproject this one to meters if its coordinates are degrees."
         )
     return usable

@@ -138,8 +138,8 @@ def seeds_by_opening(
     angles = _TURNS if _is_compact(box) else _TURNS[:1]
 
     def view(number: int, slope: Optional[np.ndarray], part: Monitor) -> _View:
-        places = turned_in_plan(xyz, angles[number]) + np.array([*_POSITIONS[number], 0.0]) * cell_size
-        cells = _Cells(places, box, angles[number], cell_size, spacing, low_uphill)
+        positions = turned_in_plan(xyz, angles[number]) + np.array([*_POSITIONS[number], 0.0]) * cell_size
+        cells = _Cells(positions, box, angles[number], cell_size, spacing, low_uphill)
         return _view(cells, max_building_size, slope, part)
 
     first = view(0, None, monitor.part(0, 1 / len(angles)))
@@ -211,8 +211,8 @@ class _Cells:
         middles = (start + self.size * (np.arange(n) + 0.5) for n, start in zip(lowest.index.shape, lowest.origin))
         x, y = np.meshgrid(*middles, indexing="ij", sparse=True)
         outside = np.zeros(lowest.index.shape, bool)
-        for place, low, high in zip((cos * x + sin * y, cos * y - sin * x), *self.box):
-            outside |= (place < low - self.size) | (place > high + self.size)
+        for position, low, high in zip((cos * x + sin * y, cos * y - sin * x), *self.box):
+            outside |= (position < low - self.size) | (position > high + self.size)
         return outside
 
 

@@ -80,13 +80,13 @@ def _spacing(deck: np.ndarray, tree: Any) -> float:
     return radius * float(np.sqrt(np.pi / DECK.neighbors))
 
 
-def _has_deck_behind(places: np.ndarray, nearest: np.ndarray, tree: Any) -> np.ndarray:
-    """Return which places (n, 2) have points of the deck on the side away from their ``nearest`` (n, 2), too.
+def _has_deck_behind(positions: np.ndarray, nearest: np.ndarray, tree: Any) -> np.ndarray:
+    """Return which positions (n, 2) have points of the deck on the side away from their ``nearest`` (n, 2), too.
 
-    These are looked for in the circle that touches the place on that side, which the straight edge of a deck beside it
-    stays out of.
+    These are looked for in the circle that touches the position on that side, and which the straight edge of a deck
+    next to it stays out of.
     """
-    away = places - nearest
+    away = positions - nearest
     away /= np.linalg.norm(away, axis=1, keepdims=True)
-    distance, _ = tree.query(places + DECK.hidden * away, distance_upper_bound=DECK.hidden)
+    distance, _ = tree.query(positions + DECK.hidden * away, distance_upper_bound=DECK.hidden)
     return np.isfinite(distance)

@@ -274,36 +274,36 @@ def work_on_block(task: BlockTask) -> Path:
 def _window(task: BlockTask, box: np.ndarray, monitor: Monitor) -> Optional[Window]:
     """Return the points in a box, None where the block itself has none of them."""
     window = task.survey.window(box, monitor)
-    if window is None or not _inside(_places(task.survey, window), task.block.box).any():
+    if window is None or not _inside(_positions(task.survey, window), task.block.box).any():
         return None
     return replace(window, source=np.array(task.numbers, np.int32)[window.source])
 
 
-def _places(survey: Survey, window: Window) -> np.ndarray:
+def _positions(survey: Survey, window: Window) -> np.ndarray:
     """Return easting and northing (n, 2) of the records of a window, m, as the edges of blocks count them."""
     header, records = survey.header, window.cloud.points
     unit = survey.units.horizontal
-    places = [records[axis] * (header.scale[i] * unit) + header.offset[i] * unit for i, axis in enumerate("XY")]
-    return np.column_stack(places)[window.point]
+    positions = [records[axis] * (header.scale[i] * unit) + header.offset[i] * unit for i, axis in enumerate("XY")]
+    return np.column_stack(positions)[window.point]
 
 
-def _inside(places: np.ndarray, box: np.ndarray) -> np.ndarray:
-    return ((places >= box[0]) & (places < box[1])).all(axis=1)
+def _inside(positions: np.ndarray, box: np.ndarray) -> np.ndarray:
+    return ((positions >= box[0]) & (positions < box[1])).all(axis=1)
 
 
 def _run(task: BlockTask, window: Window, box: np.ndarray, monitor: StoppableMonitor) -> tuple[BlockResult, np.ndarray]:
     """Run the chain on a window; return what came of the block, and on which sides (2, 2) a feature was cut off."""
     pipeline = in_blocks(PIPELINES[task.pipeline])
-    places = _places(task.survey, window)
+    positions = _positions(task.survey, window)
     made = run_pipeline(pipeline, window.cloud, monitor, kept=(), samplings=task.samplings, **task.tunables)
     point, stays = _left(window, made)
     values = _written(pipeline, made, point, task.survey.origin)
-    core = _inside(places, task.block.box)
+    core = _inside(positions, task.block.box)
     result = BlockResult(
         window.source[core], window.position[core], stays[core] if made.selected is not None else stays[:0]
     )
     result.dimensions = {name: of_all[core] for name, of_all in values.items()}
-    _number(result, window, values, stays, places, task.block)
+    _number(result, window, values, stays, positions, task.block)
     cuts = _keep_layers(result, pipeline, made, task, box)
     for name, (file, of) in files_of(pipeline).items():
         kept = set(_names(result.layers[of].columns["id"]))
@@ -386,13 +386,13 @@ def _number(
     window: Window,
     values: dict[str, np.ndarray],
     stays: np.ndarray,
-    places: np.ndarray,
+    positions: np.ndarray,
     block: Block,
 ) -> None:
     """Keep in a result which numbers its points have, and those of records on both sides of its edges."""
-    near = _inside(places, block.box + np.array([[-_BESIDE], [_BESIDE]]))
-    near &= ~_inside(places, block.box + np.array([[_BESIDE], [-_BESIDE]]))
-    core = _inside(places, block.box)
+    near = _inside(positions, block.box + np.array([[-_BESIDE], [_BESIDE]]))
+    near &= ~_inside(positions, block.box + np.array([[_BESIDE], [-_BESIDE]]))
+    core = _inside(positions, block.box)
     for name in (name for name in NUMBERED if name in values):
         number = np.where(stays, values[name], 0).astype(np.int64)
         others = [values[one][core & stays] for one, of in REFERRING.items() if of == name and one in values]

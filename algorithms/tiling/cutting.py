@@ -95,12 +95,12 @@ def _sort_out(survey: Survey, side: float, folder: Path, monitor: Monitor) -> li
             column, row, records = column[order], row[order], records[order]
             starts = run_starts(row * (1 << 32) + column)
             for start, stop in zip(starts, [*starts[1:], len(records)]):
-                place = int(column[start]), int(row[start])
-                blocks.add(place)
-                with os_errors_as_messages(folder), (folder / Block(*place, side).name).open("ab") as heap:
+                position = int(column[start]), int(row[start])
+                blocks.add(position)
+                with os_errors_as_messages(folder), (folder / Block(*position, side).name).open("ab") as heap:
                     # numpy's own way does not say why it could not write.
                     heap.write(records[start:stop].tobytes())
-    return [Block(column, row, side) for column, row in sorted(blocks, key=lambda place: place[::-1])]
+    return [Block(column, row, side) for column, row in sorted(blocks, key=lambda position: position[::-1])]
 
 
 def _write(survey: Survey, records: np.ndarray, compressed: bool, stream: BinaryIO, monitor: Monitor) -> None:

@@ -238,12 +238,12 @@ class _Run:
             done = [(blocks[number], results[number]) for number in sorted(results)]
             found = [BlockResult.read(path, with_points=False) for _, path in done]
             outcome.tries = np.concatenate([outcome.tries, *(one.tries for one in found)])
-            places = [block for block, _ in done]
+            positions = [block for block, _ in done]
             numbers = join_numbers(
-                places, found, lambda at: BlockResult.edges(done[at][1]), feature_numbers(self.pipeline, found)
+                positions, found, lambda at: BlockResult.edges(done[at][1]), feature_numbers(self.pipeline, found)
             )
             joining = self.monitor.part(_WORKED, _JOINED)
-            outcome.layers, kept = self._layers(places, found, numbers, joining)
+            outcome.layers, kept = self._layers(positions, found, numbers, joining)
             self._run_afterwards(outcome)
             if self.take_raster:
                 for mosaic in join_rasters([path for _, path in done], found):
@@ -513,7 +513,7 @@ def _blocks(survey: Survey, side: float) -> list[Block]:
     found = set()
     for low, high in zip(lowest.astype(int), highest.astype(int)):
         found |= {(column, row) for row in range(low[1], high[1] + 1) for column in range(low[0], high[0] + 1)}
-    return [Block(column, row, side) for column, row in sorted(found, key=lambda place: place[::-1])]
+    return [Block(column, row, side) for column, row in sorted(found, key=lambda position: position[::-1])]
 
 
 def _boxes(blocks: list[Block]) -> np.ndarray:

@@ -139,8 +139,8 @@ def _shared_lines(
     is_longer = length[one] >= length[other]
     long, short = np.where(is_longer, one, other), np.where(is_longer, other, one)
     way = (end[long] - start[long]) / np.maximum(length[long], 1e-12)[:, None]
-    places = np.stack([start[short] - start[long], end[short] - start[long]], axis=1)
-    along = np.einsum("kej,kj->ke", places, way)
+    positions = np.stack([start[short] - start[long], end[short] - start[long]], axis=1)
+    along = np.einsum("kej,kj->ke", positions, way)
     shared = np.minimum(along.max(axis=1), length[long]) - np.maximum(along.min(axis=1), 0.0)
     # Only where both are they must be at one position: an axis that is extended is less precise.
     step = np.diff(along, axis=1)[:, 0]
@@ -148,8 +148,8 @@ def _shared_lines(
     is_one = np.abs(radius[one] - radius[other]) < near
     for low_or_high in (np.maximum(along.min(axis=1), 0.0), np.minimum(along.max(axis=1), length[long])):
         part = np.clip((low_or_high - along[:, 0]) / np.where(step == 0, 1.0, step), 0.0, 1.0)
-        place = places[:, 0] + part[:, None] * (places[:, 1] - places[:, 0])
-        is_one &= np.linalg.norm(place - low_or_high[:, None] * way, axis=1) < near
+        position = positions[:, 0] + part[:, None] * (positions[:, 1] - positions[:, 0])
+        is_one &= np.linalg.norm(position - low_or_high[:, None] * way, axis=1) < near
     return length, np.where(is_one, np.maximum(shared, 0.0), 0.0)
 
 

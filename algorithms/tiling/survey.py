@@ -154,8 +154,8 @@ class Survey:
                 damaged.add(number)
         return replace(self, sources=tuple(one for at, one in enumerate(self.sources) if at not in damaged))
 
-    def places(self, count: int, monitor: Monitor) -> np.ndarray:
-        """Return the places (k, 2), m, of up to ``count`` points that are spread evenly over all records.
+    def positions(self, count: int, monitor: Monitor) -> np.ndarray:
+        """Return the positions (k, 2), m, of up to ``count`` points that are spread evenly over all records.
 
         Files that can't be read give none, with a warning. Memory: one portion of a file at a time.
         """
@@ -168,15 +168,15 @@ class Survey:
             if not len(rows):
                 continue
             try:
-                found += self._places_of(source, rows, part)
+                found += self._positions_of(source, rows, part)
             except ValueError as error:
                 # The blocks of a damaged file fail by name later.
                 monitor.warn(str(error))
             part.progress(1.0)
         return np.concatenate(found)
 
-    def _places_of(self, source: Source, rows: np.ndarray, monitor: Monitor) -> list[np.ndarray]:
-        """Return the places (k, 2), m, of the records of a file at ascending positions, in parts."""
+    def _positions_of(self, source: Source, rows: np.ndarray, monitor: Monitor) -> list[np.ndarray]:
+        """Return the positions (k, 2), m, of the records of a file at ascending positions, in parts."""
         scale, offset = (values * self.units.horizontal for values in (source.header.scale, source.header.offset))
         found = []
         with readable(source.path):
@@ -195,8 +195,8 @@ class Survey:
             for start, chunk in chunks_near(source.path, header, box / self.units.horizontal, monitor):
                 inside = self.holds(chunk, header)
                 for i, axis in enumerate("XY"):
-                    place = chunk[axis] * scale[i] + offset[i]
-                    inside &= (place >= box[0, i]) & (place < box[1, i])
+                    coordinate = chunk[axis] * scale[i] + offset[i]
+                    inside &= (coordinate >= box[0, i]) & (coordinate < box[1, i])
                 rows = np.flatnonzero(inside)
                 if len(rows):
                     records = np.zeros(len(rows), self.header.layout.dtype)

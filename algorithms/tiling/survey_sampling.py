@@ -29,8 +29,8 @@ def samplings_of(
 ) -> dict[str, CloudSampling]:
     """Return the sampling of a survey, "", and those of the clouds that its preparing steps make, by their names.
 
-    Each has the values that blocks take of the whole (``of_whole``). All is measured on windows whose places depend on
-    the extent of the survey alone.
+    Each has the values that blocks take of the whole (``of_whole``). All is measured on windows that depend on the
+    extent of the survey alone.
 
     Raises
     ------
@@ -42,8 +42,8 @@ def samplings_of(
     clouds, survey = _sampled(survey, boxes, sampling)
     if len(clouds) < len(boxes) / 4:
         # It fills little of its extent, as a corridor or a coast does.
-        places = survey.places(_SAMPLES_ACROSS**2, sampling.part(1.0, 1.0))
-        clouds, _ = _sampled(survey, _squares_around(places, _sample_side(survey)), sampling.part(1.0, 1.0))
+        positions = survey.positions(_SAMPLES_ACROSS**2, sampling.part(1.0, 1.0))
+        clouds, _ = _sampled(survey, _squares_around(positions, _sample_side(survey)), sampling.part(1.0, 1.0))
     if not clouds:
         raise ValueError("The survey has no points within the extent; choose another extent.")
     samplings = {"": _sampling_of(clouds, corner)}
@@ -80,9 +80,9 @@ def _sample_boxes(survey: Survey) -> list[np.ndarray]:
     return _squares_around(centers, _sample_side(survey))
 
 
-def _squares_around(places: np.ndarray, side: float) -> list[np.ndarray]:
-    """Return the squares (2, 2), m, of a lattice from zero that places (k, 2) lie in, each once."""
-    return [np.array([corner, corner + side]) for corner in np.unique(np.floor(places / side) * side, axis=0)]
+def _squares_around(positions: np.ndarray, side: float) -> list[np.ndarray]:
+    """Return the squares (2, 2), m, of a lattice from zero that positions (k, 2) lie in, each once."""
+    return [np.array([corner, corner + side]) for corner in np.unique(np.floor(positions / side) * side, axis=0)]
 
 
 def _sampled(survey: Survey, boxes: list[np.ndarray], monitor: Monitor) -> tuple[list[Cloud], Survey]:

@@ -117,7 +117,7 @@ def _points_of(task: TileTask, position: Optional[np.ndarray], monitor: Monitor)
 
 
 def _positions(task: TileTask) -> np.ndarray:
-    """Return the places (n,) in a file of its points within the extent, ascending: every one is in one block."""
+    """Return the positions (n,) in a file of its points within the extent, ascending: every one is in one block."""
     found = [np.zeros(0, np.int64)]
     for path in task.results:
         with np.load(path, allow_pickle=False) as stored:

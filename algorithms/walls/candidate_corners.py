@@ -19,7 +19,7 @@ WALL_UNUSED = "wall not used"
 ROOF_OUTLINE = "outline of the roof"
 TOO_SMALL = "too small"
 
-# Two places nearer to each other than this (m) are one: more than rounding, less than any wall is thick.
+# Two positions nearer to each other than this (m) are one: more than rounding, less than any wall is thick.
 _SAME = 1e-6
 
 # Lines whose directions differ by less than this (sine) are parallel: walls that were made so differ by rounding only.
@@ -32,7 +32,7 @@ class CandidateCorners:
 
     Attributes
     ----------
-    place : ndarray of shape (k, 2)
+    position : ndarray of shape (k, 2)
         Positions, m.
     angle : ndarray of shape (k,)
         Angle between the two lines, 0 to 90 degrees.
@@ -44,7 +44,7 @@ class CandidateCorners:
         What became of each.
     """
 
-    place: np.ndarray
+    position: np.ndarray
     angle: np.ndarray
     n_seen: np.ndarray
     gap: np.ndarray
@@ -73,16 +73,16 @@ def candidate_corners(outline: WallOutline, rejected: str = "") -> CandidateCorn
     meet = np.abs(sine) >= _PARALLEL
     first, second, sine = first[meet], second[meet], sine[meet]
     along = _cross(point[second] - point[first], direction[second]) / sine
-    place = point[first] + along[:, None] * direction[first]
-    near = ((place >= outline.low) & (place <= outline.high)).all(axis=1)
-    first, second, sine, place = first[near], second[near], sine[near], place[near]
-    gaps = np.column_stack([_gaps(outline.lines, number, place) for number in (first, second)])
+    position = point[first] + along[:, None] * direction[first]
+    near = ((position >= outline.low) & (position <= outline.high)).all(axis=1)
+    first, second, sine, position = first[near], second[near], sine[near], position[near]
+    gaps = np.column_stack([_gaps(outline.lines, number, position) for number in (first, second)])
     return CandidateCorners(
-        place=place,
+        position=position,
         angle=np.degrees(np.arcsin(np.minimum(np.abs(sine), 1.0))),
         n_seen=np.isfinite(gaps).sum(axis=1),
         gap=gaps.max(axis=1),
-        outcome=[rejected] * len(place) if rejected else _outcomes(outline, first, second, place),
+        outcome=[rejected] * len(position) if rejected else _outcomes(outline, first, second, position),
     )
 
 
@@ -91,27 +91,27 @@ def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
 
 
-def _gaps(lines: list[WallLine], number: np.ndarray, place: np.ndarray) -> np.ndarray:
-    """Return the distance along each place's line to the nearest of its points (m), NaN where it has none."""
-    gaps = np.full(len(place), np.nan)
+def _gaps(lines: list[WallLine], number: np.ndarray, position: np.ndarray) -> np.ndarray:
+    """Return the distance along each position's line to the nearest of its points (m), NaN where it has none."""
+    gaps = np.full(len(position), np.nan)
     for i in np.unique(number):
         line, own = lines[i], number == i
         if line.is_seen:
-            known, at = np.sort(line.along), (place[own] - line.point) @ line.direction
+            known, at = np.sort(line.along), (position[own] - line.point) @ line.direction
             after = np.searchsorted(known, at)
             beside = known[np.clip([after - 1, after], 0, len(known) - 1)]
             gaps[own] = np.abs(beside - at).min(axis=0)
     return gaps
 
 
-def _outcomes(outline: WallOutline, first: np.ndarray, second: np.ndarray, place: np.ndarray) -> list[str]:
-    """Return what became of each place where the lines of two numbers meet."""
+def _outcomes(outline: WallOutline, first: np.ndarray, second: np.ndarray, position: np.ndarray) -> list[str]:
+    """Return what became of each position where the lines of two numbers meet."""
     edges = [edge for ring in outline.rings for edge in ring]
     starts, ends = (np.array([getattr(edge, end) for edge in edges]) for end in ("start", "end"))
     used = np.array([_carries(line, edges) for line in outline.lines])
-    is_corner = np.hypot(*(place[:, None] - starts).transpose(2, 0, 1)).min(axis=1) < _SAME
+    is_corner = np.hypot(*(position[:, None] - starts).transpose(2, 0, 1)).min(axis=1) < _SAME
     is_unused = ~(used[first] & used[second])
-    on_edge = nearest_edge_distances(place, starts, ends) < _SAME
+    on_edge = nearest_edge_distances(position, starts, ends) < _SAME
     return np.select([is_corner, is_unused, on_edge], [CORNER, WALL_UNUSED, ON_EDGE], OFF_OUTLINE).tolist()
 
 

@@ -30,10 +30,10 @@ _WELL_INSIDE = 0.3
 # Additional cost of a square meter of roof left out farther from the edge than the largest overhang.
 _DEEP = 2.0
 
-# Distance from the edge from which this is due on small roofs (times that of the place farthest from the edge).
+# Distance from the edge from which this is due on small roofs (times that of the position farthest from the edge).
 _DEEPER = 0.6
 
-# A cost above that of any wall: of leaving out the place farthest from the edge, and of the surrounding rectangle.
+# A cost above that of any wall: of leaving out the position farthest from the edge, and of the surrounding rectangle.
 _CERTAIN = 1e5
 
 # Cost of a meter of wall without points where a side of the roof makes a wall likely.
@@ -55,7 +55,7 @@ _SQUARE = np.sin(np.deg2rad(2.0))
 # are worth a line are no deeper, as each square meter of them costs as much as a meter of wall.
 _NEARBY = 4.0
 
-# Most places times lines that are compared at once.
+# Most positions times lines that are compared at once.
 _AT_ONCE = 10_000_000
 
 
@@ -123,7 +123,7 @@ class OutlineCells:
 
     def boxes(self, edges: np.ndarray, room: float = 0.0) -> np.ndarray:
         """Return the boxes (k, 4) around edges, with room (m): least x and y, largest x and y."""
-        ends = np.stack([self.cells.places[self.edges.start[edges]], self.cells.places[self.edges.end[edges]]])
+        ends = np.stack([self.cells.positions[self.edges.start[edges]], self.cells.positions[self.edges.end[edges]]])
         return np.column_stack([ends.min(axis=0) - room, ends.max(axis=0) + room])
 
     def cheapest(self, is_open: np.ndarray) -> np.ndarray:
@@ -168,7 +168,7 @@ class OutlineCells:
 
     def _reaching(self, boxes: np.ndarray, group: np.ndarray, count: int) -> np.ndarray:
         """Return which groups (count,) of cells have a corner in one of the boxes."""
-        x, y = self.cells.places[: len(self.cells.crossing)].T
+        x, y = self.cells.positions[: len(self.cells.crossing)].T
         is_in = np.zeros(len(x), bool)
         for low_x, low_y, high_x, high_y in boxes.tolist():
             is_in |= (x > low_x) & (x < high_x) & (y > low_y) & (y < high_y)
@@ -178,10 +178,10 @@ class OutlineCells:
 
     def rings(self, inside: np.ndarray) -> list[list[WallEdge]]:
         """Return the rings of edges of an outline, exterior first."""
-        places = self.cells.places
+        positions = self.cells.positions
         rings = [
             [
-                edge_between(places[here], places[there], self.lines[line], self.near[line], self.case.scale)
+                edge_between(positions[here], positions[there], self.lines[line], self.near[line], self.case.scale)
                 for (line, here), (_, there) in zip(ring, [*ring[1:], ring[0]])
             ]
             for ring in self.cells.outline(inside)
@@ -203,13 +203,13 @@ def _edge_costs(cells: Arrangement, lines: list[WallLine], near: list[np.ndarray
 
 def _cell_costs(cells: Arrangement, case: OutlineCase, monitor: Monitor) -> tuple[np.ndarray, np.ndarray]:
     """Return what each cell (cells,) costs inside an outline and outside, as far as the roof tells."""
-    places, depth = case.cover.places, case.cover.depth.ravel()
+    positions, depth = case.cover.positions, case.cover.depth.ravel()
     size = max(1, _AT_ONCE // max(1, len(cells.points)))
-    cell = np.empty(len(places), np.int64)
-    for start in range(0, len(places), size):
+    cell = np.empty(len(positions), np.int64)
+    for start in range(0, len(positions), size):
         part = slice(start, start + size)
-        cell[part] = cells.cells_at(sides_of(places[part], cells.points, cells.directions))
-        monitor.progress(start / len(places))
+        cell[part] = cells.cells_at(sides_of(positions[part], cells.points, cells.directions))
+        monitor.progress(start / len(positions))
 
     def area(chosen: np.ndarray) -> np.ndarray:
         return np.bincount(cell[chosen & (cell >= 0)], minlength=cells.count) * case.cover.cell**2

@@ -195,8 +195,8 @@ def _owners(xy: np.ndarray, all_xy: np.ndarray, cluster_id: np.ndarray, margin: 
     hulls = _hulls(all_xy[roof] - start, cluster_id[roof])
     cell = np.floor((all_xy[roof] - start) / _ROOF_CELL).astype(np.int64)
     _, first = np.unique(np.column_stack([cell, cluster_id[roof]]), axis=0, return_index=True)
-    places = (cell[first] + 0.5) * _ROOF_CELL
-    nearest = spatial.cKDTree(places).query(xy - start, distance_upper_bound=_NEAR + margin, workers=n_threads())[1]
+    positions = (cell[first] + 0.5) * _ROOF_CELL
+    nearest = spatial.cKDTree(positions).query(xy - start, distance_upper_bound=_NEAR + margin, workers=n_threads())[1]
     found = np.flatnonzero(nearest < len(first))
     owner[found] = cluster_id[roof[first]][nearest[found]]
     for number, part in members(owner).items():

@@ -19,9 +19,9 @@ from ..sampling.cloud_sampling import CloudSampling
 from ..sampling.density import point_spacing
 from ..sampling.surface_noise import ROUGHNESS
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
+from .alleys import find_alley
 from .candidate_corners import ROOF_OUTLINE, TOO_SMALL, CandidateCorners, candidate_corners
 from .cheapest_outline import Limits
-from .lanes import find_lane
 from .surroundings import Surroundings, without_nested
 from .wall_edges import WallEdge, closed
 from .wall_lines import WallLine
@@ -268,9 +268,9 @@ def _houses(
 ) -> list[tuple[_Building, Optional[WallOutline]]]:
     """Return the houses that a building is made of, with their outlines; mostly the one that it is."""
     outline = building.walls_outline(limits, seed, monitor)
-    lane = None if outline is None else find_lane(outline, limits, min_area)
-    if lane is not None:
-        parts = building.parted(lane)
+    alley = None if outline is None else find_alley(outline, limits, min_area)
+    if alley is not None:
+        parts = building.parted(alley)
         # The progress has counted the outline of the whole.
         rest = monitor.part(1.0, 1.0)
         houses = [house for part in parts for house in _houses(part, limits, min_area, seed, rest)]
@@ -472,7 +472,7 @@ def _add_edges(edges: LayerFeatures, ring: list[WallEdge], footprint: int, first
 def _add_corners(layer: LayerFeatures, corners: CandidateCorners, building: _Building) -> None:
     """Append the candidate corners of a building."""
     first = len(layer) + 1
-    layer.geometries.extend(corners.place + building.origin)
+    layer.geometries.extend(corners.position + building.origin)
     described = {
         "id": range(first, first + len(corners.outcome)),
         "cluster_id": [building.number] * len(corners.outcome),

@@ -63,17 +63,17 @@ def split_blocks(
     return result
 
 
-def _houses_at(plan: np.ndarray, height: np.ndarray, places: np.ndarray, spacing: float) -> np.ndarray:
-    """Return the house (k,), from 1, at places (k, 2) of a building with these roof points and heights."""
+def _houses_at(plan: np.ndarray, height: np.ndarray, positions: np.ndarray, spacing: float) -> np.ndarray:
+    """Return the house (k,), from 1, at positions (k, 2) of a building with these roof points and heights."""
     shares = find_shares(plan, np.ones(len(plan)), np.ones(len(plan), np.int64), np.zeros((0, 2)), spacing)[1]
     rings = [ring for piece in find_pieces(1, shares, spacing, 0.0, 0.0) for ring in piece.rings]
     if not rings:
-        return np.ones(len(places), np.int64)
+        return np.ones(len(positions), np.int64)
     weights = np.sum([direction_weights(ring) for ring in rings], axis=0)
     angles = main_directions(weights, weights, sum(map(len, rings)))
     house = split_row(shares.lattice, shares.share > shares.rest, plan, height, angles, spacing).house
     nearest = ndimage.distance_transform_edt(house == 0, return_distances=False, return_indices=True)
-    column, row = np.rint(shares.lattice.nodes(places)).astype(np.int64).T
+    column, row = np.rint(shares.lattice.nodes(positions)).astype(np.int64).T
     rows, columns = house.shape
     return house[tuple(nearest)][row.clip(0, rows - 1), column.clip(0, columns - 1)]
 

@@ -1,4 +1,4 @@
-"""Where a roof covers the plan, and how deep places lie within it."""
+"""Where a roof covers the plan, and how deep positions lie within it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _ROOM = 2.0
 
 
 class RoofCover:
-    """Where a roof is, in small cells, and how deep (m) under it a place lies, negative beyond its edge."""
+    """Where a roof is, in small cells, and how deep (m) under it a position lies, negative beyond its edge."""
 
     def __init__(self, roof: np.ndarray, courtyards: list) -> None:
         self.cell = float(np.clip(np.sqrt(np.ptp(roof, axis=0).prod() / _MOST_CELLS), _CELL, _LARGEST_CELL))
@@ -33,16 +33,16 @@ class RoofCover:
         mask = np.zeros((row.max() + room + 2, column.max() + room + 2), bool)
         mask[row, column] = True
         rows, columns = np.indices(mask.shape).reshape(2, -1)
-        self.places = np.column_stack([columns, rows]) * self.cell + self.cell / 2 + self.low
+        self.positions = np.column_stack([columns, rows]) * self.cell + self.cell / 2 + self.low
         self.mask = ndimage.binary_fill_holes(ndimage.binary_closing(mask, np.ones((3, 3), bool), iterations=2))
         for ring in courtyards:
-            self.mask &= ~are_inside(self.places, ring).reshape(mask.shape) | mask
+            self.mask &= ~are_inside(self.positions, ring).reshape(mask.shape) | mask
         inside, outside = ndimage.distance_transform_edt(self.mask), ndimage.distance_transform_edt(~self.mask)
         self.depth = np.where(self.mask, inside - 0.5, 0.5 - outside) * self.cell
         self.high = self.low + np.array(mask.shape[::-1]) * self.cell
 
     def depth_at(self, xy: np.ndarray) -> np.ndarray:
-        """Return the depth (n,) of places (n, 2) within the raster, m; that of its edge for places beyond."""
+        """Return the depth (n,) of positions (n, 2) within the raster, m; that of its edge for positions beyond."""
         column, row = np.floor((xy - self.low) / self.cell).astype(np.int64).T
         rows, columns = self.depth.shape
         return self.depth[np.clip(row, 0, rows - 1), np.clip(column, 0, columns - 1)]

@@ -45,7 +45,7 @@ _SHARED = 0.5
 # Distances (m) outward from a side at which the other roof is searched for: gaps between party walls are narrower.
 _OUTWARD = (0.25, 0.5, 0.75, 1.0)
 
-# Distance (m) between the places on a side where it is searched for.
+# Distance (m) between the positions on a side where it is searched for.
 _STEP = 0.5
 
 
@@ -81,7 +81,7 @@ class Surroundings:
         return cells, np.minimum.reduceat(self._xyz[order, 2], starts), roof.astype(np.int64)
 
     def _at(self, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the lowest elevation (n,) (m) in the cells of places (n, 2), NaN without points, and a roof, or 0."""
+        """Return the lowest elevation (n,), m, in the cells of positions (n, 2), NaN where empty, and a roof, or 0."""
         (west, south), size = self.grid.origin, self.grid.size
         east, north = west + self.grid.columns * size, south + self.grid.rows * size
         inside = (xy >= (west, south)).all(axis=1) & (xy < (east, north)).all(axis=1)
@@ -91,7 +91,7 @@ class Surroundings:
         return np.where(found, lowest[position], np.nan), np.where(found, roof[position], 0)
 
     def gaps(self, roof: np.ndarray, spacing: float) -> np.ndarray:
-        """Return places (k, 2) (m) as far apart as its points that fill the gaps and bites of a roof (n, 3)."""
+        """Return positions (k, 2) (m) as far apart as its points that fill the gaps and bites of a roof (n, 3)."""
         if self.grid.size > _BITE / 2:
             return np.zeros((0, 2))
         refuse_sparse(roof, self.grid.size)
@@ -120,8 +120,8 @@ class Surroundings:
         step = sides[:, 1] - sides[:, 0]
         length = np.hypot(*step.T)
         count = np.where(length > 0, np.maximum(1, np.rint(length / _STEP)), 0).astype(np.int64)
-        side, place = items(count)
-        along = sides[side, 0] + ((place + 0.5) / count[side])[:, None] * step[side]
+        side, position = items(count)
+        along = sides[side, 0] + ((position + 0.5) / count[side])[:, None] * step[side]
         outward = np.column_stack([step[side, 1], -step[side, 0]]) / length[side, None]
         is_beside = np.zeros(len(side), bool)
         for distance in _OUTWARD:
@@ -137,7 +137,7 @@ def _closed(mask: np.ndarray, radius: float) -> np.ndarray:
 
 
 def _spread(centers: np.ndarray, size: float, step: float) -> np.ndarray:
-    """Return places (k, 2) (m) in cells around ``centers``, at most ``step`` (m) apart."""
+    """Return positions (k, 2) (m) in cells around ``centers``, at most ``step`` (m) apart."""
     count = int(np.ceil(size / step))
     inner = (np.arange(count) + 0.5) / count * size - size / 2
     offsets = np.stack(np.meshgrid(inner, inner), axis=-1).reshape(-1, 2)
@@ -153,6 +153,6 @@ def without_nested(parts: list) -> list:
     return kept
 
 
-def _lies_in(place: np.ndarray, rings: list) -> bool:
-    """Return whether a place lies in a part of a roof and in none of its holes."""
-    return bool(np.sum([are_inside(place[None], ring)[0] for ring in rings]) == 1)
+def _lies_in(position: np.ndarray, rings: list) -> bool:
+    """Return whether a position lies in a part of a roof and in none of its holes."""
+    return bool(np.sum([are_inside(position[None], ring)[0] for ring in rings]) == 1)

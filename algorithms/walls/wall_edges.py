@@ -56,7 +56,7 @@ def points_near(walls: np.ndarray, line: WallLine, scale: Scale) -> np.ndarray:
 
 
 def _stretch(line: WallLine, start: np.ndarray, end: np.ndarray) -> tuple[float, float]:
-    """Return where two places lie along a line (m), the lower first."""
+    """Return where two positions lie along a line (m), the lower first."""
     low, high = sorted([float((start - line.point) @ line.direction), float((end - line.point) @ line.direction)])
     return low, high
 

@@ -219,10 +219,10 @@ def _through_few(line: WallLine, half: float, walls: np.ndarray, scale: Scale) -
     beside = np.flatnonzero((np.abs(across) <= _EAVE) & (np.abs(along) <= half))
     if not len(beside):
         return line
-    place, near = across[beside], scale.tolerance / 2
-    ordered = np.sort(place)
-    count = np.searchsorted(ordered, place + near, side="right") - np.searchsorted(ordered, place - near)
-    best = beside[np.abs(place - place[np.argmax(count)]) <= near]
+    position, near = across[beside], scale.tolerance / 2
+    ordered = np.sort(position)
+    count = np.searchsorted(ordered, position + near, side="right") - np.searchsorted(ordered, position - near)
+    best = beside[np.abs(position - position[np.argmax(count)]) <= near]
     if len(best) < _FEW or scale.covered(along[best], -half, half) < _LEAST_COVERED:
         return line
     moved = line.point + np.mean(across[best]) * line.normal

@@ -20,7 +20,7 @@ def lines(seed, count):
 
 
 def rings_of(cells, inside):
-    rings = [cells.places[[place for _, place in ring]] for ring in cells.outline(inside)]
+    rings = [cells.positions[[place for _, place in ring]] for ring in cells.outline(inside)]
     return [np.concatenate([ring, ring[:1]]) for ring in rings]
 
 
@@ -97,7 +97,7 @@ def test_edges_lie_between_their_cells_and_crossings(seed, count):
         assert (cells.cells_at(beside) == cell).mean() > 0.99
     for place, way in ((edges.start, edges.low), (edges.end, edges.high)):
         np.testing.assert_allclose(
-            cells.places[place], points[edges.line] + way[:, None] * directions[edges.line], atol=1e-6
+            cells.positions[place], points[edges.line] + way[:, None] * directions[edges.line], atol=1e-6
         )
     # Each of the four cells around a crossing lies beside the edge of the first line before or after it.
     for column, beside in enumerate((edges.left, edges.right, edges.left, edges.right)):

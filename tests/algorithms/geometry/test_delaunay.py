@@ -114,7 +114,7 @@ def test_where_seams_stay_open_the_whole_is_triangulated_at_once(plan, monkeypat
     monkeypatch.setattr(module, "_is_whole", lambda mesh: False)
     some = triangulate(plan[:-300])
     np.testing.assert_array_equal(some.facets, Delaunay(plan[:-300]).simplices)
-    more, became = some.with_places(plan[-300:], under(some, plan[-300:]))
+    more, became = some.with_positions(plan[-300:], under(some, plan[-300:]))
     np.testing.assert_array_equal(ordered(more.facets), ordered(Delaunay(plan).simplices))
     assert (became == -1).all()
 
@@ -122,7 +122,7 @@ def test_where_seams_stay_open_the_whole_is_triangulated_at_once(plan, monkeypat
 def test_places_come_in_as_if_they_had_been_there(plan):
     """One in each facet at most, as the ground grows, and many in one."""
     some = triangulate(plan[:-300])
-    more, became = some.with_places(plan[-300:], under(some, plan[-300:]))
+    more, became = some.with_positions(plan[-300:], under(some, plan[-300:]))
     np.testing.assert_array_equal(ordered(more.facets), ordered(Delaunay(plan).simplices))
     assert is_delaunay(more)
     kept = became >= 0
@@ -132,7 +132,7 @@ def test_places_come_in_as_if_they_had_been_there(plan):
 
 def test_nothing_comes_in(plan):
     mesh = triangulate(plan)
-    same, became = mesh.with_places(np.empty((0, 2)), np.empty(0, np.int32))
+    same, became = mesh.with_positions(np.empty((0, 2)), np.empty(0, np.int32))
     assert is_delaunay(same)
     np.testing.assert_array_equal(ordered(same.facets), ordered(mesh.facets))
 
@@ -145,7 +145,7 @@ def test_places_of_a_grid_some_twice_and_some_later(places, later):
     first = places[: max(5, len(places) - later)]
     mesh = triangulate(first)
     new = places[len(first) :]
-    mesh, _ = mesh.with_places(new, under(mesh, new))
+    mesh, _ = mesh.with_positions(new, under(mesh, new))
     assert is_delaunay(mesh)
 
 

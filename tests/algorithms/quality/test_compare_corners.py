@@ -294,7 +294,7 @@ def test_a_map_of_another_place_is_refused(away):
 def test_no_overlap_at_all_is_said():
     monitor = Monitor()
     arrows, buildings, report = compare_corners(layer(house(0, 0)), layer(house(500, 0)), monitor=monitor)
-    assert monitor.warnings == ["No footprint overlaps a building of the old map; check that both show the same place."]
+    assert monitor.warnings == ["No footprint overlaps a building of the old map; check that both show the same area."]
     assert len(arrows) == 0
     assert buildings.columns["status"] == [MISSED, NEW]
     assert report.values["matched"] == 0

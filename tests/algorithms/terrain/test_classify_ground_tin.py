@@ -435,12 +435,12 @@ def test_too_few_points_are_refused(count):
 def test_points_on_one_line_are_refused_also_when_the_file_rounds_them(digits):
     x = np.linspace(0, 100, 300)
     line = np.round(np.column_stack([x, 0.37 * x, np.sin(x)]) + FAR, digits)
-    with pytest.raises(ValueError, match="^All 300 points lie on one line or at one place in plan; ground needs"):
+    with pytest.raises(ValueError, match="^All 300 points lie on one line or at one position in plan; ground needs"):
         classify_ground_tin(line, unclassified(line))
 
 
 def test_points_at_one_place_are_refused():
-    with pytest.raises(ValueError, match="one line or at one place"):
+    with pytest.raises(ValueError, match="one line or at one position"):
         classify_ground_tin(np.column_stack([np.full((9, 2), 7.0), np.arange(9)]), np.ones(9))
 
 

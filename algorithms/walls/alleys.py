@@ -1,4 +1,4 @@
-"""Lanes between houses whose roofs nearly touch: where two seen walls face each other, the houses are two."""
+"""Alleys between houses whose roofs nearly touch: where two seen walls face each other, the houses are two."""
 
 from __future__ import annotations
 
@@ -13,25 +13,25 @@ from .wall_edges import closed
 from .wall_lines import WallLine
 from .wall_outline import WallOutline
 
-# Walls along a lane are parallel within this angle (cosine): that by which walls of one building are.
+# Walls along a alley are parallel within this angle (cosine): that by which walls of one building are.
 _PARALLEL = np.cos(np.deg2rad(8.0))
 
-# The narrowest lane (m): less is a wall that is seen from both sides, or twice.
+# The narrowest alley (m): less is a wall that is seen from both sides, or twice.
 _NARROWEST = 0.3
 
-# Of both walls at least this share along the lane has points, the same that tells seen edges of footprints.
+# Of both walls at least this share along the alley has points, the same that tells seen edges of footprints.
 _SEEN = 0.5
 
 
-def find_lane(outline: WallOutline, limits: Limits, min_area: float) -> Optional[WallLine]:
-    """Return the middle of the widest lane across an outline, None without any.
+def find_alley(outline: WallOutline, limits: Limits, min_area: float) -> Optional[WallLine]:
+    """Return the middle of the widest alley across an outline, None without any.
 
     Parameters
     ----------
     outline : WallOutline
         Outline of the houses that were taken for one building.
     limits : Limits
-        What walls may be like; roofs that meet over a lane jut out over it from both sides.
+        What walls may be like; roofs that meet over a alley jut out over it from both sides.
     min_area : float
         Smallest house, m²: least area of the outline behind each of the two walls.
 
@@ -44,12 +44,12 @@ def find_lane(outline: WallOutline, limits: Limits, min_area: float) -> Optional
     rings = [closed(ring) for ring in outline.rings]
     widest, middle = _NARROWEST, None
     for one, other in combinations(seen, 2):
-        lane = _between(one, other)
-        if lane is None:
+        alley = _between(one, other)
+        if alley is None:
             continue
         width = abs(float(one.across(other.point[None])[0]))
-        if widest <= width <= 2 * limits.max_overhang and _is_lane(lane, (one, other), rings, outline, min_area):
-            widest, middle = width, lane
+        if widest <= width <= 2 * limits.max_overhang and _is_alley(alley, (one, other), rings, outline, min_area):
+            widest, middle = width, alley
     return middle
 
 
@@ -65,24 +65,24 @@ def _between(one: WallLine, other: WallLine) -> Optional[WallLine]:
     return WallLine((foot + other.point) / 2, direction / np.hypot(*direction), nothing.astype(int), nothing, np.nan)
 
 
-def _is_lane(
-    lane: WallLine,
+def _is_alley(
+    alley: WallLine,
     walls: tuple[WallLine, WallLine],
     rings: list[np.ndarray],
     outline: WallOutline,
     min_area: float,
 ) -> bool:
     """Return whether walls on both sides are seen wherever a line crosses the outline, with houses behind both."""
-    chords = _chords(lane, rings)
+    chords = _chords(alley, rings)
     if not len(chords):
         return False
     for wall in walls:
-        places = lane.point + chords[..., None] * lane.direction
-        along = np.sort((places - wall.point) @ wall.direction, axis=1)
+        positions = alley.point + chords[..., None] * alley.direction
+        along = np.sort((positions - wall.point) @ wall.direction, axis=1)
         length = np.diff(along, axis=1)[:, 0]
         covered = [outline.scale.covered(wall.along, low, high) if high > low else 0.0 for low, high in along]
-        side = float(np.sign(lane.across(wall.point[None])[0]))
-        if length @ covered < _SEEN * length.sum() or _area_beyond(wall, lane, side, rings) < min_area:
+        side = float(np.sign(alley.across(wall.point[None])[0]))
+        if length @ covered < _SEEN * length.sum() or _area_beyond(wall, alley, side, rings) < min_area:
             return False
     return True
 
@@ -98,9 +98,9 @@ def _chords(line: WallLine, rings: list[np.ndarray]) -> np.ndarray:
     return np.sort(np.concatenate(crossings)).reshape(-1, 2)
 
 
-def _area_beyond(wall: WallLine, lane: WallLine, side: float, rings: list[np.ndarray]) -> float:
-    """Return how much (m²) of rings lies behind a wall, seen from the lane; ``side`` is that of the wall."""
-    normal = side * lane.normal
+def _area_beyond(wall: WallLine, alley: WallLine, side: float, rings: list[np.ndarray]) -> float:
+    """Return how much (m²) of rings lies behind a wall, seen from the alley; ``side`` is that of the wall."""
+    normal = side * alley.normal
     return sum(signed_area(_clipped(ring, wall.point, normal)) for ring in rings)
 
 
