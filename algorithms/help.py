@@ -249,8 +249,8 @@ def _dimensions(stage: Stage) -> str:
 def input_layer_text(input_layer: InputLayer) -> str:
     """Return what a vector layer that is read is for, as HTML."""
     needed = "; may be left empty" if input_layer.optional else ""
-    title = f"<b>{input_layer.name.upper()}</b>: {html.escape(input_layer.title)}, a layer of {input_layer.objects}{needed}."
-    return f"{title} {inline(input_layer.help)}"
+    name, title = input_layer.name.upper(), html.escape(input_layer.title)
+    return f"<b>{name}</b>: {title}, a layer of {input_layer.objects}{needed}. {inline(input_layer.help)}"
 
 
 def _disk_names(names) -> str:
