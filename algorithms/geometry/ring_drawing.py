@@ -14,6 +14,9 @@ import numpy as np
 # Shortest run, in samples: shorter edges are drawn as steps between two runs.
 _SHORTEST = 3
 
+# Samples that runs end at whose costs are found at once, a multiple of the shortest run: fewer calls of numpy for them.
+_AT_ONCE = 8 * _SHORTEST
+
 # Angle (°) between directions besides the main ones: any wall is within half of it, and the line is fitted.
 _FAN = 15.0
 
@@ -176,6 +179,30 @@ def _turn_prices(turned: np.ndarray, prices: Prices) -> np.ndarray:
     return np.where((size < _SAME) | (size > 180 - _SAME), prices.step, cost)
 
 
+class _Starts:
+    """Samples that runs may begin at: those left of the batches before, and those of the current one, ascending."""
+
+    def __init__(self) -> None:
+        self.samples = np.zeros(1, np.int64)
+        self._stays = np.ones(1, bool)
+        self._left_out = np.zeros(0, np.int64)
+
+    def extend(self, batch: np.ndarray) -> None:
+        """Add samples, and forget those that were left out."""
+        self._left_out = np.cumsum(self._stays)[self._left_out] - 1
+        self.samples = np.concatenate([self.samples[self._stays], batch])
+        self._stays = np.ones(len(self.samples), bool)
+
+    def rows(self, end: int) -> np.ndarray:
+        """Return the rows (a,) of the samples before one at which a run ends."""
+        return self._stays[: np.searchsorted(self.samples, end)].nonzero()[0]
+
+    def leave_out(self, rows: np.ndarray) -> None:
+        """Leave out rows after one more round, since runs have a least length."""
+        self._stays[self._left_out] = False
+        self._left_out = rows[self._stays[rows]]
+
+
 class _Chain:
     """Samples of a ring from the first one on, once around, and sums over the pieces between them."""
 
@@ -222,35 +249,48 @@ class _Chain:
 
         ``start`` and ``end`` (k,) are what it costs to begin and to end by each way.
         """
-        n_ways, n_fixed = len(start), self.ways.n_fixed
-        cost, begun = np.full((2, length + 1, n_ways), np.inf)
-        came, turned = np.zeros((2, length + 1, n_ways), np.int64)
+        cost, begun = np.full((2, length + 1, len(start)), np.inf)
+        came, turned = np.zeros((2, length + 1, len(start)), np.int64)
         begun[0] = start
-        every = np.arange(n_ways)
-        firsts, is_done = np.zeros(1, np.int64), np.zeros(1, bool)
+        every, starts = np.arange(len(start)), _Starts()
         for low in range(_SHORTEST, length + 1, _SHORTEST):
-            ends = np.arange(low, min(low + _SHORTEST, length + 1))
-            fixed, is_run = self._fixed_costs(firsts, ends)
-            free, way, is_free_run = self._free_costs(firsts, ends)
+            at = (low - _SHORTEST) % _AT_ONCE
+            if at == 0:
+                batch = np.arange(low, min(low + _AT_ONCE, length + 1))
+                starts.extend(batch)
+                allowed, least = self._run_costs(starts.samples, batch)
+            ends = batch[at : at + _SHORTEST]
+            rows, columns = starts.rows(low), slice(at, at + len(ends))
+            firsts, of = starts.samples[rows], np.arange(len(ends))[:, None]
             before = begun[firsts][:, None]
-            total = np.full((len(firsts), len(ends), n_ways), np.inf)
-            total[..., :n_fixed] = np.where(is_run, before[..., :n_fixed] + fixed, np.inf)
-            rows = np.arange(len(firsts))[:, None], np.arange(len(ends))
-            total[rows[0], rows[1], way] = begun[firsts[:, None], way] + np.where(is_free_run, free, np.inf)
+            total = before + allowed[rows, columns]
             best = total.argmin(axis=0)
-            cost[ends] = total[best, rows[1][:, None], every]
+            cost[ends] = reached = total[best, of, every]
             came[ends] = firsts[best]
-            turns = cost[ends][:, :, None] + self.ways.turn
-            turned[ends] = turns.argmin(axis=1)
-            begun[ends] = turns[rows[1][:, None], turned[ends], every]
-            # A run from a later sample on costs no more: what is farther off begins there. It stays for one more round,
-            # since runs have a least length.
-            least = np.concatenate([fixed, np.broadcast_to(free[..., None], (*free.shape, n_ways - n_fixed))], axis=2)
-            is_behind = (before + least >= begun[ends]).all(axis=2) & (ends - firsts[:, None] >= _SHORTEST)
-            firsts, is_done = firsts[~is_done], is_behind.any(axis=1)[~is_done]
-            firsts, is_done = np.append(firsts, ends), np.append(is_done, np.zeros(len(ends), bool))
+            turns = reached[:, :, None] + self.ways.turn
+            turned[ends] = way = turns.argmin(axis=1)
+            begun[ends] = begins = turns[of, way, every]
+            # A run from a later sample on costs no more: what is farther off begins there.
+            is_behind = (before + least[rows, columns] >= begins).all(axis=2) & (ends - firsts[:, None] >= _SHORTEST)
+            starts.leave_out(rows[is_behind.any(axis=1)])
         last = cost[length] + end
         return float(last.min()), self._traced(last, came, turned)
+
+    def _run_costs(self, firsts: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return what runs from samples (a,) to samples (b,) cost by each way (a, b, k): those that can be, and all.
+
+        Of all other ways, only the one nearest to the line that fits best can be.
+        """
+        n_fixed, shape = self.ways.n_fixed, (len(firsts), len(ends))
+        fixed, is_run = self._fixed_costs(firsts, ends)
+        free, way, is_free_run = self._free_costs(firsts, ends)
+        least = np.empty((*shape, len(self.ways.price)))
+        least[..., :n_fixed], least[..., n_fixed:] = fixed, free[..., None]
+        allowed = np.full_like(least, np.inf)
+        allowed[..., :n_fixed][is_run] = fixed[is_run]
+        row, column = np.nonzero(is_free_run)
+        allowed[row, column, way[row, column]] = free[row, column]
+        return allowed, least
 
     def _fixed_costs(self, firsts: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return what runs from samples (a,) to samples (b,) by each main way cost (a, b, k), and which can be."""

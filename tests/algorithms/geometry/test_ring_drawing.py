@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from lidar_buildings.algorithms.geometry import ring_drawing
 from lidar_buildings.algorithms.geometry.ring_directions import direction_weights, main_directions
 from lidar_buildings.algorithms.geometry.ring_drawing import Prices, draw_ring
 from lidar_buildings.tests.builders import L_SHAPE, turned
@@ -51,3 +52,15 @@ def test_a_circle_has_no_direction_and_is_drawn_in_chords():
     edges = draw_ring(samples, directions, Prices(10 * SPACING**3))
     assert 8 <= len(edges) <= 30
     assert max(abs(np.hypot(*edge.start) - 8) for edge in edges) < SPACING
+
+
+@pytest.mark.parametrize("directions", [np.zeros(0), np.array([12.0]), np.array([12.0, 40.0])])
+def test_how_many_ends_are_worked_on_at_once_changes_nothing(directions, monkeypatch):
+    samples = sampled(turned(3 * np.asarray(L_SHAPE, float)[:6], 12))
+    rings = []
+    for rounds in (1, 2, 7, 1000):
+        monkeypatch.setattr(ring_drawing, "_AT_ONCE", rounds * ring_drawing._SHORTEST)
+        edges = draw_ring(samples, directions, Prices(10 * SPACING**3))
+        rings.append(np.array([[*edge.start, *edge.end] for edge in edges]))
+    for ring in rings[1:]:
+        np.testing.assert_array_equal(ring, rings[0])
