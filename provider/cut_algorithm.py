@@ -21,10 +21,9 @@ from ..algorithms.tiling.cutting import cut_into_tiles
 from ..algorithms.tiling.settings import CUT_SETTINGS
 from ..algorithms.tiling.survey import crs_of_survey, files_of_survey, open_survey
 from ..algorithms.tiling.tiled_pipelines import CUT_INTO_TILES, survey_tool_help
+from .algorithm import CheckedAlgorithm
 from .clouds import SurveyParameter, survey_paths
-from .crs import crs_units, make_in_main_thread
-from .declared import DeclaredAlgorithm
-from .dependencies import missing_sentence
+from .crs import crs_units
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, warn_unknown_parameters
 from .inputs import INPUT, OUTPUT, extent_box, extent_parameter, with_help, with_setting
@@ -34,7 +33,7 @@ from .surveys import VPC, WGS84, check_vpc, write_survey
 SIDE, COMPRESSED, TILES = "SIDE", "COMPRESSED", "TILES"
 
 
-class CutAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
+class CutAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
     """Files in, a folder of tiles out."""
 
     declared = CUT_INTO_TILES
@@ -61,23 +60,17 @@ class CutAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         self.addOutput(QgsProcessingOutputFile(VPC, "Virtual point cloud over the tiles"))
         self.addOutput(QgsProcessingOutputNumber(TILES, "Tiles written"))
 
-    def canExecute(self) -> tuple[bool, str]:  # noqa: N802
-        """Whether all packages are there, and how to install what is missing."""
-        missing = missing_sentence()
-        return not missing, missing
+    def check(self, parameters: dict, context: QgsProcessingContext) -> None:
+        """Find out the files; refuse what can be refused before the run."""
+        given = survey_paths(self, INPUT, parameters, context)
+        check_vpc(target_path(parameters.get(OUTPUT)), given)
+        self.files = files_of_survey(given)
+        self.wkt = crs_of_survey(self.files)
+        self.extent = extent_box(self, self.wkt, parameters, context)
 
-    def prepareAlgorithm(  # noqa: N802
-        self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback
-    ) -> bool:
-        """Find out the files; layers may be asked only here, in the main thread."""
-        with as_processing_errors():
-            given = survey_paths(self, INPUT, parameters, context)
-            check_vpc(target_path(parameters.get(OUTPUT)), given)
-            self.files = files_of_survey(given)
-            wkt = crs_of_survey(self.files)
-            self.extent = extent_box(self, wkt, parameters, context)
-            self._systems = make_in_main_thread([wkt, WGS84])
-        return True
+    def systems(self) -> list[str]:
+        """Return the coordinate reference systems of the survey and of its virtual point cloud."""
+        return [self.wkt, WGS84]
 
     def processAlgorithm(  # noqa: N802
         self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback

@@ -8,6 +8,7 @@ from typing import Any, Optional
 from qgis.core import QgsProcessingAlgorithm, QgsProcessingFeedback, QgsProcessingMultiStepFeedback
 
 from ..algorithms.stage import Cancelled, Monitor, Param, Stage
+from .run_log import current_log
 
 
 class FeedbackMonitor(Monitor):
@@ -38,6 +39,9 @@ class FeedbackMonitor(Monitor):
     def resolved(self, **values: Any) -> None:
         """Keep the values that stages report, and log those that the user didn't give."""
         super().resolved(**values)
+        log = current_log()
+        if log is not None:
+            log.resolved(values)
         for name, value in values.items():
             if self._given.get(name) is None:
                 self._feedback.pushInfo(self._sentence(name, value))
@@ -45,12 +49,19 @@ class FeedbackMonitor(Monitor):
     def warn(self, sentence: str) -> None:
         """Log and keep a warning."""
         super().warn(sentence)
+        self._note(sentence)
         self._feedback.pushWarning(sentence)
 
     def inform(self, sentence: str) -> None:
         """Log and keep a sentence."""
         super().inform(sentence)
+        self._note(sentence)
         self._feedback.pushInfo(sentence)
+
+    def _note(self, sentence: str) -> None:
+        log = current_log()
+        if log is not None:
+            log.note(sentence)
 
     def _sentence(self, name: str, value: Any) -> str:
         tunable = self._stage.tunables.get(name) if self._stage else None

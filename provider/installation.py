@@ -37,6 +37,7 @@ from .dependencies import (
     system_command,
 )
 from .paths import PLUGIN
+from .run_log import plugin_version
 from .texts import tr
 
 _VERSIONS = ("numpy", *packages.REQUIRED.values(), "lazrs")
@@ -46,7 +47,7 @@ _OPTIONAL = ("laszip", "distributed")
 def installation_text() -> str:
     """Return versions and folders, one a line, and what is missing."""
     lines = [
-        f"{SOFTWARE} {_plugin_version()}",
+        f"{SOFTWARE} {plugin_version()}",
         f"QGIS {Qgis.version()}",
         f"Python {platform.python_version()} ({python()})",
         f"System {platform.platform()}",
@@ -56,11 +57,6 @@ def installation_text() -> str:
         f"Folder of the plugin {PLUGIN}",
     ]
     return "\n".join([*lines, "", missing_sentence() or laz_sentence() or tr("Everything is installed.")])
-
-
-def _plugin_version() -> str:
-    lines = (PLUGIN / "metadata.txt").read_text(encoding="utf-8").splitlines()
-    return next((line.partition("=")[2] for line in lines if line.startswith("version=")), "")
 
 
 def _version(name: str) -> str:

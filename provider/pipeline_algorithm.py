@@ -21,14 +21,14 @@ from qgis.core import (
     QgsProcessingParameterDefinition,
 )
 
-from ..algorithms.cloud.files import check_readable, read_extent, write_cloud
+from ..algorithms.cloud.files import check_readable, count_points, read_extent, write_cloud
 from ..algorithms.help import pipeline_help
 from ..algorithms.pipeline import Output, Pipeline, Step
 from ..algorithms.stage import Cancelled
+from .algorithm import CheckedAlgorithm
 from .clouds import cloud_path, files_read
-from .crs import FULL, crs_units, make_in_main_thread, renew_in_main_thread
-from .declared import DeclaredAlgorithm, on_command_line
-from .dependencies import missing_sentence
+from .crs import FULL, crs_units
+from .declared import on_command_line
 from .errors import as_processing_errors
 from .feedback import ChainFeedback, FeedbackMonitor, warn_unknown_parameters
 from .input_layers import input_layer_files, input_layer_name, refuse_elsewhere
@@ -52,6 +52,7 @@ from .models import model_file, pipeline_parameters, step_label
 from .named_clouds import names_of_crs, read_named
 from .outputs import all_in_place, check_targets
 from .parameters import number_outputs, tunable_values
+from .run_log import RunLog, about_run, complete_page, run_log
 from .styles import switch_off
 
 # Outputs of this rank or a higher one are what the result comes from.
@@ -87,7 +88,7 @@ def _own_steps(context: QgsProcessingContext) -> Iterator[None]:
         context.modelResult().mergeWith(before)
 
 
-class PipelineAlgorithm(DeclaredAlgorithm, QgsProcessingModelAlgorithm):
+class PipelineAlgorithm(CheckedAlgorithm, QgsProcessingModelAlgorithm):
     """A shipped model with its pipeline's id and title.
 
     A model loaded as it is has its title as id, refuses LAS and LAZ where QGIS has no PDAL,
@@ -171,25 +172,9 @@ class PipelineAlgorithm(DeclaredAlgorithm, QgsProcessingModelAlgorithm):
         """Return the call that the dialog copies; of a model as such QGIS knows none."""
         return QgsProcessingAlgorithm.asPythonCommand(self, parameters, context)
 
-    def canExecute(self) -> tuple[bool, str]:  # noqa: N802
-        """Whether all packages are there, and how to install what is missing."""
-        missing = missing_sentence()
-        return (False, missing) if missing else super().canExecute()
-
-    def checkParameterValues(self, parameters: dict, context: QgsProcessingContext) -> tuple[bool, str]:  # noqa: N802
-        """Refuse what can be refused before the run, in the words that the run would use."""
-        try:
-            self._check(parameters, context)
-        except ValueError as error:
-            return False, str(error)
-        return super().checkParameterValues(self._with_defaults(parameters), context)
-
-    def _check(self, parameters: dict, context: QgsProcessingContext) -> list[Path]:
-        """Refuse with a ValueError what can be refused before the first step; return the files of the clouds."""
-        missing = missing_sentence()
-        if missing:
-            raise ValueError(missing)
-        given = self._with_defaults(parameters)
+    def check(self, parameters: dict, context: QgsProcessingContext) -> None:
+        """Find out the clouds and what is read of them; refuse what can be refused before the first step."""
+        given = self.completed(parameters)
         for step in self.pipeline.steps:
             named = {name: self.pipeline.parameter(step, name).upper() for name in step.stage.tunables}
             tunable_values(self, step.stage, given, context, named)
@@ -209,9 +194,14 @@ class PipelineAlgorithm(DeclaredAlgorithm, QgsProcessingModelAlgorithm):
             systems = [read_extent(cloud)[2] for cloud in clouds]
             self._box = extent_box(self, systems[0] or self._crs.toWkt(FULL), given, context)
             self._is_named = not self._crs.isValid() or all(systems)
-        return clouds
+        self._clouds = clouds
 
-    def _with_defaults(self, parameters: dict) -> dict:
+    def systems(self) -> list[str]:
+        """Return the coordinate reference systems of the clouds, and the one that is given."""
+        given = names_of_crs(self._crs) if self._clouds else []
+        return [*(read_extent(path)[2] for path in self._clouds), *given]
+
+    def completed(self, parameters: dict) -> dict:
         """Return ``parameters`` with the model's defaults, where QGIS would take the child's.
 
         What one step makes and another one reads is temporary where nobody keeps it.
@@ -226,39 +216,35 @@ class PipelineAlgorithm(DeclaredAlgorithm, QgsProcessingModelAlgorithm):
         needed = [output.name.upper() for output in self.pipeline.outputs if self.pipeline.needs(output)]
         return [name for name in needed if name != OUTPUT and parameters.get(name) in (None, "")]
 
-    def prepareAlgorithm(  # noqa: N802
-        self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback
-    ) -> bool:
-        """Check, and make the CRS of the clouds while this is still the main thread."""
-        with as_processing_errors():
-            self._clouds = self._check(parameters, context)
-            systems = [read_extent(path)[2] for path in self._clouds]
-            given = names_of_crs(self._crs) if self._clouds else []
-            self._systems = make_in_main_thread([*systems, *given])
-        return super().prepareAlgorithm(self._with_defaults(parameters), context, feedback)
-
-    def postProcessAlgorithm(  # noqa: N802
-        self, context: QgsProcessingContext, feedback: QgsProcessingFeedback
-    ) -> dict:
-        """Make the CRS of results last."""
-        renew_in_main_thread(context.temporaryLayerStore().mapLayers().values())
-        return {}
-
     def processAlgorithm(  # noqa: N802
         self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ) -> dict:
         """Run the graph; all or nothing. What was cancelled has no results."""
         warn_unknown_parameters(self, parameters, feedback)
-        definitions, given = self.destinationParameterDefinitions(), self._with_defaults(parameters)
+        definitions, given = self.destinationParameterDefinitions(), self.completed(parameters)
         subject = subject_of(self._clouds, feedback)
         with as_processing_errors(feedback):
-            with all_in_place(definitions, given, context, subject) as run:
+            with run_log() as log, all_in_place(definitions, given, context, subject) as run:
                 results = self._run_steps(run.parameters, context, feedback)
+                log.end()
+                self._complete_pages(results, log)
                 finished = self._finished(run.final(results), parameters)
             helpers = (name.upper() for name in self.pipeline.switched_off)
             switch_off(context, [finished[name] for name in helpers if name in finished])
             return finished
         return {}
+
+    def _complete_pages(self, results: dict, log: RunLog) -> None:
+        """Say on the pages of the steps of what the run is, and with which parameters."""
+        systems = [read_extent(path)[2] or self._crs.toWkt(FULL) for path in self._clouds]
+        rows = about_run(self.displayName(), self._clouds, self._points(), systems[0] if systems else "")
+        for output in self.pipeline.outputs:
+            page = results.get(output.name.upper())
+            if output.of == REPORT.lower() and page:
+                complete_page(Path(page), rows, log.steps)
+
+    def _points(self) -> int:
+        return sum(count_points(path, self._box) for path in self._clouds)
 
     def _run_steps(self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback) -> dict:
         with _own_steps(context), tempfile.TemporaryDirectory() as folder:

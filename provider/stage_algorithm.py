@@ -24,12 +24,12 @@ from ..algorithms.cloud.dimensions import DIMENSIONS
 from ..algorithms.cloud.files import count_points, read_extent
 from ..algorithms.cloud.outputs import replacing
 from ..algorithms.help import stage_help
+from ..algorithms.report.page import with_coordinates
 from ..algorithms.run import Outcome, run_stage
 from ..algorithms.stage import Monitor, Raster, RasterSurface, Stage
+from .algorithm import CheckedAlgorithm
 from .clouds import cloud_path, files_read
-from .crs import FULL, make_in_main_thread, renew_in_main_thread
-from .declared import DeclaredAlgorithm
-from .dependencies import missing_sentence
+from .crs import FULL
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, announce, is_step, warn_unknown_parameters
 from .input_layers import find_input_layer, input_layer_files, input_layer_parameter, read_input_layer, refuse_elsewhere
@@ -56,7 +56,7 @@ from .outputs import all_in_place, check_targets, write_for_qgis
 from .parameters import automatic_numbers, number_outputs, parameter, tunable_values, used_name
 from .places import Place, place_of_cloud, place_of_layers
 from .rasters import write_raster
-from .settings import apply_threads
+from .run_log import RunLog, about_run, complete_page, run_log
 from .styles import cloud_style, layer_style, show_on_load
 from .text_files import file_parameter, write_text
 from .vectors import SOURCE_TYPES, plain
@@ -72,7 +72,6 @@ class _Job:
     tunables: dict[str, Any]
     inputs: list[Path] = field(default_factory=list)
     reference: Optional[Path] = None
-    systems: list[QgsCoordinateReferenceSystem] = field(default_factory=list)
     box: Optional[np.ndarray] = None
     crs: QgsCoordinateReferenceSystem = field(default_factory=QgsCoordinateReferenceSystem)
 
@@ -82,7 +81,7 @@ class _Job:
         return [*self.inputs, *([self.reference] if self.reference else [])]
 
 
-class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
+class StageAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
     """A stage as a Processing algorithm; everything it shows comes from the stage's declaration."""
 
     def __init__(self, stage: Stage) -> None:
@@ -144,45 +143,16 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         for name, title in number_outputs(self.stage).items():
             self.addOutput(QgsProcessingOutputNumber(name, title))
 
-    def canExecute(self) -> tuple[bool, str]:  # noqa: N802
-        """Whether all packages are there, and how to install what is missing."""
-        missing = missing_sentence()
-        return not missing, missing
+    def check(self, parameters: dict, context: QgsProcessingContext) -> None:
+        """Find out what a run needs; refuse what can be refused before it."""
+        self.job = self._job(parameters, context)
 
-    def checkParameterValues(self, parameters: dict, context: QgsProcessingContext) -> tuple[bool, str]:  # noqa: N802
-        """Refuse what can be refused before the run, in the words that the run would use."""
-        try:
-            self._job(parameters, context)
-        except ValueError as error:
-            return False, str(error)
-        return super().checkParameterValues(parameters, context)
-
-    def prepareAlgorithm(  # noqa: N802
-        self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback
-    ) -> bool:
-        """Find out files and values; layers may be asked only here, in the main thread.
-
-        Models and scripts come here without :meth:`checkParameterValues`, so everything is checked again.
-        """
-        with as_processing_errors():
-            self.job = self._job(parameters, context)
-            systems = [read_extent(path)[2] for path in self.job.paths]
-            self.job.systems = make_in_main_thread([*systems, *names_of_crs(self.job.crs)])
-        return True
-
-    def postProcessAlgorithm(  # noqa: N802
-        self, context: QgsProcessingContext, feedback: QgsProcessingFeedback
-    ) -> dict:
-        """Make the CRS of results last."""
-        renew_in_main_thread(context.temporaryLayerStore().mapLayers().values())
-        return {}
+    def systems(self) -> list[str]:
+        """Return the coordinate reference systems of the clouds, and the one that is given."""
+        return [*(read_extent(path)[2] for path in self.job.paths), *names_of_crs(self.job.crs)]
 
     def _job(self, parameters: dict, context: QgsProcessingContext) -> _Job:
         """Return what a run needs; refuse with a ValueError what can be refused before it."""
-        missing = missing_sentence()
-        if missing:
-            raise ValueError(missing)
-        apply_threads()
         job = _Job(tunable_values(self, self.stage, parameters, context))
         if self.stage.reads_cloud:
             job.inputs = input_paths(self, self.stage.merges, parameters, context)
@@ -206,7 +176,12 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         warn_unknown_parameters(self, parameters, feedback)
         monitor = FeedbackMonitor(feedback, self.stage, self.job.tunables)
         definitions, subject = self.destinationParameterDefinitions(), subject_of(self.job.paths, feedback)
-        with as_processing_errors(feedback), all_in_place(definitions, parameters, context, subject) as run:
+        with (
+            run_log() as log,
+            as_processing_errors(feedback),
+            all_in_place(definitions, parameters, context, subject) as run,
+        ):
+            log.begin(self.stage, self.job.tunables)
             outcome, place = self._run(parameters, context, monitor)
             results = self._numbers(outcome, monitor)
             if self.stage.makes_cloud:
@@ -223,8 +198,9 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
                 content = outcome.files[file.name]
                 part = monitor.part(_WRITTEN, _WRITTEN)
                 results.update(write_text(self, file, content, place, run.parameters, context, part))
+            log.end()
             if outcome.report is not None:
-                results.update(self._write_report(outcome.report.html, run.parameters, context))
+                results.update(self._write_report(outcome.report.html, place, log, run.parameters, context))
             monitor.progress(1.0)
             return run.final(results)
         return {}
@@ -233,7 +209,7 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         """Read clouds and layers and run the stage; return what it made, and where on Earth that lies."""
         paths = self.job.paths
         # Where memory ends while they are read, no warning comes through any more.
-        warn_if_memory_is_short(sum(count_points(path, self.job.box) for path in paths), monitor)
+        warn_if_memory_is_short(self._points(), monitor)
         share = _READ / max(1, len(paths))
         parts = [monitor.part(i * share, (i + 1) * share) for i in range(len(paths))]
         clouds = [read_named(path, part, self.job.crs, self.job.box) for path, part in zip(paths, parts)]
@@ -252,6 +228,9 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         if self.stage.creates and outcome.cloud is not None:
             outcome.cloud = named(outcome.cloud, self.job.crs)
         return outcome, place_of_cloud(outcome.cloud) if outcome.cloud is not None else place
+
+    def _points(self) -> int:
+        return sum(count_points(path, self.job.box) for path in self.job.paths)
 
     def _tell_what_is_taken(self, clouds: list[Cloud], monitor: Monitor) -> None:
         """Log which dimensions of earlier runs are read; of a chain they are those of its own steps."""
@@ -296,11 +275,18 @@ class StageAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         show_on_load(context, target, "Raster", layer_style(raster))
         return {name: target}
 
-    def _write_report(self, html: str, parameters: dict, context: QgsProcessingContext) -> dict:
-        """Write the page of numbers, if it is wanted; return its output."""
+    def _write_report(
+        self, html: str, place: Optional[Place], log: RunLog, parameters: dict, context: QgsProcessingContext
+    ) -> dict:
+        """Write the page of numbers, if it is wanted; return its output. That of a step, the chain completes."""
         target = self.parameterAsFileOutput(parameters, REPORT, context)
         if not target:
             return {}
+        page = with_coordinates(html, place.to_map) if place is not None else html
         with replacing(Path(target)) as stream:
-            stream.write(html.encode())
+            stream.write(page.encode())
+        if self._alone:
+            wkt = place.crs.toWkt(FULL) if place is not None else ""
+            rows = about_run(self.displayName(), self.job.paths, self._points(), wkt)
+            complete_page(Path(target), rows, log.steps)
         return {REPORT: target}

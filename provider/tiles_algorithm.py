@@ -24,6 +24,8 @@ from qgis.core import (
 
 from ..algorithms.cloud.outputs import replacing
 from ..algorithms.pipeline import Output
+from ..algorithms.report.page import Row, with_coordinates
+from ..algorithms.report.run_facts import StepFacts
 from ..algorithms.stage import FileContent, LayerFeatures, Raster
 from ..algorithms.tiling.mosaics import RasterMosaic
 from ..algorithms.tiling.run_in_tiles import TilesOutcome, run_in_tiles
@@ -32,10 +34,9 @@ from ..algorithms.tiling.survey import Survey, crs_of_survey, files_of_survey
 from ..algorithms.tiling.tiled_pipelines import TiledPipeline, tiled_pipeline_help
 from ..algorithms.tiling.tiled_steps import files_of
 from ..algorithms.tiling.workers import Workers
+from .algorithm import CheckedAlgorithm
 from .clouds import SurveyParameter, survey_paths
-from .crs import crs_units, make_in_main_thread, renew_in_main_thread
-from .declared import DeclaredAlgorithm
-from .dependencies import missing_sentence
+from .crs import crs_units
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, warn_unknown_parameters
 from .input_layers import find_input_layer, input_layer_files, input_layer_parameter, read_input_layer
@@ -45,8 +46,8 @@ from .models import pipeline_parameters
 from .outputs import all_in_place, check_targets, target_path
 from .parameters import tunable_values
 from .rasters import write_mosaic
+from .run_log import about_run, complete_page, parameter_rows
 from .schedulers import check_scheduler
-from .settings import apply_threads
 from .styles import layer_style, show_on_load
 from .surveys import VPC, WGS84, check_vpc, place_of_survey, write_survey
 from .text_files import file_parameter, write_text
@@ -71,7 +72,7 @@ _NUMBERS = {
 _DONE = 0.97
 
 
-class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
+class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
     """A composite on a survey of any size; everything it shows comes from the composite's declaration."""
 
     def __init__(self, tiled: TiledPipeline) -> None:
@@ -116,25 +117,8 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         for name, title in _NUMBERS.items():
             self.addOutput(QgsProcessingOutputNumber(name, title))
 
-    def canExecute(self) -> tuple[bool, str]:  # noqa: N802
-        """Whether all packages are there, and how to install what is missing."""
-        missing = missing_sentence()
-        return not missing, missing
-
-    def checkParameterValues(self, parameters: dict, context: QgsProcessingContext) -> tuple[bool, str]:  # noqa: N802
-        """Refuse what can be refused before the run, in the words that the run would use."""
-        try:
-            self._check(parameters, context)
-        except ValueError as error:
-            return False, str(error)
-        return super().checkParameterValues(parameters, context)
-
-    def _check(self, parameters: dict, context: QgsProcessingContext) -> None:
-        """Find out files, tunables and workers; refuse with a ValueError what can be refused before the run."""
-        missing = missing_sentence()
-        if missing:
-            raise ValueError(missing)
-        apply_threads()
+    def check(self, parameters: dict, context: QgsProcessingContext) -> None:
+        """Find out files, tunables and workers; refuse what can be refused before the run."""
         self.paths = survey_paths(self, INPUT, parameters, context)
         check_vpc(target_path(parameters.get(OUTPUT)), self.paths)
         self.files = files_of_survey(self.paths)
@@ -174,21 +158,9 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
             raise ValueError(f"There is no certificate {missing[0]}; check the name.")
         return Workers(count, scheduler, certificates)
 
-    def prepareAlgorithm(  # noqa: N802
-        self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback
-    ) -> bool:
-        """Find out files and values; layers may be asked only here, in the main thread."""
-        with as_processing_errors():
-            self._check(parameters, context)
-            self._systems = make_in_main_thread([self.wkt, WGS84])
-        return True
-
-    def postProcessAlgorithm(  # noqa: N802
-        self, context: QgsProcessingContext, feedback: QgsProcessingFeedback
-    ) -> dict:
-        """Make the CRS of results last."""
-        renew_in_main_thread(context.temporaryLayerStore().mapLayers().values())
-        return {}
+    def systems(self) -> list[str]:
+        """Return the coordinate reference systems of the survey and of its virtual point cloud."""
+        return [self.wkt, WGS84]
 
     def processAlgorithm(  # noqa: N802
         self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback
@@ -268,10 +240,25 @@ class TilesAlgorithm(DeclaredAlgorithm, QgsProcessingAlgorithm):
         report = outcome.reports.get(self.tiled.report.name) if self.tiled.report else None
         if report is None or parameters.get(REPORT) in UNWANTED:
             return {}
-        target = self.parameterAsFileOutput(parameters, REPORT, context)
+        target, place = self.parameterAsFileOutput(parameters, REPORT, context), place_of_survey(outcome.survey)
+        page = with_coordinates(report.html, place.to_map)
         with replacing(Path(target)) as stream:
-            stream.write(report.html.encode())
+            stream.write(page.encode())
+        rows = about_run(self.displayName(), self.paths, outcome.points, self.wkt)
+        blocks = f"{outcome.blocks:,} of {outcome.side:g} m"
+        rows.append(Row("Blocks", blocks, f"Tiles written: {len(outcome.tiles):,}. Sampling: {outcome.sampling}."))
+        complete_page(Path(target), rows, self._steps(outcome), "In all processes together.")
         return {REPORT: target}
+
+    def _steps(self, outcome: TilesOutcome) -> list[StepFacts]:
+        """Return the steps with their parameters as used, and their seconds in all processes together."""
+        steps = []
+        for step, chosen in self.tiled.pipeline.by_step(self.tunables):
+            found = {name: outcome.values.get(f"{step.name}_{name}") for name in step.stage.tunables}
+            used = {name: values for name, values in found.items() if values}
+            seconds = outcome.seconds.get(step.name, 0.0)
+            steps.append(StepFacts(step.stage.title, seconds, parameter_rows(step.stage, chosen, used)))
+        return steps
 
     def _write_layers(
         self, outcome: TilesOutcome, parameters: dict, context: QgsProcessingContext, monitor: FeedbackMonitor

@@ -3,25 +3,36 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Optional
 
 import numpy as np
 
-from ..cloud.asprs import PointClass
+from ..cloud.asprs import NOISE, PointClass
 from ..geometry.rings import signed_area
-from ..report.building_views import Views, draw_views
-from ..report.charts import BLUE, Series, draw_histogram
-from ..report.footprint_map import draw_footprints
+from ..report.building_views import Views, boxes_around, draw_views
+from ..report.charts import BLUE, GRAY, RED, YELLOW, draw_bars
 from ..report.page import Row, build_page
+from ..report.polygon_map import draw_polygons
 from ..stage import InputLayer, LayerFeatures, Measure, Report, feature_names, stage
 
 # Clusters of simulated towns with at least this confidence were all buildings, and 70 % of those below, down to 0.5.
 SURE = 0.7
 
+# Confidence below which a building is as likely as not.
+_EVEN = 0.5
+
+# Colors of the map by confidence.
+_COLORS = {"unknown": GRAY, f"{SURE} and more": BLUE, f"{_EVEN} to {SURE}": YELLOW, f"below {_EVEN}": RED}
+
 # Doubtful buildings that the page shows one by one: as many as fit two printed pages.
 _SHOWN = 10
 
 _NUMBERS = {"height": "m", "volume": "m³", "confidence": ""}
+
+
+def _shown(footprints: LayerFeatures) -> np.ndarray:
+    """Return the boxes (k, 2, 2), m, around the buildings that the page shows one by one."""
+    return boxes_around([footprints.geometries[row] for row in _Facts.of(footprints).least_sure()])
 
 
 @stage(
@@ -43,6 +54,7 @@ _NUMBERS = {"height": "m", "volume": "m³", "confidence": ""}
         Measure("volume", "Volume of all buildings", "m³"),
         Measure("doubtful", "Doubtful buildings"),
     ),
+    shows=_shown,
 )
 def report_buildings(xyz=None, classification=None, footprints=None, *, monitor=None):
     """Write a page on the buildings found: number, areas, heights, volumes, a map, and the doubtful ones.
@@ -53,7 +65,8 @@ def report_buildings(xyz=None, classification=None, footprints=None, *, monitor=
     Parameters
     ----------
     xyz : ndarray of shape (n, 3), float64, optional
-        Coordinates (m) for the hillshade and the views of single buildings; in tiles the page has neither.
+        Coordinates (m) for the hillshade and the views of single buildings. In tiles these are the topmost point of
+        each cell of the hillshade, and every point around these buildings.
     classification : ndarray of shape (n,), uint8, optional
         ASPRS classes of these points.
     footprints : LayerFeatures
@@ -66,15 +79,16 @@ def report_buildings(xyz=None, classification=None, footprints=None, *, monitor=
     """
     facts = _Facts.of(footprints)
     monitor.progress(0.1)
-    order = np.argsort(np.where(np.isnan(facts.confidence), np.inf, facts.confidence), kind="stable")
-    shown = order[facts.confidence[order] < SURE][:_SHOWN]
+    shown = facts.least_sure()
     values = {
         "buildings": len(facts.area),
         "area": float(facts.area.sum()),
         "volume": float(facts.volume.sum()),
         "doubtful": int((facts.confidence < SURE).sum()),
     }
-    parts = [_charts(facts), draw_footprints(footprints.geometries, facts.confidence, SURE, xyz)]
+    # Birds would be the highest points.
+    surface = None if xyz is None else xyz[~np.isin(classification, NOISE)]
+    parts = [_map(footprints, facts, surface if surface is not None and len(surface) else None), _charts(facts)]
     monitor.progress(0.5)
     if xyz is not None and len(shown):
         views = Views(xyz, classification == PointClass.BUILDING)
@@ -87,7 +101,9 @@ def report_buildings(xyz=None, classification=None, footprints=None, *, monitor=
 
 def summary_of(values: dict) -> str:
     """Return what was found, in a sentence."""
-    return f"{values['buildings']:,} buildings, {values['area']:,.0f} m², {values['doubtful']:,} doubtful."
+    count = values["buildings"]
+    noun = "building" if count == 1 else "buildings"
+    return f"{count:,} {noun}, {values['area']:,.0f} m², {values['doubtful']:,} doubtful."
 
 
 @dataclass(frozen=True)
@@ -112,6 +128,16 @@ class _Facts:
         )
         reasons = [str(one or "") for one in columns.get("reason", [""] * count)]
         return cls(feature_names(footprints), area.reshape(count), reason=reasons, **numbers)
+
+    def least_sure(self) -> np.ndarray:
+        """Return the rows (m,) of the doubtful buildings that are shown one by one, the least sure first."""
+        order = np.argsort(np.where(np.isnan(self.confidence), np.inf, self.confidence), kind="stable")
+        return order[self.confidence[order] < SURE][:_SHOWN]
+
+    def kinds(self) -> list[str]:
+        """Return the kind of each building on the map."""
+        bounds = [np.isnan(self.confidence), self.confidence >= SURE, self.confidence >= _EVEN]
+        return np.select(bounds, list(_COLORS)[:3], list(_COLORS)[3]).tolist()
 
     def captions(self, rows: np.ndarray) -> list[str]:
         """Return a line of text on each of some buildings."""
@@ -147,12 +173,19 @@ def _totals(facts: _Facts, values: dict) -> list[Row]:
     return rows
 
 
+def _map(footprints: LayerFeatures, facts: _Facts, xyz: Optional[np.ndarray]) -> str:
+    """Return the map of the footprints by confidence."""
+    drawn = draw_polygons(footprints.geometries, facts.kinds(), _COLORS, xyz, "Confidence:")
+    return drawn or "<h2>Map</h2>\n<p>There are no footprints to show.</p>"
+
+
 def _charts(facts: _Facts) -> str:
     """Return histograms of what is known of the buildings."""
     charts = [("Areas", facts.area, "area (m²)"), ("Heights", facts.height, "height (m)")]
     charts += [("Volumes", facts.volume, "volume (m³)"), ("Confidence", facts.confidence, "confidence")]
-    return "\n".join(
-        f"<h2>{title}</h2>\n" + draw_histogram([Series("buildings", BLUE, values)], axis, "buildings", [])
+    drawn = [
+        f'<div class="chart"><h3>{title}</h3>{draw_bars(values, axis, "buildings")}</div>'
         for title, values, axis in charts
         if np.isfinite(values).any()
-    )
+    ]
+    return "\n".join(["<h2>How large they are, and how sure</h2>", *drawn]) if drawn else ""

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import base64
 import html
 
 import numpy as np
 
 from ..geometry.grid import fixed_grid_over
-from .page import png
+from .page import picture, position
 
 # Pixels of a view, and meters around a building that it shows.
 _WIDTH, _HEIGHT, _AROUND = 340, 240, 4.0
@@ -44,16 +43,23 @@ class Views:
         return rows[((plan >= low) & (plan <= high)).all(axis=1)]
 
 
+def boxes_around(geometries: list) -> np.ndarray:
+    """Return the boxes (k, 2, 2), m, that the views of some buildings (rings of each, m) show."""
+    outer = [np.asarray(rings[0])[:, :2] for rings in geometries]
+    boxes = [(ring.min(axis=0) - _AROUND, ring.max(axis=0) + _AROUND) for ring in outer]
+    return np.array(boxes).reshape(-1, 2, 2)
+
+
 def draw_views(views: Views, geometries: list, captions: list[str]) -> str:
     """Return the HTML of the views of some buildings (rings of each, m), each under its caption."""
     parts = ["<h2>Doubtful buildings</h2>"]
     parts.append("<p>From above with the footprint, and from the south. Points of buildings are red.</p>")
-    for rings, caption in zip(geometries, captions):
+    for rings, (low, high), caption in zip(geometries, boxes_around(geometries), captions):
         outer = np.asarray(rings[0])[:, :2]
-        low, high = outer.min(axis=0) - _AROUND, outer.max(axis=0) + _AROUND
         rows = views.near(low, high)
         xyz, is_building = views.xyz[rows], views.is_building[rows]
-        parts.append(f'<div class="building"><p>{html.escape(caption)}</p>')
+        middle = position(*((low + high) / 2).tolist())
+        parts.append(f'<div class="building"><p>{html.escape(caption)} At {middle}.</p>')
         parts.append(_view(xyz[:, :2], xyz[:, 2], is_building, low, high, outer))
         if len(xyz):
             floor, top = xyz[:, 2].min() - 1.0, xyz[:, 2].max() + 1.0
@@ -72,12 +78,11 @@ def _view(plan: np.ndarray, depth: np.ndarray, is_building: np.ndarray, low, hig
     column, row = ((plan[order] - low) / size).astype(int).T
     for right, up in _DOT:
         image[np.clip(row + up, 0, lines - 1), np.clip(column + right, 0, columns - 1)] = 1 + is_building[order]
-    data = base64.b64encode(png(image[::-1], _COLORS)).decode()
+    drawn = picture(image[::-1], _COLORS, (0.0, 0.0, columns, lines))
     outline = ""
     if ring is not None:
         points = " ".join(f"{x:.1f},{lines - y:.1f}" for x, y in (ring - low) / size)
         outline = f'<polygon points="{points}" fill="none" stroke="#222" stroke-width="1.2"/>'
     return (
-        f'<svg class="view" viewBox="0 0 {columns} {lines}" width="{columns}" height="{lines}">'
-        f'<image width="{columns}" height="{lines}" href="data:image/png;base64,{data}"/>{outline}</svg>'
+        f'<svg class="view" viewBox="0 0 {columns} {lines}" width="{columns}" height="{lines}">{drawn}{outline}</svg>'
     )

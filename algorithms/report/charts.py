@@ -70,7 +70,13 @@ def draw_histogram(series: list[Series], axis: str, count: str, marks: list[Mark
     up = _Axis(0.0, float(counts.sum(axis=0).max()) * 1.05, _HEIGHT - _BOTTOM, _TOP)
     parts = [_bars(edges, counts, [one.color for one in series], across, up), _ticks_across(across, axis)]
     parts += [_ticks_up(up, count), *(_mark(mark, i, across) for i, mark in enumerate(marks))]
-    return _legend(series) + _picture(_WIDTH, _HEIGHT, f"Histogram: {axis}", "".join(parts))
+    legend = _legend(series) if any(one.name for one in series) else ""
+    return legend + _picture(_WIDTH, _HEIGHT, f"Histogram: {axis}", "".join(parts))
+
+
+def draw_bars(values: np.ndarray, axis: str, count: str) -> str:
+    """Return the HTML of a histogram of one series, which needs no legend."""
+    return draw_histogram([Series("", BLUE, values)], axis, count, [])
 
 
 def bar_edges(values: np.ndarray) -> np.ndarray:

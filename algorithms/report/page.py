@@ -5,10 +5,12 @@ from __future__ import annotations
 import base64
 import html
 import math
+import re
 import struct
 import zlib
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Callable
 
 import numpy as np
 
@@ -27,10 +29,21 @@ td.number { text-align: right; font-variant-numeric: tabular-nums; white-space: 
 svg { max-width: 100%; height: auto }
 img { max-width: 100%; border: 1px solid #ccc; image-rendering: pixelated }
 svg.view { border: 1px solid #ccc; margin-right: 1em }
-.building { break-inside: avoid }
-@media print { body { max-width: none; margin: 0; font-size: 11pt } h2 { break-after: avoid } }
-.swatch { display: inline-block; width: .9em; height: .9em; margin: 0 .4em 0 1em; border: 1px solid #888 }
+.building, svg, img, tr { break-inside: avoid }
+.swatch { display: inline-block; width: .9em; height: .9em; margin: 0 .4em 0 1em; border: 1px solid #888;
+  print-color-adjust: exact; -webkit-print-color-adjust: exact }
+.chart { display: inline-block; width: 49%; break-inside: avoid } .chart h3 { margin: .5em 0 0 }
+.parameters { font-size: .8em; columns: 2; -webkit-columns: 2 } .parameters h3 { margin: 0 }
+.parameters td, .parameters th { padding: .1em .6em } .parameters div { break-inside: avoid }
+@page { size: A4; margin: 15mm }
+@media print { body { max-width: none; margin: 0; padding: 0; font-size: 10pt } h2, h3 { break-after: avoid } }
 """
+
+# Where a page says of what it is, and with which parameters: who runs a chain knows these, no stage does.
+_FIRST, _LAST = "<!-- run -->", "<!-- parameters -->"
+
+# A position in meters from the origin of a run, see :func:`position`.
+_POSITION = re.compile(r'<span data-east="([-\d.]+)" data-north="([-\d.]+)">[^<]*</span>')
 
 
 @dataclass(frozen=True)
@@ -64,16 +77,43 @@ def build_page(title: str, lead: str, tables: dict[str, list[Row]], picture: str
     picture : str
         HTML of the map, from :func:`draw_map`.
     """
-    parts = [f"<h1>{html.escape(title)}</h1>", f"<p>{html.escape(lead)}</p>"]
-    for heading, rows in tables.items():
-        parts.append(f"<h2>{html.escape(heading)}</h2>\n<table>")
-        for row in rows:
-            name, value, meaning = (html.escape(text) for text in (row.name, row.value, row.meaning))
-            parts.append(f'<tr><th scope="row">{name}</th><td class="number">{value}</td><td>{meaning}</td></tr>')
-        parts.append("</table>")
-    parts.append(picture)
+    parts = [f"<h1>{html.escape(title)}</h1>", f"<p>{html.escape(lead)}</p>", _FIRST]
+    parts += [draw_rows(heading, rows) for heading, rows in tables.items()]
+    parts += [picture, _LAST]
     head = f'<meta charset="utf-8"><title>{html.escape(title)}</title><style>{_STYLE}</style>'
     return f'<!DOCTYPE html>\n<html lang="en"><head>{head}</head>\n<body>\n' + "\n".join(parts) + "\n</body></html>\n"
+
+
+def draw_rows(heading: str, rows: Iterable[Row], level: int = 2) -> str:
+    """Return the HTML of a table of figures under its heading."""
+    lines = [f"<h{level}>{html.escape(heading)}</h{level}>\n<table>"]
+    for row in rows:
+        name, value, meaning = (html.escape(text) for text in (row.name, row.value, row.meaning))
+        lines.append(f'<tr><th scope="row">{name}</th><td class="number">{value}</td><td>{meaning}</td></tr>')
+    return "\n".join([*lines, "</table>"])
+
+
+def position(east: float, north: float) -> str:
+    """Return the HTML of a position in local meters, which :func:`with_coordinates` turns into map coordinates."""
+    return f'<span data-east="{east:.3f}" data-north="{north:.3f}">{east:.1f} m east, {north:.1f} m north</span>'
+
+
+def with_coordinates(page: str, to_map: Callable[[np.ndarray], np.ndarray]) -> str:
+    """Return a page whose positions in meters from the origin of a run are in map coordinates."""
+
+    def written(found: re.Match) -> str:
+        east, north = to_map(np.array([[float(found[1]), float(found[2])]]))[0].tolist()
+        return f"{east:.1f} E, {north:.1f} N"
+
+    return _POSITION.sub(written, page)
+
+
+def with_run(page: str, first: str, last: str) -> str:
+    """Return a page with HTML about the run: of what it is after the result in a sentence, and parameters at the end.
+
+    A page that has them already stays as it is.
+    """
+    return page.replace(_FIRST, first, 1).replace(_LAST, last, 1)
 
 
 def draw_table(title: str, head: list[str], rows: list[list[str]]) -> str:
@@ -118,6 +158,16 @@ def draw_map(xyz: np.ndarray, outcome: np.ndarray, names: tuple[str, str, str, s
     return (
         f'<h2>Map</h2>\n<p>{legend}</p>\n<img alt="Map of the result" width="{width}" '
         f'src="data:image/png;base64,{picture}">\n<p>{caption}</p>'
+    )
+
+
+def picture(image: np.ndarray, colors: np.ndarray, box: tuple[float, float, float, float]) -> str:
+    """Return the SVG of an image of color numbers in a box: left, top, width and height in units of the picture."""
+    data = base64.b64encode(png(image, colors)).decode()
+    x, y, width, height = box
+    return (
+        f'<image x="{x:.1f}" y="{y:.1f}" width="{width:.1f}" height="{height:.1f}" preserveAspectRatio="none" '
+        f'xlink:href="data:image/png;base64,{data}"/>'
     )
 
 

@@ -1,16 +1,22 @@
-"""A map of polygons in the colors of their kinds, for the quality pages."""
+"""A map of polygons in the colors of their kinds, for the pages; on request over the shaded surface of points."""
 
 from __future__ import annotations
 
 import html
+from typing import Optional
 
 import numpy as np
+
+from .hillshade import draw_hillshade
+from .page import position
 
 # Width of the map and its greatest height, in units of the picture.
 _WIDTH, _HEIGHT = 720.0, 900.0
 
 
-def draw_polygons(geometries: list, kinds: list[str], colors: dict[str, str]) -> str:
+def draw_polygons(
+    geometries: list, kinds: list[str], colors: dict[str, str], xyz: Optional[np.ndarray] = None, what: str = ""
+) -> str:
     """Return the HTML of a map, north up.
 
     Parameters
@@ -21,24 +27,32 @@ def draw_polygons(geometries: list, kinds: list[str], colors: dict[str, str]) ->
         The kind of each.
     colors : dict
         The color of each kind, in the order of the legend. The last kinds are drawn on top.
+    xyz : ndarray of shape (n, 3), optional
+        Points (m) whose surface is shaded below the polygons.
+    what : str
+        What the kinds are of, before the legend.
     """
     if not geometries:
         return ""
-    corners = np.concatenate([rings[0] for rings in geometries])
-    low, extent = corners.min(axis=0), np.maximum(np.ptp(corners, axis=0), 1e-3)
-    scale = min(_WIDTH / extent[0], _HEIGHT / extent[1])
-    width, height = extent * scale
+    corners = np.concatenate([np.asarray(rings[0])[:, :2] for rings in geometries])
+    extent = corners if xyz is None else np.concatenate([corners, xyz[:, :2]])
+    low, high = extent.min(axis=0), extent.max(axis=0)
+    size = np.maximum(high - low, 1e-3)
+    scale = min(_WIDTH / size[0], _HEIGHT / size[1])
+    width, height = size * scale
     order = sorted(range(len(kinds)), key=lambda row: list(colors).index(kinds[row]))
-    paths = [" ".join(_path((ring - low) * scale, height) for ring in rings) for rings in geometries]
+    paths = [" ".join(_path((np.asarray(ring)[:, :2] - low) * scale, height) for ring in rings) for rings in geometries]
     shapes = [f'<path fill="{colors[kinds[row]]}" d="{paths[row]}"/>' for row in order]
+    below = "" if xyz is None else draw_hillshade(xyz, low, high, scale)
     legend = "".join(
         f'<span class="swatch" style="background:{color}"></span>{html.escape(kind)}' for kind, color in colors.items()
     )
-    caption = f"The map is {extent[0]:,.0f} m wide and {extent[1]:,.0f} m high, north is up."
     return (
-        f'<h2>Map</h2>\n<p>{legend}</p>\n<svg role="img" aria-label="Map of the buildings" '
+        f'<h2>Map</h2>\n<p>{html.escape(what)}{legend}</p>\n<svg role="img" aria-label="Map of the buildings" '
         f'viewBox="-2 -2 {width + 4:.0f} {height + 4:.0f}" width="{width + 4:.0f}" fill-rule="evenodd" '
-        f'stroke="#222" stroke-width="0.5">{"".join(shapes)}</svg>\n<p>{caption}</p>'
+        f'stroke="#222" stroke-width="0.5">{below}<g fill-opacity="{1.0 if xyz is None else 0.75}">{"".join(shapes)}'
+        f"</g></svg>\n<p>The map is {size[0]:,.0f} m wide and {size[1]:,.0f} m high, north is up; its lower left "
+        f"corner is at {position(*low.tolist())}.</p>"
     )
 
 

@@ -6,7 +6,9 @@ import functools
 import inspect
 import typing
 from dataclasses import dataclass, field, replace
-from typing import Any, Callable, Union
+from typing import Any, Callable, Optional, Union
+
+import numpy as np
 
 from .arguments import REFERENCE_PREFIX, check_arrays
 from .docstrings import before_first_section, sections, with_tunables
@@ -49,6 +51,7 @@ class Stage:
     reach: Reach = 0.0
     of_whole: tuple[str, ...] = ()
     reference: str = ""
+    shows: Optional[Callable[..., np.ndarray]] = None
 
     @property
     def name(self) -> str:
@@ -145,6 +148,7 @@ def stage(
     reach: Reach = 0.0,
     of_whole: tuple[str, ...] = (),
     reference: str = "The same points with the true values, to compare with.",
+    shows: Optional[Callable[..., np.ndarray]] = None,
 ) -> Callable[[Callable], Callable]:
     """Declare a function as a stage.
 
@@ -160,7 +164,9 @@ def stage(
     ``reach`` is how far (m) from a point others may lie that decide on it, a number or a function of all tunables by
     name: where a cloud is worked on in parts, each is seen with the points around it that far. ``of_whole`` names
     values that it measures on its results, and of which parts of a cloud take those of the whole, see
-    :meth:`.CloudSampling.shared`. ``reference`` says what the second cloud is, of a stage that reads one.
+    :meth:`.CloudSampling.shared`. ``reference`` says what the second cloud is, of a stage that reads one. ``shows``
+    is of a stage that makes a page of layers and, optionally, points: a function that returns of these layers the boxes
+    (k, 2, 2), m, in which it shows every point. Elsewhere the topmost points are enough, as it is given of a survey.
     """
     makes = {
         "writes": writes,
@@ -175,6 +181,7 @@ def stage(
         "reach": reach,
         "of_whole": of_whole,
         "reference": reference,
+        "shows": shows,
     }
 
     def declare(function: Callable) -> Callable:

@@ -45,7 +45,19 @@ _BETWEEN_LOOKS = 0.5
 
 
 # Arrays of a result that are kept by the names of dimensions.
-_KINDS = ("dimensions", "used", "counts", "most", "inside", "beside", "rasters", "lattices", "pieces")
+_KINDS = (
+    "dimensions",
+    "used",
+    "counts",
+    "most",
+    "inside",
+    "beside",
+    "rasters",
+    "lattices",
+    "pieces",
+    "seconds",
+    "values",
+)
 
 # Those of them that grow with the points of a block; they are left out where all blocks are in memory at once.
 _LARGE = ("dimensions", "inside", "beside", "rasters")
@@ -117,6 +129,10 @@ class BlockResult:
     items : dict of str to list
         Of text files the records of items that belong to these features, with their names in the block, by their class:
         files of one stage are written of the same items.
+    seconds : dict of str to ndarray of shape ()
+        How long each step took.
+    values : dict of str to ndarray of shape ()
+        What automatic tunables took, and other values that steps found, by the names that they have in the chain.
     messages, absent : list of str
         Warnings, and sentences of steps that found nothing, each once.
     tries : ndarray of shape (k, 4)
@@ -138,6 +154,8 @@ class BlockResult:
     layers: dict[str, LayerFeatures] = field(default_factory=dict)
     pieces: dict[str, np.ndarray] = field(default_factory=dict)
     items: dict[str, list[tuple[str, dict[str, Any]]]] = field(default_factory=dict)
+    seconds: dict[str, np.ndarray] = field(default_factory=dict)
+    values: dict[str, np.ndarray] = field(default_factory=dict)
     messages: list[str] = field(default_factory=list)
     absent: list[str] = field(default_factory=list)
     tries: np.ndarray = field(default_factory=lambda: np.zeros((0, 4)))
@@ -212,12 +230,24 @@ class BlockResult:
 
 
 class StoppableMonitor(Monitor):
-    """Stops a worker when a file appears that says so; collects sentences of steps that found nothing."""
+    """Stops a worker when a file appears that says so; collects sentences of steps that found nothing, and seconds."""
 
     def __init__(self, stop: Path) -> None:
         super().__init__()
         self.stop, self._looked = stop, 0.0
         self.absent: list[str] = []
+        self._begins: list[tuple[str, float]] = []
+
+    def part(self, start: float, end: float, prefix: str = "") -> Monitor:
+        """Return the monitor of a part of the work; what gives its values a prefix is a step."""
+        if prefix:
+            self._begins.append((prefix.rstrip("_"), time.monotonic()))
+        return super().part(start, end, prefix)
+
+    def seconds(self) -> dict[str, np.ndarray]:
+        """Return how long each step took, the last of them until now."""
+        ends = [*(began for _, began in self._begins[1:]), time.monotonic()]
+        return {name: np.array(end - began) for (name, began), end in zip(self._begins, ends)}
 
     def none_found(self, sentence: str) -> None:
         """Keep a sentence that is a warning if steps found nothing in all parts of the cloud."""
@@ -296,6 +326,7 @@ def _run(task: BlockTask, window: Window, box: np.ndarray, monitor: StoppableMon
     pipeline = in_blocks(PIPELINES[task.pipeline])
     positions = _positions(task.survey, window)
     made = run_pipeline(pipeline, window.cloud, monitor, kept=(), samplings=task.samplings, **task.tunables)
+    seconds = monitor.seconds()
     point, stays = _left(window, made)
     values = _written(pipeline, made, point, task.survey.origin)
     core = _inside(positions, task.block.box)
@@ -312,6 +343,9 @@ def _run(task: BlockTask, window: Window, box: np.ndarray, monitor: StoppableMon
             result.items[file.item.__name__] = [(one.name, one.record()) for one in items if one.name in kept]
     for name, surface in made.rasters.items():
         result.rasters[name], result.lattices[name] = _cropped(surface, task.block.box - task.survey.origin[:2])
+    result.seconds = seconds
+    found = {name: value for name, value in monitor.values.items() if isinstance(value, (bool, int, float, str))}
+    result.values = {name: np.array(value) for name, value in found.items()}
     result.messages = list(dict.fromkeys(monitor.warnings))
     result.absent = list(dict.fromkeys(monitor.absent))
     return result, cuts

@@ -15,12 +15,14 @@ from typing import Any, Callable, Optional, Union
 
 import numpy as np
 
+from ..cloud.cloud import Cloud, create_cloud
 from ..cloud.copc_index import has_index
 from ..cloud.files import readable
 from ..cloud.outputs import LAS, LAZ, replacing, stem_of
 from ..cloud.points import open_header
 from ..cloud.units import Resolver
-from ..pipeline import REPORT, Pipeline
+from ..pipeline import REPORT, Pipeline, Step
+from ..report.hillshade import CELLS
 from ..run import run_stage
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import FileContent, LayerFeatures, Monitor, Report
@@ -41,6 +43,7 @@ from .tiled_steps import (
     why_whole,
 )
 from .tiles import TileTask, points_outside, rows_of, write_tile
+from .views import View
 from .work_folder import remove_work, work_folder
 from .workers import Workers, run_all
 
@@ -79,7 +82,10 @@ _BETWEEN_MESSAGES = 10.0
 class TilesOutcome:
     """What came of a survey: the tiles written, layers in meters from ``survey.origin``, reports, what went wrong.
 
-    ``tries`` are those of all blocks, see :class:`.BlockResult`.
+    ``side`` is that of the blocks, m.
+
+    ``tries`` are those of all blocks, see :class:`.BlockResult`; ``seconds`` are those of each step in all blocks, and
+    ``values`` those that automatic tunables and others had in blocks, each once.
     """
 
     survey: Survey
@@ -89,8 +95,22 @@ class TilesOutcome:
     failures: list[str] = field(default_factory=list)
     sampling: Optional[CloudSampling] = None
     blocks: int = 0
+    side: float = 0.0
     points: int = 0
     tries: np.ndarray = field(default_factory=lambda: np.zeros((0, 4)))
+    seconds: dict[str, float] = field(default_factory=dict)
+    values: dict[str, list] = field(default_factory=dict)
+
+    def add(self, results: Iterable[BlockResult]) -> None:
+        """Take over what blocks cost, and the values that they found."""
+        found: dict[str, set] = {}
+        for result in results:
+            self.tries = np.concatenate([self.tries, result.tries])
+            for step, seconds in result.seconds.items():
+                self.seconds[step] = self.seconds.get(step, 0.0) + float(seconds)
+            for name, value in result.values.items():
+                found.setdefault(name, set()).add(value.item())
+        self.values = {name: sorted(values) for name, values in found.items()}
 
 
 def run_in_tiles(
@@ -219,6 +239,7 @@ class _Run:
         self.find_layers: Optional[FindLayers] = None
         self.take_raster: Optional[TakeRaster] = None
         self.take_file: Optional[TakeFile] = None
+        self.view: Optional[View] = None
 
     def all(self, block_side: Optional[float], largest_file: int) -> TilesOutcome:
         """Sample, work on the blocks, write the tiles."""
@@ -230,21 +251,22 @@ class _Run:
         self.monitor.resolved(sampling=sampling)
         self.monitor.inform(f"Blocks of {side:g} m, each worked on with {halo:.4g} m around it.")
         self._cut_large_files(side, largest_file)
-        outcome = TilesOutcome(self.survey, [], sampling=sampling, points=len(self.survey))
+        outcome = TilesOutcome(self.survey, [], sampling=sampling, side=side, points=len(self.survey))
         with self.workers.open({source.path.parent for source in given.sources} | {self.folder}) as executor:
             blocks, results, failed = self._work_on_blocks(executor, side, halo, samplings)
             outcome.blocks = len(blocks)
             outcome.failures = [f"Block {blocks[number].name}: {why}" for number, why in sorted(failed.items())]
             done = [(blocks[number], results[number]) for number in sorted(results)]
             found = [BlockResult.read(path, with_points=False) for _, path in done]
-            outcome.tries = np.concatenate([outcome.tries, *(one.tries for one in found)])
+            outcome.add(found)
             positions = [block for block, _ in done]
             numbers = join_numbers(
                 positions, found, lambda at: BlockResult.edges(done[at][1]), feature_numbers(self.pipeline, found)
             )
             joining = self.monitor.part(_WORKED, _JOINED)
             outcome.layers, kept = self._layers(positions, found, numbers, joining)
-            self._run_afterwards(outcome)
+            steps = afterwards(self.pipeline)
+            self._run_on_layers([step for step in steps if not step.stage.shows], outcome)
             if self.take_raster:
                 for mosaic in join_rasters([path for _, path in done], found):
                     self.take_raster(self.survey, mosaic)
@@ -252,7 +274,10 @@ class _Run:
                 for name, content in join_files(self.pipeline, [path for _, path in done], kept).items():
                     self.take_file(self.survey, name, content)
             self._warn_of_blocks(found)
+            paged = [step for step in steps if step.stage.shows]
+            self.view = self._view(paged, outcome) if paged and outcome.layers else None
             self._write_tiles(executor, done, numbers, [blocks[number] for number in failed], outcome)
+            self._run_on_layers(paged, outcome)
         if not outcome.failures:
             # Nothing is left to go on with.
             remove_work(self.work)
@@ -393,9 +418,30 @@ class _Run:
             refer_to_features(numbers, dimension, of_features.known)
         return {name: layers[name] for name in names}, kept
 
-    def _run_afterwards(self, outcome: TilesOutcome) -> None:
-        """Run the steps that read layers alone on the layers of the whole survey."""
-        steps = afterwards(self.pipeline)
+    def _view(self, steps: list[Step], outcome: TilesOutcome) -> View:
+        """Return what the tiles keep of their points for the pages of steps."""
+        boxes = [np.zeros((0, 2, 2))]
+        for step in steps:
+            layers = self._layers_of(step, outcome, {})
+            boxes.append(step.stage.shows(**layers))  # type: ignore[misc]
+        # Of a survey without extent any cell will do.
+        cell = float(np.ptp(self.survey.box, axis=0).max()) / CELLS or 1.0
+        return View(self.work, self.survey.origin, cell, np.concatenate(boxes))
+
+    def _layers_of(
+        self, step: Step, outcome: TilesOutcome, given: dict[str, Optional[LayerFeatures]]
+    ) -> dict[str, Optional[LayerFeatures]]:
+        """Return the layers that a step reads, by the names that it gives them."""
+        names = {(output.step.name, output.of): output.name for output in self.pipeline.outputs}
+        return {
+            one.name: outcome.layers[names[made_by(step.layers[one.name])]]
+            if one.name in step.layers
+            else given.get(one.name)
+            for one in step.stage.input_layers
+        }
+
+    def _run_on_layers(self, steps: list[Step], outcome: TilesOutcome) -> None:
+        """Run steps on the layers of the whole survey, pages with what the tiles have kept of their points."""
         if not steps or not outcome.layers:
             return
         given = self.find_layers(self.survey) if self.find_layers else {}
@@ -403,16 +449,21 @@ class _Run:
         chosen = {step.name: of_step for step, of_step in self.pipeline.by_step(self.tunables)}
         for step in steps:
             monitor = self.monitor.part(_JOINED, _JOINED, f"{step.name}_")
-            layers = {
-                one.name: outcome.layers[names[made_by(step.layers[one.name])]]
-                if one.name in step.layers
-                else given.get(one.name)
-                for one in step.stage.input_layers
-            }
-            made = run_stage(step.stage, monitor=monitor, input_layers=layers, **chosen[step.name])
+            cloud = self._shown(outcome) if step.stage.shows else None
+            layers = self._layers_of(step, outcome, given)
+            made = run_stage(step.stage, cloud, monitor=monitor, input_layers=layers, **chosen[step.name])
             outcome.layers.update({names[step.name, of]: features for of, features in made.layers.items()})
             if made.report is not None:
                 outcome.reports[names[step.name, REPORT]] = made.report
+
+    def _shown(self, outcome: TilesOutcome) -> Optional[Cloud]:
+        """Return what the tiles have kept of their points, None where there are none."""
+        if self.view is None:
+            return None
+        xyz, classification = self.view.points(outcome.tiles)
+        if not len(xyz):
+            return None
+        return create_cloud({"xyz": xyz, "classification": classification})
 
     def _warn_of_blocks(self, found: list[BlockResult]) -> None:
         """Pass on each warning once, and in how many of the blocks with points it was given, if not in all.
@@ -440,6 +491,7 @@ class _Run:
                 units,
                 extent,
                 block.box,
+                self.view,
             )
             for block, result, numbers in blocks
         ]
@@ -475,7 +527,7 @@ class _Run:
                 continue
             target = self.folder / f"{stem}{self.suffix}"
             parts, final = tuple(done[at][1] for at in near), tuple(becomes[at] for at in near)
-            tasks.append(TileTask(source.path, number, target, parts, final, self.stop, units, extent))
+            tasks.append(TileTask(source.path, number, target, parts, final, self.stop, units, extent, view=self.view))
         results, errors = run_all(
             executor, write_tile, tasks, self.stop, self.monitor.part(_JOINED, 1.0), lambda _: None
         )

@@ -15,6 +15,7 @@ from ..cloud.points import chunks_near, open_header
 from ..cloud.units import Units
 from ..stage import Monitor
 from .blocks import REFERRING, BlockResult, StoppableMonitor
+from .views import View
 
 
 @dataclass(frozen=True)
@@ -22,6 +23,7 @@ class TileTask:
     """A tile of the output: the file that it is made of, and the blocks that have its points.
 
     ``piece`` is the box (2, 2), m, of the part of the file that becomes this tile, upper edges excluded; None is all.
+    ``view`` keeps points for the pages of the survey; None where there are no pages with points.
     """
 
     source: Path
@@ -33,6 +35,7 @@ class TileTask:
     units: Units
     extent: Optional[np.ndarray] = None
     piece: Optional[np.ndarray] = None
+    view: Optional[View] = None
 
 
 def points_outside(path: Path, count: int) -> str:
@@ -70,6 +73,8 @@ def write_tile(task: TileTask) -> Optional[Path]:
     for name, whole in values.items():
         cloud.set(name, whole[rows] - cloud.origin if name == "xyz" else whole[rows])
     write_cloud(cloud, task.target, monitor)
+    if task.view is not None:
+        task.view.add(task.target.name, cloud)
     return task.target
 
 

@@ -1,6 +1,7 @@
 """Surveys in tiles through Processing: what goes in, where it comes out, and what is said where it can't."""
 
 import json
+import re
 import shutil
 from pathlib import Path
 
@@ -309,3 +310,21 @@ def test_footprints_of_walls_come_with_rasters_and_the_comparison(provider, cont
     assert (values == -9999).mean() < 0.1
     assert "Corners" in Path(results["REPORT"]).read_text(encoding="utf-8")
     assert sorted(one.name for one in tmp_path.iterdir()) == sorted(outputs.values())
+
+
+def test_one_page_over_a_survey_has_its_map_and_what_the_steps_took(algorithm, context, log, folder, tmp_path):
+    """In tiles the page had neither the shaded surface nor the date, parameters and seconds."""
+    page = tmp_path / "report.html"
+    given = {"INPUT": str(folder), "OUTPUT": str(tmp_path / "tiles"), "REPORT": str(page), **QUICKLY}
+    results, succeeded = algorithm.run(given, context, log)
+    assert succeeded, log.textLog()
+    text = page.read_text(encoding="utf-8")
+    assert "<image" in text
+    assert "1 building," in text
+    for what in (f"{results['POINTS']:,} points", "EPSG:28992", "Tiles written: 2.", "density 4", "In all processes"):
+        assert what in text
+    ground = text.split("<h3>Classify ground points (TIN)</h3>")[1].split("</table>")[0]
+    # What automatic became, in the blocks.
+    assert re.search(r'Grid cell size</th><td class="number">1 m</td><td>automatic', ground)
+    (seconds,) = re.findall(r'All steps</th><td class="number">([\d.]+) s', text)
+    assert float(seconds) > 0

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.quality.report_buildings import report_buildings
+from lidar_buildings.algorithms.report.page import with_coordinates
 from lidar_buildings.algorithms.run import run_stage
 from lidar_buildings.algorithms.stage import LayerFeatures, Monitor
 from lidar_buildings.algorithms.stages import STAGES
@@ -59,8 +60,11 @@ def test_doubtful_buildings_come_least_sure_first_and_their_texts_are_escaped(fo
 
 def test_the_map_has_each_footprint_in_the_color_of_its_confidence(footprints, cloud):
     page = report_buildings(*cloud, footprints).html
-    fills = re.findall(r'<path d="M[^"]*" fill="(#\w+)" fill-rule', page)
-    assert fills == ["#004488", "#bb5566", "#ddaa33"]
+    # The surest are drawn first; the first point of a path tells them apart, and north is up.
+    fills = re.findall(r'<path fill="(#\w+)" d="M([\d.]+),', page)
+    assert [color for color, _ in fills] == ["#004488", "#ddaa33", "#bb5566"]
+    west = [float(x) for _, x in fills]
+    assert west[0] == west[1] < west[2]
     assert "<image" in page
     assert not re.search(r'(?:src|href)="(?!data:)', page)
 
@@ -83,3 +87,19 @@ def test_nothing_found_is_a_page_that_says_so(cloud):
     report = report_buildings(*cloud, LayerFeatures([], {}))
     assert report.values == {"buildings": 0, "area": 0.0, "volume": 0.0, "doubtful": 0}
     assert "no footprints to show" in report.html
+
+
+def test_noise_above_is_not_the_surface_of_the_map(footprints, cloud, rng):
+    xyz, classes = cloud
+    birds = np.column_stack([rng.uniform(-10, 60, (500, 2)), np.full(500, 200.0)])
+    noisy = np.concatenate([xyz, birds]), np.append(classes, np.full(500, 18, np.uint8))
+    maps = [report_buildings(*one, footprints).html.split("<h2>Doubtful")[0] for one in (cloud, noisy)]
+    assert maps[0] == maps[1]
+
+
+def test_each_doubtful_building_has_its_position(footprints, cloud):
+    page = with_coordinates(report_buildings(*cloud, footprints).html, lambda xy: xy + [85_000, 446_000])
+    # Middles of the boxes around the squares at (30, 0) and (0, 40).
+    assert "Building &amp; more. At 85040.0 E, 446010.0 N." in page
+    assert "At 85002.5 E, 446042.5 N." in page
+    assert "m east" not in page

@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 
+from lidar_buildings.algorithms.report.page import with_coordinates
 from lidar_buildings.algorithms.report.polygon_map import draw_polygons
 
 COLORS = {"kept": "#004488", "<lost>": "#ddaa33"}
@@ -38,3 +39,16 @@ def test_courtyards_are_rings_of_the_same_path():
 
 def test_without_polygons_there_is_no_map():
     assert draw_polygons([], [], COLORS) == ""
+
+
+def test_points_are_shaded_below_the_polygons_and_extend_the_map(rng):
+    corners = [[-20.0, -20.0, 0.0], [30.0, 30.0, 0.0]]
+    xyz = np.concatenate([corners, np.column_stack([rng.uniform(-20, 30, (500, 2)), rng.normal(size=500)])])
+    drawn = draw_polygons([[box(0, 0)]], ["kept"], COLORS, xyz)
+    assert drawn.index("<image") < drawn.index("<path")
+    assert "50 m wide and 50 m high" in drawn
+
+
+def test_the_map_says_where_its_corner_is():
+    drawn = with_coordinates(draw_polygons([[box(3, 4)]], ["kept"], COLORS), lambda xy: xy * 10)
+    assert "lower left corner is at 30.0 E, 40.0 N." in drawn

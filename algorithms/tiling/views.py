@@ -1,0 +1,57 @@
+"""The points of a survey that its pages show: the topmost ones for a hillshade, and all around single buildings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..cloud.asprs import NOISE
+from ..cloud.cloud import Cloud
+from ..cloud.outputs import replacing
+
+
+@dataclass(frozen=True)
+class View:
+    """What pages show of a survey, and the folder in which tiles leave it.
+
+    ``cell`` is the side (m) of the cells whose topmost point is shown, ``boxes`` (k, 2, 2), m, those of which all
+    points are, both from ``origin`` (3,), m.
+    """
+
+    folder: Path
+    origin: np.ndarray
+    cell: float
+    boxes: np.ndarray
+
+    def add(self, name: str, cloud: Cloud) -> None:
+        """Keep what is shown of the points of a tile."""
+        classes = cloud.get("classification")
+        rows = np.flatnonzero(~np.isin(classes, NOISE) & ~cloud.withheld)
+        xyz = cloud.get("xyz")[rows] + (cloud.origin - self.origin)
+        shown = self._topmost(xyz)
+        for low, high in self.boxes:
+            shown |= ((xyz[:, :2] >= low) & (xyz[:, :2] <= high)).all(axis=1)
+        with replacing(self.folder / f"view-{name}.npz") as stream:
+            np.savez(stream, xyz=xyz[shown], classification=classes[rows[shown]])
+
+    def _topmost(self, xyz: np.ndarray) -> np.ndarray:
+        """Return which points (n,) are the highest of their cells."""
+        column, row = np.floor(xyz[:, :2] / self.cell).astype(np.int64).T
+        order = np.lexsort((xyz[:, 2], column, row))
+        is_last = np.ones(len(order), bool)
+        is_last[:-1] = (np.diff(column[order]) != 0) | (np.diff(row[order]) != 0)
+        shown = np.zeros(len(xyz), bool)
+        shown[order[is_last]] = True
+        return shown
+
+    def points(self, tiles: Iterable[Path]) -> tuple[np.ndarray, np.ndarray]:
+        """Return coordinates (n, 3), m from the origin, and classes (n,) of what tiles have left."""
+        xyz, classes = [np.zeros((0, 3))], [np.zeros(0, np.uint8)]
+        for tile in tiles:
+            with np.load(self.folder / f"view-{tile.name}.npz", allow_pickle=False) as stored:
+                xyz.append(stored["xyz"])
+                classes.append(stored["classification"])
+        return np.concatenate(xyz), np.concatenate(classes)

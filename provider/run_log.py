@@ -1,0 +1,145 @@
+"""What the steps of a run did, for its pages: parameters as used, seconds, and what they said."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+from datetime import datetime
+from pathlib import Path
+from typing import Any, Optional
+
+import numpy as np
+
+from ..algorithms.cloud.header import SOFTWARE
+from ..algorithms.report.page import Row, with_run
+from ..algorithms.report.run_facts import StepFacts, draw_first, draw_last
+from ..algorithms.stage import Stage, Tunable
+from .crs import crs_of
+from .paths import PLUGIN
+
+
+class RunLog:
+    """The steps of one run, in the order in which they began."""
+
+    def __init__(self) -> None:
+        self.steps: list[StepFacts] = []
+        self._given: list[tuple[Stage, dict[str, Any], dict[str, Any]]] = []
+        self._began = time.monotonic()
+
+    def begin(self, stage: Stage, given: dict[str, Any]) -> None:
+        """Begin a step with its tunables; those that are None are automatic."""
+        self.end()
+        self.steps.append(StepFacts(stage.title))
+        self._given.append((stage, given, {}))
+        self._began = time.monotonic()
+
+    def resolved(self, values: dict[str, Any]) -> None:
+        """Keep the values that automatic tunables of the step took."""
+        if self._given:
+            self._given[-1][2].update(values)
+
+    def note(self, sentence: str) -> None:
+        """Keep what the step said, if no step before it has said so."""
+        if self.steps and not any(sentence in step.notes for step in self.steps):
+            self.steps[-1].notes.append(sentence)
+
+    def end(self) -> None:
+        """End the step that runs, if one does."""
+        if self.steps and not self.steps[-1].seconds:
+            self.steps[-1].seconds = time.monotonic() - self._began
+            self.steps[-1].parameters = parameter_rows(*self._given[-1])
+
+
+_CURRENT: ContextVar[Optional[RunLog]] = ContextVar("run", default=None)
+
+
+def current_log() -> Optional[RunLog]:
+    """Return the log of the run that this thread is in; None outside of runs."""
+    return _CURRENT.get()
+
+
+@contextmanager
+def run_log() -> Iterator[RunLog]:
+    """Keep what steps do until the block ends; the steps of a chain go to the log of the chain."""
+    outer = _CURRENT.get()
+    if outer is not None:
+        yield outer
+        return
+    token = _CURRENT.set(RunLog())
+    try:
+        yield current_log() or RunLog()
+    finally:
+        _CURRENT.reset(token)
+
+
+def parameter_rows(stage: Stage, given: dict[str, Any], used: dict[str, Any]) -> list[Row]:
+    """Return a row for each tunable of a stage: its value, and whether that is automatic, the default or set.
+
+    What automatic ones took is in ``used``, a list where the blocks of a survey took several values.
+    """
+    rows = []
+    for name, tunable in stage.tunables.items():
+        value = given.get(name, tunable.default)
+        if value is None:
+            took = used.get(name)
+            ends = list(dict.fromkeys((took[0], took[-1]))) if isinstance(took, list) else [took]
+            shown = " to ".join(written(tunable, one) for one in ends)
+            rows.append(Row(tunable.param.label, shown, tunable.param.unset))
+        else:
+            how = "default" if value == tunable.default else f"set; default: {written(tunable, tunable.default)}"
+            rows.append(Row(tunable.param.label, written(tunable, value), how))
+    others = {name: value for name, value in used.items() if name not in stage.tunables and np.isscalar(value)}
+    return rows + [Row(title_of(name), _short(value), "found") for name, value in others.items()]
+
+
+def title_of(name: str) -> str:
+    """Return what a value that is no tunable is called."""
+    return name.replace("_", " ").capitalize()
+
+
+def _short(value: Any) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return f"{value:,.4g}" if isinstance(value, float) else f"{value:,d}" if isinstance(value, int) else str(value)
+
+
+def written(tunable: Tunable, value: Any) -> str:
+    """Return the value of a tunable as people read it."""
+    if value is None:
+        return tunable.param.unset
+    if value == "" or isinstance(value, bool):
+        return "none" if value == "" else _short(value)
+    if isinstance(value, float):
+        return tunable.param.written(float(f"{value:.4g}"))
+    if isinstance(value, int):
+        return tunable.param.written(value)
+    return ", ".join(map(str, value)) if isinstance(value, (tuple, list)) else str(value)
+
+
+def plugin_version() -> str:
+    """Return the version of this plugin."""
+    lines = (PLUGIN / "metadata.txt").read_text(encoding="utf-8").splitlines()
+    return next((line.partition("=")[2] for line in lines if line.startswith("version=")), "")
+
+
+def about_run(title: str, inputs: Sequence[Path], points: int, wkt: str) -> list[Row]:
+    """Return what a page says first of a run: files with their points, CRS, date, version and algorithm."""
+    rows, crs = [], crs_of(wkt)
+    if inputs:
+        names = [path.name for path in inputs]
+        shown = f"{names[0]} and {len(names) - 1:,} more" if len(names) > 1 else names[0]
+        rows.append(Row("Input", shown, f"{points:,} points, in {inputs[0].parent}"))
+    if crs.isValid():
+        rows.append(Row("Coordinates", crs.authid() or "user-defined", crs.description()))
+    else:
+        rows.append(Row("Coordinates", "in meters", "The input names no coordinate reference system."))
+    rows.append(Row("Date", datetime.now().strftime("%Y-%m-%d %H:%M"), ""))
+    return [*rows, Row("Made by", f"{SOFTWARE} {plugin_version()}", title)]
+
+
+def complete_page(path: Path, rows: Iterable[Row], steps: Iterable[StepFacts], of_seconds: str = "") -> None:
+    """Add to a page in a working folder what it is of, and the steps with their parameters; say of what seconds are."""
+    page = path.read_text(encoding="utf-8")
+    path.write_text(with_run(page, draw_first(rows), draw_last(steps, of_seconds)), encoding="utf-8")

@@ -1,0 +1,19 @@
+"""What pages say of the run that made them."""
+
+from lidar_buildings.algorithms.report.page import Row, build_page, with_run
+from lidar_buildings.algorithms.report.run_facts import StepFacts, draw_first, draw_last
+
+
+def test_a_page_says_of_what_it_is_and_with_which_parameters():
+    page = build_page("Title", "Lead.", {"Table": [Row("a", "1", "")]}, "<p>picture</p>")
+    steps = [StepFacts("Ground", 1.25, [Row("Cell <size>", "2 m", "automatic")], ["Found 3"]), StepFacts("Roofs", 2.0)]
+    full = with_run(page, draw_first([Row("Input", "tile.laz", "")]), draw_last(steps, "In all."))
+    order = ["Lead.", "tile.laz", "Table", "picture", "1.2 s", "Found 3.", "3.2 s", "In all.", "Cell &lt;size&gt;"]
+    assert [full.index(text) for text in order] == sorted(full.index(text) for text in order)
+    # A step without parameters has no table of them.
+    assert full.count("<h3>") == 1
+
+
+def test_a_page_is_completed_once():
+    page = with_run(build_page("Title", "Lead.", {}, ""), "<p>first</p>", "<p>last</p>")
+    assert with_run(page, "<p>again</p>", "<p>again</p>") == page
