@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from collections import deque
+
 import numpy as np
+
+# Corners whose triangle has less area than this (m²) are in line by rounding.
+_FLAT = 1e-9
 
 
 def triangulate_face(vertices: np.ndarray, rings: list[list[int]]) -> list[list[int]]:
-    """Return triangles (a, b, c) that cover a plane face, oriented as it is.
+    """Return the constrained Delaunay triangles (a, b, c) of a plane face, oriented as it is.
 
     Parameters
     ----------
@@ -18,6 +23,7 @@ def triangulate_face(vertices: np.ndarray, rings: list[list[int]]) -> list[list[
     References
     ----------
     Held, M., 2001. FIST: fast industrial-strength triangulation of polygons (bridges to holes, then ears).
+    Lawson, C. L., 1977. Software for C1 surface interpolation (sides turned until all are Delaunay).
     """
     used = sorted({v for ring in rings for v in ring})
     positions = dict(zip(used, _in_plane(vertices, rings, used).tolist()))
@@ -33,7 +39,35 @@ def triangulate_face(vertices: np.ndarray, rings: list[list[int]]) -> list[list[
             ear = int(np.argmax([_turn(*(positions[v] for v in _corner(ring, i))) for i in range(len(ring))]))
         triangles.append(list(_corner(ring, ear)))
         ring.pop(ear)
-    return [*triangles, ring]
+    return _turned([*triangles, ring], rings, positions)
+
+
+def _turned(triangles: list[list[int]], rings: list[list[int]], positions: dict) -> list[list[int]]:
+    """Return triangles after each side between two has become the other one where that is Delaunay's."""
+    edges = {edge for ring in rings for a, b in zip(ring, [*ring[1:], ring[0]]) for edge in ((a, b), (b, a))}
+    across = {(a, b): c for ring in triangles for a, b, c in (ring, ring[1:] + ring[:1], ring[2:] + ring[:2])}
+    waiting = deque(sorted((a, b) for a, b in across if a < b and (a, b) not in edges))
+    while waiting:
+        a, b = waiting.popleft()
+        c, d = across.get((a, b)), across.get((b, a))
+        if c is None or d is None or not _is_better(*(positions[v] for v in (a, b, c, d))):
+            continue
+        del across[a, b], across[b, a]
+        for u, v, w in ((a, d, c), (d, b, c)):
+            across[u, v], across[v, w], across[w, u] = w, u, v
+        waiting.extend((min(u, v), max(u, v)) for u, v in ((a, d), (d, b), (b, c), (c, a)) if (u, v) not in edges)
+    found = {(a, b, c) for (a, b), c in across.items() if a < b and a < c}
+    return [list(corners) for corners in sorted(found)]
+
+
+def _is_better(a, b, c, d) -> bool:
+    """Return whether the side from c to d is that of Delaunay triangles where a to b is now, c to the left of it."""
+    if _turn(c, a, d) <= _FLAT or _turn(d, b, c) <= _FLAT:
+        return False
+    (ax, ay), (bx, by), (cx, cy) = ((x - d[0], y - d[1]) for x, y in (a, b, c))
+    a2, b2, c2 = ax * ax + ay * ay, bx * bx + by * by, cx * cx + cy * cy
+    inside = a2 * (bx * cy - cx * by) - b2 * (ax * cy - cx * ay) + c2 * (ax * by - bx * ay)
+    return inside > _FLAT * (a2 + b2 + c2)
 
 
 def _in_plane(vertices: np.ndarray, rings: list[list[int]], used: list[int]) -> np.ndarray:
@@ -57,7 +91,7 @@ def _turn(a, b, c) -> float:
 def _is_ear(ring: list[int], i: int, positions: dict) -> bool:
     names = _corner(ring, i)
     a, b, c = (positions[v] for v in names)
-    if _turn(a, b, c) <= 1e-9:
+    if _turn(a, b, c) <= _FLAT:
         return False
     return not any(
         _turn(a, b, p) >= 0 and _turn(b, c, p) >= 0 and _turn(c, a, p) >= 0

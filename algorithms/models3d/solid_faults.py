@@ -10,6 +10,7 @@ import numpy as np
 
 from ..geometry.points_in_polygons import are_within
 from ..packages import spatial
+from .face_triangles import triangulate_face
 from .solids import Ring, Solid, edges_of, groups_of
 
 
@@ -127,7 +128,7 @@ class _Face:
     """A face in its plane: the corners of its edges (k, 2) in two axes, and how far they are off the plane (m)."""
 
     def __init__(self, solid: Solid, number: int) -> None:
-        self.number, self.rings = number, solid.faces[number]
+        self.number, self.rings, self.vertices = number, solid.faces[number], solid.vertices
         self.edge = np.array(_edges(self.rings))
         vector = solid.normals[number]
         self.area = float(np.linalg.norm(vector))
@@ -156,11 +157,12 @@ class _Face:
         width = self._least_width()
         if width < RULES.apart:
             return "edges of a face touch"
-        if self.off > width * np.tan(np.deg2rad(RULES.turn)):
-            return "triangles of a face are not plane"
         if self._crosses_itself():
             return "edges of a face cross"
-        return self._ring_fault() if len(self.rings) > 1 else ""
+        fault = self._ring_fault() if len(self.rings) > 1 else ""
+        if not fault and self._has_turned_triangle(width):
+            return "triangles of a face are not plane"
+        return fault
 
     def _least_width(self) -> float:
         """Return the least distance (m) of a corner to an edge that does not end in it."""
@@ -171,6 +173,17 @@ class _Face:
         square = ((offset - share[..., None] * step) ** 2).sum(axis=2)
         ends_there = (self.edge[:, :1] == self.edge[None, :, 0]) | (self.edge[:, :1] == self.edge[None, :, 1])
         return float(np.sqrt(np.min(square, initial=np.inf, where=~ends_there)))
+
+    def _has_turned_triangle(self, width: float) -> bool:
+        """Return whether a triangle of the face turns too far from it, where it is ``width`` (m) wide everywhere."""
+        longest = float(np.hypot(*np.ptp(self.start, axis=0)))
+        # A short edge seen from the other end of a strip makes the lowest triangle.
+        if len(self.edge) == 3 or 2 * self.off * longest <= width**2 * np.tan(np.deg2rad(RULES.turn)):
+            return False
+        corner = self.vertices[np.array(triangulate_face(self.vertices, self.rings))]
+        across = _cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+        length = np.sqrt((across**2).sum(axis=1))
+        return bool((across @ self.normal < length * np.cos(np.deg2rad(RULES.turn))).any())
 
     def _crosses_itself(self) -> bool:
         """Return whether edges that have no corner in common cross."""

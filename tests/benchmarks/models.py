@@ -79,7 +79,9 @@ def on_map() -> list[Table]:
     found = detected(DELFT)
     table = _table("models_on_the_map", "footprints")
     polygons = []
-    for feature in ogr.Open(str(MAP)).GetLayer(0):
+    # The layer is gone with its source.
+    source = ogr.Open(str(MAP))
+    for feature in source.GetLayer(0):
         geometry = feature.GetGeometryRef()
         parts = [geometry] if geometry.GetGeometryName() == "POLYGON" else list(geometry)
         rings = [[np.array(ring.GetPoints())[:, :2] - found.cloud.origin[:2] for ring in part] for part in parts]

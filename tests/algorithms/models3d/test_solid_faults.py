@@ -59,6 +59,12 @@ def narrow(width, off):
     return solid(np.concatenate([CUBE, [place]]), faces)
 
 
+def strip(up):
+    """Return a wall of 10 m by 0.3 m with two vertices, 0.2 m apart, in a long top edge, one of them ``up`` higher."""
+    vertices = np.concatenate([CUBE * [10, 0.3, 1], [[5.2, 0.3, 1 + up], [5.0, 0.3, 1]]])
+    return solid(vertices, [SIDES[0], [4, 5, 7, 8, 9, 6], *SIDES[2:4], [3, 2, 6, 9, 8, 7], SIDES[5]])
+
+
 def folded():
     """Return a cube with a flap of no thickness on its side: two faces that lie on each other."""
     vertices = np.concatenate([CUBE, [[2.0, 0.5, 0.5]]])
@@ -73,6 +79,7 @@ def test_valid_solids_have_no_fault():
     assert fault_of(with_hole(HOLE)) == ""
     assert fault_of(spiked(1.5)) == ""
     assert fault_of(spiked(0.5)) == ""
+    assert fault_of(strip(0.0002)) == ""
 
 
 @pytest.mark.parametrize(
@@ -90,6 +97,7 @@ def test_valid_solids_have_no_fault():
         (solid(CUBE[[0, 1, 2]], [[0, 1, 2], [2, 1, 0]]), "fewer than four"),  # 301
         (narrow(0.3, 0.03), "not plane"),  # 203
         (narrow(0.005, 0.002), "triangles"),  # 204
+        (strip(0.005), "triangles"),  # 204, though no corner is near to another one or to an edge
         (narrow(0.0004, 0.0), "too close"),
         (with_hole([(0.2, 0.2), (0.6, 0.6), (0.2, 0.6), (0.6, 0.2)]), "cross"),  # 104 in a hole
         (with_hole([(x + 2, y) for x, y in HOLE]), "not inside"),  # 206
