@@ -48,10 +48,11 @@ test: install $(VENV)/made lint docs ## check the code, build the documentation,
 test-core: ## the tests of the core with CORE_PYTHON, which needs no QGIS but requirements-dev.txt and what those name
 	@$(CORE_PYTHON) -m pytest -p no:pytest_qgis $(ON_ALL_CORES) tests/algorithms tests/test_contract.py algorithms
 
-lint: $(VENV)/made ## ruff and mypy
+lint: $(VENV)/made ## ruff, mypy, and words that make text hard to read
 	@$(VENV)/bin/ruff check .
 	@$(VENV)/bin/ruff format --check --quiet .
 	@$(VENV)/bin/mypy
+	@$(PYTHON) scripts/words.py
 	@$(PYTHON) scripts/metadata.py --check
 
 bench: install $(VENV)/made ## time and memory of every stage (a table, and benchmarks/times.json)

@@ -15,8 +15,8 @@ def _trim() -> Optional[Callable[[int], int]]:
 def return_freed() -> None:
     """Return the memory of freed arrays to the system where the C library keeps it, which GNU's does.
 
-    What one stage has freed lies in pieces between what is still used. The large arrays of the next one don't fit into
-    them, so that without this the process holds both.
+    Memory that one stage has freed lies in pieces between memory in use. The large arrays of the next one don't fit
+    into them, so that without this the process holds both.
     """
     trim = _trim()
     if trim is not None:

@@ -25,8 +25,9 @@ Thresholds = Annotated[
     str,
     Param(
         "Thresholds",
-        "'automatic' follows the density and the noise of the cloud. The others are those of the paper of 2019 for its "
-        "two surveys (table 2), whatever the cloud is like: planimetric distance 0.6 m and height difference 0.2 m "
+        "'automatic' follows the density and the noise of the cloud. The others are those of the paper of 2019 for "
+        "its two surveys (table 2), whatever the cloud is like. They are planimetric distance 0.6 m and height "
+        "difference 0.2 m "
         "with 50 points per minimum building area of 4 m², or 1.4 m, 0.3 m and 16 points. Values that are set win.",
         choices=("automatic", *PAPER_THRESHOLDS),
     ),
@@ -66,7 +67,7 @@ PointSource = Annotated[
     str,
     Param(
         "Source of the points",
-        "Matched images show one closed surface, crowns included: there, roofs are distinguished from crowns by "
+        "Matched images show one closed surface, crowns included. There, roofs are distinguished from crowns by "
         "planarity over meters and by color, and low buildings are looked for. 'automatic' takes a cloud for matched "
         "images that has no second returns, at least 8 points per m² and no points beneath crowns.",
         choices=("automatic", "laser scanner", "matched images"),

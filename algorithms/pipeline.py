@@ -52,7 +52,7 @@ class Output:
 class Pipeline:
     """A chain of stages that users meet as one algorithm.
 
-    The last step that makes a cloud gives the composite's OUTPUT; every layer, raster, file and
+    The last step that makes a cloud gives the composite's OUTPUT. Every layer, raster, file and
     report of every step is an output of its own, and so are the clouds of the steps that
     ``kept`` names. ``shared`` names tunables that are one parameter of the composite and go
     to all the steps beside them; they have the same declaration and default there. ``shown``
@@ -109,7 +109,7 @@ class Pipeline:
         return sum(step.stage.reach_of(chosen) for step, chosen in self.by_step(tunables))
 
     def cloud_of(self, step: Step) -> Optional[str]:
-        """Return the name of the step whose cloud ``step`` works on, "" for what is given, None where it reads none."""
+        """Return the name of the step whose cloud ``step`` works on, "" for the given one, None where it reads none."""
         if not step.stage.reads_cloud:
             return None
         if step.stage.merges or step.cloud:

@@ -67,7 +67,7 @@ _PIPELINES = (
         description=(
             "Noise, ground and heights first, on request bridges; then roof surfaces and clusters of everything else "
             "above the ground. A cluster is a building by its mean entropy, compared with that of planes and volumes, "
-            "and by how much of the beam passes through it; then whole buildings with their walls, whose edges are "
+            "and by how much of the beam passes through it. Then whole buildings with their walls, whose edges are "
             "corrected by what all buildings of the cloud look like, water with its bridges, wires, vegetation among "
             "the rest, and outlines. Distances and tolerances follow the density and the noise of the cloud."
         ),
@@ -119,7 +119,7 @@ _PIPELINES = (
             "The published chain without this project's additions: cell histogram filter, progressive TIN "
             "densification from the lowest point of each cell of the largest building's size, region growing, mean "
             "entropy per cluster and two means. Where the papers give no value (cells of the histograms, thresholds "
-            "of the TIN, distances of the regions), it follows the density and the noise of the cloud; the Notes of "
+            "of the TIN, distances of the regions), it follows the density and the noise of the cloud. The Notes of "
             "each step say how. 'Thresholds' takes the values of the paper's table 2 instead. The outlines are this "
             "project's. 'Detect buildings' finds more and errs less."
         ),
@@ -151,8 +151,8 @@ _PIPELINES = (
         tags="linear,planar,volumetric,dimensionality,voxel,drone,UAV,scanner,scene,structure,Weinmann,wire,power line",
         summary="Classify points as linear, planar or volumetric in a cloud, or in those of several scanners merged.",
         description=(
-            "Merges the clouds, leaves one point per voxel, so that areas scanned for long don't count more "
-            "than others, describes the neighborhood of each point, and sorts points by the largest of linearity, "
+            "Merges the clouds and leaves one point per voxel, so that areas scanned for long don't count more than "
+            "others. Then it describes the neighborhood of each point, and sorts points by the largest of linearity, "
             "planarity and scattering: wires and edges, ground and walls, crowns and bushes. The features stay in the "
             "cloud. The neighborhood of 50 points gives smooth results on noisy scans; 'optimal' chooses a number for "
             "each point and keeps more detail. In tiles, the "
@@ -184,10 +184,10 @@ _PIPELINES = (
         tags="cadastre,land registry,wall,footprint,corner,drone,UAV,photogrammetry,map,update,change detection,Hrutka",
         summary="Map the walls of buildings from a drone's point cloud, and compare them with the old map.",
         description=(
-            "Noise is removed and one point left per voxel; progressive TIN densification finds the ground, which flat "
-            "roofs of any size are kept out of, and a terrain model is made of it; planes high above it are "
-            "roofs, and what is low and upright below them is their walls. Footprints are the outlines of walls, "
-            "without the eaves, with a quality for every edge; where too little of the walls was seen, which is what "
+            "Noise is removed and one point left per voxel; progressive TIN densification finds the ground, which "
+            "flat roofs of any size are kept out of. A terrain model is made of it; planes high above it are roofs, "
+            "and low upright surfaces below them are their walls. Footprints are the outlines of walls, "
+            "without the eaves, with a quality for every edge. Where too little of the walls was seen, which is what "
             "clouds from airplanes come to, they are outlines of roofs and say so. "
             "Where an old map is given, its corners are compared with the new ones. The terrain and the cloud of every "
             "step can be kept. The paper's ground filter, a cloth, lies down on large flat roofs; to use it, open the "
@@ -285,7 +285,7 @@ _PIPELINES = (
             "Noise first; then pieces of artificial scan lines in several directions are merged to segments. "
             "Segments that are higher than their surroundings are objects, the others bare earth, of which "
             "bridges and fly-overs, raised on both sides and joined at both ends, become bridge deck (17). The "
-            "rasters are made of what is left. Large halls are removed whole. In towns and forests, where walls and "
+            "rasters are made of the rest. Large halls are removed whole. In towns and forests, where walls and "
             "leaves join roofs and crowns to the terrain, 'Classify ground points (TIN)' before 'Classify bridges' "
             "errs less."
         ),

@@ -23,7 +23,8 @@ class Preset:
         return {name: value for name, value in self.values.items() if name in pipeline.parameters}
 
 
-# What is not named is measured in the cloud. The smallest building holds about 20 points: 10 m² at 2 points per m².
+# Values that are not named are measured in the cloud. The smallest building holds about 20 points: 10 m² at 2 points
+# per m².
 _PRESETS = (
     Preset("automatic", "Automatic: measured in the cloud"),
     Preset("airborne_dense", "Airborne laser, 4 points per m² and more", {"source": _LASER, "min_area": 4.0}),

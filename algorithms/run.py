@@ -71,7 +71,7 @@ def run_stage(
     which withheld points are not. Coordinates of ``input_layers`` and of layers and rasters made are
     meters relative to the cloud's origin.
 
-    ``sampling`` is how the cloud was sampled, or the survey that it is a part of; where it is not given, it is
+    ``sampling`` is how the cloud was sampled, or the survey that it is a part of. Where it is not given, it is
     measured on the points of the cloud that are neither withheld nor noise, and logged.
 
     Raises

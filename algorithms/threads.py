@@ -22,7 +22,7 @@ _MOST_THREADS = 32
 # Seconds between two looks at whether the user wants to stop.
 _BETWEEN_LOOKS = 0.2
 
-# Threads that a process was told to use which shares the machine with others of its kind.
+# Threads set for a process that shares the machine with others of its kind.
 _TOLD: list[int] = []
 
 
@@ -79,7 +79,7 @@ def in_chunks(work: Callable[[np.ndarray], None], rows: np.ndarray, size: int, m
 def made_ahead(work: Callable[[int, Monitor], Any], count: int, monitor: Monitor, share: float = 1.0) -> Iterator[Any]:
     """Yield what ``work`` makes of items that have nothing to do with each other, while threads make the next ones.
 
-    Worth it where making an item lets go of the interpreter and what is done with it does not.
+    Worth it where making an item releases the interpreter and its use does not.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def made_ahead(work: Callable[[int, Monitor], Any], count: int, monitor: Monitor
     monitor : Monitor
         Receives the progress of items that are waited for, and ends the work in all threads where it is cancelled.
     share : float
-        How much of the progress of an item, 0 to 1, its making is; the rest is that of what is done with it.
+        How much of the progress of an item, 0 to 1, its making is; the rest is that of its use.
     """
     if count < 2 or n_threads() < 2:
         for item in range(count):

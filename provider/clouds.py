@@ -166,7 +166,7 @@ def _path(title: str, name: str, value: Any, context: QgsProcessingContext) -> P
         return _known(title, Path(value))
     layer = value if isinstance(value, QgsMapLayer) else QgsProcessingUtils.mapLayerFromString(value, context, False)
     if layer is None:
-        raise ValueError(f"{title} ({name}) must be a point cloud file or layer; there is none at {value}.")
+        raise ValueError(f"{title} ({name}) must be a point cloud file or layer; nothing was found at {value}.")
     if not isinstance(layer, QgsPointCloudLayer):
         raise ValueError(
             f"{title} ({name}) must be a point cloud, got the layer {layer.name()!r}; choose a point cloud."

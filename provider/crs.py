@@ -81,7 +81,7 @@ def is_hollow(crs: QgsCoordinateReferenceSystem) -> bool:
 
 
 def make_in_main_thread(wkts: Iterable[str]) -> list[QgsCoordinateReferenceSystem]:
-    """Make the CRS of a run in the main thread, before the run asks for them in its own; keep what is returned.
+    """Make the CRS of a run in the main thread, before the run asks for them in its own; keep the returned object.
 
     Outside of the main thread nothing is made: a step of a model has them from the model.
     """
@@ -112,7 +112,7 @@ def crs_of_layer(layer: QgsProcessingFeatureSource) -> QgsCoordinateReferenceSys
     """Return the CRS of a layer, invalid when it names none.
 
     A GeoPackage without a CRS comes back from disk in an "Undefined geographic SRS", by the name that its standard
-    gives it, which QGIS holds for valid; reprojecting to or from it would make degrees of meters.
+    gives it, which QGIS holds for valid. Reprojecting to or from it would make degrees of meters.
     """
     crs = layer.sourceCrs()
     if is_hollow(crs):

@@ -51,7 +51,7 @@ class GroupedPanel(ParametersPanel):
         """Make QGIS's widgets, and arrange them."""
         super().initWidgets()
         self._presets: list[Preset] = []
-        # What is put into a layout that QGIS made stays Python's, and would go with its last name.
+        # A widget put into a layout that QGIS made stays Python's, and would go with its last name.
         self._kept: list[QWidget] = []
         sections = sections_of(self.algorithm())
         for section in sections:

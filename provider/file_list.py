@@ -120,7 +120,7 @@ class FilesWrapper(WidgetWrapper):
             self.widget.set_names(names)
 
     def value(self) -> list[str]:
-        """Return what is in the field."""
+        """Return the text of the field."""
         if isinstance(self.widget, QLineEdit):
             return [name.strip() for name in self.widget.text().split(";") if name.strip()]
         return self.widget.names()

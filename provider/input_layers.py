@@ -76,7 +76,7 @@ def find_input_layer(
         raise ValueError(f"{input_layer.title} ({name}) is missing; choose a layer of {input_layer.things}.")
     found = algorithm.parameterAsSource(parameters, name, context)
     if found is None:
-        raise ValueError(f"{input_layer.title} ({name}) must be a vector layer; there is none at {value}.")
+        raise ValueError(f"{input_layer.title} ({name}) must be a vector layer; nothing was found at {value}.")
     kind = QgsWkbTypes.geometryType(found.wkbType())
     if kind not in (_TYPES[input_layer.geometry], Qgis.GeometryType.Unknown):
         raise ValueError(
@@ -133,7 +133,7 @@ def refuse_elsewhere(
             around.combineExtentWith(box)
         raise ValueError(
             f"{input_layer.title} and the point cloud{'s' * (len(clouds) > 1)} don't overlap: {_range(extent)} against "
-            f"{_range(around)}; choose a layer of the place, or check the coordinate reference systems of both."
+            f"{_range(around)}; choose a layer of the same area, or check the coordinate reference systems of both."
         )
 
 
@@ -253,7 +253,7 @@ def _parts(geometry: QgsGeometry, input_layer: InputLayer, transform: QgsCoordin
 
 
 def _vertices(wkb: bytes, place: Place) -> list:
-    """Return the vertices of WKB in local meters, one array (m, 2 or 3) per ring; none of what is no simple shape.
+    """Return the vertices of WKB in local meters, one array (m, 2 or 3) per ring; none of other shapes.
 
     Five times as fast as QGIS's own lists of points.
     """

@@ -74,7 +74,7 @@ def crs_parameter(default: Optional[str] = None) -> QgsProcessingParameterDefini
     """Return the parameter of the coordinate reference system of clouds that name none."""
     definition = QgsProcessingParameterCrs(CRS, "Coordinate reference system", default, optional=True)
     definition.setFlags(definition.flags() | Qgis.ProcessingParameterFlag.Advanced)
-    of_clouds = "Of clouds that name none, and of what is made of them. Clouds that name one keep it."
+    of_clouds = "Of clouds that name none, and of their results. Clouds that name one keep it."
     return with_help(definition, "Of the simulated cloud." if default else of_clouds)
 
 

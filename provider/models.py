@@ -67,11 +67,11 @@ class _Layout:
         self.top = 150.0
 
     def band(self, n_parameters: int, n_outputs: int) -> float:
-        """Return the height of a band with so many parameters and outputs."""
+        """Return the height of a band with these numbers of parameters and outputs."""
         return max(self.rows(n_parameters), n_outputs) * self.cell.height() + 1.5 * self.margin
 
     def rows(self, n_parameters: int) -> int:
-        """Return the rows of cells for so many parameters."""
+        """Return the rows of cells for a number of parameters."""
         return max(2, -(-n_parameters // self.columns))
 
     def parameter(self, i: int) -> QPointF:
@@ -129,7 +129,7 @@ def _clouds(pipeline: Pipeline) -> list[QgsProcessingParameterDefinition]:
 
 
 def output_title(pipeline: Pipeline, output: Output) -> str:
-    """Return what an output of a composite is called; the step's name is said where it tells outputs apart."""
+    """Return what an output of a composite is called; the step's name is part of it where it distinguishes outputs."""
     stage = output.step.stage
     if output.of == "output":
         makers = [step.stage for step in pipeline.steps if step.stage.makes_cloud]
@@ -169,7 +169,7 @@ def _add_parameters(
     layers = _layers_taken(pipeline, step)
     own = [name for name in names if name.lower() not in pipeline.shared and name not in layers]
     cells = {name: i for i, name in enumerate(own)}
-    # Layers, and what goes on to other steps, stand at the lower right, where their lines cross the fewest boxes.
+    # Layers and results for other steps are at the lower right, where their lines cross the fewest boxes.
     cells.update({name: last - i for i, name in enumerate(name for name in names if name not in own)})
     for name, cell in cells.items():
         component = QgsProcessingModelParameter(name)

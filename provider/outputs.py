@@ -45,7 +45,7 @@ from .vectors import check_layer
 _NO_FILE = re.compile(r"^[A-Za-z]{2,}:")
 _TABLE_IN_FILE = re.compile(r"^ogr:dbname='([^']+)'")
 
-# Formats that are several files, by the extension of the one that is named; indexes and statistics of an older file
+# Formats that are several files, by the extension of the one that is named. Indexes and statistics of an older file
 # would be wrong beside a newer one, and what SQLite has yet to write of an older one would damage it.
 _BESIDE = {
     ".shp": (".dbf", ".shx", ".prj", ".cpg", ".qix", ".sbn", ".sbx"),
@@ -59,7 +59,7 @@ _BESIDE = {
 # An ending in the filter of a file's dialog.
 _ENDING = re.compile(r"\*(\.[\w.]+)")
 
-# The smallest results, an empty GeoPackage among them, need about so much (bytes).
+# Size (bytes) of the smallest results, such as an empty GeoPackage.
 _LEAST_SPACE = 2**18
 
 
@@ -153,7 +153,7 @@ def _check_target(definition, path: Path, inputs: list) -> None:
 
 
 def _check_ending(definition, path: Path) -> None:
-    """Refuse a name that tells none of a text file's formats."""
+    """Refuse a name without an extension of a text file's formats."""
     endings = _ENDING.findall(definition.fileFilter())
     if not path.name.lower().endswith(tuple(endings)):
         what = definition.description()

@@ -60,7 +60,7 @@ _FROM_BETWEEN = 3
 
 
 def _rank(output: Output) -> int:
-    """Return where an output stands in the dialog: cloud, layers, reports; rasters and kept clouds come last."""
+    """Return the rank of an output in the dialog: cloud, layers, reports; rasters and kept clouds come last."""
     if output.of == OUTPUT.lower():
         return 0 if output.name == output.of else 4
     rasters = [raster.name for raster in output.step.stage.rasters]
@@ -76,7 +76,7 @@ def step_output_name(step: Step, name: str) -> str:
 def _own_steps(context: QgsProcessingContext) -> Iterator[None]:
     """Have QGIS run all steps of a model.
 
-    It keeps the finished steps of a model with the context, by their names, and skips them in every further model that
+    It keeps the finished steps of a model with the context, by their names. It skips them in every further model that
     runs in this context: in the next run of a script, or in a model around this one.
     """
     before = QgsProcessingModelResult(context.modelResult())
@@ -92,7 +92,7 @@ class PipelineAlgorithm(CheckedAlgorithm, QgsProcessingModelAlgorithm):
     """A shipped model with its pipeline's id and title.
 
     A model loaded as it is has its title as id, refuses LAS and LAZ where QGIS has no PDAL,
-    ignores its own defaults and names its outputs by their titles; this class mends these and nothing else.
+    ignores its own defaults and names its outputs by their titles. This class mends these and nothing else.
     """
 
     def __init__(self, pipeline: Pipeline) -> None:

@@ -37,7 +37,7 @@ class Plugin:
         self.provider.refreshAlgorithms()
 
     def initGui(self) -> None:  # noqa: N802 - QGIS asks for this name
-        """Add the provider, and then what is optional."""
+        """Add the provider, and then the optional parts."""
         self.initProcessing()
         self._add("The page of the plugin in the options of Processing", add_options)
         self._add("The menu of the plugin", lambda: self._with_iface("menu", "add_menu"))

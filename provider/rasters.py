@@ -29,7 +29,7 @@ _OPTIONS = (
 
 
 def check_raster(path: Path) -> None:
-    """Refuse a file name that is none of a GeoTIFF."""
+    """Refuse a file name that is not that of a GeoTIFF."""
     if path.suffix.lower().lstrip(".") not in EXTENSIONS:
         raise ValueError(f"{path.name} can't be written as a raster: give it the extension .tif.")
 
@@ -99,7 +99,7 @@ def write_raster(raster: Raster, surface: RasterSurface, place: Place, path: Pat
 
 
 class _Progress:
-    """What GDAL calls between blocks: it can be told to stop, but not by an exception."""
+    """What GDAL calls between blocks: its result can stop GDAL, an exception can't."""
 
     def __init__(self, monitor: Monitor) -> None:
         self.monitor, self.is_cancelled = monitor, False
@@ -143,7 +143,7 @@ def _filled(values: np.ndarray) -> bytes:
 
 
 def _describe(image: gdal.Dataset, raster: Raster, lattice: tuple[float, float, float], place: Place) -> None:
-    """Tell an image where its cells are, by western and northern edge and size in local meters, and what they hold."""
+    """Set where the cells of an image are, by western and northern edge and size in local meters, and their kind."""
     west, north, size = lattice
     west, north = place.to_map(np.array([[west, north]]))[0].tolist()
     step = size / place.unit

@@ -1,6 +1,6 @@
 """Which Dask schedulers a run may connect to: those that the user has confirmed, wherever an address comes from.
 
-Whoever controls a scheduler runs code as the user. An address may stand in a model or a project of somebody else.
+Whoever controls a scheduler runs code as the user. An address may come with a model or a project of somebody else.
 """
 
 from __future__ import annotations

@@ -28,7 +28,7 @@ WGS84 = "EPSG:4326"
 
 
 def place_of_survey(survey: Survey) -> Place:
-    """Return the place of what is made of a survey."""
+    """Return the place of the results of a survey."""
     return place_of_cloud(survey.cloud(np.zeros(1, survey.header.layout.dtype)))
 
 

@@ -33,7 +33,7 @@ SOURCE_TYPES = {
 
 
 def check_layer(path: Path) -> None:
-    """Refuse a file name that tells no format of layers; QGIS would write another file than the one that was named."""
+    """Refuse a file name without an extension of a format of layers; QGIS would write another file."""
     extension = path.suffix.lower().lstrip(".")
     if extension not in QgsVectorFileWriter.supportedFormatExtensions():
         raise ValueError(f"{path.name} can't be written as a layer: give it the extension .gpkg, .shp or .geojson.")
@@ -108,7 +108,7 @@ def _column(
 
 
 def plain(value: Any) -> Any:
-    """Return a numpy scalar as Python's own (QGIS shows others as empty), what is no number as NULL."""
+    """Return a numpy scalar as Python's own (QGIS shows others as empty), other values as NULL."""
     value = value.item() if isinstance(value, np.generic) else value
     return None if isinstance(value, float) and not np.isfinite(value) else value
 

@@ -4,7 +4,7 @@
 ``make lint`` fails when a form is more frequent than its bound (occurrences per 1,000 words).
 
     words.py            the counts
-    words.py --lines    every line with one of the forms
+    words.py --lines    every paragraph with one of the forms
 """
 
 from __future__ import annotations
@@ -17,63 +17,135 @@ import sys
 import tokenize
 from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent
 
-# Occurrences per 1,000 words that are let pass.
-BOUND = 0.1
+# Words that a reader holds in mind until a sentence ends.
+LONGEST = 35
+
+
+class Form(NamedTuple):
+    """A pattern, and the occurrences per 1,000 words that are accepted."""
+
+    pattern: str
+    bound: float
+
 
 FORMS = {
-    "so many, so much, so far": r"\bso (?:many|much|far)\b",
-    "stands, for a state": r"\bstands?\b(?! (?:for|in the way))",
-    "tells": r"\btells?\b|\btold\b",
-    "place for a position": r"\b(?:at|of) (?:the |a |its |one |each )?places?\b",
-    "let go, hears": r"\blet go\b|\bhears?\b",
-    "none as a predicate": r"(?-i:\b(?:is|are|be) none\b)",
+    "so many, so much, so far": Form(r"\bso (?:many|much|far)\b", 0.1),
+    "stands, for a state": Form(r"\bstands?\b(?! (?:for|in the way))", 0.1),
+    "tells": Form(r"\btells?\b|\btold\b", 0.1),
+    "place for a position": Form(r"\b(?:at|of) (?:the |a |its |one |each )?places?\b", 0.1),
+    "let go, hears": Form(r"\blet go\b|\bhears?\b", 0.1),
+    "none as a predicate": Form(r"(?-i:\b(?:is|are|be) none\b)", 0.1),
+    "what is, for a noun": Form(r"\bwhat is\b(?! (?:missing|wrong|normal|new))", 0.1),
+    "beside, for a comparison": Form(r"\bbeside (?:the (?:old |base )?maps?\b|the truth|other (?:work|programs))", 0.1),
 }
+SENTENCES, SENTENCE_BOUND = f"sentences over {LONGEST} words", 0.3
+
+# Where a sentence ends: a mark, and what begins the next one.
+_END = re.compile(r"(?<=[.!?])[\"')*]*\s+(?=[A-Z0-9\"*`\[('])")
+_WORD = re.compile(r"[A-Za-z][\w'-]*")
+# Code and formulas are read as one word.
+_CODE = re.compile(r"`[^`]*`|\$[^$]*\$")
+
+# Lines that begin a paragraph of their own in docstrings: sections, parameters, references, items.
+_OWN = re.compile(r"-{3,}|[\w, *`]+ : |\.\. |[-*] |>>>|\$\$")
 
 
-def texts(path: Path) -> Iterator[tuple[int, str]]:
-    """Yield the lines of prose of a file, with their numbers."""
+def paragraphs(path: Path) -> Iterator[tuple[int, str]]:
+    """Yield the paragraphs of prose of a file, with the numbers of their first lines."""
     source = path.read_text(encoding="utf-8")
-    if path.suffix != ".py":
-        yield from enumerate(source.splitlines(), 1)
-        return
+    if path.suffix == ".py":
+        yield from _of_comments(source)
+        yield from _of_strings(ast.parse(source))
+    else:
+        yield from _parted(re.sub(r"```.*?```", lambda code: "\n" * code[0].count("\n"), source, flags=re.DOTALL), 1)
+
+
+def _parted(text: str, line: int) -> Iterator[tuple[int, str]]:
+    """Yield paragraphs of a text that begins at a line: items and cells of tables are some of their own."""
+    own: list[str] = []
+    start = line
+    for number, one in enumerate([*text.splitlines(), ""], line):
+        bare = one.strip()
+        if not bare or bare[0] in "|#" or _OWN.match(bare):
+            if own:
+                yield start, " ".join(own)
+            own = []
+            yield from ((number, cell.strip()) for cell in bare.strip("|").split("|") if bare.startswith("|"))
+        if bare and bare[0] not in "|#" and not re.match(r"-{3,}|[\w, *`]+ : |>>>", bare):
+            start = start if own else number
+            own.append(bare)
+
+
+def _of_comments(source: str) -> Iterator[tuple[int, str]]:
+    own: list[str] = []
+    start = last = 0
     for token in tokenize.generate_tokens(io.StringIO(source).readline):
-        if token.type == tokenize.COMMENT:
-            yield token.start[0], token.string
-    for node in ast.walk(ast.parse(source)):
-        # Docstrings, helps and messages have spaces; names and keys have none.
-        if isinstance(node, ast.Constant) and isinstance(node.value, str) and node.value.count(" ") > 2:
-            yield from ((node.lineno + at, line) for at, line in enumerate(node.value.splitlines()))
+        if token.type != tokenize.COMMENT:
+            continue
+        if own and token.start[0] != last + 1:
+            yield start, " ".join(own)
+            own = []
+        start, last = start if own else token.start[0], token.start[0]
+        own.append(token.string.lstrip("#: "))
+    if own:
+        yield start, " ".join(own)
+
+
+def _of_strings(tree: ast.Module) -> Iterator[tuple[int, str]]:
+    """Docstrings, helps and messages have spaces; names and keys have none."""
+    parts: set[int] = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.JoinedStr):
+            parts |= {id(part) for part in node.values}
+            text = "".join(str(part.value) if isinstance(part, ast.Constant) else "0" for part in node.values)
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in parts:
+            text = node.value
+        else:
+            continue
+        if text.count(" ") > 2 and not text.lstrip().startswith("<") and "{" not in text:
+            yield from _parted(text, node.lineno)
 
 
 def files() -> list[Path]:
-    """Return the files that are read by users and developers, without tests and the log of what was tried."""
+    """Return the files that users and developers read, without tests, generated pages and the log."""
     found = [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md"), *(ROOT / "docs" / "methods").glob("*.md")]
     for folder in ("algorithms", "provider"):
         found += (ROOT / folder).rglob("*.py")
-    return sorted(found)
+    return sorted(path for path in found if path.name != "rules.md")
+
+
+def findings(text: str) -> Iterator[str]:
+    """Yield the name of each form in a paragraph, as often as it occurs."""
+    for name, form in FORMS.items():
+        yield from [name] * len(re.findall(form.pattern, text, re.IGNORECASE))
+    yield from [SENTENCES] * sum(
+        len(_WORD.findall(sentence)) > LONGEST for sentence in _END.split(_CODE.sub("x", text))
+    )
 
 
 def main(arguments: list[str]) -> int:
-    """Print the counts or lines; return 1 if a form is too frequent."""
+    """Print the counts or paragraphs; return 1 if a form is too frequent."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--lines", action="store_true")
     shows_lines = parser.parse_args(arguments).lines
-    counts, words = dict.fromkeys(FORMS, 0), 0
+    bounds = {**{name: form.bound for name, form in FORMS.items()}, SENTENCES: SENTENCE_BOUND}
+    counts, words = dict.fromkeys(bounds, 0), 0
     for path in files():
-        for number, line in texts(path):
-            words += len(line.split())
-            for form, pattern in FORMS.items():
-                hits = len(re.findall(pattern, line, re.IGNORECASE))
-                counts[form] += hits
-                if hits and shows_lines:
-                    print(f"{path.relative_to(ROOT)}:{number}: {form}: {line.strip()[:150]}")
+        for line, text in paragraphs(path):
+            words += len(text.split())
+            for name in findings(text):
+                counts[name] += 1
+                if shows_lines:
+                    print(f"{path.relative_to(ROOT)}:{line}: {name}: {text[:600]}")
+    rates = {name: 1000 * count / words for name, count in counts.items()}
     if not shows_lines:
-        for form, count in counts.items():
-            print(f"{form:28s} {count:5d}  {1000 * count / words:.2f} per 1,000 words")
-    return int(any(1000 * count / words > BOUND for count in counts.values()))
+        for name, rate in rates.items():
+            print(f"{name:28s} {counts[name]:5d}  {rate:.2f} per 1,000 words, at most {bounds[name]:.2f}")
+    return int(any(rate > bounds[name] for name, rate in rates.items()))
 
 
 if __name__ == "__main__":

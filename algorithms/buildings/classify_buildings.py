@@ -135,7 +135,7 @@ def classify_buildings(
     Notes
     -----
     The entropies are those of the paper (equations 5 to 11), in the smallest neighborhood in which neither noise nor
-    scan lines blur a plane; neighbors are clustered points. 'Classify buildings (as published 2019)' is the method of
+    scan lines blur a plane. Neighbors are clustered points. 'Classify buildings (as published 2019)' is the method of
     the paper; everything below is this project's.
 
     Two-class K-means starts from the mean entropies of random points on a disk, as rough as the cloud's surfaces, and
@@ -151,12 +151,12 @@ def classify_buildings(
     Where points are few, larger spots of crowns are smooth by chance. Most of the points around these are leaves, so
     clusters with too few building points around them are refused.
 
-    In clouds of matched images, crowns are as closed as roofs, and penetration tells nothing. There, roof surfaces are
+    In clouds of matched images, crowns are as closed as roofs, and penetration says nothing. There, roof surfaces are
     buildings, planar over a meter, if the minimum share of the points around them lie on such surfaces. There, and in
     scans without second returns, colored clusters that are as green as plants are refused, unless they are large and
     flat. The threshold of greenness comes from the scene: it is the middle between the medians of rough clusters and of
-    surfaces of ten times the minimum area, if it parts the two; else it separates all points best into two kinds, if
-    their means differ by 0.1 or more. Greenness is the normalized excess green, which shadow hardly changes.
+    surfaces of ten times the minimum area, if it separates the two. Otherwise it separates all points best into two
+    kinds, if their means differ by 0.1 or more. Greenness is the normalized excess green, which shadow hardly changes.
 
     Confidence above 0.5 grows with the size of the cluster, to half at twice the points of the smallest building, as
     small objects such as cars can look like a roof by chance. This changes no decision.
@@ -174,7 +174,7 @@ def classify_buildings(
     if not (cluster_id > 0).any():
         return no_clusters(classification, reason, monitor)
 
-    # 1. The mean entropy of each cluster, and the two means that tell buildings from everything else.
+    # 1. The mean entropy of each cluster, and the two means that separate buildings from everything else.
     entropies = cluster_entropies(xyz, cluster_id, around, monitor.part(0, 0.85), _MEASURED)
     references = _usual_entropies(sampling, around.count, density)
     split = split_of_whole(sampling, lambda: held_means(entropies.means, *references, monitor))
@@ -204,7 +204,7 @@ def classify_buildings(
 class _Given:
     """What clusters are decided by: decisions by entropy, evidence, penetration (m,), and the thresholds of these.
 
-    ``separates`` tells whether the entropies have two means.
+    ``separates`` is whether the entropies have two means.
     """
 
     by_entropy: Decisions

@@ -1,4 +1,4 @@
-"""What a scanner tells of clusters beside entropy: penetration by the beam, adjacent clusters, surroundings."""
+"""Evidence on clusters other than entropy: penetration by the beam, adjacent clusters, surroundings."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ class CompletionRules:
 
     cell: float = rule(1.2, "point spacings", "statistics: where a roof was seen, cells hold a point in three of four")
     least_cell: float = rule(0.5, "m", "the same, at least")
-    wall_foot: float = rule(0.5, "m", "physics: lower points stand on the ground: kerbs, plants, steps")
+    wall_foot: float = rule(0.5, "m", "physics: lower points are of kerbs, plants and steps")
     at_roof: float = rule(1.0, "m", "vertical distance at which points are compared with the surfaces of a roof")
     gap: float = rule(4.0, "point spacings", "statistics: random points hardly ever leave larger gaps in a roof")
     least_gap: float = rule(3.0, "m", "physics: ridges, gutters and skylights are narrower")
@@ -114,7 +114,7 @@ def complete_buildings(
     the roof is building, and so are chimneys and the walls along its edge. Small gaps between roof surfaces are
     closed where the ground does not show in them. In clouds of matched images roofs reach to where the rounded edge has
     half of their height, and the smeared walls below belong to them. Where the scanner numbered its returns, crowns
-    beside a wall are told from it by the pulses that pass through them.
+    at a wall are separated from it by the pulses that pass through them.
 
     Parameters
     ----------
@@ -178,7 +178,7 @@ def complete_buildings(
     coverage = kind.choose(laser=_coverage_in_scan, images=_coverage_in_images)(roofs, limits)
     monitor.progress(0.5)
 
-    # 2. What stands in their columns.
+    # 2. The points in their columns.
     columns = Columns(coverage.building, coverage.top, coverage.cell_size)
     has_returns = return_number is not None and number_of_returns is not None
     goes_on = return_number < number_of_returns if has_returns else np.zeros(len(xyz), bool)
@@ -234,7 +234,7 @@ class _Roofs:
     def of(
         cls, xyz: np.ndarray, height: np.ndarray, classification: np.ndarray, segment_id: Optional[np.ndarray]
     ) -> _Roofs:
-        """Tell roofs, noise and bridge decks by the classes of points."""
+        """Find roofs, noise and bridge decks by the classes of points."""
         is_roof, is_noise = classification == PointClass.BUILDING, np.isin(classification, NOISE)
         # Points on a bridge deck have no ground below them and are no walls.
         may_stand = ~is_noise & (classification != PointClass.BRIDGE_DECK)

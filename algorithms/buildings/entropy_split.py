@@ -36,7 +36,7 @@ MEAN_ENTROPIES = ("building_entropy", "other_entropy")
 class Split:
     """Two mean entropies, of buildings and of everything else; unless the first is less, clusters are undecided.
 
-    ``is_given`` tells that they are those of simulated planes and volumes, because the clusters form one group only.
+    With ``is_given`` they are those of simulated planes and volumes, because the clusters form one group only.
     """
 
     building: float

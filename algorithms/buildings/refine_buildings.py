@@ -28,7 +28,7 @@ _NEVER = (PointClass.GROUND, PointClass.WATER, PointClass.BRIDGE_DECK, *NOISE)
 
 @dataclass(frozen=True)
 class _Rules:
-    """What is looked at, and what changes; fitted on seven real airborne clouds, whose mean F rises by 0.86."""
+    """Points that are examined, and what changes; fitted on seven real airborne clouds, whose mean F rises by 0.86."""
 
     cell_spacings: float = rule(
         4.0, "point spacings", "fitted: side of a cell, 16 points of a roof; 3 and 6 gain 0.1 less"
@@ -85,10 +85,10 @@ def refine_buildings(
 ):
     """Correct the edges of buildings by what the other buildings of the scene look like.
 
-    The classes found so far are the labels from which a logistic regression learns, on one half of the scene, how
-    points of buildings differ from all others in shape, height, returns and intensity; it then gives a probability to
-    each point of the other half, and the reverse. Points up to 2 m from the edge of a building change their class where
-    that strongly contradicts it. Nothing comes from outside the cloud.
+    The classes at hand are the labels of a logistic regression. On one half of the scene it learns how points of
+    buildings differ from all others in shape, height, returns and intensity. It then gives a probability to each point
+    of the other half, and the reverse. Points up to 2 m from the edge of a building change their class where that
+    strongly contradicts it. Nothing comes from outside the cloud.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def refine_buildings(
     reason : ndarray of shape (n,), uint8, or None
         The same with the reason; None where not given.
     building_probability : ndarray of shape (n,), float32, or None
-        Probability of building, 0 to 1, smooth over neighbors; 0 for ground and what is lower than 0.2 m, NaN for
+        Probability of building, 0 to 1, smooth over neighbors; 0 for ground and points lower than 0.2 m, NaN for
         noise. None where nothing was learned.
 
     Notes

@@ -17,7 +17,7 @@ class ImageRoofRules:
     """Roofs and vehicles in clouds of matched images."""
 
     gap: float = rule(1.5, "m", "gaps between roof surfaces that are closed: ridges, dormers, chimneys")
-    least_width: float = rule(1.5, "m", "physics: what is narrower everywhere is a wall, a railing or a hedge")
+    least_width: float = rule(1.5, "m", "physics: narrower objects are walls, railings or hedges")
     raised: float = rule(1.0, "m", "height over the ground that the surface keeps where a gap is closed")
     rounded: float = rule(0.7, "m", "physics: matching rounds edges of roofs over the size of its windows")
     half: float = rule(0.5, "share", "of a roof's height at its edge: a step is smeared evenly to both sides")

@@ -59,8 +59,8 @@ class LabeledCells:
     def sample(self, cluster_id: np.ndarray) -> np.ndarray:
         """Return cells (j, 3 + f) to learn from: half, mark of the building, label and features of each.
 
-        Marks tell buildings apart, also those of other parts of a survey; 0 is none. ``cluster_id`` (n,) are the
-        buildings of the points, from 1; 0 if unassigned.
+        Marks distinguish buildings, also those of other parts of a survey; 0 is no building. ``cluster_id`` (n,) are
+        the buildings of the points, from 1; 0 if unassigned.
         """
         is_building = cluster_id > 0
         east = np.bincount(cluster_id[is_building], self.cells.xyz[is_building, 0], int(cluster_id.max()) + 1)

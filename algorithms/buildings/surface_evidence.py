@@ -1,4 +1,4 @@
-"""What is known of clusters without returns: surfaces that are planar over meters amid such surfaces, and color."""
+"""Evidence on clusters without returns: surfaces that are planar over meters amid such surfaces, and color."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def decide_in_images(
     evidence : ClusterEvidence
         The clusters among the points of the cloud.
     min_share : float
-        Least share of such surfaces among all that stands around a building.
+        Least share of such surfaces among all surroundings of a building.
 
     Returns
     -------
@@ -65,7 +65,7 @@ def are_large_planes(evidence: ClusterEvidence) -> np.ndarray:
 
 
 def without_green(decided: Decisions, is_green: np.ndarray, evidence: ClusterEvidence) -> Decisions:
-    """Refuse buildings (m,) that are as green as plants, where no returns tell leaves from roofs."""
+    """Refuse buildings (m,) that are as green as plants, where no returns distinguish leaves from roofs."""
     refused = decided.is_building & is_green & ~are_large_planes(evidence)
     reasons = np.where(refused, np.uint8(Reason.GREEN), decided.reasons)
     return Decisions(np.where(refused, 0.5, decided.confidence), reasons)
@@ -83,7 +83,7 @@ def green_clusters(
     evidence : ClusterEvidence
         The clusters among the points.
     is_surface : ndarray of shape (m,), bool
-        Clusters that are smooth, as roofs are. What is rough and what is smooth and large show the colors of plants and
+        Clusters that are smooth, as roofs are. Rough clusters and large smooth ones show the colors of plants and
         of roofs; where these do not differ, or one is missing, all points of the scene do.
     """
     group, count = evidence.group, len(is_surface)

@@ -1,8 +1,8 @@
 """The COPC file beside a LAS or LAZ file, which QGIS shows in its place.
 
-A view is such a file, written here together with the LAS or LAZ file and for QGIS only. Its header
-carries a digest of both files' content, so that a view is told from any other COPC file, and from a
-view or a LAS file that somebody has changed since: nothing but an untouched view may be lost.
+A view is such a file, written here together with the LAS or LAZ file and for QGIS only. Its header carries a digest of
+both files' content. By it a view differs from any other COPC file, and from a view or a LAS file that somebody has
+changed since: nothing but an untouched view may be lost.
 """
 
 from __future__ import annotations

@@ -260,7 +260,7 @@ class _Reader:
         if self.size < SIZES[self.minor] or not self.size <= self.points_at <= self.total:
             raise truncated(self.path, f"points should start at byte {self.points_at} of {self.total}")
         if self.n_vlrs * _VLR.size > self.points_at - self.size:
-            raise truncated(self.path, f"{self.n_vlrs} VLRs can't stand in {self.points_at - self.size} bytes")
+            raise truncated(self.path, f"{self.n_vlrs} VLRs don't fit into {self.points_at - self.size} bytes")
         if self.point_format not in FORMATS:
             raise ValueError(f"{self.path.name} has point format {self.point_format}; formats 0 to 10 can be read.")
         if self.length < Layout(self.point_format).dtype.itemsize:

@@ -82,7 +82,7 @@ class _Laz:
         _, n_chunks = self._unpacked(_TABLE_START)
         room = table_at - self._chunks_at
         if n_chunks * self.header.layout.dtype.itemsize > room:
-            raise truncated(self.path, f"{n_chunks} chunks can't stand in {room} bytes")
+            raise truncated(self.path, f"{n_chunks} chunks don't fit into {room} bytes")
         held = n_chunks * (per_chunk if per_chunk != _VARIABLE_CHUNKS else self.header.count)
         if self.header.count > held:
             raise truncated(self.path, f"it promises {self.header.count} points, but its chunks hold at most {held}")
@@ -99,7 +99,7 @@ class _Laz:
         points, sizes = zip(*chunks)
         room = table_at - self._chunks_at
         if sum(sizes) > room:
-            raise truncated(self.path, f"its chunks of {sum(sizes)} bytes can't stand in {room} bytes")
+            raise truncated(self.path, f"its chunks of {sum(sizes)} bytes don't fit into {room} bytes")
         if _chunk_size(record) == _VARIABLE_CHUNKS and sum(points) != self.header.count:
             raise truncated(self.path, f"it promises {self.header.count} points, but its chunks hold {sum(points)}")
         if self.header.layout.point_format >= _FIRST_LAYERED_FORMAT:

@@ -284,7 +284,7 @@ def _is_abandoned(folder: Path) -> bool:
 
 @contextmanager
 def working_folder(parent: Path) -> Iterator[Path]:
-    """Give a new hidden folder in another one, for what is needed until the block ends.
+    """Give a new hidden folder in another one, for files needed until the block ends.
 
     That of a killed run is removed when something is written into the same folder again.
 

@@ -215,7 +215,7 @@ def write_points(
     stream : file
         New and empty.
     header : Header
-        Its count, layout, VLRs and EVLRs are what is written; bounds and positions are found here.
+        Its count, layout, VLRs and EVLRs are written; bounds and positions are found here.
     chunks : callable
         Gives the records from one position to another, laid out as the header says.
     compressed : bool

@@ -194,7 +194,7 @@ def _axis_units(node: _Node) -> list[float]:
 
 
 def _length(size: float) -> float:
-    """Return meters per unit, or refuse what is no length."""
+    """Return meters per unit, or refuse a unit that is no length."""
     if not _SHORTEST_UNIT <= size <= _LONGEST_UNIT:
         raise ValueError(f"The file gives its unit of length as {size:g} m, which is damaged; assign its CRS again.")
     return size

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-# Depth (m) before a wall in which ground, landings and stairs lead up to a door, and from which they count: a sill or a
-# cornice juts out less than 0.2 m, a landing is rarely deeper than 1.5 m.
+# Depth (m) before a wall in which ground, landings and stairs lead up to a door, and from which they count. A sill or a
+# cornice juts out less than 0.2 m, and a landing is rarely deeper than 1.5 m.
 FROM_WALL, BEFORE = 0.2, 1.5
 
 

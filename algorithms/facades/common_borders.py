@@ -30,7 +30,7 @@ def with_common_borders(facades: Sequence[Facade], reach: float, monitor: Monito
     reach : float
         Edges farther from the line than this (m) stay where they are.
     monitor : Monitor
-        Is told the progress.
+        Receives the progress.
     """
     lines: list[dict[int, tuple]] = [{} for _ in facades]
     neighbors: list[set[int]] = [set() for _ in facades]

@@ -1,4 +1,4 @@
-"""Curved fronts as upright strips: planes that cross each other at small angles, told apart by plan position."""
+"""Curved fronts as upright strips: planes that cross each other at small angles, separated by plan position."""
 
 from __future__ import annotations
 

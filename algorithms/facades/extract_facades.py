@@ -37,7 +37,7 @@ _MOMENTS = ("count", "center", "covariance")
 # Distance (m) from a corner within which the border of a facade, and its outer side, depend on the facade beside it.
 AROUND_CORNER = 5.0
 
-# Points up to 10 m before a facade tell from which side it was seen, and as many before the facades beside it, on
+# Points up to 10 m before a facade show from which side it was seen, and as many before the facades next to it, on
 # which its border depends. The length of the facade itself is not included (m).
 _AROUND = 20.0
 
@@ -98,7 +98,7 @@ def extract_facades(
         Param(
             "Tolerance",
             "Distance within which a point lies on the plane of a facade. Smaller divides a curved front into more "
-            "strips and tells shallower recesses apart.",
+            "strips and separates shallower recesses.",
             unit="m",
             low=0,
             high=1,
@@ -166,9 +166,9 @@ def extract_facades(
     -----
     The paper clusters the normals of the triangles of a TIN around two means of their x and y components, which fits a
     building with two kinds of slopes. Vertical walls fold a TIN over the plan, and a street has facades in all
-    directions; here the planes come from RANSAC in voxels ("Segment planes (RANSAC)"), whose pieces are joined where
-    their normals and offsets agree, which is the same clustering without a fixed number of clusters. Distances to
-    the planes are perpendicular, not along z, which a vertical plane doesn't have.
+    directions; here the planes come from RANSAC in voxels ("Segment planes (RANSAC)"). Pieces are joined where their
+    normals and offsets agree: the same clustering without a fixed number of clusters. Distances to the planes are
+    perpendicular, not along z, which a vertical plane doesn't have.
 
     The paper removes triangles with an edge over 1.5 spacings and keeps the points where the boundary turns, which
     keeps every bite that chance takes out of it ("key points"). Straight edges are fitted by least squares to
@@ -177,8 +177,8 @@ def extract_facades(
     facade, the longest edge grows until 95 % of the points are in one piece, at most to the widest gap.
 
     Cars, trees and people take bites out of the foot and the sides of a facade. Pockets between the boundary and its
-    convex hull are filled where the hull is upright or follows the foot, and hidden corners of the foot are where
-    side and foot meet; a passage that is open to the street is filled, too. Steps and gables at the top stay.
+    convex hull are filled where the hull is upright or follows the foot, and hidden corners of the foot are where side
+    and foot meet. A passage that is open to the street is filled, too. Steps and gables at the top stay.
 
     The outer side is that from which points lie in front of the wall (street, cars), or close behind its openings;
     facades that meet at a corner face the same side of it.
@@ -236,7 +236,7 @@ def _in_lines(xyz: np.ndarray, gps_time: Optional[np.ndarray], point_source_id: 
     """Return which points (n,) are of facade lines."""
     if gps_time is None:
         raise ValueError(
-            "Facade lines are told by the times of the pulses, and the cloud has no GPS time; search in all points."
+            "Facade lines are found by the times of the pulses, and the cloud has no GPS time; search in all points."
         )
     return are_of_facade_lines(xyz, gps_time, point_source_id)
 

@@ -88,7 +88,7 @@ def extract_openings(
     complete: CompleteFacades = True,
     monitor=None,
 ):
-    """Find windows and doors, cut them out of the facades, and tell their size, position and row.
+    """Find windows and doors, cut them out of the facades, and measure their size, position and row.
 
     An opening is where points lie behind the wall (frames, panes, curtains, reveals) and wall encloses them. Holes
     with nothing behind them are shadows or unknown, and no openings. A plane that fills openings of another

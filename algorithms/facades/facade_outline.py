@@ -38,7 +38,7 @@ _TOLERANCE_SPACINGS, _LEAST_TOLERANCE, _TOLERANCE_SHARE = 2.0, 0.05, 0.2
 # Angles (rad) within which an edge of the hull is the foot of a facade, which may lie on a slope, and a side.
 _FOOT_ANGLE, _SIDE_ANGLE = np.radians(12.0), np.radians(4.0)
 
-# A parked car or a bush hides so much of a corner of the foot, along and up the facade (m).
+# Part of a corner of the foot that a parked car or a bush hides, along and up the facade (m).
 _HIDDEN = (5.0, 2.5)
 
 # Times the boundary is pushed out: a corner that moves may leave a point of the edge beside it outside.
@@ -47,7 +47,7 @@ _PUSHES = 4
 # A corner may move this many times as far as the edges beside it: those of less than 39° would become spikes.
 _MITER = 3.0
 
-# Sine of the angle below which two edges count as parallel: their lines meet too far away to tell where.
+# Sine of the angle below which two edges count as parallel: their lines meet too far away for an accurate position.
 _PARALLEL = 0.05
 
 
@@ -233,7 +233,7 @@ def key_points(ring: np.ndarray) -> np.ndarray:
 
     In each of 30 rounds the points at which the boundary turns by less than the threshold are removed; the threshold
     goes from 10° up by one degree a round. Of two neighbors only one is removed at a time, so that the angles are those
-    of what is left.
+    of the rest.
     """
     positions = ring[:-1]
     for angle in _FIRST_ANGLE + np.arange(_ROUNDS + 1):

@@ -25,7 +25,7 @@ _DEPTH = 0.5
 # A facade wider than this (cells) is judged without its two ends.
 _LEAST_COLUMNS = 3
 
-# Which side of a corner a facade lies on is told from its points within this distance (m) of the corner.
+# Which side of a corner a facade lies on follows from its points within this distance (m) of the corner.
 _AT_CORNER = 1.5
 
 # Facades whose normals enclose less than this angle (cosine: 40°) are strips of one front, and face the same side.
@@ -56,13 +56,13 @@ def facing_outside(
     thickness : ndarray of shape (m,)
         Points nearer to the plane of a facade than this (m) belong to it.
     monitor : Monitor
-        Is told the progress.
+        Receives the progress.
 
     Notes
     -----
-    An opaque wall hides what is behind it: points off a cell of wall are before it (streets, cars, trees). Close behind
-    the wall only what is seen through openings can be. Points farther off beside a gap say nothing: a gap is an opening
-    with a room behind it, or the shadow of a tree before it.
+    An opaque wall hides everything behind it: points off a cell of wall are before it (streets, cars, trees). Close
+    behind the wall there are only points seen through openings. Points farther off beside a gap say nothing: a gap is
+    an opening with a room behind it, or the shadow of a tree before it.
 
     A narrow wall hides little, and the side of a bay has the street on both sides. Two facades that meet at a corner
     both have the other before them, or both behind them: a reentrant corner or a salient one. Facades are decided from
@@ -83,7 +83,7 @@ def facing_outside(
 
 
 def _evidence(frame: Frame, own: np.ndarray, near: np.ndarray, thickness: float) -> _Evidence:
-    """Return what the points (n, 3) of a facade and those around it (m, 3) tell about its outside."""
+    """Return the evidence of points (n, 3) of a facade and those around it (m, 3) on its outside."""
     own, positions = frame.local(own), frame.local(near)
     low = own[:, :2].min(axis=0)
     cell, own_cell = (np.floor((some[:, :2] - low) / _CELL).astype(np.int64) for some in (positions, own))
@@ -92,7 +92,7 @@ def _evidence(frame: Frame, own: np.ndarray, near: np.ndarray, thickness: float)
     cell[:, 1] += cell[:, 1] == -1
     inside = ((cell >= 0) & (cell < count)).all(axis=1)
     if count[0] > _LEAST_COLUMNS:
-        # Walls at a right angle stand behind the ends of the facade.
+        # Walls at a right angle lie behind the ends of the facade.
         inside &= (positions[:, 0] > own[:, 0].min() + _CELL) & (positions[:, 0] < own[:, 0].max() - _CELL)
     off = np.abs(positions[:, 2])
     inside &= (off > thickness) & (off <= _FARTHEST)
@@ -118,7 +118,7 @@ def _corners(
 
 
 def _agreement(one: Frame, of_one: np.ndarray, other: Frame, of_other: np.ndarray) -> float:
-    """Return whether two normals point to the same side of a corner, -1 to 1; 0 where the points don't tell."""
+    """Return whether two normals point to the same side of a corner, -1 to 1; 0 where undecided."""
     line = intersection_line(one, other)
     cosine = float(one.normal @ other.normal)
     if line is None or abs(cosine) >= _ALIKE:

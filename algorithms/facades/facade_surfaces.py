@@ -13,7 +13,7 @@ from .facade_frame import Frame, frame_of
 from .facade_outline import outline_of, ring_area
 from .facade_sides import facing_outside
 
-# Points nearer to a facade's plane than this (m) may be frames and reliefs of it: they don't tell which side was seen.
+# Points nearer to a facade's plane than this (m) may be frames and reliefs of it: they don't show which side was seen.
 _THICKNESS = 0.05
 
 

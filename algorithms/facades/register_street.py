@@ -27,9 +27,9 @@ _MEASURES = (
 
 # What the report says of each measure.
 _MEANINGS = {
-    "shift_x": "What is added to the eastings of the street scan.",
-    "shift_y": "What is added to its northings.",
-    "shift_z": "What is added to its elevations, from the ground that both scans show.",
+    "shift_x": "Added to the eastings of the street scan.",
+    "shift_y": "Added to its northings.",
+    "shift_z": "Added to its elevations, from the ground that both scans show.",
     "residual": "Root mean square distance of common walls and ends from the outlines after the shift.",
     "overhang": "Mean distance of the outlines from the air before the walls: eaves, and the edge of the points.",
     "walls": "Facades that lie on an edge of a footprint.",
@@ -116,10 +116,10 @@ def register_street(
     Notes
     -----
     The paper scans streets without satellite positions and leaves open how its scans come together. A vehicle's
-    position between high houses is off by decimeters to meters, its direction hardly at all; so the transformation is
-    a shift. A search on a grid of 0.25 m finds the shift at which most of the walls lie on outlines; least squares in
-    narrowing rounds then solve for shift and overhang of the eaves together, which walls on both sides of a street tell
-    apart. Where a street shows no end of a wall at a corner, the shift along it stays near 0.
+    position between high houses is off by decimeters to meters, its direction hardly at all; so the transformation is a
+    shift. A search on a grid of 0.25 m finds the shift at which most of the walls lie on outlines. Least squares in
+    narrowing rounds then solve for shift and overhang of the eaves together, which walls on both sides of a street
+    separate. Where a street shows no end of a wall at a corner, the shift along it stays near 0.
 
     References
     ----------

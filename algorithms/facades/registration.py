@@ -14,7 +14,7 @@ from .plan_segments import PlanSegments
 
 @dataclass(frozen=True)
 class _Rules:
-    """What is common to both scans, and how far it may be off."""
+    """Features common to both scans, and their largest displacement."""
 
     # Walls and outlines run the same way within this angle (°): regularized outlines turn by a few degrees.
     angle: float = 10.0
@@ -27,7 +27,7 @@ class _Rules:
     # of an outline (0.1 m).
     rounds: tuple[float, ...] = (0.6, 0.6, 0.4, 0.4, 0.3, 0.3, 0.2, 0.2)
     # Standard deviations (m) of an outline's edge, of the eaves' overhang, and of the shift along a street where
-    # nothing there tells it.
+    # no evidence there determines it.
     edge: float = 0.1
     overhang: float = 0.3
     unseen: float = 1.0
@@ -99,11 +99,10 @@ def register(
 
     Notes
     -----
-    A wall and an outline that run the same way give the shift across them, but for the overhang of the eaves, which is
-    one unknown for all: walls of both sides of a street tell it from the shift. Ends of walls and corners of outlines
-    give the shift along, but for the overhang of gables, another unknown. A search on a grid finds which are common,
-    least squares in narrowing rounds their shift. The
-    ground then gives the shift in height.
+    A wall and an outline that run the same way give the shift across them, but for the overhang of the eaves. That is
+    one unknown for all: walls of both sides of a street separate it from the shift. Ends of walls and corners of
+    outlines give the shift along, but for the overhang of gables, another unknown. A search on a grid finds which are
+    common, least squares in narrowing rounds their shift. The ground then gives the shift in height.
     """
     long = walls.length >= _RULES.shortest
     walls = PlanSegments(walls.start[long], walls.end[long], walls.owner[long])
@@ -219,7 +218,7 @@ def _common(walls: PlanSegments, beside: _Beside, plan: np.ndarray, near: float)
 
 
 def _solved(common: _Common) -> np.ndarray:
-    """Return shift and overhangs (4,), m, by weighted least squares; what nothing tells stays near 0."""
+    """Return shift and overhangs (4,), m, by weighted least squares; unknowns without evidence stay near 0."""
     known = np.sqrt(common.weights) / _RULES.edge
     assumed = np.diag([1 / _RULES.unseen, 1 / _RULES.unseen, 1 / _RULES.overhang, 1 / _RULES.overhang])
     left = np.concatenate([common.coefficients * known[:, None], assumed])

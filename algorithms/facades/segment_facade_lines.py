@@ -112,7 +112,7 @@ def segment_facade_lines(
     ] = 5,
     monitor=None,
 ):
-    """Divide a vehicle's scan lines into straight segments and tell those of ground, facades and other objects.
+    """Divide a vehicle's scan lines into straight segments, and label those of ground, facades and other objects.
 
     Each line is split where it bends or leaves a gap. A segment gets its slope, the mean of its ends, its height over
     the lowest one of its line and its distance from the scanner. Level and low ones are ground; steep ones that are
@@ -141,10 +141,10 @@ def segment_facade_lines(
 
     Notes
     -----
-    The paper tells ground by Z' - min(Z') < d0 and facades by abs(Y' - max(Y')) < h0, with Y' across the way of the
-    vehicle; here Y' is the distance from the scanner in plan, on each of its two sides. A file doesn't tell where the
-    scanner was: it is taken to be over the point in the middle of the time of its line, which begins and ends with
-    the sky. Lines end where no point comes for an eighth of a turn. They are split at gaps, and at their farthest point
+    The paper finds ground by Z' - min(Z') < d0 and facades by abs(Y' - max(Y')) < h0, with Y' across the way of the
+    vehicle. Here Y' is the distance from the scanner in plan, on each of its two sides. A file doesn't say where the
+    scanner was: it is taken to be over the point in the middle of the time of its line, which begins and ends with the
+    sky. Lines end where no point comes for an eighth of a turn. They are split at gaps, and at their farthest point
     until all points are within the tolerance (Douglas and Peucker), which the paper leaves open.
 
     References
@@ -154,7 +154,7 @@ def segment_facade_lines(
     """
     if np.ptp(gps_time) == 0:
         raise ValueError(
-            "All points have the same GPS time, so scan lines can't be told apart; use a cloud with the times of its "
+            "All points have the same GPS time, so scan lines can't be distinguished; use a cloud with times of its "
             "pulses, as the scanner recorded it."
         )
     source = np.zeros(len(xyz), np.int64) if point_source_id is None else point_source_id.astype(np.int64)
@@ -304,7 +304,7 @@ def _from_scanner(
     ends = np.append(starts[1:], len(line)) - 1
     below = xyz[(starts + ends) // 2, :2]
     away = middle[:, :2] - below[of_line]
-    # Any direction across the way tells the sides of one line apart: that to its first point.
+    # Any direction across the way distinguishes the sides of one line: that to its first point.
     first = xyz[starts, :2] - below
     return (np.einsum("ij,ij->i", away, first[of_line]) < 0).astype(np.int64), np.hypot(*away.T)
 

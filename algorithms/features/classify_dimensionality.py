@@ -27,9 +27,8 @@ class Dimensionality(IntEnum):
 def classify_dimensionality(linearity, planarity, scattering, *, monitor=None):
     """Classify points as linear, planar or volumetric by the largest of linearity, planarity and scattering.
 
-    Wires, poles and edges are linear, ground, roofs and walls planar, crowns and bushes volumetric. Nothing has
-    to be trained; what is small, and what is noise, is decided by the neighborhood of 'Compute features', which
-    comes before.
+    Wires, poles and edges are linear, ground, roofs and walls planar, crowns and bushes volumetric. Nothing has to be
+    trained; the scale of structure and noise is that of the neighborhood of 'Compute features', which comes before.
 
     Parameters
     ----------

@@ -177,9 +177,9 @@ def compute_features(
 
     Where the cloud has fewer points than a neighborhood asks for, it is made of all of them. Of several points equally
     far at the end of a neighborhood of 'nearest' or 'optimal', each counts in part, so that their order in the cloud
-    decides nothing, as long as they are among the 1.3 (sqrt(k) + 1)² nearest; the features of extent are those of all
-    of them. 'optimal' tries the minimum of nearest points, then a step more, up to the maximum, and takes the one with
-    the least eigenentropy; of several that differ by rounding only, the smallest.
+    decides nothing. This holds as long as they are among the 1.3 (sqrt(k) + 1)² nearest; the features of extent are
+    those of all of them. 'optimal' tries the minimum of nearest points, then a step more, up to the maximum, and takes
+    the one with the least eigenentropy; of several that differ by rounding only, the smallest.
 
     References
     ----------

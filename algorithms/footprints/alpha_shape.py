@@ -28,21 +28,21 @@ _SHORTEST = 4.0
 # Largest value of the longest edge (mean point spacings): a longer one would fill courtyards.
 _LONGEST = 8.0
 
-# Cells (times the mean point spacing) in which the inside of an area is told: a lattice of their middles has no
+# Cells (times the mean point spacing) in which the inside of an area is mapped: a lattice of their middles has no
 # triangle with an edge as long as the shortest of the longest edges.
 _INNER_CELL = 2.5
 
 # Width (cells) of the margin of cells with points around the inside of an area: flat triangles at an edge span one.
 _DEEP_CELLS = 2
 
-# Buildings whose points are closer than so many spacings touch; chance leaves wider gaps in one roof of twenty.
+# Buildings whose points are closer than this (spacings) touch; chance leaves wider gaps in one roof of twenty.
 _TOUCHING = 3.0
 
 # Mean distance of the outermost points from the edge of their roof (mean point spacings), on simulated roofs.
 _INSET = 0.3
 
 # Distance by which the edge lies beyond the middle between the outermost points and the non-building points beside
-# them (mean point spacings), on simulated roofs: those nearest to the roof stand ahead of the others.
+# them (mean point spacings), on simulated roofs: those nearest to the roof lie ahead of the others.
 _AHEAD = 0.2
 
 # Distance (mean point spacings) from which non-building points no longer show where the edge is.

@@ -65,7 +65,7 @@ class Outlined:
 
 @dataclass(frozen=True)
 class Drawing:
-    """How outlines are drawn: spacing of points and scale of what is straightened (m), least areas (m²)."""
+    """How outlines are drawn: spacing of points and scale of simplification (m), least areas (m²)."""
 
     spacing: float
     scale: float
@@ -122,7 +122,7 @@ def _by_house(
     shares: dict[int, Shares],
     lattice: Lattice,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return labels (cells,) that tell houses apart, and the building of each label.
+    """Return labels (cells,) of houses, and the building of each label.
 
     A cell is of the house that most of its nodes are of.
     """
@@ -249,7 +249,7 @@ def _are_drawn(start: np.ndarray, end: np.ndarray, edges: list[Edge]) -> np.ndar
 
 
 def _without_scraps(cells: Subdivision, label: np.ndarray, how: Drawing) -> np.ndarray:
-    """Return the labels with holes and polygons that are too small given to what is around them."""
+    """Return the labels with too small holes and polygons given to their surroundings."""
     for is_ground, least in ((True, how.min_hole_area), (False, how.min_area)):
         piece = connected_cells(cells, label)
         size = np.bincount(piece, cells.areas())

@@ -85,7 +85,7 @@ def extract_footprints(
         Optional[float],
         Param(
             "Tolerance",
-            "Scale of what is straightened: bays and steps up to about this depth are left out where they are short.",
+            "Scale of simplification: bays and steps up to about this depth are left out where they are short.",
             unit="m",
             low=0.01,
             high=100,
@@ -120,14 +120,14 @@ def extract_footprints(
     cluster_id : ndarray of shape (n,), optional
         Building of each point, from 1; points of 0 are left out. Without it, points that lie together are a building.
     height_above_ground : ndarray of shape (n,), optional
-        Heights (m), for the attributes and to tell low parts from the houses of a row; for these it is otherwise taken
-        over the lowest point of the buildings that lie together or beside them.
+        Heights (m), for the attributes and to distinguish low parts from the houses of a row; for these it is otherwise
+        taken over the lowest point of the buildings that lie together or beside them.
     cluster_entropy : ndarray of shape (n,), optional
         Mean entropy of the cluster, for the attributes only.
     confidence : ndarray of shape (n,), optional
         Sureness of being a building, 0 to 1, for the attributes only.
     reason : ndarray of shape (n,), optional
-        Why points are called building, see :class:`~..cloud.reasons.Reason`, for the attributes and to tell walls.
+        Why points are called building, see :class:`~..cloud.reasons.Reason`, for the attributes and to find walls.
 
     Returns
     -------
@@ -142,21 +142,22 @@ def extract_footprints(
     attached points with another one more than a meter (or three spacings) higher. They count as points of the building
     but don't widen its outline. One point counts for each cell of half a square spacing.
 
-    Shares are of a lattice of half a spacing, with weights of a Gaussian of one spacing: roof points against the ground
-    seen beside them and against emptiness, by which a position falls short of roofs around. Gaps with roofs all around
-    are filled. The spacing is that of the building points of the whole cloud or survey, in steps of a fifth.
+    Shares are of a lattice of half a spacing, with weights of a Gaussian of one spacing. Roof points count against the
+    ground seen next to them, and against emptiness, by which a position falls short of roofs around. Gaps with roofs
+    all around are filled. The spacing is that of the building points of the whole cloud or survey, in steps of a fifth.
 
-    The walls of a ring are found by one dynamic program over all corners and directions: squared distances from the
-    line, a price for each corner by its angle, and a price for walls beside the main directions, which the directions
-    of neighbors within 30 m also count for. Rings with many walls beside these, and round ones, are drawn in chords.
-    The walls of all buildings of a block cut the plane into cells, and a minimum cut gives each cell to a building or
-    to the ground. Clusters whose points lie on one line have no area and give no polygon.
+    The walls of a ring are found by one dynamic program over all corners and directions. Its costs are squared
+    distances from the line, a price for each corner by its angle, and a price for walls off the main directions. The
+    directions of neighbors within 30 m count, too. Rings with many walls beside these, and round ones, are drawn in
+    chords. The walls of all buildings of a block cut the plane into cells, and a minimum cut gives each cell to a
+    building or to the ground. Clusters whose points lie on one line have no area and give no polygon.
 
     With 'Split rows', houses of a row are parted along straight lines from one side of a building to the other, in its
-    main directions, where over 60 % of what is not low two roofs rise away from the line, parallel ones step by 0.4 m
-    and any by 1 m, or a wall stands 0.3 m above both. At least two such lines side by side, 3.5 to 13 m apart, and
-    25 m² of every house are asked for, and for a step that the lower house is not below three quarters of the higher
-    one: two roofs may be one house, and low or small parts belong to one. Houses keep the number of their cluster.
+    main directions. Along at least 60 % of such a line, without low parts, both roofs slope up from it, parallel roofs
+    step by 0.4 m, any by 1 m, or a wall rises 0.3 m above both. There must be two such lines side by side at least, 3.5
+    to 13 m apart, and 25 m² of every house. At a step the lower house must have three quarters of the height of the
+    higher one: two roofs may be one house, and low or small parts belong to one. Houses keep the number of their
+    cluster.
 
     References
     ----------
@@ -223,7 +224,7 @@ class _Part:
 
 @dataclass(frozen=True)
 class _Evidence:
-    """What is known of the buildings of a part: shares, pieces, and of each the box, weights of directions, samples."""
+    """Measures of the buildings of a part: shares, pieces, and of each the box, weights of directions, samples."""
 
     shares: dict[int, Shares]
     pieces: list[Piece]

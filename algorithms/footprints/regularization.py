@@ -126,7 +126,7 @@ def main_directions(edges: list) -> list:
     A main direction needs a right angle or parallel edges that are most of the outline: a round tower, which turns
     little at every corner, has no such direction.
     """
-    # A long edge tells more of a direction than many short ones.
+    # A long edge determines a direction better than many short ones.
     length, angle = np.array([edge.length for edge in edges]) ** 2, np.array([edge.angle for edge in edges])
     is_left, found, least = np.ones(len(edges), bool), [], _MIN_SHARE
     # Four times the angle is the same for edges that are parallel or square to each other.
@@ -295,7 +295,7 @@ def _without_spikes(edges: list, line: Line, tolerance: float) -> list:
 
 
 def _merged(line: Line, edges: list, tolerance: float) -> list:
-    """Join edges that follow each other in one line, also over what is left of a spike between them."""
+    """Join edges that follow each other in one line, also over the rest of a spike between them."""
     number = 0
     while number < len(edges):
         for ahead in (1, 2):

@@ -14,11 +14,11 @@ from ..threads import n_threads
 # Height (m) of another point of the building steeply above one that is no part of the roof: more than roofs are rough.
 _STEP = 0.4
 
-# The same above a point that was only attached to the building, however steeply: bushes under eaves. At least so many
+# The same above a point that was only attached to the building, however steeply: bushes under eaves. At least this many
 # spacings, by which a roof of 72° rises from one point to the next.
 _ATTACHED_STEP, _STEP_SPACINGS = 1.0, 3.0
 
-# Height (m) of a roof above what is no building beside it.
+# Height (m) of a roof above adjacent non-building points.
 _BELOW = 1.0
 
 # Slope (tangent) up to which the point is a part of a steep roof all the same: 72°.
@@ -27,17 +27,17 @@ _UPRIGHT = 3.0
 # Side (spacings) of the cells of which one point stands for all: four fifths of evenly scattered points remain.
 _THINNED = 0.71
 
-# Weight of the highest point of a cell with points on a wall: half of the cell is roof, which two fifths of such cells
-# have a point of, while nearly all of these have one.
+# Weight of the highest point of a cell with points on a wall: half of the cell is roof. Two fifths of such cells have a
+# point of it, while nearly all of these have one.
 _AT_WALL = 0.43
 
-# Distance (spacings) from a roof up to which points tell where it ends.
+# Distance (spacings) from a roof up to which points show where it ends.
 _BESIDE = 3.0
 
-# Radius (spacings) in which roof points are counted to tell whether a point lies under a roof: 12 on the average.
+# Radius (spacings) in which roof points are counted to decide whether a point lies under a roof: 12 on the average.
 _AROUND = 2.0
 
-# Number of nearest roof points, the surroundings of which tell how dense the roof is.
+# Number of nearest roof points whose surroundings give the density of the roof.
 _NEAREST = 24
 
 # A point lies under a roof that has this share of that density around it: beside a straight edge it has half. Measured

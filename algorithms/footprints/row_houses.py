@@ -1,7 +1,7 @@
 """Houses of a row: where the roofs above an outline say that one house ends and the next begins.
 
-A party wall is seen where, along a straight line from one side of a building to the other, two roofs rise away from it
-(the valley between gables side by side), parallel roofs step, or a wall stands above both of them.
+A party wall is seen along a straight line from one side of a building to the other. There two roofs rise away from it
+(the valley between gables side by side), parallel roofs step, or a wall rises above both.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from ..packages import ndimage, spatial
 from .soft_shares import Lattice
 
 # Step of the grid that heights are sampled on (m), at least the second figure (point spacings): finer than a fire wall
-# is thick, but no finer than points tell.
+# is thick, but no finer than the points.
 _STEP = 0.25
 _STEP_SPACINGS = 0.6
 
@@ -75,7 +75,7 @@ _DEEPEST = 22.0
 _NARROWEST = 3.5
 _WIDEST = 13.0
 
-# Least area of a house (m²); what is smaller is a part of one.
+# Least area of a house (m²); smaller ones are parts of one.
 _HOUSE = 25.0
 
 # Cosine of the greatest angle between party walls of one row: 10°.

@@ -15,8 +15,8 @@ from ..packages import ndimage
 # Nodes of the lattice per point spacing: at two, linear interpolation between nodes adds nothing to the smoothing.
 _NODES = 2
 
-# Standard deviation (spacings) of the weights of points around a node. 0.8 leaves outlines rougher, 1.3 joins buildings
-# that stand apart (tried on a cloud with 4 points per m²).
+# Standard deviation (spacings) of the weights of points around a node. 0.8 leaves outlines rougher, 1.3 joins separate
+# buildings (tried on a cloud with 4 points per m²).
 _NEAR = 1.0
 
 # Standard deviation (spacings) of the surroundings in which a roof's own density is measured: some hundred points.
@@ -138,8 +138,8 @@ def find_shares(
     Notes
     -----
     Where fewer points lie than the roofs around have, the rest is empty. It counts as roof as far as roofs with their
-    own density lie around (a gap), and as no building elsewhere: at the edge of a roof beside which no ground was seen,
-    half is empty, and the roof ends.
+    own density lie around (a gap), and as no building elsewhere. At the edge of a roof where no ground was seen, half
+    is empty, and the roof ends.
     """
     lattice = Lattice.around(roof, spacing)
     density, around = (_density(lattice, roof, width, weight) for width in (_NEAR, _WIDE))

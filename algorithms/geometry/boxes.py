@@ -154,7 +154,7 @@ def connected(boxes: Boxes, is_near: Callable[[np.ndarray], np.ndarray], monitor
     Notes
     -----
     Two boxes are compared point by point only while nothing else has joined them yet, and before that by one point
-    each, which joins most: pairs of points are never all held at once, and memory follows the points.
+    each, which joins most. Pairs of points are never all held at once, and memory follows the points.
     """
     component = np.arange(len(boxes))
     if len(boxes.order) <= _FEW:

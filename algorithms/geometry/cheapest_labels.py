@@ -74,7 +74,8 @@ def _expanded(
     rows = np.arange(len(cost))
     keep, take = cost[rows, label].copy(), cost[:, alpha].copy()
     # An edge costs "both" where both cells keep their labels, "first" or "second" where that one changes alone, and
-    # nothing where both change: a sum of terms of one cell each, and one of the first keeping while the second changes.
+    # nothing where both change. That is a sum of terms of one cell each, and one of the first keeping while the second
+    # changes.
     inner, from_p, from_q = wanted[p] & wanted[q], wanted[p] & ~wanted[q], wanted[q] & ~wanted[p]
     np.add.at(take, p[inner | from_p], (first - both)[inner | from_p])
     np.add.at(take, q[inner], -first[inner])

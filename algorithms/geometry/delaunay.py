@@ -2,7 +2,7 @@
 
 A triangle belongs to the triangulation of all points when none of them lies inside its circle, whichever points it was
 found among. So tiles are triangulated one by one, with their surroundings, and of each the triangles are kept
-whose circles lie within what it saw. What is left are holes, few and mostly where no positions are; the positions
+whose circles lie within what it saw. Holes remain, few and mostly where no positions are; the positions
 around them make up one more, small triangulation, of which the triangles in the holes are taken. What new positions
 spoil, the triangles with one of them in their circles, are such holes too.
 """
@@ -175,7 +175,7 @@ def _part(plan: np.ndarray, rows: np.ndarray, box: np.ndarray, seen: np.ndarray)
 def _chosen(
     plan: np.ndarray, facets: np.ndarray, neighbors: np.ndarray, stays: np.ndarray
 ) -> tuple[Triangulation, np.ndarray]:
-    """Return some of the facets, and what each of all became, -1 what is gone."""
+    """Return some of the facets, and the new number of each of all, -1 if it is gone."""
     became = np.where(stays, np.cumsum(stays, dtype=np.int32) - np.int32(1), np.int32(-1))
     beside = neighbors[stays]
     return Triangulation(plan, facets[stays], np.where(beside >= 0, became[beside], np.int32(-1))), became

@@ -69,7 +69,7 @@ def overlaps(first: Polygons, second: Polygons, monitor: Monitor) -> tuple[np.nd
 
     Notes
     -----
-    A polygon is the signed sum of what lies below its edges; two polygons share the signed sum of what lies below
+    A polygon is the signed sum of what lies below its edges. Two polygons share the signed sum of what lies below
     both of two edges, which is the integral of the smaller of two straight lines.
     """
     one, other = meeting_boxes(first.box, second.box)

@@ -20,7 +20,7 @@ _PRICE = 0.5
 # Edges are looked for between samples that describe the line to this share of the tolerance.
 _FINE = 0.25
 
-# Edges whose costs are found at once end at so many samples: as many as pay for the calls of numpy, and no more.
+# Samples at which edges end whose costs are computed at once: enough to pay for the calls of numpy, and no more.
 _ENDS_AT_ONCE = 64
 
 

@@ -21,7 +21,7 @@ _STRAIGHT = 0.25
 # Step of the directions (°).
 _STEP, _N_STEPS = 0.5, 180
 
-# No direction stands out where the lower quartile of the weights is more than this share of their mean: 0.76 and more
+# No direction dominates where the lower quartile of the weights is more than this share of their mean: 0.76 and more
 # in simulated towers, 0.72 and less in 30 real buildings, all with this many samples or more.
 _EVEN, _ROUND_SAMPLES = 0.74, 50
 
@@ -79,7 +79,7 @@ def main_directions(weights: np.ndarray, own: np.ndarray, n_samples: int) -> np.
 
 
 def _pieces(samples: np.ndarray, length: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return direction (°) and standard deviation across (m) of the pieces of so many samples from each sample on."""
+    """Return direction (°) and standard deviation across (m) of the pieces of ``length`` samples from each on."""
     ring = np.concatenate([samples, samples[:length]]) - samples.mean(axis=0)
     products = np.column_stack([ring, ring**2, ring[:, 0] * ring[:, 1]])
     total = np.concatenate([np.zeros((1, 5)), np.cumsum(products, axis=0)])

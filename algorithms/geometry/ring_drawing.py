@@ -270,7 +270,7 @@ class _Chain:
             turns = reached[:, :, None] + self.ways.turn
             turned[ends] = way = turns.argmin(axis=1)
             begun[ends] = begins = turns[of, way, every]
-            # A run from a later sample on costs no more: what is farther off begins there.
+            # A run from a later sample on costs no more: runs that are farther off begin there.
             is_behind = (before + least[rows, columns] >= begins).all(axis=2) & (ends - firsts[:, None] >= _SHORTEST)
             starts.leave_out(rows[is_behind.any(axis=1)])
         last = cost[length] + end

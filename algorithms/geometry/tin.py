@@ -18,7 +18,7 @@ _CHUNK, _FIT_CHUNK = 100_000, 20_000
 # Far more steps than a walk from the nearest node takes.
 _MAX_STEPS = 1000
 
-# On a side of a facet weights are 0 but for rounding: what is less negative than this lies inside.
+# On a side of a facet weights are 0 but for rounding: a point with less negative weights lies inside.
 _ROUNDING = 1e-9
 
 # Side of the cells of starts for walks, in mean distances of nodes: two cells for each node.
@@ -92,7 +92,7 @@ class Tin:
         return now
 
     def _take(self, mesh: Triangulation) -> None:
-        """Take the facets of a triangulation of the nodes, and what is found from them."""
+        """Take the facets of a triangulation of the nodes, and what follows from them."""
         self._mesh = mesh
         self._weights, self._planes = self._barycentric(), self._gradients()
         # A facet of each node, -1 of those at the position of another.

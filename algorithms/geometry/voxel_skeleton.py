@@ -53,11 +53,11 @@ def skeleton(cells: np.ndarray, monitor: Monitor) -> np.ndarray:
 
     Notes
     -----
-    Directional thinning: voxels that face the background on one side are removed if they are simple (their removal
-    changes no component, tunnel or cavity: Malandain & Bertrand 1992) and no end of a line (exactly one neighbor), from
-    the six sides in turn until nothing changes. Within a side, the voxels of each of the eight parities of
-    column, row and layer are removed together: no two of these are neighbors, so that the result is that of removing
-    them one by one, and the topology is kept exactly. Objects have 26, the background 6 neighbors.
+    Directional thinning removes voxels that face the background on one side, from the six sides in turn until nothing
+    changes. They must be simple (their removal changes no component, tunnel or cavity: Malandain & Bertrand 1992) and
+    no end of a line (exactly one neighbor). Within a side, the voxels of each of the eight parities of column, row and
+    layer are removed together. No two of these are neighbors: the result is that of removing them one by one, and the
+    topology is kept exactly. Objects have 26, the background 6 neighbors.
 
     Palágyi & Kuba remove voxels by templates in eight sub-iterations; the result there is as thin, but other
     voxels of the same middle may be kept.
@@ -153,7 +153,7 @@ def is_simple(around: np.ndarray) -> np.ndarray:
 
     Notes
     -----
-    A voxel is simple if its neighbors of the object are one component (26), and its neighbors of the background that
+    A voxel is simple if its neighbors of the object are one component (26). Also, its neighbors of the background that
     share a face or an edge with it hold exactly one component (6) that shares a face with it.
     """
     background = ~around & _EDGE_BITS

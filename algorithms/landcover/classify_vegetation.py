@@ -1,4 +1,4 @@
-"""Vegetation: what is above the ground and neither a building nor another solid object."""
+"""Vegetation: points above the ground that are neither of buildings nor of other solid objects."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ def classify_vegetation(
     sampling: Optional[CloudSampling] = None,
     monitor=None,
 ):
-    """Classify low, medium and high vegetation: what is above the ground and of no other class.
+    """Classify low, medium and high vegetation: points above the ground without another class.
 
     Cars, garden walls, fences, boats and poles stay unclassified (1): objects whose surfaces are smooth and reflect the
     whole pulse, and slender upright ones. Ground, buildings, water, noise and all other classes stay as they are.
@@ -117,7 +117,7 @@ def classify_vegetation(
     Returns
     -------
     classification : ndarray of shape (n,), uint8
-        Low, medium and high vegetation 3, 4 and 5; 1 for what was looked at and is none.
+        Low, medium and high vegetation 3, 4 and 5; 1 for points that were examined and are not vegetation.
 
     Raises
     ------
@@ -127,10 +127,10 @@ def classify_vegetation(
     Notes
     -----
     Buildings come first: what 'Complete buildings' leaves over above the ground is nearly all vegetation. An object is
-    a group of points that are connected in plan and height. It is solid if it is no higher than 3.5 m, if less than a
-    fifth of its pulses had several returns, and if half of its points lie within the roughness of roofs and walls to
-    the plane of their neighborhood. It is a pole if it is four times as high as its extent in plan. In thin clouds few
-    cars are recognized: there are too few points for a plane. Objects that touch a plant are vegetation with it.
+    a group of points that are connected in plan and height. It is solid if it is no higher than 3.5 m and less than a
+    fifth of its pulses had several returns. Half of its points must lie within the roughness of roofs and walls to the
+    plane of their neighborhood. It is a pole if it is four times as high as its extent in plan. In thin clouds few cars
+    are recognized: there are too few points for a plane. Objects that touch a plant are vegetation with it.
 
     References
     ----------

@@ -20,9 +20,9 @@ class _Rules:
     ----------
     search, arms : float
         Distance (m) from where spans end within which their mast is looked for, and the same as a share of the height
-        of masts: wires hang from arms, and end some meters before them where points are few.
+        of masts. Wires hang from arms, and end some meters before them where points are few.
     radius, spread : float
-        Radius (m) of poles with what is fixed to them, and of towers as a share of their height.
+        Radius (m) of poles with their fittings, and of towers as a share of their height.
     above : float
         Height (m) over the highest wire up to which a mast reaches: insulators and the tip.
     foot : float

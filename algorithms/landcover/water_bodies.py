@@ -40,7 +40,7 @@ class _Rules:
     higher : float
         Least share of the ground around a body that is higher than its level.
     ring : int
-        Width (cells) of what is around it, and of the strip at its edges in which pulses from land count, too.
+        Width (cells) of its surroundings, and of the strip at its edges in which pulses from land count, too.
     seen : int
         Least number of its cells with ground.
     """
@@ -64,7 +64,7 @@ _RULES = _Rules()
 def water_levels(
     xyz: np.ndarray, is_ground: np.ndarray, is_pulse: np.ndarray, spacing: float, min_area: float, monitor: Monitor
 ) -> np.ndarray:
-    """Return the elevation (n,) of the water at each point, m; NaN where there is none.
+    """Return the elevation (n,) of the water at each point, m; NaN without water.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def _sparse(pulses: np.ndarray, is_seen: np.ndarray, size: float) -> np.ndarray:
 def _without_gaps(is_seen: np.ndarray, reach: float) -> np.ndarray:
     """Return the cells of the cloud with the gaps in it, up to twice as wide as ``reach`` (cells)."""
     near = ndimage.distance_transform_edt(~is_seen) <= reach
-    # The end of the raster is no end of what is near: water goes on beyond a tile.
+    # The end of the raster is no end of the surroundings: water goes on beyond a tile.
     return is_seen | (ndimage.distance_transform_edt(np.pad(near, 1, constant_values=True))[1:-1, 1:-1] > reach)
 
 

@@ -19,7 +19,7 @@ class _Rules:
     ----------
     starts, trials : int
         Points from which a span is looked for along their direction, and parabolas through three points that are tried
-        from each: half of the points there are of one span, an eighth of the trials good.
+        from each. Half of the points there are of one span, an eighth of the trials good.
     failures : int
         Wrong spans in a row after which a strand is given up: those of crowns are many.
     longest : float
@@ -108,7 +108,7 @@ class Span:
 
 
 class Surroundings:
-    """All points that are high enough to be of a wire, and those of buildings, to look at what is around a span.
+    """All points that are high enough to be of a wire, and those of buildings, to examine the surroundings of a span.
 
     Parameters
     ----------

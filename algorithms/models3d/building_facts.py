@@ -139,7 +139,7 @@ def map_attributes(facts: dict[str, Any]) -> dict[str, Any]:
 
 
 def _plain_value(value: Any) -> Any:
-    """Return a number as Python's own, None where it is undefined, and what is no number as text."""
+    """Return a number as Python's own, None where it is undefined, and other values as text."""
     value = value.item() if isinstance(value, np.generic) else value
     if value is None or isinstance(value, str):
         return value

@@ -21,7 +21,7 @@ LEVELS = ("1.2", "1.3", "2.2")
 # A roof of which less than this share is explained by planes has no LoD2.2.
 _LEAST_EXPLAINED = 0.5
 
-# Distances off the model count at most this much (m) when levels are compared: what is farther is not roof.
+# Distances off the model count at most this much (m) when levels are compared: points farther off are not roof.
 _FARTHEST = 1.0
 
 # Percentile of the heights of roof points that is the ridge's, as in 'Extract footprints': chimneys rise above it.
@@ -51,7 +51,7 @@ class Settings:
 
 @dataclass
 class BuildingModel:
-    """A building's solids by level of detail, and what is known of its best level.
+    """A building's solids by level of detail, and the facts about its best level.
 
     Attributes
     ----------

@@ -24,7 +24,8 @@ _SLIVER = 0.01
 # dormers, and no wider than the distance of points.
 _LEAST_AREA, _LEAST_WIDTH = 1.0, 0.4
 
-# Distances off a plane count at most this much (m) when planes are compared for a part: what is farther is not roof.
+# Distances off a plane count at most this much (m) when planes are compared for a part: points farther off are not
+# roof.
 _FARTHEST = 1.0
 
 

@@ -24,7 +24,7 @@ _LEAST_SLOPE, _LEVEL = 8.0, 6.0
 _OPPOSITE = 15.0
 
 # Edges of a roof are taken at the quantile of its points that leaves this share out, so that stray points do not move
-# them; evenly spread points leave the same share of the width beyond.
+# them. Evenly spread points leave the same share of the width beyond.
 _EDGE = 0.02
 
 # Ground of a house is looked for this far around it (m).

@@ -196,7 +196,7 @@ def reconstruct_roofs(
     at the 5th percentile of the ground points nearest to the outline. Curved roofs become strips.
 
     Other than in the publications, lines cut only the cells along which planes are beside each other, so that the cost
-    grows with the border of planes and not with the square of their number; and a border costs its length and the
+    grows with the border of planes and not with the square of their number. A border costs its length and the
     wall that it needs, in the same unit as the roof that no plane explains: square meters.
 
     References

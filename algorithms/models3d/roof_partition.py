@@ -28,12 +28,12 @@ _FAR_OFF = 2.0
 # of its area.
 _FARTHEST, _FAR_WEIGHT = 1.0, 0.5
 
-# A meter of border between two planes costs as much as this area (m²) of roof that no plane explains, and so does a
-# square meter of the wall between them, up to a step of 1 m. A dormer of 1.5 m by 1.5 m has 6 m of border.
+# A meter of border between two planes costs as much as this area (m²) of roof that no plane explains. So does a square
+# meter of the wall between them, up to a step of 1 m. A dormer of 1.5 m by 1.5 m has 6 m of border.
 _BORDER, _STEP, _MOST_STEP = 0.10, 0.05, 1.0
 
-# Positions farther from the points of planes (spacings) than this are gaps; what the nearest point tells of them counts
-# for this share of their area.
+# Positions farther from the points of planes (spacings) than this are gaps; evidence from the nearest point counts
+# there for this share of the area.
 _GAP_SPACINGS, _GAP_WEIGHT = 2.0, 0.3
 
 # Roofs end no lower over the ground (m), and reach no farther (m) below their points. A plane that leaves these limits
@@ -49,7 +49,7 @@ _GAP_CELL = 0.5
 
 @dataclass
 class Partition:
-    """Cells of a footprint, and what is on top of them.
+    """Cells of a footprint, and the planes on top of them.
 
     Attributes
     ----------

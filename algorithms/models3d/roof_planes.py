@@ -61,7 +61,7 @@ def find_roof_planes(xyz: np.ndarray, tolerance: float, max_slope: float, min_po
     tolerance : float
         Distance at which a point lies on a plane (m).
     max_slope : float
-        Slope of the steepest roof plane (°); what is steeper is a wall.
+        Slope of the steepest roof plane (°); steeper planes are walls.
     min_points : int
         Points of the smallest plane.
 
@@ -82,7 +82,7 @@ def find_roof_planes(xyz: np.ndarray, tolerance: float, max_slope: float, min_po
     label = _chosen_by_neighborhood(xyz, neighbors, label, tolerance)
     label = _merged(xyz, neighbors, label, tolerance)
     planes = _fitted(xyz, _large(label, min_points))
-    # Points change planes after these have grown, and the last fit may stand a plane on its edge.
+    # Points change planes after these have grown, and the last fit may turn a plane upright.
     return _some(planes, planes.cosine >= growth.least_upward)
 
 

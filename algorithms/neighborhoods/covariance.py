@@ -1,8 +1,7 @@
 """Eigenvalues of neighborhoods: the core that every covariance feature shares.
 
-Neighborhoods are gathered in chunks, so that the workspace stays small however
-many points there are, and the chunks are shared out among threads: the k-d tree
-and numpy both release the interpreter while they work. The result does not
+Neighborhoods are gathered in chunks, so that the workspace stays small however many points there are. The chunks are
+shared out among threads: the k-d tree and numpy both release the interpreter while they work. The result does not
 depend on the number of threads, and on the chunks only by rounding.
 """
 

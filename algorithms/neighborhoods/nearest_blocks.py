@@ -1,7 +1,7 @@
 """Shapes of neighborhoods whose points nobody has to name.
 
 A k-d tree finds the neighbors of one point after the other and sorts them. A covariance needs neither their names nor
-their order. So points that lie side by side, a block, share a list of candidates: all squared distances between the
+their order. So points that lie side by side, a block, share a list of candidates. All squared distances between the
 two are one matrix product, and what the candidates that are near enough add up to is another.
 """
 
@@ -52,7 +52,7 @@ _PRODUCT = 26_000
 
 @dataclass
 class Shapes:
-    """What is known of the neighborhoods of m points.
+    """Sums over the neighborhoods of m points.
 
     Attributes
     ----------
@@ -127,7 +127,7 @@ def nearest_shapes(columns: np.ndarray, tree: Any, rows: np.ndarray, count: int,
 
     Notes
     -----
-    Where several points are equally far and not all of them belong, they share what is left: each counts in part, the
+    Where several points are equally far and not all of them belong, they share the rest: each counts in part, the
     same for all, so that their order in the cloud decides nothing. So it is for all that are among the
     1.3 (sqrt(count) + 1)² nearest; of even more at one distance (a sphere of points around another) some are left out.
     """
@@ -183,8 +183,9 @@ def _shapes(
 ) -> Shapes:
     """Return the shapes of the neighborhoods of ``rows`` (m,), from blocks of at most ``size`` of them.
 
-    ``candidates`` returns how many candidates blocks need, and receives the middles (b, 3), how far their points
-    are from these, and the size; ``weigh`` the weight (b, s, c) of each in a neighborhood, and which (b, s) have all.
+    ``candidates`` returns how many candidates blocks need, and receives the middles (b, 3), how far their points are
+    from these, and the size. The result of ``weigh`` is the weight (b, s, c) of each in a neighborhood, and which (b,
+    s) have all.
     """
     made = Shapes(np.empty((len(rows), 6)), np.empty(len(rows), np.int64), *np.empty((2, len(rows) * extents)))
     left, points = np.arange(len(rows)), columns[:, rows].T
@@ -274,7 +275,7 @@ def _nearest(squares: np.ndarray, count: int, guess: np.ndarray) -> tuple[np.nda
 def _limits(squares: np.ndarray, count: int, guess: np.ndarray) -> np.ndarray:
     """Return a number (r,) for each row of ``squares`` (r, c) that ``count`` of them don't exceed; for a few any other.
 
-    On surfaces as many points lie within a distance as its square says, so that a few tries between one that is too
+    On surfaces the number of points within a distance grows with its square. So a few tries between one that is too
     short and one that is too long are enough, and each is much cheaper than to sort.
     """
     limits, rows = np.empty(len(squares), np.float32), np.arange(len(squares))

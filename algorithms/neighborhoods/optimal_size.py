@@ -160,10 +160,10 @@ def eigenentropies(covariances: np.ndarray) -> np.ndarray:
 
     Notes
     -----
-    The trigonometric solution of the characteristic polynomial, as in :func:`~.eigen.symmetric_eigenvalues`. It
-    leaves two nearly equal eigenvalues with half their digits, but in opposite directions, and the entropy, which
-    treats both alike, loses nothing: but for lines, where both are next to nothing and the entropy is steep.
-    Those matrices go to LAPACK.
+    The trigonometric solution of the characteristic polynomial, as in :func:`~.eigen.symmetric_eigenvalues`. It leaves
+    two nearly equal eigenvalues with half their digits, but in opposite directions, and the entropy, which treats both
+    alike, loses nothing. Lines are the exception: both are next to nothing there and the entropy is steep. Those
+    matrices go to LAPACK.
     """
     total = covariances[0] + covariances[1] + covariances[2]
     total[total <= 0] = np.nan

@@ -118,7 +118,7 @@ def classify_noise_histogram(
     lamp, a wire). A cell whose surroundings have no full bin borrows the range of the nearest one that has.
 
     Isolated points under the ground are found without histograms: single points or a few, 0.45 m or more (0.4 point
-    spacings) below the surface on all sides, and not beside others of the same height, as ground seen between leaves
+    spacings) below the surface on all sides. They are not near others of the same height, as ground seen between leaves
     is. Points that share a level over meters are a floor, seen through glass or in a shaft. Among crowns and in narrow
     yards points just below the ground are left alone.
 

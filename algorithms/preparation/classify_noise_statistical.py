@@ -86,16 +86,16 @@ def classify_noise_statistical(
     -----
     A point is noise when the mean distance to its k nearest neighbors exceeds mean + m * standard deviation of all
     these means. Distances have a long tail wherever there are trees and walls: with m = 2 or 3, often seen elsewhere,
-    every hundredth point or more of a good airborne cloud is lost, with the default less than two in a thousand on
-    most. Points very far away raise the standard deviation and hide less distant ones, and points of a flock or a plume
-    have near neighbors.
+    every hundredth point or more of a good airborne cloud is lost. With the default these are less than two in a
+    thousand on most. Points very far away raise the standard deviation and hide less distant ones, and points of a
+    flock or a plume have near neighbors.
 
     With isolated points, both are mended. A point must then be farther than 4.8 m (7 point spacings on sparse clouds)
     from its nearest one, too, so that facades and crowns keep their sparse parts. And noise is what no chain of points
-    half as far apart ties to the scene, and points under the ground: 'Classify noise in the air' and the height
-    histogram's stage find these in the same way, and their notes say what stays. Since only points with nothing around
-    them can be noise by their distance then, neighbors are looked up for those in voxels with few points, and of the
-    others of large clouds for a sample of 200,000, which stands for all in mean and standard deviation.
+    half as far apart ties to the scene, and points under the ground. 'Classify noise in the air' and the height
+    histogram's stage find these in the same way, and their notes say what stays. Only points with nothing around them
+    can be noise by their distance then. So neighbors are looked up for those in voxels with few points, and of the
+    others of large clouds for a sample of 200,000, which gives mean and standard deviation of all.
 
     References
     ----------

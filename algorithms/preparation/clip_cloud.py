@@ -59,7 +59,7 @@ def clip_cloud(
     Notes
     -----
     A point on the common edge of two polygons belongs to exactly one of them, so that clouds clipped with adjacent
-    parcels share no point; on the outer edge of an area it may lie on either side. Points flagged as withheld are left
+    parcels share no point. On the outer edge of an area it may lie on either side. Points flagged as withheld are left
     out, as by every step that selects.
 
     References

@@ -117,7 +117,7 @@ def downsample_voxels(
     Notes
     -----
     Voxels start at the origin of the coordinates, not at the first point, so that clouds of the same site get the same
-    voxels. A point on the side between two voxels belongs to the eastern, northern or upper one; one that is less
+    voxels. A point on the side between two voxels belongs to the eastern, northern or upper one. One that is less
     than 0.1 µm off counts as on the side, since decimals like 0.3 have no exact binary number. The result depends on
     neither the order of the points nor, but for this rounding, on where the cloud lies.
 

@@ -49,7 +49,7 @@ def filter_points(
         Optional[float],
         Param(
             "Maximum height",
-            "Keep points at most so high above the ground: 2.5 m leaves what is lower than roofs.",
+            "Greatest height above the ground of the points kept: 2.5 m leaves everything lower than roofs.",
             unit="m",
             low=-10_000,
             high=10_000,
@@ -90,7 +90,8 @@ def filter_points(
 ):
     """Keep the points that are of some classes, between two heights above the ground, and in a range of any dimension.
 
-    What is not set limits nothing; points must be within all limits that are set. Limits belong to what they include.
+    A limit that is not set excludes nothing; points must be within all limits that are set. Limits belong to what they
+    include.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Isolated points under the ground: echoes of pulses that took a detour.
 
-A laser pulse does not pass the ground, so that what lies under it on all sides is no part of the scene, unless it is a
-floor: points of multipath come at all depths, those of a floor agree.
+A laser pulse does not pass the ground, so that points under it on all sides are no part of the scene, unless they are a
+floor. Points of multipath come at all depths, those of a floor agree.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from ..stage import Monitor
 
 @dataclass(frozen=True)
 class UnderGroundRules:
-    """What is under the ground, and what of it is a floor."""
+    """Points under the ground, and which of them are a floor."""
 
     depth: float = rule(0.45, "m", "physics: less deep are grass, ruts, and the noise of the scanner")
     depth_spacings: float = rule(0.4, "point spacings", "physics: the ground bends between points; the larger counts")

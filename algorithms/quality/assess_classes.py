@@ -175,7 +175,7 @@ def _of_kinds(matrix: np.ndarray) -> dict[str, float]:
         inside = np.zeros(len(matrix), bool)
         inside[list(members)] = True
         hits, true, called = matrix[np.ix_(inside, inside)].sum(), matrix[inside].sum(), matrix[:, inside].sum()
-        # The second class is everything else; what is right of it does not count.
+        # The second class is everything else; its correct points don't count.
         rates = class_rates(np.array([[hits, true - hits], [called - hits, 0]]))
         found[f"{kind}_f"], found[f"{kind}_iou"] = float(rates["f"][0]), float(rates["iou"][0])
     return found

@@ -18,7 +18,7 @@ from .polygon_comparison import hausdorff, squareness
 
 FOUND, MERGED, SPLIT, MISSED, INVENTED = "found", "merged", "split", "missed", "invented"
 
-# Colors of the page that are told apart in all color visions (Tol's high-contrast and bright schemes).
+# Colors of the page that differ in all color visions (Tol's high-contrast and bright schemes).
 COLORS = {FOUND: BLUE, MERGED: "#228833", SPLIT: "#66ccee", MISSED: YELLOW, INVENTED: RED}
 
 # Rows of the table of the buildings that agree least: one screen.

@@ -61,9 +61,8 @@ def assess_ground(
     Notes
     -----
     Type I is the share of the true ground that was called object, type II the share of the true objects that were
-    called ground, total the share of all points that are wrong, and kappa the agreement beyond what chance gives.
-    Ignored by default are the reference's noise, water and bridges, and what agencies keep for artefacts and virtual
-    points.
+    called ground. Total is the share of all points that are wrong, and kappa the agreement beyond chance. Ignored by
+    default are the reference's noise, water and bridges, and what agencies keep for artefacts and virtual points.
 
     References
     ----------

@@ -127,7 +127,7 @@ def assess_models(
     """Measure how far models of buildings are from the points of their roofs, and which planes are missing or invented.
 
     Each point of a roof is compared with the face above or below it. Planes that grow over the points of a building by
-    themselves tell what the model lacks.
+    themselves show what the model lacks.
 
     Parameters
     ----------

@@ -60,7 +60,7 @@ def assess_segments(
     """Compare segments with those of a reference: which are correct, cut up, run together, missed or invented.
 
     A segment is correct if it and one of the reference share most points of both. One of the reference is
-    over-segmented if several segments, most of each within it, make up most of it; several of the reference are
+    over-segmented if several segments, most of each within it, make up most of it. Several of the reference are
     under-segmented if they make up most of one segment, most of each within it. All other true segments are
     missed, all other segments are noise.
 

@@ -151,7 +151,7 @@ def compare_corners(
 
     A corner is a vertex where the outline turns by 20° or more. Two corners can be the same when they face the same
     way, to 60°. A shift that all corners share (the median of the displacements) is found first and taken off while
-    buildings and corners are matched; distances, arrows and the mean shift are those between the maps as they are.
+    buildings and corners are matched. Distances, arrows and the mean shift are those between the maps as they are.
     The standard deviation has the divisor n.
 
     References
@@ -342,7 +342,7 @@ def _page(values: dict[str, float], moved: np.ndarray) -> str:
 
 
 def _shift_rows(moved: np.ndarray) -> list[Row]:
-    """Return what is systematic in the displacements and what is left without it."""
+    """Return the systematic part of the displacements and the rest."""
     undefined = float("nan")
     dx, dy = moved.mean(axis=0).tolist() if len(moved) else (undefined, undefined)
     left = float(np.sqrt(((moved - [dx, dy]) ** 2).sum(axis=1).mean())) if len(moved) else undefined

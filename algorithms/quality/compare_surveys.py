@@ -18,7 +18,7 @@ from .polygon_comparison import distances_from, positions_along
 UNCHANGED, HEIGHT, OUTLINE, BOTH = "unchanged", "height changed", "outline changed", "height and outline changed"
 NEW, GONE = "new", "gone"
 
-# Colors of the page that are told apart in all color visions (Tol's high-contrast and bright schemes).
+# Colors of the page that differ in all color visions (Tol's high-contrast and bright schemes).
 COLORS = {UNCHANGED: BLUE, HEIGHT: "#66ccee", OUTLINE: "#228833", BOTH: "#aa3377", NEW: RED, GONE: YELLOW}
 
 # Attributes of heights (m); the first one that both layers have is compared.
@@ -27,7 +27,7 @@ _HEIGHTS = ("ridge_height", "height")
 
 @dataclass(frozen=True)
 class _Rules:
-    """How changes are told from the scatter between two surveys.
+    """How changes are distinguished from the scatter between two surveys.
 
     Attributes
     ----------

@@ -22,7 +22,7 @@ def compared_points(
     Parameters
     ----------
     xyz, classification : ndarrays of shape (n, 3) and (n,)
-        What is assessed.
+        The cloud that is assessed.
     reference_xyz, reference_classification : ndarrays of shape (m, 3) and (m,)
         What it is compared with.
     ignored : ndarray of int

@@ -180,7 +180,7 @@ def _map(footprints: LayerFeatures, facts: _Facts, xyz: Optional[np.ndarray]) ->
 
 
 def _charts(facts: _Facts) -> str:
-    """Return histograms of what is known of the buildings."""
+    """Return histograms of the attributes of the buildings."""
     charts = [("Areas", facts.area, "area (m²)"), ("Heights", facts.height, "height (m)")]
     charts += [("Volumes", facts.volume, "volume (m³)"), ("Confidence", facts.confidence, "confidence")]
     drawn = [

@@ -52,9 +52,9 @@ def draw_histogram(series: list[Series], axis: str, count: str, marks: list[Mark
     Parameters
     ----------
     series : list of Series
-        What is counted; values that are not finite are left out.
+        Values to count; those that are not finite are left out.
     axis, count : str
-        What the values are and what is counted, as the axes call them.
+        Titles of the axes: the values, and the things counted.
     marks : list of Mark
         Values that are pointed out; those that are not finite are left out.
     """

@@ -28,7 +28,7 @@ _MEASURES = {
     "seen_through": ("share seen through", ""),
 }
 
-# A cloud without second returns is one closed surface when no more than this share of it is seen through, and it is so
+# A cloud without second returns is one closed surface when no more than this share of it is seen through. It must be so
 # dense (points/m²) that ten points share a cell in which that is measured. Between the two kinds of clouds, see there.
 _MOST_SEEN_THROUGH, _LEAST_DENSITY = 0.02, 8.0
 

@@ -97,9 +97,9 @@ def effective_density(xyz: np.ndarray, density: Optional[float] = None) -> float
 
     Notes
     -----
-    Of the cells of one and a half point spacings that lie in occupied cells of twice their size, evenly random points
-    leave a tenth empty, and the clouds of usual scanners up to a fifth. Where it is more than a quarter, cells and
-    the spacing with them grow until it is not.
+    Cells of one and a half point spacings are examined that lie in occupied cells of twice their size. Evenly random
+    points leave a tenth of them empty, and the clouds of usual scanners up to a fifth. Where it is more than a quarter,
+    cells and the spacing with them grow until it is not.
     """
     density = point_density(xyz) if density is None else density
     size, growth = DENSITY.filled_cell / float(np.sqrt(density)), 1.0

@@ -14,13 +14,13 @@ Choice = TypeVar("Choice")
 class CloudKind:
     """How the clouds of one source show roofs and ground.
 
-    ``is_surface`` tells whether a cloud is one surface seen from above: nothing lies beneath roofs and crowns, and
+    ``is_surface`` is whether a cloud is one surface seen from above: nothing lies beneath roofs and crowns, and
     edges and walls are smeared.
     """
 
     is_surface: bool
     lowest_roof: float = rule(2.0, "m", "physics: mean height of the lowest roof; cars are lower")
-    raised: float = rule(1.5, "m", "physics: lower points stand on the ground: kerbs, bonnets of cars, low plants")
+    raised: float = rule(1.5, "m", "physics: lower points are of kerbs, bonnets of cars and low plants")
 
     def choose(self, laser: Choice, images: Choice) -> Choice:
         """Return the one of two methods that is for clouds of this kind."""
@@ -29,5 +29,5 @@ class CloudKind:
 
 LASER = CloudKind(is_surface=False)
 
-# Sheds and carports of 2 m have rounded edges, which lower the mean over their surface; the shape tells cars.
+# Sheds and carports of 2 m have rounded edges, which lower the mean over their surface; cars differ by shape.
 IMAGES = CloudKind(is_surface=True, lowest_roof=1.2, raised=1.0)

@@ -138,9 +138,9 @@ class SurfaceSample:
         Notes
         -----
         It is that across the plane of the 12 nearest points, at the smoothest fifth of the cloud, which vegetation,
-        edges and walls don't reach; but no more than 2.4 times that at the smoothest twentieth, which they don't reach
-        in a closed forest. Of equally rough planes the smoothest seem smoother than they are, by chance: each quantile
-        is divided by what it is expected to be of the true deviation, so that a cloud of planes has its true noise.
+        edges and walls don't reach. But no more than 2.4 times that at the smoothest twentieth, which they don't reach
+        in a closed forest. Of equally rough planes the smoothest seem smoother than they are, by chance. Each quantile
+        is divided by its expected share of the true deviation, so that a cloud of planes has its true noise.
         """
         count = min(SURFACES.neighbors, len(self))
         degrees = count - _PLANE_PARAMETERS
@@ -176,8 +176,8 @@ class SurfaceSample:
         Returns
         -------
         Nearest or Wide
-            As many nearest points as reach half a meter and 6 deviations, from 8 to 100 and at most all; and not
-            fewer than are wide in plan, where less than four fifths of the smooth neighborhoods of that number are.
+            As many nearest points as reach half a meter and 6 deviations, from 8 to 100 and at most all. Not fewer than
+            are wide in plan, where less than four fifths of the smooth neighborhoods of that number are.
         """
         return _neighborhood(len(self), self.density(), self._on_lines, density, deviation)
 

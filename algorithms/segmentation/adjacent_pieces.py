@@ -86,8 +86,8 @@ def adjacent_pieces(xyz: np.ndarray, piece: np.ndarray, pieces: Pieces, distance
 
     Notes
     -----
-    Lines need no numbers: of the points to the side of a point, more across its piece than along it, the nearest one
-    is on an adjacent line, and the nearest one on the opposite side on the other.
+    Lines need no numbers. Of the points to the side of a point, more across its piece than along it, the nearest one is
+    on an adjacent line. The nearest one on the opposite side is on the other.
     """
     n, count = len(xyz), min(_MOST_NEIGHBORS, len(xyz))
     tree = spatial.cKDTree(xyz)

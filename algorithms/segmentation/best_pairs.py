@@ -11,7 +11,7 @@ from ..stage import Monitor
 from ..threads import in_chunks
 from .least_squares_planes import Planes, off_planes
 
-# Pairs of a chunk: what is worked out of their planes, 700 bytes each, stays in the caches and small.
+# Pairs of a chunk: numbers derived from their planes, 700 bytes each, stays in the caches and small.
 _CHUNK = 20_000
 
 # What it costs to merge the planes of pairs (k,), inf where they must not; costs only depend on the two planes.
@@ -44,8 +44,8 @@ def merge_best_pairs(
     Notes
     -----
     In a round every pair is merged that both of its planes prefer to all their others. The partition is that of a queue
-    from which the most similar pair of all is taken each time, provided that no merged plane is more similar to a third
-    one than both of its parts were; of equal costs the pair with the lowest numbers is first.
+    from which the most similar pair of all is taken each time. This holds if no merged plane is more similar to a third
+    one than both of its parts were. Of equal costs the pair with the lowest numbers is first.
     """
     group, first = np.arange(len(planes)), np.arange(len(planes))
     low, high = np.minimum(one, other), np.maximum(one, other)

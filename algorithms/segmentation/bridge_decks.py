@@ -121,7 +121,7 @@ class Decks:
         if not self.max_width:
             return np.zeros(len(xyz), bool)
         votes = np.zeros(len(xyz), np.int8)
-        # Directions of lines as doubled angles: their sum tells across which one a deck is raised.
+        # Directions of lines as doubled angles: their sum gives the one across which a deck is raised.
         across = np.zeros(len(xyz), np.complex64)
         for number in range(_DIRECTIONS):
             raised = self._raised(xyz, is_earth, 180 * number / _DIRECTIONS)

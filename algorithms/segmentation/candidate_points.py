@@ -8,7 +8,7 @@ import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
 
-# Nothing that stands on the ground is of these classes.
+# No object on the ground is of these classes.
 NO_OBJECTS = (PointClass.GROUND, PointClass.WATER, PointClass.BRIDGE_DECK, PointClass.IGNORED_GROUND, *NOISE)
 
 

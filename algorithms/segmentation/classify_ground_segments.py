@@ -28,7 +28,7 @@ _SLOPE, _NOISE_STEP = 30.0, 4.0
     group="Terrain",
     tags="ground,bare earth,DTM,bridge,fly-over,bridge deck,segments,filter,Sithole,Vosselman",
     writes=("classification",),
-    # Of a square object that a window cuts off in the middle, half of the border is seen and tells it by its steps. A
+    # Of a square object that a window cuts off in the middle, half of the border is seen and shows its steps. A
     # segment of the bare earth that is cut off has no steps, however far it goes on.
     reach=lambda tunables: max(math.sqrt(tunables["max_object_area"]) / 2, 2 * tunables["max_width"]),
 )
@@ -60,7 +60,7 @@ def classify_ground_segments(
     sampling: Optional[CloudSampling] = None,
     monitor=None,
 ):
-    """Tell bare earth from objects by how segments end, then bridges from bare earth.
+    """Separate bare earth from objects by how segments end, then bridges from bare earth.
 
     Segments that are higher than their surroundings are objects, the others bare earth; bridges and fly-overs,
     which go on into the terrain at their ends, belong to its segments. On lines in eight directions a bridge is raised

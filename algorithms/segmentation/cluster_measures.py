@@ -81,7 +81,7 @@ def penetration(
     Returns
     -------
     ndarray of shape (group.max() + 1,)
-        The share of a group's cells in which points lie well beneath it; where returns are numbered,
+        The share of a group's cells in which points lie well beneath it. Where returns are numbered,
         the mean of that and the share of its points that are not the last return of their pulse.
 
     Notes

@@ -59,9 +59,8 @@ def segment_patches(
 ) -> np.ndarray:
     """Group points that lie on smooth surfaces.
 
-    Each point takes the smoothest plane among those of its neighbors that hold it, so that
-    points at edges and ridges belong to the surface beside them and not to a plane across
-    the edge; points whose planes agree then make one patch.
+    Each point takes the smoothest plane among those of its neighbors that hold it, so that points at edges and ridges
+    belong to the surface beside them and not to a plane across the edge. Points whose planes agree then make one patch.
 
     Parameters
     ----------

@@ -16,8 +16,8 @@ _EVEN = 1 / np.sqrt(3)
 # A plane grows by a voxel all around in each round: more than the widest roof needs.
 _MAX_ROUNDS = 1000
 
-# Planes around a voxel go on into it where they hold this share of its points, and each at least this number:
-# leaves in which a plane would end lie on it by chance, a fifth of them on one of automatic tolerance.
+# Planes around a voxel go on into it where they hold this share of its points, and each at least this number. Leaves in
+# which a plane would end lie on it by chance, a fifth of them on one of automatic tolerance.
 _HELD, _LEAST_POINTS = 2 / 3, 4
 
 # A plane keeps this share of its points when each goes to the plane nearest to it, or it lies across others.

@@ -16,8 +16,8 @@ _PAUSE = 20.0
 # Scan angles that differ by more than this many median steps are of two lines: polygon mirrors start anew.
 _JUMP = 10.0
 
-# Steps before and after a point whose directions tell whether a line turns back there, and the cosine from which it
-# does (120°): bends at edges of the scene are less, and a few steps are longer than noise.
+# Steps before and after a point whose directions show whether a line turns back there, and the cosine from which it
+# does (120°). Bends at edges of the scene are less, and a few steps are longer than noise.
 _STEPS, _TURN = 3, -0.5
 
 
@@ -45,7 +45,7 @@ class Recording:
 
     @property
     def evidence(self) -> list[str]:
-        """What tells lines apart, in words; the points themselves always do."""
+        """What distinguishes lines, in words; the points themselves always do."""
         told = ["GPS time"] if _varies(self.gps_time) else ["order of the points"]
         names = {
             "scan direction": self.scan_direction_flag,
@@ -77,8 +77,8 @@ class Recording:
 def recorded_lines(xyz: np.ndarray, recording: Recording, gap: float) -> np.ndarray:
     """Return the line (n,) of points (n, 3), m, in the order of their recording, from 0 ascending.
 
-    A line ends where the source changes, the mirror turns (by its flags, by the scan angle, or by points that turn
-    back), after a pause, and where two points are farther apart than ``gap`` (m).
+    A line ends where the source changes, or the mirror turns: by its flags, by the scan angle, or by points that turn
+    back. It also ends after a pause, and where two points are farther apart than ``gap`` (m).
     """
     starts = np.zeros(len(xyz), bool)
     starts[:1] = True

@@ -124,10 +124,10 @@ def segment_planes_ransac(
 
     Notes
     -----
-    The slope of a plane is the angle of its normal from the vertical: roofs are kept up to 60°, walls have 90°.
-    Leaves and other scattered points are no plane: it must hold so many points that of a thousand voxels of scattered
-    points one at most would have such a plane by chance. A strip narrower than 3.5 tolerances has no plane of its own.
-    The result depends on the seed, not on the order of points or the number of threads.
+    The slope of a plane is the angle of its normal from the vertical: roofs are kept up to 60°, walls have 90°. Leaves
+    and other scattered points are no plane: it must have more points than a plane found by chance in one of a thousand
+    voxels of scattered points. A strip narrower than 3.5 tolerances has no plane of its own. The result depends on the
+    seed, not on the order of points or the number of threads.
 
     References
     ----------

@@ -174,7 +174,7 @@ def segment_recorded_lines(
     recording = Recording(gps_time, scan_angle, point_source_id, scan_direction_flag, edge_of_flight_line).take(used)
     if not recording.has_times:
         monitor.warn("The points have no GPS times, so scan lines are taken from the order of the points.")
-    monitor.inform(f"Scan lines are told apart by: {', '.join(recording.evidence)}.")
+    monitor.inform(f"Scan lines are distinguished by: {', '.join(recording.evidence)}.")
 
     last = np.flatnonzero(_is_last(return_number, number_of_returns, used))
     row = last[recording.take(last).order(points[last])]
@@ -201,7 +201,7 @@ def segment_recorded_lines(
 
 
 def _is_last(return_number: Any, number_of_returns: Any, used: np.ndarray) -> np.ndarray:
-    """Return which points are the last returns of their pulses; all where the cloud does not tell."""
+    """Return which points are the last returns of their pulses; all where the cloud has no return numbers."""
     if return_number is None or number_of_returns is None:
         return np.ones(len(used), bool)
     return return_number[used] >= number_of_returns[used]
@@ -224,7 +224,7 @@ def _with_others(
 ) -> np.ndarray:
     """Return the region (n,) of each point: that of its piece, or of points beside it on whose plane it is; or -1.
 
-    ``row`` and ``piece`` tell the points of pieces.
+    ``row`` and ``piece`` are the points of pieces.
     """
     region = np.asarray(regions.region, np.int64)
     segment = np.full(len(points), -1, np.int64)

@@ -1,4 +1,4 @@
-"""Clusters that are roof surfaces, and clusters of what else stands above the ground."""
+"""Clusters that are roof surfaces, and clusters of other objects above the ground."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from .top_surface import TopSurface, highest_of_cells
 
 @dataclass(frozen=True)
 class RoofSurfaceRules:
-    """What is a roof surface."""
+    """Criteria of a roof surface."""
 
     low_share: float = rule(0.1, "share", "of low points, from which a surface goes on into the ground: a ramp")
     low: float = rule(0.5, "m", "height above ground up to which points are low")
@@ -102,7 +102,7 @@ def segment_roofs(
 
     A roof surface is a patch on which neighbors share a plane, that is large and high enough and does not go on
     into the ground as bridges, ramps and slopes do. The remaining points above the ground (crowns, hedges, wires, roof
-    edges) are clustered by distance, so that both kinds can be told apart by their entropy afterwards.
+    edges) are clustered by distance, so that both kinds can be distinguished by their entropy afterwards.
 
     Parameters
     ----------
@@ -128,8 +128,8 @@ def segment_roofs(
     a point lies on it, 2.3 times the roughness of roofs, more with less than 10 points/m². This is the "more robust
     segmentation" that the paper names as future work.
 
-    In clouds of matched images, walls and what else lies below the surface seen from above are left out, and planes
-    are laid through all points within 0.6 m: crowns are closed surfaces there, and smooth over less than that.
+    In clouds of matched images, walls and other points below the surface seen from above are left out, and planes are
+    laid through all points within 0.6 m. Crowns are closed surfaces there, and smooth over less than that.
 
     References
     ----------

@@ -56,9 +56,9 @@ def segment_surfaces(
         str,
         Param(
             "Seeds",
-            "How the plane of a neighborhood is found. Least squares is quick and finds seeds where all points around "
-            "are of one surface; robust least squares leaves outliers out; the local Hough transform finds planes "
-            "among outliers and beside edges, in 4 times the time.",
+            "How the plane of a neighborhood is found. Least squares is quick and finds seeds where all points "
+            "around are of one surface; robust least squares leaves outliers out. The local Hough transform finds "
+            "planes among outliers and at edges, in 4 times the time.",
             choices=("least squares", "robust", "hough"),
         ),
     ] = "least squares",
@@ -66,8 +66,8 @@ def segment_surfaces(
         str,
         Param(
             "Planarity",
-            "Points are accepted near the plane of the surface around the nearest of its points (local), so that "
-            "smooth curved surfaces are one; near the plane of all points of the surface (global: plane growing); or "
+            "Local: points are accepted near the plane of the surface around the nearest of its points, so that "
+            "smooth curved surfaces are one. Global: near the plane of all points of the surface (plane growing). Or "
             "anywhere.",
             choices=("local", "global", "none"),
         ),
@@ -173,9 +173,9 @@ def segment_surfaces(
     The paper grows one surface after the other; here all grow together in rounds, and those whose seeds hold one
     another are one. A point that several surfaces could take joins that of its nearest point; where this does not hold
     it, the next one is tried, also if it is of the same surface. Points that join get the plane of the surface around
-    them (least squares), as the paper asks for. The smallest square sums are told by the root mean square distance of
-    a seed, which may be 1.55 standard deviations, free of the degrees of freedom. The local Hough transform votes for
-    128 directions of planes through each point. In *global* mode planes start from the smoothest seed of each
+    them (least squares), as the paper asks for. The smallest square sums are measured by the root mean square distance
+    of a seed, which may be 1.55 standard deviations, free of the degrees of freedom. The local Hough transform votes
+    for 128 directions of planes through each point. In *global* mode planes start from the smoothest seed of each
     neighborhood and are joined in mutually best pairs where they meet.
 
     The neighbors and the plane of each point are kept; links between seeds are not, only the sets that they join. The

@@ -92,7 +92,7 @@ class TopSurface:
         own = np.where(np.isfinite(self.elevation), self.elevation, 0.0)
         rows, columns = chosen.shape
         whole, part = np.zeros((2, rows, columns), np.int32)
-        # Every second cell tells the same.
+        # Every second cell suffices.
         for row, column in product(range(-steps, steps + 1, 2), repeat=2):
             if row**2 + column**2 <= steps**2:
                 there = slice(steps + row, steps + row + rows), slice(steps + column, steps + column + columns)

@@ -132,8 +132,8 @@ def more_than_chance(found, left, by_chance: float, trials: int) -> np.ndarray:
 
     Notes
     -----
-    The probability that so many come to lie within the tolerance is at most exp(-n KL(share, share by chance))
-    (Hoeffding's bound), three points of each plane aside, which always do; and many planes are tried. One of a
+    The probability that this many come to lie within the tolerance is at most exp(-n KL(share, share by chance))
+    (Hoeffding's bound). Three points of each plane always do, and many planes are tried. One of a
     thousand voxels may have such a plane by chance.
     """
     others = np.maximum(np.asarray(left) - 3, 1)

@@ -8,8 +8,8 @@ import numpy as np
 
 from .cylinder_fits import SECTORS, Cylinder, bends
 
-# Largest angle between the normal of a point on a cylinder and the direction away from the axis, as its cosine: 30°, as
-# normals on thin pipes are rounded by neighborhoods nearly as wide as the pipe.
+# Largest angle between the normal of a point on a cylinder and the direction away from the axis, as its cosine. It is
+# 30°, as normals on thin pipes are rounded by neighborhoods nearly as wide as the pipe.
 FACING = float(np.cos(np.radians(30.0)))
 
 # Most points of a fit or a test of shape: more do not change the result.
@@ -24,15 +24,15 @@ class _Rules:
     ----------
     close : float
         Least share of the points within the tolerance, of those that face the axis within twice the tolerance. It is
-        0.97 of plates that stand out by one to two standard deviations, 0.82 of elbows, 0.5 without a surface.
+        0.97 of plates that protrude by one to two standard deviations, 0.82 of elbows, 0.5 without a surface.
     median_angle : float
         Largest median angle (°) between normals and the directions away from the axis, in addition to that of uneven
         points: the rounded normals of an edge have more.
     uneven_angle : float
-        Median angle (°, times point spacing over radius) by which normals are off because points are uneven: the center
+        Median angle (°, times point spacing over radius) by which normals are off because points are uneven. The center
         of random points in a disk deviates by 1 / (2 √π) spacings from its middle, and the normal is that there.
     confidence : float
-        Where normals are farther off than at most edges, the points must be as close as the noise lets them: the root
+        Where normals are farther off than at most edges, the points must be as close as the noise lets them. The root
         mean square of k points exceeds the deviation by 2 / √(2 k) of it in one case of forty.
     bent : float
         Largest part of the distances (standard deviations of the noise) that a bend, a cone or faces explain.

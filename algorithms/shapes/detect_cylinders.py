@@ -77,11 +77,11 @@ def detect_cylinders(
     In each window the normals of the points are plotted on the Gaussian sphere. The great circle along which they fill
     most of it gives the direction of an axis. The points of this circle are projected along the axis, and each votes
     along its normal, to both sides, for the center of a circle of every radius. The best circle is fitted by least
-    squares, grown along its axis, and kept if its points look like a cylinder: close to it, spread over enough of its
-    circumference, without a bend, with little inside, and ending in the air beside the arc that is seen, where a kerb
-    goes on. Of cylinders in each other the one with most points is kept. Pieces of one pipe that a flange or the shadow
-    of another object parts are put together, if one cylinder lies as close to the points of each as the cylinder of its
-    own.
+    squares, grown along its axis, and kept if its points look like a cylinder. They must be close to it, spread over
+    enough of its circumference, without a bend, with little inside, and end in the air next to the visible arc, where a
+    kerb goes on. Of cylinders in each other the one with most points is kept. Pieces of one pipe that a flange or the
+    shadow of another object parts are put together, if one cylinder lies as close to the points of each as the cylinder
+    of its own.
 
     Parameters
     ----------
@@ -112,11 +112,11 @@ def detect_cylinders(
     Notes
     -----
     Deviations from the paper. Radii are searched octave by octave, from small to large, each in windows of four times
-    the least radius and among points thinned accordingly: a window holds few objects, as the segments of the paper do,
+    the least radius and among points thinned accordingly. A window holds few objects, as the segments of the paper do,
     and time and memory don't grow with the radius. A bin of the Gaussian sphere counts at most a sixteenth of the
     normals, so that planes don't decide the direction. A cylinder is at least 1.5 diameters long, or one meter if its
     diameter is larger, and 0.3 diameters in any case: shorter pieces can't be distinguished from elbows and spheres. A
-    bend, a cone or a bulge shows in the distances of the points from the cylinder, which must not follow their position
+    bend, a cone or a bulge shows in the distances of the points from the cylinder. These must not follow their position
     on it by more than 0.6 of the noise and 0.3 % of the radius, the tolerance to which tanks are built. The inside is
     counted in ten slices along the axis, of which the middle one decides, so that a roof within the wall has no effect.
     The paper does not put pieces together; here they are also where they lie in different segments.
@@ -130,7 +130,7 @@ def detect_cylinders(
     """
 
     def search(around: Surroundings, low: float, high: float, monitor: Monitor) -> list[Found]:
-        # Segments are searched apart; what is around a cylinder, and other pieces of it, lies in several.
+        # Segments are searched apart; the surroundings of a cylinder, and other pieces of it, lie in several.
         positions = around.xyz - np.column_stack([around.shift, np.zeros((len(around.shift), 2))])
         evidence = Evidence(around.noise, around.tolerance, around.spacing, positions)
         search = CylinderSearch(around.xyz, around.normals, around.shift, evidence, min_seen, min_points)

@@ -101,8 +101,8 @@ def detect_spheres(
     Notes
     -----
     Deviation from the paper: radii are searched octave by octave, from small to large, each in windows of four times
-    the least radius and among points thinned accordingly, so that time and memory don't grow with the radius. In a
-    window only one sphere is looked for at a time; windows overlap by half.
+    the least radius and among points thinned accordingly. So time and memory don't grow with the radius. In a window
+    only one sphere is looked for at a time; windows overlap by half.
 
     References
     ----------

@@ -13,8 +13,8 @@ from .cylinder_fits import SECTORS, Cylinder, fit_cylinder
 from .cylinder_search import Found
 
 # Largest deviation (standard deviations of the noise) of the points of a piece from the cylinder of all pieces, beyond
-# that from their own: a third of what a bend of one cylinder may explain, as the gap hides how the pieces go on. Pipes
-# of 2 m with noise of 2 mm that lie 6 mm beside each other exceed it.
+# that from their own. It is a third of what a bend of one cylinder may explain, as the gap hides how the pieces go on.
+# Pipes of 2 m with noise of 2 mm that lie 6 mm beside each other exceed it.
 _MOST_APART = 0.2
 
 # Largest ratio of the radii of two pieces, and largest angle (°) between their axes: wide bounds that spare fits.
@@ -36,7 +36,7 @@ _STRAY = 0.3
 def without_nested(found: list[Found]) -> list[Found]:
     """Return the cylinders without those in or around another one with more points: a wall is one surface.
 
-    The stairs around a tank and plates that stand out of its wall look like further tanks. A cylinder is left out if
+    The stairs around a tank and plates that protrude from its wall look like further tanks. A cylinder is left out if
     its middle lies near the axis of the other one, between the ends of that.
     """
     order = sorted(range(len(found)), key=lambda n: (-len(found[n].points), int(found[n].points[0])))
@@ -147,7 +147,7 @@ def _as_one(one: Found, other: Found, xyz: np.ndarray, noise: float, spacing: fl
     """Return the cylinder of two pieces, None where the points of one of them or an end cap contradict it.
 
     The cylinder with the least squares on the points of both must be as close to the points of each as the cylinder of
-    its own, but for chance: five unknowns of k points explain 5 / k of the variance. So radius, offset and direction
+    its own, but for chance. Five unknowns of k points explain 5 / k of the variance. So radius, offset and direction
     are compared at once, each as precisely as the lengths and the arcs of the pieces allow.
     """
     points = np.sort(np.concatenate([one.points, other.points]))

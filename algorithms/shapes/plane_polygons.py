@@ -24,7 +24,7 @@ PLANE_FIELDS = (
 # Side of a cell (spacings): chance leaves one cell of 50 empty on a surface.
 _CELL_SPACINGS = 2.0
 
-# How far cells with points reach beyond the edge of a surface (cells): with four points to a cell on average, a cell of
+# How far cells with points reach beyond the edge of a surface (cells). With four points to a cell on average, a cell of
 # which the surface covers the share f has one with the probability 1 - exp(-4 f).
 _OVERSHOOT = 0.5 - (1 - np.exp(-(_CELL_SPACINGS**2))) / _CELL_SPACINGS**2
 

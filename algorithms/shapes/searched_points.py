@@ -35,9 +35,9 @@ SearchIn = Annotated[
     str,
     Param(
         "Search in",
-        "What shapes are looked for in: the whole cloud, which forgets segments and shapes found before; the points "
-        "that have no shape yet; or those of each segment (SegmentID) by itself, where points on which no shape is "
-        "found keep their segment.",
+        "Points to search: the whole cloud, which forgets segments and shapes found before; the points that have no "
+        "shape yet; or those of each segment (SegmentID) by itself. There, points on which no shape is found keep "
+        "their segment.",
         choices=SEARCHES,
     ),
 ]
@@ -102,7 +102,7 @@ def searched_points(
     side : float
         Side of the largest window (m).
     corner : ndarray of shape (2,), optional
-        Where windows begin in plan (m): coordinates are then from a corner of a window, and segments are moved apart by
+        Where windows begin in plan (m): coordinates are then from a corner of a window. Segments are moved apart by
         whole windows, so that a part of a cloud has the windows of the whole. Zero is in the middle of their height.
 
     Raises

@@ -83,7 +83,7 @@ def segment_planes_hough(
         Optional[float],
         Param(
             "Distance bin",
-            "Width of a bin in the distance of a plane. Smaller bins tell planes apart that lie closer; in bins "
+            "Width of a bin in the distance of a plane. Smaller bins separate planes that lie closer; in bins "
             "smaller than the noise the points of one plane scatter over several, and its maximum is lost.",
             unit="m",
             low=0,
@@ -96,7 +96,7 @@ def segment_planes_hough(
         Optional[float],
         Param(
             "Slope bin",
-            "Width of a bin in the slopes of a plane. Smaller bins tell directions apart, need more memory and time, "
+            "Width of a bin in the slopes of a plane. Smaller bins separate directions, need more memory and time, "
             "and scatter a plane over several.",
             unit="°",
             low=0,
@@ -153,7 +153,7 @@ def segment_planes_hough(
     each other in neighboring windows are joined. Their points are then grouped by proximity, and groups that are large
     enough become segments.
 
-    The bins decide between accuracy and reliability. Small bins give parameters more exactly and tell planes apart that
+    The bins decide between accuracy and reliability. Small bins give parameters more exactly and separate planes that
     are nearly the same. But noise scatters the points of one plane over all bins that are smaller than it, until its
     maximum is no higher than that of planes that exist by chance. Bins as wide as the noise are the best balance, since
     the parameters are determined by a least-squares fit to the points afterwards, and automatic bins are so.

@@ -25,7 +25,7 @@ _GAP_VOXELS = 8.0
 # around the line. Stems at breast height are recognized by the same share.
 _ROUND = 0.2
 
-# Largest measured radius (of that estimated): what is wider is leaves. Simulated branches have 1.4.
+# Largest measured radius (of that estimated): wider ones are leaves. Simulated branches have 1.4.
 _WIDEST = 3.0
 
 # Length (m) of the pieces of a branch that have a radius of their own, and times that radius within which points lie.
@@ -129,15 +129,15 @@ def segment_tree(
     Notes
     -----
     Deviation from the paper: it thins the voxels to a skeleton and finds paths on that. Scanned stems are hollow and
-    have holes, and their skeleton is a net; slices by the length of the path have their middle inside the stem.
-    The ground below a tree is the lowest point within 1 to 2 m. Gaps up to the maximum are crossed at three times
-    their length: shadows part stems and branches in every scan. Points farther from the middle line than 2.5 times the
-    median of their piece of 0.5 m are leaves. The radius of a piece is the median distance of its points from the line,
-    if that is at least half a voxel, at most 3 times the estimated one, and the distances scatter by less than 0.2 of
+    have holes, and their skeleton is a net; slices by the length of the path have their middle inside the stem. The
+    ground below a tree is the lowest point within 1 to 2 m. Gaps up to the maximum are crossed at three times their
+    length: shadows part stems and branches in every scan. Points farther from the middle line than 2.5 times the median
+    of their piece of 0.5 m are leaves. The radius of a piece is the median distance of its points from the line. That
+    must be at least half a voxel and at most 3 times the estimated one, and the distances scatter by less than 0.2 of
     it, as those of a circle do. The estimate is a cone: stem and branches grow thinner toward their tips as the stem
     does from its diameter at breast height. It counts where points show no circle, unless they lie closer to the line.
-    A stem too slender to stand by itself belongs to the thicker one that it grows from.
-    A branch is crooked if its chord is shorter than 0.6 of its length.
+    A stem too slender to carry itself belongs to the thicker one that it grows from. A branch is crooked if its chord
+    is shorter than 0.6 of its length.
 
     References
     ----------

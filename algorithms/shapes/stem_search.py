@@ -1,4 +1,4 @@
-"""Stems: what is round and upright at breast height."""
+"""Stems: round and upright shapes at breast height."""
 
 from __future__ import annotations
 

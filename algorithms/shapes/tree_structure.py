@@ -32,13 +32,13 @@ _CHUNK = 1_000
 _SMOOTHINGS = 4
 
 # Height (m) at which a column of wood with a diameter of 1 m buckles under its own weight, growing with the diameter to
-# the power of 2/3 (McMahon 1973: 0.79 times the cube root of elasticity over weight, 1.7e6 m for green wood).
+# the power of 2/3. McMahon (1973): 0.79 times the cube root of elasticity over weight, 1.7e6 m for green wood.
 _BUCKLING = 95.0
 
 # Share of that height that trees do not exceed: forest spruces a hundred diameters high, of 30 cm, reach 0.7 of it.
 _SLENDER = 0.75
 
-# Branches leave their stem at least so high over its root (m): what is lower is grass.
+# Branches leave their stem at least so high over its root (m): lower points are grass.
 _CLEAR = 0.5
 
 
@@ -156,7 +156,7 @@ def roots_of(voxels: Voxels, stems: np.ndarray) -> np.ndarray:
 
 
 def standing(voxels: Voxels, stems: np.ndarray, radii: np.ndarray, voxel_size: float) -> Slices:
-    """Return the slices of the trees over those stems that can stand by themselves.
+    """Return the slices of the trees over those stems that can carry themselves.
 
     Parameters
     ----------

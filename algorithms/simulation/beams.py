@@ -109,7 +109,7 @@ class World:
         classes = np.where(self.relief.is_water(x, y), PointClass.WATER, PointClass.GROUND)
         objects = np.zeros(len(beams), np.int32)
         entered = self.solids.enter(solid, beams.origin[beam], beams.direction[beam])
-        # The nearest solid of each beam, then whether it stands before the ground.
+        # The nearest solid of each beam, then whether it is before the ground.
         order = np.lexsort((entered, beam))
         order = order[rank(beam[order]) == 0]
         order = order[entered[order] < ranges[beam[order]]]
@@ -121,8 +121,8 @@ class World:
     def ground(self, beams: Beams) -> np.ndarray:
         """Return the ranges (n,) (m) at which beams meet ground or water, each exactly once.
 
-        The height of a beam over the ground falls all the way, so a bracket around the only zero shrinks by
-        regula falsi; the Illinois rule (halve the value at the end that stays) keeps it from creeping.
+        The height of a beam over the ground falls all the way, so a bracket around the only zero shrinks by regula
+        falsi. The Illinois rule (halve the value at the end that stays) keeps it from creeping.
         """
         middle = np.linalg.norm(beams.aim - beams.origin[:, :2], axis=1)
         middle = np.hypot(middle, beams.origin[:, 2] - self.relief.plane(*beams.aim.T))

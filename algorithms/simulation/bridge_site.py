@@ -44,7 +44,7 @@ class Kind:
     bank : float
         Slope of its banks, a tangent; they lie within ``half_width``.
     is_water : bool
-        Whether water stands in it.
+        Whether it holds water.
     decks : tuple of float
         Widths of the decks side by side, m; none where nothing crosses it.
     arch : float
@@ -60,7 +60,7 @@ class Kind:
 
     @property
     def behind(self) -> float:
-        """How far (m) the slope to the bottom lies behind the edges: vertical quays stand in front of it."""
+        """How far (m) the slope to the bottom lies behind the edges: vertical quays are in front of it."""
         return self.depth / _WALL if self.is_water and self.bank == _WALL else 0.0
 
 
@@ -77,7 +77,7 @@ KINDS = {
     "ramp": Kind(5.0, -4.0, _WALL, False, ()),
 }
 
-# Water stands this high over the bottom (m).
+# Depth of the water (m).
 _WATER = 1.0
 
 # Half the length of the tunnel, over which the land goes on (m), and the slope of the road down to its mouths.

@@ -44,7 +44,7 @@ def photograph(
     xyz : ndarray of shape (n, 3)
         Exact positions (m), within the square of the scene in plan.
     seen : Echoes
-        What is there, in the same order.
+        Objects that are seen, in the same order.
     """
     monitor = monitor or Monitor()
     rng = np.random.default_rng([seed, 3])

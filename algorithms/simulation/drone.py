@@ -22,15 +22,15 @@ SCANNERS = {"horizontal": 1, "vertical": 2}
 FIELD = 270.0
 _NEAREST = 0.1
 
-# The drone stands in the street, this far from the middle of the site, its scanners over the ground (m).
+# The drone starts in the street, this far from the middle of the site, its scanners over the ground (m).
 _PLACE = (0.8, 3.0)
 _STANDING = 0.4
 
 # Shares of the time in which it climbs and comes down; between, it turns once.
 _CLIMB, _LANDING = 0.2, 0.2
 
-# What wind and control leave: how far it is off its way (m), and out of level and heading (°), at most, and the
-# periods (s) of that; it comes and goes within two seconds of take-off and landing.
+# What wind and control leave: how far it is off its way (m), and out of level and heading (°), at most, and the periods
+# (s) of that. It comes and goes within two seconds of take-off and landing.
 _DRIFT, _TILT, _YAW = 0.3, 2.0, 0.5
 _PERIODS = (3.1, 5.3, 11.7)
 _SETTLING = 2.0
@@ -96,7 +96,7 @@ def plan_flight(scene: Scene, height: float, duration: float, seed: int) -> Flig
 
 
 class Surroundings(World):
-    """What is around a drone: beams go in all directions, and the ground is a plane."""
+    """Surroundings of a drone: beams go in all directions, and the ground is a plane."""
 
     def __init__(self, scene: Scene, reach: float) -> None:
         super().__init__(scene)
@@ -202,7 +202,7 @@ def pulses_per_line(angular_step: float) -> int:
 
 
 def _pulses(flight: Flight, scanner: str, time: np.ndarray, line_rate: float) -> tuple[Beams, np.ndarray]:
-    """Return the beams of pulses, and what is left of the drone (n, 3)."""
+    """Return the beams of pulses, and directions to the left of the drone (n, 3)."""
     forward, left, up = flight.axes(time)
     angle = np.deg2rad(np.mod(time * line_rate, 1.0) * 360.0 - FIELD / 2)[:, None]
     ahead = forward if scanner == "horizontal" else -up

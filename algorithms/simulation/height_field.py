@@ -18,7 +18,7 @@ CELL = 0.1
 # Unevenness of the ground (gardens, kerbs, ruts): lengths (m), and their shares of the whole.
 _UNEVEN = ((2.5, 0.25), (8.0, 0.97))
 
-# Lumps of crowns: how wide they are and how far they stand out (m).
+# Lumps of crowns: their width and height (m).
 _LUMPS = ((1.2, 0.35), (0.5, 0.15))
 
 
@@ -29,7 +29,7 @@ class HeightField:
     Attributes
     ----------
     ground, top : ndarray of shape (rows, columns)
-        Elevation of the ground and of what is seen, m.
+        Elevation of the ground and of the visible surface, m.
     classification, object_id : ndarray of shape (rows, columns)
         What it is.
     """

@@ -18,7 +18,7 @@ _WAVES = ((0.6, 0.4), (1.5, 0.5), (4.0, 0.6), (9.0, 0.7))
 _ROUNDING_CHANGES = 8.0
 
 # Crowns are matched worse than roofs, since leaves move and differ from view to view: length and standard deviation of
-# these errors (m), chosen so that simulated crowns are as rough over 0.75 to 2 m as those of a real suburb.
+# these errors (m). With these, simulated crowns are as rough over 0.75 to 2 m as those of a real suburb.
 _LEAF_NOISE = ((0.6, 0.25), (1.6, 0.3))
 
 # And single points of crowns lie apart from their neighbors by this (m, standard deviation of heights).
@@ -42,7 +42,7 @@ _LEAVES = np.array([(62, 92, 40), (84, 110, 50), (92, 98, 44), (120, 74, 60)])
 _ROOFS = np.array([(150, 76, 56), (112, 66, 56), (96, 97, 102), (132, 110, 92), (222, 222, 218), (60, 60, 64)])
 _CARS = np.array([(236, 236, 236), (40, 42, 46), (160, 30, 34), (70, 90, 150), (170, 172, 176)])
 
-# Matching fails on this part of what is darker or brighter than these (of 255), of cars, which mirror, and
+# Matching fails on this part of surfaces darker or brighter than these (of 255), of cars, which mirror, and
 # of everything else.
 _DARK, _BRIGHT, _FAILS, _FAILS_ON_CARS, _FAILS_ELSEWHERE = 32.0, 205.0, 0.35, 0.35, 0.005
 

@@ -29,7 +29,7 @@ _UP = np.array([0.0, 0.0, 1.0])
 
 @dataclass
 class Plant:
-    """Parts, and where the scanner stands (k, 3), m."""
+    """Parts, and the stations of the scanner (k, 3), m."""
 
     parts: list[Part] = field(default_factory=list)
     stations: list[np.ndarray] = field(default_factory=list)
@@ -118,7 +118,7 @@ def _frame(plant: Plant, middle: np.ndarray, along: np.ndarray, across: np.ndarr
 
 
 def _stations(plant: Plant, corner: np.ndarray) -> None:
-    """Let the scanner stand at the four corners of a bay, low and high in turn, where it does not stand yet."""
+    """Add stations of the scanner at the four corners of a bay, low and high in turn, where there is none yet."""
     for i, j in ((0, 0), (1, 0), (0, 1), (1, 1)):
         position = corner + PITCH * np.array([i, j, 0.0])
         high = round(position[0] / PITCH + position[1] / PITCH) % 2

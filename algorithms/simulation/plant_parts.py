@@ -130,7 +130,7 @@ def plate(kind: str, corner: np.ndarray, first: np.ndarray, second: np.ndarray) 
 
 
 def beam(start: np.ndarray, end: np.ndarray, height: float, width: float, up: np.ndarray) -> list[Part]:
-    """Return the web and the two flanges of an I-beam between two positions (3,), m; its web stands along ``up``."""
+    """Return the web and the two flanges of an I-beam between two positions (3,), m; its web lies along ``up``."""
     along = end - start
     side = np.cross(along, up)
     side *= width / np.linalg.norm(side)

@@ -9,7 +9,7 @@ from ..stage import Monitor
 from .scene import Scene
 from .solids import Rect, Solid, flat
 
-# Share of the trees outside the forest that stand in clumps, and how many do together.
+# Share of the trees outside the forest that grow in clumps, and the number in a clump.
 _CLUMP_SHARE = 0.4
 _CLUMP_SIZE = 4
 
@@ -67,7 +67,7 @@ def _feet(scene: Scene, positions: np.ndarray) -> list[tuple[float, float, float
 
 
 def _open_positions(scene: Scene, count: int, forest: float, rng: np.random.Generator) -> np.ndarray:
-    """Return up to ``count`` random positions (m) where a tree can stand outside the forest."""
+    """Return up to ``count`` random positions (m) where a tree can grow outside the forest."""
     positions = np.zeros((0, 2))
     # A town that is all houses or all forest has no room: it then stays at what these tries found.
     for _ in range(20):

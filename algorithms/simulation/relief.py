@@ -25,7 +25,7 @@ _STEEPEST = 1.7
 class Relief:
     """Ground and water as functions of position.
 
-    All coordinates are in the frame of the town, which is turned against east and north: *across* is the
+    All coordinates are in the frame of the town, which is turned against east and north. *across* is the
     direction in which the ground rises and the streets run, *along* that of the river, both from the town's center.
 
     Parameters

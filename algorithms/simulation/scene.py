@@ -1,4 +1,4 @@
-"""A scene with known truth: what stands where, before anything is scanned."""
+"""A scene with known truth: its objects, before anything is scanned."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ class Crowns:
 
 @dataclass
 class Scene:
-    """Everything that a scanner can see, and what is true of it.
+    """Everything that a scanner can see, with its truth.
 
     Attributes
     ----------

@@ -38,7 +38,7 @@ def simulate_bridges(
         Param(
             "Kind",
             "A flat or arched bridge over a canal between quays, a footbridge over a stream, one or two decks over a "
-            "cutting, a bridge over a valley, a fly-over with ramps; or what is no bridge: the mouths of a tunnel, a "
+            "cutting, a bridge over a valley, a fly-over with ramps. Or no bridge: the mouths of a tunnel, a "
             "jetty, a ramp that ends over a wall. 'all' lays them side by side.",
             choices=(_ALL, *KINDS),
         ),

@@ -126,7 +126,7 @@ def simulate_drone_site(
     changes over the site from half to one and a half times the mean. Points that are smeared beyond the edge of an
     object, 0.3 m above the ground or more, are of the object.
 
-    Unevenness of the ground, waves and the roughness of crowns are those of two real clouds, a suburb and a beach: open
+    Unevenness of the ground, waves and the roughness of crowns are those of two real clouds, a suburb and a beach. Open
     ground deviates from planes by 1 to 1.3 cm over 1 m and by 3 to 5 cm over 4 m.
 
     Not simulated: what lies under eaves, crowns and bridges, double surfaces, seams between blocks of images.
@@ -165,7 +165,7 @@ def simulate_drone_site(
 def _cells_of_objects(
     field: HeightField, xyz: np.ndarray, row: np.ndarray, column: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the cells (n,) that points are of: what is smeared beyond the edge of an object is of the object."""
+    """Return the cells (n,) that points are of: those smeared beyond the edge of an object are of the object."""
     is_ground = field.classification[row, column] == PointClass.GROUND
     is_smeared = is_ground & (xyz[:, 2] > field.ground[row, column] + _SMEARED)
     row_beside, column_beside = field.beside()

@@ -75,7 +75,7 @@ def simulate_plant(
     ] = 3,
     spheres: Annotated[int, Param("Spheres", "Spherical vessels with diameters of 1 to 3 m.", low=0, high=50)] = 4,
     clutter: Annotated[
-        bool, Param("Beams, gratings and clutter", "What carries the pipes, stands beside them and is no pipe.")
+        bool, Param("Beams, gratings and clutter", "What carries the pipes or lies near them and is no pipe.")
     ] = True,
     density: Annotated[
         float,
@@ -96,8 +96,8 @@ def simulate_plant(
     """Scan a made-up industrial plant: points with their true surface, the axes of pipes and tanks, centers of spheres.
 
     Racks carry pipes at three levels, some with flanges, some with elbows to a pipe that leads up or down; I-beams
-    carry the racks, gratings and heaps lie beside them. Upright tanks stand in the west, spherical vessels in the east.
-    The scanner stands at the corners of the racks and around tanks, and sees what nothing hides.
+    carry the racks, gratings and heaps lie beside them. Upright tanks are in the west, spherical vessels in the east.
+    The scanner has stations at the corners of the racks and around tanks, and sees what nothing hides.
 
     Returns
     -------

@@ -154,7 +154,7 @@ def simulate_street(
 ):
     """Scan a made-up street from a vehicle or an airplane, with the true facades, windows, doors and corners.
 
-    Houses stand side by side along both sides: plain fronts, fronts with a recess, a bay, balconies, and curved ones,
+    Houses are side by side along both sides: plain fronts, fronts with a recess, a bay, balconies, and curved ones,
     all with windows and doors. Parked cars, trees, poles and people hide parts of them. The vehicle drives through
     the street once, with two scanners whose planes look ahead and back.
 
@@ -195,7 +195,7 @@ def simulate_street(
     Stairs lead straight up to a landing of 1.2 m before raised doors. A curved front is made of six flat strips;
     walls of neighboring houses in one plane are one facade. The roofs of houses are flush with their walls. From the
     air the street is scanned as "Simulate town" does. The position of the vehicle is known exactly; the noise lies
-    along the beam. Frames stand 10 cm and panes 16 cm behind the front. Not simulated: rooms behind panes, mirror
+    along the beam. Frames are 10 cm and panes 16 cm behind the front. Not simulated: rooms behind panes, mirror
     images in glass, and echoes of the vehicle's scanners that mix two surfaces at an edge.
 
     Examples

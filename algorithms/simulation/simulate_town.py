@@ -60,7 +60,7 @@ def simulate_town(
     ] = 1.5,
     river: Annotated[bool, Param("River", "A river in a channel, with a bridge for every street.")] = True,
     clutter: Annotated[
-        bool, Param("Cars, hedges, walls and wires", "What else stands in a town and is no building.")
+        bool, Param("Cars, hedges, walls and wires", "Other objects of a town that are no buildings.")
     ] = True,
     pattern: Annotated[
         str,
@@ -130,8 +130,9 @@ def simulate_town(
     """Scan a made-up town from the air: houses, trees, a river, and the true class of every point.
 
     Streets with plots run up a slope. There are houses with gable, hip, flat and L-shaped roofs, with dormers and
-    chimneys, rows of different heights that share walls, sheds and a hall; trees, hedges and a forest that let part of
-    the light through; cars, walls, wires on poles, a river with bridges, birds and multipath points.
+    chimneys, rows of different heights that share walls, sheds and a hall. There are trees, hedges and a forest that
+    let part of the light through; cars, walls, wires on poles. There is a river with bridges, and there are birds and
+    multipath points.
 
     Returns
     -------

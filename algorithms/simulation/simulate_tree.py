@@ -143,7 +143,7 @@ def _grown(height: float, dbh: float, branches: int, rng: np.random.Generator) -
     limbs = [stem]
     turn = rng.uniform(0, 2 * np.pi)
     for number in range(branches):
-        # By the golden angle no two branches stand above each other.
+        # By the golden angle no two branches are above each other.
         share = 0.3 + 0.6 * (number + rng.uniform(0.2, 0.8)) / branches
         limbs.append(_off(stem, share, turn + number * np.pi * (3 - np.sqrt(5)), rng))
         if limbs[-1].length >= _LONG:

@@ -43,7 +43,7 @@ _FOOTPRINT_FIELDS = (
 
 _MAP_FIELDS = (
     Field("id", int, "number of the building in the map, from 1"),
-    Field("building", int, "object id of the building that stands there, 0 where it was demolished"),
+    Field("building", int, "object id of the building there, 0 where it was demolished"),
     Field("state", str, "kept or demolished"),
 )
 
@@ -91,7 +91,7 @@ def simulate_village(
             "Overhang of roofs", "How far the eaves jut out over the walls; sheds have half.", unit="m", low=0, high=1
         ),
     ] = 0.5,
-    clutter: Annotated[bool, Param("Cars, hedges and bushes", "What stands beside walls and is no building.")] = True,
+    clutter: Annotated[bool, Param("Cars, hedges and bushes", "Objects at walls that are no buildings.")] = True,
     noise: Annotated[
         float, Param("Noise", "Standard deviation of a point in every direction.", unit="m", low=0, high=0.2)
     ] = 0.03,
@@ -146,8 +146,8 @@ def simulate_village(
 ):
     """Photograph a made-up village with a drone: the matched points, the true footprints of the walls, and an old map.
 
-    Detached houses (rectangles, L shapes, some with a bend) whose eaves overhang the walls, sheds, cars, bushes
-    against walls, hedges and trees, seen straight down and in four oblique views: many points on roofs, few on walls.
+    Detached houses (rectangles, L shapes, some with a bend) whose eaves overhang the walls, sheds, cars, bushes against
+    walls, hedges and trees. They are seen straight down and in four oblique views: many points on roofs, few on walls.
 
     Returns
     -------
@@ -176,8 +176,8 @@ def simulate_village(
     Notes
     -----
     Views are parallel; what a ray meets first is a point. A wall that faces an oblique view of 28° gets a tenth of the
-    density of open ground (a fifth of the views, times the tangent of the angle), and nothing right under the eaves,
-    which is about the share of wall points (5 % of those on roofs) that Hrutka, Siki and Takács (2022) report of real
+    density of open ground (a fifth of the views, times the tangent of the angle), and nothing right under the eaves.
+    That is about the share of wall points (5 % of those on roofs) that Hrutka, Siki and Takács (2022) report of real
     clouds. Noise is the same in all directions.
 
     Not simulated: windows, surfaces that mirror, blur of edges, errors that neighboring points share, dormers.
@@ -228,7 +228,7 @@ def _outside_holes(xyz: np.ndarray, share: float, rng: np.random.Generator) -> n
     return ~np.isfinite(spatial.cKDTree(centers).query(xyz, distance_upper_bound=_HOLE)[0])
 
 
-# Brightness (red, green, blue, of 255) of what stands in a village; walls and roofs come in several.
+# Brightness (red, green, blue, of 255) of objects in a village; walls and roofs come in several.
 _GROUND, _LEAVES, _CARS = (134, 124, 92), (70, 96, 48), (150, 152, 158)
 _WALLS = np.array([(226, 218, 200), (212, 190, 140), (190, 186, 180), (205, 160, 130)])
 _ROOFS = np.array([(150, 70, 50), (110, 60, 50), (95, 95, 100), (130, 105, 90)])

@@ -1,9 +1,9 @@
 """Things with plane faces: oriented boxes under planes, and where a beam enters them.
 
-Houses, dormers, chimneys, cars, walls and bridge decks are all one shape: a rectangle on the map with vertical
-sides, a plane as its underside (level but for the slabs of roofs) and, as its top, the lowest of up to four planes.
-Such a solid is convex, so that a beam meets it in closed form: it enters where it has crossed the last of the faces
-that it comes from the outside of.
+Houses, dormers, chimneys, cars, walls and bridge decks are all one shape, a rectangle on the map with vertical sides. A
+plane is its underside (level but for the slabs of roofs), and the lowest of up to four planes its top. Such a solid is
+convex, so that a beam meets it in closed form: it enters where it has crossed the last of the faces that it comes from
+the outside of.
 """
 
 from __future__ import annotations

@@ -42,7 +42,7 @@ _STRIPS, _TURN = 6, 60.0
 
 @dataclass
 class Truth:
-    """What is true of the fronts: polygons and kinds, and the object ids that belong to them.
+    """Truth of the fronts: polygons and kinds, and the object ids that belong to them.
 
     Walls that go on in one plane are one facade, of however many houses.
     """
@@ -180,7 +180,7 @@ def between(a: np.ndarray, b: np.ndarray) -> Line:
 def _build_wall(
     scene: Scene, truth: Truth, line: Line, top: float, kind: str, raised: float, has_openings: bool
 ) -> None:
-    """Put one flat wall with its openings, and what is true of it."""
+    """Put one flat wall with its openings, and its truth."""
     ends = [line.at(0.0), line.at(line.length)]
     feet = [float(scene.relief.plane(*end)) for end in ends]
     start, end = (np.array([*end, foot]) for end, foot in zip(ends, feet))

@@ -1,4 +1,4 @@
-"""A made-up street for a vehicle: fronts on both sides, and what stands, grows, parks and walks before them."""
+"""A made-up street for a vehicle: fronts on both sides, and trees, poles, cars and people before them."""
 
 from __future__ import annotations
 
@@ -43,13 +43,13 @@ def build_street(
     slope : float
         Slope along the street (°).
     clutter : bool
-        Whether cars, trees, poles and people stand before the fronts.
+        Whether cars, trees, poles and people are before the fronts.
     seed : int
         For all that is drawn.
     raised : float
         Height of the doors over the street (m).
     unevenness : float
-        Distance (m) that the ends of fronts stand before or behind the line of the street at most.
+        Greatest distance (m) of the ends of fronts before or behind the line of the street.
     houses : bool
         Whether there are houses behind the fronts, none of which is curved then.
 

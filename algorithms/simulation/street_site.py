@@ -25,12 +25,12 @@ _PITCH = np.tan(np.deg2rad(38.0))
 _STOREY = 3.0
 _BALCONY = (2.6, 1.2)
 
-# Cars stand in two rows along the street; lamps between the street and the houses (m from the middle).
+# Cars are parked in two rows along the street; lamps between the street and the houses (m from the middle).
 _CARS = [(x, y) for y in (8.2, -1.8) for x in (-16.0, -10.5, -5.0, 6.5, 12.0)]
 _LAMPS = [(x, 9.8) for x in (-18.0, -1.0, 16.0)]
 _LAMP = (0.15, 6.0)
 
-# Trees stand south of the street, and two in front of the houses (m from the middle).
+# Trees are south of the street, and two in front of the houses (m from the middle).
 _ROW_OF_TREES = -9.0
 _TREES_IN_FRONT = ((-12.0, 5.0), (12.0, 4.0))
 _TREE_HEIGHTS = (6.0, 11.0)

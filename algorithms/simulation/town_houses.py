@@ -22,7 +22,7 @@ _LEAST_EAVE = 1.5
 
 
 class Site:
-    """Where one building stands: it turns heights over the floor into elevations."""
+    """Position of one building: it turns heights over the floor into elevations."""
 
     def __init__(self, scene: Scene, rect: Rect, eave: float) -> None:
         self.object_id = scene.new_id()

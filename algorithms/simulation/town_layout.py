@@ -1,4 +1,4 @@
-"""A made-up town: streets with plots, a river with bridges, a forest, and what stands between."""
+"""A made-up town: streets with plots, a river with bridges, a forest, and objects between them."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ def _hall_position(scene: Scene, plots: list[Rect]) -> Optional[Rect]:
     x, y = np.array([(plot.x, plot.y) for plot in plots]).reshape(-1, 2).T
     for plot in plots:
         position = plot.part(0.0, plot.width / 2, *_HALL)
-        # Three plots on both sides, all of them free: the hall stands on plots only.
+        # Three plots on both sides, all of them free: the hall is on plots only.
         if position.contains(x, y).sum() == 6 and np.ptp(scene.relief.ground(*position.corners().T)) < _HALL_STEP:
             return position
     return None

@@ -100,7 +100,7 @@ def _blocks(drive: Drive, line_rate: float, angular_step: float) -> Iterator[np.
 
 
 def _pulses(drive: Drive, turn: float, time: np.ndarray, line_rate: float) -> tuple[Beams, np.ndarray]:
-    """Return the beams of pulses, and what is left of the vehicle (n, 3)."""
+    """Return the beams of pulses, and directions to the left of the vehicle (n, 3)."""
     cos, sin = np.cos(np.deg2rad(turn)), np.sin(np.deg2rad(turn))
     left = np.array([-drive.way[1], drive.way[0], 0.0]) / np.hypot(*drive.way[:2])
     ahead = np.array([left[1], -left[0], 0.0])

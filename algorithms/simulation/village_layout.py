@@ -33,7 +33,7 @@ class Village:
     Parameters
     ----------
     scene : Scene
-        Everything that stands there.
+        All its objects.
     owner : ndarray of shape (m,)
         By object id, the id of the building where the object is its roof; the object's own id elsewhere.
     free : list of Rect

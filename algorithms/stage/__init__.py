@@ -16,13 +16,11 @@ A stage is an ordinary function with a declaration beside it:
   is called alone measures its own;
 * ``monitor`` (a :class:`Monitor`) receives progress, automatic values and warnings.
 
-It returns values for the points it was given (``writes``), a new cloud
-(``creates``), vector layers (``layers``), rasters (``rasters``), text files (``files``), numbers with a
-page (``measures``), or several of these. Two kinds make a cloud of other points:
-one that ``selects`` says first which points its result has, and in which order;
-one that ``merges`` reads several clouds, each argument a list with one array per
-cloud, and its result has the points of all. Both may write ``xyz``, and both
-leave withheld points out.
+It returns values for the points it was given (``writes``), a new cloud (``creates``), vector layers (``layers``),
+rasters (``rasters``), text files (``files``), numbers with a page (``measures``), or several of these. Two kinds make a
+cloud of other points: one that ``selects`` says first which points its result has, and in which order. One that
+``merges`` reads several clouds, each argument a list with one array per cloud, and its result has the points of all.
+Both may write ``xyz``, and both leave withheld points out.
 
 Everything a user sees of a stage (dialog, tooltip, help, bounds, composite
 parameters) is derived from this declaration and written nowhere else. This

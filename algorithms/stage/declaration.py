@@ -162,7 +162,7 @@ def stage(
     and tunables on every call and carries its :class:`Stage` as ``function.stage``.
 
     ``reach`` is how far (m) from a point others may lie that decide on it, a number or a function of all tunables by
-    name: where a cloud is worked on in parts, each is seen with the points around it that far. ``of_whole`` names
+    name. Where a cloud is worked on in parts, each is seen with the points around it that far. ``of_whole`` names
     values that it measures on its results, and of which parts of a cloud take those of the whole, see
     :meth:`.CloudSampling.shared`. ``reference`` says what the second cloud is, of a stage that reads one. ``shows``
     is of a stage that makes a page of layers and, optionally, points: a function that returns of these layers the boxes

@@ -40,8 +40,8 @@ class Layer:
     with the root mean square distance of points from the plane of a polygon, for planes in space, which may be upright
     or lie above one another. ``radius`` is the field with the distance (m) of the points from a line or a point in
     space. ``around`` is how far beyond a feature points decide on it, m. ``whole``, where pieces of a long feature can
-    be put together, is given the pieces, the largest first, and the number of their points, and returns one feature;
-    points must refer to it (``numbers`` of a field).
+    be put together, is given the pieces, the largest first, and the number of their points, and returns one feature.
+    Points must refer to it (``numbers`` of a field).
     """
 
     name: str

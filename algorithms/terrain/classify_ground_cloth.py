@@ -15,7 +15,7 @@ from ..stage import Param, stage
 from .cloth import NEIGHBORS, Cloth
 from .ground_points import usable_points, with_ground
 
-# The cloth reaches so many particles beyond the points.
+# Particles of the cloth beyond the points on each side.
 _BORDER = 2
 
 # Particles of a cloth that is simulated however few points there are for it: all steps take about a minute.
@@ -27,8 +27,8 @@ _SMALL_PART = 50
 # Largest step (m) between neighboring particles over which a hanging part is let down.
 _LARGEST_STEP = 0.3
 
-# Particles at most so many grid cells from one with a point take over its floor as the authors' program does, which
-# searches link by link; the search grows with the square of the distance, and no point lies near those farther away.
+# Grid cells up to which particles take over the floor of one with a point as the authors' program does, link by link.
+# The search grows with the square of the distance, and no point lies near particles farther away.
 _FARTHEST_BY_LINKS = 20
 
 
@@ -115,16 +115,16 @@ def classify_ground_cloth(
 
     Notes
     -----
-    Each particle of the cloth falls until it reaches the height of the point nearest to it in plan, and stays there;
-    in each step neighbors draw each other to a common height, the more often the more rigid the cloth is. It ends
-    when no particle moves by 5 mm. All returns are used: in woods of which the scanner saw through the leaves,
-    'Classify ground points (TIN)' finds more. What the paper leaves open (gravity, damping, in which order neighbors
-    draw each other, particles without a point, from where the cloth falls) is as in the program that its authors
-    published, and so are the defaults. Two things are not: of two points equally near to a particle it takes the lower,
-    where the program takes the first in the file, so that the order of points has no influence; and particles at the
-    corners of the cloud are let down as all others are, where the program leaves some of them out. Particles more than
-    20 grid cells from any point, with none in their row and column, take the height of the nearest point, where the
-    program searches on over the links.
+    Each particle of the cloth falls until it reaches the height of the point nearest to it in plan, and stays there. In
+    each step neighbors draw each other to a common height, the more often the more rigid the cloth is. It ends when no
+    particle moves by 5 mm. All returns are used: in woods of which the scanner saw through the leaves, 'Classify ground
+    points (TIN)' finds more. What the paper leaves open (gravity, damping, in which order neighbors draw each other,
+    particles without a point, from where the cloth falls) is as in the program that its authors published, and so are
+    the defaults. Two things are not: of two points equally near to a particle it takes the lower, where the program
+    takes the first in the file, so that the order of points has no influence. Particles at the corners of the cloud
+    are let down as all others are, where the program leaves some of them out. Particles more than 20 grid cells from
+    any point, with none in their row and column, take the height of the nearest point, where the program searches on
+    over the links.
 
     References
     ----------
@@ -156,7 +156,7 @@ class _Particles:
     def _positions(self, points: np.ndarray) -> np.ndarray:
         """Return the positions (n, 2) of points in columns and rows.
 
-        Many coordinates are multiples of a centimeter and lie just between two particles. What is added first decides
+        Many coordinates are multiples of a centimeter and lie just between two particles. The order of addition decides
         where rounding takes them, so that it is done as in the authors' program on coordinates from the corner.
         """
         return (points[:, :2] - self.corner + _BORDER * self.size) / self.size

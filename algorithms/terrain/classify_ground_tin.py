@@ -31,7 +31,7 @@ class GroundRules:
     sweep_bend: float = rule(0.1, "cells", "of the finished surface, the most beyond that")
     misfit: float = rule(0.15, "m", "physics: strips that do not fit together lie no farther above one another")
     region: float = rule(
-        40.0, "point spacings", "side of the squares in which higher strips are told from plants: 1600 points"
+        40.0, "point spacings", "side of the squares in which higher strips are separated from plants: 1600 points"
     )
     over_strip: float = rule(0.1, "share", "physics: the air over a higher strip is empty, over plants it is not")
     angle: float = rule(20.0, "°", "iteration angle where no kind of terrain is given")
@@ -59,7 +59,7 @@ _GRANULARITIES = {"coarse": (2.0, 1.0), "medium": (1.0, 1.0), "fine": (1.0, 0.5)
 
 
 # In blocks of Delft with this much around them, and 40 m for all other steps, the buildings are those of the whole
-# cloud on 99.8 % of the points, as with twice as much; the rest is where cells fall (m).
+# cloud on 99.8 % of the points, as with twice as much. The rest is where cells fall (m).
 _REACH = 40.0
 
 
@@ -222,13 +222,13 @@ def classify_ground_tin(
 
     The final sweep adds the points within the noise of the finished surface, which the paper leaves unclassified.
     Where strips overlap that were not adjusted to one another, the surface follows the lower one. The points of the
-    other are told from plants by the empty air over them, and are ground too.
+    other differ from plants by the empty air over them, and are ground too.
 
     In clouds of matched images walls are smeared to slopes that the surface climbs; ground points on objects narrower
     than 4.5 m, and on the feet of walls, are taken out again. Halls on slopes, whose uphill eaves are 1 m or more above
     the terrain, are free-standing there if the steps around them are 2 m high on the mean.
 
-    The kinds of terrain are this stage's own; the steps of lasground by the same names are smaller. 'Classify ground
+    The kinds of terrain are this stage's own. The steps of lasground by the same names are smaller. 'Classify ground
     points (TIN, as published 2000)' starts from the seeds of the paper, and has none of the additions.
 
     References

@@ -73,7 +73,7 @@ def classify_ground_tin_2000(
         Param(
             "Iteration angle",
             "Upper bound of the angle between a facet and the lines to its nodes under which a point joins the "
-            "surface, which is estimated in each round; larger follows steeper breaks and lets more low objects in.",
+            "surface, which is estimated in each round. Larger follows steeper breaks and lets more low objects in.",
             unit="°",
             low=0,
             high=90,
@@ -156,10 +156,10 @@ def classify_ground_tin_2000(
     node. A point that lies too high above its facet is tried again at its mirror image about the facet's highest node,
     if that is one of the first nodes. Rounds go on until no point qualifies, and every point is tried in each.
 
-    What the papers leave open, or have otherwise: how many deviations the thresholds are; the bound of the angle,
-    without which rough first nodes let the surface climb onto anything; the part of the point spacing that the distance
-    allows for. Facets with short edges are closed, and points near a node don't join, as they add nodes but no shape.
-    The final sweep takes in the points within the noise of the finished surface, as the tools in use do; sweep
+    What the papers leave open, or have otherwise: how many deviations the thresholds are, and the part of the point
+    spacing that the distance allows for. So is the bound of the angle, without which rough first nodes let the surface
+    climb onto anything. Facets with short edges are closed, and points near a node don't join, as they add nodes but no
+    shape. The final sweep takes in the points within the noise of the finished surface, as the tools in use do; sweep
     distance 0 leaves it out. There is no terrain angle, which programs in use have as a bound of the slope between
     nodes. The paper of 2019 took 'city' of lasground, whose step is 25 m: that is a maximum building size of 25 m.
 

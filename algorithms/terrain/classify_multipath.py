@@ -65,11 +65,12 @@ def classify_multipath(
 
     Notes
     -----
-    Multipath points lie under the ground along their beams, and several from one mirror make a pit. A group of points
-    up to 3 m wide, lower by 0.45 m or more than smooth ground all round, is such a pit if no terrain leads down to it
-    and the points do not fill it: other pulses see the ground amid them, they are closer together than pulses are, or
-    fewer than six. Light shafts, cellar stairs and excavations, whose floors stop every pulse, stay ground. The surface
-    grows from the lowest ground point of each cell onto the others, as in 'Classify ground points (TIN)'.
+    Multipath points lie under the ground along their beams, and several from one mirror make a pit. Such a pit is a
+    group of points up to 3 m wide, lower by 0.45 m or more than smooth ground all round. No terrain leads down to it,
+    and the points do not fill it. They do not if other pulses see the ground amid them, or they are closer together
+    than pulses are, or fewer than six. Light shafts, cellar stairs and excavations, whose floors stop every pulse, stay
+    ground. The surface grows from the lowest ground point of each cell onto the others, as in 'Classify ground points
+    (TIN)'.
 
     References
     ----------

@@ -138,7 +138,7 @@ class _Order:
         return shifts
 
     def front(self, time: int, phase: int, steps: int) -> _Front:
-        """Return what is moved at a time, counted in wavefronts, of the first so many steps."""
+        """Return the particles moved at a time, counted in wavefronts, of the first ``steps`` steps."""
         first_step = max(0, -(-(time - self.diagonals + 1) // _STEP_LAG))
         last_step = min(steps - 1, time // _STEP_LAG)
         return _Front(phase, time - _STEP_LAG * last_step, last_step, max(0, last_step - first_step + 1))
@@ -146,7 +146,7 @@ class _Order:
 
 @dataclass
 class _State:
-    """What is known of the particles, as they are stored; in the margin nothing moves or draws.
+    """State of the particles, as they are stored; in the margin nothing moves or draws.
 
     Attributes
     ----------

@@ -53,8 +53,8 @@ def compute_height_above_ground(xyz, classification, *, monitor=None):
     the log says how many. The paper subtracts a terrain raster; here heights are those over a triangulation, so that
     nothing is lost to cells on slopes. Its nodes are the means of the ground points in cells of 0.5 m, by which the
     noise of single points does not reach heights. The filter of heights above 0.3 m is a step of its own, 'Filter
-    points'. Bridge decks are measured from the ground below them, and what stands on them, such as cars and
-    parapets, from the decks.
+    points'. Bridge decks are measured from the ground below them, and objects on them, such as cars and parapets, from
+    the decks.
 
     References
     ----------

@@ -2,7 +2,7 @@
 
 The range of a pulse that took a detour is too long, so that its point lies under the surface along the beam. Several of
 them, from one mirror, make a pit: lower than the ground on all sides, with no terrain that leads down to it. A true pit
-(a shaft, a cellar stair, an excavation) shows its floor to every pulse that enters it. That tells the two apart.
+(a shaft, a cellar stair, an excavation) shows its floor to every pulse that enters it. That distinguishes the two.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _DEPTH_SPACINGS = 0.4
 # The same in standard deviations of the ground around, if that is more: rough ground has true hollows.
 _DEPTH_DEVIATIONS = 6.0
 
-# Deviation (m) of the ground around from which on it is too rough for a pit to stand out from it.
+# Deviation (m) of the ground around from which on it is too rough for a pit to be seen in it.
 _ROUGH = 0.25
 
 # Points of the smallest group.
@@ -75,7 +75,7 @@ _LEAST_SECTORS = 4
 # Share of the points on the rim that may lie between ground and group: more of them are terrain that leads down.
 _LEADS_DOWN = 0.05
 
-# Fewer points than this are no floor: whether they fill a pit can't be told.
+# Fewer points than this are no floor: whether they fill a pit can't be decided.
 _FLOOR_POINTS = 6
 
 # Points on the ground amid a floor, as a share of its pulses: these see a true floor or the ground, and not both.

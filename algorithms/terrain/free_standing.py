@@ -1,4 +1,4 @@
-"""Segments of the lowest surface that stand free: roofs of any size, told from hills by the steps at their edges."""
+"""Free-standing segments of the lowest surface: roofs of any size; hills lack the steps at their edges."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ class FreeStandingRules:
     steep: float = rule(1.0, "tangent", "physics: least slope of a step, 45°, steeper than soil")
     hall_step: float = rule(2.0, "m", "physics: steps around a segment wider than usual buildings; quays are lower")
     free_edge: float = rule(0.9, "share", "of its open edge with steps down; the rest is trees against its walls")
-    open_edge: float = rule(0.4, "share", "of its edge, neither hidden behind what is higher nor too rough to tell")
-    open_if_cut: float = rule(0.7, "share", "the same of what is left of its outline, if much of it is cut off")
+    open_edge: float = rule(0.4, "share", "of its edge, neither hidden behind higher surfaces nor rough")
+    open_if_cut: float = rule(0.7, "share", "the same of the rest of its outline, if much of it is cut off")
     most: float = rule(
         0.5, "share", "most: of steps as high as asked for, of the edge of a part of a hall, of a machine"
     )
@@ -32,7 +32,7 @@ class FreeStandingRules:
     corner_steps: float = rule(4.0, "steps", "physics: height of the walls of such a corner: a house of two floors")
     cut: float = rule(0.7, "share", "physics: more than half of the outline that is cut off; the rest may be terrain")
     cut_steps: float = rule(6.0, "steps", "physics: height of the walls of the rest: a house of two floors and a roof")
-    least_cells: int = rule(4, "cells", "of a segment; smaller ones are too rough to tell")
+    least_cells: int = rule(4, "cells", "of a segment; smaller ones are undecided, as rough cells are")
 
 
 FREE = FreeStandingRules()
@@ -88,7 +88,7 @@ class _Edges:
 
 @dataclass(frozen=True)
 class _Segments:
-    """Numbered segments of a surface, from 1; 0 is what is too rough.
+    """Numbered segments of a surface, from 1; 0 where too rough.
 
     Attributes
     ----------
@@ -156,12 +156,12 @@ def find_free_standing(
 
     Notes
     -----
-    Segments wider than usual buildings are examined more closely: parts of a hall are judged together, and cells on its
-    roof that are too rough to tell belong to it. Of smaller segments windows see the whole, unless the end of the cloud
-    cuts them off: the more of one is cut off, the higher its walls must be.
+    Segments wider than usual buildings are examined more closely: parts of a hall are judged together, and undecided
+    rough cells on its roof belong to it. Of smaller segments windows see the whole, unless the end of the cloud cuts
+    them off: the more of one is cut off, the higher its walls must be.
 
     A level roof on a slope has its highest steps downhill and its lowest uphill, which may be those of any roof. Quays
-    and platforms are low all round, so that with ``low_uphill`` the mean of the steps tells these from halls.
+    and platforms are low all round, so that with ``low_uphill`` the mean of the steps distinguishes these from halls.
     """
     monitor = monitor or Monitor()
     least = max(FREE.step, FREE.steep * max(cell_size, apart))
@@ -203,7 +203,7 @@ def _are_free_standing(segments: _Segments, least: float, usual: float, largest:
     least_step = np.where(is_low, max(FREE.hall_step, least), least)
     least_step[segments.width > largest] = np.inf
     is_free = np.zeros(len(segments.width), bool)
-    # The highest come first; what is lower beside their walls is judged by the rest of its edge.
+    # The highest come first; lower segments at their walls are judged by the rest of their edge.
     while True:
         found = _bounded_by_steps(segments, is_free, least_step, least) & ~is_free
         if not found.any():

@@ -93,7 +93,7 @@ def seeds_by_opening(
     """Find ground points by opening the lowest surface with growing windows.
 
     Segments with steps down all round are free-standing objects. So is what a window lowers by more than terrain of the
-    local slope could rise; of that, regions that join the terrain on half of their edge come back, and so do smooth
+    local slope could rise. Of that, regions that join the terrain on half of their edge come back, and so do smooth
     parts that are level with the terrain around.
 
     Parameters
@@ -123,10 +123,10 @@ def seeds_by_opening(
     Notes
     -----
     Progressive opening after Pingel et al. (2013), with a threshold that follows the slope of the result before, a
-    coarse one first; the return of smoothly joined regions is this project's, and so are the segments that
-    stand free. By these, low houses with large roofs on a slope are found, which windows shave down little by little,
-    and halls that no window is large enough for. All this is done on cells that are laid in three directions, which
-    decide together, so that less depends on where cells fall. Narrow strips have one direction.
+    coarse one first; the return of smoothly joined regions is this project's, and so are the free-standing segments. By
+    these, low houses with large roofs on a slope are found, which windows shave down little by little, and halls that
+    no window is large enough for. All this is done on cells that are laid in three directions, which decide together,
+    so that less depends on where cells fall. Narrow strips have one direction.
 
     References
     ----------
@@ -157,7 +157,7 @@ def seeds_by_opening(
 
 @dataclass(frozen=True)
 class _View:
-    """What cells tell that are laid in one direction.
+    """Evidence of cells that are laid in one direction.
 
     Attributes
     ----------
@@ -217,7 +217,7 @@ class _Cells:
 
 
 def _view(cells: _Cells, max_building_size: Optional[float], slope: Optional[np.ndarray], monitor: Monitor) -> _View:
-    """Return what cells tell; the slope (n,) of the terrain is measured where it is not given."""
+    """Return the evidence of cells; the slope (n,) of the terrain is measured where it is not given."""
     lowest = lowest_points(cells.xyz, cells.size)
     surface, unknown = _surface(cells.xyz, lowest, monitor.part(0, 0.1))
     size, largest = max_building_size or USUAL_BUILDING, max_building_size or np.inf

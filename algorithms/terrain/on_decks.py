@@ -1,4 +1,4 @@
-"""What stands on bridge decks."""
+"""Objects on bridge decks."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from ..rules import rule
 
 @dataclass(frozen=True)
 class DeckRules:
-    """What stands on the deck of a bridge."""
+    """Objects on the deck of a bridge."""
 
     near: float = rule(2.0, "point spacings", "statistics: one random place in 300,000 has no point as near in plan")
     least_near: float = rule(0.5, "m", "the same, at least")
     neighbors: int = rule(8, "points", "statistics: that the spacing of a deck is measured with")
     hidden: float = rule(2.0, "m", "physics: cars and trucks hide the deck beneath them, to points on both sides")
-    below: float = rule(0.3, "m", "what stands on a deck has no points of its own so far below it")
+    below: float = rule(0.3, "m", "objects on a deck have no points of their own this far below it")
     traffic: float = rule(4.5, "m", "physics: the clearance of roads, over vehicles, parapets and signs")
 
 
@@ -28,7 +28,7 @@ DECK = DeckRules()
 
 
 def on_decks(points: np.ndarray, deck: np.ndarray, least: float = -DECK.below) -> tuple[np.ndarray, np.ndarray]:
-    """Find the points that stand on bridge decks, such as those of cars and parapets.
+    """Find the points of objects on bridge decks, such as cars and parapets.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def on_decks(points: np.ndarray, deck: np.ndarray, least: float = -DECK.below) -
     Returns
     -------
     rows : ndarray of shape (k,), int64
-        Which points stand on one.
+        Which points are on one.
     level : ndarray of shape (k,), float64
         Elevation of the deck there, m.
     """

@@ -26,7 +26,7 @@ _MOST_CELL = 1000.0
 # People choose cells of 1, 2 or 5 times a power of ten.
 _ROUND = np.array([1.0, 2.0, 5.0, 10.0])
 
-# Gaps are filled up to so many cells from the nearest cell with points.
+# Gaps are filled up to this distance (cells) from the nearest cell with points.
 _GAP_CELLS = 5.0
 
 
@@ -59,7 +59,7 @@ def rasterize_terrain(
         Optional[float],
         Param(
             "Gap distance",
-            "Cells of the surface model without points are interpolated up to so far from cells with points.",
+            "Cells of the surface model without points are interpolated up to this far from cells with points.",
             unit="m",
             low=0,
             high=10_000,
@@ -69,7 +69,7 @@ def rasterize_terrain(
     sampling: Optional[CloudSampling] = None,
     monitor=None,
 ):
-    """Make rasters of the terrain, of the surface with all that stands on it, and of the difference.
+    """Make rasters of the terrain, of the surface with all objects on it, and of the difference.
 
     The terrain model (DTM) is the triangulated surface (TIN) of the ground points (class 2), at the middle of each
     cell. The surface model (DSM) holds the highest point of each cell. The heights (nDSM) are surface minus terrain.
@@ -93,7 +93,7 @@ def rasterize_terrain(
 
     Notes
     -----
-    Cells lie at multiples of their size from a corner at whole kilometers of the map: neighboring clouds have the same
+    Cells lie at multiples of their size from a corner at whole kilometers of the map. Neighboring clouds have the same
     cells if these divide 1000 m, as those of 1, 2 and 5 times a power of ten do.
 
     There is no terrain outside the hull of the ground points. Small gaps of the surface (shadows, dark roofs, water)
@@ -148,7 +148,7 @@ def _middles(size: float, rows: int, columns: int) -> np.ndarray:
 
 
 def _highest(elevation: np.ndarray, cell: np.ndarray, rows: int, columns: int) -> np.ndarray:
-    """Return the elevation of the highest point of each cell (rows, columns), NaN where there is none.
+    """Return the elevation of the highest point of each cell (rows, columns), NaN without points.
 
     ``cell`` (n, 2) are the column of each point and its row, counted from the south.
     """

@@ -55,9 +55,9 @@ def on_smeared_objects(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -
     Notes
     -----
     The lowest ground points of cells are opened with a window. Planes of any slope and plateaus wider than the window
-    stay as they are; sheds go, and so does the ring of points that have climbed the walls of a house, since no window
-    is centered on its roof. Ridges and dikes narrower than the window rise above the opened surface as well: what is
-    longer than a shed stays, but for such rings.
+    stay as they are. Sheds go, and so does the ring of points that have climbed the walls of a house, since no window
+    is centered on its roof. Ridges and dikes narrower than the window rise above the opened surface as well: objects
+    longer than a shed stay, but for such rings.
     """
     if not is_ground.any():
         return np.zeros(len(xyz), bool)

@@ -59,7 +59,7 @@ class JoinRules:
     terrain_angle : float
         Steepest line from a point to the nodes of its facet, °.
     is_exhaustive : bool
-        Whether rounds go on until no point qualifies, and every point is tried in each; else rounds that add little
+        Whether rounds go on until no point qualifies, and every point is tried in each. Else rounds that add little
         are the last, and points far from the first TIN or in closed facets are not tried again, which is faster.
     beyond : callable, optional
         Returns the angles (°) of points that do not fit their facets as they lie, inf where they do not fit at all:

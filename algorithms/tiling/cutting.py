@@ -32,7 +32,7 @@ def cut_into_tiles(
     Parameters
     ----------
     survey : Survey
-        What is cut.
+        The file to cut.
     side : float
         Side of a tile, m.
     folder : Path

@@ -53,7 +53,7 @@ def join_rasters(paths: list[Path], found: list[BlockResult]) -> list[RasterMosa
     paths : list of Path
         The files of the blocks.
     found : list of BlockResult
-        What is in them; the cells themselves are left there.
+        Their contents; the cells themselves are left there.
     """
     mosaics = []
     for name in dict.fromkeys(name for one in found for name in one.lattices):

@@ -47,8 +47,8 @@ from .views import View
 from .work_folder import remove_work, work_folder
 from .workers import Workers, run_all
 
-# A window has at most about this many points, so that a worker needs 1.8 GB (340 bytes per point), and two of them, one
-# with a window that was enlarged, less than 4 GB with the main process.
+# A window has at most about this many points, so that a worker needs 1.8 GB (340 bytes per point). Two of them, one
+# with a window that was enlarged, need less than 4 GB with the main process.
 _MOST_POINTS = 5_300_000
 
 # Sides of blocks are multiples of the step from the least to the greatest, m; smaller ones would work mostly on what
@@ -144,7 +144,7 @@ def run_in_tiles(
         A composite that works on one cloud and keeps its points.
     paths : iterable of str or Path
         Files, virtual point clouds or folders. Each file becomes a tile of the same name; a file of more than
-        ``largest_file`` points becomes tiles of the size of a block: it is cut by its index where it is a COPC file,
+        ``largest_file`` points becomes tiles of the size of a block. It is cut by its index where it is a COPC file,
         else into pieces that lie uncompressed beside the tiles while they are worked on.
     folder : str or Path
         Where the tiles go; it is made where it is missing.

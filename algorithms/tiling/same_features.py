@@ -23,7 +23,7 @@ _PIECES, _SHARED = 0.1, 1.0
 _DEVIATIONS, _LEAST = 3.0, 0.005
 
 # Largest distance between axes or centers that are the same one, and largest difference of their radii (of the smaller
-# radius): shapes of the same points differ by less, and pipes in insulation or beside each other by more.
+# radius). Shapes of the same points differ by less, and pipes in insulation or next to each other by more.
 _OFF = 0.2
 
 

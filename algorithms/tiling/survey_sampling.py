@@ -20,7 +20,7 @@ _SAMPLED_WHOLE = 3_000_000
 _SAMPLES_ACROSS, _SAMPLE_SIDE = 4, 100.0
 
 # Values that steps measure on their results, and blocks take of the whole, are measured on as many of these windows as
-# hold this many points, one at least: a core takes a second for each 60,000 of *Detect buildings*.
+# hold this many points, one at least. A core takes a second for each 60,000 of *Detect buildings*.
 _MEASURED = 1_500_000
 
 

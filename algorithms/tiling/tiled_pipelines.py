@@ -17,7 +17,7 @@ from .tiled_steps import afterwards, of_survey
 _DESCRIPTION = """
 For surveys of any size: the input is a folder of tiles, a virtual point cloud, any number of files, or one file of any
 size. Each file becomes a classified tile of the same name in the output folder, with a virtual point cloud over all of
-them; a file of more than 25 million points becomes tiles of the size of a block. The layers are those of the whole
+them. A file of more than 25 million points becomes tiles of the size of a block. The layers are those of the whole
 survey, without seams and duplicates.
 
 The work is done in blocks of a lattice that starts at the zero of the map, each with the points around it as far as the

@@ -19,7 +19,7 @@ _PARALLEL = np.cos(np.deg2rad(8.0))
 # The narrowest alley (m): less is a wall that is seen from both sides, or twice.
 _NARROWEST = 0.3
 
-# Of both walls at least this share along the alley has points, the same that tells seen edges of footprints.
+# Of both walls at least this share along the alley has points, the same that seen edges of footprints have.
 _SEEN = 0.5
 
 

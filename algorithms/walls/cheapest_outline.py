@@ -51,7 +51,7 @@ _SKEW_COST = 1.5
 # Corners are square within 2°: the cosine of the angle between their walls is no more than this.
 _SQUARE = np.sin(np.deg2rad(2.0))
 
-# Largest distance (m) from the edges of a line within which leaving it out changes the outline: bumps and notches that
+# Largest distance (m) from the edges of a line within which leaving it out changes the outline. Bumps and notches that
 # are worth a line are no deeper, as each square meter of them costs as much as a meter of wall.
 _NEARBY = 4.0
 
@@ -81,8 +81,8 @@ class OutlineCase:
 class OutlineCells:
     """The cells that all lines of a building make, and the cost of an outline of some of them.
 
-    An outline is told by which cells are ``inside`` (cells,), and the lines it may run along by which are ``open``
-    (lines,). All costs are sums over cells, edges and crossings, so that those near a change tell its cost.
+    An outline is given by the cells that are ``inside`` (cells,), and the lines it may run along by which are ``open``
+    (lines,). All costs are sums over cells, edges and crossings, so that those near a change give its cost.
     """
 
     def __init__(self, lines: list[WallLine], near: list[np.ndarray], case: OutlineCase, monitor: Monitor) -> None:
@@ -202,7 +202,7 @@ def _edge_costs(cells: Arrangement, lines: list[WallLine], near: list[np.ndarray
 
 
 def _cell_costs(cells: Arrangement, case: OutlineCase, monitor: Monitor) -> tuple[np.ndarray, np.ndarray]:
-    """Return what each cell (cells,) costs inside an outline and outside, as far as the roof tells."""
+    """Return what each cell (cells,) costs inside an outline and outside, by the roof."""
     positions, depth = case.cover.positions, case.cover.depth.ravel()
     size = max(1, _AT_ONCE // max(1, len(cells.points)))
     cell = np.empty(len(positions), np.int64)

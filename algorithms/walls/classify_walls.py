@@ -37,7 +37,7 @@ _MOST_NEIGHBORS = 30
 # Side (m) of the cells of which one roof point is taken when the nearest roof in plan is searched for.
 _ROOF_CELL = 0.25
 
-# Largest distance (m) in plan of a wall from its roof where the roof was seen in part; other walls stand under it.
+# Largest distance (m) in plan of a wall from its roof where the roof was seen in part; other walls are under it.
 _NEAR = 2.0
 
 # The hull of a roof without area: one side that everything is outside of.
@@ -111,8 +111,8 @@ def classify_walls(
 ):
     """Find the points of walls below roofs: lower than roofs, upright, and inside the grown hull of a roof.
 
-    Each wall point gets the number of the roof that it stands under (WallOf) and becomes building (class 6); ClusterID
-    stays that of roofs only, so that both can be told apart.
+    Each wall point gets the number of the roof above it (WallOf) and becomes building (class 6); ClusterID stays that
+    of roofs only, so that both can be distinguished.
 
     Parameters
     ----------

@@ -68,7 +68,7 @@ _EDGE_FIELDS = (
     Field("id", int, "number of the edge, from 1"),
     Field("footprint", int, "footprint that it belongs to", of="wall_footprints"),
     Field("edge", int, "number of the edge in its footprint, from 1, counterclockwise"),
-    Field("source", str, "wall: seen; roof: told from the edge of the roof"),
+    Field("source", str, "wall: seen; roof: derived from the edge of the roof"),
     Field("length", float, "length", "m"),
     Field("angle", float, "inner angle at the corner where it begins", "°"),
     Field("quality", float, "share of the edge that has wall points, corners left out, 0 to 1"),
@@ -154,7 +154,7 @@ def extract_wall_footprints(
     """Outline the walls of each building, without the eaves: corners where walls meet, and a quality for every edge.
 
     Lines are fitted to the wall points of each building in plan, one after the other. They, and lines for sides of the
-    roof under which no wall was seen, cut the plane into cells; the footprint is made of the cells whose outline runs
+    roof under which no wall was seen, cut the plane into cells. The footprint is made of the cells whose outline runs
     along walls that were seen, as far as there are any. Walls that are nearly square or parallel become so where
     their points allow it.
 
@@ -189,20 +189,20 @@ def extract_wall_footprints(
     -----
     Thresholds follow the data of each building: the distance of points to their line is that of the noise; a wall is
     covered where the pieces of it that should hold three points hold any. An edge of the outline is judged by its
-    points between the corners, which are left out. The paper takes every pair of corners for a candidate edge; here
-    the whole outline is the one that costs least: unseen wall by the meter, corners by the piece and more where
-    they aren't square, parts outside the roof by the area. It is found by a minimum cut, then line by line it is
-    tried whether the outline is better off without.
+    points between the corners, which are left out. The paper takes every pair of corners for a candidate edge. Here the
+    whole outline is the one that costs least: unseen wall by the meter, corners by the piece and more where they aren't
+    square, parts outside the roof by the area. It is found by a minimum cut, then line by line it is tried whether the
+    outline is better off without.
 
     Gaps of a roof, and bites at its edge up to 4 m wide, are roof where no point is seen in them, as long as surfaces
-    are seen all around; gaps with points a meter and more below the eaves are courtyards. Sides beside which another
+    are seen all around. Gaps with points a meter and more below the eaves are courtyards. Sides beside which another
     roof begins are party walls: they lie under the edge of the roof, and are not counted in the share of walls seen.
     Parts of a roof inside of others are left out.
 
     Houses whose roofs nearly touch are one building by the distance between roofs. They are outlined one by one where
-    two walls face each other across the whole building, no farther apart than two overhangs of the largest kind, at
-    least half of each was seen, and the smallest building or more lies behind both. The line halfway between the walls
-    parts the roof. Passages under one roof are parted in the same way.
+    two walls face each other across the whole building, no farther apart than two overhangs of the largest kind. At
+    least half of each must be seen, and the smallest building or more lie behind both. The line halfway between the
+    walls parts the roof. Passages under one roof are parted in the same way.
 
     Parts deeper under a roof than it juts out over the other walls count as inside: loggias, porches. Sides
     without wall points lie as far inside the edge of the roof as the other walls in the median; ``quality`` 0 marks
@@ -414,7 +414,7 @@ def _add(
     outline: Optional[WallOutline],
     height: Optional[np.ndarray],
 ) -> None:
-    """Append a footprint, its rings told as edges with the exterior first, and the edges themselves."""
+    """Append a footprint, its rings as edges with the exterior first, and the edges themselves."""
     corners = [closed(ring) for ring in rings]
     footprints.geometries.append([ring + building.origin for ring in corners])
     own_edges = [edge for ring in rings for edge in ring]

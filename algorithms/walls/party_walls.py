@@ -36,8 +36,8 @@ def split_blocks(
 
     Notes
     -----
-    Houses are told as in rows of gables: along a line from one side of the block to the other, with another such line a
-    house away, a wall stands above both roofs or one roof steps down to the other.
+    Houses are separated as in rows of gables, along a line from one side of the block to the other with another such
+    line a house away. There a wall rises above both roofs, or one roof steps down to the other.
     """
     own = np.flatnonzero(cluster_id > 0)
     if not len(own):

@@ -1,4 +1,4 @@
-"""Roofs that stand on or in other roofs: stair houses, lift shafts, penthouses and skylights."""
+"""Roofs on or in other roofs: stair houses, lift shafts, penthouses and skylights."""
 
 from __future__ import annotations
 

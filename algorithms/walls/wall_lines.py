@@ -31,7 +31,7 @@ _LEAST_COVERED = 0.5
 # Mean number of points in a bin of a wall: with as many, one bin in twenty is empty by chance.
 _POINTS_PER_BIN = 3.0
 
-# Angles are the same if they differ by up to so many standard deviations.
+# Standard deviations up to which two angles are the same.
 _SAME = 3.0
 
 # Angles (radians) that are the same in any case: walls are built no straighter.
@@ -40,7 +40,7 @@ _BUILT = np.deg2rad(0.7)
 # Angles (radians) that are not the same, however uncertain they are.
 _MOST = np.deg2rad(8.0)
 
-# Points deviate from their line by more than noise does if their variance exceeds its by so many standard errors.
+# Points deviate from their line by more than noise does if their variance exceeds its by this many standard errors.
 _CERTAIN = 2.0
 
 # Radius (m) of the neighborhoods that show the direction of a wall at a point.
@@ -71,7 +71,7 @@ class WallLine:
     direction : ndarray of shape (2,)
         Unit vector.
     points : ndarray of shape (k,)
-        Numbers of the wall points on it; none where it was told from the roof.
+        Numbers of the wall points on it; none where it was derived from the roof.
     along : ndarray of shape (k,)
         Where these lie along the direction from the middle, m.
     deviation : float

@@ -213,7 +213,7 @@ def _from_roof(
 def _through_few(line: WallLine, half: float, walls: np.ndarray, scale: Scale) -> WallLine:
     """Return the line moved to the most points beside it, ``half`` (m) to both sides of its middle, if there are any.
 
-    The direction is known, so that far fewer points tell a wall than without.
+    The direction is known, so that far fewer points determine a wall than without.
     """
     across, along = line.across(walls), (walls - line.point) @ line.direction
     beside = np.flatnonzero((np.abs(across) <= _EAVE) & (np.abs(along) <= half))

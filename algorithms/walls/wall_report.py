@@ -35,7 +35,7 @@ _MEANINGS = {
     "wall_points": "Below the roof of a building.",
     "all_outlines": "Of buildings that are large enough.",
     "wall_outlines": "The others are outlines of roofs.",
-    "candidates": "Intersections of two walls of a building, seen or told from its roof.",
+    "candidates": "Intersections of two walls of a building, seen or derived from its roof.",
     "kept_corners": "The others lie on edges, off the outline, or on walls that no footprint has.",
 }
 
@@ -46,7 +46,7 @@ def point_counts(
     classification: Optional[np.ndarray],
     voxel_count: Optional[np.ndarray],
 ) -> dict[str, float]:
-    """Return the number of points of each kind, NaN where the cloud doesn't tell.
+    """Return the number of points of each kind, NaN where the cloud lacks the evidence.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def wall_report(counts: dict[str, float], sources: list[str], outcomes: list[str
 
 
 def _row(measure: Measure, value: float, whole: float) -> Row:
-    """Return the row of a number; points are told as a share of the ``whole`` cloud, too."""
+    """Return the row of a number; points are also given as a share of the ``whole`` cloud."""
     if math.isnan(value):
         return Row(measure.title, "unknown", "The cloud has no value of it.")
     share = f" {value / whole:.1%} of all points." if "points" in measure.name and whole else ""

@@ -117,7 +117,8 @@ def test_merging_needs_clouds_that_are_no_output(provider, context, halves, out)
     message = refused(provider, "toymerge", {"INPUTS": [], "OUTPUT": str(out / "a.laz")}, context)
     assert message == "Point clouds (INPUTS) are missing; choose a point cloud."
     assert "is also an input" in refused(provider, "toymerge", {"INPUTS": [west, east], "OUTPUT": east}, context)
-    assert "none at no.laz" in refused(provider, "toymerge", {"INPUTS": [west, "no.laz"], "OUTPUT": "a.laz"}, context)
+    message = refused(provider, "toymerge", {"INPUTS": [west, "no.laz"], "OUTPUT": "a.laz"}, context)
+    assert "nothing was found at no.laz" in message
 
 
 # --- layers that are read ---------------------------------------------------------------------------------------------
@@ -305,7 +306,7 @@ def test_what_is_no_layer_of_the_kind_is_refused(provider, context, out):
     message = refused(provider, "toyarrows", {**given, "NEW": None}, context)
     assert message == "New map (NEW) is missing; choose a layer of polygons."
     message = refused(provider, "toyarrows", {**given, "NEW": "nowhere.gpkg"}, context)
-    assert message == "New map (NEW) must be a vector layer; there is none at nowhere.gpkg."
+    assert message == "New map (NEW) must be a vector layer; nothing was found at nowhere.gpkg."
     message = refused(provider, "toyarrows", {**given, "NEW": dots}, context)
     assert message == ("New map (NEW) must be a layer of polygons, got 'drawn' with point geometries; choose another.")
 
@@ -330,7 +331,7 @@ def test_a_layer_outside_of_the_cloud_is_refused_before_any_work(provider, conte
     assert message.startswith(
         "Areas and the point cloud don't overlap: x 95004.5 to 95009.5, y 446004.5 to 446009.5 against x 85000"
     )
-    assert message.endswith("; choose a layer of the place, or check the coordinate reference systems of both.")
+    assert message.endswith("; choose a layer of the same area, or check the coordinate reference systems of both.")
     message = refused(provider, "toymask", {**given, "AREAS": beyond}, context)
     assert message.startswith("Areas and the point cloud don't overlap: x 900 to 910, y 900 to 910 against x 4.")
 

@@ -255,7 +255,7 @@ def test_the_composite_runs_without_its_layer(provider, context, log, town_file,
     [
         ({"SECOND_STEP": 0}, "Step (SECOND_STEP) must be greater than 0 m and at most 10 m, got 0.0."),
         ({"OUTPUT": "{input}"}, "is also an input"),
-        ({"INPUT": "nowhere.laz"}, "there is none at nowhere.laz"),
+        ({"INPUT": "nowhere.laz"}, "nothing was found at nowhere.laz"),
         ({"OUTPUT": "a.doc"}, "extension"),
     ],
 )

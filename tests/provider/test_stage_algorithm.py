@@ -190,7 +190,7 @@ def wrong(**change):
         (wrong(INPUT=""), "Point cloud (INPUT) is missing; choose a point cloud."),
         (
             wrong(INPUT="nowhere.laz"),
-            "Point cloud (INPUT) must be a point cloud file or layer; there is none at nowhere.laz.",
+            "Point cloud (INPUT) must be a point cloud file or layer; nothing was found at nowhere.laz.",
         ),
         (wrong(OUTPUT="{input}"), "is also an input; choose another name."),
         (

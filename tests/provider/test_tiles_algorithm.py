@@ -96,7 +96,7 @@ def test_the_virtual_point_cloud_lies_where_it_is_on_earth(algorithm, context, l
 @pytest.mark.parametrize(
     ("given", "sentence"),
     [
-        ({"INPUT": "nowhere"}, "must be a point cloud file or layer; there is none at nowhere"),
+        ({"INPUT": "nowhere"}, "must be a point cloud file or layer; nothing was found at nowhere"),
         ({"CERTIFICATES": "one.pem"}, "must be three files"),
         ({"CERTIFICATES": "a.pem;b.pem;c.pem"}, "There is no certificate a.pem"),
         ({"BLOCK_SIDE": 1.0}, "BLOCK_SIDE"),

@@ -105,7 +105,7 @@ def test_layers_larger_than_their_chunk(laz):
 def test_more_chunks_than_bytes(laz):
     raw, path = laz
     (table,) = struct.unpack_from("<q", raw, points_at(raw))
-    assert_refused(path, "chunks can't stand in", *(patched(raw, table + 4, "<I", n) for n in (2**32 - 1, 10**6)))
+    assert_refused(path, "chunks don't fit into", *(patched(raw, table + 4, "<I", n) for n in (2**32 - 1, 10**6)))
     assert_refused(path, "its chunks hold at most 0", patched(raw, table + 4, "<I", 0))
 
 

@@ -98,7 +98,9 @@ def test_place_and_order_change_nothing(street, rng):
 
 
 def test_without_times_there_are_no_lines(street):
-    with pytest.raises(ValueError, match=r"^All points have the same GPS time, so scan lines can't be told apart; use"):
+    with pytest.raises(
+        ValueError, match=r"^All points have the same GPS time, so scan lines can't be distinguished; use"
+    ):
         segment_facade_lines(street["xyz"], np.zeros(len(street["xyz"])))
 
 
