@@ -12,6 +12,7 @@ from typing import Any, Optional
 
 import numpy as np
 
+from ..cloud.dimensions import DIMENSIONS
 from ..cloud.outputs import replacing
 from ..pipeline import Pipeline
 from ..pipelines import PIPELINES
@@ -362,9 +363,11 @@ def _left(window: Window, made: Results) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _written(pipeline: Pipeline, made: Results, point: np.ndarray, origin: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the dimensions that steps wrote for each record, coordinates in meters from the zero of the map."""
+    """Return the dimensions that steps wrote or cleared for each record, coordinates in m from the zero of the map."""
     cloud = made.cloud
     names = dict.fromkeys(name for step in pipeline.steps for name in step.stage.writes)
+    # What an earlier run said of numbers that a step writes anew was cleared.
+    names.update(dict.fromkeys(one.name for one in DIMENSIONS.values() if one.of in names))
     values = {name: cloud.get(name)[point] for name in names if cloud is not None and cloud.has(name)}
     if "xyz" in values:
         values["xyz"] = values["xyz"] + origin

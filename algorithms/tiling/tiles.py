@@ -9,6 +9,7 @@ from typing import Optional
 import numpy as np
 
 from ..cloud.cloud import Cloud
+from ..cloud.dimensions import DIMENSIONS
 from ..cloud.files import read_cloud, readable, write_cloud
 from ..cloud.header import COPC_HIERARCHY, COPC_INFO, LASZIP
 from ..cloud.points import chunks_near, open_header
@@ -99,8 +100,10 @@ def _found(task: TileTask, position: Optional[np.ndarray], count: int) -> tuple[
                 if number in final.files:
                     # What no block keeps has no number.
                     found = final[number][np.where(found < len(final[number]), found, 0)]
-                whole = values.setdefault(name, np.zeros((count, *found.shape[1:]), found.dtype))
-                whole[own] = found
+                if name not in values:
+                    # A block that lacks a dimension of an earlier run leaves it undefined.
+                    values[name] = np.full((count, *found.shape[1:]), DIMENSIONS[name].undefined, found.dtype)
+                values[name][own] = found
     return stays, values, worked_on
 
 

@@ -264,6 +264,23 @@ def test_a_tile_keeps_its_points_and_their_order(points, tmp_path):
     assert [path.read_bytes() for path in paths] == before
 
 
+def test_what_an_earlier_run_said_of_numbers_is_cleared_as_on_one_cloud(points, tmp_path):
+    """Tiles kept the confidence and the reason of clusters that had been numbered anew."""
+    xyz, times, _ = points
+    cloud = create_cloud({"xyz": xyz, "gps_time": times}, "EPSG:28992")
+    for name, value in {"cluster_id": 7, "confidence": 0.75, "reason": 3, "entropy": 0.5}.items():
+        cloud.set(name, np.full(len(xyz), value))
+    write_cloud(cloud, tmp_path / "earlier.las")
+    (tile,) = run([tmp_path / "earlier.las"], tmp_path / "result", pipeline=QUICK).tiles
+    whole, in_tiles = read_cloud(tmp_path / "earlier.las"), read_cloud(tile)
+    run_pipeline(QUICK, whole)
+    for name in ("confidence", "reason", "entropy"):
+        np.testing.assert_array_equal(in_tiles.get(name), whole.get(name))
+    assert np.isnan(in_tiles.get("confidence")).all()
+    assert not in_tiles.get("reason").any()
+    assert (in_tiles.get("entropy") == 0.5).all()
+
+
 def test_several_processes_give_what_one_gives(points, whole, tmp_path, monkeypatch):
     # New processes import the package by its name, whatever the folder of the checkout is called.
     (tmp_path / "packages").mkdir()
