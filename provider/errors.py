@@ -9,7 +9,7 @@ from typing import Optional
 from qgis.core import QgsProcessingException, QgsProcessingFeedback
 
 from ..algorithms.stage import Cancelled
-from ..algorithms.stages import LESS_MEMORY
+from ..algorithms.stages import less_memory
 from .declared import on_command_line
 from .feedback import is_step
 
@@ -34,7 +34,7 @@ def as_processing_errors(
         if not is_step(feedback):
             feedback.pushInfo(cancelled)
     except MemoryError:
-        raise QgsProcessingException(f"This needs more memory than there is; {LESS_MEMORY}.") from None
+        raise QgsProcessingException(f"This needs more memory than there is; {less_memory()}.") from None
     except ValueError as error:
         raise QgsProcessingException(str(error)) from error
     except OSError as error:

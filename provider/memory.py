@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 
 from ..algorithms.stage import Monitor
-from ..algorithms.stages import LESS_MEMORY
+from ..algorithms.stages import less_memory
 
 # Bytes that stages take per point at most, those of the points themselves among them.
 _PER_POINT = 400
@@ -18,7 +18,7 @@ def warn_if_memory_is_short(n_points: int, monitor: Monitor) -> None:
     if needed > there:
         monitor.warn(
             f"{n_points:,} points may need {needed / _GB:.1f} GB of memory, this computer has {there / _GB:.1f}; "
-            f"if that is not enough, {LESS_MEMORY}."
+            f"if that is not enough, {less_memory()}."
         )
 
 

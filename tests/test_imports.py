@@ -243,9 +243,29 @@ import sys
 sys.modules.update(dict.fromkeys({sorted(absent)}))
 import conftest
 from lidar_buildings.algorithms import STAGES, pipelines
+assert all(STAGES.values())
 """
     done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+
+
+def test_a_run_imports_no_stages_but_those_of_its_steps():
+    """All stages together take half a second to import, before the first point is read."""
+    script = """
+import sys, conftest
+from lidar_buildings.algorithms import STAGES
+from lidar_buildings.algorithms.run import run_pipeline
+from lidar_buildings.algorithms.pipelines import PIPELINES
+print(*(stage for stage in STAGES if any(name.endswith(stage) for name in sys.modules)))
+assert all(step.stage for step in PIPELINES["model_industry"].steps)
+print(*{name.split(".")[2] for name in sys.modules if name.startswith("lidar_buildings.algorithms.")})
+"""
+    done = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    stages, rooms = done.stdout.split("\n")[:2]
+    assert not stages
+    assert {"shapes", "segmentation"} <= set(rooms.split())
+    assert not {"buildings", "footprints", "walls", "facades", "models3d", "quality", "simulation"} & set(rooms.split())
 
 
 def test_every_stage_loads_from_the_package_alone():

@@ -10,6 +10,10 @@ from functools import cache
 from pathlib import Path
 from typing import Any, cast
 
+# What laspy imports where it finds it, and is not needed here: pyproj, whose wheels bring another PROJ into QGIS, and
+# requests, which takes longer to import than laspy itself.
+_UNUSED = ("pyproj", "requests")
+
 
 @cache
 def need_laspy() -> Any:
@@ -21,7 +25,7 @@ def need_laspy() -> Any:
         If it is not installed.
     """
     try:
-        with _without_pyproj():
+        with _without(*_UNUSED):
             importlib.import_module("laspy.vlrs.known")
             return importlib.import_module("laspy")
     except ModuleNotFoundError:
@@ -29,17 +33,16 @@ def need_laspy() -> Any:
 
 
 @contextmanager
-def _without_pyproj() -> Iterator[None]:
-    """Hide pyproj, which laspy imports where it finds it and does not need: its wheels bring another PROJ into QGIS."""
+def _without(*names: str) -> Iterator[None]:
+    """Hide packages that are not imported yet."""
     modules = cast("dict[str, Any]", sys.modules)
-    if "pyproj" in modules:
-        yield
-        return
-    modules["pyproj"] = None
+    hidden = [name for name in names if name not in modules]
+    modules.update(dict.fromkeys(hidden))
     try:
         yield
     finally:
-        del modules["pyproj"]
+        for name in hidden:
+            del modules[name]
 
 
 def need_lazrs() -> Any:

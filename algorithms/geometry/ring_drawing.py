@@ -184,18 +184,20 @@ class _Starts:
 
     def __init__(self) -> None:
         self.samples = np.zeros(1, np.int64)
+        self._n_before = 0
         self._stays = np.ones(1, bool)
         self._left_out = np.zeros(0, np.int64)
 
     def extend(self, batch: np.ndarray) -> None:
         """Add samples, and forget those that were left out."""
         self._left_out = np.cumsum(self._stays)[self._left_out] - 1
-        self.samples = np.concatenate([self.samples[self._stays], batch])
+        before = self.samples[self._stays]
+        self.samples, self._n_before = np.concatenate([before, batch]), len(before)
         self._stays = np.ones(len(self.samples), bool)
 
-    def rows(self, end: int) -> np.ndarray:
-        """Return the rows (a,) of the samples before one at which a run ends."""
-        return self._stays[: np.searchsorted(self.samples, end)].nonzero()[0]
+    def rows(self, at: int) -> np.ndarray:
+        """Return the rows (a,) of the samples before that at position ``at`` of the current batch."""
+        return self._stays[: self._n_before + at].nonzero()[0]
 
     def leave_out(self, rows: np.ndarray) -> None:
         """Leave out rows after one more round, since runs have a least length."""
@@ -260,7 +262,7 @@ class _Chain:
                 starts.extend(batch)
                 allowed, least = self._run_costs(starts.samples, batch)
             ends = batch[at : at + _SHORTEST]
-            rows, columns = starts.rows(low), slice(at, at + len(ends))
+            rows, columns = starts.rows(at), slice(at, at + len(ends))
             firsts, of = starts.samples[rows], np.arange(len(ends))[:, None]
             before = begun[firsts][:, None]
             total = before + allowed[rows, columns]

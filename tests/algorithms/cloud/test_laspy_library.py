@@ -15,16 +15,17 @@ def run(script):
     return done.stdout.split("\n")
 
 
-def test_laspy_is_imported_at_the_first_file_and_brings_no_second_proj():
+def test_laspy_is_imported_at_the_first_file_and_brings_neither_a_second_proj_nor_the_web():
     """pyproj, where it is installed, was loaded with laspy and may warn about its own data."""
     said = run(
         "from lidar_buildings.algorithms import STAGES\n"
         "from lidar_buildings.algorithms.cloud.cloud import create_cloud\n"
+        "assert all(STAGES.values())\n"
         "print('laspy' in sys.modules)\n"
         "create_cloud({'xyz': [[0, 0, 0]]})\n"
-        "print('laspy' in sys.modules, 'pyproj' in sys.modules)\n"
+        "print(*(name in sys.modules for name in ('laspy', 'pyproj', 'requests')))\n"
     )
-    assert said[:2] == ["False", "True False"]
+    assert said[:2] == ["False", "True False False"]
 
 
 def test_without_laspy_one_sentence_says_so(make_las):
