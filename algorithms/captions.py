@@ -1,13 +1,18 @@
 """What the pictures of the help pages show, by the ids of the algorithms that have one.
 
-The pictures are made of simulated scenes by ``scripts/help_pictures.py`` and ``scripts/hough_picture.py``.
+The pictures are made of simulated scenes by ``scripts/help_pictures.py`` and ``scripts/hough_picture.py``. A stage that
+is not named here, and writes a dimension of the points it reads, is shown on a simulated town by that dimension.
 """
 
 from __future__ import annotations
 
+from .cloud.dimensions import DIMENSIONS
+from .stage import Stage
+from .stages import STAGES
+
 _SEGMENTS = "Each segment in a color of its own, points of none in gray."
 
-CAPTIONS = {
+_CAPTIONS = {
     "detectbuildings": (
         "A simulated town: ground brown, plants green, buildings red with footprints, water and the bridges over it "
         "blue, wires yellow, the rest gray."
@@ -65,4 +70,23 @@ CAPTIONS = {
     "simulatestreet": "One side of the street, each true facade in a color of its own.",
     "simulatepowerline": "Both lines of the site, in the colors of the true classes.",
     "simulatebridges": "A bridge over a valley, in the colors of the true classes.",
+}
+
+
+def derived_caption(stage: Stage) -> str:
+    """Return the caption of the picture of a stage that has none of its own, "" if it gets no picture."""
+    is_ours = stage.function.__module__.startswith(f"{__package__}.")
+    if not is_ours or not stage.writes or stage.creates or stage.selects or stage.merges or stage.reads_reference:
+        return ""
+    first = stage.writes[0]
+    if first == "classification":
+        return "A simulated town in the colors of its classes after this step; unclassified points gray."
+    if first in ("segment_id", "cluster_id"):
+        return _SEGMENTS
+    return f"A simulated town by {DIMENSIONS[first].disk[0]}, from blue, low, to red, high."
+
+
+CAPTIONS = {
+    **{stage.id: derived_caption(stage) for stage in STAGES.values() if derived_caption(stage)},
+    **_CAPTIONS,
 }

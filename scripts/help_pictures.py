@@ -27,9 +27,11 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 importlib.import_module("conftest")
 
+from lidar_buildings.algorithms.captions import CAPTIONS  # noqa: E402
 from lidar_buildings.algorithms.cloud.cloud import Cloud  # noqa: E402
 from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
 from lidar_buildings.algorithms.run import Outcome, run_pipeline, run_stage  # noqa: E402
+from lidar_buildings.algorithms.stage import Stage  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 from lidar_buildings.provider.paths import PICTURES, STYLES  # noqa: E402
 
@@ -154,6 +156,19 @@ SCENES = {
     "simulatepowerline": Scene(LINES, color="classification", keeps_classes=True, azimuth=-30.0, tilt=75.0),
     "simulatebridges": Scene(BRIDGE, color="classification", keeps_classes=True),
 }
+
+
+def derived_scene(stage: Stage) -> Scene:
+    """Return the scene of a stage that is not named above: a town, after the steps that write what it reads."""
+    if {"segment_id", "cluster_id"} & set(stage.reads):
+        steps = ROOFS
+    elif "height_above_ground" in stage.reads:
+        steps = HEIGHT
+    elif "classification" in stage.reads:
+        steps = () if stage.name.startswith(("classify_noise", "classify_ground")) else GROUND
+    else:
+        steps = (NOISE,)
+    return Scene(TOWN, (*steps, stage.name), color=stage.writes[0])
 
 
 def made(scene: Scene) -> Outcome:
@@ -309,8 +324,9 @@ def main() -> None:
     """Draw all pictures, or those of the ids given."""
     application = QGuiApplication([])
     PICTURES.mkdir(exist_ok=True)
-    for name in sys.argv[1:] or SCENES:
-        image = drawn(SCENES[name])
+    by_id = {stage.id: stage for stage in STAGES.values()}
+    for name in sys.argv[1:] or [name for name in CAPTIONS if name != "segmentplaneshough"]:
+        image = drawn(SCENES[name] if name in SCENES else derived_scene(by_id[name]))
         if not image.save(str(PICTURES / f"{name}.png")):
             raise SystemExit(f"{PICTURES} can't be written")
         print(name, image.width(), image.height(), (PICTURES / f"{name}.png").stat().st_size, flush=True)
