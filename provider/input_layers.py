@@ -73,14 +73,14 @@ def find_input_layer(
     if QgsVariantUtils.isNull(value) or value == "":
         if input_layer.optional:
             return None
-        raise ValueError(f"{input_layer.title} ({name}) is missing; choose a layer of {input_layer.things}.")
+        raise ValueError(f"{input_layer.title} ({name}) is missing; choose a layer of {input_layer.objects}.")
     found = algorithm.parameterAsSource(parameters, name, context)
     if found is None:
         raise ValueError(f"{input_layer.title} ({name}) must be a vector layer; nothing was found at {value}.")
     kind = QgsWkbTypes.geometryType(found.wkbType())
     if kind not in (_TYPES[input_layer.geometry], Qgis.GeometryType.Unknown):
         raise ValueError(
-            f"{input_layer.title} ({name}) must be a layer of {input_layer.things}, got {found.sourceName()!r} with "
+            f"{input_layer.title} ({name}) must be a layer of {input_layer.objects}, got {found.sourceName()!r} with "
             f"{QgsWkbTypes.geometryDisplayString(kind).lower()} geometries; choose another."
         )
     return found
@@ -198,13 +198,13 @@ def read_input_layer(
         left_out += not parts
     if left_out and not rows:
         raise ValueError(
-            f"{input_layer.title} has no usable feature: none of {count} has a valid geometry of {input_layer.things}; "
-            "run 'Fix geometries' on the layer, or choose another."
+            f"{input_layer.title} has no usable feature: none of {count} has a valid geometry of "
+            f"{input_layer.objects}; run 'Fix geometries' on the layer, or choose another."
         )
     if left_out:
         monitor.warn(
             f"{input_layer.title}: {left_out} of {count} features are left out; "
-            f"they have no valid geometry of {input_layer.things}."
+            f"they have no valid geometry of {input_layer.objects}."
         )
     names = layer.fields().names()
     return LayerFeatures(geometries, {name: _column([row[i] for row in rows]) for i, name in enumerate(names)})
