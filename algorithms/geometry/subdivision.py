@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 # A cut that passes a vertex this closely (m) goes through it.
@@ -77,6 +79,14 @@ class Subdivision:
             is_near = low_x <= east and low_y <= north and high_x >= west and high_y >= south
             if is_near and not self.is_closed[cell]:
                 self._cut_cell(cell, line, length, snap)
+
+    def cut_cell(self, cell: int, position: np.ndarray, direction: np.ndarray) -> bool:
+        """Cut one cell along the whole line through a position (m) in a unit direction; return whether it was cut."""
+        before = len(self)
+        reach = math.dist(self.vertices[0], self.vertices[2])
+        line = (*(position - reach * direction).tolist(), *direction.tolist())
+        self._cut_cell(cell, line, 2 * reach, SNAP)
+        return len(self) > before
 
     def _cut_cell(self, cell: int, line: tuple, length: float, snap: float) -> None:
         """Split one cell where the line crosses it within its length."""

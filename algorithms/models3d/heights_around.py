@@ -8,7 +8,7 @@ from ..packages import spatial
 
 # Corners of roofs lie no more than this (m) above all points within that distance (m) in plan: ridges and eaves are
 # sampled that closely, and noise is less.
-_ABOVE, _RADIUS = 0.5, 1.5
+_ABOVE, RADIUS = 0.5, 1.5
 
 
 class HeightsAround:
@@ -20,7 +20,7 @@ class HeightsAround:
 
     def highest(self, xy: np.ndarray) -> np.ndarray:
         """Return the height (k,), m, that a roof may have at positions (k, 2), infinite far from points."""
-        found = self._tree.query_ball_point(xy, _RADIUS, return_sorted=False)
+        found = self._tree.query_ball_point(xy, RADIUS, return_sorted=False)
         count = np.array([len(rows) for rows in found])
         rows = np.concatenate([np.asarray(some, int) for some in found if some] or [np.zeros(0, int)])
         highest = np.full(len(xy), np.inf)

@@ -8,10 +8,11 @@ from typing import Optional
 import numpy as np
 
 from ..geometry.groups import components
-from .heights_around import HeightsAround
+from .heights_around import RADIUS, HeightsAround
 from .roof_partition import Partition
+from .roof_planes import planes_through
 from .solid_faults import faults_of
-from .solids import ROOF, Levels, Solid, build_solid, turns_around
+from .solids import DECIMALS, ROOF, Levels, Solid, build_solid, turns_around
 
 # Rounds in which positions where too many walls meet are cleared, in which small parts and high cells get another
 # plane, and in which those with faults do.
@@ -59,8 +60,12 @@ def mended(
     Notes
     -----
     A part with a fault takes the plane of a neighbor or becomes level, whichever is nearer to its points. A level part
-    with a fault always joins a neighbor. All other parts stay as they are.
+    with a fault always joins a neighbor. All other parts stay as they are. Around a corner above its limit a part is cut
+    off, which takes a plane that keeps to the limit.
     """
+    if limits is not None:
+        # Its cells may be cut; those of the simpler levels stay.
+        partition.cells = partition.cells.copy()
     mending = _Mending(partition, xyz, limits, percentile)
     for _ in range(_MENDINGS):
         mending.lower_high_cells()
@@ -158,15 +163,19 @@ class _Mending:
     def __init__(
         self, partition: Partition, xyz: np.ndarray, limits: Optional[HeightsAround], percentile: float
     ) -> None:
-        self.partition, self.xyz, self.percentile = partition, xyz, percentile
-        cells = partition.cells
+        self.partition, self.xyz, self.limits, self.percentile = partition, xyz, limits, percentile
+        self.level: set[int] = set()
+        self._measure()
+
+    def _measure(self) -> None:
+        """Take the measures of the cells."""
+        cells, limits = self.partition.cells, self.limits
         self.areas = cells.areas()
         ends, self.beside = cells.edges()
         self.positions = np.array(cells.vertices)
         self.length = np.hypot(*(self.positions[ends[:, 0]] - self.positions[ends[:, 1]]).T)
         self.highest = np.full(len(self.positions), np.inf) if limits is None else limits.highest(self.positions)
         self.loops = [np.array(loop) for loop in cells.loops]
-        self.level: set[int] = set()
 
     def join_small_parts(self) -> None:
         """Give parts that are too small or too narrow the plane of a neighbor, the smallest one first."""
@@ -191,21 +200,52 @@ class _Mending:
         return part, area, is_small
 
     def lower_high_cells(self) -> None:
-        """Give cells with a corner above its points another plane, or a level one, where that is an improvement."""
-        if not np.isfinite(self.highest).any():
+        """Give cells with a corner above its points another plane, or a level one.
+
+        A whole cell changes where that is an improvement; of others what lies around the corner is cut off first.
+        """
+        if self.limits is None:
             return
-        label = self.partition.label
-        used = np.flatnonzero(label >= 0)
-        size = np.array([len(self.loops[cell]) for cell in used])
-        corner = np.concatenate([self.loops[cell] for cell in used])
         for _ in range(_ROUNDS):
-            a, b, c = self.partition.coefficients[np.repeat(label[used], size)].T
-            above = a * self.positions[corner, 0] + b * self.positions[corner, 1] + c - self.highest[corner]
-            is_high = np.maximum.reduceat(above, np.cumsum(size) - size) > 0
-            parts = used[is_high, None]
+            label = self.partition.label
+            parts = [np.array([cell]) for cell in np.unique(self._high_corners()[0])]
             changes = [self._take(part, [int(label[part[0]]), *self._neighbors(part)], True) for part in parts]
             if not any(changes):
-                return
+                break
+        cells, corners = self._high_corners()
+        self._cut_off(cells, corners)
+        for corner in np.unique(corners).tolist():
+            cells, high = self._high_corners()
+            part = cells[high == corner]
+            if len(part):
+                self._take(part, self._neighbors(part), True, must_fit=True)
+
+    def _high_corners(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the cells (k,) that have corners above the points around, and these corners (k,)."""
+        used = np.flatnonzero(self.partition.label >= 0)
+        cell = np.repeat(used, [len(self.loops[cell]) for cell in used])
+        corner = np.concatenate([self.loops[cell] for cell in used])
+        a, b, c = self.partition.coefficients[self.partition.label[cell]].T
+        x, y = self.positions[corner].T
+        is_high = a * x + b * y + c > self.highest[corner] + 10**-DECIMALS
+        return cell[is_high], corner[is_high]
+
+    def _cut_off(self, cells: np.ndarray, corners: np.ndarray) -> None:
+        """Cut cells (k,) around their corners (k,), as far from them as points count for the heights there."""
+        partition = self.partition
+        places = partition.cells.vertices
+        pieces: dict[int, list[int]] = {}
+        for cell, corner in zip(cells.tolist(), corners.tolist()):
+            own = pieces.setdefault(cell, [cell])
+            piece = next(piece for piece in own if corner in partition.cells.loops[piece])
+            inward = np.mean([places[v] for v in partition.cells.loops[piece]], axis=0) - places[corner]
+            inward /= np.hypot(*inward)
+            if partition.cells.cut_cell(piece, places[corner] + RADIUS * inward, np.array([-inward[1], inward[0]])):
+                own.append(len(partition.label))
+                partition.label = np.append(partition.label, partition.label[cell])
+                partition.cost = np.vstack([partition.cost, partition.cost[cell]])
+        if len(cells):
+            self._measure()
 
     def relabel(self, faces: list[tuple[_Piece, int]]) -> bool:
         """Give the smallest part beside each face another plane; return whether any had one to take."""
@@ -229,20 +269,31 @@ class _Mending:
         around = label[self.beside[is_part[self.beside].sum(axis=1) == 1]].ravel()
         return sorted(set(around[(around >= 0) & (around != label[part[0]])].tolist()))
 
-    def _take(self, part: np.ndarray, planes: list[int], may_be_level: bool = False) -> bool:
-        """Give a part the best of some planes, or a level one; return whether that is another one."""
+    def _take(self, part: np.ndarray, planes: list[int], may_be_level: bool = False, must_fit: bool = False) -> bool:
+        """Give a part the best of some planes, or a level one; return whether that is another one.
+
+        Planes that ``must_fit`` have no corner of the part above the points around.
+        """
         partition = self.partition
         own = int(partition.label[part[0]])
         rows = np.concatenate([partition.cells.members[cell] for cell in part])
         corners = np.unique(np.concatenate([self.loops[cell] for cell in part]))
         options = [(plane, partition.coefficients[plane]) for plane in planes]
-        if may_be_level and own not in self.level:
-            options.append((len(partition.coefficients), self._level_plane(rows, corners, own)))
+        new = len(partition.coefficients)
+        if may_be_level and (must_fit or own not in self.level):
+            options.append((new, self._level_plane(rows, corners, own)))
+        if must_fit and len(rows) > 3:
+            options.append((new, planes_through(self.xyz[rows], np.zeros(len(rows), int)).coefficients[0]))
         if not options:
             return False
         area = float(self.areas[part].sum())
-        best, coefficients = min(options, key=lambda option: self._loss(rows, corners, area, option[1]))
-        if best == len(partition.coefficients):
+
+        def loss(option: tuple) -> tuple[bool, float]:
+            excess = self._excess(corners, option[1])
+            return excess > 10**-DECIMALS and must_fit, self._loss(rows, area, option[1]) + excess
+
+        best, coefficients = min(options, key=loss)
+        if best == new:
             partition.coefficients = np.vstack([partition.coefficients, coefficients])
             partition.cost = np.column_stack([partition.cost, partition.cost[:, own]])
             self.level.add(best)
@@ -257,9 +308,13 @@ class _Mending:
             height = float(np.percentile(self.xyz[rows, 2], self.percentile))
         return np.array([0.0, 0.0, min(height, float(self.highest[corners].min()))])
 
-    def _loss(self, rows: np.ndarray, corners: np.ndarray, area: float, plane: np.ndarray) -> float:
-        """Return how much a plane leaves out of a part (m³): heights of its points, and of corners above all points."""
+    def _loss(self, rows: np.ndarray, area: float, plane: np.ndarray) -> float:
+        """Return how much a plane leaves out of a part (m³) by the heights of its points."""
         a, b, c = plane
         off = np.abs(self.xyz[rows, 2] - self.xyz[rows, :2] @ [a, b] - c)
-        loss = float(np.minimum(off, _FARTHEST).mean()) * area if len(rows) else 0.0
-        return loss + float(np.maximum(self.positions[corners] @ [a, b] + c - self.highest[corners], 0.0).max())
+        return float(np.minimum(off, _FARTHEST).mean()) * area if len(rows) else 0.0
+
+    def _excess(self, corners: np.ndarray, plane: np.ndarray) -> float:
+        """Return how far (m) a plane is above the points around corners at most."""
+        a, b, c = plane
+        return float(np.maximum(self.positions[corners] @ [a, b] + c - self.highest[corners], 0.0).max())

@@ -81,7 +81,7 @@ def find_roof_planes(xyz: np.ndarray, tolerance: float, max_slope: float, min_po
     label = growth.all_planes(eigenvalues[:, 2], min_points)
     label = _chosen_by_neighborhood(xyz, neighbors, label, tolerance)
     label = _merged(xyz, neighbors, label, tolerance)
-    planes = _fitted(xyz, _large(label, min_points))
+    planes = planes_through(xyz, _large(label, min_points))
     # Points change planes after these have grown, and the last fit may turn a plane upright.
     return _some(planes, planes.cosine >= growth.least_upward)
 
@@ -202,7 +202,7 @@ def _chosen_by_neighborhood(xyz: np.ndarray, neighbors: np.ndarray, label: np.nd
     for _ in range(_CHOICES):
         if label.max() < 0:
             break
-        fitted = _fitted(xyz, label)
+        fitted = planes_through(xyz, label)
         label = fitted.label
         options = label[neighbors]
         scale = fitted.cosine
@@ -218,7 +218,7 @@ def _chosen_by_neighborhood(xyz: np.ndarray, neighbors: np.ndarray, label: np.nd
 def _merged(xyz: np.ndarray, neighbors: np.ndarray, label: np.ndarray, tolerance: float) -> np.ndarray:
     """Return the labels with touching planes joined that one plane describes as well."""
     while label.max() >= 0:
-        fitted = _fitted(xyz, label)
+        fitted = planes_through(xyz, label)
         label, n = fitted.label, len(fitted)
         other = label[neighbors]
         pair = np.unique(np.sort(np.column_stack([np.repeat(label, other.shape[1]), other.ravel()]), axis=1), axis=0)
@@ -252,7 +252,7 @@ def _large(label: np.ndarray, min_points: int) -> np.ndarray:
     return number[label]
 
 
-def _fitted(xyz: np.ndarray, label: np.ndarray) -> RoofPlanes:
+def planes_through(xyz: np.ndarray, label: np.ndarray) -> RoofPlanes:
     """Return the least-squares planes of labeled points, numbered without gaps."""
     member = label >= 0
     if not member.any():

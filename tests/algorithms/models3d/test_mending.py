@@ -43,6 +43,21 @@ def test_a_cell_far_above_its_points_takes_the_plane_of_a_neighbor():
     assert heights_of(solids).tolist() == [6.0]
 
 
+def test_what_lies_around_a_corner_far_above_its_points_is_cut_off():
+    """The plane is right but for a corner, over which the points lie 5 m lower: the rest of the cell keeps it."""
+    xyz = level_points()
+    is_low = (xyz[:, 0] > 9.5) & (xyz[:, 1] > 5.5)
+    xyz[:, 2] = np.where(is_low, 6.0, 6.0 + 0.5 * xyz[:, 0])
+    parts = partition(xyz, [], [[0.5, 0, 6.0]], lambda x: 0)
+    solids, why = mended(parts, 0.0, xyz, HeightsAround(xyz), 70.0)
+    assert why == ""
+    corners = np.concatenate([solid.vertices for solid in solids])
+    at_corner = corners[(corners[:, :2] > [11.9, 7.9]).all(axis=1)]
+    assert at_corner[:, 2].max() <= 6.5
+    assert corners[:, 2].max() == pytest.approx(12.0)
+    assert parts.cells.areas()[parts.label == 0].sum() > 90
+
+
 def test_without_limits_it_stays():
     xyz = level_points()
     parts = partition(xyz, [8.0], [[0, 0, 6.0], [0.5, 0, 6.0]], lambda x: int(x > 8))
