@@ -60,8 +60,8 @@ def mended(
     Notes
     -----
     A part with a fault takes the plane of a neighbor or becomes level, whichever is nearer to its points. A level part
-    with a fault always joins a neighbor. All other parts stay as they are. Around a corner above its limit a part is cut
-    off, which takes a plane that keeps to the limit.
+    with a fault always joins a neighbor. All other parts stay as they are. Around a corner above its limit a part is
+    cut off, which takes a plane that keeps to the limit.
     """
     if limits is not None:
         # Its cells may be cut; those of the simpler levels stay.
