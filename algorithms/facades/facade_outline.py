@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Optional
+from typing import Any, Optional
 
 import numpy as np
 
-from ..footprints.alpha_shape import Tracing, trace_outlines
+from ..footprints.alpha_shape import Tracing, trace_outlines, triangulated
 from ..footprints.regularization import regularize_outline
 from ..geometry.groups import items
 from ..geometry.line_segments import are_inside, edge_distances, is_valid, nearest_edge_distances
@@ -96,8 +96,11 @@ def outline_of(
     complete : bool
         Whether what cars and trees hide of the foot and the sides is filled.
     """
-    spacing = sparse_spacing(positions)
-    traced = _traced(positions, spacing, edge_factor, max_gap) if spacing else None
+    triangulation = triangulated(positions)
+    if triangulation is None:
+        return None
+    spacing = sparse_spacing(positions, triangulation.simplices)
+    traced = _traced(positions, triangulation, spacing, edge_factor, max_gap)
     if traced is None:
         return None
     seen = ring_area(traced)
@@ -190,15 +193,12 @@ def _hidden_corners(
     return hidden
 
 
-def sparse_spacing(positions: np.ndarray) -> float:
-    """Return the distance (m) between points (n, 2) where they are farthest apart; 0 where they have no area.
+def sparse_spacing(positions: np.ndarray, triangles: np.ndarray) -> float:
+    """Return the distance (m) between points (n, 2) where they are farthest apart, by their triangles (t, 3).
 
     It is the longest edge of the smallest triangle at a point, over the square root of two, so that a square grid has
     its own spacing, and scan lines have that between the lines.
     """
-    if len(positions) < 3 or np.linalg.eigvalsh(np.cov(positions.T))[0] < 1e-6:
-        return 0.0
-    triangles = spatial.Delaunay(positions - positions.mean(axis=0)).simplices
     corners = positions[triangles]
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
     smallest = np.full(len(positions), np.inf)
@@ -206,11 +206,13 @@ def sparse_spacing(positions: np.ndarray) -> float:
     return float(np.percentile(smallest[np.isfinite(smallest)], _PERCENTILE)) / np.sqrt(2)
 
 
-def _traced(positions: np.ndarray, spacing: float, edge_factor: float, max_gap: float) -> Optional[np.ndarray]:
+def _traced(
+    positions: np.ndarray, triangulation: Any, spacing: float, edge_factor: float, max_gap: float
+) -> Optional[np.ndarray]:
     """Return the exterior ring of the largest piece of triangles without long edges."""
     label, max_edge = np.ones(len(positions), np.int64), edge_factor * spacing
     while True:
-        tracing = trace_outlines(positions, label, spacing, max_edge, min_hole_area=np.inf)
+        tracing = trace_outlines(positions, label, spacing, max_edge, min_hole_area=np.inf, triangulation=triangulation)
         piece = None if tracing is None else _largest(tracing)
         if max_edge >= max_gap or (tracing is not None and piece is not None and _share(tracing, piece) >= _WHOLE):
             break

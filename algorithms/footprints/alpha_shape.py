@@ -140,6 +140,14 @@ class Tracing:
         return found
 
 
+def triangulated(xy: np.ndarray) -> Optional[Any]:
+    """Return the Delaunay triangulation of points (n, 2), m, about their middle; None where they have no area."""
+    # A millimeter of width, below which there is nothing to triangulate.
+    if len(xy) < 3 or np.linalg.eigvalsh(np.cov((xy - xy.mean(axis=0)).T))[0] < 1e-6:
+        return None
+    return spatial.Delaunay(xy - xy.mean(axis=0))
+
+
 def trace_outlines(
     xy: np.ndarray,
     label: np.ndarray,
@@ -148,6 +156,7 @@ def trace_outlines(
     min_area: float = 0.0,
     min_hole_area: float = 0.0,
     stands_for: Optional[np.ndarray] = None,
+    triangulation: Optional[Any] = None,
 ) -> Optional[Tracing]:
     """Divide the area of labeled points among their labels: triangles of their triangulation without long edges.
 
@@ -168,6 +177,8 @@ def trace_outlines(
         Smaller holes (m²) are filled.
     stands_for : ndarray of shape (n,), optional
         How many points inside a building each point stands for, as :func:`without_inside` gives it; 0 for one itself.
+    triangulation : Delaunay, optional
+        That of the points, as :func:`triangulated` gives it, where it is there already.
 
     Returns
     -------
@@ -179,10 +190,9 @@ def trace_outlines(
     Edelsbrunner et al. (1983), On the shape of a set of points in the plane.
     Santos et al. (2019), Extraction of building roof boundaries from LiDAR data using an adaptive alpha shape.
     """
-    # A millimeter of width, below which there is nothing to triangulate.
-    if len(xy) < 3 or np.linalg.eigvalsh(np.cov((xy - xy.mean(axis=0)).T))[0] < 1e-6:
+    triangulation = triangulated(xy) if triangulation is None else triangulation
+    if triangulation is None:
         return None
-    triangulation = spatial.Delaunay(xy - xy.mean(axis=0))
     triangles, neighbors = triangulation.simplices, triangulation.neighbors
     length = _edge_lengths(xy, triangles)
     longest = length.max(axis=1)

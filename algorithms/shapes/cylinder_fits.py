@@ -6,8 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .hough_planes import unit
-
 # Rounds of Gauss and Newton: from a start within a few percent they converge in three to five.
 _ROUNDS = 8
 
@@ -63,31 +61,35 @@ def upward(axis: np.ndarray) -> np.ndarray:
 def fit_cylinder(xyz: np.ndarray, start: Cylinder, rounds: int = _ROUNDS) -> Cylinder:
     """Return the cylinder with the least sum of squared distances of points (n, 3), n >= 6, from it."""
     cylinder = start
+    # The distance falls as the axis moves or leans toward the point, and as the radius grows.
+    design = np.ones((5, len(xyz)))
     for _ in range(rounds):
-        middle = cylinder.center + cylinder.axis * float(((xyz - cylinder.center) @ cylinder.axis).mean())
-        cylinder = Cylinder(middle, cylinder.axis, cylinder.radius)
-        along, distance, away = cylinder.local(xyz)
         first, second = across_axis(cylinder.axis)
-        a, b = away @ first, away @ second
-        # The distance falls as the axis moves or leans toward the point, and as the radius grows.
-        design = np.column_stack([a, b, along * a, along * b, np.ones(len(xyz))])
+        frame = np.array([first, second, cylinder.axis])
+        a, b, along = frame @ (xyz - cylinder.center).T
+        middle = along.sum() / len(along)
+        along -= middle
+        distance = np.sqrt(a * a + b * b)
+        design[:2] = (a, b) / np.maximum(distance, 1e-12)
+        np.multiply(design[:2], along, out=design[2:4])
         step = _solved(design, distance - cylinder.radius)
         if not np.isfinite(step).all() or abs(step[4]) > cylinder.radius:
             return start
-        axis = unit(cylinder.axis + step[2] * first + step[3] * second)
-        center = cylinder.center + step[0] * first + step[1] * second
-        cylinder = Cylinder(center, axis, cylinder.radius + float(step[4]))
+        axis = cylinder.axis + step[2] * first + step[3] * second
+        center = cylinder.center + cylinder.axis * middle + step[0] * first + step[1] * second
+        cylinder = Cylinder(center, axis / np.sqrt(axis @ axis), cylinder.radius + float(step[4]))
         if np.abs(step).max() < 1e-7:
             break
     return Cylinder(cylinder.center, upward(cylinder.axis), cylinder.radius)
 
 
 def _solved(design: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Return the least-squares solution, NaN where undefined: columns are scaled, so that products stay precise."""
-    scale = np.maximum(np.sqrt((design * design).sum(axis=0)), 1e-300)
-    scaled = design / scale
+    """Return the least-squares solution (k,) of a design (k, n), NaN where undefined."""
+    product = design @ design.T
+    # Scaled, so that the solution stays precise where patterns differ in size.
+    scale = np.maximum(np.sqrt(product.diagonal()), 1e-150)
     try:
-        return np.linalg.solve(scaled.T @ scaled, scaled.T @ values) / scale
+        return np.linalg.solve(product / (scale * scale[:, None]), (design @ values) / scale) / scale
     except np.linalg.LinAlgError:
         return np.full(len(scale), np.nan)
 
@@ -98,7 +100,7 @@ def fit_sphere(xyz: np.ndarray, center: np.ndarray, radius: float) -> tuple[np.n
     for _ in range(_ROUNDS):
         offset = xyz - at
         distance = np.linalg.norm(offset, axis=1)
-        design = np.column_stack([offset / np.maximum(distance, 1e-12)[:, None], np.ones(len(xyz))])
+        design = np.vstack([offset.T / np.maximum(distance, 1e-12), np.ones(len(xyz))])
         step = _solved(design, distance - size)
         if not np.isfinite(step).all() or abs(step[3]) > size:
             return center, radius

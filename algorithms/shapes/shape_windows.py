@@ -64,9 +64,11 @@ def level_of(xyz: np.ndarray, is_free: np.ndarray, low: float, high: float, min_
         for shift in (0.0, 0.5):
             # A second set of windows, half a side apart, has in its middle what the first cuts in two.
             boxes = Boxes(np.concatenate([xyz[rows], [xyz[rows].min(axis=0) - shift * side]]), side)
-            parts = np.split(boxes.order, boxes.start[1:])
-            parts = [np.sort(part[part < len(rows)]) for part in parts]
-            windows += [part for part in parts if len(part) >= min_points]
+            # Boxes keep the order of their points; without the one that moved them.
+            is_point = boxes.order < len(rows)
+            order, size = boxes.order[is_point], np.add.reduceat(is_point, boxes.start, dtype=np.int64)
+            large, stop = np.flatnonzero(size >= min_points), np.cumsum(size)
+            windows += [order[stop[box] - size[box] : stop[box]] for box in large.tolist()]
         windows.sort(key=lambda part: -len(part))
     return Level(low, high, rows, windows)
 
