@@ -271,7 +271,11 @@ def _sublist(rows: list) -> str:
 
 
 def _section(title: str, text: str) -> str:
-    return f"<h3>{title}</h3>\n{paragraphs(text)}" if text else ""
+    return f"<h3>{title}</h3>\n{paragraphs(_CITATION.sub('', text))}" if text else ""
+
+
+# Keys of docs/references.bib, which the documentation resolves.
+_CITATION = re.compile(r"\s*\[[a-z]+\d{4}\]")
 
 
 def paragraphs(text: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import configparser
+import re
 import sys
 from pathlib import Path
 
@@ -62,8 +63,15 @@ sphinx_gallery_conf = {
 suppress_warnings = ["config.cache"]
 
 
+def cited(app, what, name, obj, options, lines) -> None:
+    """Turn keys of references.bib in docstrings into citations."""
+    lines[:] = [re.sub(r"\[([a-z]+\d{4})\]", r":cite:p:`\1`", line) for line in lines]
+
+
 def setup(app) -> None:
-    """Write the generated pages."""
+    """Write the generated pages, and resolve citations."""
     import generated_pages
+
+    app.connect("autodoc-process-docstring", cited)
 
     generated_pages.write(DOCS)

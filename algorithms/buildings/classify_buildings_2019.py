@@ -103,8 +103,8 @@ def classify_buildings_2019(
 
     References
     ----------
-    Santos, R. C. dos, Pessoa, G. G., Carrilho, A. C., Galo, M., 2019. Building detection from LiDAR data using
-    entropy and the k-means concept, section 2.4.
+    Santos, R. C. dos, Pessoa, G. G., Carrilho, A. C., Galo, M., 2019. Building detection from LiDAR data using entropy
+    and the k-means concept, section 2.4. [santos2019]
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     if density is None:

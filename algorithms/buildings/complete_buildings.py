@@ -156,8 +156,8 @@ def complete_buildings(
 
     References
     ----------
-    Santos, R. C. dos, Pessoa, G. G., Carrilho, A. C., Galo, M., 2019. Building detection from LiDAR data using
-    entropy and the k-means concept, section 4 (critical regions).
+    Santos, R. C. dos, Pessoa, G. G., Carrilho, A. C., Galo, M., 2019. Building detection from LiDAR data using entropy
+    and the k-means concept, section 4 (critical regions). [santos2019]
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     xyz = sampling.from_corner(xyz)

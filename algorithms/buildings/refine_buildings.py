@@ -140,10 +140,10 @@ def refine_buildings(
     References
     ----------
     Yarowsky, D., 1995. Unsupervised word sense disambiguation rivaling supervised methods. Proceedings of the 33rd
-    Annual Meeting of the Association for Computational Linguistics, 189-196 (self-training).
+    Annual Meeting of the Association for Computational Linguistics, 189-196 (self-training). [yarowsky1995]
     Weinmann, M., Jutzi, B., Hinz, S., Mallet, C., 2015. Semantic point cloud interpretation based on optimal
     neighborhoods, relevant features and efficient classifiers. ISPRS Journal of Photogrammetry and Remote Sensing 105,
-    286-304 (features).
+    286-304 (features). [weinmann2015]
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.effective_density if density is None else density

@@ -187,7 +187,7 @@ def extract_facades(
     References
     ----------
     Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on vehicle
-    LIDAR. EURASIP Journal on Image and Video Processing 2018:121, sections 3.1 to 3.3.
+    LIDAR. EURASIP Journal on Image and Video Processing 2018:121, sections 3.1 to 3.3. [peng2018]
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     tolerance = _ON_PLANE * float(np.hypot(sampling.noise, _RELIEF)) if tolerance is None else tolerance

@@ -126,7 +126,7 @@ def extract_openings(
     References
     ----------
     Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on vehicle
-    LIDAR. EURASIP Journal on Image and Video Processing 2018:121, section 4.
+    LIDAR. EURASIP Journal on Image and Video Processing 2018:121, section 4. [peng2018]
     """
     edge_factor = longest_edge(boundary) if edge_factor is None else edge_factor
     monitor.resolved(edge_factor=edge_factor)

@@ -124,7 +124,7 @@ def register_street(
     References
     ----------
     Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on vehicle
-    LIDAR. EURASIP Journal on Image and Video Processing 2018:121, sections 3 and 4.
+    LIDAR. EURASIP Journal on Image and Video Processing 2018:121, sections 3 and 4. [peng2018]
     """
     is_ground = classification == PointClass.GROUND
     if not is_ground.any():

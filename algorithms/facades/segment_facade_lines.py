@@ -150,7 +150,7 @@ def segment_facade_lines(
     References
     ----------
     Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on vehicle
-    LIDAR. EURASIP Journal on Image and Video Processing 2018:121, section 3.4.
+    LIDAR. EURASIP Journal on Image and Video Processing 2018:121, section 3.4. [peng2018]
     """
     if np.ptp(gps_time) == 0:
         raise ValueError(

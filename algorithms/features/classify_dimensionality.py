@@ -42,7 +42,7 @@ def classify_dimensionality(linearity, planarity, scattering, *, monitor=None):
 
     References
     ----------
-    Weinmann et al. (2017), Point cloud analysis for UAV-borne laser scanning, section 4.3.
+    Weinmann et al. (2017), Point cloud analysis for UAV-borne laser scanning, section 4.3. [weinmann2017]
 
     Examples
     --------

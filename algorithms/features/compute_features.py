@@ -184,10 +184,11 @@ def compute_features(
     References
     ----------
     Santos et al. (2019), Building detection from LiDAR data using entropy and the k-means concept, equations 6-11.
-    Weinmann et al. (2017), Point cloud analysis for UAV-borne laser scanning, section 4.2.
-    Weinmann et al. (2015), Semantic point cloud interpretation based on optimal neighborhoods, relevant features
-    and efficient classifiers: the choice of the neighborhood, the features of height and plan.
-    Demantké et al. (2011), Dimensionality based scale selection in 3D lidar point clouds.
+    [santos2019]
+    Weinmann et al. (2017), Point cloud analysis for UAV-borne laser scanning, section 4.2. [weinmann2017]
+    Weinmann et al. (2015), Semantic point cloud interpretation based on optimal neighborhoods, relevant features and
+    efficient classifiers: the choice of the neighborhood, the features of height and plan. [weinmann2015]
+    Demantké et al. (2011), Dimensionality based scale selection in 3D lidar point clouds. [demantke2011]
 
     Examples
     --------

@@ -32,7 +32,7 @@ def greenness(red: np.ndarray, green: np.ndarray, blue: np.ndarray) -> np.ndarra
     References
     ----------
     Woebbecke, D. M., Meyer, G. E., Von Bargen, K., Mortensen, D. A., 1995. Color indices for weed identification under
-    various soil, residue, and lighting conditions. Transactions of the ASAE 38(1), 259-269.
+    various soil, residue, and lighting conditions. Transactions of the ASAE 38(1), 259-269. [woebbecke1995]
     """
     r, g, b = (np.asarray(band, float) for band in (red, green, blue))
     total = r + g + b
@@ -76,7 +76,7 @@ def plant_greenness(values: np.ndarray) -> Optional[float]:
     References
     ----------
     Otsu, N., 1979. A threshold selection method from gray-level histograms. IEEE Transactions on Systems, Man, and
-    Cybernetics 9(1), 62-66.
+    Cybernetics 9(1), 62-66. [otsu1979]
     """
     # Gray to red materials are one kind, however many colors there are.
     known = np.maximum(values[np.isfinite(values)], 0.0)

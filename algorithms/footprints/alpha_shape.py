@@ -187,8 +187,9 @@ def trace_outlines(
 
     References
     ----------
-    Edelsbrunner et al. (1983), On the shape of a set of points in the plane.
+    Edelsbrunner et al. (1983), On the shape of a set of points in the plane. [edelsbrunner1983]
     Santos et al. (2019), Extraction of building roof boundaries from LiDAR data using an adaptive alpha shape.
+    [santosroofs2019]
     """
     triangulation = triangulated(xy) if triangulation is None else triangulation
     if triangulation is None:

@@ -161,10 +161,10 @@ def extract_footprints(
 
     References
     ----------
-    Boykov, Veksler and Zabih (2001), Fast approximate energy minimization via graph cuts.
-    Lorensen and Cline (1987), Marching cubes: a high resolution 3D surface construction algorithm.
-    Santos et al. (2019), Building detection from LiDAR data using entropy and the k-means concept.
-    Perez and Vidal (1994), Optimum polygonal approximation of digitized curves.
+    Boykov, Veksler and Zabih (2001), Fast approximate energy minimization via graph cuts. [boykov2001]
+    Lorensen and Cline (1987), Marching cubes: a high resolution 3D surface construction algorithm. [lorensen1987]
+    Santos et al. (2019), Building detection from LiDAR data using entropy and the k-means concept. [santos2019]
+    Perez and Vidal (1994), Optimum polygonal approximation of digitized curves. [perez1994]
     """
     building = _building_points(classification, cluster_id, monitor)
     if not len(building) or not np.ptp(xyz[building, :2], axis=0).any():

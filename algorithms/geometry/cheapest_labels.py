@@ -40,6 +40,7 @@ def cheapest_labels(
     References
     ----------
     Boykov, Y., Veksler, O., Zabih, R., 2001. Fast approximate energy minimization via graph cuts, IEEE TPAMI 23(11).
+    [boykov2001]
     """
     label = start.copy()
     lowest = _energy(cost, edges, border, label)

@@ -17,6 +17,7 @@ class DisjointSets:
     References
     ----------
     Galler, B. A., Fisher, M. J., 1964. An improved equivalence algorithm. Communications of the ACM 7 (5), 301-303.
+    [galler1964]
 
     Examples
     --------

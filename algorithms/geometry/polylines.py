@@ -110,8 +110,9 @@ class Line:
 
         References
         ----------
-        Perez and Vidal (1994), Optimum polygonal approximation of digitized curves.
+        Perez and Vidal (1994), Optimum polygonal approximation of digitized curves. [perez1994]
         Killick, Fearnhead and Eckley (2012), Optimal detection of changepoints with a linear computational cost.
+        [killick2012]
         """
         rows = simplify(self.samples, _FINE * tolerance, self.is_closed)
         if self.is_closed:

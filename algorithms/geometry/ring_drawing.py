@@ -103,9 +103,10 @@ def draw_ring(samples: np.ndarray, directions: np.ndarray, prices: Prices) -> li
     References
     ----------
     Perez, J. C., Vidal, E., 1994. Optimum polygonal approximation of digitized curves. Pattern Recognition Letters 15
-    (8), 743-750. Killick, R., Fearnhead, P., Eckley, I. A., 2012. Optimal detection of changepoints with a linear
-    computational cost. Journal of the American Statistical Association 107 (500), 1590-1598 (which starts of runs can
-    be left out).
+    (8), 743-750. [perez1994]
+    Killick, R., Fearnhead, P., Eckley, I. A., 2012. Optimal detection of changepoints with a linear computational cost.
+    Journal of the American Statistical Association 107 (500), 1590-1598 (which starts of runs can be left out).
+    [killick2012]
     """
     if not len(directions):
         return _drawn(samples, _Ways.of(directions, replace(prices, corner=prices.round * prices.corner), 0.0))[1]

@@ -64,8 +64,8 @@ def skeleton(cells: np.ndarray, monitor: Monitor) -> np.ndarray:
 
     References
     ----------
-    Palágyi, K., Kuba, A., 1999. Directional 3D thinning using 8 subiterations. LNCS 1568, 325-336. Malandain, G.,
-    Bertrand, G., 1992. Fast characterization of 3D simple points. ICPR, 232-235.
+    Palágyi, K., Kuba, A., 1999. Directional 3D thinning using 8 subiterations. LNCS 1568, 325-336. [palagyi1999]
+    Malandain, G., Bertrand, G., 1992. Fast characterization of 3D simple points. ICPR, 232-235. [malandain1992]
     """
     return _Thinning(cells).run(monitor)
 

@@ -134,7 +134,7 @@ def classify_vegetation(
 
     References
     ----------
-    ASPRS, 2019. LAS specification 1.4, R15, table 17.
+    ASPRS, 2019. LAS specification 1.4, R15, table 17. [asprs2019]
     """
     classes = classification.astype(np.uint8)
     if not look_for:

@@ -78,6 +78,7 @@ def classify_water(
     ----------
     Höfle, B., Vetter, M., Pfeifer, N., Mandlburger, G., Stötter, J., 2009. Water surface mapping from airborne laser
     scanning using signal intensity and elevation data. Earth Surface Processes and Landforms 34(12), 1635-1649.
+    [hoefle2009]
     """
     classes = classification.astype(np.uint8)
     if not look_for:

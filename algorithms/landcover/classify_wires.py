@@ -85,8 +85,9 @@ def classify_wires(
     References
     ----------
     Melzer, T., Briese, C., 2004. Extraction and modeling of power lines from ALS point clouds. 28th Workshop of the
-    Austrian Association for Pattern Recognition, 47-54. Fischler, M. A., Bolles, R. C., 1981. Random sample consensus.
-    Communications of the ACM 24(6), 381-395.
+    Austrian Association for Pattern Recognition, 47-54. [melzer2004]
+    Fischler, M. A., Bolles, R. C., 1981. Random sample consensus. Communications of the ACM 24(6), 381-395.
+    [fischler1981]
     """
     classes = classification.astype(np.uint8)
     if not look_for:

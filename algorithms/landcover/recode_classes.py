@@ -92,8 +92,9 @@ def recode_classes(
 
     References
     ----------
-    ASPRS, 2019. LAS specification 1.4, R15, table 17. IGN, 2023. LiDAR HD: descriptif de contenu des nuages de points
-    classés. USGS, 2024. Lidar base specification, table 5.
+    ASPRS, 2019. LAS specification 1.4, R15, table 17. [asprs2019]
+    IGN, 2023. LiDAR HD: descriptif de contenu des nuages de points classés. [ign2023]
+    USGS, 2024. Lidar base specification, table 5. [usgs2024]
     """
     table = np.arange(256, dtype=np.uint8)
     for number, code in {**CODES[codes], **parse_mapping(mapping)}.items():

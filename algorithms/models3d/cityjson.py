@@ -39,7 +39,7 @@ def cityjson_pieces(models: Collection[NamedModel], called: str, frame: MapFrame
 
     References
     ----------
-    CityJSON Specifications 2.0.1, sections 2 to 6; CityJSONSeq, RFC 8142 without record separators.
+    CityJSON Specifications 2.0.1, sections 2 to 6; CityJSONSeq, RFC 8142 without record separators. [cityjson2024]
     """
     low, high = _extent(models, frame)
     translate = np.floor(low)

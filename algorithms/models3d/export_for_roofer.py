@@ -87,6 +87,7 @@ def export_for_roofer(
     ----------
     Peters, R., Dukai, B., Vitalis, S., van Liempt, J., Stoter, J., 2022. Automated 3D reconstruction of LoD2 and LoD1
     models for all 10 million buildings of the Netherlands. Photogrammetric Engineering & Remote Sensing 88(3).
+    [peters2022]
     """
     require_buildings(classification)
     require_ground(classification)

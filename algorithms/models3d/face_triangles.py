@@ -22,8 +22,8 @@ def triangulate_face(vertices: np.ndarray, rings: list[list[int]]) -> list[list[
 
     References
     ----------
-    Held, M., 2001. FIST: fast industrial-strength triangulation of polygons (bridges to holes, then ears).
-    Lawson, C. L., 1977. Software for C1 surface interpolation (sides turned until all are Delaunay).
+    Held, M., 2001. FIST: fast industrial-strength triangulation of polygons (bridges to holes, then ears). [held2001]
+    Lawson, C. L., 1977. Software for C1 surface interpolation (sides turned until all are Delaunay). [lawson1977]
     """
     used = sorted({v for ring in rings for v in ring})
     positions = dict(zip(used, _in_plane(vertices, rings, used).tolist()))

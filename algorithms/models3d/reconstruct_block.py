@@ -126,8 +126,8 @@ def reconstruct_block(
     References
     ----------
     Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on vehicle
-    LIDAR. EURASIP Journal on Image and Video Processing 2018:121.
-    CityJSON Specifications 2.0.1, section 3.3 (semantics of geometric primitives).
+    LIDAR. EURASIP Journal on Image and Video Processing 2018:121. [peng2018]
+    CityJSON Specifications 2.0.1, section 3.3 (semantics of geometric primitives). [cityjson2024]
     """
     segments = facade_segments(facades)
     fitted, seen = fitted_to_walls(footprints, segments)

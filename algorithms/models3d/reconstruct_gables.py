@@ -118,7 +118,7 @@ def reconstruct_gables(
     References
     ----------
     Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on vehicle
-    LIDAR. EURASIP Journal on Image and Video Processing 2018:121, section 3.4.
+    LIDAR. EURASIP Journal on Image and Video Processing 2018:121, section 3.4. [peng2018]
     """
     groups = list(members(segment_id).values())
     houses = []

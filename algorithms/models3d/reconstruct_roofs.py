@@ -203,11 +203,12 @@ def reconstruct_roofs(
     ----------
     Peters, R., Dukai, B., Vitalis, S., van Liempt, J., Stoter, J., 2022. Automated 3D reconstruction of LoD2 and LoD1
     models for all 10 million buildings of the Netherlands. Photogrammetric Engineering & Remote Sensing 88(3).
-    Nan, L., Wonka, P., 2017. PolyFit: polygonal surface reconstruction from point clouds. ICCV.
+    [peters2022]
+    Nan, L., Wonka, P., 2017. PolyFit: polygonal surface reconstruction from point clouds. ICCV. [nan2017]
     Huang, J., Stoter, J., Peters, R., Nan, L., 2022. City3D: large-scale building reconstruction from airborne LiDAR
-    point clouds. Remote Sensing 14(9).
+    point clouds. Remote Sensing 14(9). [huang2022]
     Biljecki, F., Ledoux, H., Stoter, J., 2016. An improved LOD specification for 3D building models. Computers,
-    Environment and Urban Systems 59.
+    Environment and Urban Systems 59. [biljecki2016]
     """
     building, ground = _points(xyz, classification)
     outlines = _outlines(footprints, id_field, monitor)

@@ -57,7 +57,7 @@ def faults_of(solid: Solid) -> dict[int, str]:
     References
     ----------
     Ledoux, H., 2018. val3dity: validation of 3D GIS primitives according to the international standards. Open
-    Geospatial Data, Software and Standards 3(1).
+    Geospatial Data, Software and Standards 3(1). [ledoux2018]
     """
     found: dict[int, str] = {}
     for check in (_ring_faults, _edge_faults, _shell_faults, _corner_faults):

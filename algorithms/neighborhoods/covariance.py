@@ -316,5 +316,6 @@ def shannon_entropy_lps(eigenvalues: np.ndarray) -> np.ndarray:
     References
     ----------
     Santos et al. (2019), Building detection from LiDAR data using entropy and the k-means concept, equations 6-9.
+    [santos2019]
     """
     return shannon_entropy(*dimensionality(eigenvalues))

@@ -93,8 +93,9 @@ def classify_noise_histogram_2019(
 
     References
     ----------
-    Carrilho et al. (2018), Statistical outlier detection method for airborne LiDAR data.
+    Carrilho et al. (2018), Statistical outlier detection method for airborne LiDAR data. [carrilho2018]
     Santos et al. (2019), Building detection from LiDAR data using entropy and the k-means concept, section 2.1.
+    [santos2019]
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     xyz = sampling.from_corner(xyz)

@@ -99,7 +99,7 @@ def classify_noise_statistical(
 
     References
     ----------
-    Rusu et al. (2008), Towards 3D point cloud based object maps for household environments.
+    Rusu et al. (2008), Towards 3D point cloud based object maps for household environments. [rusu2008]
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     xyz = sampling.from_corner(xyz)

@@ -65,6 +65,7 @@ def clip_cloud(
     References
     ----------
     Shimrat, M., 1962. Algorithm 112: position of point relative to polygon. Communications of the ACM 5(8).
+    [shimrat1962]
     """
     if polygons is None:
         if outside:

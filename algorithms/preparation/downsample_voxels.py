@@ -124,8 +124,8 @@ def downsample_voxels(
     References
     ----------
     Weinmann et al. (2017), Point cloud analysis for UAV-borne laser scanning with horizontally and vertically oriented
-    line scanners, section 4.1. Hrutka et al. (2022), Voxel-based point cloud segmentation and building detection,
-    section 2.2.
+    line scanners, section 4.1. [weinmann2017]
+    Hrutka et al. (2022), Voxel-based point cloud segmentation and building detection, section 2.2. [hrutka2022]
 
     Examples
     --------

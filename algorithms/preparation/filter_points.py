@@ -121,7 +121,7 @@ def filter_points(
 
     References
     ----------
-    Hrutka, B. P., Siki, Z., Takács, B., 2022, section 2.2 (heights of 0.3 and 2.5 m).
+    Hrutka, B. P., Siki, Z., Takács, B., 2022, section 2.2 (heights of 0.3 and 2.5 m). [hrutka2022]
     """
     kept = np.ones(len(xyz), bool)
     numbers = parse_classes(classes, "Classes")

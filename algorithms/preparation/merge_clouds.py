@@ -120,7 +120,7 @@ def merge_clouds(
     References
     ----------
     Weinmann et al. (2017), Point cloud analysis for UAV-borne laser scanning with horizontally and vertically oriented
-    line scanners, section 5.
+    line scanners, section 5. [weinmann2017]
 
     Examples
     --------

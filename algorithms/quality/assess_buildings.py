@@ -131,8 +131,9 @@ def assess_buildings(
 
     References
     ----------
-    Wiedemann et al. (1998), Empirical evaluation of automatically extracted road axes.
+    Wiedemann et al. (1998), Empirical evaluation of automatically extracted road axes. [wiedemann1998]
     Santos et al. (2019), Building detection from LiDAR data using entropy and the k-means concept, section 3.2.
+    [santos2019]
     """
     xyz, called, true = compared_points(
         xyz, classification, reference_xyz, reference_classification, parse_classes(ignored_classes)

@@ -105,7 +105,7 @@ def assess_classes(
     References
     ----------
     Congalton, R. G., 1991. A review of assessing the accuracy of classifications of remotely sensed data. Remote
-    Sensing of Environment 37(1), 35-46.
+    Sensing of Environment 37(1), 35-46. [congalton1991]
     """
     groups = parse_groups(merged_classes)
     xyz, called, true = compared_points(

@@ -162,8 +162,9 @@ def assess_footprints(
     ----------
     Rutzinger, M., Rottensteiner, F., Pfeifer, N., 2009. A comparison of evaluation techniques for building extraction
     from airborne laser scanning. IEEE Journal of Selected Topics in Applied Earth Observations and Remote Sensing 2(1).
+    [rutzinger2009]
     Huttenlocher, D. P., Klanderman, G. A., Rucklidge, W. J., 1993. Comparing images using the Hausdorff distance. IEEE
-    Transactions on Pattern Analysis and Machine Intelligence 15(9).
+    Transactions on Pattern Analysis and Machine Intelligence 15(9). [huttenlocher1993]
     """
     new = clean_map(footprints, "footprints", monitor)
     true = clean_map(reference_map, "buildings of the reference", monitor)

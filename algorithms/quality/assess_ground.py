@@ -66,7 +66,7 @@ def assess_ground(
 
     References
     ----------
-    Sithole and Vosselman (2004), Experimental comparison of filter algorithms for bare-Earth extraction.
+    Sithole and Vosselman (2004), Experimental comparison of filter algorithms for bare-Earth extraction. [sithole2004]
     """
     xyz, called, true = compared_points(
         xyz, classification, reference_xyz, reference_classification, parse_classes(ignored_classes)

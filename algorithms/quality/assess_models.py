@@ -163,7 +163,7 @@ def assess_models(
     ----------
     Peters, R., Dukai, B., Vitalis, S., van Liempt, J., Stoter, J., 2022. Automated 3D reconstruction of LoD2 and LoD1
     models for all 10 million buildings of the Netherlands, section on quality. Photogrammetric Engineering & Remote
-    Sensing 88(3).
+    Sensing 88(3). [peters2022]
     """
     require_buildings(classification)
     sampling = sampling or CloudSampling.of(xyz, classification)

@@ -95,7 +95,7 @@ def assess_segments(
     References
     ----------
     Hoover, A., et al., 1996. An experimental comparison of range image segmentation algorithms. IEEE Transactions on
-    Pattern Analysis and Machine Intelligence 18 (7), 673-689.
+    Pattern Analysis and Machine Intelligence 18 (7), 673-689. [hoover1996]
 
     Examples
     --------

@@ -157,7 +157,7 @@ def compare_corners(
     References
     ----------
     Hrutka, B. P., Siki, Z., Takács, B., 2022. Voxel-based point cloud segmentation and building detection, section 4,
-    table 2.
+    table 2. [hrutka2022]
     """
     if old_map is None:
         monitor.warn("There is no old map to compare with" + (", so all footprints are new." if footprints else "."))

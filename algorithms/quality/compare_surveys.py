@@ -174,7 +174,7 @@ def compare_surveys(
     References
     ----------
     Murakami, H., Nakagawa, K., Hasegawa, H., Shibata, T., Iwanami, E., 1999. Change detection of buildings using an
-    airborne laser scanner. ISPRS Journal of Photogrammetry and Remote Sensing 54(2-3).
+    airborne laser scanner. ISPRS Journal of Photogrammetry and Remote Sensing 54(2-3). [murakami1999]
     """
     new = clean_map(footprints, "footprints", monitor)
     old = clean_map(earlier, "footprints of the earlier survey", monitor)

@@ -32,6 +32,7 @@ def cohens_kappa(matrix: np.ndarray) -> float:
     References
     ----------
     Cohen, J., 1960. A coefficient of agreement for nominal scales. Educational and Psychological Measurement 20(1).
+    [cohen1960]
     """
     total = matrix.sum()
     if not total:

@@ -89,9 +89,10 @@ def classify_bridges(
 
     References
     ----------
-    Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point
-    clouds, section 5.3. Sithole, G., Vosselman, G., 2003. Automatic structure detection in a point cloud of an urban
-    landscape. URBAN 2003, Berlin, 67-71.
+    Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point clouds,
+    section 5.3. [vosselman2004]
+    Sithole, G., Vosselman, G., 2003. Automatic structure detection in a point cloud of an urban landscape. URBAN 2003,
+    Berlin, 67-71. [sithole2003]
     """
     if not max_width:
         return classification.astype(np.uint8)

@@ -158,9 +158,10 @@ def segment_recorded_lines(
 
     References
     ----------
-    Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point
-    clouds, sections 2.1 and 3.1. Jiang, X. Y., Bunke, H., 1994. Fast segmentation of range images into planar regions
-    by scan line grouping. Machine Vision and Applications 7 (2), 115-122.
+    Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point clouds,
+    sections 2.1 and 3.1. [vosselman2004]
+    Jiang, X. Y., Bunke, H., 1994. Fast segmentation of range images into planar regions by scan line grouping. Machine
+    Vision and Applications 7 (2), 115-122. [jiang1994]
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.surface_density if density is None else density

@@ -106,9 +106,10 @@ def segment_regions(
 
     References
     ----------
-    Santos, R. C. dos, Pessoa, G. G., Carrilho, A. C., Galo, M., 2019. Building detection from LiDAR data using
-    entropy and the k-means concept, section 2.3. Sampath, A., Shan, J., 2007. Building boundary tracing and
-    regularization from airborne LiDAR point clouds. Photogrammetric Engineering and Remote Sensing 73 (7), 805-812.
+    Santos, R. C. dos, Pessoa, G. G., Carrilho, A. C., Galo, M., 2019. Building detection from LiDAR data using entropy
+    and the k-means concept, section 2.3. [santos2019]
+    Sampath, A., Shan, J., 2007. Building boundary tracing and regularization from airborne LiDAR point clouds.
+    Photogrammetric Engineering and Remote Sensing 73 (7), 805-812. [sampath2007]
     """
     used = candidates(classification, height_above_ground, min_height)
     sampling = sampling or CloudSampling.of(xyz, classification)

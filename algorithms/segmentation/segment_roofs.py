@@ -133,8 +133,9 @@ def segment_roofs(
 
     References
     ----------
-    Santos, R. C. dos, Pessoa, G. G., Carrilho, A. C., Galo, M., 2019. Building detection from LiDAR data using
-    entropy and the k-means concept, section 4. Sampath, A., Shan, J., 2007, as in "Segment regions".
+    Santos, R. C. dos, Pessoa, G. G., Carrilho, A. C., Galo, M., 2019. Building detection from LiDAR data using entropy
+    and the k-means concept, section 4. [santos2019]
+    Sampath, A., Shan, J., 2007, as in "Segment regions". [sampath2007]
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     xyz = sampling.from_corner(xyz)

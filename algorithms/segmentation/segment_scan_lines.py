@@ -138,9 +138,10 @@ def segment_scan_lines(
 
     References
     ----------
-    Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point
-    clouds, section 2.1. Sithole, G., Vosselman, G., 2003. Automatic structure detection in a point cloud of an urban
-    landscape. URBAN 2003, Berlin, 67-71.
+    Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point clouds,
+    section 2.1. [vosselman2004]
+    Sithole, G., Vosselman, G., 2003. Automatic structure detection in a point cloud of an urban landscape. URBAN 2003,
+    Berlin, 67-71. [sithole2003]
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.density if density is None else density

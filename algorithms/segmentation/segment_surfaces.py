@@ -185,8 +185,9 @@ def segment_surfaces(
     References
     ----------
     Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point clouds,
-    sections 2.2, 3.1 and 4.1. Hoover, A., et al., 1996. An experimental comparison of range image segmentation
-    algorithms. IEEE Transactions on Pattern Analysis and Machine Intelligence 18 (7), 673-689.
+    sections 2.2, 3.1 and 4.1. [vosselman2004]
+    Hoover, A., et al., 1996. An experimental comparison of range image segmentation algorithms. IEEE Transactions on
+    Pattern Analysis and Machine Intelligence 18 (7), 673-689. [hoover1996]
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.surface_density if density is None else density

@@ -97,9 +97,10 @@ def segment_tin_planes(
 
     References
     ----------
-    Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point
-    clouds, section 3.2. Gorte, B., 2002. Segmentation of TIN-structured surface models. Joint International
-    Symposium on Geospatial Theory, Processing and Applications, Ottawa.
+    Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point clouds,
+    section 3.2. [vosselman2004]
+    Gorte, B., 2002. Segmentation of TIN-structured surface models. Joint International Symposium on Geospatial Theory,
+    Processing and Applications, Ottawa. [gorte2002]
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.density if density is None else density

@@ -166,9 +166,10 @@ def segment_voxels(
     References
     ----------
     Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point clouds,
-    section 2.3. Gorte, B. G. H., Pfeifer, N., 2004. Structuring laser-scanned trees using 3D mathematical morphology.
-    IAPRS 35 (B5), 929-933. Palágyi, K., Kuba, A., 1999. Directional 3D thinning using 8 subiterations. LNCS 1568,
-    325-336.
+    section 2.3. [vosselman2004]
+    Gorte, B. G. H., Pfeifer, N., 2004. Structuring laser-scanned trees using 3D mathematical morphology. IAPRS 35 (B5),
+    929-933. [gorte2004]
+    Palágyi, K., Kuba, A., 1999. Directional 3D thinning using 8 subiterations. LNCS 1568, 325-336. [palagyi1999]
 
     Examples
     --------

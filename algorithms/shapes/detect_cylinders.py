@@ -124,9 +124,11 @@ def detect_cylinders(
     References
     ----------
     Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point clouds,
-    section 4.2. Kimme, C., Ballard, D., Sklansky, J., 1975. Finding circles by an array of accumulators.
-    Communications of the ACM 18 (2), 120-122. Rabbani, T., van den Heuvel, F., 2005. Efficient Hough transform for
-    automatic detection of cylinders in point clouds.
+    section 4.2. [vosselman2004]
+    Kimme, C., Ballard, D., Sklansky, J., 1975. Finding circles by an array of accumulators. Communications of the ACM
+    18 (2), 120-122. [kimme1975]
+    Rabbani, T., van den Heuvel, F., 2005. Efficient Hough transform for automatic detection of cylinders in point
+    clouds. [rabbani2005]
     """
 
     def search(around: Surroundings, low: float, high: float, monitor: Monitor) -> list[Found]:

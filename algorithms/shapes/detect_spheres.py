@@ -107,7 +107,7 @@ def detect_spheres(
     References
     ----------
     Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point clouds,
-    section 4.3.
+    section 4.3. [vosselman2004]
     """
 
     def search(around: Surroundings, low: float, high: float, monitor: Monitor) -> list[FoundSphere]:

@@ -196,8 +196,10 @@ def segment_planes_hough(
     References
     ----------
     Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point clouds,
-    section 4.1. Hough, P. V. C., 1962. Method and means for recognizing complex patterns. U.S. Patent 3,069,654.
+    section 4.1. [vosselman2004]
+    Hough, P. V. C., 1962. Method and means for recognizing complex patterns. U.S. Patent 3,069,654. [hough1962]
     Vosselman, G., Dijkman, S., 2001. 3D building model reconstruction from point clouds and ground plans.
+    [vosselman2001]
     """
     refuse_line(xyz)
     sampling = sampling or CloudSampling.of(xyz, classification)

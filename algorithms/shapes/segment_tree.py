@@ -142,8 +142,10 @@ def segment_tree(
     References
     ----------
     Gorte, B. G. H., Pfeifer, N., 2004. Structuring laser-scanned trees using 3D mathematical morphology. IAPRS 35 (B5),
-    929-933. Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner
-    point clouds, section 5.4. McMahon, T. A., 1973. Size and shape in biology. Science 179, 1201-1204.
+    929-933. [gorte2004]
+    Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point clouds,
+    section 5.4. [vosselman2004]
+    McMahon, T. A., 1973. Size and shape in biology. Science 179, 1201-1204. [mcmahon1973]
     """
     refuse_line(xyz)
     rows = candidates(classification, None, 0)

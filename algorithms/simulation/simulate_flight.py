@@ -111,7 +111,7 @@ def simulate_flight(
     References
     ----------
     Weinmann et al. (2017), Point cloud analysis for UAV-borne laser scanning with horizontally and vertically oriented
-    line scanners, sections 3.2 and 5.
+    line scanners, sections 3.2 and 5. [weinmann2017]
 
     Examples
     --------

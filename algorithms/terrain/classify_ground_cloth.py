@@ -128,9 +128,9 @@ def classify_ground_cloth(
 
     References
     ----------
-    Zhang, W., Qi, J., Wan, P., Wang, H., Xie, D., Wang, X., Yan, G., 2016. An easy-to-use airborne LiDAR data
-    filtering method based on cloth simulation. Remote Sensing 8 (6), 501. Hrutka, B. P., Siki, Z., Takács, B., 2022,
-    section 2.2.
+    Zhang, W., Qi, J., Wan, P., Wang, H., Xie, D., Wang, X., Yan, G., 2016. An easy-to-use airborne LiDAR data filtering
+    method based on cloth simulation. Remote Sensing 8 (6), 501. [zhang2016]
+    Hrutka, B. P., Siki, Z., Takács, B., 2022, section 2.2. [hrutka2022]
     """
     usable = usable_points(xyz, classification)
     points = xyz[usable]

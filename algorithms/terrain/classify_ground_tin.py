@@ -234,7 +234,7 @@ def classify_ground_tin(
     References
     ----------
     Axelsson, P., 2000. DEM generation from laser scanner data using adaptive TIN models. International Archives of
-    Photogrammetry and Remote Sensing 33 (B4), 110-117.
+    Photogrammetry and Remote Sensing 33 (B4), 110-117. [axelsson2000]
     """
     if keep_ground and (classification == PointClass.GROUND).any():
         monitor.progress(1.0)

@@ -166,7 +166,7 @@ def classify_ground_tin_2000(
     References
     ----------
     Axelsson, P., 2000. DEM generation from laser scanner data using adaptive TIN models. International Archives of
-    Photogrammetry and Remote Sensing 33 (B4), 110-117.
+    Photogrammetry and Remote Sensing 33 (B4), 110-117. [axelsson2000]
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     xyz = sampling.from_corner(xyz)

@@ -63,6 +63,7 @@ def complete_ground(
     References
     ----------
     ASPRS, 2014. Positional accuracy standards for digital geospatial data, edition 1, version 1.0, table 7.5.
+    [asprs2014]
     """
     classes = classification.astype(np.uint8)
     is_near = np.isin(classification, _OPEN) & (np.abs(height_above_ground) <= max_distance)

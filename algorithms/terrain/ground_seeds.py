@@ -131,7 +131,7 @@ def seeds_by_opening(
     References
     ----------
     Pingel, T. J., Clarke, K. C., McBride, W. A., 2013. An improved simple morphological filter for the terrain
-    classification of airborne LIDAR data. ISPRS Journal of Photogrammetry and Remote Sensing 77, 21-30.
+    classification of airborne LIDAR data. ISPRS Journal of Photogrammetry and Remote Sensing 77, 21-30. [pingel2013]
     """
     refuse_sparse(xyz, cell_size)
     box = plan_box(xyz)

@@ -101,7 +101,7 @@ def rasterize_terrain(
 
     References
     ----------
-    Hrutka, B. P., Siki, Z., Takács, B., 2022, section 2.2.
+    Hrutka, B. P., Siki, Z., Takács, B., 2022, section 2.2. [hrutka2022]
     """
     is_ground = classification == PointClass.GROUND
     if not is_ground.any():

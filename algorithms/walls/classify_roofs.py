@@ -96,8 +96,8 @@ def classify_roofs(
     References
     ----------
     Hrutka, B. P., Siki, Z., Takács, B., 2022. Voxel-based point cloud segmentation and building detection.
-    International Archives of the Photogrammetry, Remote Sensing and Spatial Information Sciences XLVIII-4/W1,
-    section 2.3.
+    International Archives of the Photogrammetry, Remote Sensing and Spatial Information Sciences XLVIII-4/W1, section
+    2.3. [hrutka2022]
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.density if density is None else density

@@ -146,8 +146,8 @@ def classify_walls(
     References
     ----------
     Hrutka, B. P., Siki, Z., Takács, B., 2022. Voxel-based point cloud segmentation and building detection.
-    International Archives of the Photogrammetry, Remote Sensing and Spatial Information Sciences XLVIII-4/W1,
-    section 2.3.
+    International Archives of the Photogrammetry, Remote Sensing and Spatial Information Sciences XLVIII-4/W1, section
+    2.3. [hrutka2022]
     """
     if min_height > split_height:
         raise ValueError(

@@ -212,9 +212,10 @@ def extract_wall_footprints(
     References
     ----------
     Hrutka, B. P., Siki, Z., Takács, B., 2022. Voxel-based point cloud segmentation and building detection.
-    International Archives of the Photogrammetry, Remote Sensing and Spatial Information Sciences XLVIII-4/W1,
-    section 2.4. Fischler, M. A., Bolles, R. C., 1981. Random sample consensus: a paradigm for model fitting.
-    Communications of the ACM 24 (6), 381-395.
+    International Archives of the Photogrammetry, Remote Sensing and Spatial Information Sciences XLVIII-4/W1, section
+    2.4. [hrutka2022]
+    Fischler, M. A., Bolles, R. C., 1981. Random sample consensus: a paradigm for model fitting. Communications of the
+    ACM 24 (6), 381-395. [fischler1981]
     """
     footprints = LayerFeatures([], {field.name: [] for field in _FIELDS})
     edges = LayerFeatures([], {field.name: [] for field in _EDGE_FIELDS})
