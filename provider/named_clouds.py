@@ -43,5 +43,9 @@ def names_of_crs(crs: QgsCoordinateReferenceSystem) -> list[str]:
 
 def named(cloud: Cloud, crs: QgsCoordinateReferenceSystem) -> Cloud:
     """Return a cloud with the coordinate reference system where it names none; an invalid one adds nothing."""
-    code = crs.authid() if crs.authid().startswith("EPSG:") else ""
-    return with_crs(cloud, crs.toWkt(FULL), code, crs_units) if crs.isValid() else cloud
+    return with_crs(cloud, crs.toWkt(FULL), code_of(crs), crs_units) if crs.isValid() else cloud
+
+
+def code_of(crs: QgsCoordinateReferenceSystem) -> str:
+    """Return the code by which old point formats name a system, "" where it has none."""
+    return crs.authid() if crs.authid().startswith("EPSG:") else ""

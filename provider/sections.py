@@ -70,7 +70,9 @@ def sections_of(algorithm: Any) -> list[Section]:
             sections[-1].add_setting(name)
     else:
         sections[0].add_setting("EXTENT")
-        sections[0].labels[CRS] = tr("Coordinate reference system (of a cloud that names none)")
+    sections[-1 if tiled is not None else 0].labels[CRS] = tr(
+        "Coordinate reference system (of a cloud that names none)"
+    )
     return sections
 
 

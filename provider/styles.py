@@ -96,8 +96,12 @@ def show_in_3d(layer: QgsPointCloudLayer) -> None:
 
 def cloud_style(stage: Stage, cloud: Cloud) -> Optional[str]:
     """Return the style of a stage's cloud: that of the first dimension it wrote that has one."""
-    made = (name for name in (*stage.writes, *stage.creates) if cloud.has(name))
-    return next((name for name in made if (STYLES / f"{name}.qml").is_file()), None)
+    return style_of(name for name in (*stage.writes, *stage.creates) if cloud.has(name))
+
+
+def style_of(names: Iterable[str]) -> Optional[str]:
+    """Return the first of some dimensions that has a style."""
+    return next((name for name in names if (STYLES / f"{name}.qml").is_file()), None)
 
 
 def layer_style(layer: Union[Layer, Raster]) -> Optional[str]:

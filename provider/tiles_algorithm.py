@@ -22,13 +22,13 @@ from qgis.core import (
     QgsProcessingParameterString,
 )
 
-from ..algorithms.cloud.outputs import replacing
+from ..algorithms.cloud.outputs import COPC, replacing, stem_of
 from ..algorithms.pipeline import Output
 from ..algorithms.report.page import Row, with_coordinates
 from ..algorithms.report.run_facts import StepFacts
 from ..algorithms.stage import FileContent, LayerFeatures, Raster
 from ..algorithms.tiling.mosaics import RasterMosaic
-from ..algorithms.tiling.run_in_tiles import TilesOutcome, run_in_tiles
+from ..algorithms.tiling.run_in_tiles import SHOWN, TilesOutcome, run_in_tiles
 from ..algorithms.tiling.settings import SETTINGS
 from ..algorithms.tiling.survey import Survey, crs_of_survey, files_of_survey
 from ..algorithms.tiling.tiled_pipelines import TiledPipeline, tiled_pipeline_help
@@ -36,29 +36,43 @@ from ..algorithms.tiling.tiled_steps import files_of
 from ..algorithms.tiling.workers import Workers
 from .algorithm import CheckedAlgorithm
 from .clouds import SurveyParameter, survey_paths
-from .crs import crs_units
+from .crs import FULL, crs_units
+from .declared import on_command_line
 from .errors import as_processing_errors
-from .feedback import FeedbackMonitor, warn_unknown_parameters
+from .feedback import FeedbackMonitor, is_step, warn_unknown_parameters
 from .input_layers import find_input_layer, input_layer_files, input_layer_parameter, read_input_layer
-from .inputs import INPUT, OUTPUT, REPORT, extent_box, extent_parameter, with_help, with_setting
+from .inputs import (
+    INPUT,
+    OUTPUT,
+    REPORT,
+    cloud_title,
+    crs_parameter,
+    extent_box,
+    extent_parameter,
+    given_crs,
+    with_help,
+    with_setting,
+)
 from .layer_outputs import UNWANTED, write_layer
 from .models import pipeline_parameters
+from .named_clouds import code_of, names_of_crs
 from .outputs import all_in_place, check_targets, target_path
 from .parameters import tunable_values
 from .rasters import write_mosaic
 from .run_log import about_run, complete_page, parameter_rows
 from .schedulers import check_scheduler
-from .styles import layer_style, show_on_load
+from .styles import layer_style, show_on_load, style_of
 from .surveys import VPC, WGS84, check_vpc, place_of_survey, write_survey
 from .text_files import file_parameter, write_text
 from .vectors import SOURCE_TYPES
 
-BLOCK_SIDE, PROCESSES, SCHEDULER, CERTIFICATES, COMPRESSED = (
+BLOCK_SIDE, PROCESSES, SCHEDULER, CERTIFICATES, COMPRESSED, LOAD = (
     "BLOCK_SIDE",
     "PROCESSES",
     "SCHEDULER",
     "CERTIFICATES",
     "COMPRESSED",
+    "LOAD",
 )
 # Numbers that the algorithm returns.
 _NUMBERS = {
@@ -95,6 +109,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         for input_layer in self.tiled.pipeline.input_layers.values():
             self.addParameter(input_layer_parameter(input_layer))
         self.addParameter(extent_parameter())
+        self.addParameter(crs_parameter())
         for definition in _work_parameters():
             self.addParameter(definition)
         folder = QgsProcessingParameterFolderDestination(OUTPUT, "Folder of the tiles")
@@ -123,7 +138,8 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         check_vpc(target_path(parameters.get(OUTPUT)), self.paths)
         self.files = files_of_survey(self.paths)
         self.tunables = self._tunables(parameters, context)
-        self.wkt = crs_of_survey(self.files)
+        self.crs = given_crs(self, parameters, context)
+        self.wkt = crs_of_survey(self.files) or (self.crs.toWkt(FULL) if self.crs.isValid() else "")
         self.extent = extent_box(self, self.wkt, parameters, context)
         self.workers = self._workers(parameters, context)
         sinks = [one for one in self.destinationParameterDefinitions() if one.name() != OUTPUT]
@@ -160,7 +176,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
 
     def systems(self) -> list[str]:
         """Return the coordinate reference systems of the survey and of its virtual point cloud."""
-        return [self.wkt, WGS84]
+        return [self.wkt, WGS84, *names_of_crs(self.crs)]
 
     def processAlgorithm(  # noqa: N802
         self, parameters: dict, context: QgsProcessingContext, feedback: QgsProcessingFeedback
@@ -168,6 +184,8 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         """Run the survey; then write the layers. What failed is named at the end, and the run fails with it."""
         warn_unknown_parameters(self, parameters, feedback)
         monitor = FeedbackMonitor(feedback)
+        is_asked = self.parameterAsBool(parameters, LOAD, context)
+        self.shows = is_asked and context.project() is not None and not (is_step(feedback) or on_command_line())
         folder = Path(self.parameterAsString(parameters, OUTPUT, context))
         sinks = [one for one in self.destinationParameterDefinitions() if one.name() != OUTPUT]
         cancelled = f"Cancelled; what was done is kept in {folder}, and the same run goes on with it."
@@ -179,11 +197,30 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
                 results.update(self._write_report(outcome, run.parameters, context))
                 results[VPC] = str(write_survey(outcome.survey, outcome.tiles, folder, context, monitor))
                 results = run.final(results)
+                if self.shows and outcome.tiles:
+                    self._show(outcome, folder, context, monitor)
             _refuse_failures(outcome, folder)
             monitor.progress(1.0)
             numbers = (len(outcome.tiles), outcome.blocks, outcome.points, len(outcome.failures))
             return {OUTPUT: str(folder), **results, **dict(zip(_NUMBERS, numbers))}
         return {}
+
+    def _show(
+        self, outcome: TilesOutcome, folder: Path, context: QgsProcessingContext, monitor: FeedbackMonitor
+    ) -> None:
+        """Have QGIS load a virtual point cloud over the COPC files of the tiles."""
+        files = [folder / SHOWN / f"{stem_of(tile)}{COPC}" for tile in outcome.tiles]
+        shown = str(write_survey(outcome.survey, files, folder / SHOWN, context, monitor))
+        title = cloud_title([step.stage for step in self.tiled.pipeline.steps if step.stage.makes_cloud])
+        details = QgsProcessingContext.LayerDetails(f"{title} ({folder.name})", context.project(), VPC)
+        context.addLayerToLoadOnCompletion(shown, details)
+        show_on_load(context, shown, "Cloud", self._cloud_style())
+
+    def _cloud_style(self) -> Optional[str]:
+        """Return the style of the tiles: that of the last step that makes a cloud and has one."""
+        makers = [step.stage for step in self.tiled.pipeline.steps if step.stage.makes_cloud]
+        found = (style_of(stage.writes) for stage in reversed(makers))
+        return next((style for style in found if style), None)
 
     def _run(
         self, folder: Path, parameters: dict, context: QgsProcessingContext, monitor: FeedbackMonitor, results: dict
@@ -221,6 +258,8 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
             find_layers=find_layers,
             take_raster=take_raster if wanted else None,
             take_file=take_file,
+            crs=(self.crs.toWkt(FULL), code_of(self.crs)) if self.crs.isValid() else None,
+            shown=self.shows,
             **self.tunables,
         )
 
@@ -304,7 +343,8 @@ def _work_parameters() -> list[QgsProcessingParameterDefinition]:
         QgsProcessingParameterString(SCHEDULER, "", "", False, True),
         QgsProcessingParameterString(CERTIFICATES, "", "", False, True),
         QgsProcessingParameterBoolean(COMPRESSED, "", True),
+        QgsProcessingParameterBoolean(LOAD, "", True),
     ]
-    for definition in made:
+    for definition in made[:-1]:
         definition.setFlags(definition.flags() | Qgis.ProcessingParameterFlag.Advanced)
     return [with_setting(definition, SETTINGS) for definition in made]

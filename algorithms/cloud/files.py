@@ -115,14 +115,19 @@ def with_crs(cloud: Cloud, wkt: str, code: str, crs_units: Optional[Resolver] = 
     """
     if cloud.wkt:
         return cloud
-    vlrs, bits = crs_records(code if code and cloud.header.layout.is_old else wkt)
-    header = replace(cloud.header, vlrs=[*cloud.header.vlrs, *vlrs], encoding=cloud.header.encoding | bits)
+    header = header_with_crs(cloud.header, wkt, code)
     named = Cloud(header, cloud.points, units_of(header, crs_units), cloud.files)
     if named.units.factors.tolist() == cloud.units.factors.tolist():
         named.origin = cloud.origin
     for name in cloud.changed:
         named.set(name, cloud.get(name))
     return named
+
+
+def header_with_crs(header: Header, wkt: str, code: str) -> Header:
+    """Return the header of a cloud that names no coordinate reference system with one, as :func:`with_crs` takes it."""
+    vlrs, bits = crs_records(code if code and header.layout.is_old else wkt)
+    return replace(header, vlrs=[*header.vlrs, *vlrs], encoding=header.encoding | bits)
 
 
 def check_readable(path: Union[str, Path], crs_units: Optional[Resolver] = None) -> None:

@@ -8,7 +8,7 @@ import shutil
 import time
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 from typing import Any, Callable, Optional, Union
@@ -18,7 +18,7 @@ import numpy as np
 from ..cloud.cloud import Cloud, create_cloud
 from ..cloud.copc_index import has_index
 from ..cloud.files import readable
-from ..cloud.outputs import LAS, LAZ, replacing, stem_of
+from ..cloud.outputs import COPC, LAS, LAZ, replacing, stem_of
 from ..cloud.points import open_header
 from ..cloud.units import Resolver
 from ..pipeline import REPORT, Pipeline, Step
@@ -74,6 +74,9 @@ FindLayers = Callable[[Survey], dict[str, Optional[LayerFeatures]]]
 TakeRaster = Callable[[Survey, RasterMosaic], None]
 TakeFile = Callable[[Survey, str, FileContent], None]
 
+# The folder among the tiles with the COPC files that QGIS shows.
+SHOWN = "shown"
+
 # Seconds between two messages about how far it is.
 _BETWEEN_MESSAGES = 10.0
 
@@ -128,6 +131,8 @@ def run_in_tiles(
     find_layers: Optional[FindLayers] = None,
     take_raster: Optional[TakeRaster] = None,
     take_file: Optional[TakeFile] = None,
+    crs: Optional[tuple[str, str]] = None,
+    shown: bool = False,
     **tunables: Any,
 ) -> TilesOutcome:
     """Run a composite on a survey; write its classified tiles to a folder and return its layers.
@@ -170,6 +175,10 @@ def run_in_tiles(
         Is given the survey and each raster, while the parts of it are there.
     take_file : callable, optional
         Is given the survey, and name and content of each text file, while the parts of it are there.
+    crs : tuple of str, optional
+        The coordinate reference system of files that name none, as for :func:`.open_survey`; tiles get it too.
+    shown : bool
+        Write each tile as COPC too, into a folder "shown" among the tiles: QGIS shows the points of no other tiles.
     **tunables
         Of the composite.
 
@@ -184,11 +193,12 @@ def run_in_tiles(
     for step, chosen in pipeline.by_step(tunables):
         step.stage.check(chosen)
     given = [Path(path) for path in paths]
-    survey = open_survey(given, crs_units, monitor, extent)
+    survey = open_survey(given, crs_units, monitor, extent, crs)
     check_folder(folder, [*files_of_survey(given), *given])
     with work_folder(folder) as work:
         run = _Run(pipeline, survey, folder, work, monitor, workers, tunables, compressed, crs_units)
         run.find_layers, run.take_raster, run.take_file = find_layers, take_raster, take_file
+        run.crs, run.shown = crs, shown
         outcome = run.all(block_side, largest_file)
     if not outcome.failures:
         # Windows removes no lock that is open.
@@ -240,6 +250,8 @@ class _Run:
         self.take_raster: Optional[TakeRaster] = None
         self.take_file: Optional[TakeFile] = None
         self.view: Optional[View] = None
+        self.crs: Optional[tuple[str, str]] = None
+        self.shown = False
 
     def all(self, block_side: Optional[float], largest_file: int) -> TilesOutcome:
         """Sample, work on the blocks, write the tiles."""
@@ -301,12 +313,12 @@ class _Run:
             pieces.mkdir()
             for done, (source, stem) in enumerate(zip(large, _unique_stems(large))):
                 part = self.monitor.part(_CUT, _SAMPLED).part(done / len(large), (done + 1) / len(large))
-                alone = open_survey([source.path], self.crs_units, extent=self.survey.extent)
+                alone = open_survey([source.path], self.crs_units, extent=self.survey.extent, crs=self.crs)
                 cut_into_tiles(alone, side, pieces, stem, False, part)
             (pieces / key).touch()
         rest = [source.path for source in self.survey.sources if source not in large]
         whole, paths = self.survey, [*rest, *sorted(pieces.glob(f"*{LAS}"))]
-        self.survey = open_survey(paths, self.crs_units, extent=whole.extent)
+        self.survey = open_survey(paths, self.crs_units, extent=whole.extent, crs=self.crs)
         if whole.extent is None and len(self.survey) != len(whole):
             raise ValueError(
                 f"The pieces of large files have {len(self.survey):,} of {len(whole):,} points; remove {self.work} and "
@@ -354,6 +366,7 @@ class _Run:
             halo,
             {name: (str(one), one.corner.tolist(), one.of_whole) for name, one in samplings.items()},
             str(self.survey.extent),
+            str(self.survey.units),
         )
         part = Survey(
             tuple(self.survey.sources[one] for one in near),
@@ -479,22 +492,26 @@ class _Run:
 
     def _pieces(self, number: int, stem: str, blocks: list[tuple[Block, Path, Path]]) -> list[TileTask]:
         """Return the tiles that a file becomes which is cut by its index: one for each block, result and numbers."""
-        path, extent, units = self.survey.sources[number].path, self.survey.extent, self.survey.units
+        path = self.survey.sources[number].path
         return [
-            TileTask(
-                path,
-                number,
-                self.folder / f"{stem}_{block.name}{self.suffix}",
-                (result,),
-                (numbers,),
-                self.stop,
-                units,
-                extent,
-                block.box,
-                self.view,
-            )
+            self._tile(path, number, f"{stem}_{block.name}", (result,), (numbers,), block.box)
             for block, result, numbers in blocks
         ]
+
+    def _tile(
+        self,
+        path: Path,
+        number: int,
+        name: str,
+        parts: tuple[Path, ...],
+        numbers: tuple[Path, ...],
+        piece: Optional[np.ndarray] = None,
+    ) -> TileTask:
+        """Return the task of a tile that a file, or a piece of it, becomes."""
+        survey, target = self.survey, self.folder / f"{name}{self.suffix}"
+        shown = self.folder / SHOWN / f"{name}{COPC}" if self.shown else None
+        task = TileTask(path, number, target, parts, numbers, self.stop, survey.units, survey.extent, piece, self.view)
+        return replace(task, crs=self.crs, shown=shown)
 
     def _write_tiles(
         self,
@@ -510,24 +527,25 @@ class _Run:
             becomes.append(self.work / f"numbers-{block.name}.npz")
             with replacing(becomes[-1]) as stream:
                 np.savez(stream, **of_block)
+        if self.shown:
+            (self.folder / SHOWN).mkdir(exist_ok=True)
         tasks = []
         stems = _unique_stems(self.survey.sources)
         boxes, lost = (_boxes(some) for some in ([block for block, _ in done], failed))
         for number, (source, stem) in enumerate(zip(self.survey.sources, stems)):
             near = np.flatnonzero(boxes_meet(boxes, source.box))
-            extent, units = self.survey.extent, self.survey.units
             if source.path in self.by_index:
                 tasks += self._pieces(number, stem, [(*done[at], becomes[at]) for at in near])
                 worked_on = sum(len(rows_of(done[at][1], number)) for at in near)
-                if worked_on < source.header.count and extent is None and not boxes_meet(lost, source.box).any():
+                whole = self.survey.extent is None
+                if worked_on < source.header.count and whole and not boxes_meet(lost, source.box).any():
                     outcome.failures.append(points_outside(source.path, source.header.count - worked_on))
                 continue
             if boxes_meet(lost, source.box).any():
                 outcome.failures.append(f"{source.path.name} is not written, as a block of it failed.")
                 continue
-            target = self.folder / f"{stem}{self.suffix}"
             parts, final = tuple(done[at][1] for at in near), tuple(becomes[at] for at in near)
-            tasks.append(TileTask(source.path, number, target, parts, final, self.stop, units, extent, view=self.view))
+            tasks.append(self._tile(source.path, number, stem, parts, final))
         results, errors = run_all(
             executor, write_tile, tasks, self.stop, self.monitor.part(_JOINED, 1.0), lambda _: None
         )

@@ -62,6 +62,13 @@ SETTINGS = by_name(
             "Three files of PEM, with semicolons between: certificate authority; certificate; key.",
         ),
         _COMPRESSED,
+        Setting(
+            "LOAD",
+            "Show the tiles on the map",
+            "Each tile is written as COPC too, into a folder 'shown' among the tiles, and a virtual point cloud over "
+            "these is loaded: QGIS shows the points of no other tiles. It takes as much space again. Without effect on "
+            "the command line.",
+        ),
     )
 )
 

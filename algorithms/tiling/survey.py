@@ -11,7 +11,7 @@ from typing import Optional, Union
 import numpy as np
 
 from ..cloud.cloud import Cloud
-from ..cloud.files import files_of, readable
+from ..cloud.files import files_of, header_with_crs, readable
 from ..cloud.header import COPC_HIERARCHY, COPC_INFO, LASZIP, Header, read_header
 from ..cloud.outputs import check_not_read, kind_of
 from ..cloud.points import check_points, chunks_near, is_within, open_headers, read_chunks
@@ -240,6 +240,7 @@ def open_survey(
     crs_units: Optional[Resolver] = None,
     monitor: Optional[Monitor] = None,
     extent: Optional[np.ndarray] = None,
+    crs: Optional[tuple[str, str]] = None,
 ) -> Survey:
     """Return the survey that files, virtual point clouds and folders of files make.
 
@@ -253,6 +254,8 @@ def open_survey(
         Receives warnings about what can't be merged.
     extent : ndarray of shape (2, 2), optional
         As :attr:`Survey.extent`; files that lie wholly outside are no part of the survey.
+    crs : tuple of str, optional
+        The coordinate reference system of files that name none, as WKT and as "EPSG:n" (or "").
 
     Raises
     ------
@@ -265,16 +268,17 @@ def open_survey(
     check_tiles(files, headers)
     for file, header in zip(files, headers):
         check_points(file, header)
-    units = units_of(headers[0], crs_units)
+    header = merged_header(headers, "tiles", monitor) if len(headers) > 1 else headers[0]
+    named = headers[0]
+    if crs is not None and not wkt_of(named):
+        named = header = header_with_crs(header, *crs)
+    units = units_of(named, crs_units)
     if units.warning:
         monitor.warn(units.warning)
-    header = merged_header(headers, "tiles", monitor) if len(headers) > 1 else headers[0]
     sources = tuple(Source(file, one, _box(one, units)) for file, one in zip(files, headers))
     if extent is not None:
         sources = _within_extent(sources, extent * units.horizontal)
-    survey = Survey(
-        sources, header.without(LASZIP, COPC_INFO, COPC_HIERARCHY), units, wkt_of(headers[0]), extent=extent
-    )
+    survey = Survey(sources, header.without(LASZIP, COPC_INFO, COPC_HIERARCHY), units, wkt_of(named), extent=extent)
     low = np.floor(survey.box[0] / _ORIGIN_STEP) * _ORIGIN_STEP
     return replace(survey, origin=np.append(low, 0.0))
 

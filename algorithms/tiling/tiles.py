@@ -10,10 +10,10 @@ import numpy as np
 
 from ..cloud.cloud import Cloud
 from ..cloud.dimensions import DIMENSIONS
-from ..cloud.files import read_cloud, readable, write_cloud
-from ..cloud.header import COPC_HIERARCHY, COPC_INFO, LASZIP
+from ..cloud.files import header_with_crs, read_cloud, readable, write_cloud
+from ..cloud.header import COPC_HIERARCHY, COPC_INFO, LASZIP, Header
 from ..cloud.points import chunks_near, open_header
-from ..cloud.units import Units
+from ..cloud.units import Units, wkt_of
 from ..stage import Monitor
 from .blocks import REFERRING, BlockResult, StoppableMonitor
 from .views import View
@@ -24,7 +24,9 @@ class TileTask:
     """A tile of the output: the file that it is made of, and the blocks that have its points.
 
     ``piece`` is the box (2, 2), m, of the part of the file that becomes this tile, upper edges excluded; None is all.
-    ``view`` keeps points for the pages of the survey; None where there are no pages with points.
+    ``view`` keeps points for the pages of the survey; None where there are no pages with points. ``crs`` is the
+    coordinate reference system of files that name none, as for :func:`.open_survey`. ``shown`` is a COPC file of the
+    tile that is written too, for QGIS to show.
     """
 
     source: Path
@@ -37,6 +39,8 @@ class TileTask:
     extent: Optional[np.ndarray] = None
     piece: Optional[np.ndarray] = None
     view: Optional[View] = None
+    crs: Optional[tuple[str, str]] = None
+    shown: Optional[Path] = None
 
 
 def points_outside(path: Path, count: int) -> str:
@@ -74,6 +78,8 @@ def write_tile(task: TileTask) -> Optional[Path]:
     for name, whole in values.items():
         cloud.set(name, whole[rows] - cloud.origin if name == "xyz" else whole[rows])
     write_cloud(cloud, task.target, monitor)
+    if task.shown is not None:
+        write_cloud(cloud, task.shown, monitor)
     if task.view is not None:
         task.view.add(task.target.name, cloud)
     return task.target
@@ -112,8 +118,7 @@ def _points_of(task: TileTask, position: Optional[np.ndarray], monitor: Monitor)
     if task.piece is None or position is None:
         cloud = read_cloud(task.source, monitor, box=task.extent)
         # A worker has no database to look units up in.
-        cloud.units = task.units
-        return cloud
+        return Cloud(_named(cloud.header, task.crs), cloud.points, task.units, cloud.files)
     header = open_header(task.source)
     found = [np.empty(0, header.layout.dtype)]
     with readable(task.source):
@@ -121,7 +126,11 @@ def _points_of(task: TileTask, position: Optional[np.ndarray], monitor: Monitor)
             first, end = np.searchsorted(position, [start, start + len(records)])
             found.append(records[position[first:end] - start])
     header = replace(header.without(LASZIP, COPC_INFO, COPC_HIERARCHY), count=len(position))
-    return Cloud(header, np.concatenate(found), task.units, [task.source])
+    return Cloud(_named(header, task.crs), np.concatenate(found), task.units, [task.source])
+
+
+def _named(header: Header, crs: Optional[tuple[str, str]]) -> Header:
+    return header if crs is None or wkt_of(header) else header_with_crs(header, *crs)
 
 
 def _positions(task: TileTask) -> np.ndarray:

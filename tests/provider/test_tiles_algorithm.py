@@ -11,7 +11,9 @@ import pytest
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.cloud.vpc import write_vpc
+from lidar_buildings.algorithms.tiling.survey import files_of_survey
 from lidar_buildings.provider import schedulers
+from lidar_buildings.provider.crs import crs_of
 from lidar_buildings.provider.settings import SCHEDULERS
 from lidar_buildings.tests.builders import roof
 from lidar_buildings.tests.las_files import made_las
@@ -328,3 +330,72 @@ def test_one_page_over_a_survey_has_its_map_and_what_the_steps_took(algorithm, c
     assert re.search(r'Grid cell size</th><td class="number">1 m</td><td>automatic', ground)
     (seconds,) = re.findall(r'All steps</th><td class="number">([\d.]+) s', text)
     assert float(seconds) > 0
+
+
+def test_the_tiles_are_loaded_with_points_style_and_the_layers_in_one_group(algorithm, context, log, folder, tmp_path):
+    """QGIS shows only the outlines of tiles that are no COPC; none were loaded at all."""
+    from qgis.core import QgsPointCloudLayer, QgsProcessingOutputLayerDefinition
+
+    out = tmp_path / "tiles"
+    target = str(tmp_path / "footprints.gpkg")
+    loaded = QgsProcessingOutputLayerDefinition(target, context.project())
+    given = {"INPUT": str(folder), "OUTPUT": str(out), "FOOTPRINTS": loaded, **QUICKLY}
+    results, succeeded = algorithm.run(given, context, log)
+    assert succeeded, log.textLog()
+    layers = context.layersToLoadOnCompletion()
+    shown = str(out / "shown" / "shown.vpc")
+    assert {path: (one.name, one.groupName) for path, one in layers.items()} == {
+        shown: ("Classified point cloud (tiles)", "tiles"),
+        target: ("Footprints (tiles)", "tiles"),
+    }
+    assert layers[shown].layerSortKey < layers[target].layerSortKey
+    assert context.layerToLoadOnCompletionDetails(shown).postProcessor().stem == "classification"
+    layer = QgsPointCloudLayer(shown, "tiles", "vpc")
+    assert layer.isValid()
+    assert layer.pointCount() == results["POINTS"] == len(read_cloud(shown))
+    # The folder as input of another run has each point once.
+    assert sum(len(read_cloud(one)) for one in files_of_survey([out])) == results["POINTS"]
+
+
+def test_who_wants_no_tiles_on_the_map_gets_no_copies_of_them(algorithm, context, log, folder, tmp_path):
+    given = {"INPUT": str(folder), "OUTPUT": str(tmp_path / "tiles"), "LOAD": False, **QUICKLY}
+    _, succeeded = algorithm.run(given, context, log)
+    assert succeeded, log.textLog()
+    assert not (tmp_path / "tiles" / "shown").exists()
+    assert not context.layersToLoadOnCompletion()
+
+
+def test_tiles_without_a_coordinate_system_get_the_given_one(algorithm, context, log, folder, tmp_path):
+    """In tiles there was no way to say it: layers lay nowhere, and 3D views were empty."""
+    from qgis.core import QgsVectorLayer
+
+    bare = tmp_path / "bare"
+    bare.mkdir()
+    for path in folder.glob("*.laz"):
+        write_cloud(create_cloud({"xyz": read_cloud(path).get("xyz") + read_cloud(path).origin}), bare / path.name)
+    target = tmp_path / "footprints.gpkg"
+    given = {"INPUT": str(bare), "OUTPUT": str(tmp_path / "tiles"), "FOOTPRINTS": str(target), **QUICKLY}
+    results, succeeded = algorithm.run({**given, "CRS": "EPSG:28992"}, context, log)
+    assert succeeded, log.textLog()
+    assert QgsVectorLayer(str(target)).crs().authid() == "EPSG:28992"
+    for tile in (tmp_path / "tiles").glob("*.laz"):
+        assert crs_of(read_cloud(tile).wkt).authid() == "EPSG:28992"
+    assert not [one for one in log.warnings if "coordinate reference system" in one]
+
+
+def test_feet_of_a_given_coordinate_system_are_feet(algorithm, context, log, folder, tmp_path):
+    from qgis.core import QgsVectorLayer
+
+    bare = tmp_path / "bare"
+    bare.mkdir()
+    for path in folder.glob("*.laz"):
+        xyz = read_cloud(path).get("xyz") + read_cloud(path).origin
+        write_cloud(create_cloud({"xyz": xyz / 0.3048}), bare / path.name)
+    target = tmp_path / "footprints.gpkg"
+    given = {"INPUT": str(bare), "OUTPUT": str(tmp_path / "tiles"), "FOOTPRINTS": str(target), **QUICKLY}
+    # NAD83 / Oregon North in international feet, heights in feet too.
+    _, succeeded = algorithm.run({**given, "CRS": "EPSG:2913"}, context, log)
+    assert succeeded, log.textLog()
+    (house,) = QgsVectorLayer(str(target)).getFeatures()
+    assert house["area"] == pytest.approx(120, rel=0.1)
+    assert house.geometry().area() == pytest.approx(120 / 0.3048**2, rel=0.1)
