@@ -107,7 +107,7 @@ _PIPELINES = (
         steps=(*_DETECTION, Step("models", "reconstruct_roofs", layers={"footprints": "footprints.footprints"})),
         shared=_DETECTION_SHARED,
         shown=("min_area", "models_level_of_detail", "models_min_plane_area", "ground_max_building_size"),
-        switched_off=("footprints",),
+        switched_off=("output", "footprints"),
     ),
     Pipeline(
         name="detect_buildings_2019",
@@ -240,7 +240,7 @@ _PIPELINES = (
             for name in ("max_tilt", "max_gap", "edge_factor", "corner_distance", "boundary", "complete")
         },
         shown=("planes_min_area", "planes_min_height", "openings_min_size", "boundary", "complete"),
-        switched_off=("planes_facades",),
+        switched_off=("output", "planes_facades"),
     ),
     Pipeline(
         name="model_city_block",
@@ -273,7 +273,7 @@ _PIPELINES = (
         ),
         shared=_DETECTION_SHARED,
         shown=("min_area", "street_max_shift", "street_min_size", "block_min_plane_area", "ground_max_building_size"),
-        switched_off=("footprints", "facades", "openings"),
+        switched_off=("output", "footprints", "facades", "openings"),
     ),
     Pipeline(
         name="model_terrain",
@@ -304,7 +304,7 @@ _PIPELINES = (
         title="Model industry",
         group="Models",
         tags="industry,plant,pipe,tank,vessel,cylinder,sphere,plane,as-built,terrestrial,laser scanner,Vosselman",
-        summary="Model pipes, tanks, spheres and planes of a scanned plant: axes, centers and polygons with heights.",
+        summary="Model pipes, tanks, spheres and planes of a scanned plant: axes, centers and surfaces with heights.",
         description=(
             "The cloud is divided into smooth surfaces: connected pipes with their elbows, a tank, a plate. In each "
             "of them, cylinders are found first, since a strip of a tank would pass for a plane, then spheres and "
@@ -316,9 +316,11 @@ _PIPELINES = (
             Step("cylinders", "detect_cylinders", {"search_in": "each segment"}),
             Step("spheres", "detect_spheres", {"search_in": "each segment"}),
             Step("planes", "segment_planes_hough", {"method": "normals", "search_in": "each segment"}),
+            Step("pipes", "draw_pipes", layers={"axes": "cylinders.axes", "centers": "spheres.centers"}),
         ),
         shared={"min_radius": ("cylinders", "spheres"), "max_radius": ("cylinders", "spheres")},
         shown=("min_radius", "max_radius", "cylinders_min_seen", "planes_min_area"),
+        switched_off=("output", "axes", "centers"),
     ),
 )
 

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
+from pathlib import Path
 from typing import Callable, Optional, Union
 
 from qgis.core import (
     QgsEditorWidgetSetup,
+    QgsLayerTreeLayer,
+    QgsLayerTreeNode,
     QgsMapLayer,
     QgsPointCloudLayer,
     QgsProcessingContext,
     QgsProcessingLayerPostProcessorInterface,
+    QgsRasterLayer,
 )
 from qgis.PyQt import sip
 
@@ -20,11 +24,17 @@ except ImportError:  # QGIS built without 3D views
     QgsPointCloudLayer3DRenderer = None
 
 from ..algorithms.cloud.cloud import Cloud
+from ..algorithms.cloud.copc_sidecar import copc_path
+from ..algorithms.cloud.outputs import COPC, VPC, kind_of
 from ..algorithms.stage import Field, Layer, Raster, Stage
+from .named_styles import add_named_styles, fit_ramp
 from .paths import STYLES
 
 # Kinds of results from the bottom of the map to the top: QGIS would stack them by the names of their files.
 _DRAWN = ("Raster", "Cloud", "Polygon", "LineString", "Point")
+
+# Kinds of layers that others are drawn over, from the bottom.
+_BELOW = (QgsRasterLayer, QgsPointCloudLayer)
 
 # Decimals of numbers in tables: millimeters.
 _DECIMALS = 3
@@ -50,8 +60,8 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
             message, loaded = layer.loadNamedStyle(str(STYLES / f"{self.stem}.qml"))
             if not loaded:
                 feedback.pushWarning(f"The style {self.stem} can't be loaded: {message}")
-        if isinstance(layer, QgsPointCloudLayer):
-            show_in_3d(layer)
+        if isinstance(layer, QgsRasterLayer):
+            fit_ramp(layer)
         if self.fields:
             # A feature is called by its number; QGIS would take the first long text.
             layer.setDisplayExpression(f'"{self.fields[0].name}"')
@@ -63,8 +73,13 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
             if declared.type is float:
                 rounded = QgsEditorWidgetSetup("Range", {"Precision": _DECIMALS, "AllowNull": True})
                 layer.setEditorWidgetSetup(index, rounded)
+        add_named_styles(layer)
+        if isinstance(layer, QgsPointCloudLayer):
+            show_in_3d(layer)
         layer.triggerRepaint()
         stack_results(context)
+        if len(context.layersToLoadOnCompletion()) == 1:
+            put_below(layer, context)
         node = context.project().layerTreeRoot().findLayer(layer.id()) if self.is_off else None
         if node is not None:
             node.setItemVisibilityChecked(False)
@@ -126,8 +141,8 @@ def show_on_load(
 
 
 def switch_off(context: QgsProcessingContext, targets: Iterable[str]) -> None:
-    """Have results switched off when they are loaded."""
-    for target in targets:
+    """Have results switched off when they are loaded; of a cloud the COPC file that is loaded in its place, too."""
+    for target in (path for one in targets for path in (one, *_views_of(one))):
         if context.willLoadLayerOnCompletion(target):
             details = context.layerToLoadOnCompletionDetails(target)
             styler = details.postProcessor()
@@ -135,6 +150,11 @@ def switch_off(context: QgsProcessingContext, targets: Iterable[str]) -> None:
                 styler.is_off = True
             else:
                 details.setPostProcessor(_kept(Styler(None, is_off=True)))
+
+
+def _views_of(target: str) -> list[str]:
+    kind = kind_of(Path(target))
+    return [] if kind in (None, COPC, VPC) else [str(copc_path(Path(target)))]
 
 
 def _kept(styler: Styler) -> Styler:
@@ -166,6 +186,24 @@ def stack_results(context: QgsProcessingContext) -> None:
     parent.insertChildNodes(parent.children().index(nodes[0]), [node.clone() for node in wanted])
     for node in nodes:
         parent.removeChildNode(node)
+
+
+def put_below(layer: QgsMapLayer, context: QgsProcessingContext) -> None:
+    """Put a raster that comes alone below all polygons and clouds of earlier runs, a cloud below all polygons."""
+    root = context.project().layerTreeRoot()
+    node, children = root.findLayer(layer.id()), root.children()
+    if node not in children or not isinstance(layer, _BELOW):
+        return
+    above = [i for i, child in enumerate(children) if _height_of(child) > _height_of(node)]
+    if above and above[-1] > children.index(node):
+        root.insertChildNode(above[-1] + 1, node.clone())
+        root.removeChildNode(node)
+
+
+def _height_of(node: QgsLayerTreeNode) -> int:
+    """Return how far up in the tree a layer belongs; groups hold the polygons of a run."""
+    layer = node.layer() if isinstance(node, QgsLayerTreeLayer) else None
+    return next((i for i, kind in enumerate(_BELOW) if isinstance(layer, kind)), len(_BELOW))
 
 
 def _key_of(layer: QgsMapLayer, keys: dict[str, int]) -> Optional[int]:

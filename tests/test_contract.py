@@ -72,6 +72,7 @@ STAGE_IDS = {
     "segmentplanesransac",
     "segmentplaneshough",
     "detectcylinders",
+    "drawpipes",
     "segmenttree",
     "simulatetree",
     "assesssegments",

@@ -1,5 +1,34 @@
 <!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>
-<qgis styleCategories="Symbology" version="3.40.0">
+<qgis styleCategories="Symbology|Symbology3D" version="3.40.0">
+  <renderer-3d layer="" type="vector">
+    <vector-layer-3d-tiling zoom-levels-count="3" show-bounding-boxes="0"/>
+    <symbol material_type="phong" type="polygon">
+      <data culling-mode="back" alt-binding="centroid" extrusion-height="0" rendered-facade="3" add-back-faces="1" alt-clamping="terrain" offset="0" invert-normals="0"/>
+      <material diffuse="120,150,185,255" ka="1" kd="1" shininess="0" opacity="1" specular="40,40,40,255" ks="1" ambient="55,70,88,255">
+        <data-defined-properties>
+          <Option type="Map">
+            <Option value="" type="QString" name="name"/>
+            <Option name="properties"/>
+            <Option value="collection" type="QString" name="type"/>
+          </Option>
+        </data-defined-properties>
+      </material>
+      <data-defined-properties>
+        <Option type="Map">
+          <Option value="" type="QString" name="name"/>
+          <Option type="Map" name="properties">
+            <Option type="Map" name="extrusionHeight">
+              <Option value="true" type="bool" name="active"/>
+              <Option value="height" type="QString" name="field"/>
+              <Option value="2" type="int" name="type"/>
+            </Option>
+          </Option>
+          <Option value="collection" type="QString" name="type"/>
+        </Option>
+      </data-defined-properties>
+      <edges enabled="1" color="0,52,105,255" width="1"/>
+    </symbol>
+  </renderer-3d>
   <renderer-v2 attr="source" forceraster="0" enableorderby="0" referencescale="-1" type="categorizedSymbol" symbollevels="0">
     <categories>
       <category symbol="0" value="wall" label="Walls" render="true" type="string"/>

@@ -89,6 +89,7 @@ IDS = {
     "extractfacades",
     "segmentplaneshough",
     "detectcylinders",
+    "drawpipes",
     "segmenttree",
     "simulatetree",
     "assesssegments",

@@ -39,10 +39,12 @@ from lidar_buildings.provider.styles import (
     layer_style,
     load_from,
     name_after,
+    put_below,
     show_on_load,
     stack_results,
     switch_off,
 )
+from lidar_buildings.tests.provider.helpers import vector
 from lidar_buildings.tests.toys import TOYS
 
 OF_CLOUDS = sorted(path.stem for path in STYLES.glob("*.qml") if path.stem in DIMENSIONS)
@@ -267,3 +269,104 @@ def test_a_layer_that_another_step_has_taken_further_is_loaded_switched_off(cont
     root = QgsProject.instance().layerTreeRoot()
     assert [root.findLayer(layer.id()).itemVisibilityChecked() for layer in layers] == [False, True]
     QgsProject.instance().removeMapLayers([layer.id() for layer in layers])
+
+
+def styles_of(layer):
+    """Return the renderers of all styles of a layer by their names."""
+    found = {}
+    manager = layer.styleManager()
+    current = manager.currentStyle()
+    for name in manager.styles():
+        manager.setCurrentStyle(name)
+        found[name] = layer.renderer().clone()
+    manager.setCurrentStyle(current)
+    return found
+
+
+def test_footprints_have_styles_to_switch(context, log):
+    """There was one style only."""
+    fields = "field=id:int&field=height:double&field=confidence:double&field=reason:string&field=empty:double"
+    rows = [
+        (f"Polygon (({x} 0, {x + 1} 0, {x} 1, {x} 0))", [x, 3.0 * x, 0.3 * x, reason, None])
+        for x, reason in ((1, "Solid"), (2, "Plane"), (3, "Solid"))
+    ]
+    layer = vector("Polygon", rows, fields=fields)
+    context.project().addMapLayer(layer)
+    Styler("footprints", [Field("id", int, "")]).postProcessLayer(layer, context, log)
+    assert layer.styleManager().currentStyle() == "default"
+    found = styles_of(layer)
+    assert list(found) == sorted(["default", "Height", "Confidence", "Reason"])
+    assert found["default"].type() == "singleSymbol"
+    assert [one.value() for one in found["Reason"].categories()] == ["Plane", "Solid"]
+    ranges = found["Height"].ranges()
+    assert ranges[0].lowerValue() <= 3.0
+    assert ranges[-1].upperValue() >= 9.0
+    assert [(one.lowerValue(), one.upperValue()) for one in found["Confidence"].ranges()] == [
+        (0.0, 0.5),
+        (0.5, 0.7),
+        (0.7, 1.0),
+    ]
+    # What the table says of the fields holds in all styles, and the labels too.
+    layer.styleManager().setCurrentStyle("Reason")
+    assert layer.mapTipTemplate()
+    assert layer.labelsEnabled()
+
+
+def test_clouds_have_styles_to_switch_by_the_dimensions_that_they_have(tmp_path, context, log):
+    arrays = {"xyz": np.random.default_rng(1).uniform(0, 10, (50, 3)), "classification": np.full(50, 2, np.uint8)}
+    cloud = create_cloud(arrays)
+    cloud.set("height_above_ground", np.zeros(50, np.float32))
+    write_cloud(cloud, tmp_path / "a.copc.laz")
+    layer = QgsPointCloudLayer(str(tmp_path / "a.copc.laz"), "a", "copc")
+    Styler("classification").postProcessLayer(layer, context, log)
+    assert layer.styleManager().currentStyle() == "Class"
+    found = styles_of(layer)
+    assert {name: one.attribute() for name, one in found.items()} == {
+        "Class": "Classification",
+        "Height above ground": "HeightAboveGround",
+    }
+
+
+@pytest.mark.parametrize("highest", [3.0, 200.0])
+def test_the_ramp_of_heights_follows_the_values(highest, tmp_path, context, log):
+    """It ended at 40 m, whatever the raster held: villages were one color, and so were towers."""
+    path = tmp_path / "ndsm.tif"
+    values = np.linspace(0, highest, 100 * 100, dtype=np.float32).reshape(100, 100)
+    image = gdal.GetDriverByName("GTiff").Create(str(path), 100, 100, 1, gdal.GDT_Float32)
+    image.GetRasterBand(1).WriteRaster(0, 0, 100, 100, values.tobytes())
+    del image
+    layer = QgsRasterLayer(str(path), "ndsm")
+    Styler("heights").postProcessLayer(layer, context, log)
+    items = layer.renderer().shader().rasterShaderFunction().colorRampItemList()
+    assert items[0].value == 0
+    assert items[-1].value == pytest.approx(0.98 * highest, rel=0.01)
+    assert items[1].value == pytest.approx(items[-1].value / 16)
+    assert items[-1].label == f"{items[-1].value:.1f} m"
+
+
+def test_a_raster_that_comes_alone_lies_below_what_is_there(context, tmp_path):
+    """A new terrain covered the footprints of the run before."""
+    gdal.GetDriverByName("GTiff").Create(str(tmp_path / "a.tif"), 2, 2, 1, gdal.GDT_Float32)
+    footprints, raster = QgsVectorLayer("Polygon", "f", "memory"), QgsRasterLayer(str(tmp_path / "a.tif"), "terrain")
+    project = context.project()
+    group = project.layerTreeRoot().addGroup("run")
+    project.addMapLayer(footprints, False)
+    group.addLayer(footprints)
+    project.addMapLayer(raster, False)
+    project.layerTreeRoot().insertLayer(0, raster)
+    put_below(raster, context)
+    QCoreApplication.processEvents()
+    assert [child.name() for child in project.layerTreeRoot().children()] == ["run", "terrain"]
+    put_below(raster, context)
+    assert [child.name() for child in project.layerTreeRoot().children()] == ["run", "terrain"]
+    assert len(project.mapLayers()) == 2
+
+
+def test_of_a_cloud_the_copc_that_is_loaded_is_switched_off(context):
+    from qgis.core import QgsProject
+
+    context.setProject(QgsProject.instance())
+    details = QgsProcessingContext.LayerDetails("Cloud", QgsProject.instance(), "OUTPUT")
+    context.addLayerToLoadOnCompletion("a.copc.laz", details)
+    switch_off(context, ["a.laz"])
+    assert context.layerToLoadOnCompletionDetails("a.copc.laz").postProcessor().is_off

@@ -1,0 +1,126 @@
+"""Pipes and spheres as surfaces: polygons around axes and centers, for three-dimensional views."""
+
+from __future__ import annotations
+
+from typing import Optional
+
+import numpy as np
+
+from ..stage import Field, InputLayer, Layer, LayerFeatures, stage
+
+_FIELDS = (
+    Field("id", int, "number of the face, from 1"),
+    Field("kind", str, "pipe or sphere"),
+    Field("of", int, "number of the cylinder or of the sphere"),
+    Field("radius", float, "its radius", "m"),
+)
+
+# Sides of a circle: a polygon of 16 has an area 2.5 % below the circle's, which the eye takes for round.
+_SIDES = 16
+
+
+@stage(
+    "Draw pipes",
+    group="Shapes",
+    tags="pipe,tube,sphere,tank,3D,surface,view,polygon,industry",
+    input_layers=(
+        InputLayer("axes", "Axes of cylinders", "LineString", "Lines with heights and the attributes 'id' and 'radius'."),
+        InputLayer(
+            "centers",
+            "Centers of spheres",
+            "Point",
+            "Points with heights and the attributes 'id' and 'radius'.",
+            optional=True,
+        ),
+    ),
+    layers=(Layer("pipes", "Pipes and spheres", "Polygon", _FIELDS, style="pipes"),),
+)
+def draw_pipes(axes, centers=None, *, monitor=None):
+    """Draw cylinders around their axes and spheres around their centers, as polygons in space.
+
+    Three-dimensional views draw lines with one width for all of them. Here each pipe is a prism of 16 sides, without
+    ends, and each sphere a solid of 16 by 8 faces.
+
+    Parameters
+    ----------
+    axes : LayerFeatures
+        Axes as lines with heights, from 'Detect cylinders'.
+    centers : LayerFeatures, optional
+        Centers as points with heights, from 'Detect spheres'.
+
+    Returns
+    -------
+    pipes : LayerFeatures
+        The faces.
+
+    Raises
+    ------
+    ValueError
+        If lines or points have no heights, or no attribute 'radius'.
+    """
+    faces: list[np.ndarray] = []
+    columns: dict[str, list] = {"kind": [], "of": [], "radius": []}
+    for kind, layer, drawn in (("pipe", axes, _tube), ("sphere", centers, _sphere)):
+        for number, geometry, radius in _shapes(layer, kind):
+            monitor.progress(0.0)
+            made = drawn(geometry, radius)
+            faces += made
+            for name, value in (("kind", kind), ("of", number), ("radius", radius)):
+                columns[name] += [value] * len(made)
+    return LayerFeatures([[face] for face in faces], {"id": list(range(1, len(faces) + 1)), **columns})
+
+
+def _shapes(layer: Optional[LayerFeatures], kind: str) -> list[tuple[int, np.ndarray, float]]:
+    """Return number, geometry and radius of each feature that has a radius."""
+    if layer is None or not len(layer):
+        return []
+    if "radius" not in layer.columns:
+        raise ValueError(f"The layer of each {kind} has no attribute 'radius'; take one of 'Detect cylinders' or spheres.")
+    numbers = layer.columns.get("id", range(1, len(layer) + 1))
+    found = []
+    for number, geometry, radius in zip(numbers, layer.geometries, layer.columns["radius"]):
+        points = np.atleast_2d(np.asarray(geometry, float))
+        if points.shape[1] != 3 or not np.isfinite(points).all():
+            raise ValueError(f"The layer of each {kind} has no heights; take one of 'Detect cylinders' or spheres.")
+        if radius is not None and np.isfinite(radius) and radius > 0:
+            found.append((int(number), points, float(radius)))
+    return found
+
+
+def _tube(axis: np.ndarray, radius: float) -> list[np.ndarray]:
+    """Return the faces, closed rings (5, 3), of a prism around each part of an axis (n, 3), m."""
+    faces = []
+    for start, end in zip(axis[:-1], axis[1:]):
+        along = end - start
+        if not along.any():
+            continue
+        circle = _circle(along / np.linalg.norm(along), radius)
+        faces += _band(start + circle, end + circle)
+    return faces
+
+
+def _circle(along: np.ndarray, radius: float) -> np.ndarray:
+    """Return the corners (sides + 1, 3) of a closed circle across a direction, from its middle, m."""
+    # The axis that the direction is least along is never parallel to it.
+    across = np.cross(along, np.eye(3)[np.argmin(np.abs(along))])
+    across /= np.linalg.norm(across)
+    angle = np.linspace(0, 2 * np.pi, _SIDES + 1)[:, None]
+    return radius * (np.cos(angle) * across + np.sin(angle) * np.cross(along, across))
+
+
+def _band(first: np.ndarray, second: np.ndarray) -> list[np.ndarray]:
+    """Return the faces between two closed circles (sides + 1, 3); at a pole they are triangles."""
+    corners = np.stack([first[:-1], first[1:], second[1:], second[:-1]], axis=1)
+    rings = []
+    for face in corners:
+        kept = [point for i, point in enumerate(face) if not np.allclose(point, face[i - 1])]
+        rings.append(np.array([*kept, kept[0]]))
+    return rings
+
+
+def _sphere(center: np.ndarray, radius: float) -> list[np.ndarray]:
+    """Return the faces, closed rings (4 or 5, 3), of a solid around a center (1, 3), m."""
+    up = np.array([0.0, 0.0, 1.0])
+    angles = np.linspace(-np.pi / 2, np.pi / 2, _SIDES // 2 + 1)
+    circles = [center + radius * np.sin(a) * up + _circle(up, radius * np.cos(a)) for a in angles]
+    return [face for low, high in zip(circles[:-1], circles[1:]) for face in _band(low, high)]

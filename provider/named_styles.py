@@ -1,0 +1,136 @@
+"""Styles that users switch between, under Styles in the menu of a layer: by height, confidence, reason, roof type."""
+
+from __future__ import annotations
+
+from qgis.core import (
+    QgsCategorizedSymbolRenderer,
+    QgsClassificationPrettyBreaks,
+    QgsFillSymbol,
+    QgsGradientColorRamp,
+    QgsGradientStop,
+    QgsGraduatedSymbolRenderer,
+    QgsMapLayer,
+    QgsPointCloudLayer,
+    QgsRasterLayer,
+    QgsRendererCategory,
+    QgsRendererRange,
+    QgsVectorLayer,
+)
+from qgis.PyQt.QtGui import QColor
+
+from ..algorithms.cloud.dimensions import DIMENSIONS
+from .paths import STYLES
+from .texts import tr
+
+# Attributes of polygons by which these are colored, and what the style is called.
+_BY_ATTRIBUTE = {
+    "height": "Height",
+    "ridge_height": "Ridge height",
+    "confidence": "Confidence",
+    "reason": "Reason",
+    "roof_type": "Roof type",
+    "level": "Level of detail",
+}
+
+# Dimensions of clouds in the same way.
+_BY_DIMENSION = {
+    "classification": "Class",
+    "height_above_ground": "Height above ground",
+    "confidence": "Confidence",
+    "reason": "Reason",
+    "segment_id": "Segments",
+    "cluster_id": "Clusters",
+}
+
+# Bounds of confidence on the pages, and their colors (Tol's high-contrast scheme).
+_CONFIDENCE = ((0.0, 0.5, "#bb5566"), (0.5, 0.7, "#ddaa33"), (0.7, 1.0, "#004488"))
+
+# Colors of kinds (Tol's muted scheme); further ones begin again.
+_KINDS = ("#88ccee", "#cc6677", "#ddcc77", "#117733", "#332288", "#aa4499", "#44aa99", "#999933", "#882255")
+
+# Low to high.
+_LOW, _MIDDLE, _HIGH = "#4a6fa5", "#f5e6a1", "#b5202c"
+_CLASSES = 6
+
+# Share of the cells of a raster that are lower and higher than its colors: single masts would make all others pale.
+_CUT, _CELLS_LOOKED_AT = 0.02, 250_000
+
+
+def add_named_styles(layer: QgsMapLayer) -> None:
+    """Add styles to a layer in its style, which remains the current one."""
+    manager = layer.styleManager()
+    first = manager.currentStyle()
+    if isinstance(layer, QgsVectorLayer):
+        names = [name for name in _BY_ATTRIBUTE if layer.fields().indexOf(name) >= 0]
+        for name in names:
+            renderer = _renderer(layer, name)
+            if renderer is not None:
+                manager.addStyleFromLayer(tr(_BY_ATTRIBUTE[name]))
+                manager.setCurrentStyle(tr(_BY_ATTRIBUTE[name]))
+                layer.setRenderer(renderer)
+    elif isinstance(layer, QgsPointCloudLayer):
+        on_disk = {one.name() for one in layer.attributes().attributes()}
+        of_first = layer.renderer().attribute() if hasattr(layer.renderer(), "attribute") else ""
+        for name, title in _BY_DIMENSION.items():
+            disk = DIMENSIONS[name].disk[0]
+            if disk == of_first:
+                manager.renameStyle(first, tr(title))
+                first = tr(title)
+            elif disk in on_disk:
+                manager.addStyleFromLayer(tr(title))
+                manager.setCurrentStyle(tr(title))
+                layer.loadNamedStyle(str(STYLES / f"{name}.qml"))
+    manager.setCurrentStyle(first)
+
+
+def _renderer(layer: QgsVectorLayer, name: str):
+    """Return the renderer of polygons by an attribute; None where it has no values."""
+    if name == "confidence":
+        ranges = [
+            QgsRendererRange(low, high, _symbol(color), f"{low:g} - {high:g}") for low, high, color in _CONFIDENCE
+        ]
+        return QgsGraduatedSymbolRenderer(name, ranges)
+    index = layer.fields().indexOf(name)
+    if layer.fields()[index].isNumeric():
+        if layer.minimumAndMaximumValue(index)[0] is None:
+            return None
+        renderer = QgsGraduatedSymbolRenderer(name)
+        renderer.setSourceSymbol(_symbol(_LOW))
+        renderer.setClassificationMethod(QgsClassificationPrettyBreaks())
+        renderer.updateClasses(layer, _CLASSES)
+        stops = [QgsGradientStop(0.5, QColor(_MIDDLE))]
+        renderer.updateColorRamp(QgsGradientColorRamp(QColor(_LOW), QColor(_HIGH), False, stops))
+        return renderer
+    values = sorted(str(value) for value in layer.uniqueValues(index) if value)
+    if not values:
+        return None
+    categories = [QgsRendererCategory(value, _symbol(_KINDS[i % len(_KINDS)]), value) for i, value in enumerate(values)]
+    return QgsCategorizedSymbolRenderer(name, categories)
+
+
+def _symbol(color: str) -> QgsFillSymbol:
+    return QgsFillSymbol.createSimple({"color": color, "outline_color": "#333333", "outline_width": "0.2"})
+
+
+def fit_ramp(layer: QgsRasterLayer) -> None:
+    """Stretch the ramp of heights from 0 to the values of a raster."""
+    function = _ramp(layer)
+    if function is None:
+        return
+    _, high = layer.dataProvider().cumulativeCut(1, _CUT, 1 - _CUT, layer.extent(), _CELLS_LOOKED_AT)
+    items = function.colorRampItemList()
+    if not items or not high > 0:
+        return
+    factor = high / items[-1].value
+    for item in items:
+        item.value *= factor
+        item.label = f"{item.value:.1f} m"
+    function.setColorRampItemList(items)
+    function.setMaximumValue(high)
+    layer.renderer().setClassificationMax(high)
+
+
+def _ramp(layer: QgsRasterLayer):
+    """Return the color ramp of a raster drawn by one, None of any other."""
+    shader = getattr(layer.renderer(), "shader", lambda: None)()
+    return shader.rasterShaderFunction() if shader is not None else None
