@@ -217,7 +217,7 @@ class Run:
 
 @contextmanager
 def all_in_place(
-    definitions: list, parameters: dict, context: QgsProcessingContext, subject: str = ""
+    definitions: list, parameters: dict, context: QgsProcessingContext, subject: str = "", title: str = ""
 ) -> Iterator[Run]:
     """Put the outputs of a run in place together when the block ends well, and have QGIS load them from there.
 
@@ -231,6 +231,8 @@ def all_in_place(
         Of the run.
     subject : str
         What the results are of: layers that have no name but their output's get it too.
+    title : str
+        Of the algorithm, for the group of the layers.
 
     Raises
     ------
@@ -246,7 +248,7 @@ def all_in_place(
             raise type(error)(run.final(str(error))) from error
     load_from(context, run.final)
     if subject:
-        name_after(context, {definition.description() for definition in definitions}, subject)
+        name_after(context, {definition.description() for definition in definitions}, subject, title)
 
 
 def _file_to_write(definition, value: Any, context: QgsProcessingContext) -> Optional[Path]:

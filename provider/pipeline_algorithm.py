@@ -224,7 +224,7 @@ class PipelineAlgorithm(CheckedAlgorithm, QgsProcessingModelAlgorithm):
         definitions, given = self.destinationParameterDefinitions(), self.completed(parameters)
         subject = subject_of(self._clouds, feedback)
         with as_processing_errors(feedback):
-            with run_log() as log, all_in_place(definitions, given, context, subject) as run:
+            with run_log() as log, all_in_place(definitions, given, context, subject, self.displayName()) as run:
                 results = self._run_steps(run.parameters, context, feedback)
                 log.end()
                 self._complete_pages(results, log)

@@ -29,7 +29,7 @@ from ..algorithms.run import Outcome, run_stage
 from ..algorithms.stage import Monitor, Raster, RasterSurface, Stage
 from .algorithm import CheckedAlgorithm
 from .clouds import cloud_path, files_read
-from .crs import FULL
+from .crs import FULL, crs_of
 from .errors import as_processing_errors
 from .feedback import FeedbackMonitor, announce, is_step, warn_unknown_parameters
 from .input_layers import find_input_layer, input_layer_files, input_layer_parameter, read_input_layer, refuse_elsewhere
@@ -179,7 +179,7 @@ class StageAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         with (
             run_log() as log,
             as_processing_errors(feedback),
-            all_in_place(definitions, parameters, context, subject) as run,
+            all_in_place(definitions, parameters, context, subject, self.displayName()) as run,
         ):
             log.begin(self.stage, self.job.tunables)
             outcome, place = self._run(parameters, context, monitor)
@@ -254,7 +254,7 @@ class StageAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         """Write the cloud and return its file."""
         target = self.parameterAsOutputLayer(parameters, OUTPUT, context)
         shown = write_for_qgis(cloud, target, context, monitor)
-        show_on_load(context, shown, "Cloud", cloud_style(self.stage, cloud))
+        show_on_load(context, shown, "Cloud", cloud_style(self.stage, cloud), crs=crs_of(cloud.wkt).toWkt(FULL))
         return target
 
     def _write_raster(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
+from itertools import count
 from pathlib import Path
 from typing import Callable, Optional, Union
 
@@ -27,6 +28,7 @@ from ..algorithms.cloud.cloud import Cloud
 from ..algorithms.cloud.copc_sidecar import copc_path
 from ..algorithms.cloud.outputs import COPC, VPC, kind_of
 from ..algorithms.stage import Field, Layer, Raster, Stage
+from .crs import crs_of
 from .named_styles import add_named_styles, fit_ramp
 from .paths import STYLES
 
@@ -44,18 +46,21 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
     """Gives a loaded result the style of one file, and its table the units of the fields and few decimals.
 
     A layer that ``is_off`` is there, and switched off: the result of a step that another step has taken further.
+    ``crs`` (WKT) is for clouds in which QGIS finds none: it reads WKT alone.
     """
 
-    def __init__(self, stem: Optional[str], fields: Sequence[Field] = (), is_off: bool = False) -> None:
+    def __init__(self, stem: Optional[str], fields: Sequence[Field] = (), is_off: bool = False, crs: str = "") -> None:
         super().__init__()
-        self.stem, self.fields, self.is_off = stem, fields, is_off
+        self.stem, self.fields, self.is_off, self.crs = stem, fields, is_off, crs
 
     def copy(self) -> Styler:
         """Return another one that does the same."""
-        return Styler(self.stem, self.fields, self.is_off)
+        return Styler(self.stem, self.fields, self.is_off, self.crs)
 
     def postProcessLayer(self, layer, context, feedback) -> None:  # noqa: N802 - QGIS asks for this name
         """Load the style, if there is one, and say so in the log when it can't be."""
+        if self.crs and not layer.crs().isValid():
+            layer.setCrs(crs_of(self.crs))
         if self.stem is not None:
             message, loaded = layer.loadNamedStyle(str(STYLES / f"{self.stem}.qml"))
             if not loaded:
@@ -126,18 +131,24 @@ def layer_style(layer: Union[Layer, Raster]) -> Optional[str]:
 
 
 def show_on_load(
-    context: QgsProcessingContext, target: str, kind: str, stem: Optional[str], fields: Sequence[Field] = ()
+    context: QgsProcessingContext,
+    target: str,
+    kind: str,
+    stem: Optional[str],
+    fields: Sequence[Field] = (),
+    crs: str = "",
 ) -> None:
     """Have the result ``target`` styled, and put at its place among the others, when and if it is loaded.
 
-    ``kind`` is one of those in the order of drawing: "Raster", "Cloud", or the geometry of a layer.
+    ``kind`` is one of those in the order of drawing: "Raster", "Cloud", or the geometry of a layer. ``crs`` is as for
+    :class:`Styler`.
     """
     if not context.willLoadLayerOnCompletion(target):
         return
     details = context.layerToLoadOnCompletionDetails(target)
     details.layerSortKey = _DRAWN.index(kind)
-    if stem is not None or fields:
-        details.setPostProcessor(_kept(Styler(stem, fields)))
+    if stem is not None or fields or crs:
+        details.setPostProcessor(_kept(Styler(stem, fields, crs=crs)))
 
 
 def switch_off(context: QgsProcessingContext, targets: Iterable[str]) -> None:
@@ -211,15 +222,27 @@ def _key_of(layer: QgsMapLayer, keys: dict[str, int]) -> Optional[int]:
     return keys.get(layer.id(), keys.get(layer.source()))
 
 
-def name_after(context: QgsProcessingContext, titles: Collection[str], subject: str) -> None:
-    """Name the layers of a run after its input, "Footprints (delft)", unless the user has; several make a group."""
+def name_after(context: QgsProcessingContext, titles: Collection[str], subject: str, run: str = "") -> None:
+    """Name the layers of a run after its input, "Footprints (delft)", unless the user has; several make a group.
+
+    The group is named after the input and the ``run``, and has a number where there is one of that name.
+    """
     layers = context.layersToLoadOnCompletion()
+    group = _new_group(context, f"{subject}: {run}" if run else subject)
     for path, details in layers.items():
         loaded = context.layerToLoadOnCompletionDetails(path)
         if details.name in titles:
             loaded.name = f"{details.name} ({subject})"
         if len(layers) > 1 and not details.groupName:
-            loaded.groupName = subject
+            loaded.groupName = group
+
+
+def _new_group(context: QgsProcessingContext, name: str) -> str:
+    """Return a name that no group of the project has."""
+    project = context.project()
+    taken = {group.name() for group in project.layerTreeRoot().findGroups()} if project is not None else set()
+    numbered = (f"{name} {number}" if number > 1 else name for number in count(1))
+    return next(one for one in numbered if one not in taken)
 
 
 def _without_styler(details: QgsProcessingContext.LayerDetails) -> QgsProcessingContext.LayerDetails:

@@ -109,7 +109,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         for input_layer in self.tiled.pipeline.input_layers.values():
             self.addParameter(input_layer_parameter(input_layer))
         self.addParameter(extent_parameter())
-        self.addParameter(crs_parameter())
+        self.addParameter(with_setting(crs_parameter(), SETTINGS))
         for definition in _work_parameters():
             self.addParameter(definition)
         folder = QgsProcessingParameterFolderDestination(OUTPUT, "Folder of the tiles")
@@ -190,7 +190,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         sinks = [one for one in self.destinationParameterDefinitions() if one.name() != OUTPUT]
         cancelled = f"Cancelled; what was done is kept in {folder}, and the same run goes on with it."
         with as_processing_errors(feedback, cancelled):
-            with all_in_place(sinks, parameters, context, folder.name) as run:
+            with all_in_place(sinks, parameters, context, folder.name, self.displayName()) as run:
                 results: dict[str, Any] = {}
                 outcome = self._run(folder, run.parameters, context, monitor, results)
                 results.update(self._write_layers(outcome, run.parameters, context, monitor))
@@ -214,7 +214,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         title = cloud_title([step.stage for step in self.tiled.pipeline.steps if step.stage.makes_cloud])
         details = QgsProcessingContext.LayerDetails(f"{title} ({folder.name})", context.project(), VPC)
         context.addLayerToLoadOnCompletion(shown, details)
-        show_on_load(context, shown, "Cloud", self._cloud_style())
+        show_on_load(context, shown, "Cloud", self._cloud_style(), crs=self.wkt)
 
     def _cloud_style(self) -> Optional[str]:
         """Return the style of the tiles: that of the last step that makes a cloud and has one."""

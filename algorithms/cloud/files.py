@@ -126,7 +126,10 @@ def with_crs(cloud: Cloud, wkt: str, code: str, crs_units: Optional[Resolver] = 
 
 def header_with_crs(header: Header, wkt: str, code: str) -> Header:
     """Return the header of a cloud that names no coordinate reference system with one, as :func:`with_crs` takes it."""
-    vlrs, bits = crs_records(code if code and header.layout.is_old else wkt)
+    vlrs, bits = crs_records(wkt)
+    if code and header.layout.is_old:
+        # The WKT is for the COPC that may be written of it, which has no use for GeoKeys.
+        vlrs, bits = [*crs_records(code)[0], *vlrs], 0
     return replace(header, vlrs=[*header.vlrs, *vlrs], encoding=header.encoding | bits)
 
 

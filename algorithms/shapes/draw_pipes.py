@@ -24,7 +24,9 @@ _SIDES = 16
     group="Shapes",
     tags="pipe,tube,sphere,tank,3D,surface,view,polygon,industry",
     input_layers=(
-        InputLayer("axes", "Axes of cylinders", "LineString", "Lines with heights and the attributes 'id' and 'radius'."),
+        InputLayer(
+            "axes", "Axes of cylinders", "LineString", "Lines with heights and the attributes 'id' and 'radius'."
+        ),
         InputLayer(
             "centers",
             "Centers of spheres",
@@ -75,13 +77,13 @@ def _shapes(layer: Optional[LayerFeatures], kind: str) -> list[tuple[int, np.nda
     if layer is None or not len(layer):
         return []
     if "radius" not in layer.columns:
-        raise ValueError(f"The layer of each {kind} has no attribute 'radius'; take one of 'Detect cylinders' or spheres.")
+        raise ValueError(f"The layer of each {kind} has no attribute 'radius'; run 'Detect cylinders' first.")
     numbers = layer.columns.get("id", range(1, len(layer) + 1))
     found = []
     for number, geometry, radius in zip(numbers, layer.geometries, layer.columns["radius"]):
         points = np.atleast_2d(np.asarray(geometry, float))
         if points.shape[1] != 3 or not np.isfinite(points).all():
-            raise ValueError(f"The layer of each {kind} has no heights; take one of 'Detect cylinders' or spheres.")
+            raise ValueError(f"The layer of each {kind} has no heights; run 'Detect cylinders' first.")
         if radius is not None and np.isfinite(radius) and radius > 0:
             found.append((int(number), points, float(radius)))
     return found

@@ -39,6 +39,11 @@ SETTINGS = by_name(
         _INPUT,
         _EXTENT,
         Setting(
+            "CRS",
+            "Coordinate reference system",
+            "Of clouds that name none, and of what is made of them. Clouds that name one keep it.",
+        ),
+        Setting(
             "BLOCK_SIDE",
             "Side of a block (m, empty = automatic)",
             "Larger blocks take more memory and less time, as less of what surrounds them is worked on twice. Empty: "

@@ -8,6 +8,7 @@ from osgeo import gdal
 from qgis.core import (
     Qgis,
     QgsAbstract3DSymbol,
+    QgsCoordinateReferenceSystem,
     QgsExpression,
     QgsExpressionContext,
     QgsFeature,
@@ -370,3 +371,32 @@ def test_of_a_cloud_the_copc_that_is_loaded_is_switched_off(context):
     context.addLayerToLoadOnCompletion("a.copc.laz", details)
     switch_off(context, ["a.laz"])
     assert context.layerToLoadOnCompletionDetails("a.copc.laz").postProcessor().is_off
+
+
+def test_each_run_has_a_group_of_its_own(context):
+    """A second run of the same input went into the group of the first, and hid its layers among those."""
+    root = context.project().layerTreeRoot()
+    names = []
+    for _ in range(2):
+        run = QgsProcessingContext()
+        run.setProject(context.project())
+        for path in ("a.gpkg", "b.laz"):
+            run.addLayerToLoadOnCompletion(path, QgsProcessingContext.LayerDetails(path, context.project()))
+        name_after(run, [], "delft", "Detect buildings")
+        names.append(run.layersToLoadOnCompletion()["a.gpkg"].groupName)
+        root.addGroup(names[-1])
+    assert names == ["delft: Detect buildings", "delft: Detect buildings 2"]
+
+
+def test_a_cloud_in_which_qgis_finds_no_system_gets_that_of_the_run(context, log, tmp_path):
+    """Clouds of old formats name theirs by a code, which QGIS doesn't read of COPC: they lay nowhere."""
+    write_cloud(create_cloud({"xyz": np.random.default_rng(1).uniform(0, 9, (50, 3))}), tmp_path / "bare.copc.laz")
+    wkt = QgsCoordinateReferenceSystem("EPSG:28992").toWkt()
+    layer = QgsPointCloudLayer(str(tmp_path / "bare.copc.laz"), "cloud", "copc")
+    assert not layer.crs().isValid()
+    Styler(None, crs=wkt).copy().postProcessLayer(layer, context, log)
+    assert layer.crs().authid() == "EPSG:28992"
+    write_cloud(create_cloud({"xyz": np.zeros((1, 3))}, wkt), tmp_path / "named.copc.laz")
+    layer = QgsPointCloudLayer(str(tmp_path / "named.copc.laz"), "cloud", "copc")
+    Styler(None, crs=QgsCoordinateReferenceSystem("EPSG:2154").toWkt()).postProcessLayer(layer, context, log)
+    assert layer.crs().authid() == "EPSG:28992"
