@@ -316,7 +316,7 @@ _PIPELINES = (
             Step("cylinders", "detect_cylinders", {"search_in": "each segment"}),
             Step("spheres", "detect_spheres", {"search_in": "each segment"}),
             Step("planes", "segment_planes_hough", {"method": "normals", "search_in": "each segment"}),
-            Step("pipes", "draw_pipes", layers={"axes": "cylinders.axes", "centers": "spheres.centers"}),
+            Step("pipes", "reconstruct_pipes", layers={"axes": "cylinders.axes", "centers": "spheres.centers"}),
         ),
         shared={"min_radius": ("cylinders", "spheres"), "max_radius": ("cylinders", "spheres")},
         shown=("min_radius", "max_radius", "cylinders_min_seen", "planes_min_area"),

@@ -40,7 +40,7 @@ _MODULES = (
     "shapes.segment_planes_hough",
     "shapes.detect_cylinders",
     "shapes.detect_spheres",
-    "shapes.draw_pipes",
+    "shapes.reconstruct_pipes",
     "shapes.segment_tree",
     "segmentation.segment_voxels",
     "buildings.classify_buildings",

@@ -72,7 +72,7 @@ STAGE_IDS = {
     "segmentplanesransac",
     "segmentplaneshough",
     "detectcylinders",
-    "drawpipes",
+    "reconstructpipes",
     "segmenttree",
     "simulatetree",
     "assesssegments",
@@ -161,7 +161,13 @@ WITHOUT_UNIT = {
 OWN_CLASSES = {"classify_dimensionality"}
 # Our own, after no publication.
 WITHOUT_REFERENCES = {"simulate_plant", "simulate_town", "simulate_village", "simulate_street", "simulate_drone_site"}
-WITHOUT_REFERENCES |= {"simulate_bridges", "simulate_tree", "simulate_power_line", "report_buildings"}
+WITHOUT_REFERENCES |= {
+    "simulate_bridges",
+    "simulate_tree",
+    "simulate_power_line",
+    "report_buildings",
+    "reconstruct_pipes",
+}
 # Stems are scanned from the ground, and finer than the scene is.
 WITHOUT_FEATURES = {"segment_tree"}
 # Automatic tunables that matter only beside another setting.

@@ -89,7 +89,7 @@ IDS = {
     "extractfacades",
     "segmentplaneshough",
     "detectcylinders",
-    "drawpipes",
+    "reconstructpipes",
     "segmenttree",
     "simulatetree",
     "assesssegments",

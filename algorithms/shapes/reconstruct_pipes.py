@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Optional
+from typing import Annotated, Optional
 
 import numpy as np
 
-from ..stage import Field, InputLayer, Layer, LayerFeatures, stage
+from ..stage import Field, InputLayer, Layer, LayerFeatures, Param, stage
 
 _FIELDS = (
     Field("id", int, "number of the face, from 1"),
@@ -20,7 +20,7 @@ _SIDES = 16
 
 
 @stage(
-    "Draw pipes",
+    "Reconstruct pipes",
     group="Shapes",
     tags="pipe,tube,sphere,tank,3D,surface,view,polygon,industry",
     input_layers=(
@@ -37,7 +37,22 @@ _SIDES = 16
     ),
     layers=(Layer("pipes", "Pipes and spheres", "Polygon", _FIELDS, style="pipes"),),
 )
-def draw_pipes(axes, centers=None, *, monitor=None):
+def reconstruct_pipes(
+    axes,
+    centers=None,
+    *,
+    radius: Annotated[
+        float,
+        Param(
+            "Radius of others",
+            "Radius of lines and points without an attribute 'radius', such as wires.",
+            unit="m",
+            low=0.001,
+            high=100,
+        ),
+    ] = 0.05,
+    monitor=None,
+):
     """Draw cylinders around their axes and spheres around their centers, as polygons in space.
 
     Three-dimensional views draw lines with one width for all of them. Here each pipe is a prism of 16 sides, without
@@ -55,37 +70,38 @@ def draw_pipes(axes, centers=None, *, monitor=None):
     pipes : LayerFeatures
         The faces.
 
-    Raises
-    ------
-    ValueError
-        If lines or points have no heights, or no attribute 'radius'.
+    Notes
+    -----
+    Lines and points without heights are drawn at height 0.
     """
     faces: list[np.ndarray] = []
     columns: dict[str, list] = {"kind": [], "of": [], "radius": []}
     for kind, layer, drawn in (("pipe", axes, _tube), ("sphere", centers, _sphere)):
-        for number, geometry, radius in _shapes(layer, kind):
+        for number, geometry, own in _shapes(layer, radius):
             monitor.progress(0.0)
-            made = drawn(geometry, radius)
+            made = drawn(geometry, own)
             faces += made
-            for name, value in (("kind", kind), ("of", number), ("radius", radius)):
+            for name, value in (("kind", kind), ("of", number), ("radius", own)):
                 columns[name] += [value] * len(made)
     return LayerFeatures([[face] for face in faces], {"id": list(range(1, len(faces) + 1)), **columns})
 
 
-def _shapes(layer: Optional[LayerFeatures], kind: str) -> list[tuple[int, np.ndarray, float]]:
-    """Return number, geometry and radius of each feature that has a radius."""
-    if layer is None or not len(layer):
+def _shapes(layer: Optional[LayerFeatures], radius: float) -> list[tuple[int, np.ndarray, float]]:
+    """Return number, geometry (n, 3) and radius of each feature; one whose own radius is no number is left out."""
+    if layer is None:
         return []
-    if "radius" not in layer.columns:
-        raise ValueError(f"The layer of each {kind} has no attribute 'radius'; run 'Detect cylinders' first.")
-    numbers = layer.columns.get("id", range(1, len(layer) + 1))
+    places = range(1, len(layer) + 1)
+    numbers = [
+        own if isinstance(own, (int, np.integer)) else at for own, at in zip(layer.columns.get("id", places), places)
+    ]
+    radii = layer.columns.get("radius", [radius] * len(layer))
     found = []
-    for number, geometry, radius in zip(numbers, layer.geometries, layer.columns["radius"]):
+    for number, geometry, own in zip(numbers, layer.geometries, radii):
         points = np.atleast_2d(np.asarray(geometry, float))
-        if points.shape[1] != 3 or not np.isfinite(points).all():
-            raise ValueError(f"The layer of each {kind} has no heights; run 'Detect cylinders' first.")
-        if radius is not None and np.isfinite(radius) and radius > 0:
-            found.append((int(number), points, float(radius)))
+        if points.shape[1] == 2:
+            points = np.column_stack([points, np.zeros(len(points))])
+        if own is not None and np.isfinite(own) and own > 0:
+            found.append((int(number), points, float(own)))
     return found
 
 

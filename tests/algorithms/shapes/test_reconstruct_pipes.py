@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lidar_buildings.algorithms.shapes.draw_pipes import draw_pipes
+from lidar_buildings.algorithms.shapes.reconstruct_pipes import reconstruct_pipes
 from lidar_buildings.algorithms.stage import LayerFeatures
 
 
@@ -16,7 +16,7 @@ def area(ring):
 def test_a_pipe_is_a_prism_around_its_axis(end):
     start = np.array([10.0, 20.0, 5.0])
     axes = LayerFeatures([np.array([start, start + end])], {"id": [7], "radius": np.array([0.25])})
-    pipes = draw_pipes(axes)
+    pipes = reconstruct_pipes(axes)
     assert len(pipes) == 16
     assert set(pipes.columns["of"]) == {7}
     assert set(pipes.columns["kind"]) == {"pipe"}
@@ -33,7 +33,7 @@ def test_a_pipe_is_a_prism_around_its_axis(end):
 def test_a_sphere_is_closed_and_round():
     axes = LayerFeatures([], {"id": [], "radius": np.zeros(0)})
     centers = LayerFeatures([np.array([1.0, 2.0, 3.0])], {"id": [2], "radius": np.array([2.0])})
-    pipes = draw_pipes(axes, centers)
+    pipes = reconstruct_pipes(axes, centers)
     rings = [ring for (ring,) in pipes.geometries]
     for ring in rings:
         np.testing.assert_allclose(np.linalg.norm(ring - [1, 2, 3], axis=1), 2.0)
@@ -43,11 +43,11 @@ def test_a_sphere_is_closed_and_round():
     assert {edge[3:] + edge[:3] for edge in edges} == set(edges)
 
 
-def test_features_without_a_radius_are_left_out_and_layers_without_are_refused():
+def test_features_without_a_radius_of_their_own():
     line = np.array([[0, 0, 0], [1, 0, 0.0]])
     axes = LayerFeatures([line, line], {"id": [1, 2], "radius": [None, 0.1]})
-    assert set(draw_pipes(axes).columns["of"]) == {2}
-    with pytest.raises(ValueError, match="no attribute 'radius'"):
-        draw_pipes(LayerFeatures([line], {"id": [1]}))
-    with pytest.raises(ValueError, match="no heights"):
-        draw_pipes(LayerFeatures([line[:, :2]], {"id": [1], "radius": [0.1]}))
+    assert set(reconstruct_pipes(axes).columns["of"]) == {2}
+    # Wires have no radius at all, and maps no heights.
+    wires = reconstruct_pipes(LayerFeatures([line[:, :2]], {"id": [1]}), radius=0.02)
+    assert set(wires.columns["radius"]) == {0.02}
+    assert np.abs(np.concatenate([ring for (ring,) in wires.geometries])[:, 2]).max() == pytest.approx(0.02)
