@@ -12,6 +12,7 @@ from ..geometry.grid import distinct, find_cells, fixed_grid_over
 from ..geometry.groups import items, run_starts
 from ..packages import spatial
 from ..stage import Monitor
+from ..threads import made_ahead
 from .scan_line_pieces import NearPoints, ends_of, pieces_of_lines, slices
 
 # Directions of lines: one of them crosses each bridge within 12° of its shortest section.
@@ -123,11 +124,12 @@ class Decks:
         votes = np.zeros(len(xyz), np.int8)
         # Directions of lines as doubled angles: their sum gives the one across which a deck is raised.
         across = np.zeros(len(xyz), np.complex64)
-        for number in range(_DIRECTIONS):
-            raised = self._raised(xyz, is_earth, 180 * number / _DIRECTIONS)
+        directions = made_ahead(
+            lambda number, _: self._raised(xyz, is_earth, 180 * number / _DIRECTIONS), _DIRECTIONS, monitor.part(0, 0.8)
+        )
+        for number, raised in enumerate(directions):
             votes += raised
             across[raised] += np.exp(2j * np.pi * number / _DIRECTIONS)
-            monitor.progress(0.8 * (number + 1) / _DIRECTIONS)
         candidates = np.flatnonzero(votes >= _LEAST_DIRECTIONS)
         is_deck = np.zeros(len(xyz), bool)
         if not len(candidates):
