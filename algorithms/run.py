@@ -228,9 +228,10 @@ def _argument(
 
 def _present(cloud: Cloud, name: str) -> np.ndarray:
     """Return a dimension, or say which stage writes it."""
-    writers = [stage.title for stage in STAGES.values() if name in stage.writes]
-    if writers and not cloud.has(name):
-        raise ValueError(f"The cloud has no {DIMENSIONS[name].disk[0]} dimension; run '{writers[0]}' first.")
+    if not cloud.has(name):
+        writers = [stage.title for stage in STAGES.values() if name in stage.writes]
+        if writers:
+            raise ValueError(f"The cloud has no {DIMENSIONS[name].disk[0]} dimension; run '{writers[0]}' first.")
     return cloud.get(name)
 
 
