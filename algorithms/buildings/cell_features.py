@@ -14,8 +14,8 @@ from .space_cells import SpaceCells, covariances
 # Smallest variance (m²) of points along an axis: coordinates are given to a centimeter, or few points share a plane.
 _LEAST_VARIANCE = 1e-4
 
-# Sides of the columns in plan (cells): that of a cell, and three, as far as the cells around reach.
-_COLUMNS = (1, 3)
+# Side of the columns in plan (cells), as far as the cells around reach.
+_COLUMN = 3
 
 
 @dataclass(frozen=True)
@@ -64,8 +64,7 @@ def cell_features(points: CellPoints, cells: SpaceCells, chosen: np.ndarray) -> 
     first = np.empty(len(cells.count), np.int64)
     first[cells.cell] = np.arange(len(cells.cell))
     level = cells.centers[chosen, 2]
-    for side in _COLUMNS:
-        features.append(_columns(points, side * cells.size, upward, first[chosen], level))
+    features.append(_columns(points, _COLUMN * cells.size, upward, first[chosen], level))
     return np.column_stack(features)
 
 

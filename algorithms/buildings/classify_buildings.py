@@ -152,11 +152,11 @@ def classify_buildings(
     clusters with too few building points around them are refused.
 
     In clouds of matched images, crowns are as closed as roofs, and penetration says nothing. There, roof surfaces are
-    buildings, planar over a meter, if the minimum share of the points around them lie on such surfaces. There, and in
-    scans without second returns, colored clusters that are as green as plants are refused, unless they are large and
-    flat. The threshold of greenness comes from the scene: it is the middle between the medians of rough clusters and of
-    surfaces of ten times the minimum area, if it separates the two. Otherwise it separates all points best into two
-    kinds, if their means differ by 0.1 or more. Greenness is the normalized excess green, which shadow hardly changes.
+    buildings, planar over half a meter, if the minimum share of the points around them lie on such surfaces. There, and
+    in scans without second returns, colored clusters that are as green as plants are refused, roofs of grass too. The
+    threshold of greenness comes from the scene: it is the middle between the medians of rough clusters and of surfaces
+    of ten times the minimum area, if it separates the two. Otherwise it separates all points best into two kinds, if
+    their means differ by 0.1 or more. Greenness is the normalized excess green, which shadow hardly changes.
 
     Confidence above 0.5 grows with the size of the cluster, to half at twice the points of the smallest building, as
     small objects such as cars can look like a roof by chance. This changes no decision.
@@ -226,7 +226,7 @@ def _decided_in_scan(
     if not given.evidence.has_returns:
         is_green, green_from = green_clusters(colors, given.evidence, surface_share > 0.5)
         monitor.resolved(plant_greenness=green_from)
-        decided = without_green(decided, is_green, given.evidence)
+        decided = without_green(decided, is_green)
     return with_surroundings(decided, given.min_share, given.evidence)
 
 

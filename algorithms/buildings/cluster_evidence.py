@@ -9,9 +9,6 @@ from typing import Optional
 import numpy as np
 
 from ..cloud.reasons import Reason
-from ..neighborhoods.covariance import symmetric_eigenvalues
-from ..neighborhoods.nearest_blocks import PAIRS
-from ..rules import rule
 from ..segmentation.cluster_measures import (
     grow_to_adjacent_clusters,
     non_last_return_share,
@@ -20,16 +17,6 @@ from ..segmentation.cluster_measures import (
     share_around,
 )
 from .cluster_decisions import Decisions
-
-
-@dataclass(frozen=True)
-class EvidenceRules:
-    """What speaks for a building beside entropy and penetration."""
-
-    split_at_edges: float = rule(0.3, "share", "of points that are not last returns; at edges some pulses split")
-
-
-EVIDENCE = EvidenceRules()
 
 
 @dataclass(frozen=True)
@@ -65,19 +52,6 @@ class ClusterEvidence:
         """The area (m,) of each cluster in plan, m²."""
         member = self.group >= 0
         return plan_areas(self.xyz[member], self.group[member], self.density)[self.numbers]
-
-    @cached_property
-    def deviations(self) -> np.ndarray:
-        """How far (m,) the points of each cluster lie off their common plane, one standard deviation, m."""
-        rows = np.flatnonzero(self.group >= 0)
-        group, count = self.group[rows], int(self.numbers[-1]) + 1
-        off = (self.xyz[rows] - self.xyz[rows].mean(axis=0)).T
-        size = np.maximum(np.bincount(group, minlength=count), 1)
-        means = [np.bincount(group, values, count) / size for values in off]
-        # About the middle of each cluster, for the digits that squares of large coordinates lose.
-        off = [values - mean[group] for values, mean in zip(off, means)]
-        products = [np.bincount(group, off[a] * off[b], count) / size for a, b in PAIRS]
-        return np.sqrt(symmetric_eigenvalues(np.column_stack(products))[self.numbers, 2])
 
     @property
     def has_returns(self) -> bool:
@@ -120,7 +94,8 @@ def with_penetration(
     # A cluster without entropy stays undecided, however solid it is.
     both = np.where(undefined, 0.5, _with_solidity(confidence, through, max_penetration))
     is_solid = both > 0.5
-    is_edge = is_planar & (evidence.non_last_return_share() < EVIDENCE.split_at_edges)
+    # Points seen past an edge are no evidence against it, pulses that go on are.
+    is_edge = is_planar & (evidence.non_last_return_share() < max_penetration)
     is_building = evidence.with_adjacent(is_solid, is_edge)
     # The first that applies is the reason.
     found = {

@@ -1,4 +1,4 @@
-"""Whole buildings from their roofs: gaps, edges, structures on the roof, and the walls below."""
+"""Whole buildings from their roofs: gaps, edges, and the walls below."""
 
 from __future__ import annotations
 
@@ -15,19 +15,15 @@ from ..rules import rule
 from ..sampling.cloud_sampling import CloudSampling
 from ..segmentation.top_surface import TopSurface
 from ..stage import Param, stage
-from .building_columns import ColumnPoints, Columns
+from .building_columns import COLUMNS, ColumnPoints, Columns, column_size
 from .roof_coverage import Coverage, cells_with, covered_cells, mostly_roof, numbered, renumbered, roof_top
 from .roof_extent import IMAGE_ROOFS, RoofExtent, amid_rough, without_vehicles
 
 
 @dataclass(frozen=True)
 class CompletionRules:
-    """Cells, walls and gaps of buildings in laser scans."""
+    """Gaps of buildings."""
 
-    cell: float = rule(1.2, "point spacings", "statistics: where a roof was seen, cells hold a point in three of four")
-    least_cell: float = rule(0.5, "m", "the same, at least")
-    wall_foot: float = rule(0.5, "m", "physics: lower points are of kerbs, plants and steps")
-    at_roof: float = rule(1.0, "m", "vertical distance at which points are compared with the surfaces of a roof")
     gap: float = rule(4.0, "point spacings", "statistics: random points hardly ever leave larger gaps in a roof")
     least_gap: float = rule(3.0, "m", "physics: ridges, gutters and skylights are narrower")
 
@@ -66,8 +62,7 @@ def complete_buildings(
             unit="m",
             low=0,
             high=_MOST_GAP,
-            automatic=f"{COMPLETION.gap:g} point spacings, from {COMPLETION.least_gap:g} to {_MOST_GAP:g} m; "
-            f"{IMAGE_ROOFS.gap:g} m in clouds of matched images, which are dense.",
+            automatic=f"{COMPLETION.gap:g} point spacings, from {COMPLETION.least_gap:g} to {_MOST_GAP:g} m.",
         ),
     ] = None,
     roof_clearance: Annotated[
@@ -80,25 +75,14 @@ def complete_buildings(
             high=20,
         ),
     ] = 1.0,
-    structure_height: Annotated[
-        float,
-        Param(
-            "Structures on the roof",
-            "Points up to this far above the roof belong to it where they cover a small part of it only (chimneys, "
-            "dormers, masts); what covers more is a tree.",
-            unit="m",
-            low=0,
-            high=100,
-        ),
-    ] = 4.0,
     min_area: MinBuildingArea = 4.0,
     min_roof_share: Annotated[
         float,
         Param(
             "Minimum share of roof surfaces",
-            "Share of the points up to a meter above and below a building's roof that must lie on roof surfaces; in "
-            "clouds of matched images of the points inside its edges. In crowns with a smooth side it is less. 0 takes "
-            "any.",
+            "Share of the points at about the height of a building's roof, within the clearance above and below, that "
+            "must lie on roof surfaces. In crowns with a smooth side it is less. 0 takes any; in clouds of matched "
+            "images it is not examined.",
             low=0,
             high=1,
         ),
@@ -108,10 +92,10 @@ def complete_buildings(
     sampling: Optional[CloudSampling] = None,
     monitor=None,
 ):
-    """Add walls, chimneys, edges and gaps to each building, and number the buildings.
+    """Add walls, edges and gaps to each building, and number the buildings.
 
     Buildings are decided in columns: where a roof was found, everything from the foot of the walls to just above
-    the roof is building, and so are chimneys and the walls along its edge. Small gaps between roof surfaces are
+    the roof is building, and so are the walls along its edge. Small gaps between roof surfaces are
     closed where the ground does not show in them. In clouds of matched images roofs reach to where the rounded edge has
     half of their height, and the smeared walls below belong to them. Where the scanner numbered its returns, crowns
     at a wall are separated from it by the pulses that pass through them.
@@ -164,8 +148,7 @@ def complete_buildings(
     density = sampling.effective_density if density is None else density
     kind = sampling.kind(source)
     if gap is None:
-        of_scan = float(np.clip(COMPLETION.gap / np.sqrt(density), COMPLETION.least_gap, _MOST_GAP))
-        gap = kind.choose(laser=of_scan, images=IMAGE_ROOFS.gap)
+        gap = float(np.clip(COMPLETION.gap / np.sqrt(density), COMPLETION.least_gap, _MOST_GAP))
     monitor.resolved(density=density, gap=gap)
     result = np.where(classification == PointClass.BUILDING, np.uint8(PointClass.UNCLASSIFIED), classification)
     is_roof = classification == PointClass.BUILDING
@@ -174,7 +157,7 @@ def complete_buildings(
 
     # 1. Where buildings are in plan.
     roofs = _Roofs.of(xyz, height_above_ground, classification, segment_id)
-    limits = _Limits(gap, density, min_area, min_roof_share)
+    limits = _Limits(gap, density, min_area, min_roof_share, roof_clearance)
     coverage = kind.choose(laser=_coverage_in_scan, images=_coverage_in_images)(roofs, limits)
     monitor.progress(0.5)
 
@@ -183,7 +166,7 @@ def complete_buildings(
     has_returns = return_number is not None and number_of_returns is not None
     goes_on = return_number < number_of_returns if has_returns else np.zeros(len(xyz), bool)
     points = ColumnPoints(coverage.cell, xyz[:, 2], height_above_ground, coverage.raised, goes_on)
-    owner = columns.owners(points, roof_clearance, structure_height)
+    owner = columns.owners(points, roof_clearance)
     cluster_id = _in_order(owner, np.ravel_multi_index(coverage.cell, coverage.building.shape))
     monitor.progress(1.0)
 
@@ -194,12 +177,13 @@ def complete_buildings(
 
 @dataclass(frozen=True)
 class _Limits:
-    """Requirements of a building: gap that is closed (m), points per m², least area (m²) and roof share."""
+    """Requirements of a building: gap that is closed (m), points per m², least area (m²), roof share, clearance (m)."""
 
     gap: float
     density: float
     min_area: float
     min_roof_share: float
+    clearance: float
 
 
 @dataclass(frozen=True)
@@ -216,8 +200,6 @@ class _Roofs:
         Points of roofs to start from, and of noise.
     may_stand : ndarray of shape (n,), bool
         Points that can be of a building: neither noise nor bridge deck.
-    on_surface : ndarray of shape (n,), bool, optional
-        Points of roofs on a roof surface; None where these are not known.
     segment_id : ndarray of shape (n,), int32, optional
         Roof surfaces; 0 if unassigned.
     """
@@ -227,7 +209,6 @@ class _Roofs:
     is_roof: np.ndarray
     is_noise: np.ndarray
     may_stand: np.ndarray
-    on_surface: Optional[np.ndarray]
     segment_id: Optional[np.ndarray]
 
     @classmethod
@@ -238,24 +219,24 @@ class _Roofs:
         is_roof, is_noise = classification == PointClass.BUILDING, np.isin(classification, NOISE)
         # Points on a bridge deck have no ground below them and are no walls.
         may_stand = ~is_noise & (classification != PointClass.BRIDGE_DECK)
-        on_surface = None if segment_id is None else is_roof & (segment_id > 0)
-        return cls(xyz, height, is_roof, is_noise, may_stand, on_surface, segment_id)
+        return cls(xyz, height, is_roof, is_noise, may_stand, segment_id)
 
 
 def _coverage_in_scan(roofs: _Roofs, limits: _Limits) -> Coverage:
     """Return where buildings are in a laser scan: in cells with roof points, gaps closed where no ground shows."""
-    cell_size = max(COMPLETION.least_cell, COMPLETION.cell / np.sqrt(limits.density))
+    cell_size = column_size(limits.density)
     refuse_sparse(roofs.xyz, cell_size)
     margin = int(np.ceil(limits.gap / cell_size)) + 2
     cell = raster_cells(roofs.xyz[:, :2], cell_size, margin)
-    raised = (roofs.height >= COMPLETION.wall_foot) & roofs.may_stand
+    raised = (roofs.height >= COLUMNS.wall_foot) & roofs.may_stand
     # Multipath through a skylight is no ground that shows in it.
     covered = covered_cells(cell, roofs.is_roof, ~raised & ~roofs.is_noise, limits.gap, cell_size)
     building, refused = numbered(covered, limits.min_area, cell_size)
     top = roof_top(cell, roofs.xyz[:, 2], roofs.is_roof, covered)
-    if roofs.on_surface is not None:
-        at_roof = raised & (np.abs(roofs.xyz[:, 2] - top[cell]) <= COMPLETION.at_roof)
-        building, refused = mostly_roof(building, refused, cell, at_roof, roofs.on_surface, limits.min_roof_share)
+    if roofs.segment_id is not None:
+        at_roof = raised & (np.abs(roofs.xyz[:, 2] - top[cell]) <= limits.clearance)
+        on_surface = roofs.is_roof & (roofs.segment_id > 0)
+        building, refused = mostly_roof(building, refused, cell, at_roof, on_surface, limits.min_roof_share)
     return Coverage(cell, cell_size, building, refused, top, raised)
 
 
@@ -272,11 +253,8 @@ def _coverage_in_images(roofs: _Roofs, limits: _Limits) -> Coverage:
     refused[cells_with(cell, roofs.is_roof & ~core, refused.shape) & (building == 0)] = Reason.MOSTLY_OTHER
     building, refused = without_vehicles(extent, building, refused)
     building = renumbered(np.bincount(building.ravel()) > 0)[building]
-    if roofs.on_surface is not None:
-        at_roof = extent.interior(building)[cell] & surface.on_top(roofs.xyz) & ~roofs.is_noise
-        building, refused = mostly_roof(building, refused, cell, at_roof, roofs.on_surface, limits.min_roof_share)
     # Nothing is seen beneath a roof but its own walls, down to their feet.
-    raised = (roofs.height >= COMPLETION.wall_foot) | (building[cell] > 0)
+    raised = (roofs.height >= COLUMNS.wall_foot) | (building[cell] > 0)
     building = extent.faces(building)
     raised |= (building[cell] > 0) & (roofs.height >= IMAGE_ROOFS.foot)
     top = roof_top(cell, roofs.xyz[:, 2], roofs.is_roof, covered)

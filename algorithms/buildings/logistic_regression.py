@@ -14,9 +14,6 @@ class _Rules:
     """How the regression is fitted."""
 
     ridge: float = rule(1.0, "samples", "statistics: features that say the same get no weights that cancel")
-    clip: float = rule(
-        3.0, "standard deviations", "statistics: 0.3 % of a normal distribution are farther from the mean"
-    )
     steps: int = rule(20, "steps", "numerics: Newton's method converges in 6 to 9")
     change: float = rule(1e-6, "", "numerics: smaller changes of weights end it")
     digits: int = rule(6, "decimals", "numerics: last bits of other processors change no rounded weight")
@@ -60,7 +57,7 @@ class LogisticRegression:
 
 def _terms(features: np.ndarray, mean: np.ndarray, scale: np.ndarray) -> np.ndarray:
     """Return 1, the standardized features and their positive parts (k, 2 f + 1): lines that bend at the mean."""
-    standard = np.clip((features - mean) / scale, -_RULES.clip, _RULES.clip)
+    standard = (features - mean) / scale
     return np.concatenate([np.ones((len(features), 1)), standard, np.maximum(standard, 0)], axis=1)
 
 

@@ -15,6 +15,7 @@ from ..params import PointDensity, PointSource
 from ..rules import rule
 from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..stage import Monitor, Param, stage
+from .building_columns import COLUMNS, column_size
 from .cell_features import CellPoints, cell_features
 from .scene_learning import LabeledCells, learn_halves, predict, shared_by_surfaces
 from .space_cells import SpaceCells
@@ -34,14 +35,11 @@ class _Rules:
         4.0, "point spacings", "fitted: side of a cell, 16 points of a roof; 3 and 6 gain 0.1 less"
     )
     raised: float = rule(0.2, "m", "physics: lower points are the roughness of the ground")
-    foot: float = rule(0.5, "m", "physics: lower points keep their class, as none is added to a wall before")
     edge: float = rule(2.0, "m", "fitted: from a building's edge points change; 3 m gain the same, 5 m 0.1 less")
     becomes: float = rule(0.7, "probability", "fitted: over it a point becomes building; over 0.8 gains 0.1 less")
     ceases: float = rule(
         0.15, "probability", "fitted: under it a point ceases to be building; under 0.1 gains 0.1 less"
     )
-    edge_cell_spacings: float = rule(1.2, "point spacings", "statistics: cells on a roof hold a point")
-    least_edge_cell: float = rule(0.5, "m", "physics: eaves are as wide")
 
 
 _RULES = _Rules()
@@ -152,12 +150,12 @@ def refine_buildings(
     used = not_noise(classification)
     if not learn or sampling.is_closed_surface(source) or not len(used):
         return classification, cluster_id, confidence, reason, None
-    spacing = 1 / float(np.sqrt(density))
     scene = _Scene(sampling.from_corner(xyz[used]), classification[used], height_above_ground[used], cluster_id[used])
 
     # 1. Learn from the cells of each half, or take what was learned on the whole survey.
     number, of, strength = (_of(values, used) for values in (return_number, number_of_returns, intensity))
-    labeled = scene.labeled(_RULES.cell_spacings * spacing, number, of, strength, monitor.part(0.1, 0.7))
+    size = _RULES.cell_spacings / float(np.sqrt(density))
+    labeled = scene.labeled(size, number, of, strength, monitor.part(0.1, 0.7))
     learned = sampling.learned(_LEARNED, lambda: labeled.sample(scene.cluster_id), learn_halves)
     monitor.progress(0.8)
     if not learned:
@@ -171,7 +169,7 @@ def refine_buildings(
     monitor.progress(0.9)
 
     # 3. Points near edges that strongly contradict their class.
-    becomes, ceases, nearest = scene.changes(probability[used], spacing)
+    becomes, ceases, nearest = scene.changes(probability[used], density)
     becomes, ceases = used[becomes], used[ceases]
     monitor.resolved(points_added=len(becomes), points_removed=len(ceases))
     return (
@@ -234,19 +232,19 @@ class _Scene:
         of_cells[labeled.chosen] = likely
         return np.where(self.is_raised, of_cells[labeled.cells.cell], 0.0)
 
-    def changes(self, probability: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def changes(self, probability: np.ndarray, density: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return the rows of points that become building, and of those that cease; the building nearest to the former.
 
-        ``probability`` (n,) is that of building, ``spacing`` (m) that of the points.
+        ``probability`` (n,) is that of building, ``density`` (points/m²) that of the points.
         """
-        size = max(_RULES.least_edge_cell, _RULES.edge_cell_spacings * spacing)
+        size = column_size(density)
         refuse_sparse(self.xyz, size)
         cell = raster_cells(self.xyz, size, 1)
         building = np.zeros((cell[0].max() + 2, cell[1].max() + 2), np.int32)
         building[tuple(of[self.is_building] for of in cell)] = self.cluster_id[self.is_building]
         outside, nearest = ndimage.distance_transform_edt(building == 0, return_indices=True)
         inside = ndimage.distance_transform_edt(building > 0)
-        may_change = self.is_raised & (self.height > _RULES.foot)
+        may_change = self.is_raised & (self.height > COLUMNS.wall_foot)
         may_change &= (np.maximum(outside, inside)[cell] * size <= _RULES.edge) & (building.max() > 0)
         becomes = np.flatnonzero(may_change & ~self.is_building & (probability > _RULES.becomes))
         ceases = np.flatnonzero(may_change & self.is_building & (probability < _RULES.ceases))

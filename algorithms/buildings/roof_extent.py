@@ -9,6 +9,7 @@ import numpy as np
 from ..cloud.reasons import Reason
 from ..packages import ndimage
 from ..rules import rule
+from ..sampling.kinds import IMAGES
 from ..segmentation.top_surface import TopSurface
 
 
@@ -16,33 +17,24 @@ from ..segmentation.top_surface import TopSurface
 class ImageRoofRules:
     """Roofs and vehicles in clouds of matched images."""
 
-    gap: float = rule(1.5, "m", "gaps between roof surfaces that are closed: ridges, dormers, chimneys")
     least_width: float = rule(1.5, "m", "physics: narrower objects are walls, railings or hedges")
-    raised: float = rule(1.0, "m", "height over the ground that the surface keeps where a gap is closed")
     rounded: float = rule(0.7, "m", "physics: matching rounds edges of roofs over the size of its windows")
     half: float = rule(0.5, "share", "of a roof's height at its edge: a step is smeared evenly to both sides")
     steep: float = rule(1.0, "m per m", "physics: smeared walls fall as steeply; soil does not")
-    foot: float = rule(0.3, "m", "physics: lower points beyond the edge of a roof are ground, kerbs and low plants")
-    above: float = rule(1.0, "m", "higher points over a roof are of a crown or a higher wall, not of its edge")
-    near: float = rule(2.0, "m", "distance within which points around a roof surface are looked at")
-    surface_share: float = rule(0.6, "share", "of these on surfaces around a roof; fewer around smooth spots of crowns")
-    at_height: float = rule(1.5, "m", "largest difference of points at about the height of a surface")
-    at_height_share: float = rule(0.3, "share", "the same of its height, where that is less: lower ones are of edges")
+    foot: float = rule(0.2, "m", "physics: lower points beyond the edge of a roof are ground, kerbs and low plants")
+    surface_share: float = rule(
+        0.5, "share", "most of what stands within the least width of a roof surface; less around spots of crowns"
+    )
 
 
 @dataclass(frozen=True)
 class VehicleRules:
-    """Sizes of vans and cars, with their smeared edges; buses are wider and longer."""
+    """Sizes of cars and vans, with their smeared edges; buses are wider and longer."""
 
-    least_width: float = rule(1.4, "m", "physics")
-    most_width: float = rule(2.6, "m", "physics: the width that roads admit")
-    least_van: float = rule(4.3, "m", "physics: length of the shortest van")
-    most_van: float = rule(7.5, "m", "physics: length of the longest van")
-    van_height: float = rule(3.0, "m", "physics: height of the highest van")
-    least_car: float = rule(3.2, "m", "physics: length of the shortest car")
-    most_car: float = rule(5.4, "m", "physics: length of the longest car")
-    car_height: float = rule(1.75, "m", "physics: height of the highest car")
-    filled: float = rule(0.65, "share", "of its smallest rectangle that a vehicle fills")
+    width: float = rule(2.6, "m", "physics: the width that roads admit")
+    least_length: float = rule(4.0, "m", "physics: length of a usual car; the shortest van has 4.3 m")
+    most_length: float = rule(7.5, "m", "physics: length of the longest van")
+    height: float = rule(3.0, "m", "physics: height of the highest van")
 
 
 IMAGE_ROOFS, VEHICLES = ImageRoofRules(), VehicleRules()
@@ -65,10 +57,12 @@ def amid_rough(surface: TopSurface, xyz: np.ndarray, segment_id: np.ndarray) -> 
     """
     on_top = np.flatnonzero((segment_id > 0) & surface.on_top(xyz))
     row, column = surface.cell[0][on_top], surface.cell[1][on_top]
-    on_surface = np.zeros(surface.height.shape, bool)
-    on_surface[row, column] = True
-    tolerance = np.minimum(IMAGE_ROOFS.at_height, IMAGE_ROOFS.at_height_share * surface.height)
-    share = surface.share_near(on_surface, IMAGE_ROOFS.near, tolerance, IMAGE_ROOFS.raised)[row, column]
+    on_surface, raised = np.zeros((2, *surface.height.shape))
+    raised[surface.height >= IMAGES.raised] = 1.0
+    on_surface[row, column] = raised[row, column]
+    side = 2 * max(1, round(IMAGE_ROOFS.least_width / surface.size)) + 1
+    part, whole = (ndimage.uniform_filter(cells, side, mode="constant") for cells in (on_surface, raised))
+    share = np.divide(part, whole, out=np.zeros_like(part), where=raised > 0)[row, column]
     # Other programs number surfaces as they like.
     segments, of = np.unique(segment_id[on_top], return_inverse=True)
     mean = np.bincount(of, share) / np.bincount(of)
@@ -95,7 +89,7 @@ class RoofExtent:
 
         Narrow parts are left out; gaps of at most ``gap`` (m) between roofs are closed.
         """
-        raised = self.surface.height >= IMAGE_ROOFS.raised
+        raised = self.surface.height >= IMAGES.raised
         closed = self.is_roof
         if gap >= self.surface.size:
             closed = closed | (ndimage.binary_closing(self.is_roof, self._disk(gap / 2)) & raised)
@@ -110,21 +104,12 @@ class RoofExtent:
         if not core.any():
             return core
         nearest = ndimage.distance_transform_edt(~core, return_distances=False, return_indices=True)
-        height, elevation = self.surface.height[tuple(nearest)], self.surface.elevation[tuple(nearest)]
-        is_edge = (self.surface.height >= IMAGE_ROOFS.half * height) & (
-            self.surface.elevation <= elevation + IMAGE_ROOFS.above
-        )
+        is_edge = self.surface.height >= IMAGE_ROOFS.half * self.surface.height[tuple(nearest)]
         steps = max(1, round(IMAGE_ROOFS.rounded / self.surface.size))
         cross = ndimage.generate_binary_structure(2, 1)
         grown = ndimage.binary_dilation(core, cross, steps, mask=core | is_edge)
         # Smeared walls, fences and branches that reach out are thinner than the objects that carry them.
         return core | ndimage.binary_opening(grown, _EIGHT)
-
-    def interior(self, building: np.ndarray) -> np.ndarray:
-        """Return the cells (rows, columns) of numbered buildings that rounded edges don't reach."""
-        same = ndimage.grey_erosion(building, footprint=_EIGHT) == ndimage.grey_dilation(building, footprint=_EIGHT)
-        inward = ndimage.distance_transform_edt((building > 0) & same)
-        return inward * self.surface.size > IMAGE_ROOFS.rounded - self.surface.size
 
     def faces(self, building: np.ndarray) -> np.ndarray:
         """Return numbered buildings (rows, columns) with the smeared walls around them.
@@ -146,7 +131,7 @@ class RoofExtent:
         found = np.zeros(count + 1, bool)
         for number, where in enumerate(ndimage.find_objects(region, count), start=1):
             extent = [(part.stop - part.start) * self.surface.size for part in where]
-            if max(extent) <= np.hypot(VEHICLES.most_width, VEHICLES.most_van):
+            if max(extent) <= np.hypot(VEHICLES.width, VEHICLES.most_length):
                 inside = region[where] == number
                 found[number] = self._is_vehicle(inside, self.surface.height[where][inside])
         return found
@@ -154,13 +139,10 @@ class RoofExtent:
     def _is_vehicle(self, inside: np.ndarray, height: np.ndarray) -> bool:
         # Sides are known to a cell.
         cell = self.surface.size
-        width, length, filled = smallest_rectangle(inside, cell)
-        top = float(np.percentile(height, 90))
-        rules = VEHICLES
-        is_van = rules.least_van - cell <= length <= rules.most_van + cell and top <= rules.van_height
-        is_car = rules.least_car - cell <= length <= rules.most_car + cell and top <= rules.car_height
-        has_width = rules.least_width - cell <= width <= rules.most_width + cell
-        return bool(has_width and filled >= rules.filled and (is_van or is_car))
+        width, length = smallest_rectangle(inside, cell)
+        has_length = VEHICLES.least_length - cell <= length <= VEHICLES.most_length + cell
+        is_low = float(np.percentile(height, 90)) <= VEHICLES.height
+        return bool(width <= VEHICLES.width + cell and has_length and is_low)
 
     def _small_holes(self, closed: np.ndarray, gap: float) -> np.ndarray:
         holes, count = ndimage.label(ndimage.binary_fill_holes(closed) & ~closed)
@@ -175,15 +157,14 @@ class RoofExtent:
         return row**2 + column**2 <= reach**2 + 0.5 * reach
 
 
-def smallest_rectangle(inside: np.ndarray, size: float) -> tuple[float, float, float]:
-    """Return width and length (m) of the smallest rectangle around cells of ``size`` (m), and how much they fill."""
+def smallest_rectangle(inside: np.ndarray, size: float) -> tuple[float, float]:
+    """Return width and length (m) of the smallest rectangle around cells of ``size`` (m)."""
     positions = np.argwhere(inside) * size
     along = np.column_stack([np.cos(_DIRECTIONS), np.sin(_DIRECTIONS)])
     across = np.column_stack([-np.sin(_DIRECTIONS), np.cos(_DIRECTIONS)])
     sides = np.array([np.ptp(positions @ axis.T, axis=0) + size for axis in (along, across)])
-    best = int(np.argmin(sides[0] * sides[1]))
-    width, length = np.sort(sides[:, best]).tolist()
-    return width, length, float(inside.sum() * size**2 / (width * length))
+    width, length = np.sort(sides[:, int(np.argmin(sides[0] * sides[1]))]).tolist()
+    return width, length
 
 
 def without_vehicles(extent: RoofExtent, building: np.ndarray, refused: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

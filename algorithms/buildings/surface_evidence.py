@@ -11,11 +11,8 @@ from ..features.greenness import greenness, greenness_between, plant_greenness
 from .cluster_decisions import Decisions
 from .cluster_evidence import ClusterEvidence
 
-# Planes larger than this, in minimum building areas, may be green: roofs of copper and of grass.
-_LARGE_PLANE = 10.0
-
-# Points of so large a roof lie off its plane by less than this (m): 40 m² of a crown 20 m wide lie 0.18 m off theirs.
-_FLAT = 0.15
+# Surfaces larger than this, in minimum building areas, show the colors of roofs: smooth parts of crowns are smaller.
+_LARGE = 10.0
 
 
 def decide_in_images(
@@ -40,7 +37,7 @@ def decide_in_images(
         Crowns are closed and smooth over decimeters, but planar over meters in spots only, with rough leaves around.
     """
     is_surface = surface_share > 0.5
-    is_green = is_surface & green & ~are_large_planes(evidence)
+    is_green = is_surface & green
     is_candidate = is_surface & ~is_green
     share = evidence.share_around(is_candidate)
     is_building = is_candidate & (share >= min_share)
@@ -56,17 +53,12 @@ def decide_in_images(
 
 def are_large(evidence: ClusterEvidence) -> np.ndarray:
     """Return which clusters (m,) are larger than most smooth parts of crowns."""
-    return evidence.areas >= _LARGE_PLANE * evidence.min_area
+    return evidence.areas >= _LARGE * evidence.min_area
 
 
-def are_large_planes(evidence: ClusterEvidence) -> np.ndarray:
-    """Return which clusters (m,) are too large and too flat for a smooth part of a crown."""
-    return are_large(evidence) & (evidence.deviations < _FLAT)
-
-
-def without_green(decided: Decisions, is_green: np.ndarray, evidence: ClusterEvidence) -> Decisions:
+def without_green(decided: Decisions, is_green: np.ndarray) -> Decisions:
     """Refuse buildings (m,) that are as green as plants, where no returns distinguish leaves from roofs."""
-    refused = decided.is_building & is_green & ~are_large_planes(evidence)
+    refused = decided.is_building & is_green
     reasons = np.where(refused, np.uint8(Reason.GREEN), decided.reasons)
     return Decisions(np.where(refused, 0.5, decided.confidence), reasons)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import product
 
 import numpy as np
 
@@ -19,7 +18,6 @@ class TopSurfaceRules:
     cell: float = rule(1.2, "point spacings", "statistics: cells hold a point nearly everywhere")
     least_cell: float = rule(0.25, "m", "the same, at least")
     filled: float = rule(2.0, "cells", "up to which empty cells take the height of the nearest one")
-    depth: float = rule(0.2, "m", "below the highest point of a cell, besides what a slope of 45° falls within it")
 
 
 TOP = TopSurfaceRules()
@@ -64,42 +62,8 @@ class TopSurface:
         self.height = np.where(is_near, self.height[tuple(nearest)], 0.0)
 
     def on_top(self, xyz: np.ndarray) -> np.ndarray:
-        """Return which of the points (n,) are of the surface."""
-        return xyz[:, 2] >= self.elevation[self.cell] - (TOP.depth + self.size)
-
-    def share_near(self, chosen: np.ndarray, reach: float, tolerance: np.ndarray, raised: float) -> np.ndarray:
-        """Return how many of the raised cells near each cell, at about its height, are chosen.
-
-        Parameters
-        ----------
-        chosen : ndarray of shape (rows, columns), bool
-            Which cells count.
-        reach : float
-            How far away in plan cells may be, m.
-        tolerance : ndarray of shape (rows, columns)
-            How much higher or lower than each cell, m.
-        raised : float
-            Least height above ground of cells that are looked at, m.
-
-        Returns
-        -------
-        ndarray of shape (rows, columns)
-            From 0 to 1; 0 where no cell is near.
-        """
-        steps = max(2, round(reach / self.size))
-        elevation = np.pad(np.where(self.height >= raised, self.elevation, -np.inf), steps, constant_values=-np.inf)
-        is_chosen = np.pad(chosen, steps)
-        own = np.where(np.isfinite(self.elevation), self.elevation, 0.0)
-        rows, columns = chosen.shape
-        whole, part = np.zeros((2, rows, columns), np.int32)
-        # Every second cell suffices.
-        for row, column in product(range(-steps, steps + 1, 2), repeat=2):
-            if row**2 + column**2 <= steps**2:
-                there = slice(steps + row, steps + row + rows), slice(steps + column, steps + column + columns)
-                is_near = np.abs(elevation[there] - own) <= tolerance
-                whole += is_near
-                part += is_near & is_chosen[there]
-        return part / np.maximum(whole, 1)
+        """Return which of the points (n,) are of the surface: a slope of 45° falls by the side of a cell within it."""
+        return xyz[:, 2] >= self.elevation[self.cell] - self.size
 
 
 def highest_of_cells(xyz: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray]:

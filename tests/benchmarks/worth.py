@@ -303,6 +303,11 @@ def _nowhere(first: Any, *_: Any, **__: Any) -> np.ndarray:
     return np.zeros(len(first) if first.ndim < 2 or first.shape[1] == 3 else first.shape, bool)
 
 
+def _nowhere_of_points(surface: Any, xyz: np.ndarray, *_: Any) -> np.ndarray:
+    """Return that no point is meant."""
+    return np.zeros(len(xyz), bool)
+
+
 def _out(name: str, where: str, value: Any) -> Rule:
     return Rule(name, ((where, value),))
 
@@ -375,8 +380,8 @@ WHOLE = (
     Rule("classify: surroundings", tunables={"buildings": {"min_share_around": 0.0}}),
     _out(
         "classify: edges of roofs",
-        "buildings.cluster_evidence:EVIDENCE",
-        _set("buildings.cluster_evidence:EVIDENCE", split_at_edges=0.0),
+        "buildings.cluster_evidence:ClusterEvidence.non_last_return_share",
+        lambda self: np.ones(len(self.numbers)),
     ),
     _out(
         "classify: weight of the references",
@@ -384,19 +389,21 @@ WHOLE = (
         _set("buildings.entropy_split:SPLIT", weight=10**9),
     ),
     Rule("refine: learned from the scene", tunables={"refine": {"learn": False}}),
-    Rule("complete: gaps", tunables={"complete": {"gap": 0.0}}),
-    Rule("complete: structures on roofs", tunables={"complete": {"structure_height": 0.0}}),
     Rule("complete: share of roof surfaces", tunables={"complete": {"min_roof_share": 0.0}}),
+    Rule("complete: gaps", tunables={"complete": {"gap": 0.0}}),
     _out(
         "complete: bushes",
         "buildings.building_columns:COLUMNS",
         _set("buildings.building_columns:COLUMNS", bush_share=0.0),
     ),
     _out(
-        "complete: chimneys are sparse",
-        "buildings.building_columns:COLUMNS",
-        _set("buildings.building_columns:COLUMNS", sparse_share=9.0),
+        "complete: crowns at walls",
+        "buildings.building_columns:Columns.is_beside_crown",
+        lambda self, points: np.zeros(self.building.shape, bool),
     ),
+    _out("images: surfaces amid rough points", "buildings.complete_buildings:amid_rough", _nowhere_of_points),
+    _out("images: vehicles", "buildings.complete_buildings:without_vehicles", lambda extent, *found: found),
+    _out("images: smeared walls", "buildings.roof_extent:RoofExtent.faces", lambda self, building: building),
     _out("neighborhoods: wide in plan", "neighborhoods.wide_in_plan:LEAST_WIDTH", 0.0),
 )
 

@@ -94,8 +94,8 @@ def test_a_crown_that_spreads_over_the_roof_is_left_out_by_its_clearance(scene, 
     assert (number[crown] > 0).mean() == expected
 
 
-@pytest.mark.parametrize(("above", "expected"), [(0.8, True), (3.5, True), (6.0, False)])
-def test_a_mast_belongs_to_the_roof_up_to_the_height_of_structures(scene, above, expected):
+@pytest.mark.parametrize(("above", "expected"), [(0.8, True), (3.5, False)])
+def test_a_mast_belongs_to_the_roof_up_to_the_clearance(scene, above, expected):
     scene.roof(10, 10, 20, 20, 5.0)
     mast = scene.add([15, 15, 5 + above])
     assert (scene.complete()[0][mast] == 6).all() == expected
@@ -443,24 +443,13 @@ def test_in_images_walls_go_down_to_their_feet_and_the_bush_beside_them_stays(rn
     assert not building[part == 0].any()
 
 
-@pytest.mark.parametrize(("gap", "closed"), [(None, False), (4.0, True)])
+@pytest.mark.parametrize(("gap", "closed"), [(1.0, False), (4.0, True)])
 def test_the_gap_to_close_holds_in_images(rng, gap, closed):
     xyz, part = seen_from_above(rng, box(5, 5, 25, 20, 5.0))
     in_gap = np.abs(xyz[:, 0] - 15) < 1.5
     building, _ = complete_images(xyz, part, (part == 1) & ~in_gap, gap=gap)
     middle = (np.abs(xyz[:, 0] - 15) < 0.3) & (np.abs(xyz[:, 1] - 12) < 5)
     assert building[middle].all() == closed
-
-
-@pytest.mark.parametrize("least", [0.6, 0.0])
-def test_the_share_of_surfaces_holds_in_images(rng, least):
-    xyz, part = seen_from_above(rng, box(5, 5, 13, 13, 5.0))
-    # Strips of surface with gaps as wide: more than half of the points near them are surface, less than 0.6 of all.
-    found = (part == 1) & (xyz[:, 0] % 1.0 < 0.55)
-    building, reason = complete_images(xyz, part, found, min_roof_share=least)
-    assert building[part == 1].any() == (least == 0.0)
-    if least:
-        assert (reason[found] == Reason.MOSTLY_OTHER).all()
 
 
 def test_a_bridge_deck_beside_a_roof_stays_deck_in_images(rng):

@@ -20,10 +20,8 @@ def test_shares_that_follow_the_model_are_found_again(features):
     """Labels are the probabilities themselves: a line in one feature, and one that bends at the mean of the other."""
     standard = (features - features.mean(axis=0)) / features.std(axis=0)
     truth = likely(0.5 + 1.5 * standard[:, 0] - np.maximum(standard[:, 1], 0))
-    # Features are bounded at three deviations.
-    usual = (np.abs(standard) < 3).all(axis=1)
     found = LogisticRegression.fit(features, truth)
-    np.testing.assert_allclose(found.predict(features)[usual], truth[usual], atol=0.01)
+    np.testing.assert_allclose(found.predict(features), truth, atol=0.01)
     np.testing.assert_allclose(found.weights, [0.5, 1.5, 0, 0, -1], atol=0.06)
 
 
@@ -31,7 +29,7 @@ def test_scikit_learn_finds_the_same_weights(features, rng):
     linear = pytest.importorskip("sklearn.linear_model")
     labels = (rng.random(len(features)) < likely(features[:, 0] - 10)).astype(float)
     found = LogisticRegression.fit(features, labels)
-    standard = np.clip((features - found.mean) / found.scale, -3, 3)
+    standard = (features - found.mean) / found.scale
     terms = np.column_stack([standard, np.maximum(standard, 0)])
     other = linear.LogisticRegression(C=1.0, tol=1e-10, max_iter=1000).fit(terms, labels)
     np.testing.assert_allclose(found.weights, [*other.intercept_, *other.coef_[0]], atol=1e-4)

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.buildings.roof_extent import (
-    IMAGE_ROOFS,
     RoofExtent,
     amid_rough,
     smallest_rectangle,
@@ -18,6 +17,8 @@ from lidar_buildings.algorithms.segmentation.top_surface import TopSurface
 from lidar_buildings.tests.surfaces import box, mound, seen_from_above
 
 ROOF = (8.0, 8.0, 18.0, 16.0)
+# A gap (m) that is closed between roofs.
+GAP = 1.5
 
 
 class Site:
@@ -52,23 +53,16 @@ def house(rng):
 
 
 def test_roofs_reach_to_half_their_height(house):
-    covered = house.at(house.extent(house.within(*inset(0.6))).covered(IMAGE_ROOFS.gap))
+    covered = house.at(house.extent(house.within(*inset(0.6))).covered(GAP))
     assert covered[house.within(*inset(0.3))].all()
     # Half of the height is where the wall is, cells are a quarter of a meter.
     assert not covered[~house.within(*inset(-0.3))].any()
     assert covered.sum() / 40 == pytest.approx(80.0, rel=0.06)
 
 
-def test_edges_do_not_climb_a_crown(rng):
-    site = Site(rng, box(*ROOF, 5.0), mound((20.0, 12.0), 2.5, 9.0))
-    covered = site.at(site.extent(site.within(*inset(0.3))).covered(IMAGE_ROOFS.gap))
-    assert covered[site.part == 1].mean() > 0.98
-    assert not covered[(site.part == 2) & (site.xyz[:, 2] > 6.2)].any()
-
-
 @pytest.mark.parametrize(
     ("width", "gap", "closed"),
-    [(1.0, IMAGE_ROOFS.gap, True), (3.0, IMAGE_ROOFS.gap, False), (3.0, 4.0, True), (1.0, 0.0, False)],
+    [(1.0, GAP, True), (3.0, GAP, False), (3.0, 4.0, True), (1.0, 0.0, False)],
 )
 def test_gaps_in_a_roof_are_closed_up_to_their_width(house, width, gap, closed):
     found = house.within(*inset(0.6)) & (np.abs(house.xyz[:, 0] - 13) > width / 2)
@@ -83,19 +77,19 @@ def test_gaps_in_a_roof_are_closed_up_to_their_width(house, width, gap, closed):
 
 def test_a_yard_in_which_the_ground_shows_stays_open(rng):
     site = Site(rng, lambda x, y: box(*ROOF, 5.0)(x, y) * ~((np.abs(x - 13) < 0.6) & (np.abs(y - 12) < 0.6)))
-    covered = site.at(site.extent(site.part == 1).covered(IMAGE_ROOFS.gap))
+    covered = site.at(site.extent(site.part == 1).covered(GAP))
     assert not covered[site.within(12.6, 11.6, 13.4, 12.4)].any()
 
 
 def test_strips_narrower_than_a_building_are_left_out(rng):
     site = Site(rng, box(*ROOF, 5.0), box(2.0, 20.0, 25.0, 20.6, 3.0))
     extent = site.extent(site.part > 0)
-    assert not site.at(extent.covered(IMAGE_ROOFS.gap))[site.part == 2].any()
+    assert not site.at(extent.covered(GAP))[site.part == 2].any()
 
 
 def test_smeared_walls_belong_to_the_building(house):
     extent = house.extent(house.within(*inset(0.6)))
-    building = extent.covered(IMAGE_ROOFS.gap).astype(np.int32)
+    building = extent.covered(GAP).astype(np.int32)
     with_walls = house.at(extent.faces(building)) > 0
     is_wall = (house.part == 1) & (house.xyz[:, 2] > 1.0)
     assert not (house.at(building) > 0)[is_wall & (house.xyz[:, 2] < 1.5)].any()
@@ -106,7 +100,7 @@ def test_smeared_walls_belong_to_the_building(house):
 def test_a_bush_at_the_wall_is_no_wall(rng):
     site = Site(rng, box(*ROOF, 5.0, smeared=0.3), mound((19.6, 12.0), 1.6, 1.5))
     extent = site.extent(site.within(*inset(0.4)))
-    walls = site.at(extent.faces(extent.covered(IMAGE_ROOFS.gap).astype(np.int32))) > 0
+    walls = site.at(extent.faces(extent.covered(GAP).astype(np.int32))) > 0
     bush = (site.part == 2) & (site.xyz[:, 0] > 19.0)
     assert bush.sum() > 100
     assert not walls[bush].any()
@@ -115,17 +109,10 @@ def test_a_bush_at_the_wall_is_no_wall(rng):
 def test_walls_have_the_number_of_their_building(rng):
     site = Site(rng, box(5, 5, 11, 11, 5.0, smeared=0.4), box(14, 5, 20, 11, 4.0, smeared=0.4))
     extent = site.extent(site.within(5.5, 5.5, 10.5, 10.5) | site.within(14.5, 5.5, 19.5, 10.5))
-    number = ndimage.label(extent.covered(IMAGE_ROOFS.gap), np.ones((3, 3)))[0].astype(np.int32)
+    number = ndimage.label(extent.covered(GAP), np.ones((3, 3)))[0].astype(np.int32)
     walls = site.at(extent.faces(number))
     assert set(walls[site.xyz[:, 0] < 12.4]) == {0, 1}
     assert set(walls[site.xyz[:, 0] > 12.6]) == {0, 2}
-
-
-def test_the_interior_is_what_edges_do_not_reach(house):
-    extent = house.extent(house.within(*inset(0.6)))
-    inner = house.at(extent.interior(extent.covered(IMAGE_ROOFS.gap).astype(np.int32)))
-    assert inner[house.within(*inset(1.2))].all()
-    assert not inner[~house.within(*inset(0.3))].any()
 
 
 @pytest.mark.parametrize(
@@ -136,9 +123,10 @@ def test_the_interior_is_what_edges_do_not_reach(house):
         (2.0, 5.4, 3.5, False),
         (2.0, 2.5, 2.2, False),
         (3.2, 5.4, 2.4, False),
-        (1.8, 3.5, 2.3, False),
+        (1.8, 3.2, 2.3, False),
+        (2.2, 9.0, 2.4, False),
     ],
-    ids=["van", "car", "too high", "shed", "garage", "short and high"],
+    ids=["van", "car", "too high", "shed", "garage", "short", "long"],
 )
 @pytest.mark.parametrize("turn", [0.0, 30.0])
 def test_vehicles_are_told_by_their_size(rng, width, length, height, is_vehicle, turn):
@@ -161,10 +149,9 @@ def test_the_smallest_rectangle_of_a_turned_one(turn):
     row, column = np.mgrid[-60:60, -60:60] * 0.1
     cos, sin = np.cos(np.deg2rad(turn)), np.sin(np.deg2rad(turn))
     inside = (np.abs(column * cos + row * sin) < 3) & (np.abs(row * cos - column * sin) < 1)
-    width, length, filled = smallest_rectangle(inside, 0.1)
+    width, length = smallest_rectangle(inside, 0.1)
     assert width == pytest.approx(2.0, abs=0.25)
     assert length == pytest.approx(6.0, abs=0.25)
-    assert filled > 0.9
 
 
 def test_smooth_spots_of_crowns_lie_amid_what_is_rough(rng):

@@ -45,21 +45,9 @@ def test_a_smooth_spot_amid_leaves_is_none(rng):
     assert decided((leaves, spot), [0.1, 1.0], min_share=0.0).is_building[1]
 
 
-def test_a_green_dome_is_no_plane_however_large(rng):
-    """40 m² and more of a smooth crown, which is as large as a roof of copper."""
-    plan = rng.uniform(0, 12, (900, 2))
-    dome = np.column_stack([plan, np.sqrt(10.0**2 - ((plan - 6) ** 2).sum(axis=1))])
-    found = decided((dome, roof(rng, 40, 0, 12, 12)), [1.0, 1.0], green=[True, True])
+def test_green_surfaces_are_plants(rng):
+    found = decided((roof(rng, 0, 0, 5, 5), roof(rng, 40, 0, 12, 12)), [1.0, 1.0], green=[True, False])
     assert [Reason(number) for number in found.reasons] == [Reason.GREEN, Reason.SURFACE]
-
-
-def test_green_surfaces_are_plants_unless_they_are_large(rng):
-    small, large = roof(rng, 0, 0, 5, 5), roof(rng, 40, 0, 12, 12)
-    found = decided((small, large), [1.0, 1.0], green=[True, True])
-    assert [Reason(number) for number in found.reasons] == [Reason.GREEN, Reason.SURFACE]
-    # Large is ten times the smallest building.
-    assert decided((small, large), [1.0, 1.0], [True, True], min_area=2.0).is_building.all()
-    assert not decided((small, large), [1.0, 1.0], [True, True], min_area=20.0).is_building.any()
 
 
 def test_confidence_follows_the_surroundings(rng):
@@ -147,9 +135,8 @@ def test_the_limit_lies_between_rough_crowns_and_large_roofs_and_not_at_the_lawn
     assert least > 0.1
 
 
-def test_green_buildings_are_refused_in_scans_without_returns_unless_they_are_large_planes(dry):
-    evidence, _ = dry
+def test_green_buildings_are_refused_in_scans_without_returns():
     before = Decisions(np.array([0.9, 0.2, 0.9]), np.array([Reason.SOLID, Reason.ROUGH, Reason.SOLID], np.uint8))
-    found = without_green(before, np.array([True, True, True]), evidence)
+    found = without_green(before, np.array([False, True, True]))
     assert [Reason(number) for number in found.reasons] == [Reason.SOLID, Reason.ROUGH, Reason.GREEN]
     np.testing.assert_array_equal(found.confidence, [0.9, 0.2, 0.5])

@@ -80,27 +80,6 @@ def test_nothing_depends_on_the_order_of_points_or_the_place_on_the_map(house, r
         )
 
 
-def test_what_lies_near_at_the_same_height(rng):
-    # A roof of 10 m beside another, higher one; a quarter of the lower is chosen.
-    xyz, part = seen_from_above(rng, box(5, 5, 15, 15, 5.0), box(15, 5, 25, 15, 9.0))
-    surface = surface_of(xyz)
-    chosen = np.zeros(surface.height.shape, bool)
-    is_chosen = (part == 1) & (xyz[:, 0] < 10) & (xyz[:, 1] < 10)
-    chosen[surface.cell[0][is_chosen], surface.cell[1][is_chosen]] = True
-    share = surface.share_near(chosen, 2.0, np.full(chosen.shape, 1.5), 1.0)[surface.cell]
-
-    def around(x, y):
-        return share[np.hypot(*(xyz[:, :2] - [x, y]).T) < 0.3].mean()
-
-    assert around(7.5, 7.5) == 1.0
-    assert around(10, 7.5) == pytest.approx(0.5, abs=0.1)
-    assert around(10, 10) == pytest.approx(0.25, abs=0.1)
-    assert around(14, 14) == 0.0
-    # Neither the higher roof nor the ground counts beside the eave.
-    assert around(5.3, 7.5) > 0.95
-    assert share[part == 2].max() == 0.0
-
-
 def test_the_highest_points_of_cells(rng):
     xyz = rng.uniform(0, 3, (500, 3))
     highest, under = highest_of_cells(CloudSampling.of(xyz).from_corner(xyz), 1.0)
