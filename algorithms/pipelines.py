@@ -36,9 +36,7 @@ _DETECTION = (
     # Plants, water, wires and bridges are looked for anew; steps of their own do so for ground and buildings.
     Step("earlier", "recode_classes", {"mapping": "3-5, 9, 14-15, 17=1"}),
     Step("ground", "classify_ground_tin"),
-    # Off by default: in the clouds with truth no bridge becomes a building without this step, which takes a quarter
-    # as long as all others.
-    Step("bridges", "classify_bridges", {"max_width": 0.0}),
+    Step("bridges", "classify_bridges", {"search": "gaps in the ground"}),
     Step("height", "compute_height_above_ground"),
     Step("roofs", "segment_roofs"),
     Step("buildings", "classify_buildings"),
@@ -46,7 +44,6 @@ _DETECTION = (
     Step("refine", "refine_buildings"),
     Step("near_ground", "complete_ground"),
     Step("water", "classify_water"),
-    Step("decks", "classify_bridges", {"search": "near water", "max_width": 20.0}),
     Step("wires", "classify_wires"),
     Step("vegetation", "classify_vegetation"),
     Step("footprints", "extract_footprints"),
@@ -65,10 +62,10 @@ _PIPELINES = (
         tags="building,house,detection,roof,footprint,classification,entropy,k-means,las2building,lasclassify",
         summary="Find the buildings in a point cloud: classified points and footprints, with nothing to set.",
         description=(
-            "Noise, ground and heights first, on request bridges; then roof surfaces and clusters of everything else "
+            "Noise, ground, bridges and heights first; then roof surfaces and clusters of everything else "
             "above the ground. A cluster is a building by its mean entropy, compared with that of planes and volumes, "
             "and by how much of the beam passes through it. Then whole buildings with their walls, whose edges are "
-            "corrected by what all buildings of the cloud look like, water with its bridges, wires, vegetation among "
+            "corrected by what all buildings of the cloud look like, water, wires, vegetation among "
             "the rest, and outlines. Distances and tolerances follow the density and the noise of the cloud."
         ),
         references=_SANTOS,
@@ -84,7 +81,6 @@ _PIPELINES = (
             "ground_max_building_size",
             "bridges_max_width",
             "water_look_for",
-            "decks_max_width",
             "wires_look_for",
             "vegetation_look_for",
             "codes_codes",

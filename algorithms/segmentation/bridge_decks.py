@@ -11,79 +11,35 @@ from ..geometry.components import connect
 from ..geometry.grid import distinct, find_cells, fixed_grid_over
 from ..geometry.groups import items, run_starts
 from ..packages import spatial
+from ..rules import rule
 from ..stage import Monitor
 from ..threads import made_ahead
 from .scan_line_pieces import NearPoints, ends_of, pieces_of_lines, slices
 
-# Directions of lines: one of them crosses each bridge within 12° of its shortest section.
-_DIRECTIONS = 8
 
-# A point of a deck is raised in at least two of them.
-_LEAST_DIRECTIONS = 2
+@dataclass(frozen=True)
+class DeckRules:
+    """What decks of bridges are."""
 
-# Points below a piece, as a share of its points: beams pass through crowns, and not through decks but at their sides.
-_MOST_BELOW = 0.15
+    directions: int = rule(8, "", "geometry: one of the lines crosses each bridge within 12° of its shortest section")
+    least_directions: int = rule(2, "", "in which a deck is raised: crowns are in one, F 75 on a real bridge, not 91")
+    most_below: float = rule(0.15, "share of points", "physics: beams pass through crowns, and not through decks")
+    edge: float = rule(0.25, "of width, of length", "beams 30° off the vertical reach under edges; and ends of a deck")
+    rough: float = rule(0.25, "m", "crown, camber and railings; and the width in plan of what shows of a side")
+    same_level: float = rule(0.5, "m", "physics: higher steps carry no road; cars and parapets are higher")
+    share: float = rule(
+        0.4, "", "least share: of contact, of ground ahead, of terrain by the deck's points; trees hide some"
+    )
+    far: float = rule(
+        4.0, "reaches", "water gives few points: the next one beyond an edge, and the ground ahead of ends"
+    )
+    line: float = rule(3.0, "point spacings", "statistics: width of lines and side of cells, so that few are empty")
+    least_cell: float = rule(1.0, "m", "least side of cells, and how far from the edge a bank shows")
+    slope: float = rule(15.0, "°", "of sections and roads, fitted on canals: at 30° F is 34 to 59 instead of 80 to 95")
+    noise_step: float = rule(4.0, "standard deviations", "statistics: differences in height that are noise")
 
-# Width of the strip under each edge of a deck in which points may lie (times its height above them): beams are up to
-# 30° off the vertical.
-_SLANT = 0.58
 
-# Largest width of this strip (share of the deck's width).
-_MOST_SHOWN = 0.25
-
-# Deviation of a piece from a straight line (root mean square, m): crown, camber and railings of a deck.
-_MOST_ROUGH = 0.25
-
-# A deck goes on into the terrain where heights differ by no more (m).
-_SAME_LEVEL = 0.5
-
-# Ground points this high over a deck (m) are cars that a filter took for ground.
-ABOVE_DECK = 0.5
-
-# Terrain at an end of a deck has at least this many times its points.
-_LEAST_TERRAIN = 0.5
-
-# Ground that a deck leads to is looked for at these distances (reaches) ahead of its ends, with at most the slope of a
-# road between them.
-_AHEAD, _ROAD = (1.5, 2.5, 3.5), 0.1
-
-# Share of the width of an end ahead of which there is such ground: more than half, but for what trees hide.
-_LEAST_AHEAD = 0.5
-
-# Share of ground points in a connected part beside a deck, from which it is terrain: roofs and crowns hold hardly any.
-_LEAST_GROUND = 0.2
-
-# Each end is this share of the length of a deck.
-_END = 1 / 3
-
-# A deck goes on into the terrain along at least this share of its width: corners of ramps touch it at some points.
-_LEAST_CONTACT = 0.4
-
-# Widest obstacle on a deck that a line goes on behind: a car or a parapet between two lanes (m).
-_OBSTACLE = 3.0
-
-# Water gives few points: the next one beyond an edge is looked for within this many reaches.
-_FAR = 4.0
-
-# Ways down with more points than a face of this width in plan (m) has, within this distance (m) of the end, are banks:
-# embankments, and the walls of ramps where they lean. Slabs of decks show less of their sides.
-_BANK, _BANK_REACH = 0.3, 1.2
-
-# Width of a line, side of a cell and half of the distance within which points are beside one another, in point
-# spacings; least side of a cell (m).
-LINE_SPACINGS, _LEAST_CELL = 3.0, 1.0
-
-# Distance on a line within which points belong together, in point spacings: gaps between scan lines.
-_NEAR_SPACINGS = 9.0
-
-# Sections of a deck are no steeper (°): between it and low water beside it, points are few and the way down is flat.
-_SLOPE = 15.0
-
-# Difference in height that is noise (standard deviations).
-_NOISE_STEP = 4.0
-
-# Points this near (m) to the height of the end of a piece say that the surface goes on behind parapets and cars.
-_GOES_ON = 0.3
+DECK = DeckRules()
 
 
 @dataclass(frozen=True)
@@ -96,8 +52,8 @@ class Decks:
         Height above the terrain beside it, m.
     max_width, min_area : float
         Widest section (m) and least area (m²).
-    reach : float
-        Distance within which points are beside one another, m.
+    cell : float
+        Side of cells, m.
     line_width : float
         Width of a line, m.
     near : NearPoints
@@ -107,47 +63,53 @@ class Decks:
     min_height: float
     max_width: float
     min_area: float
-    reach: float
+    cell: float
     line_width: float
     near: NearPoints
+
+    @property
+    def reach(self) -> float:
+        """Distance (m) within which points are beside one another."""
+        return 2 * self.cell
 
     @classmethod
     def of(cls, min_height: float, max_width: float, min_area: float, spacing: float, noise: float) -> Decks:
         """Return the criteria of bridges in a cloud with this point spacing and noise, m."""
-        near = NearPoints(_NEAR_SPACINGS * spacing, float(np.tan(np.radians(_SLOPE))), _NOISE_STEP * noise)
-        return cls(min_height, max_width, min_area, 2 * cell_size(spacing), LINE_SPACINGS * spacing, near)
+        near = NearPoints(DECK.line**2 * spacing, float(np.tan(np.radians(DECK.slope))), DECK.noise_step * noise)
+        return cls(min_height, max_width, min_area, cell_size(spacing), DECK.line * spacing, near)
 
     def find(self, xyz: np.ndarray, is_earth: np.ndarray, is_terrain: np.ndarray, monitor: Monitor) -> np.ndarray:
         """Return which points (n,) of the bare earth ``is_earth`` (n,) are decks that lead to ``is_terrain`` (n,)."""
-        if not self.max_width:
+        if not self.max_width or not len(xyz):
             return np.zeros(len(xyz), bool)
         votes = np.zeros(len(xyz), np.int8)
         # Directions of lines as doubled angles: their sum gives the one across which a deck is raised.
         across = np.zeros(len(xyz), np.complex64)
+        count = DECK.directions
         directions = made_ahead(
-            lambda number, _: self._raised(xyz, is_earth, 180 * number / _DIRECTIONS), _DIRECTIONS, monitor.part(0, 0.8)
+            lambda number, _: self._raised(xyz, is_earth, 180 * number / count), count, monitor.part(0, 0.8)
         )
         for number, raised in enumerate(directions):
             votes += raised
-            across[raised] += np.exp(2j * np.pi * number / _DIRECTIONS)
-        candidates = np.flatnonzero(votes >= _LEAST_DIRECTIONS)
+            across[raised] += np.exp(2j * np.pi * number / count)
+        candidates = np.flatnonzero(votes >= DECK.least_directions)
         is_deck = np.zeros(len(xyz), bool)
         if not len(candidates):
             return is_deck
-        part = connect(xyz[candidates], self.reach, _SAME_LEVEL, monitor.part(0.8, 0.9))
-        others = np.flatnonzero(is_earth & (votes < _LEAST_DIRECTIONS))
+        part = connect(xyz[candidates], self.reach, DECK.same_level, monitor.part(0.8, 0.9))
+        others = np.flatnonzero(is_earth & (votes < DECK.least_directions))
         # A filter may leave the last meters before a deck out of the ground: they count with the ground beyond.
-        terrain = np.flatnonzero((is_terrain | is_earth) & (votes < _LEAST_DIRECTIONS))
-        beside = connect(xyz[terrain], self.reach, _SAME_LEVEL, monitor.part(0.9, 1))
+        terrain = np.flatnonzero((is_terrain | is_earth) & (votes < DECK.least_directions))
+        beside = connect(xyz[terrain], self.reach, DECK.same_level, monitor.part(0.9, 1))
         size = np.bincount(beside, minlength=1)
         ground = np.bincount(beside, is_terrain[terrain], len(size))
-        size = np.where(ground >= _LEAST_GROUND * size, size, 0)[beside]
+        size = np.where(ground >= DECK.most_below * size, size, 0)[beside]
         eastward = np.argsort(xyz[terrain, 0])
         around = _Around(xyz[terrain[eastward]], size[eastward], 1.5 * self.reach)
         ground_tree = spatial.cKDTree(xyz[terrain[is_terrain[terrain]]] * self._stretch)
         for rows in self._large(xyz, candidates, part):
             # The tip of a pier does not count as terrain that a deck leads to.
-            large = around.of(xyz[rows], _LEAST_TERRAIN * len(rows))
+            large = around.of(xyz[rows], DECK.share * len(rows))
             angle = np.angle(across[rows].sum()) / 2 + np.pi / 2
             axis = np.array([np.cos(angle), np.sin(angle)])
             if self._is_joined(xyz[rows], large, axis) and self._leads_to(xyz[rows], ground_tree, axis):
@@ -164,7 +126,7 @@ class Decks:
         height = np.ascontiguousarray(points[:, 2])
         # One axis for all lines, with more room between them than any distance on them.
         along = along - along.min() + line * (2 * np.ptp(along) + 10 * self.reach + self.max_width)
-        piece = pieces_of_lines(points, line, direction, self.near, 3, _OBSTACLE)
+        piece = pieces_of_lines(points, line, direction, self.near, 3, self.reach)
         piece[~is_earth[order]] = -1
         raised = np.zeros(len(xyz), bool)
         rows, number, count = _numbered(piece)
@@ -177,9 +139,9 @@ class Decks:
             chosen = chosen[self._ends_high(along, height, end[chosen], sign)]
         rows, number = _of_chosen(rows, number, chosen, count)
         size = np.bincount(number, minlength=len(chosen))
-        is_smooth = _roughness(along[rows], height[rows], number, size) <= _MOST_ROUGH
+        is_smooth = _roughness(along[rows], height[rows], number, size) <= DECK.rough
         below = _count_below(along, height, first[chosen], last[chosen], self.min_height)
-        raised[order[rows[(is_smooth & (below <= _MOST_BELOW * size))[number]]]] = True
+        raised[order[rows[(is_smooth & (below <= DECK.most_below * size))[number]]]] = True
         return raised
 
     def _ends_high(self, along: np.ndarray, height: np.ndarray, end: np.ndarray, sign: int) -> np.ndarray:
@@ -189,9 +151,9 @@ class Decks:
         sides of a deck are neither.
         """
         if sign < 0:
-            count = end - np.searchsorted(along, along[end] - _FAR * self.reach)
+            count = end - np.searchsorted(along, along[end] - DECK.far * self.reach)
         else:
-            count = np.searchsorted(along, along[end] + _FAR * self.reach, side="right") - end - 1
+            count = np.searchsorted(along, along[end] + DECK.far * self.reach, side="right") - end - 1
         which, item = items(np.maximum(count, 0))
         rows = end[which] + sign * (item + 1)
         below = height[end][which] - height[rows]
@@ -199,11 +161,11 @@ class Decks:
         within = np.abs(along[rows] - along[end][which]) <= self.reach
         ends = np.bincount(which[is_low & within], minlength=len(end)) > 0
         # Points on the way down are of a bank, but for the few on the side of a deck.
-        beside = (below > _GOES_ON) & ~is_low & (np.abs(along[rows] - along[end][which]) <= _BANK_REACH)
-        follows = np.flatnonzero(is_low | (np.abs(below) <= _GOES_ON))
+        beside = (below > DECK.rough) & ~is_low & (np.abs(along[rows] - along[end][which]) <= DECK.least_cell)
+        follows = np.flatnonzero(is_low | (np.abs(below) <= DECK.rough))
         first = follows[run_starts(which[follows])]
         ends[which[first[is_low[first]]]] = True
-        most = _BANK * self.line_width * (LINE_SPACINGS / self.line_width) ** 2
+        most = DECK.rough * self.line_width * (DECK.line / self.line_width) ** 2
         return ends & (np.bincount(which[beside], minlength=len(end)) <= most)
 
     def _large(self, xyz: np.ndarray, candidates: np.ndarray, part: np.ndarray):
@@ -228,19 +190,17 @@ class Decks:
         ahead = way[:, :2] @ axis
         aside = way[:, 0] * axis[1] - way[:, 1] * axis[0]
         # Terrain beside a deck is not ahead of its ends.
-        is_next = (np.abs(way[:, 2]) <= _SAME_LEVEL) & (np.abs(ahead) >= np.abs(aside))
-        low, high = along.min() + _END * np.ptp(along), along.max() - _END * np.ptp(along)
+        is_next = (np.abs(way[:, 2]) <= DECK.same_level) & (np.abs(ahead) >= np.abs(aside))
+        low, high = along.min() + DECK.edge * np.ptp(along), along.max() - DECK.edge * np.ptp(along)
         across = deck[:, 0] * axis[1] - deck[:, 1] * axis[0]
         strip = np.floor((across - across.min()) / self.reach).astype(np.int64)
         ends = ((ahead < 0) & (along[near] <= low), (ahead > 0) & (along[near] >= high))
-        return all(
-            len(np.unique(strip[near[is_next & end]])) >= max(1, _LEAST_CONTACT * (strip.max() + 1)) for end in ends
-        )
+        return all(len(np.unique(strip[near[is_next & end]])) >= max(1, DECK.share * (strip.max() + 1)) for end in ends)
 
     def _leads_to(self, deck: np.ndarray, ground: Any, axis: np.ndarray) -> bool:
         """Return whether there is ground ahead of both ends of a deck at its height; ``ground`` is a stretched tree."""
         along = deck[:, :2] @ axis
-        low, high = along.min() + _END * np.ptp(along), along.max() - _END * np.ptp(along)
+        low, high = along.min() + DECK.edge * np.ptp(along), along.max() - DECK.edge * np.ptp(along)
         return self._goes_on(deck[along <= low], ground, -axis) and self._goes_on(deck[along >= high], ground, axis)
 
     def _goes_on(self, end: np.ndarray, ground: Any, axis: np.ndarray) -> bool:
@@ -248,24 +208,24 @@ class Decks:
         along = end[:, :2] @ axis
         to_tip = (along.max() - along)[:, None]
         forward = np.append(axis, 0.0)
-        for step in _AHEAD:
+        for step in range(1, int(DECK.far) + 1):
             positions = end + (to_tip + step * self.reach) * forward
             distance, _ = ground.query(positions * self._stretch, distance_upper_bound=self.reach / 2)
-            if np.isfinite(distance).mean() >= _LEAST_AHEAD:
+            if np.isfinite(distance).mean() >= DECK.share:
                 return True
         return False
 
     @property
     def _stretch(self) -> np.ndarray:
-        """Factors (3,) with which ground is near ahead of a deck if it is as high, but for the rise of a road."""
-        return np.array([1.0, 1.0, self.reach / 2 / (_SAME_LEVEL + _ROAD * _AHEAD[-1] * self.reach)])
+        """Factors (3,) with which ground is near ahead of a deck: steps and rises of twice the level."""
+        return np.array([1.0, 1.0, self.reach / 2 / (2 * DECK.same_level)])
 
     def _with_corners(self, xyz: np.ndarray, rows: np.ndarray, raised: np.ndarray) -> np.ndarray:
         """Return a deck with points beside it that are raised in one direction: corners of slanting and wide decks."""
         distance, nearest = spatial.cKDTree(xyz[rows]).query(xyz[raised], distance_upper_bound=1.5 * self.reach)
         near = np.isfinite(distance)
         raised, nearest = raised[near], nearest[near]
-        return np.concatenate([rows, raised[np.abs(xyz[raised, 2] - xyz[rows[nearest], 2]) <= _SAME_LEVEL]])
+        return np.concatenate([rows, raised[np.abs(xyz[raised, 2] - xyz[rows[nearest], 2]) <= DECK.same_level]])
 
     def _with_edges(self, xyz: np.ndarray, rows: np.ndarray, others: np.ndarray) -> np.ndarray:
         """Return a deck with the points in its cells that lie at its height, such as those at its edges."""
@@ -273,7 +233,7 @@ class Decks:
         cells, which = distinct(grid.number(xyz[rows]))
         level = np.bincount(which, xyz[rows, 2]) / np.bincount(which)
         position, found = find_cells(cells, grid.number(xyz[others]))
-        same = found & (np.abs(xyz[others, 2] - level[position]) <= _SAME_LEVEL)
+        same = found & (np.abs(xyz[others, 2] - level[position]) <= DECK.same_level)
         return np.concatenate([rows, others[same]])
 
 
@@ -298,7 +258,7 @@ class _Around:
 
 def cell_size(spacing: float) -> float:
     """Return the side (m) of cells in which points of a cloud with this spacing (m) are beside one another."""
-    return max(_LEAST_CELL, LINE_SPACINGS * spacing)
+    return max(DECK.least_cell, DECK.line * spacing)
 
 
 def _numbered(piece: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:
@@ -323,7 +283,7 @@ def _count_below(
     which, item = items(last - first + 1)
     rows = first[which] + item
     depth = np.minimum(height[first], height[last])[which] - height[rows]
-    shown = np.minimum(_SLANT * depth, _MOST_SHOWN * (along[last] - along[first])[which])
+    shown = DECK.edge * (along[last] - along[first])[which]
     hidden = np.minimum(along[rows] - along[first][which], along[last][which] - along[rows]) >= shown
     return np.bincount(which, (depth > least) & hidden, len(first))
 

@@ -11,8 +11,8 @@ from ..params import BridgeArea, BridgeHeight, BridgeWidth, PointDensity, Surfac
 from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..stage import Param, stage
 from ..terrain.on_decks import on_decks
-from .bridge_decks import ABOVE_DECK, Decks
-from .deck_sites import near_water
+from .bridge_decks import DECK, Decks
+from .deck_sites import deck_sites
 
 # No deck is of these classes.
 _NO_DECK = (
@@ -25,7 +25,7 @@ _NO_DECK = (
 
 
 # Where bridges are looked for.
-_EVERYWHERE, _OVER_WATER = "everywhere", "near water"
+_EVERYWHERE, _OVER_GAPS = "everywhere", "gaps in the ground"
 
 
 @stage(
@@ -46,9 +46,9 @@ def classify_bridges(
         str,
         Param(
             "Search",
-            "Where bridges are looked for: everywhere, or only within 20 m of classified water (9), in a fraction of "
-            "the time.",
-            choices=(_EVERYWHERE, _OVER_WATER),
+            "Where bridges are looked for: everywhere, or only around level surfaces over a gap in the ground with "
+            "ground at their height at both ends, in a fraction of the time.",
+            choices=(_EVERYWHERE, _OVER_GAPS),
         ),
     ] = _EVERYWHERE,
     noise: SurfaceNoise = None,
@@ -61,8 +61,8 @@ def classify_bridges(
     On lines in eight directions the sections of a bridge are smooth, opaque and raised on both sides. Such parts become
     bridge deck (17) if they are large enough and go on into the ground at both ends. Bridges whose ends are not in the
     cloud, and embankments, are not found. A run in tiles sees twice the maximum width around each block, half of it
-    where bridges are looked for near water only: bridges that go farther beyond its border are not found there. Give
-    long ones a larger block or maximum width.
+    where bridges are looked for at gaps only: bridges that go farther beyond its border are not found there; give long
+    ones a larger block or maximum width.
 
     Parameters
     ----------
@@ -104,21 +104,18 @@ def classify_bridges(
     monitor.resolved(density=density, noise=noise)
     used = not_noise(classification)
     points = sampling.from_corner(xyz[used])
-    if search == _OVER_WATER:
-        near = near_water(points, classification[used] == PointClass.WATER)
-        if not near.any():
-            monitor.progress(1.0)
-            return classification.astype(np.uint8)
-        used, points = used[near], points[near]
+    decks = Decks.of(min_height, max_width, min_bridge_area, 1 / float(np.sqrt(density)), noise)
     may_be_deck = ~np.isin(classification[used], _NO_DECK)
-    spacing = 1 / float(np.sqrt(density))
-    decks = Decks.of(min_height, max_width, min_bridge_area, spacing, noise)
+    if search == _OVER_GAPS:
+        is_level = np.isin(classification[used], (PointClass.GROUND, PointClass.WATER))
+        near = deck_sites(points, may_be_deck, is_level, decks)
+        used, points, may_be_deck = used[near], points[near], may_be_deck[near]
     is_deck = decks.find(points, may_be_deck, classification[used] == PointClass.GROUND, monitor)
     classes = classification.astype(np.uint8)
     classes[used[classification[used] == PointClass.BRIDGE_DECK]] = PointClass.UNCLASSIFIED
     ground = np.flatnonzero((classification[used] == PointClass.GROUND) & ~is_deck)
     # Ground points on a deck are those of cars and parapets; ground that rises beside the deck stays ground.
-    classes[used[ground[on_decks(points[ground], points[is_deck], ABOVE_DECK)[0]]]] = PointClass.UNCLASSIFIED
+    classes[used[ground[on_decks(points[ground], points[is_deck], DECK.same_level)[0]]]] = PointClass.UNCLASSIFIED
     classes[used[is_deck]] = PointClass.BRIDGE_DECK
     monitor.progress(1.0)
     return classes

@@ -1,26 +1,106 @@
-"""Where bridges over water may be."""
+"""Where bridges may be: surfaces over a gap in the ground, with ground at their height at both ends."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from ..geometry.components import connect
 from ..geometry.grid import raster_cells, refuse_sparse
-from ..packages import ndimage
+from ..packages import ndimage, spatial
+from ..stage import Monitor
+from .bridge_decks import DECK, Decks
 
-# Side of the cells (m) in which distances to water are measured: finer ones find no more.
-_CELL = 2.0
-
-# Distance (m) from water within which points are looked at: a deck with the ground at its ends, of which twice the
-# reach of the search counts.
-_AROUND = 20.0
+# Rows and columns of a step in each direction in which ground on both sides of a raised strip is looked for.
+_STEPS = ((0, 1), (1, 1), (1, 0), (1, -1))
 
 
-def near_water(xyz: np.ndarray, is_water: np.ndarray) -> np.ndarray:
-    """Return which points (n, 3), m, are within 20 m of water, or between water that is no farther apart than 40 m."""
-    if not is_water.any():
-        return np.zeros(len(xyz), bool)
-    refuse_sparse(xyz, _CELL)
-    row, column = raster_cells(xyz, _CELL, 0)
-    wet = np.zeros((row.max() + 1, column.max() + 1), bool)
-    wet[row[is_water], column[is_water]] = True
-    return (ndimage.distance_transform_edt(~wet) * _CELL <= _AROUND)[row, column]
+def deck_sites(xyz: np.ndarray, is_open: np.ndarray, is_ground: np.ndarray, decks: Decks) -> np.ndarray:
+    """Return which points (n,) are near surfaces that may be decks.
+
+    In cells of one meter and more, a surface over the ground hides it, and ground between two lower sides may itself be
+    a deck. Such cells are joined where they are level, and the parts that are as large as bridges and reach ground of
+    their own height at both ends stay, with what is around them.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Points, m.
+    is_open : ndarray of shape (n,), bool
+        Points that may be of decks.
+    is_ground : ndarray of shape (n,), bool
+        Ground and water.
+    decks : Decks
+        Criteria of bridges.
+    """
+    refuse_sparse(xyz, decks.cell)
+    row, column = raster_cells(xyz, decks.cell, 0)
+    shape = (int(row.max()) + 1, int(column.max()) + 1)
+    cell = row * shape[1] + column
+    ground = _lowest(cell[is_ground], xyz[is_ground, 2], shape)
+    unseen = ~np.isfinite(ground)
+    nearest = ndimage.distance_transform_edt(unseen, return_distances=False, return_indices=True)
+    is_other = is_open & ~is_ground
+    is_over = is_other & (xyz[:, 2] - ground[tuple(nearest)].ravel()[cell] >= decks.min_height)
+    hides = _count(cell[is_ground], shape) < DECK.most_below * _count(cell[is_over], shape)
+    surface = np.where(unseen, _lowest(cell[is_other], xyz[is_other, 2], shape), ground)
+    surface = np.where(hides, _lowest(cell[is_over], xyz[is_over, 2], shape), surface)
+    is_raised = _between_lower(surface, ground, decks)
+    is_site = np.zeros(shape, bool)
+    raised, beside = np.argwhere(is_raised), np.argwhere(np.isfinite(surface) & ~is_raised)
+    is_site[tuple(raised[_leads_on(raised, beside, surface, decks)].T)] = True
+    return (ndimage.distance_transform_edt(~is_site) * decks.cell <= DECK.far * decks.reach)[
+        row, column
+    ] & is_site.any()
+
+
+def _lowest(cell: np.ndarray, height: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
+    """Return the lowest of the heights in each cell, m; infinite without any."""
+    lowest = np.full(shape[0] * shape[1], np.inf)
+    np.minimum.at(lowest, cell, height)
+    return lowest.reshape(shape)
+
+
+def _count(cell: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
+    return np.bincount(cell, minlength=shape[0] * shape[1]).reshape(shape)
+
+
+def _between_lower(surface: np.ndarray, ground: np.ndarray, decks: Decks) -> np.ndarray:
+    """Return which cells have a surface over the ground on both sides, within the width of decks."""
+    result = np.zeros(ground.shape, bool)
+    for down, right in _STEPS:
+        count = max(1, int(decks.max_width / 2 / decks.cell / np.hypot(down, right)))
+        ray = np.zeros((2 * count + 1, 2 * count + 1), bool)
+        ahead = np.arange(1, count + 1)
+        ray[count + down * ahead, count + right * ahead] = True
+        sides = [
+            ndimage.minimum_filter(ground, footprint=one, mode="constant", cval=np.inf)
+            for one in (ray, ray[::-1, ::-1])
+        ]
+        result |= np.maximum(*sides) <= surface - decks.min_height
+    return result & np.isfinite(surface)
+
+
+def _leads_on(raised: np.ndarray, beside: np.ndarray, surface: np.ndarray, decks: Decks) -> np.ndarray:
+    """Return which of the ``raised`` cells (m, 2) are of large level parts with ground at their height at both ends."""
+    if not len(raised) or not len(beside):
+        return np.zeros(len(raised), bool)
+
+    def points(cells: np.ndarray) -> np.ndarray:
+        return np.column_stack([cells * decks.cell, surface[tuple(cells.T)]])
+
+    cells = points(raised)
+    part = connect(cells, 1.5 * decks.cell, DECK.same_level, Monitor())
+    # Ground is as near in height as in plan.
+    stretch = np.array([1.0, 1.0, decks.reach / DECK.same_level])
+    distance, _ = spatial.cKDTree(points(beside) * stretch).query(cells * stretch, distance_upper_bound=decks.reach)
+    touches = np.isfinite(distance)
+    size = np.bincount(part)
+    x, y = (axis - (np.bincount(part, axis) / size)[part] for axis in cells[:, :2].T)
+    xx, yy, xy = (np.bincount(part, product) for product in (x * x, y * y, x * y))
+    angle = np.arctan2(2 * xy, xx - yy)[part] / 2
+    along = x * np.cos(angle) + y * np.sin(angle)
+    half = np.zeros(len(size))
+    np.maximum.at(half, part, np.abs(along))
+    far = np.abs(along) >= half[part] / 3
+    ends = (np.bincount(part, touches & far & (way > 0)) > 0 for way in (along, -along))
+    return (np.logical_and(*ends) & (size * decks.cell**2 >= decks.min_area))[part]

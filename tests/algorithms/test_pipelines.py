@@ -198,8 +198,7 @@ def test_detect_buildings_is_its_stages_with_nothing_set_but_for_bridges_and_cla
     own = {step.name: step.tunables for step in PIPELINES["detect_buildings"].steps if step.tunables}
     assert own == {
         "earlier": {"mapping": "3-5, 9, 14-15, 17=1"},
-        "bridges": {"max_width": 0.0},
-        "decks": {"search": "near water", "max_width": 20.0},
+        "bridges": {"search": "gaps in the ground"},
     }
 
 

@@ -69,9 +69,9 @@ def test_a_folder_becomes_tiles_a_virtual_point_cloud_and_one_layer(algorithm, c
 
 
 def test_what_is_not_set_is_what_the_steps_have(provider, context):
-    """Steps have values of their own where the stages have others: no bridges, planes from 1.5 m on."""
+    """Steps have values of their own where the stages have others: bridges at gaps, planes from 1.5 m on."""
     for name, parameter, value in (
-        ("detectbuildingsintiles", "bridges_max_width", 0.0),
+        ("detectbuildingsintiles", "bridges_search", "gaps in the ground"),
         ("mapfootprintsintiles", "planes_min_height", 1.5),
     ):
         algorithm = provider.algorithm(name).create()

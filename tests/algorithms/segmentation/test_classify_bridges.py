@@ -6,7 +6,9 @@ import pytest
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.run import run_pipeline
+from lidar_buildings.algorithms.segmentation.bridge_decks import Decks
 from lidar_buildings.algorithms.segmentation.classify_bridges import classify_bridges
+from lidar_buildings.algorithms.segmentation.deck_sites import deck_sites
 from lidar_buildings.algorithms.simulation.simulate_bridges import simulate_bridges
 from lidar_buildings.algorithms.simulation.simulate_town import simulate_town
 from lidar_buildings.algorithms.stage import Cancelled
@@ -76,10 +78,10 @@ def test_tunnel_mouths_jetties_and_ramps_are_no_bridges(kind):
 
 
 @pytest.mark.parametrize(("kind", "angle"), [("fly-over", 0.0), ("two decks", 20.0)])
-def test_a_bridge_with_cars_is_no_building_where_bridges_are_looked_for(kind, angle):
+def test_a_bridge_with_cars_is_no_building(kind, angle):
     xyz, true, *_ = simulate_bridges(kind=kind, angle=angle, density=4.0, seed=3, trees=False)
     cloud = create_cloud({"xyz": xyz})
-    run_pipeline(PIPELINES["detect_buildings"], cloud, bridges_max_width=40.0)
+    run_pipeline(PIPELINES["detect_buildings"], cloud)
     made = cloud.get("classification")
     assert not (made == 6).any()
     assert (made[true == 17] == 17).mean() > 0.8
@@ -128,28 +130,41 @@ def test_cancel_gets_through():
         classified(xyz, part, monitor=Listening(stop_at=0.5))
 
 
-def test_near_water_the_bridge_over_it_is_found():
+GAPS = "gaps in the ground"
+
+
+@pytest.mark.parametrize("angle", [0.0, 30.0])
+def test_at_gaps_the_bridge_over_a_canal_is_found_whether_it_is_ground_or_not(angle):
+    xyz, part = canal(angle)
+    for is_ground in (False, True):
+        classes = np.where((part == EARTH) | (part == WATER) | ((part == DECK) & is_ground), 2, 1).astype(np.uint8)
+        assert f_score(classify_bridges(xyz, classes, search=GAPS) == 17, part == DECK) > 0.95
+
+
+@pytest.mark.parametrize(("kind", "angle"), [("cutting", 20.0), ("fly-over", 0.0), ("valley", 40.0)])
+def test_at_gaps_bridges_without_water_below_are_those_of_everywhere(kind, angle):
+    xyz, true, *_ = simulate_bridges(kind=kind, angle=angle, density=4.0, seed=3)
+    classes = np.where(np.isin(true, (2, 9)), 2, 1).astype(np.uint8)
+    at_gaps, everywhere = (classify_bridges(xyz, classes, search=search) == 17 for search in (GAPS, "everywhere"))
+    assert f_score(everywhere, true == 17) > 0.85
+    assert f_score(at_gaps, everywhere) > 0.95
+
+
+def test_sites_of_bridges_are_few_beside_houses_and_none_on_a_slope():
     xyz, part = canal()
-    classes = np.where(part == EARTH, 2, np.where(part == WATER, 9, 1)).astype(np.uint8)
-    made = classify_bridges(xyz, classes, search="near water", max_width=20.0)
-    assert f_score(made == 17, part == DECK) > 0.95
+    decks = Decks.of(1.0, 40.0, 20.0, 1 / np.sqrt(6), 0.02)
+    is_ground = (part == EARTH) | (part == WATER)
+    near = deck_sites(xyz, ~is_ground, is_ground, decks)
+    assert near[part == DECK].all()
+    slope = np.column_stack([xyz[:, :2], xyz[:, 0] * 0.3 + np.where(part == ROOF, 4.0, 0.0)])
+    assert not deck_sites(slope, part == ROOF, part != ROOF, decks).any()
 
 
-def test_near_water_earlier_decks_far_from_it_stay():
+def test_at_gaps_nothing_changes_where_there_is_none():
     xyz, part = canal()
-    classes = np.where(part == EARTH, 2, np.where(part == WATER, 9, 1)).astype(np.uint8)
-    far = np.array([[200.0, 20.0, 5.0], [201.0, 20.0, 5.0]])
-    made = classify_bridges(
-        np.concatenate([xyz, far]), np.append(classes, [17, 17]).astype(np.uint8), search="near water"
-    )
-    assert (made[-2:] == 17).all()
-
-
-def test_near_water_nothing_changes_where_there_is_none():
-    xyz, part = canal()
-    classes = np.where((part == EARTH) | (part == WATER), 2, 1).astype(np.uint8)
-    assert (classify_bridges(xyz, classes) == 17).any()
-    np.testing.assert_array_equal(classify_bridges(xyz, classes, search="near water"), classes)
+    level = np.column_stack([xyz[:, :2], 0.01 * xyz[:, 2]])
+    classes = np.where(part == ROOF, 17, 2).astype(np.uint8)
+    np.testing.assert_array_equal(classify_bridges(level, classes, search=GAPS), classes)
 
 
 def test_bridges_over_the_river_of_a_town_are_decks_by_default():
