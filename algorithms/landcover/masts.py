@@ -77,24 +77,30 @@ def on_masts(xyz: np.ndarray, height: np.ndarray, is_wire: np.ndarray, spans: li
     for members in split_groups(group, count):
         top, middle = float(over[members].max()), ends[members, :2].mean(axis=0)
         around = rows[tree.query_ball_point(middle, 2 * float(reach[members].max()) + _RULES.search)]
-        found.append(around[_mast(xyz[around, :2] - middle, height[around], top)])
+        found.append(around[_mast(xyz[around, :2] - middle, height[around], top, float(reach[members].max()))])
     return np.unique(np.concatenate(found))
 
 
-def _mast(plan: np.ndarray, height: np.ndarray, top: float) -> np.ndarray:
-    """Return which points (n,) are of a mast that carries wires ``top`` (m) above the ground; none where none does."""
+def _mast(plan: np.ndarray, height: np.ndarray, top: float, reach: float) -> np.ndarray:
+    """Return which points (n,) are of a mast with wires ``top`` (m) above the ground; none where there is no mast.
+
+    ``plan`` (n, 2) is from the middle of the ends of its spans, within ``reach`` (m) of which its axis is.
+    """
     nothing = np.zeros(len(plan), bool)
     inside = height <= top + _RULES.above
-    if not inside.any():
+    near = inside & (np.hypot(*plan.T) <= reach)
+    if not near.any():
         return nothing
     radius = max(_RULES.radius, _RULES.spread * top)
-    axis = _axis(plan[inside], height[inside], radius, top)
+    axis = _axis(plan[near], height[near], radius, top)
     if axis is None:
         return nothing
     out = np.hypot(*(plan - axis).T)
-    in_trunk = (height >= _RULES.trunk[0] * top) & (height <= _RULES.trunk[1] * top)
-    beside = in_trunk & (out > radius) & (out <= 2 * radius)
-    if beside.sum() > (in_trunk & (out <= radius)).sum():
+    in_trunk = (height >= _RULES.trunk[0] * top) & (height <= _RULES.trunk[1] * top) & (out <= 2 * radius)
+    part = (height[in_trunk] / _RULES.part).astype(np.int64)
+    more = np.bincount(part, np.where(out[in_trunk] <= radius, 1, -1))
+    # A crown beside a mast surrounds some parts of its trunk, that of a tree most of them.
+    if (more < 0).sum() > _RULES.filled * (np.bincount(part) > 0).sum():
         return nothing
     return inside & ((out <= radius) | ((height > _RULES.trunk[1] * top) & (out <= _RULES.arms * top)))
 
@@ -111,6 +117,7 @@ def _axis(plan: np.ndarray, height: np.ndarray, radius: float, top: float) -> An
     plan, part = plan[first], part[first]
     near = np.hypot(*(plan[:, None] - plan[None]).transpose(2, 0, 1)) <= radius
     filled = np.column_stack([(near & (part == number)).any(axis=1) for number in range(parts)])
-    best = int(filled.sum(axis=1).argmax())
+    # Of many positions in a tower, that with the most around it, and the middle of these.
+    best = int((filled.sum(axis=1) + near.mean(axis=1)).argmax())
     shares = [float(half.mean()) for half in np.array_split(filled[best], 2)]
-    return plan[best] if min(shares) >= _RULES.filled else None
+    return plan[near[best]].mean(axis=0) if min(shares) >= _RULES.filled else None

@@ -134,3 +134,13 @@ def test_simulated_lines_are_found(density, angle, seed, least):
     cloud = create_cloud({"xyz": xyz, "return_number": number, "number_of_returns": count})
     run_pipeline(PIPELINES["detect_buildings"], cloud)
     assert f_score(cloud.get("classification") == WIRE, true == WIRE) > least
+
+
+@pytest.mark.parametrize(("angle", "seed"), [(15.0, 1), (60.0, 5)])
+def test_towers_of_simulated_lines_are_found_whole(angle, seed):
+    """The axis was at one of the legs, and the other ones were taken for a crown around it."""
+    xyz, true, _, _, _, _, _, _, number = simulate_power_line(size=110.0, density=12.0, angle=angle, seed=seed)
+    height = np.where(true == GROUND, 0.0, xyz[:, 2] - xyz[true == GROUND, 2].mean()).astype(np.float32)
+    made = classify_wires(xyz, np.where(true == GROUND, 2, np.where(true == 6, 6, 1)).astype(np.uint8), height)
+    tower = number == np.bincount(number[true == POLE]).argmax()
+    assert (made[tower] == POLE).mean() > 0.75
