@@ -256,6 +256,9 @@ def _check_declaration(declared: Stage) -> None:
 
 
 def _tunable(name: str, hint: Any, default: Any) -> Tunable:
+    # Up to Python 3.10 a default of None makes the hint optional once more, around what it is annotated with.
+    if typing.get_origin(hint) is typing.Union:
+        hint = typing.get_args(hint)[0]
     base, param = typing.get_args(hint)[:2]
     inner = [arg for arg in typing.get_args(base) if arg is not type(None)]
     kind = inner[0] if typing.get_origin(base) is typing.Union else base
