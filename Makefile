@@ -16,6 +16,8 @@ VENV := .venv
 ON_ALL_CORES := -n auto --dist loadfile --no-loadscope-reorder
 # An interpreter without QGIS will do: numpy, scipy, scikit-learn, laspy, lazrs, pytest, pytest-xdist, hypothesis.
 CORE_PYTHON := $(VENV)/bin/python
+CORE_TESTS := tests/algorithms tests/test_contract.py algorithms
+OF_TESTS := 'lazrs>=0.6,<0.9' 'pytest>=8,<10' 'pytest-xdist>=3.5,<4' 'hypothesis==6.*'
 
 ifdef PROFILE
 export QGIS_CUSTOM_CONFIG_PATH := $(abspath $(PROFILE))
@@ -31,7 +33,7 @@ Makefile: ;
 
 else
 
-.PHONY: help install resources pictures demo test test-core lint bench fuzz docs package clean
+.PHONY: help install resources pictures demo test test-core test-pythons lint bench fuzz docs package clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.* ## /  make \1\t/p' Makefile | expand -t 18
@@ -46,7 +48,11 @@ test: install $(VENV)/made lint docs ## check the code, build the documentation,
 	@scripts/offscreen.sh $(VENV)/bin/python -m pytest $(ON_ALL_CORES)
 
 test-core: ## the tests of the core with CORE_PYTHON, which needs no QGIS but requirements-dev.txt and what those name
-	@$(CORE_PYTHON) -m pytest -p no:pytest_qgis $(ON_ALL_CORES) tests/algorithms tests/test_contract.py algorithms
+	@$(CORE_PYTHON) -m pytest -p no:pytest_qgis $(ON_ALL_CORES) $(CORE_TESTS)
+
+test-pythons: ## the tests of the core with the oldest and the newest Python and numpy, in Debian's own builds (in .pythons)
+	@scripts/other_python.sh bullseye 3.9 .pythons 'numpy==1.24.*' 'scipy==1.10.*' 'scikit-learn==1.2.*' 'laspy==2.5.*' $(OF_TESTS) -- -n auto $(CORE_TESTS)
+	@scripts/other_python.sh trixie 3.13 .pythons 'numpy>=2' scipy scikit-learn 'laspy<3' $(OF_TESTS) -- -n auto $(CORE_TESTS)
 
 lint: $(VENV)/made ## ruff, mypy, and words that make text hard to read
 	@$(VENV)/bin/ruff check .
@@ -78,7 +84,7 @@ package: $(VENV)/made ## the zip for QGIS's plugin repository (in dist/), scanne
 	@$(VENV)/bin/python scripts/scan.py dist/*-$$(sed -n 's/^version=//p' metadata.txt).zip
 
 clean: ## remove what these commands made in this folder
-	rm -rf $(VENV) demo dist benchmarks docs/_build docs/gallery docs/methods/generated docs/reference/generated tests/benchmarks/.cache .hypothesis .mypy_cache .pytest_cache .ruff_cache .qgis-settings
+	rm -rf $(VENV) .pythons demo dist benchmarks docs/_build docs/gallery docs/methods/generated docs/reference/generated tests/benchmarks/.cache .hypothesis .mypy_cache .pytest_cache .ruff_cache .qgis-settings
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # The system's packages show through, so that the tests run on the numpy and the QGIS that users have.

@@ -28,7 +28,7 @@ unpacked() {
     apt-get "${options[@]}" -qq update
     # pip asks the older ones for distutils, which is a package of its own there.
     local extra=()
-    ! apt-cache "${options[@]}" show python3-distutils >/dev/null 2>&1 || extra=(python3-distutils)
+    [ "$version" != 3.9 ] || extra=(python3-distutils)
     apt-get "${options[@]}" -qq -y --download-only install "python$version" libgomp1 libstdc++6 "${extra[@]}"
     for deb in "$apt"/var/cache/apt/archives/*.deb; do dpkg-deb -x "$deb" "$system"; done
 }
@@ -55,5 +55,4 @@ if [ ! -d "$folder/packages" ]; then
     mv "$folder/packages.new" "$folder/packages"
 fi
 cd "$root"
-[ ${#arguments[@]} -gt 0 ] || arguments=(tests/algorithms tests/test_contract.py algorithms)
 other -m pytest -q -p no:cacheprovider "${arguments[@]}"
