@@ -230,7 +230,9 @@ def _labels(cells: Subdivision, cost: np.ndarray, edges: list[Edge], how: Drawin
     price = np.where(_are_drawn(start, end, edges), _DRAWN, _NOT_DRAWN) * how.spacing
     weight = price * np.hypot(*(end - start).T)
     most = np.bincount(sides.ravel(), np.repeat(weight, 2), len(cells))
-    return cheapest_labels(cost, sides, lambda one, other: weight * (one != other), most, cost.argmin(axis=1))
+    return cheapest_labels(
+        cost, sides, lambda one, other, rows: weight[rows] * (one != other), most, cost.argmin(axis=1)
+    )
 
 
 def _are_drawn(start: np.ndarray, end: np.ndarray, edges: list[Edge]) -> np.ndarray:

@@ -6,11 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..packages import csgraph, sparse
-
-# Costs become whole numbers of 32 bits for the flow, to this precision. Those of a cell's edges and its own are added
-# there: none may be more than a fifth of what fits.
-_STEPS, _LARGEST_COST = 1000, 3e5
+from .cheapest_labels import cheapest_cut
 
 # Lines are moved by up to this distance (m) where three of them meet in one point to within rounding.
 _NUDGE = 1e-6
@@ -186,39 +182,6 @@ class Arrangement:
     def cheapest(self, cost: np.ndarray, if_inside: np.ndarray, if_outside: np.ndarray) -> np.ndarray:
         """Return the cells (count,), bool, whose choice costs least; see :func:`cheapest_cut`."""
         return cheapest_cut(self.edges.left, self.edges.right, cost, if_inside, if_outside)
-
-
-def cheapest_cut(
-    left: np.ndarray, right: np.ndarray, cost: np.ndarray, if_inside: np.ndarray, if_outside: np.ndarray
-) -> np.ndarray:
-    """Return which cells (n,), bool, to put inside so that it costs least: a minimum cut.
-
-    Parameters
-    ----------
-    left, right : ndarray of shape (e,)
-        The two cells of each edge.
-    cost : ndarray of shape (e,)
-        Of an edge with one of its cells inside and the other outside, >= 0.
-    if_inside, if_outside : ndarray of shape (n,)
-        Of a cell that is inside, and of one that is not, >= 0.
-    """
-    n = len(if_inside)
-    source, sink, cells = n, n + 1, np.arange(n)
-    # With all edges both ways, the flow has the structure of the graph, and its rest is found number by number.
-    to_source, to_sink = np.full(n, source), np.full(n, sink)
-    rows = np.concatenate([left, right, to_source, cells, cells, to_sink])
-    columns = np.concatenate([right, left, cells, to_source, to_sink, cells])
-    costs = np.concatenate([cost, cost, if_outside, np.zeros(n), if_inside, np.zeros(n)])
-    capacity = np.rint(np.minimum(costs, _LARGEST_COST) * _STEPS).astype(np.int32)
-    graph = sparse.csr_matrix((capacity, (rows, columns)), shape=(n + 2, n + 2))
-    flow = csgraph.maximum_flow(graph, source, sink).flow
-    has_room = graph.data > flow.data
-    starts = np.concatenate([[0], np.cumsum(has_room)])[graph.indptr]
-    residual = sparse.csr_matrix((np.ones(starts[-1], np.int8), graph.indices[has_room], starts), shape=graph.shape)
-    reached = csgraph.breadth_first_order(residual, source, return_predecessors=False)
-    inside = np.zeros(n + 2, bool)
-    inside[reached] = True
-    return inside[:n]
 
 
 def sides_of(xy: np.ndarray, points: np.ndarray, directions: np.ndarray) -> np.ndarray:

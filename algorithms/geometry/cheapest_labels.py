@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Callable
+from typing import Callable, Optional
 
 import numpy as np
 
 from ..packages import csgraph, sparse
 
-# Costs become whole numbers of 32 bits for the flow, to this precision, and none larger than what leaves room to add.
-_STEPS, _LARGEST = 10_000, 1e4
+# Costs become whole numbers of 32 bits for the flow, to these precisions of cuts and of labels. Those of a cell's edges
+# and its own are added there: none may be more than a fifth of what fits.
+_STEPS, _STEPS_OF_LABELS, _LARGEST = 1000, 10_000, 3e8
 
 # Sweeps over all labels; costs hardly change after the second one.
 _SWEEPS = 4
 
 
-# Returns what two labels (k,) on the two sides of each edge cost (k,).
-Border = Callable[[np.ndarray, np.ndarray], np.ndarray]
+# Returns what two labels (k,) on the two sides of some edges (k,) cost (k,).
+Border = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 
 def cheapest_labels(
@@ -31,7 +32,7 @@ def cheapest_labels(
     edges : ndarray of shape (k, 2)
         Cells that touch.
     border : callable
-        Cost of the labels (k,) of both cells of each edge; a metric.
+        Cost of the labels (j,) of both cells of some of the edges (j,), by their rows; a metric.
     most : ndarray of shape (n,)
         The most that all edges of a cell together can cost.
     start : ndarray of shape (n,)
@@ -43,68 +44,101 @@ def cheapest_labels(
     [boykov2001]
     """
     label = start.copy()
-    lowest = _energy(cost, edges, border, label)
-    for _ in range(_SWEEPS):
-        before = lowest
-        for alpha in range(cost.shape[1]):
-            # Where a label costs more than all borders of a cell could save, the cell never takes it.
-            wanted = cost[:, alpha] - cost[np.arange(len(cost)), label] <= most
-            if not (wanted & (label != alpha)).any():
-                continue
-            changed = _expanded(cost, edges, border, label, alpha, wanted)
-            energy = _energy(cost, edges, border, changed)
-            if energy < lowest - 1e-9:
-                label, lowest = changed, energy
-        if lowest >= before - 1e-9:
+    every, cells = np.arange(len(edges)), np.arange(len(cost))
+    now = border(*label[edges.T], every)
+    # Labels that were tried since the last change.
+    tried = 0
+    for alpha in list(range(cost.shape[1])) * _SWEEPS:
+        if tried == cost.shape[1]:
             break
+        tried += 1
+        more = cost[:, alpha] - cost[cells, label]
+        # Where a label costs more than all borders of a cell could save, the cell never takes it, and cells that border
+        # on each other take it only if one of them costs less without its present borders.
+        wanted = more <= most
+        own = np.bincount(edges.ravel(), np.repeat(now, 2), len(cost))
+        if not (wanted & (more < own)).any():
+            continue
+        rows = np.flatnonzero(wanted[edges].any(axis=1))
+        takes = _takers(more, edges, rows, label, alpha, wanted, border)
+        changed = np.where(takes, alpha, label)
+        after = border(*changed[edges[rows].T], rows)
+        if more[takes].sum() + after.sum() - now[rows].sum() < -1e-9:
+            label, now[rows], tried = changed, after, 1
     return label
 
 
-def _energy(cost: np.ndarray, edges: np.ndarray, border: Border, label: np.ndarray) -> float:
-    on_edges = border(label[edges[:, 0]], label[edges[:, 1]])
-    return float(cost[np.arange(len(cost)), label].sum() + on_edges.sum())
-
-
-def _expanded(
-    cost: np.ndarray, edges: np.ndarray, border: Border, label: np.ndarray, alpha: int, wanted: np.ndarray
+def _takers(
+    more: np.ndarray,
+    edges: np.ndarray,
+    rows: np.ndarray,
+    label: np.ndarray,
+    alpha: int,
+    wanted: np.ndarray,
+    border: Border,
 ) -> np.ndarray:
-    """Return the labels after those cells ``wanted`` have taken ``alpha`` for which that is cheapest, together."""
-    p, q = edges.T
-    other = np.full(len(edges), alpha)
-    both, first, second = border(label[p], label[q]), border(other, label[q]), border(label[p], other)
-    rows = np.arange(len(cost))
-    keep, take = cost[rows, label].copy(), cost[:, alpha].copy()
+    """Return those cells (n,), bool, of the ones ``wanted``, that take ``alpha`` where that is cheapest, together.
+
+    They cost ``more`` (n,) by themselves and have the edges ``rows``.
+    """
+    p, q = edges[rows].T
+    other = np.full(len(rows), alpha)
+    both, first, second = border(label[p], label[q], rows), border(other, label[q], rows), border(label[p], other, rows)
     # An edge costs "both" where both cells keep their labels, "first" or "second" where that one changes alone, and
     # nothing where both change. That is a sum of terms of one cell each, and one of the first keeping while the second
     # changes.
     inner, from_p, from_q = wanted[p] & wanted[q], wanted[p] & ~wanted[q], wanted[q] & ~wanted[p]
+    take = more.copy()
     np.add.at(take, p[inner | from_p], (first - both)[inner | from_p])
     np.add.at(take, q[inner], -first[inner])
     np.add.at(take, q[from_q], (second - both)[from_q])
-    chosen = np.flatnonzero(wanted)
-    number = np.cumsum(wanted) - 1
-    changed = label.copy()
-    capacity = np.maximum(first + second - both, 0.0)[inner]
-    changed[chosen[_takes(keep[chosen], take[chosen], number[p[inner]], number[q[inner]], capacity)]] = alpha
-    return changed
+    chosen, number = np.flatnonzero(wanted), np.cumsum(wanted) - 1
+    take, there = take[chosen], np.maximum(first + second - both, 0.0)[inner]
+    ends, back = number[[p[inner], q[inner]]], np.zeros_like(there)
+    keeps = cheapest_cut(*ends, there, np.maximum(-take, 0.0), np.maximum(take, 0.0), back, _STEPS_OF_LABELS)
+    takes = np.zeros(len(more), bool)
+    takes[chosen[~keeps]] = True
+    return takes
 
 
-def _takes(keep: np.ndarray, take: np.ndarray, p: np.ndarray, q: np.ndarray, capacity: np.ndarray) -> np.ndarray:
-    """Return which cells (n,) change, given what keeping and changing cost, and p keeping while q changes."""
-    n, cells = len(keep), np.arange(len(keep))
-    least = np.minimum(keep, take)
-    keep, take = keep - least, take - least
-    # The source's side keeps its label: to be cut from the source costs what taking costs.
-    source, sink = n, n + 1
-    start = np.concatenate([np.full(n, source), cells, p])
-    end = np.concatenate([cells, np.full(n, sink), q])
-    costs = np.concatenate([take, keep, capacity])
-    whole = np.rint(np.minimum(costs, _LARGEST) * _STEPS).astype(np.int32)
-    graph = sparse.csr_matrix((whole, (start, end)), shape=(n + 2, n + 2))
-    residual = graph - csgraph.maximum_flow(graph, source, sink).flow
-    residual.data = np.maximum(residual.data, 0)
-    residual.eliminate_zeros()
+def cheapest_cut(
+    left: np.ndarray,
+    right: np.ndarray,
+    cost: np.ndarray,
+    if_inside: np.ndarray,
+    if_outside: np.ndarray,
+    back: Optional[np.ndarray] = None,
+    steps: int = _STEPS,
+) -> np.ndarray:
+    """Return which cells (n,), bool, to put inside so that it costs least: a minimum cut.
+
+    Parameters
+    ----------
+    left, right : ndarray of shape (e,)
+        The two cells of each edge.
+    cost : ndarray of shape (e,)
+        Of an edge with one of its cells inside and the other outside, >= 0.
+    if_inside, if_outside : ndarray of shape (n,)
+        Of a cell that is inside, and of one that is not, >= 0.
+    back : ndarray of shape (e,), optional
+        Of an edge whose left cell is outside and its right one inside, if that is not ``cost``.
+    steps : int
+        Steps to which costs are rounded, per unit.
+    """
+    n = len(if_inside)
+    source, sink, cells = n, n + 1, np.arange(n)
+    # With all edges both ways, the flow has the structure of the graph, and its rest is found number by number.
+    to_source, to_sink = np.full(n, source), np.full(n, sink)
+    rows = np.concatenate([left, right, to_source, cells, cells, to_sink])
+    columns = np.concatenate([right, left, cells, to_source, to_sink, cells])
+    costs = np.concatenate([cost, cost if back is None else back, if_outside, np.zeros(n), if_inside, np.zeros(n)])
+    capacity = np.rint(np.minimum(costs * steps, _LARGEST)).astype(np.int32)
+    graph = sparse.csr_matrix((capacity, (rows, columns)), shape=(n + 2, n + 2))
+    flow = csgraph.maximum_flow(graph, source, sink).flow
+    has_room = graph.data > flow.data
+    starts = np.concatenate([[0], np.cumsum(has_room)])[graph.indptr]
+    residual = sparse.csr_matrix((np.ones(starts[-1], np.int8), graph.indices[has_room], starts), shape=graph.shape)
     reached = csgraph.breadth_first_order(residual, source, return_predecessors=False)
-    keeps = np.zeros(n + 2, bool)
-    keeps[reached] = True
-    return ~keeps[:n]
+    inside = np.zeros(n + 2, bool)
+    inside[reached] = True
+    return inside[:n]

@@ -163,11 +163,10 @@ def _labels(planes: RoofPlanes, cells: Subdivision, used: np.ndarray, cost: np.n
     positions = np.array(cells.vertices)
     length = np.hypot(*(positions[ends[:, 0]] - positions[ends[:, 1]]).T)
     heights = [planes.coefficients[:, :2] @ positions[ends[:, k]].T + planes.coefficients[:, 2:] for k in (0, 1)]
-    rows = np.arange(len(ends))
 
-    def border(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    def border(one: np.ndarray, other: np.ndarray, rows: np.ndarray) -> np.ndarray:
         step = sum(np.minimum(np.abs(height[one, rows] - height[other, rows]), _MOST_STEP) for height in heights) / 2
-        return length * np.where(one == other, 0.0, _BORDER + _STEP * step)
+        return length[rows] * np.where(one == other, 0.0, _BORDER + _STEP * step)
 
     at_most = np.bincount(beside.ravel(), np.repeat(length, 2) * (_BORDER + _STEP * _MOST_STEP), len(used))
     return cheapest_labels(cost, beside, border, at_most, np.argmin(cost, axis=1))

@@ -221,10 +221,11 @@ def _merged(xyz: np.ndarray, neighbors: np.ndarray, label: np.ndarray, tolerance
         fitted = planes_through(xyz, label)
         label, n = fitted.label, len(fitted)
         other = label[neighbors]
-        pair = np.unique(np.sort(np.column_stack([np.repeat(label, other.shape[1]), other.ravel()]), axis=1), axis=0)
-        pair = pair[(pair[:, 0] >= 0) & (pair[:, 0] != pair[:, 1])]
-        if not len(pair):
+        row, column = np.nonzero((other >= 0) & (other != label[:, None]) & (label[:, None] >= 0))
+        if not len(row):
             break
+        two = label[row], other[row, column]
+        pair = np.column_stack(np.divmod(np.unique(np.minimum(*two) * n + np.maximum(*two)), n))
         member = label >= 0
         planes = planes_of(xyz[member], label[member], n)
         cosine = np.einsum("ij,ij->i", planes.normal[pair[:, 0]], planes.normal[pair[:, 1]])

@@ -43,8 +43,14 @@ _BASE = -1
 
 Ring = list[int]
 
+# Easting, northing and height (m).
+_Position = tuple[float, float, float]
+
 # A line in plan: its unit normal (x, y) and its distance along that from a position (m).
 _Line = tuple[float, float, float]
+
+# As many changes between up and down around a vertex are one edge with four walls.
+_CROWD = 4
 
 # More planes than this have no point in common but by chance.
 _IN_A_POINT = 3
@@ -130,21 +136,21 @@ class Levels:
     """
 
     def __init__(self, cells: Subdivision, label: np.ndarray, coefficients: np.ndarray, base: float) -> None:
-        self.cells, self.label, self.base = cells, label, round(base, DECIMALS)
+        self.cells, self.label, self.base = cells, label.tolist(), round(base, DECIMALS)
         self.coefficients = [tuple(row) for row in coefficients.tolist()]
         self.around: dict[int, set[int]] = defaultdict(set)
         self._spokes: dict[int, list[int]] = defaultdict(list)
         self._outline: dict[int, list[int]] = defaultdict(list)
         for (u, v), cell in cells.cell_of.items():
             self._spokes[u].append(v)
-            if label[cell] >= 0:
-                self.around[u].add(int(label[cell]))
+            if self.label[cell] >= 0:
+                self.around[u].add(self.label[cell])
                 if self.plane_beyond(u, v) == _BASE:
                     self._outline[u].append(v)
                     self._outline[v].append(u)
         self.plan = list(cells.vertices)
         self.number: dict[tuple[int, int], int] = {}
-        self.positions: list[tuple[float, float, float]] = []
+        self.positions: list[_Position] = []
         for vertex, planes in self.around.items():
             if len(planes) > 1:
                 self._move_to_intersection(vertex, sorted(planes))
@@ -156,7 +162,7 @@ class Levels:
     def plane_beyond(self, u: int, v: int) -> int:
         """Return the plane to the right of an edge, the ground beyond the outline."""
         cell = self.cells.cell_of.get((v, u), OUTSIDE)
-        return _BASE if cell == OUTSIDE else int(self.label[cell])
+        return _BASE if cell == OUTSIDE else self.label[cell]
 
     def height(self, vertex: int, plane: int) -> float:
         """Return the height (m) at which a plane, or the ground, is at a vertex."""
@@ -265,15 +271,17 @@ class Levels:
 
     def _planes_beside(self, u: int, v: int) -> tuple[int, int]:
         cell = self.cells.cell_of[u, v]
-        return int(self.label[cell]), self.plane_beyond(u, v)
+        return self.label[cell], self.plane_beyond(u, v)
 
     def crowded(self) -> list[int]:
         """Return the vertices where more than two walls would meet in an edge."""
-        return [vertex for vertex in self.around if self._is_crowded(vertex)]
+        # Four changes between up and down need four cells.
+        some = [v for v, planes in self.around.items() if len(planes) > 1 and len(self._spokes[v]) >= _CROWD]
+        return [vertex for vertex in some if self._is_crowded(vertex)]
 
     def _is_crowded(self, vertex: int) -> bool:
-        planes = [int(self.label[cell]) for cell in self.cells_around(vertex)]
-        return turns_around([self.height(vertex, plane) for plane in planes]) > 2
+        planes = [self.label[cell] for cell in self.cells_around(vertex)]
+        return turns_around([self.height(vertex, plane) for plane in planes]) >= _CROWD
 
     def cells_around(self, vertex: int) -> list[int]:
         """Return the cells around a vertex within the rectangle, counterclockwise."""
@@ -354,6 +362,7 @@ class _Builder:
             self.at[vertex].append(number)
         for numbers in self.at.values():
             numbers.sort(key=lambda n: levels.positions[n][2])
+        self.plan = np.array(levels.positions)[:, :2]
 
     def solid(self) -> tuple[Solid, list[list[int]]]:
         """Return the solid without superfluous vertices, and the cells beside each face."""
@@ -368,14 +377,14 @@ class _Builder:
         faces += [(WALL, -1, [ring], cells) for ring, cells in self._walls()]
         for rings in self._polygons(_rings(self._ground_edges()), upward=False):
             faces.append((GROUND, -1, rings, []))
-        return _compact(np.array(self.levels.positions), faces), [cells for *_, cells in faces]
+        return _compact(self.levels.positions, faces), [cells for *_, cells in faces]
 
     def _roof_edges(self, part: dict[int, int]) -> dict[tuple[int, int], list[tuple[int, int]]]:
         """Return the edges around each connected part of a plane, by (part, plane)."""
         edges: dict[tuple[int, int], list[tuple[int, int]]] = defaultdict(list)
         number = self.levels.number
         for (u, v), cell in self.cells.cell_of.items():
-            plane = int(self.label[cell])
+            plane = self.label[cell]
             if plane >= 0 and self.levels.plane_beyond(u, v) != plane:
                 edges[part[cell], plane].append((number[u, plane], number[v, plane]))
         return edges
@@ -387,7 +396,7 @@ class _Builder:
             if self.label[cell] >= 0 and self.levels.plane_beyond(u, v) == self.label[cell]:
                 pairs.append((cell, self.cells.cell_of[v, u]))
         group = groups_of(pairs, len(self.cells))
-        return {cell: group[cell] for cell in np.flatnonzero(self.label >= 0).tolist()}
+        return {cell: group[cell] for cell in range(len(group)) if self.label[cell] >= 0}
 
     def _ground_edges(self) -> list[tuple[int, int]]:
         number = self.levels.number
@@ -401,7 +410,7 @@ class _Builder:
         """Return the walls, those in line with each other as one, and the cells beside each."""
         walls = []
         for (u, v), cell in self.cells.cell_of.items():
-            plane = int(self.label[cell])
+            plane = self.label[cell]
             beyond = self.levels.plane_beyond(u, v)
             if plane >= 0 and beyond != plane:
                 ring = self._wall(u, v, plane, beyond)
@@ -465,22 +474,20 @@ class _Builder:
 
     def _is_straight(self, walls: list[_Wall]) -> bool:
         """Return whether the ends of walls lie in one line."""
-        xy = np.array([self.levels.plan[end] for wall in walls for end in (wall.start, wall.end)])
-        away = xy - xy[0]
-        far = away[np.argmax((away**2).sum(axis=1))]
-        away = xy - xy[0] - far
-        start = xy[0] + far + away[np.argmax((away**2).sum(axis=1))]
-        along = xy[0] + far - start
-        offset = xy - start
-        across = np.abs(offset[:, 0] * along[1] - offset[:, 1] * along[0]) / max(float(np.hypot(*along)), 1e-9)
-        return bool(across.max() <= _STRAIGHT)
+        xy = [self.levels.plan[end] for wall in walls for end in (wall.start, wall.end)]
+        start = max(xy, key=lambda end: math.dist(end, xy[0]))
+        x0, y0 = start
+        x1, y1 = max(xy, key=lambda end: math.dist(end, start))
+        x, y = x1 - x0, y1 - y0
+        most = _STRAIGHT * max(math.hypot(x, y), 1e-9)
+        return all(abs((px - x0) * y - (py - y0) * x) <= most for px, py in xy)
 
     def _is_upright(self, a: int, b: int) -> bool:
         return self.levels.positions[a][:2] == self.levels.positions[b][:2]
 
     def _polygons(self, rings: list[Ring], upward: bool) -> list[list[Ring]]:
         """Return the rings of one part: the exterior first, then its holes."""
-        plan = np.array(self.levels.positions)[:, :2]
+        plan = self.plan
         areas = [signed_area(plan[[*ring, ring[0]]]) * (1 if upward else -1) for ring in rings]
         outer = [i for i, area in enumerate(areas) if area > 0]
         if len(outer) == 1:
@@ -549,7 +556,7 @@ def _rings(edges: list[tuple[int, int]]) -> list[Ring]:
     return rings
 
 
-def _compact(positions: np.ndarray, faces: list[_Built]) -> Solid:
+def _compact(positions: list[_Position], faces: list[_Built]) -> Solid:
     """Return the solid of faces without vertices on straight edges and without unused ones."""
     beside: dict[int, set[int]] = defaultdict(set)
     for _, _, rings, _ in faces:
@@ -560,7 +567,7 @@ def _compact(positions: np.ndarray, faces: list[_Built]) -> Solid:
     straight = _straight(positions, beside)
     kept = sorted(set(beside) - straight)
     number = {old: new for new, old in enumerate(kept)}
-    solid = Solid(positions[kept])
+    solid = Solid(np.array([positions[old] for old in kept]))
     for kind, plane, rings, _ in faces:
         solid.faces.append([[number[v] for v in ring if v in number] for ring in rings])
         solid.kinds.append(kind)
@@ -568,7 +575,7 @@ def _compact(positions: np.ndarray, faces: list[_Built]) -> Solid:
     return solid
 
 
-def _straight(positions: np.ndarray, beside: dict[int, set[int]]) -> set[int]:
+def _straight(positions: list[_Position], beside: dict[int, set[int]]) -> set[int]:
     """Return the vertices with two edges in one line; never two in a row, unless those about them are in line too."""
     straight: set[int] = set()
     links = {vertex: set(others) for vertex, others in beside.items()}
@@ -578,9 +585,7 @@ def _straight(positions: np.ndarray, beside: dict[int, set[int]]) -> set[int]:
         a, b = links[vertex]
         if b in links[a]:
             continue
-        u, v = positions[vertex] - positions[a], positions[b] - positions[a]
-        length = max(float(np.linalg.norm(v)), 1e-12)
-        if np.linalg.norm(np.cross(u, v)) < _SUPERFLUOUS * length and u @ v > 0:
+        if _is_between(positions[vertex], positions[a], positions[b]):
             straight.add(vertex)
             links[a].remove(vertex)
             links[b].remove(vertex)
@@ -588,3 +593,10 @@ def _straight(positions: np.ndarray, beside: dict[int, set[int]]) -> set[int]:
             links[b].add(a)
             del links[vertex]
     return straight
+
+
+def _is_between(position: _Position, one: _Position, other: _Position) -> bool:
+    """Return whether a position lies in line with two others, from the first one toward the second one."""
+    (x, y, z), (a, b, c) = ([p - q for p, q in zip(end, one)] for end in (position, other))
+    across = math.hypot(y * c - z * b, z * a - x * c, x * b - y * a)
+    return across < _SUPERFLUOUS * max(math.hypot(a, b, c), 1e-12) and x * a + y * b + z * c > 0

@@ -7,7 +7,8 @@ from typing import Optional
 
 import numpy as np
 
-from ..geometry.arrangement import Arrangement, cheapest_cut, sides_of
+from ..geometry.arrangement import Arrangement, sides_of
+from ..geometry.cheapest_labels import cheapest_cut
 from ..geometry.groups import components, members
 from ..geometry.rings import signed_area
 from ..stage import Monitor
