@@ -45,7 +45,7 @@ def cheapest_labels(
     """
     label = start.copy()
     every, cells = np.arange(len(edges)), np.arange(len(cost))
-    now = border(*label[edges.T], every)
+    now = border(label[edges[:, 0]], label[edges[:, 1]], every)
     # Labels that were tried since the last change.
     tried = 0
     for alpha in list(range(cost.shape[1])) * _SWEEPS:
@@ -62,7 +62,7 @@ def cheapest_labels(
         rows = np.flatnonzero(wanted[edges].any(axis=1))
         takes = _takers(more, edges, rows, label, alpha, wanted, border)
         changed = np.where(takes, alpha, label)
-        after = border(*changed[edges[rows].T], rows)
+        after = border(changed[edges[rows, 0]], changed[edges[rows, 1]], rows)
         if more[takes].sum() + after.sum() - now[rows].sum() < -1e-9:
             label, now[rows], tried = changed, after, 1
     return label
@@ -95,7 +95,7 @@ def _takers(
     chosen, number = np.flatnonzero(wanted), np.cumsum(wanted) - 1
     take, there = take[chosen], np.maximum(first + second - both, 0.0)[inner]
     ends, back = number[[p[inner], q[inner]]], np.zeros_like(there)
-    keeps = cheapest_cut(*ends, there, np.maximum(-take, 0.0), np.maximum(take, 0.0), back, _STEPS_OF_LABELS)
+    keeps = cheapest_cut(ends[0], ends[1], there, np.maximum(-take, 0.0), np.maximum(take, 0.0), back, _STEPS_OF_LABELS)
     takes = np.zeros(len(more), bool)
     takes[chosen[~keeps]] = True
     return takes
