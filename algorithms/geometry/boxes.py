@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Callable, Optional
+from typing import Callable
 
 import numpy as np
 
@@ -114,15 +114,13 @@ class Boxes:
                 wanted += 1
 
     def pairs(
-        self, here: np.ndarray, other: Boxes, there: np.ndarray, most: Optional[int] = None
+        self, here: np.ndarray, other: Boxes, there: np.ndarray
     ) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
         """Yield chunks of (pair of boxes, point, point of ``other``) over all points of the pairs of boxes.
 
-        Points are counted in the order of the boxes; ``most`` is the largest number taken of each box.
+        Points are counted in the order of the boxes.
         """
         own, others = self.size[here], other.size[there]
-        if most is not None:
-            own, others = np.minimum(own, most), np.minimum(others, most)
         ends = np.cumsum(own * others)
         total = int(ends[-1]) if len(ends) else 0
         for first in range(0, total, _PAIRS_AT_ONCE):
@@ -164,14 +162,24 @@ def connected(boxes: Boxes, is_near: Callable[[np.ndarray], np.ndarray], monitor
         return _joined(component, box[here[near]], box[there[near]])
     half = len(around()) // 2
     left: list[tuple[np.ndarray, np.ndarray]] = []
+    first = boxes.xyz[boxes.start]
     for done, pairs in enumerate(boxes.beside_all(), start=1):
-        apart, component = _compared(boxes, pairs, component, is_near, 1)
-        left.append(apart)
+        here, there = _apart(pairs, component)
+        touching = is_near(first[here] - first[there])
+        component = _joined(component, here[touching], there[touching])
+        left.append((here[~touching], there[~touching]))
         monitor.progress(done / (2 * half))
-    for done, apart in enumerate(left, start=1):
-        component = _compared(boxes, apart, component, is_near, None)[1]
+    for done, pairs in enumerate(left, start=1):
+        component = _compared(boxes, _apart(pairs, component), component, is_near)
         monitor.progress(0.5 + done / (2 * half))
     return component
+
+
+def _apart(pairs: tuple[np.ndarray, np.ndarray], component: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the pairs of boxes that nothing has joined yet."""
+    here, there = pairs
+    apart = component[here] != component[there]
+    return here[apart], there[apart]
 
 
 def _compared(
@@ -179,16 +187,13 @@ def _compared(
     pairs: tuple[np.ndarray, np.ndarray],
     component: np.ndarray,
     is_near: Callable[[np.ndarray], np.ndarray],
-    most: Optional[int],
-) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
-    """Join boxes in which ``most`` points each show that they touch; return the pairs still apart, and components."""
+) -> np.ndarray:
+    """Return the components after joining pairs of boxes whose points show that they touch."""
     here, there = pairs
-    apart = component[here] != component[there]
-    here, there = here[apart], there[apart]
     touching = np.zeros(len(here), bool)
-    for pair, a, b in boxes.pairs(here, boxes, there, most):
+    for pair, a, b in boxes.pairs(here, boxes, there):
         touching[pair[is_near(boxes.xyz[a] - boxes.xyz[b])]] = True
-    return (here[~touching], there[~touching]), _joined(component, here[touching], there[touching])
+    return _joined(component, here[touching], there[touching])
 
 
 def _joined(component: np.ndarray, here: np.ndarray, there: np.ndarray) -> np.ndarray:

@@ -15,6 +15,7 @@ from ..geometry.groups import ordered
 from ..packages import spatial
 from ..rules import rule
 from ..stage import Monitor
+from ..threads import in_chunks
 
 
 @dataclass(frozen=True)
@@ -112,10 +113,13 @@ def _by_cell_and_height(which: np.ndarray, xyz: np.ndarray) -> np.ndarray:
 
 def _deep(xyz: np.ndarray, which: np.ndarray, rows: np.ndarray, surface: _Surface, depth: float) -> np.ndarray:
     """Return those of the rows that lie more than ``depth`` (m) below the surface, or where it is not known."""
-    parts = [rows[start : start + _CHUNK] for start in range(0, len(rows), _CHUNK)]
-    return np.concatenate(
-        [rows[:0], *(part[~(xyz[part, 2] >= surface.at(xyz, part, which) - depth)] for part in parts)]
-    )
+    is_deep = np.zeros(len(xyz), bool)
+
+    def work(part: np.ndarray) -> None:
+        is_deep[part] = ~(xyz[part, 2] >= surface.at(xyz, part, which) - depth)
+
+    in_chunks(work, rows, _CHUNK, Monitor())
+    return rows[is_deep[rows]]
 
 
 def near_cells(grid: Grid, cells: np.ndarray, which: np.ndarray) -> np.ndarray:
@@ -177,8 +181,8 @@ def _close_surface(
     beyond an edge or farther along a ditch.
     """
     origin, slope, is_smooth = np.full((len(cells), 3), np.nan), np.zeros((len(cells), 2)), np.zeros(len(cells), bool)
-    for start in range(0, len(wanted), _CHUNK):
-        part = wanted[start : start + _CHUNK]
+
+    def work(part: np.ndarray) -> None:
         around = [find_cells(cells, cells[part] + step) for step in grid.around]
         beside = _beside(around, lowest, middle[part])
         slope[part] = _slope(beside)
@@ -190,6 +194,8 @@ def _close_surface(
         rough = low[:, 1] - (low[:, 3] - low[:, 1])
         origin[part, :2] = middle[part, :2]
         origin[part, 2] = np.minimum(np.where(is_smooth[part], base, rough), mid[:, 0])
+
+    in_chunks(work, wanted, _CHUNK, Monitor())
     return _Surface(origin, slope, is_smooth)
 
 
