@@ -1,4 +1,4 @@
-"""Points in the columns of buildings: walls belong to a roof, bushes and crowns beside it do not."""
+"""Points in the columns of buildings: walls and structures belong to a roof, bushes and crowns beside it do not."""
 
 from __future__ import annotations
 
@@ -21,12 +21,13 @@ class ColumnRules:
 
     cell: float = rule(1.2, "point spacings", "statistics: where a roof was seen, cells hold a point in three of four")
     least_cell: float = rule(0.5, "m", "physics: eaves are as wide")
-    wall_foot: float = rule(0.5, "m", "physics: lower points stand on the ground: kerbs, plants, steps")
+    wall_foot: float = rule(0.5, "m", "physics: lower points are of kerbs, plants and steps")
     wall_reach: float = rule(1.0, "m", "physics: eaves reach out by up to this, and roof surfaces end before them")
+    sparse_share: float = rule(0.3, "share", "chimneys and dormers cover less of the cells around, crowns more")
     bush_share: float = rule(0.33, "share", "of the roof's height, up to which points beside a roof may be bushes")
     passed: float = rule(0.5, "share", "physics: of points around that the beam passed: most of a crown, few of a wall")
     crown_cells: int = rule(2, "cells", "physics: least width of crowns; balconies and walls are narrower")
-    around: int = rule(7, "cells", "side of the square in which pulses are counted, some 4 m")
+    around: int = rule(7, "cells", "side of the square in which cells and pulses are counted, some 4 m")
     bush_height: float = rule(2.5, "m", "physics: hedges and bushes at walls are trimmed lower than a floor")
 
 
@@ -72,16 +73,29 @@ class Columns:
         beside = ndimage.grey_dilation(building, footprint=_EIGHT)
         self.beside = np.where(building > 0, 0, beside)
 
-    def owners(self, points: ColumnPoints, clearance: float) -> np.ndarray:
-        """Return the building (n,), int32, that each point belongs to, up to ``clearance`` (m) above it; 0 if none."""
+    def owners(self, points: ColumnPoints, clearance: float, structure_height: float) -> np.ndarray:
+        """Return the building (n,), int32, that each point belongs to; 0 if unassigned.
+
+        Points up to the clearance (m) above the roof do, those up to the height of structures (m) where they are few.
+        """
         above = points.elevation - self.top[points.cell]
         inside = points.raised & (self.building[points.cell] > 0)
+        stands_above = inside & (above > clearance)
+        is_chimney = stands_above & (above <= structure_height) & self.is_sparse(points.cell, stands_above)[points.cell]
         is_bush = points.height < np.minimum(COLUMNS.bush_share * (points.height - above), COLUMNS.bush_height)
         is_plant = is_bush | self.is_beside_crown(points)[points.cell]
         # Points between a roof and the next higher one are the wall of the higher one.
         is_wall = points.raised & (points.elevation <= self.highest[points.cell]) & (inside | ~is_plant)
         owner = np.where(inside, self.building[points.cell], self.beside[points.cell])
-        return np.where((inside & (above <= clearance)) | is_wall, owner, 0).astype(np.int32)
+        return np.where((inside & (above <= clearance)) | is_chimney | is_wall, owner, 0).astype(np.int32)
+
+    def is_sparse(self, cell: tuple[np.ndarray, np.ndarray], stands_above: np.ndarray) -> np.ndarray:
+        """Return the cells around which the points above the roof cover a small part of it."""
+        standing = np.zeros(self.building.shape)
+        standing[tuple(of[stands_above] for of in cell)] = 1
+        around = ndimage.uniform_filter(standing, COLUMNS.around, mode="constant")
+        roof = ndimage.uniform_filter((self.building > 0).astype(float), COLUMNS.around, mode="constant")
+        return around < COLUMNS.sparse_share * roof
 
     def is_beside_crown(self, points: ColumnPoints) -> np.ndarray:
         """Return the cells of crowns apart from buildings, and the cells next to them."""

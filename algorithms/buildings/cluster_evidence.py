@@ -18,6 +18,9 @@ from ..segmentation.cluster_measures import (
 )
 from .cluster_decisions import Decisions
 
+# Of points that are not last returns: at the edges of roofs some pulses split.
+_SPLIT_AT_EDGES = 0.3
+
 
 @dataclass(frozen=True)
 class ClusterEvidence:
@@ -94,8 +97,7 @@ def with_penetration(
     # A cluster without entropy stays undecided, however solid it is.
     both = np.where(undefined, 0.5, _with_solidity(confidence, through, max_penetration))
     is_solid = both > 0.5
-    # Points seen past an edge are no evidence against it, pulses that go on are.
-    is_edge = is_planar & (evidence.non_last_return_share() < max_penetration)
+    is_edge = is_planar & (evidence.non_last_return_share() < _SPLIT_AT_EDGES)
     is_building = evidence.with_adjacent(is_solid, is_edge)
     # The first that applies is the reason.
     found = {

@@ -1,4 +1,4 @@
-"""Whole buildings from their roofs: gaps, edges, and the walls below."""
+"""Whole buildings from their roofs: gaps, edges, structures on the roof, and the walls below."""
 
 from __future__ import annotations
 
@@ -75,6 +75,17 @@ def complete_buildings(
             high=20,
         ),
     ] = 1.0,
+    structure_height: Annotated[
+        float,
+        Param(
+            "Structures on the roof",
+            "Points up to this far above the roof belong to it where they cover a small part of it only (chimneys, "
+            "dormers, masts). Trees cover more.",
+            unit="m",
+            low=0,
+            high=100,
+        ),
+    ] = 4.0,
     min_area: MinBuildingArea = 4.0,
     min_roof_share: Annotated[
         float,
@@ -92,10 +103,10 @@ def complete_buildings(
     sampling: Optional[CloudSampling] = None,
     monitor=None,
 ):
-    """Add walls, edges and gaps to each building, and number the buildings.
+    """Add walls, chimneys, edges and gaps to each building, and number the buildings.
 
     Buildings are decided in columns: where a roof was found, everything from the foot of the walls to just above
-    the roof is building, and so are the walls along its edge. Small gaps between roof surfaces are
+    the roof is building, and so are chimneys and the walls along its edge. Small gaps between roof surfaces are
     closed where the ground does not show in them. In clouds of matched images roofs reach to where the rounded edge has
     half of their height, and the smeared walls below belong to them. Where the scanner numbered its returns, crowns
     at a wall are separated from it by the pulses that pass through them.
@@ -166,7 +177,7 @@ def complete_buildings(
     has_returns = return_number is not None and number_of_returns is not None
     goes_on = return_number < number_of_returns if has_returns else np.zeros(len(xyz), bool)
     points = ColumnPoints(coverage.cell, xyz[:, 2], height_above_ground, coverage.raised, goes_on)
-    owner = columns.owners(points, roof_clearance)
+    owner = columns.owners(points, roof_clearance, structure_height)
     cluster_id = _in_order(owner, np.ravel_multi_index(coverage.cell, coverage.building.shape))
     monitor.progress(1.0)
 

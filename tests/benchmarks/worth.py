@@ -389,12 +389,18 @@ WHOLE = (
         _set("buildings.entropy_split:SPLIT", weight=10**9),
     ),
     Rule("refine: learned from the scene", tunables={"refine": {"learn": False}}),
+    Rule("complete: structures on roofs", tunables={"complete": {"structure_height": 0.0}}),
     Rule("complete: share of roof surfaces", tunables={"complete": {"min_roof_share": 0.0}}),
     Rule("complete: gaps", tunables={"complete": {"gap": 0.0}}),
     _out(
         "complete: bushes",
         "buildings.building_columns:COLUMNS",
         _set("buildings.building_columns:COLUMNS", bush_share=0.0),
+    ),
+    _out(
+        "complete: chimneys are sparse",
+        "buildings.building_columns:COLUMNS",
+        _set("buildings.building_columns:COLUMNS", sparse_share=9.0),
     ),
     _out(
         "complete: crowns at walls",

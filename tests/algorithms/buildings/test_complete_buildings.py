@@ -94,8 +94,8 @@ def test_a_crown_that_spreads_over_the_roof_is_left_out_by_its_clearance(scene, 
     assert (number[crown] > 0).mean() == expected
 
 
-@pytest.mark.parametrize(("above", "expected"), [(0.8, True), (3.5, False)])
-def test_a_mast_belongs_to_the_roof_up_to_the_clearance(scene, above, expected):
+@pytest.mark.parametrize(("above", "expected"), [(0.8, True), (3.5, True), (6.0, False)])
+def test_a_mast_belongs_to_the_roof_up_to_the_height_of_structures(scene, above, expected):
     scene.roof(10, 10, 20, 20, 5.0)
     mast = scene.add([15, 15, 5 + above])
     assert (scene.complete()[0][mast] == 6).all() == expected
