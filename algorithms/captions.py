@@ -49,6 +49,7 @@ _CAPTIONS = {
     "segmentvoxels": "Components of connected voxels, each in a color of its own.",
     "classifybuildings": "How sure it is that a cluster is a building, from blue to red.",
     "classifyvegetation": "Crowns, hedges and bushes in green, the darker the higher; buildings red, walls gray.",
+    "keepclasses": "A simulated town in the colors of the classes that it came with.",
     "classifywater": "The river of a simulated town in blue, below its bridges.",
     "classifywires": "A simulated transmission line and a line along houses: wires yellow, masts brown.",
     "completebuildings": "Whole buildings in red, with walls, dormers and edges.",

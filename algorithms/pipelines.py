@@ -32,20 +32,24 @@ _PETERS = (
 
 # From the raw cloud to footprints.
 _DETECTION = (
+    Step("existing", "keep_classes"),
     Step("noise", "classify_noise_histogram"),
     # Plants, water, wires and bridges are looked for anew; steps of their own do so for ground and buildings.
     Step("earlier", "recode_classes", {"mapping": "3-5, 9, 14-15, 17=1"}),
     Step("ground", "classify_ground_tin"),
+    Step("kept_ground", "restore_classes"),
     Step("bridges", "classify_bridges", {"search": "gaps in the ground"}),
     Step("height", "compute_height_above_ground"),
     Step("roofs", "segment_roofs"),
     Step("buildings", "classify_buildings"),
     Step("complete", "complete_buildings"),
     Step("refine", "refine_buildings"),
+    Step("kept_buildings", "restore_classes"),
     Step("near_ground", "complete_ground"),
     Step("water", "classify_water"),
     Step("wires", "classify_wires"),
     Step("vegetation", "classify_vegetation"),
+    Step("kept", "restore_classes"),
     Step("footprints", "extract_footprints"),
 )
 _DETECTION_SHARED: dict[str, tuple[str, ...]] = {
@@ -84,7 +88,7 @@ _PIPELINES = (
             "wires_look_for",
             "vegetation_look_for",
             "codes_codes",
-            "ground_keep_ground",
+            "existing_keep",
             "footprints_regularize",
         ),
     ),

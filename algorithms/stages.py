@@ -50,6 +50,8 @@ _MODULES = (
     "landcover.classify_water",
     "landcover.classify_wires",
     "landcover.classify_vegetation",
+    "landcover.keep_classes",
+    "landcover.restore_classes",
     "landcover.recode_classes",
     "footprints.extract_footprints",
     "walls.classify_roofs",

@@ -86,6 +86,8 @@ STAGE_IDS = {
     "classifyvegetation",
     "classifywater",
     "recodeclasses",
+    "keepclasses",
+    "restoreclasses",
     "classifywires",
     "simulatepowerline",
     "extractfootprints",
@@ -118,7 +120,7 @@ STAGE_IDS = {
 PIPELINE_IDS = {"detectbuildings", "detectbuildings2019", "interpretstructure", "mapfootprints", "modelbuildings"}
 PIPELINE_IDS |= {"modelcityblock", "modelfacades", "modelindustry", "modelterrain"}
 
-CLASSIFYING = {"classify", "complete", "refine", "recode"}
+CLASSIFYING = {"classify", "complete", "refine", "recode", "restore"}
 VERBS = CLASSIFYING | {"segment", "cluster", "compute", "extract", "regularize", "simplify", "assess", "simulate"}
 VERBS |= {
     "detect",
@@ -126,6 +128,7 @@ VERBS |= {
     "filter",
     "downsample",
     "merge",
+    "keep",
     "rasterize",
     "report",
     "register",

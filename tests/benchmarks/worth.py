@@ -56,7 +56,16 @@ CHAIN = PIPELINES["detect_buildings"]
 PACKAGE = "lidar_buildings.algorithms"
 # Modules whose constants describe memory, rounding, files, pages and codes of classes rather than buildings.
 TECHNICAL = (
-    *("stage.", "cloud.", "report.", "geometry.", "threads", "params", "landcover.recode_classes"),
+    *(
+        "stage.",
+        "cloud.",
+        "report.",
+        "geometry.",
+        "threads",
+        "params",
+        "landcover.recode_classes",
+        "landcover.keep_classes",
+    ),
     *("neighborhoods.nearest_blocks", "neighborhoods.covariance", "neighborhoods.optimal_size"),
 )
 # Factors by which constants are moved.

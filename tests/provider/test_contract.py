@@ -43,6 +43,8 @@ IDS = {
     "classifyvegetation",
     "classifywater",
     "recodeclasses",
+    "keepclasses",
+    "restoreclasses",
     "completeground",
     "classifygroundcloth",
     "classifygroundtin",

@@ -1,0 +1,72 @@
+"""Classes that a cloud came with, remembered for 'Restore classes'."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from ..stage import Param, stage
+
+_NONE, _ALL = "none", "all"
+
+# What is kept of a classified cloud: classes, or None for all but those of points that nobody has classified.
+_KEPT = {
+    _NONE: (),
+    "ground": (PointClass.GROUND,),
+    "ground and buildings": (PointClass.GROUND, PointClass.BUILDING),
+    _ALL: None,
+}
+
+
+@stage(
+    "Keep classes",
+    group="Land cover",
+    tags="class,keep,existing,classified,freeze,lock,ground,building,reclassify",
+    writes=("earlier_class",),
+)
+def keep_classes(
+    xyz,
+    classification,
+    earlier_class=None,
+    *,
+    keep: Annotated[
+        str,
+        Param(
+            "Keep existing classes",
+            "Which classes of a cloud that comes classified stay as they are: none, ground (2), ground and buildings "
+            "(6), or all but 0 and 1. Where ground or buildings are kept, no others are looked for.",
+            choices=tuple(_KEPT),
+        ),
+    ] = _NONE,
+    monitor=None,
+):
+    """Remember classes of a cloud that comes classified, for 'Restore classes' to put them back.
+
+    The first step of a chain. Steps after it may change all classes.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes.
+    earlier_class : ndarray of shape (n,), uint8, optional
+        What an earlier run remembered; it is forgotten.
+
+    Returns
+    -------
+    earlier_class : ndarray of shape (n,), uint8, or None
+        The classes that are kept, 0 elsewhere; None where there is nothing to remember or to forget.
+
+    References
+    ----------
+    ASPRS, 2019. LAS specification 1.4, R15, table 17.
+    """
+    monitor.progress(1.0)
+    if keep == _NONE and earlier_class is None:
+        return None
+    kept = _KEPT[keep]
+    is_kept = classification > PointClass.UNCLASSIFIED if kept is None else np.isin(classification, kept)
+    return np.where(is_kept, classification, 0).astype(np.uint8)

@@ -1,0 +1,79 @@
+"""Classes that 'Keep classes' remembered, put back."""
+
+from __future__ import annotations
+
+from typing import Optional
+
+import numpy as np
+
+from ..cloud.asprs import PointClass
+from ..geometry.components import connect
+from ..sampling.cloud_sampling import CloudSampling
+from ..stage import stage
+
+# Classes of which no others are found where a cloud came with some.
+_WHOLE = (PointClass.GROUND, PointClass.BUILDING)
+
+# Kept buildings are one where points are closer in plan: 2 point spacings, at least 0.5 m, as in all steps.
+_GAP_SPACINGS, _LEAST_GAP = 2.0, 0.5
+
+
+@stage(
+    "Restore classes",
+    group="Land cover",
+    tags="class,restore,keep,existing,classified,ground,building",
+    writes=("classification", "cluster_id"),
+)
+def restore_classes(
+    xyz,
+    classification,
+    cluster_id=None,
+    earlier_class=None,
+    *,
+    sampling: Optional[CloudSampling] = None,
+    monitor=None,
+):
+    """Put back the classes that 'Keep classes' remembered.
+
+    Where the cloud came with ground or buildings, points that steps in between called so become unclassified (1). Kept
+    buildings are numbered anew, those whose points are close to one another in plan as one. Without remembered classes
+    nothing changes.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3), float64
+        Coordinates, m.
+    classification : ndarray of shape (n,), uint8
+        ASPRS classes.
+    cluster_id : ndarray of shape (n,), int32, optional
+        Numbers of buildings.
+    earlier_class : ndarray of shape (n,), uint8, optional
+        Remembered classes, 0 for none.
+
+    Returns
+    -------
+    classification : ndarray of shape (n,), uint8
+        The classes, with those remembered.
+    cluster_id : ndarray of shape (n,), int32, or None
+        Numbers of the kept buildings, from 1; None where no buildings are kept or none are numbered.
+
+    References
+    ----------
+    ASPRS, 2019. LAS specification 1.4, R15, table 17.
+    """
+    classes = classification.astype(np.uint8)
+    if earlier_class is None or not earlier_class.any():
+        return classes, None
+    for whole in _WHOLE:
+        if (earlier_class == whole).any():
+            classes[classes == whole] = PointClass.UNCLASSIFIED
+    classes = np.where(earlier_class > 0, earlier_class, classes).astype(np.uint8)
+    is_building = earlier_class == PointClass.BUILDING
+    if cluster_id is None or not is_building.any():
+        return classes, None
+    sampling = sampling or CloudSampling.of(xyz, classification)
+    gap = max(_GAP_SPACINGS * sampling.spacing, _LEAST_GAP)
+    points = xyz[is_building]
+    number = np.zeros(len(xyz), np.int32)
+    number[is_building] = 1 + connect(points, gap, 1 + float(np.ptp(points[:, 2])), monitor)
+    return classes, number
