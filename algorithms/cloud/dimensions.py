@@ -87,7 +87,7 @@ _WRITTEN = (
     Dimension("voxel_count", ("VoxelCount",), "u4", "points of the voxel"),
     Dimension("confidence", ("Confidence",), "f4", "0 unsure to 1 sure of building", of="cluster_id"),
     Dimension("building_probability", ("BuildingProbability",), "f4", "likeness to the buildings", of="cluster_id"),
-    Dimension("earlier_class", ("EarlierClass",), "u1", "class before the run, 0 if not kept"),
+    Dimension("earlier_class", ("EarlierClass",), "u1", "class kept; 0 if not"),
     Dimension("reason", ("Reason",), "u1", "why it is a building or not", of="cluster_id"),
 )
 
