@@ -74,6 +74,23 @@ def run_stage(
     ``sampling`` is how the cloud was sampled, or the survey that it is a part of. Where it is not given, it is
     measured on the points of the cloud that are neither withheld nor noise, and logged.
 
+    Parameters
+    ----------
+    stage : Stage
+        The stage.
+    cloud : Cloud or sequence of Cloud, optional
+        The cloud, or several for a stage that merges.
+    reference : Cloud, optional
+        The second cloud of a stage that reads one.
+    monitor : Monitor
+        Receives the progress.
+    input_layers : dict of str to LayerFeatures, optional
+        Layers that the stage reads, by name, in m from the origin of the cloud.
+    sampling : CloudSampling, optional
+        How the cloud was sampled.
+    **tunables
+        Tunables by name.
+
     Raises
     ------
     ValueError
@@ -327,6 +344,25 @@ def run_pipeline(
     measured on: those that are neither withheld nor noise. ``samplings`` are measured before, on the survey that the
     cloud is a part of: those of the given cloud by the name "", those of clouds that steps make by the steps' names.
     ``reference`` is the second cloud of a pipeline with a step that reads one.
+
+    Parameters
+    ----------
+    pipeline : Pipeline
+        The composite.
+    cloud : Cloud or sequence of Cloud, optional
+        The cloud, or several where the pipeline merges.
+    monitor : Monitor
+        Receives the progress.
+    input_layers : dict of str to LayerFeatures, optional
+        Layers by name, in m from the origin of the cloud.
+    kept : collection of str, optional
+        Steps whose clouds are wanted; None is all that the pipeline keeps.
+    samplings : mapping of str to CloudSampling, optional
+        Samplings that were measured before, by step.
+    reference : Cloud, optional
+        The second cloud of a pipeline with a step that reads one.
+    **tunables
+        Tunables by name.
 
     Raises
     ------

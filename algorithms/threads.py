@@ -61,6 +61,17 @@ def in_chunks(work: Callable[[np.ndarray], None], rows: np.ndarray, size: int, m
     The chunks must not write to the same positions; the result then depends on neither their order
     nor the number of threads. An exception, a cancellation among them, ends the rest. A single
     chunk is worked on where it is: what runs in a thread already makes no more of them.
+
+    Parameters
+    ----------
+    work : callable
+        Receives some of the rows.
+    rows : ndarray of shape (n,)
+        Rows to work on.
+    size : int
+        Rows of a chunk.
+    monitor : Monitor
+        Receives the progress.
     """
     chunks = [rows[start : start + size] for start in range(0, len(rows), size)]
     if len(chunks) == 1:

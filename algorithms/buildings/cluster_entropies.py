@@ -77,6 +77,11 @@ def cluster_entropies(
     measured : int, optional
         Points of each cluster, about, that are measured: the mean needs no more. All others have the mean of
         their cluster.
+
+    Returns
+    -------
+    ClusterEntropies
+        Entropies of points and means of clusters.
     """
     rows = np.flatnonzero(cluster_id > 0)
     ids, position, sizes = np.unique(cluster_id[rows], return_inverse=True, return_counts=True)

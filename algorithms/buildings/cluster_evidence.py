@@ -90,7 +90,24 @@ class ClusterEvidence:
 def with_penetration(
     by_entropy: Decisions, through: np.ndarray, max_penetration: float, evidence: ClusterEvidence
 ) -> Decisions:
-    """Decide by entropy and by the penetration ``through`` (m,) of each cluster."""
+    """Decide by entropy and by the penetration ``through`` (m,) of each cluster.
+
+    Parameters
+    ----------
+    by_entropy : Decisions
+        What entropy decided.
+    through : ndarray of shape (m,)
+        Share of pulses that pass each cluster.
+    max_penetration : float
+        Share above which a cluster is no building.
+    evidence : ClusterEvidence
+        The clusters.
+
+    Returns
+    -------
+    Decisions
+        The clusters that are buildings, with their confidence.
+    """
     confidence = by_entropy.confidence
     undefined = by_entropy.reasons == Reason.WITHOUT_ENTROPY
     is_planar = (confidence > 0.5) & ~undefined

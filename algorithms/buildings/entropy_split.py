@@ -113,6 +113,22 @@ def held_means(means: np.ndarray, plane: float, volume: float, monitor: Monitor)
     """Separate the clusters' mean entropies (m,) as K-means does, from reference entropies and held by them.
 
     The references of planes and volumes count as ``SPLIT.weight`` clusters each.
+
+    Parameters
+    ----------
+    means : ndarray of shape (m,)
+        Mean entropies of the clusters.
+    plane : float
+        Entropy of planes.
+    volume : float
+        Entropy of volumes.
+    monitor : Monitor
+        Receives the progress.
+
+    Returns
+    -------
+    Split
+        The two means, and whether they separate.
     """
     known = np.sort(means[np.isfinite(means)])
     low, high = plane, volume

@@ -48,7 +48,21 @@ class Coverage:
 
 
 def covered_cells(cell: Cell, is_roof: np.ndarray, is_low: np.ndarray, gap: float, cell_size: float) -> np.ndarray:
-    """Return the cells (rows, columns) that roofs cover, gaps closed where the ground doesn't show."""
+    """Return the cells (rows, columns) that roofs cover, gaps closed where the ground doesn't show.
+
+    Parameters
+    ----------
+    cell : Cell
+        Cell of each point.
+    is_roof : ndarray of shape (n,), bool
+        Points of roofs.
+    is_low : ndarray of shape (n,), bool
+        Points that show the ground.
+    gap : float
+        Width of gaps that are closed, m.
+    cell_size : float
+        Side of a cell, m.
+    """
     row, column = cell
     margin = int(np.ceil(gap / cell_size)) + 2
     shape = (row.max() + margin, column.max() + margin)
@@ -94,7 +108,23 @@ def mostly_roof(
     on_surface: np.ndarray,
     least: float,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return what :func:`numbered` does, without buildings with less than ``least`` of their roof on surfaces."""
+    """Return what :func:`numbered` does, without buildings with less than ``least`` of their roof on surfaces.
+
+    Parameters
+    ----------
+    building : ndarray of shape (rows, columns), int
+        Numbers of the buildings.
+    refused : ndarray of shape (rows, columns), uint8
+        Reason why the roof over a cell was rejected.
+    cell : Cell
+        Cell of each point.
+    at_roof : ndarray of shape (n,), bool
+        Points at the height of the roof.
+    on_surface : ndarray of shape (n,), bool
+        Points on surfaces of roofs.
+    least : float
+        Least share on surfaces.
+    """
     number = building[cell]
     whole, part = (np.bincount(number[of], minlength=building.max() + 1) for of in (at_roof, at_roof & on_surface))
     # Buildings too narrow for anything but edges are not judged.
@@ -110,7 +140,19 @@ def renumbered(kept: np.ndarray) -> np.ndarray:
 
 
 def roof_top(cell: Cell, elevation: np.ndarray, is_roof: np.ndarray, covered: np.ndarray) -> np.ndarray:
-    """Return the elevation (rows, columns) of the highest roof point of each cell, or of the nearest such cell."""
+    """Return the elevation (rows, columns) of the highest roof point of each cell, or of the nearest such cell.
+
+    Parameters
+    ----------
+    cell : Cell
+        Cell of each point.
+    elevation : ndarray of shape (n,)
+        Elevations, m.
+    is_roof : ndarray of shape (n,), bool
+        Points of roofs.
+    covered : ndarray of shape (rows, columns), bool
+        Cells that roofs cover.
+    """
     row, column = cell
     top = np.full(covered.shape, -np.inf)
     np.maximum.at(top, (row[is_roof], column[is_roof]), elevation[is_roof])

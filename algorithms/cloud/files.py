@@ -53,6 +53,11 @@ def read_cloud(
         Least and greatest easting and northing, in coordinates of the file: only points within are kept, edges
         included. Memory is needed for these.
 
+    Returns
+    -------
+    Cloud
+        All points with all dimensions.
+
     Raises
     ------
     ValueError

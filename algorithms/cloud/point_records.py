@@ -167,6 +167,17 @@ def convert(points: np.ndarray, source: Layout, target: Layout, out: np.ndarray)
     """Copy ``points`` (n,) of ``source`` to ``out`` (n,) of a layout merged from it and others.
 
     Extra numbers that the source lacks become NaN where they can, else 0.
+
+    Parameters
+    ----------
+    points : ndarray of shape (n,)
+        Records to copy.
+    source : Layout
+        Their layout.
+    target : Layout
+        Layout of the result.
+    out : ndarray of shape (n,)
+        Receives the records.
     """
     source.copy_standard(points, target, out)
     given = {key: i for i, (key, _) in enumerate(_keyed(source.extras))}

@@ -111,6 +111,17 @@ def points_within(path: Path, header: Header, box: np.ndarray, monitor: Monitor)
     """Return the records that lie within a box (2, 2) in plan, in the file's order; at its edges they are within.
 
     ``box`` holds the least and the greatest easting and northing, in the coordinates of the file.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    header : Header
+        Its header.
+    box : ndarray of shape (2, 2)
+        Least and greatest easting and northing, in coordinates of the file.
+    monitor : Monitor
+        Receives the progress.
     """
     found = [np.empty(0, header.layout.dtype)]
     found += [chunk[is_within(chunk, header, box)] for _, chunk in chunks_near(path, header, box, monitor)]
@@ -122,6 +133,17 @@ def chunks_near(path: Path, header: Header, box: np.ndarray, monitor: Monitor) -
 
     Of a COPC file these are the chunks whose nodes touch the box, of any other file with points there all points. The
     box is in coordinates of the file; the array is used again.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    header : Header
+        Its header.
+    box : ndarray of shape (2, 2)
+        Least and greatest easting and northing, in coordinates of the file.
+    monitor : Monitor
+        Receives the progress.
 
     Raises
     ------

@@ -210,6 +210,17 @@ def _records_within(
 def fill_merged(out: np.ndarray, records: np.ndarray, tile: Header, merged: Header) -> None:
     """Write ``records`` (n,) of a tile to ``out`` (n,) as records of the merged cloud.
 
+    Parameters
+    ----------
+    out : ndarray of shape (n,)
+        Receives the records.
+    records : ndarray of shape (n,)
+        Records of the tile.
+    tile : Header
+        Header of the tile.
+    merged : Header
+        Header of the merged cloud.
+
     Raises
     ------
     ValueError

@@ -255,6 +255,17 @@ def merged_planes(xyz: np.ndarray, segment_id: np.ndarray, tolerance: float, mon
 
     A wall that is not quite flat is found as several planes that cross each other. Two planes are one wall if the
     points of the smaller lie within the tolerance (root mean square) of the plane of the larger.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Points, m.
+    segment_id : ndarray of shape (n,)
+        Planes from 1; 0 unassigned.
+    tolerance : float
+        Largest distance of a point from its plane, m.
+    monitor : Monitor
+        Receives the progress.
     """
     on_plane = np.flatnonzero(segment_id > 0)
     result = np.zeros(len(xyz), np.int64)

@@ -52,6 +52,41 @@ _OF_EXTENT = {"height_range", "plan_radius", "plan_density"}
 _REACH = 5.0
 
 
+_Radius = Annotated[
+    Optional[float],
+    Param(
+        "Radius",
+        "Radius of the sphere around a point; used by the neighborhood 'radius'.",
+        unit="m",
+        low=0,
+        open_low=True,
+        automatic="the radius of a circle that holds 'Nearest points' at the measured density.",
+    ),
+]
+
+_NNeighbors = Annotated[
+    int,
+    Param(
+        "Nearest points",
+        "Points per neighborhood, the point itself among them; used by the neighborhood 'nearest'. "
+        "More of them smooth noise away and blur small things.",
+        low=3,
+        high=1000,
+    ),
+]
+
+_NeighborsStep = Annotated[
+    int,
+    Param(
+        "Step of nearest points",
+        "From one neighborhood that 'optimal' tries to the next; larger steps are faster and coarser.",
+        low=1,
+        high=100,
+        advanced=True,
+    ),
+]
+
+
 @stage(
     "Compute features",
     group="Features",
@@ -72,27 +107,8 @@ def compute_features(
             choices=("nearest", "radius", "optimal"),
         ),
     ] = "nearest",
-    n_neighbors: Annotated[
-        int,
-        Param(
-            "Nearest points",
-            "Points per neighborhood, the point itself among them; used by the neighborhood 'nearest'. "
-            "More of them smooth noise away and blur small things.",
-            low=3,
-            high=1000,
-        ),
-    ] = 50,
-    radius: Annotated[
-        Optional[float],
-        Param(
-            "Radius",
-            "Radius of the sphere around a point; used by the neighborhood 'radius'.",
-            unit="m",
-            low=0,
-            open_low=True,
-            automatic="the radius of a circle that holds 'Nearest points' at the measured density.",
-        ),
-    ] = None,
+    n_neighbors: _NNeighbors = 50,
+    radius: _Radius = None,
     min_neighbors: Annotated[
         int,
         Param(
@@ -111,16 +127,7 @@ def compute_features(
             high=1000,
         ),
     ] = 100,
-    neighbors_step: Annotated[
-        int,
-        Param(
-            "Step of nearest points",
-            "From one neighborhood that 'optimal' tries to the next; larger steps are faster and coarser.",
-            low=1,
-            high=100,
-            advanced=True,
-        ),
-    ] = 1,
+    neighbors_step: _NeighborsStep = 1,
     features: Annotated[
         tuple[str, ...],
         Param("Features", "What to compute; each becomes a dimension of the cloud.", choices=_FEATURES),

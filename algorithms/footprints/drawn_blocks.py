@@ -93,6 +93,7 @@ def draw_block(
     houses : dict of int to Houses
         Houses of those buildings that are rows.
     how : Drawing
+        Spacing, scale of simplification and least areas.
     """
     rings = [_drawn(ring, directions[piece.building], how) for piece in pieces for ring in piece.rings]
     edges = [edge for ring in aligned(rings, _SAME_LINE * how.spacing) for edge in ring]

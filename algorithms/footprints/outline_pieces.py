@@ -43,7 +43,21 @@ class Piece:
 
 
 def find_pieces(building: int, shares: Shares, spacing: float, min_area: float, min_hole_area: float) -> list[Piece]:
-    """Return the pieces of a building of at least ``min_area`` (m²), with their holes of ``min_hole_area`` (m²)."""
+    """Return the pieces of a building of at least ``min_area`` (m²), with their holes of ``min_hole_area`` (m²).
+
+    Parameters
+    ----------
+    building : int
+        Number of the building.
+    shares : Shares
+        Shares of the buildings on a lattice.
+    spacing : float
+        Point spacing, m.
+    min_area : float
+        Smallest area, m².
+    min_hole_area : float
+        Smallest hole, m².
+    """
     rings = [shares.lattice.in_plan(ring) for ring in level_lines(shares.share - shares.rest)]
     sizes = [signed_area(ring) for ring in rings]
     holes = [ring for ring, size in zip(rings, sizes) if -size >= min_hole_area]

@@ -123,7 +123,19 @@ def edge_weights(top: np.ndarray, walls: np.ndarray, spacing: float) -> np.ndarr
 def find_non_building_points(
     xyz: np.ndarray, classification: np.ndarray, roof: np.ndarray, spacing: float
 ) -> np.ndarray:
-    """Return the points (m,) beside roofs and clearly below them that are no building: there the roof has ended."""
+    """Return the points (m,) beside roofs and clearly below them that are no building: there the roof has ended.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Points, m.
+    classification : ndarray of shape (n,)
+        Classes.
+    roof : ndarray of shape (k, 3)
+        Points of roofs, m.
+    spacing : float
+        Point spacing, m.
+    """
     reach = _BESIDE * spacing
     grid = grid_over(xyz, reach)
     cells = np.unique(grid.number(xyz[roof]))

@@ -77,7 +77,21 @@ def overlaps(first: Polygons, second: Polygons, monitor: Monitor) -> tuple[np.nd
 
 
 def shared_areas(first: Polygons, second: Polygons, one: np.ndarray, other: np.ndarray, monitor: Monitor) -> np.ndarray:
-    """Return the area (k,), m², that polygon ``one[i]`` of the first and ``other[i]`` of the second share."""
+    """Return the area (k,), m², that polygon ``one[i]`` of the first and ``other[i]`` of the second share.
+
+    Parameters
+    ----------
+    first : Polygons
+        Polygons of one layer.
+    second : Polygons
+        Polygons of the other layer.
+    one : ndarray of shape (k,), int
+        Polygons of the first.
+    other : ndarray of shape (k,), int
+        Polygons of the second.
+    monitor : Monitor
+        Receives the progress.
+    """
     area = np.zeros(len(one))
     # Edges of the first polygons, each with all edges of the second of its pair.
     pair, edge = items(first.size[one])

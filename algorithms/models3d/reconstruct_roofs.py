@@ -63,6 +63,32 @@ _NAMED = 5
 _CLOSE = 0.01
 
 
+_Tolerance = Annotated[
+    Optional[float],
+    Param(
+        "Tolerance",
+        "Distance at which a point lies on a plane. A larger one gives fewer planes.",
+        unit="m",
+        low=0.01,
+        high=5,
+        automatic=TOLERANCE_TEXT,
+        advanced=True,
+    ),
+]
+
+_TopPercentile = Annotated[
+    float,
+    Param(
+        "Percentile of level tops",
+        "At levels 1.2 and 1.3, the share of the roof points below the top: 50 is the median, 100 the ridge.",
+        unit="%",
+        low=0,
+        high=100,
+        advanced=True,
+    ),
+]
+
+
 @stage(
     "Reconstruct roofs",
     group="3D",
@@ -119,33 +145,12 @@ def reconstruct_roofs(
             high=100,
         ),
     ] = 3.0,
-    top_percentile: Annotated[
-        float,
-        Param(
-            "Percentile of level tops",
-            "At levels 1.2 and 1.3, the share of the roof points below the top: 50 is the median, 100 the ridge.",
-            unit="%",
-            low=0,
-            high=100,
-            advanced=True,
-        ),
-    ] = 70.0,
+    top_percentile: _TopPercentile = 70.0,
     max_slope: Annotated[
         float,
         Param("Maximum slope", "Slope of the steepest roof plane.", unit="°", low=1, high=85, advanced=True),
     ] = 75.0,
-    tolerance: Annotated[
-        Optional[float],
-        Param(
-            "Tolerance",
-            "Distance at which a point lies on a plane. A larger one gives fewer planes.",
-            unit="m",
-            low=0.01,
-            high=5,
-            automatic=TOLERANCE_TEXT,
-            advanced=True,
-        ),
-    ] = None,
+    tolerance: _Tolerance = None,
     id_field: Annotated[
         str,
         Param(

@@ -138,6 +138,11 @@ def divide_footprint(
         Mean distance of neighboring points, and the one at which a point lies on a plane (m).
     base : float
         Height of the ground (m).
+
+    Returns
+    -------
+    Partition
+        The cells, each with its plane.
     """
     cells, _ = empty_partition(rings, xyz[:, :2])
     for piece in find_roof_lines(xyz, planes, rings, spacing):

@@ -73,7 +73,19 @@ class Nearest:
 
 
 def nearest_offsets(columns: np.ndarray, tree: Any, rows: np.ndarray, count: int) -> tuple[np.ndarray, list]:
-    """Return the neighbors (m, k) of the points ``rows``, nearest first, and how far they are off in x, y, z."""
+    """Return the neighbors (m, k) of the points ``rows``, nearest first, and how far they are off in x, y, z.
+
+    Parameters
+    ----------
+    columns : ndarray of shape (3, n)
+        Coordinates of the points, m.
+    tree : cKDTree
+        Tree of the points.
+    rows : ndarray of shape (m,), int64
+        Points that are asked for.
+    count : int
+        Number of neighbors k.
+    """
     own = columns[:, rows]
     count = min(count, columns.shape[1])
     neighbors = tree.query(own.T, k=count)[1].reshape(len(rows), count)

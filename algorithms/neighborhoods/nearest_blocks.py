@@ -152,7 +152,21 @@ def reach_of_ties(count: int, size: int = 1) -> int:
 
 
 def shapes_within(columns: np.ndarray, tree: Any, rows: np.ndarray, radius: float, extents: bool) -> Shapes:
-    """Return the shapes of all points at most ``radius`` (m) from each of some points; see :func:`nearest_shapes`."""
+    """Return the shapes of all points at most ``radius`` (m) from each of some points; see :func:`nearest_shapes`.
+
+    Parameters
+    ----------
+    columns : ndarray of shape (3, n)
+        Coordinates of the points, m.
+    tree : cKDTree
+        Tree of the points.
+    rows : ndarray of shape (m,), int64
+        Points that are asked for.
+    radius : float
+        Radius, m.
+    extents : bool
+        Whether extents are measured, too.
+    """
     sample = columns[:, rows[:: max(1, len(rows) // _SAMPLE)]].T
     mean = tree.query_ball_point(sample, radius, return_length=True).mean()
 

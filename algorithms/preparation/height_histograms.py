@@ -41,7 +41,26 @@ def own_histogram(cell: np.ndarray, level: np.ndarray) -> Histogram:
 def with_borrowed_ranges(
     grid: Grid, cells: np.ndarray, low: np.ndarray, high: np.ndarray, slack: int = 0
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Give cells without a range that of the nearest with one, ``slack`` levels wider; without any, return no cells."""
+    """Give cells without a range that of the nearest with one, ``slack`` levels wider; without any, return no cells.
+
+    Parameters
+    ----------
+    grid : Grid
+        The cells.
+    cells : ndarray of shape (c,), int64
+        Numbers of cells.
+    low : ndarray of shape (c,)
+        Lowest level of each; changed.
+    high : ndarray of shape (c,)
+        Highest level of each, negative without a range; changed.
+    slack : int
+        Levels by which borrowed ranges are wider.
+
+    Returns
+    -------
+    cells, low, high : ndarrays of shape (c,)
+        The cells and their ranges.
+    """
     has_range = high >= 0
     if not has_range.any():
         return cells[:0], low[:0], high[:0]

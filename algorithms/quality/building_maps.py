@@ -54,7 +54,19 @@ def clean_map(features: LayerFeatures, called: str, monitor: Monitor) -> Buildin
 
 
 def refuse_elsewhere(old: BuildingMap, new: BuildingMap, called: str, other: str) -> None:
-    """Refuse maps of which the one lies far from the other."""
+    """Refuse maps of which the one lies far from the other.
+
+    Parameters
+    ----------
+    old : BuildingMap
+        One map.
+    new : BuildingMap
+        The other map.
+    called : str
+        Name of the one in the message.
+    other : str
+        Name of the other in the message.
+    """
     if not old.rings or not new.rings:
         return
     boxes = [np.concatenate([rings[0] for rings in one.rings]) for one in (old, new)]
@@ -121,7 +133,19 @@ class Overlap:
 
 
 def measure_overlap(first: BuildingMap, second: BuildingMap, shift: np.ndarray, monitor: Monitor) -> Overlap:
-    """Return what two layers of buildings share, the first one moved by ``shift`` (2,), m."""
+    """Return what two layers of buildings share, the first one moved by ``shift`` (2,), m.
+
+    Parameters
+    ----------
+    first : BuildingMap
+        Map that is moved.
+    second : BuildingMap
+        The other map.
+    shift : ndarray of shape (2,)
+        Shift of the first, m.
+    monitor : Monitor
+        Receives the progress.
+    """
     pairs = overlaps(first.polygons.moved(shift), second.polygons, monitor)
     return Overlap(*pairs, first.area, second.area)
 

@@ -80,7 +80,19 @@ def match_polygons(first: list, second: list, monitor: Monitor) -> Matches:
 
 
 def one_to_one(first: list, second: list, monitor: Monitor, least: float = 0.5) -> int:
-    """Return how many polygons of the second layer are one polygon of the first: their IoU exceeds ``least``."""
+    """Return how many polygons of the second layer are one polygon of the first: their IoU exceeds ``least``.
+
+    Parameters
+    ----------
+    first : list
+        Polygons of the first layer.
+    second : list
+        Polygons of the second layer.
+    monitor : Monitor
+        Receives the progress.
+    least : float
+        Least IoU, 0 to 1.
+    """
     return int((match_polygons(second, first, monitor).iou > least).sum())
 
 

@@ -101,7 +101,19 @@ def round_step(width: float) -> float:
 
 
 def draw_scatter(xy: np.ndarray, axis: str, unit: str, mean_name: str) -> str:
-    """Return the HTML of points around a center: where displacements (n, 2) go, their mean marked."""
+    """Return the HTML of points around a center: where displacements (n, 2) go, their mean marked.
+
+    Parameters
+    ----------
+    xy : ndarray of shape (n, 2)
+        Displacements.
+    axis : str
+        Name of the axes.
+    unit : str
+        Their unit.
+    mean_name : str
+        Name of the mean.
+    """
     if not len(xy):
         return "<p>There is nothing to show in a chart.</p>"
     reach = round_step(float(np.hypot(*xy.T).max()) or 1.0)

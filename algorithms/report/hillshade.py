@@ -21,6 +21,17 @@ def draw_hillshade(xyz: np.ndarray, low: np.ndarray, high: np.ndarray, scale: fl
     """Return the SVG of the shaded surface of points (n, 3), m, on a map from ``low`` to ``high`` (2,), m.
 
     ``scale`` is in units of the picture per meter.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Points, m.
+    low : ndarray of shape (2,)
+        Lower left corner of the map, m.
+    high : ndarray of shape (2,)
+        Upper right corner, m.
+    scale : float
+        Units of the picture per meter.
     """
     # Four points per cell on average leave few cells empty.
     cell = max(float((high - low).max()) / CELLS, 2 * float(np.sqrt((high - low).prod() / len(xyz))), 1e-3)

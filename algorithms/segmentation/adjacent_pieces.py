@@ -84,6 +84,11 @@ def adjacent_pieces(xyz: np.ndarray, piece: np.ndarray, pieces: Pieces, distance
     monitor : Monitor
         Receives progress.
 
+    Returns
+    -------
+    Adjacency
+        Pairs of adjacent pieces.
+
     Notes
     -----
     Lines need no numbers. Of the points to the side of a point, more across its piece than along it, the nearest one is

@@ -67,6 +67,17 @@ def planes_of(xyz: np.ndarray, group: np.ndarray, n_groups: int, rows: Optional[
     """Return the planes of points (n, 3) by their ``group`` (n,) from 0; each group has a point.
 
     With ``rows`` (m,) only these points count, and ``group`` (m,) is theirs.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Points, m.
+    group : ndarray of shape (n,) or (m,), int
+        Group of each point, from 0.
+    n_groups : int
+        Number of groups.
+    rows : ndarray of shape (m,), optional
+        Points that count.
     """
     # As many points as there are groups: more chunks would take longer to add up than the points.
     size = max(_CHUNK, n_groups)

@@ -160,6 +160,21 @@ def grown_planes(
 
     The tip of a hip and the strip along an eave have too few points in a voxel to show a plane of their own. Takes and
     returns what :func:`nearest_plane` does.
+
+    Parameters
+    ----------
+    boxes : Boxes
+        The voxels.
+    voxel : ndarray of shape (m,), int64
+        Box of each piece of a plane.
+    group : ndarray of shape (m,), int64
+        Its plane.
+    planes : Planes
+        Planes of the voxels.
+    tolerance : float
+        Largest distance of a point from its plane, m.
+    monitor : Monitor
+        Receives the progress.
     """
     box, around_each = boxes.box(), _around_each(boxes)
     pieces = new = np.unique(voxel * len(planes) + group)

@@ -76,6 +76,21 @@ def pieces(
     Points of a line that are near each other, directly or through others, are a piece; it may pass over points that
     lie off it. Groups of fewer than ``min_points`` points are left out. A piece goes on behind an ``obstacle`` of at
     most that width (m) if the line between their ends meets the criteria of ``near`` but the distance.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Points, m.
+    direction : float
+        Direction of the lines, °.
+    width : float
+        Width of a line, m.
+    near : NearPoints
+        When two points are near.
+    min_points : int
+        Fewest points of a piece.
+    obstacle : float
+        Width of obstacles that a piece goes on behind, m.
     """
     order, line = slices(xyz, direction, width)
     piece = np.empty(len(order), np.int64)
@@ -86,7 +101,23 @@ def pieces(
 def pieces_of_lines(
     points: np.ndarray, line: np.ndarray, direction: float, near: NearPoints, min_points: int, obstacle: float
 ) -> np.ndarray:
-    """Return what :func:`pieces` does for points (n, 3) in the order of :func:`slices`, with their lines (n,)."""
+    """Return what :func:`pieces` does for points (n, 3) in the order of :func:`slices`, with their lines (n,).
+
+    Parameters
+    ----------
+    points : ndarray of shape (n, 3)
+        Points, m, in the order of :func:`slices`.
+    line : ndarray of shape (n,), int
+        Their lines.
+    direction : float
+        Direction of the lines, °.
+    near : NearPoints
+        When two points are near.
+    min_points : int
+        Fewest points of a piece.
+    obstacle : float
+        Width of obstacles that a piece goes on behind, m.
+    """
     number = _near_on_lines(points, line, near)
     large = np.bincount(number) >= min_points if len(number) else np.zeros(0, bool)
     number = np.where(large, np.cumsum(large) - 1, -1)[number]

@@ -36,6 +36,20 @@ _LINES = 3.0
 _LINE_GAPS, _STEP_GAPS = 3.0, 10.0
 
 
+_Tolerance = Annotated[
+    Optional[float],
+    Param(
+        "Tolerance",
+        "Distance from the straight line through a piece, and of its ends from the plane of a region.",
+        unit="m",
+        low=0,
+        high=100,
+        open_low=True,
+        automatic="4.5 standard deviations: the surface noise and 0.05 point spacings.",
+    ),
+]
+
+
 @stage(
     "Segment recorded lines",
     group="Segmentation",
@@ -62,18 +76,7 @@ def segment_recorded_lines(
             choices=("planar", "smooth"),
         ),
     ] = "planar",
-    tolerance: Annotated[
-        Optional[float],
-        Param(
-            "Tolerance",
-            "Distance from the straight line through a piece, and of its ends from the plane of a region.",
-            unit="m",
-            low=0,
-            high=100,
-            open_low=True,
-            automatic="4.5 standard deviations: the surface noise and 0.05 point spacings.",
-        ),
-    ] = None,
+    tolerance: _Tolerance = None,
     line_distance: Annotated[
         Optional[float],
         Param(

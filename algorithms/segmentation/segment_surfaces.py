@@ -40,6 +40,49 @@ _SMOOTH = 1.55
 _GROWTH, _WIDE_RADIUS = 4.0, 0.5
 
 
+_Noise = Annotated[
+    Optional[float],
+    Param(
+        "Surface noise",
+        "Standard deviation of the points across a smooth surface.",
+        unit="m",
+        low=0,
+        high=10,
+        open_low=True,
+        automatic="measured on the cloud, on its smoothest fifth; at least 0.01 m, or a twelfth of the radius "
+        "where that is less.",
+        advanced=True,
+    ),
+]
+
+_Tolerance = Annotated[
+    Optional[float],
+    Param(
+        "Tolerance",
+        "Distance to the plane of a surface within which points belong to it; larger joins rougher and more curved "
+        "surfaces.",
+        unit="m",
+        low=0,
+        high=100,
+        open_low=True,
+        automatic="3 standard deviations: the surface noise and 0.05 point spacings.",
+    ),
+]
+
+_Radius = Annotated[
+    Optional[float],
+    Param(
+        "Radius",
+        "Reach of the neighborhood in which planes are fitted, and of growth.",
+        unit="m",
+        low=0,
+        high=1000,
+        open_low=True,
+        automatic="3 times the point spacing on surfaces.",
+    ),
+]
+
+
 @stage(
     "Segment surfaces",
     group="Segmentation",
@@ -88,35 +131,12 @@ def segment_surfaces(
             choices=("radius", "edges"),
         ),
     ] = "radius",
-    radius: Annotated[
-        Optional[float],
-        Param(
-            "Radius",
-            "Reach of the neighborhood in which planes are fitted, and of growth.",
-            unit="m",
-            low=0,
-            high=1000,
-            open_low=True,
-            automatic="3 times the point spacing on surfaces.",
-        ),
-    ] = None,
+    radius: _Radius = None,
     neighbors: Annotated[
         int,
         Param("Neighbors", "Nearest points within the radius that are used, the point included.", low=6, high=200),
     ] = _NEIGHBORS,
-    tolerance: Annotated[
-        Optional[float],
-        Param(
-            "Tolerance",
-            "Distance to the plane of a surface within which points belong to it; larger joins rougher and more curved "
-            "surfaces.",
-            unit="m",
-            low=0,
-            high=100,
-            open_low=True,
-            automatic="3 standard deviations: the surface noise and 0.05 point spacings.",
-        ),
-    ] = None,
+    tolerance: _Tolerance = None,
     max_angle: Annotated[
         float,
         Param(
@@ -131,20 +151,7 @@ def segment_surfaces(
     min_points: Annotated[
         int, Param("Minimum points", "Surfaces with fewer points get no id.", low=1, high=10_000_000)
     ] = 20,
-    noise: Annotated[
-        Optional[float],
-        Param(
-            "Surface noise",
-            "Standard deviation of the points across a smooth surface.",
-            unit="m",
-            low=0,
-            high=10,
-            open_low=True,
-            automatic="measured on the cloud, on its smoothest fifth; at least 0.01 m, or a twelfth of the radius "
-            "where that is less.",
-            advanced=True,
-        ),
-    ] = None,
+    noise: _Noise = None,
     density: PointDensity = None,
     sampling: Optional[CloudSampling] = None,
     monitor=None,

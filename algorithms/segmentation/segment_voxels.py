@@ -30,6 +30,31 @@ _VOXEL_SPACINGS = 2.0
 _OPERATIONS = {"erosion": erode, "dilation": dilate, "opening": open_voxels, "closing": close_voxels}
 
 
+_VoxelSize = Annotated[
+    Optional[float],
+    Param(
+        "Voxel size",
+        "Side of a voxel. Points closer than about this belong together; larger voxels bridge wider gaps.",
+        unit="m",
+        low=0.001,
+        high=1000,
+        automatic="2 times the point spacing on surfaces.",
+    ),
+]
+
+_CountFilter = Annotated[
+    str,
+    Param(
+        "Filter of counts",
+        "Applied to the number of points of a voxel and its 26 neighbors before voxels with few points are left "
+        "out. Mean and binomial are convolutions, which smooth; the others are rank orders: the minimum thins and "
+        "the maximum widens, and the median removes single voxels.",
+        choices=("none", *FILTERS),
+        advanced=True,
+    ),
+]
+
+
 @stage(
     "Segment voxels",
     group="Segmentation",
@@ -53,17 +78,7 @@ def segment_voxels(
     xyz,
     classification,
     *,
-    voxel_size: Annotated[
-        Optional[float],
-        Param(
-            "Voxel size",
-            "Side of a voxel. Points closer than about this belong together; larger voxels bridge wider gaps.",
-            unit="m",
-            low=0.001,
-            high=1000,
-            automatic="2 times the point spacing on surfaces.",
-        ),
-    ] = None,
+    voxel_size: _VoxelSize = None,
     neighbors: Annotated[
         str,
         Param(
@@ -73,17 +88,7 @@ def segment_voxels(
             choices=("6", "18", "26"),
         ),
     ] = "26",
-    count_filter: Annotated[
-        str,
-        Param(
-            "Filter of counts",
-            "Applied to the number of points of a voxel and its 26 neighbors before voxels with few points are left "
-            "out. Mean and binomial are convolutions, which smooth; the others are rank orders: the minimum thins and "
-            "the maximum widens, and the median removes single voxels.",
-            choices=("none", *FILTERS),
-            advanced=True,
-        ),
-    ] = "none",
+    count_filter: _CountFilter = "none",
     operation: Annotated[
         str,
         Param(

@@ -146,6 +146,11 @@ def local_planes(
         Distance within which a point lies on a robust plane, m.
     monitor : Monitor
         Receives progress.
+
+    Returns
+    -------
+    LocalPlanes
+        Planes, by point.
     """
     # Balanced: of points at the same distance it hardly depends on their order which are found.
     n, tree = len(xyz), spatial.cKDTree(xyz, _LEAF)
@@ -329,7 +334,19 @@ def _adjacent(
 
 
 def connected_seeds(planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria, monitor: Monitor) -> np.ndarray:
-    """Return the surface (n,), int32, of each seed from 0, -1 of other points."""
+    """Return the surface (n,), int32, of each seed from 0, -1 of other points.
+
+    Parameters
+    ----------
+    planes : LocalPlanes
+        Planes around the points.
+    is_seed : ndarray of shape (n,), bool
+        Points that may start a surface.
+    criteria : Criteria
+        When points are of one surface.
+    monitor : Monitor
+        Receives the progress.
+    """
     sets = DisjointSets(len(is_seed))
 
     def work(rows: np.ndarray) -> None:

@@ -86,6 +86,19 @@ def check_radii(
 ) -> tuple[float, float]:
     """Return the range of radii (m), automatic where it is None.
 
+    Parameters
+    ----------
+    min_radius : float, optional
+        Least radius, m.
+    max_radius : float, optional
+        Greatest radius, m.
+    noise : float
+        Standard deviation of points, m.
+    spacing : float
+        Point spacing, m.
+    xyz : ndarray of shape (n, 3)
+        Points, m.
+
     Raises
     ------
     ValueError

@@ -260,6 +260,11 @@ def search_shapes(
     monitor : Monitor
         Receives automatic values, a warning where nothing is found, and progress.
 
+    Returns
+    -------
+    SearchResult
+        The shapes, and the numbers of the points.
+
     Raises
     ------
     ValueError

@@ -42,6 +42,63 @@ _WIDE_WINDOW, _WIDE_GAP = 1.0, 0.5
 _MOST_ANGLE = 10.0
 
 
+_Tolerance = Annotated[
+    Optional[float],
+    Param(
+        "Tolerance",
+        "Distance within which a point lies on a plane.",
+        unit="m",
+        low=0,
+        high=10,
+        open_low=True,
+        automatic=f"{ON_PLANE:.2g} times the roughness of surfaces, which is the root of the sum of the squares of "
+        f"the noise of the scan and of {ROUGHNESS_OF_SPACING:g} point spacings.",
+    ),
+]
+
+_DistanceBin = Annotated[
+    Optional[float],
+    Param(
+        "Distance bin",
+        "Width of a bin in the distance of a plane. Smaller bins separate planes that lie closer; in bins "
+        "smaller than the noise the points of one plane scatter over several, and its maximum is lost.",
+        unit="m",
+        low=0,
+        high=10,
+        open_low=True,
+        automatic="the tolerance: two bins side by side then hold a plane with its noise.",
+    ),
+]
+
+_SlopeBin = Annotated[
+    Optional[float],
+    Param(
+        "Slope bin",
+        "Width of a bin in the slopes of a plane. Smaller bins separate directions, need more memory and time, "
+        "and scatter a plane over several.",
+        unit="°",
+        low=0,
+        high=30,
+        open_low=True,
+        automatic="a plane off by half a bin is off by one distance bin at the side of the window; at most 11°.",
+    ),
+]
+
+_MaxGap = Annotated[
+    Optional[float],
+    Param(
+        "Maximum gap",
+        "Points of a plane at most this far apart are of one surface; wider gaps, and gaps wider than a window, "
+        "part coplanar surfaces.",
+        unit="m",
+        low=0,
+        high=1000,
+        open_low=True,
+        automatic="3 times the point spacing on surfaces.",
+    ),
+]
+
+
 @stage(
     "Segment planes (Hough)",
     group="Shapes",
@@ -66,45 +123,9 @@ def segment_planes_hough(
         ),
     ] = "points",
     search_in: SearchIn = WHOLE_CLOUD,
-    tolerance: Annotated[
-        Optional[float],
-        Param(
-            "Tolerance",
-            "Distance within which a point lies on a plane.",
-            unit="m",
-            low=0,
-            high=10,
-            open_low=True,
-            automatic=f"{ON_PLANE:.2g} times the roughness of surfaces, which is the root of the sum of the squares of "
-            f"the noise of the scan and of {ROUGHNESS_OF_SPACING:g} point spacings.",
-        ),
-    ] = None,
-    distance_bin: Annotated[
-        Optional[float],
-        Param(
-            "Distance bin",
-            "Width of a bin in the distance of a plane. Smaller bins separate planes that lie closer; in bins "
-            "smaller than the noise the points of one plane scatter over several, and its maximum is lost.",
-            unit="m",
-            low=0,
-            high=10,
-            open_low=True,
-            automatic="the tolerance: two bins side by side then hold a plane with its noise.",
-        ),
-    ] = None,
-    slope_bin: Annotated[
-        Optional[float],
-        Param(
-            "Slope bin",
-            "Width of a bin in the slopes of a plane. Smaller bins separate directions, need more memory and time, "
-            "and scatter a plane over several.",
-            unit="°",
-            low=0,
-            high=30,
-            open_low=True,
-            automatic="a plane off by half a bin is off by one distance bin at the side of the window; at most 11°.",
-        ),
-    ] = None,
+    tolerance: _Tolerance = None,
+    distance_bin: _DistanceBin = None,
+    slope_bin: _SlopeBin = None,
     window_size: Annotated[
         Optional[float],
         Param(
@@ -117,19 +138,7 @@ def segment_planes_hough(
             automatic="wide enough for 40 points of a surface and for 20 tolerances.",
         ),
     ] = None,
-    max_gap: Annotated[
-        Optional[float],
-        Param(
-            "Maximum gap",
-            "Points of a plane at most this far apart are of one surface; wider gaps, and gaps wider than a window, "
-            "part coplanar surfaces.",
-            unit="m",
-            low=0,
-            high=1000,
-            open_low=True,
-            automatic="3 times the point spacing on surfaces.",
-        ),
-    ] = None,
+    max_gap: _MaxGap = None,
     min_area: Annotated[
         Optional[float],
         Param(

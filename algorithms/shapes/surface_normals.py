@@ -58,6 +58,17 @@ def normals_of(xyz: np.ndarray, count: int, sampling: CloudSampling, monitor: Mo
     """Return the normals (n, 3) of a cloud (n, 3), m, see :func:`surface_normals`; measured once in a run.
 
     The stages of a run share its ``sampling``, with which the normals of the last cloud are kept.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Points, m.
+    count : int
+        Points of a neighborhood.
+    sampling : CloudSampling
+        How the cloud was sampled.
+    monitor : Monitor
+        Receives the progress.
     """
     key = count, xyz.shape, zlib.crc32(np.ascontiguousarray(xyz).data)
     kept = _KEPT.get(sampling)

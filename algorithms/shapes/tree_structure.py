@@ -100,6 +100,19 @@ def voxels_of(xyz: np.ndarray, voxel_size: float, min_count: int, max_gap: float
     """Return the closed voxels of points (n, 3), their pieces linked over gaps up to ``max_gap`` (m).
 
     Voxels with fewer points than ``min_count`` are empty; points there have the voxel -1, unless closing fills it.
+
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Points, m.
+    voxel_size : float
+        Side of a voxel, m.
+    min_count : int
+        Fewest points of a voxel.
+    max_gap : float
+        Gaps that are closed, m.
+    monitor : Monitor
+        Receives the progress.
     """
     occupied, voxel, count = voxelize(xyz, voxel_size)
     cells = close_voxels(occupied[count >= min_count], 26, 1)

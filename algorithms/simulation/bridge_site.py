@@ -217,7 +217,26 @@ def land(scene: Scene, x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def build_site(kinds: tuple[str, ...], angle: float, cars: bool, trees: bool, seed: int) -> tuple[Scene, list[Deck]]:
-    """Build a site with a lot for each of ``kinds``, its decks ``angle`` degrees off the shortest way across."""
+    """Build a site with a lot for each of ``kinds``, its decks ``angle`` degrees off the shortest way across.
+
+    Parameters
+    ----------
+    kinds : tuple of str
+        Kinds of crossings, a lot for each.
+    angle : float
+        Angle of the decks to the shortest way across, °.
+    cars : bool
+        Whether there are cars on the decks.
+    trees : bool
+        Whether there are trees.
+    seed : int
+        The same seed makes the same.
+
+    Returns
+    -------
+    tuple of Scene and list of Deck
+        The site, and the true decks.
+    """
     rng = np.random.default_rng([seed, 7])
     columns = int(np.ceil(np.sqrt(len(kinds))))
     lots = []

@@ -88,7 +88,19 @@ class Flight:
 
 
 def plan_flight(scene: Scene, height: float, duration: float, seed: int) -> Flight:
-    """Return a flight over the middle of a site, ``height`` (m) over the ground at most but for the sway."""
+    """Return a flight over the middle of a site, ``height`` (m) over the ground at most but for the sway.
+
+    Parameters
+    ----------
+    scene : Scene
+        The site.
+    height : float
+        Greatest height over the ground, m.
+    duration : float
+        Duration, s.
+    seed : int
+        The same seed makes the same.
+    """
     x, y = (SIZE / 2 + part for part in _PLACE)
     foot = np.array([x, y, float(scene.relief.ground(x, y)) + _STANDING])
     phases = np.random.default_rng([seed, 3]).uniform(0.0, 2 * np.pi, (6, len(_PERIODS)))
@@ -162,6 +174,27 @@ def fly(
 ) -> dict[str, np.ndarray]:
     """Scan a site from a drone. The tunables are those of :func:`.simulate_flight.simulate_flight`.
 
+    Parameters
+    ----------
+    scene : Scene
+        The site.
+    flight : Flight
+        The flight.
+    scanners : tuple of str
+        Names of the scanners.
+    line_rate : float
+        Lines per second.
+    angular_step : float
+        Angle between pulses, °.
+    max_range : float
+        Reach of the scanner, m.
+    range_noise : float
+        Standard deviation of distances, m.
+    seed : int
+        The same seed makes the same.
+    monitor : Monitor
+        Receives the progress.
+
     Returns
     -------
     dict of str to ndarray
@@ -221,7 +254,19 @@ def first_met(world: Surroundings, beams: Beams, rng: np.random.Generator) -> Ec
 
 
 def recorded(echoes: Echoes, left: np.ndarray, number: int, rng: np.random.Generator) -> dict[str, np.ndarray]:
-    """Return the dimensions of echoes but place and time."""
+    """Return the dimensions of echoes but place and time.
+
+    Parameters
+    ----------
+    echoes : Echoes
+        The echoes.
+    left : ndarray of shape (n, 3)
+        Directions to the left of the drone.
+    number : int
+        Number of the scanner.
+    rng : numpy.random.Generator
+        Source of chance.
+    """
     side = dot(echoes.direction, left[echoes.pulse])
     nadir = np.rad2deg(np.arccos(np.clip(-echoes.direction[:, 2], -1.0, 1.0)))
     one = np.ones(len(echoes), np.uint8)

@@ -36,7 +36,30 @@ def build_site(
     halls: int,
     seed: int,
 ) -> Scene:
-    """Make up a site. The tunables are those of :func:`.simulate_drone_site.simulate_drone_site`."""
+    """Make up a site. The tunables are those of :func:`.simulate_drone_site.simulate_drone_site`.
+
+    Parameters
+    ----------
+    size : float
+        Side of the square, m.
+    slope : float
+        Slope of the ground, °.
+    terrace_height : float
+        Rise of the terraces, m.
+    buildings : float
+        Buildings per hectare.
+    trees : float
+        Trees per hectare.
+    halls : int
+        Number of flat halls.
+    seed : int
+        The same seed makes the same.
+
+    Returns
+    -------
+    Scene
+        The same for the same arguments.
+    """
     scene = build_town(
         size=size,
         slope=slope,

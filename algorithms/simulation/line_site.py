@@ -28,7 +28,23 @@ _PIECES = 24
 
 
 def build_line_site(size: float, span: float, angle: float, trees: float, forest: float, seed: int) -> Scene:
-    """Return a site (m) with both lines, ``angle`` (°) from east; trees per ha, share of forest."""
+    """Return a site (m) with both lines, ``angle`` (°) from east; trees per ha, share of forest.
+
+    Parameters
+    ----------
+    size : float
+        Side of the square, m.
+    span : float
+        Distance between towers, m.
+    angle : float
+        Direction of the lines from east, °.
+    trees : float
+        Trees per hectare.
+    forest : float
+        Share that is forest.
+    seed : int
+        The same seed makes the same.
+    """
     rng = np.random.default_rng([seed, 7])
     scene = Scene(Relief(size, gradient=0.04, angle=np.deg2rad(90.0)))
     direction = np.deg2rad(angle)

@@ -36,7 +36,21 @@ class Plant:
 
 
 def build_plant(pipes: int, tanks: int, spheres: int, clutter: bool, rng: np.random.Generator) -> Plant:
-    """Return a plant with given numbers of straight pipes, tanks and spherical vessels."""
+    """Return a plant with given numbers of straight pipes, tanks and spherical vessels.
+
+    Parameters
+    ----------
+    pipes : int
+        Number of straight pipes.
+    tanks : int
+        Number of tanks.
+    spheres : int
+        Number of spherical vessels.
+    clutter : bool
+        Whether there is clutter.
+    rng : numpy.random.Generator
+        Source of chance.
+    """
     plant, bay = Plant(), 0
     left = pipes
     columns = max(1, int(np.ceil(np.sqrt(max(1, pipes / 9)))))

@@ -46,7 +46,19 @@ class Part:
 
 
 def cylinder(kind: str, start: np.ndarray, end: np.ndarray, radius: float) -> Part:
-    """Return the side of a cylinder between two positions (3,), m."""
+    """Return the side of a cylinder between two positions (3,), m.
+
+    Parameters
+    ----------
+    kind : str
+        Kind of the part.
+    start : ndarray of shape (3,)
+        Middle of one end, m.
+    end : ndarray of shape (3,)
+        Middle of the other end, m.
+    radius : float
+        Radius, m.
+    """
     length = float(np.linalg.norm(end - start))
     axis = (end - start) / length
     first, second = across_axis(axis)
@@ -62,7 +74,21 @@ def cylinder(kind: str, start: np.ndarray, end: np.ndarray, radius: float) -> Pa
 
 
 def disk(kind: str, center: np.ndarray, normal: np.ndarray, inner: float, outer: float) -> Part:
-    """Return a ring or disk across a normal (3,), between two radii (m)."""
+    """Return a ring or disk across a normal (3,), between two radii (m).
+
+    Parameters
+    ----------
+    kind : str
+        Kind of the part.
+    center : ndarray of shape (3,)
+        Center, m.
+    normal : ndarray of shape (3,)
+        Unit normal.
+    inner : float
+        Inner radius, m.
+    outer : float
+        Outer radius, m.
+    """
     first, second = across_axis(normal)
 
     def sample(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:
@@ -114,7 +140,19 @@ def elbow(start: np.ndarray, along: np.ndarray, toward: np.ndarray, bend: float,
 
 
 def plate(kind: str, corner: np.ndarray, first: np.ndarray, second: np.ndarray) -> Part:
-    """Return a parallelogram that is seen from both sides, from a corner (3,) along two edges (3,), m."""
+    """Return a parallelogram that is seen from both sides, from a corner (3,) along two edges (3,), m.
+
+    Parameters
+    ----------
+    kind : str
+        Kind of the part.
+    corner : ndarray of shape (3,)
+        A corner, m.
+    first : ndarray of shape (3,)
+        One edge from it, m.
+    second : ndarray of shape (3,)
+        The other edge, m.
+    """
     across = np.cross(first, second)
     area = float(np.linalg.norm(across))
     normal = across / area
@@ -130,7 +168,21 @@ def plate(kind: str, corner: np.ndarray, first: np.ndarray, second: np.ndarray) 
 
 
 def beam(start: np.ndarray, end: np.ndarray, height: float, width: float, up: np.ndarray) -> list[Part]:
-    """Return the web and the two flanges of an I-beam between two positions (3,), m; its web lies along ``up``."""
+    """Return the web and the two flanges of an I-beam between two positions (3,), m; its web lies along ``up``.
+
+    Parameters
+    ----------
+    start : ndarray of shape (3,)
+        Middle of one end, m.
+    end : ndarray of shape (3,)
+        Middle of the other end, m.
+    height : float
+        Height of the profile, m.
+    width : float
+        Width of the flanges, m.
+    up : ndarray of shape (3,)
+        Direction of the web.
+    """
     along = end - start
     side = np.cross(along, up)
     side *= width / np.linalg.norm(side)
@@ -140,7 +192,19 @@ def beam(start: np.ndarray, end: np.ndarray, height: float, width: float, up: np
 
 
 def grating(corner: np.ndarray, first: np.ndarray, second: np.ndarray, mesh: float = 0.04) -> Part:
-    """Return a level grating: bars of 4 mm by 3 cm across two edges (3,), with gaps between them."""
+    """Return a level grating: bars of 4 mm by 3 cm across two edges (3,), with gaps between them.
+
+    Parameters
+    ----------
+    corner : ndarray of shape (3,)
+        A corner, m.
+    first : ndarray of shape (3,)
+        One edge from it, m.
+    second : ndarray of shape (3,)
+        The other edge, m.
+    mesh : float
+        Distance between the bars, m.
+    """
     long, wide = float(np.linalg.norm(first)), float(np.linalg.norm(second))
     n_bars = max(1, int(wide / mesh))
 

@@ -22,7 +22,21 @@ _FOREST_TREES = (10.0, 22.0)
 
 
 def plant_trees(scene: Scene, per_hectare: float, forest: float, rng: np.random.Generator, monitor: Monitor) -> None:
-    """Plant single trees and clumps on open ground, and the forest."""
+    """Plant single trees and clumps on open ground, and the forest.
+
+    Parameters
+    ----------
+    scene : Scene
+        Receives the objects.
+    per_hectare : float
+        Trees per hectare outside the forest.
+    forest : float
+        Share that is forest.
+    rng : numpy.random.Generator
+        Source of chance.
+    monitor : Monitor
+        Receives the progress.
+    """
     size = scene.size
     n_trees = round(per_hectare * size**2 / 1e4 * (1 - forest))
     n_alone = n_trees - round(_CLUMP_SHARE * n_trees) // _CLUMP_SIZE * _CLUMP_SIZE
@@ -85,7 +99,19 @@ def _is_free(scene: Scene, positions: np.ndarray) -> np.ndarray:
 
 
 def plant_tree(scene: Scene, foot: tuple[float, float, float], height: float, rng: np.random.Generator) -> None:
-    """Plant a broadleaf or a conifer, with its stem, at x, y and elevation of the ground (m)."""
+    """Plant a broadleaf or a conifer, with its stem, at x, y and elevation of the ground (m).
+
+    Parameters
+    ----------
+    scene : Scene
+        Receives the objects.
+    foot : tuple of float
+        Easting, northing and elevation of the ground, m.
+    height : float
+        Height, m.
+    rng : numpy.random.Generator
+        Source of chance.
+    """
     x, y, ground = foot
     number = scene.new_id()
     if rng.random() < 0.3:

@@ -138,7 +138,28 @@ def _channel(distance):
 def make_relief(
     size: float, slope: float, hills: float, terrace_height: float, river: bool, rng: np.random.Generator
 ) -> Relief:
-    """Draw the ground of a town: ``slope`` in degrees, the rest as in :class:`Relief`."""
+    """Draw the ground of a town: ``slope`` in degrees, the rest as in :class:`Relief`.
+
+    Parameters
+    ----------
+    size : float
+        Side of the square, m.
+    slope : float
+        Slope of the ground, °.
+    hills : float
+        Height from hollows to hills, m.
+    terrace_height : float
+        Rise of the terraces, m.
+    river : bool
+        Whether there is a river.
+    rng : numpy.random.Generator
+        Source of chance.
+
+    Returns
+    -------
+    Relief
+        The ground.
+    """
     angle = float(np.deg2rad(rng.uniform(10.0, 35.0)))
     length = rng.uniform(80.0, 160.0, 4)
     direction = rng.uniform(0.0, np.pi, 4)

@@ -123,6 +123,29 @@ def scan(
 ) -> Scan:
     """Scan a scene from the air. The tunables are those of :func:`.simulate_town.simulate_town`.
 
+    Parameters
+    ----------
+    scene : Scene
+        What is scanned.
+    density : float
+        Pulses per m².
+    pattern : str
+        Scan pattern.
+    max_scan_angle : float
+        Angle to the vertical at the edge of a strip, °.
+    overlap : float
+        Share of a strip that the next one scans, too.
+    range_noise : float
+        Standard deviation of distances, m.
+    returns : bool
+        Whether all returns are recorded.
+    noise_points : float
+        Noise points per hectare.
+    seed : int
+        The same seed makes the same.
+    monitor : Monitor
+        Receives the progress.
+
     Returns
     -------
     Scan

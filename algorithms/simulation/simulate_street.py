@@ -55,6 +55,42 @@ _HOUSE_FIELDS = (
 _CORNER_FIELDS = (Field("facade", int, "number of the facade"),)
 
 
+_Unevenness = Annotated[
+    float,
+    Param(
+        "Unevenness",
+        "How far the ends of a front are before or behind the line of its neighbors at most: fronts nearly in one "
+        "plane.",
+        unit="m",
+        low=0,
+        high=1,
+    ),
+]
+
+_Density = Annotated[
+    float,
+    Param(
+        "Pulse density",
+        "Laser pulses of the scan from the air.",
+        unit="pulses/m²",
+        low=0.5,
+        high=100,
+        advanced=True,
+    ),
+]
+
+_Stoops = Annotated[
+    float,
+    Param(
+        "Height of stoops",
+        "Height of the doors over the street. Stairs lead up to them; from 1.4 m on there are cellar windows.",
+        unit="m",
+        low=0,
+        high=4,
+    ),
+]
+
+
 @stage(
     "Simulate street",
     group="Simulation",
@@ -78,27 +114,8 @@ def simulate_street(
         bool,
         Param("Clutter", "Put parked cars, trees, poles and people before the fronts, which hide parts of them."),
     ] = True,
-    stoops: Annotated[
-        float,
-        Param(
-            "Height of stoops",
-            "Height of the doors over the street. Stairs lead up to them; from 1.4 m on there are cellar windows.",
-            unit="m",
-            low=0,
-            high=4,
-        ),
-    ] = 0.0,
-    unevenness: Annotated[
-        float,
-        Param(
-            "Unevenness",
-            "How far the ends of a front are before or behind the line of its neighbors at most: fronts nearly in one "
-            "plane.",
-            unit="m",
-            low=0,
-            high=1,
-        ),
-    ] = 0.0,
+    stoops: _Stoops = 0.0,
+    unevenness: _Unevenness = 0.0,
     houses: Annotated[
         bool,
         Param("Houses", "Put houses with gable roofs behind the fronts; no front is curved then."),
@@ -111,17 +128,7 @@ def simulate_street(
             choices=VIEWS,
         ),
     ] = "vehicle",
-    density: Annotated[
-        float,
-        Param(
-            "Pulse density",
-            "Laser pulses of the scan from the air.",
-            unit="pulses/m²",
-            low=0.5,
-            high=100,
-            advanced=True,
-        ),
-    ] = 12.0,
+    density: _Density = 12.0,
     glass: Annotated[
         float,
         Param(

@@ -9,6 +9,66 @@ from ..stage import Monitor, Param, stage
 from .scanner import MAX_PULSES, PATTERNS, RECORDED, scan
 from .town_layout import MAX_BUILDINGS, build_town
 
+_MaxScanAngle = Annotated[
+    float,
+    Param(
+        "Maximum scan angle",
+        "Angle to the vertical at the edge of a strip. Wide strips show more of the walls and less of the yards "
+        "behind them.",
+        unit="°",
+        low=5,
+        high=30,
+        advanced=True,
+    ),
+]
+
+_Buildings = Annotated[
+    float,
+    Param(
+        "Buildings",
+        "Plots with a house or a short row on a hectare of streets and plots; 0 makes fields. "
+        "The river's valley and the forest have none.",
+        unit="per ha",
+        low=0,
+        high=MAX_BUILDINGS,
+    ),
+]
+
+_RangeNoise = Annotated[
+    float,
+    Param(
+        "Range noise",
+        "Standard deviation of the measured distances.",
+        unit="m",
+        low=0,
+        high=0.2,
+        advanced=True,
+    ),
+]
+
+_NoisePoints = Annotated[
+    float,
+    Param(
+        "Noise points",
+        "Points far above (birds) and below the ground (multipath), half of each.",
+        unit="per ha",
+        low=0,
+        high=1000,
+        advanced=True,
+    ),
+]
+
+_Density = Annotated[
+    float,
+    Param(
+        "Pulse density",
+        "Laser pulses on average; on open ground each of them gives a point, in trees several, on water few.",
+        unit="pulses/m²",
+        low=0.5,
+        high=100,
+    ),
+]
+
 
 @stage(
     "Simulate town",
@@ -21,27 +81,8 @@ def simulate_town(
     size: Annotated[
         float, Param("Size", "Side of the town, a square from (0, 0).", unit="m", low=50, high=2000)
     ] = 200.0,
-    density: Annotated[
-        float,
-        Param(
-            "Pulse density",
-            "Laser pulses on average; on open ground each of them gives a point, in trees several, on water few.",
-            unit="pulses/m²",
-            low=0.5,
-            high=100,
-        ),
-    ] = 8.0,
-    buildings: Annotated[
-        float,
-        Param(
-            "Buildings",
-            "Plots with a house or a short row on a hectare of streets and plots; 0 makes fields. "
-            "The river's valley and the forest have none.",
-            unit="per ha",
-            low=0,
-            high=MAX_BUILDINGS,
-        ),
-    ] = 20.0,
+    density: _Density = 8.0,
+    buildings: _Buildings = 20.0,
     trees: Annotated[
         float,
         Param(
@@ -71,18 +112,7 @@ def simulate_town(
             advanced=True,
         ),
     ] = "lines",
-    max_scan_angle: Annotated[
-        float,
-        Param(
-            "Maximum scan angle",
-            "Angle to the vertical at the edge of a strip. Wide strips show more of the walls and less of the yards "
-            "behind them.",
-            unit="°",
-            low=5,
-            high=30,
-            advanced=True,
-        ),
-    ] = 20.0,
+    max_scan_angle: _MaxScanAngle = 20.0,
     overlap: Annotated[
         float,
         Param(
@@ -93,28 +123,8 @@ def simulate_town(
             advanced=True,
         ),
     ] = 0.3,
-    range_noise: Annotated[
-        float,
-        Param(
-            "Range noise",
-            "Standard deviation of the measured distances.",
-            unit="m",
-            low=0,
-            high=0.2,
-            advanced=True,
-        ),
-    ] = 0.02,
-    noise_points: Annotated[
-        float,
-        Param(
-            "Noise points",
-            "Points far above (birds) and below the ground (multipath), half of each.",
-            unit="per ha",
-            low=0,
-            high=1000,
-            advanced=True,
-        ),
-    ] = 10.0,
+    range_noise: _RangeNoise = 0.02,
+    noise_points: _NoisePoints = 10.0,
     returns: Annotated[
         bool,
         Param(

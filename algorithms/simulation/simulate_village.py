@@ -48,6 +48,30 @@ _MAP_FIELDS = (
 )
 
 
+_Oblique = Annotated[
+    float,
+    Param(
+        "Oblique angle",
+        "Angle of the four oblique views to the vertical: more shows more of the walls.",
+        unit="°",
+        low=0,
+        high=30,
+        advanced=True,
+    ),
+]
+
+_Density = Annotated[
+    float,
+    Param(
+        "Point density",
+        "Points on open ground; roofs have about as many, walls a tenth of it where a view reaches them.",
+        unit="points/m²",
+        low=5,
+        high=1000,
+    ),
+]
+
+
 @stage(
     "Simulate village",
     group="Simulation",
@@ -63,16 +87,7 @@ def simulate_village(
     size: Annotated[
         float, Param("Size", "Side of the village, a square from (0, 0).", unit="m", low=50, high=1000)
     ] = 150.0,
-    density: Annotated[
-        float,
-        Param(
-            "Point density",
-            "Points on open ground; roofs have about as many, walls a tenth of it where a view reaches them.",
-            unit="points/m²",
-            low=5,
-            high=1000,
-        ),
-    ] = 100.0,
+    density: _Density = 100.0,
     buildings: Annotated[
         float,
         Param(
@@ -99,17 +114,7 @@ def simulate_village(
         float,
         Param("Share of holes", "Share of all surfaces where matching found nothing, about.", low=0, high=0.5),
     ] = 0.1,
-    oblique: Annotated[
-        float,
-        Param(
-            "Oblique angle",
-            "Angle of the four oblique views to the vertical: more shows more of the walls.",
-            unit="°",
-            low=0,
-            high=30,
-            advanced=True,
-        ),
-    ] = 28.0,
+    oblique: _Oblique = 28.0,
     noise_points: Annotated[
         float,
         Param(

@@ -87,7 +87,23 @@ class Solid:
 
 
 def inclined(rect: Rect, along: float, across: float, z: float, rise_along: float, rise_across: float) -> np.ndarray:
-    """Return the plane of elevation ``z`` at a position in ``rect``, with these rises per meter along and across it."""
+    """Return the plane of elevation ``z`` at a position in ``rect``, with these rises per meter along and across it.
+
+    Parameters
+    ----------
+    rect : Rect
+        The rectangle.
+    along : float
+        Position along it, m from its middle.
+    across : float
+        Position across it, m from its middle.
+    z : float
+        Elevation there, m.
+    rise_along : float
+        Rise along it, m per m.
+    rise_across : float
+        Rise across it, m per m.
+    """
     cos, sin = np.cos(rect.angle), np.sin(rect.angle)
     a, b = rise_along * cos - rise_across * sin, rise_along * sin + rise_across * cos
     x, y = rect.at(along, across)

@@ -113,6 +113,21 @@ def build_front(scene: Scene, truth: Truth, line: Line, height: float, kind: str
     """Put the front of a house behind a line.
 
     The height (m) is over the ground at the start of the line, its ground floor ``raised`` (m) over the street.
+
+    Parameters
+    ----------
+    scene : Scene
+        Receives the objects.
+    truth : Truth
+        Receives the true polygons.
+    line : Line
+        Foot of the front.
+    height : float
+        Height over the ground, m.
+    kind : str
+        Kind of the front.
+    raised : float
+        Height of the ground floor over the street, m.
     """
     top = float(scene.relief.plane(*line.start)) + height + raised
     for part, is_front in _parts(line, kind):
@@ -125,6 +140,21 @@ def build_house(scene: Scene, truth: Truth, line: Line, height: float, kind: str
     """Put a house behind a straight front with this height over the ground: its other walls and a gable roof (°).
 
     The roof is flush with the walls; its ridge runs along the street, and it goes on over a recess.
+
+    Parameters
+    ----------
+    scene : Scene
+        Receives the objects.
+    truth : Truth
+        Receives the true polygons.
+    line : Line
+        Foot of the front.
+    height : float
+        Height over the ground, m.
+    kind : str
+        Kind of the front.
+    pitch : float
+        Pitch of the roof, °.
     """
     ground = float(scene.relief.plane(*line.start))
     top, across, number = ground + height, (0.0, line.length), scene.new_id()

@@ -43,6 +43,31 @@ def build_town(
 ) -> Scene:
     """Make up a town. The tunables are those of :func:`.simulate_town.simulate_town`.
 
+    Parameters
+    ----------
+    size : float
+        Side of the square, m.
+    slope : float
+        Slope of the ground, °.
+    relief : float
+        Height from hollows to hills, m.
+    terrace_height : float
+        Rise of the terraces, m.
+    buildings : float
+        Buildings per hectare.
+    trees : float
+        Trees per hectare.
+    forest : float
+        Share that is forest.
+    river : bool
+        Whether there is a river.
+    clutter : bool
+        Whether there is clutter.
+    seed : int
+        The same seed makes the same.
+    monitor : Monitor
+        Receives the progress.
+
     Returns
     -------
     Scene

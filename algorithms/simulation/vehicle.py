@@ -57,6 +57,25 @@ def drive_along(
 ) -> dict[str, np.ndarray]:
     """Scan a street from a vehicle. The tunables are those of :func:`.simulate_street.simulate_street`.
 
+    Parameters
+    ----------
+    scene : Scene
+        The street.
+    drive : Drive
+        The way of the vehicle.
+    line_rate : float
+        Lines per second.
+    angular_step : float
+        Angle between pulses, °.
+    max_range : float
+        Reach of the scanner, m.
+    range_noise : float
+        Standard deviation of distances, m.
+    seed : int
+        The same seed makes the same.
+    monitor : Monitor
+        Receives the progress.
+
     Returns
     -------
     dict of str to ndarray
@@ -80,7 +99,19 @@ def drive_along(
 
 
 def pulses_of(length: float, speed: float, line_rate: float, angular_step: float) -> float:
-    """Return how many pulses a drive has."""
+    """Return how many pulses a drive has.
+
+    Parameters
+    ----------
+    length : float
+        Length of the drive, m.
+    speed : float
+        Speed, m/s.
+    line_rate : float
+        Lines per second.
+    angular_step : float
+        Angle between pulses, °.
+    """
     return len(PLANES) * length / speed * line_rate * pulses_per_turn(angular_step)
 
 

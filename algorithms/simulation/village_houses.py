@@ -42,13 +42,37 @@ class Home(Site):
 
 
 def build_home(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) -> int:
-    """Put a house on the front of a plot and return the object id of its roof."""
+    """Put a house on the front of a plot and return the object id of its roof.
+
+    Parameters
+    ----------
+    scene : Scene
+        Receives the objects.
+    plot : Rect
+        The plot.
+    overhang : float
+        Overhang of the eaves, m.
+    rng : numpy.random.Generator
+        Source of chance.
+    """
     build = (_rectangle, _rectangle, _hip, _angle, _bend)[int(rng.integers(5))]
     return build(scene, plot, overhang, rng)
 
 
 def build_shed(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) -> int:
-    """Put a shed or garage with a single slope into a back corner of a plot and return the object id of its roof."""
+    """Put a shed or garage with a single slope into a back corner of a plot and return the object id of its roof.
+
+    Parameters
+    ----------
+    scene : Scene
+        Receives the objects.
+    plot : Rect
+        The plot.
+    overhang : float
+        Overhang of the eaves, m.
+    rng : numpy.random.Generator
+        Source of chance.
+    """
     long, wide = rng.uniform(3.0, 6.0), rng.uniform(2.6, 4.0)
     along, across = rng.choice((-1, 1)) * (plot.length - long - 3.0) / 2, (plot.width - wide - 3.0) / 2
     rect = plot.part(float(along), across, long, wide, np.deg2rad(rng.uniform(-6.0, 6.0)))

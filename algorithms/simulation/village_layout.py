@@ -48,7 +48,30 @@ class Village:
 def build_village(
     *, size: float, slope: float, buildings: float, trees: float, overhang: float, clutter: bool, seed: int
 ) -> Village:
-    """Make up a village. The tunables are those of :func:`.simulate_village.simulate_village`."""
+    """Make up a village. The tunables are those of :func:`.simulate_village.simulate_village`.
+
+    Parameters
+    ----------
+    size : float
+        Side of the square, m.
+    slope : float
+        Slope of the ground, °.
+    buildings : float
+        Buildings per hectare.
+    trees : float
+        Trees per hectare.
+    overhang : float
+        Overhang of the eaves, m.
+    clutter : bool
+        Whether there is clutter.
+    seed : int
+        The same seed makes the same.
+
+    Returns
+    -------
+    Village
+        The same for the same arguments.
+    """
     rng = np.random.default_rng([seed, 2])
     scene = Scene(make_relief(size, slope, _HILLS, 0.0, False, rng))
     plots = _plots(scene)

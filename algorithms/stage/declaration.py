@@ -167,6 +167,46 @@ def stage(
     :meth:`.CloudSampling.shared`. ``reference`` says what the second cloud is, of a stage that reads one. ``shows``
     is of a stage that makes a page of layers and, optionally, points: a function that returns of these layers the boxes
     (k, 2, 2), m, in which it shows every point. Elsewhere the topmost points are enough, as it is given of a survey.
+
+    Parameters
+    ----------
+    title : str
+        Title in the toolbox.
+    group : str
+        Group in the toolbox.
+    tags : str
+        Words to search for, with commas between.
+    writes : tuple of str
+        Dimensions of the points that it returns.
+    creates : tuple of str
+        Dimensions of the cloud that it makes.
+    layers : tuple of Layer
+        Vector layers that it makes.
+    measures : tuple of Measure
+        Numbers of its report.
+    input_layers : tuple of InputLayer
+        Vector layers that it reads.
+    rasters : tuple of Raster
+        Rasters that it makes.
+    files : tuple of TextFile
+        Text files that it makes.
+    selects : bool
+        Whether it returns which points stay.
+    merges : bool
+        Whether it reads several clouds.
+    reach : float or callable
+        Distance of points that decide on one, m.
+    of_whole : tuple of str
+        Values that parts of a cloud take of the whole.
+    reference : str
+        What the second cloud is.
+    shows : callable, optional
+        Boxes in which a page shows every point.
+
+    Returns
+    -------
+    callable
+        The decorator.
     """
     makes = {
         "writes": writes,

@@ -63,6 +63,77 @@ _GRANULARITIES = {"coarse": (2.0, 1.0), "medium": (1.0, 1.0), "fine": (1.0, 0.5)
 _REACH = 40.0
 
 
+_IterationDistance = Annotated[
+    Optional[float],
+    Param(
+        "Iteration distance",
+        "Largest distance from its facet at which a point joins the surface.",
+        unit="m",
+        low=0,
+        high=100,
+        open_low=True,
+        automatic=f"{DENSIFICATION.deviations:g} times the roughness of the surface, measured again in each round; "
+        f"or half of that and {GROUND.bend:g} point spacings, if that is more.",
+        advanced=True,
+    ),
+]
+
+_SweepDistance = Annotated[
+    Optional[float],
+    Param(
+        "Sweep distance",
+        "Points at most this far above or below the finished surface are ground too; 0 leaves its nodes only.",
+        unit="m",
+        low=0,
+        high=100,
+        automatic=f"{GROUND.sweep:g} times the roughness of the finished surface, the last third at most "
+        f"{GROUND.sweep_bend:g} cells; where a higher flight strip shows, twice that, at most {GROUND.misfit:g} m "
+        "more.",
+        advanced=True,
+    ),
+]
+
+_IterationAngle = Annotated[
+    Optional[float],
+    Param(
+        "Iteration angle",
+        "Largest angle between a facet and the lines to its nodes under which a point joins the surface; "
+        "larger follows steeper breaks and lets more low objects in.",
+        unit="°",
+        low=0,
+        high=90,
+        open_low=True,
+        automatic=f"{GROUND.angle:g}°, in nature {_TERRAINS['nature'][1]:g}°.",
+    ),
+]
+
+_MaxBuildingSize = Annotated[
+    Optional[float],
+    Param(
+        "Maximum building size",
+        "The shorter side of the largest building; smaller keeps more of narrow hilltops.",
+        unit="m",
+        low=1,
+        high=1000,
+        automatic=f"{USUAL_BUILDING:g} m, and any size for segments that are free-standing on nearly all sides; or "
+        "as the terrain says.",
+    ),
+]
+
+_CellSize = Annotated[
+    Optional[float],
+    Param(
+        "Grid cell size",
+        "Cell in which the lowest point is looked for.",
+        unit="m",
+        low=0.1,
+        high=100,
+        automatic="half the point spacing (coarse and medium: the whole), at least that of the granularity.",
+        advanced=True,
+    ),
+]
+
+
 @stage(
     "Classify ground points (TIN)",
     group="Terrain",
@@ -97,57 +168,10 @@ def classify_ground_tin(
             automatic="fine where points are farther apart than 1 m, else medium.",
         ),
     ] = None,
-    max_building_size: Annotated[
-        Optional[float],
-        Param(
-            "Maximum building size",
-            "The shorter side of the largest building; smaller keeps more of narrow hilltops.",
-            unit="m",
-            low=1,
-            high=1000,
-            automatic=f"{USUAL_BUILDING:g} m, and any size for segments that are free-standing on nearly all sides; or "
-            "as the terrain says.",
-        ),
-    ] = None,
-    cell_size: Annotated[
-        Optional[float],
-        Param(
-            "Grid cell size",
-            "Cell in which the lowest point is looked for.",
-            unit="m",
-            low=0.1,
-            high=100,
-            automatic="half the point spacing (coarse and medium: the whole), at least that of the granularity.",
-            advanced=True,
-        ),
-    ] = None,
-    iteration_angle: Annotated[
-        Optional[float],
-        Param(
-            "Iteration angle",
-            "Largest angle between a facet and the lines to its nodes under which a point joins the surface; "
-            "larger follows steeper breaks and lets more low objects in.",
-            unit="°",
-            low=0,
-            high=90,
-            open_low=True,
-            automatic=f"{GROUND.angle:g}°, in nature {_TERRAINS['nature'][1]:g}°.",
-        ),
-    ] = None,
-    iteration_distance: Annotated[
-        Optional[float],
-        Param(
-            "Iteration distance",
-            "Largest distance from its facet at which a point joins the surface.",
-            unit="m",
-            low=0,
-            high=100,
-            open_low=True,
-            automatic=f"{DENSIFICATION.deviations:g} times the roughness of the surface, measured again in each round; "
-            f"or half of that and {GROUND.bend:g} point spacings, if that is more.",
-            advanced=True,
-        ),
-    ] = None,
+    max_building_size: _MaxBuildingSize = None,
+    cell_size: _CellSize = None,
+    iteration_angle: _IterationAngle = None,
+    iteration_distance: _IterationDistance = None,
     edge_length: Annotated[
         Optional[float],
         Param(
@@ -160,20 +184,7 @@ def classify_ground_tin(
             advanced=True,
         ),
     ] = None,
-    sweep_distance: Annotated[
-        Optional[float],
-        Param(
-            "Sweep distance",
-            "Points at most this far above or below the finished surface are ground too; 0 leaves its nodes only.",
-            unit="m",
-            low=0,
-            high=100,
-            automatic=f"{GROUND.sweep:g} times the roughness of the finished surface, the last third at most "
-            f"{GROUND.sweep_bend:g} cells; where a higher flight strip shows, twice that, at most {GROUND.misfit:g} m "
-            "more.",
-            advanced=True,
-        ),
-    ] = None,
+    sweep_distance: _SweepDistance = None,
     keep_ground: Annotated[
         bool,
         Param(
@@ -294,6 +305,17 @@ def sweep(
     """Return which points lie within ``distance`` of the surface or are its nodes, and that distance.
 
     Where it comes from the roughness, its bend is tied to ``scale`` (m), and points of higher strips are ground too.
+
+    Parameters
+    ----------
+    surface : Surface
+        The finished surface.
+    distance : float, optional
+        Largest distance from it, m; None comes from the roughness.
+    scale : float
+        Length over which the surface bends, m.
+    sampling : CloudSampling
+        How the cloud was sampled.
     """
     if distance is not None:
         return surface.within(distance), distance

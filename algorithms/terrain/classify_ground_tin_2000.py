@@ -31,6 +31,35 @@ _MIN_MIRROR_REACH = 1.0
 _REACH = 60.0
 
 
+_IterationDistance = Annotated[
+    Optional[float],
+    Param(
+        "Iteration distance",
+        "Largest distance from its facet at which a point joins the surface.",
+        unit="m",
+        low=0,
+        high=100,
+        open_low=True,
+        automatic="8 times the roughness of the surface, estimated in each round; or half of that and half the "
+        "point spacing, if that is more.",
+        advanced=True,
+    ),
+]
+
+_MaxBuildingSize = Annotated[
+    float,
+    Param(
+        "Maximum building size",
+        "Cell whose lowest point starts the surface: the shorter side of the largest building. Smaller keeps more "
+        "of narrow hilltops. In lasground, the tool that the authors of 2019 used, it is 5 m in nature, 10 m in "
+        "towns, 25 m in cities and 50 m in the largest cities.",
+        unit="m",
+        low=1,
+        high=1000,
+    ),
+]
+
+
 @stage(
     "Classify ground points (TIN, as published 2000)",
     group="Terrain",
@@ -44,18 +73,7 @@ def classify_ground_tin_2000(
     return_number=None,
     number_of_returns=None,
     *,
-    max_building_size: Annotated[
-        float,
-        Param(
-            "Maximum building size",
-            "Cell whose lowest point starts the surface: the shorter side of the largest building. Smaller keeps more "
-            "of narrow hilltops. In lasground, the tool that the authors of 2019 used, it is 5 m in nature, 10 m in "
-            "towns, 25 m in cities and 50 m in the largest cities.",
-            unit="m",
-            low=1,
-            high=1000,
-        ),
-    ] = USUAL_BUILDING,
+    max_building_size: _MaxBuildingSize = USUAL_BUILDING,
     terrain_angle: Annotated[
         float,
         Param(
@@ -80,20 +98,7 @@ def classify_ground_tin_2000(
             open_low=True,
         ),
     ] = 20.0,
-    iteration_distance: Annotated[
-        Optional[float],
-        Param(
-            "Iteration distance",
-            "Largest distance from its facet at which a point joins the surface.",
-            unit="m",
-            low=0,
-            high=100,
-            open_low=True,
-            automatic="8 times the roughness of the surface, estimated in each round; or half of that and half the "
-            "point spacing, if that is more.",
-            advanced=True,
-        ),
-    ] = None,
+    iteration_distance: _IterationDistance = None,
     edge_length: Annotated[
         Optional[float],
         Param(

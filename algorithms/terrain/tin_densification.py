@@ -161,6 +161,19 @@ def grow(
 ) -> tuple[Surface, float, float]:
     """Let the TIN of the points ``start`` grow onto those that may join.
 
+    Parameters
+    ----------
+    points : ndarray of shape (n, 3)
+        Points, m.
+    start : ndarray of shape (k,), int
+        Rows of the first nodes.
+    may_join : ndarray of shape (n,), bool
+        Points that may join.
+    rules : JoinRules
+        When they join.
+    monitor : Monitor
+        Receives the progress.
+
     Returns
     -------
     surface : Surface

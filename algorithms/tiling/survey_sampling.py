@@ -32,6 +32,17 @@ def samplings_of(
     Each has the values that blocks take of the whole (``of_whole``). All is measured on windows that depend on the
     extent of the survey alone.
 
+    Parameters
+    ----------
+    pipeline : Pipeline
+        The composite.
+    survey : Survey
+        All points of all files.
+    tunables : dict of str to Any
+        Tunables of the composite by name.
+    monitor : Monitor
+        Receives the progress.
+
     Raises
     ------
     ValueError

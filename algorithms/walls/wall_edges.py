@@ -62,7 +62,21 @@ def _stretch(line: WallLine, start: np.ndarray, end: np.ndarray) -> tuple[float,
 
 
 def edge_between(start: np.ndarray, end: np.ndarray, line: WallLine, near: np.ndarray, scale: Scale) -> WallEdge:
-    """Return an edge with quality, points and precision from the points between its corners."""
+    """Return an edge with quality, points and precision from the points between its corners.
+
+    Parameters
+    ----------
+    start : ndarray of shape (2,)
+        One corner, m.
+    end : ndarray of shape (2,)
+        The next corner, m.
+    line : WallLine
+        Line of the wall.
+    near : ndarray of shape (k, 2)
+        Positions of points along and across the line, m.
+    scale : Scale
+        Spacing and noise.
+    """
     low, high = _stretch(line, start, end)
     corner = min(_CORNER, _CORNER_SHARE * (high - low))
     low, high = low + corner, high - corner

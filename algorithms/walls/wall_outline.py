@@ -141,6 +141,19 @@ def outline_roof(roof: np.ndarray, traced: list, spacing: float, limits: Limits,
 
     The parameters are those of :func:`outline_walls`. Bites out of the edge of the roof are left out where they cost
     more corners than they are worth.
+
+    Parameters
+    ----------
+    roof : ndarray of shape (n, 3)
+        Points of the roof, m.
+    traced : list
+        Traced outlines of it.
+    spacing : float
+        Point spacing, m.
+    limits : Limits
+        What walls may be like.
+    monitor : Monitor
+        Receives the progress.
     """
     sides, nothing, scale = _sides(traced, spacing), np.zeros((0, 2)), Scale(limits.tolerance, 1.0)
     sides = np.concatenate([sides, _bends(traced, sides, spacing)])
