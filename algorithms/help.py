@@ -236,7 +236,8 @@ def _field_text(declared: Field) -> str:
 def _dimensions(stage: Stage) -> str:
     own = [name for name in stage.reads if not name.startswith(REFERENCE_PREFIX)]
     if_there = [name for name in stage.optional if not name.startswith(REFERENCE_PREFIX)]
-    compared = [name[len(REFERENCE_PREFIX) :] for name in stage.reads if name.startswith(REFERENCE_PREFIX)]
+    both = (*stage.reads, *stage.optional)
+    compared = [name[len(REFERENCE_PREFIX) :] for name in both if name.startswith(REFERENCE_PREFIX)]
     rows = []
     if own:
         optional = f"; if there, {_disk_names(if_there)}" if if_there else ""

@@ -42,7 +42,8 @@ class _TakesFiles:
 
     def checkValueIsAcceptable(self, value: Any, context: Optional[QgsProcessingContext] = None) -> bool:  # noqa: N802
         """Whether ``value`` may be a point cloud or several; what it really is, :func:`cloud_path` finds out."""
-        return isinstance(value, (QgsMapLayer, QgsProperty)) or bool(value)
+        is_optional = bool(self.flags() & Qgis.ProcessingParameterFlag.Optional)
+        return isinstance(value, (QgsMapLayer, QgsProperty)) or bool(value) or is_optional
 
     def _as_this(self, copy: QgsProcessingParameterDefinition) -> QgsProcessingParameterDefinition:
         """Return ``copy`` with everything that is set after a parameter was made."""

@@ -13,6 +13,7 @@ from ..algorithms.help import as_text, with_picture
 from ..algorithms.pipeline import Pipeline
 from ..algorithms.stage import Stage
 from .paths import GROUP_ICONS, HELP, ICON, PICTURES
+from .texts import tr
 
 # The group that the toolbox shows first.
 FIRST_GROUP = "Models"
@@ -32,14 +33,14 @@ class DeclaredAlgorithm:
 
     def displayName(self) -> str:  # noqa: N802 - QGIS asks for these names
         """Return the title."""
-        return self.declared.title
+        return tr(self.declared.title)
 
     def group(self) -> str:
         """Return the group's title.
 
         QGIS sorts groups by it; the space has the models come first.
         """
-        return f" {FIRST_GROUP}" if self.declared.group == FIRST_GROUP else self.declared.group
+        return f" {tr(FIRST_GROUP)}" if self.declared.group == FIRST_GROUP else tr(self.declared.group)
 
     def groupId(self) -> str:  # noqa: N802
         """Return the group's id."""
@@ -60,7 +61,7 @@ class DeclaredAlgorithm:
 
     def shortDescription(self) -> str:  # noqa: N802
         """Return what it is for, in a sentence."""
-        return self.declared.summary
+        return tr(self.declared.summary)
 
     def helpUrl(self) -> str:  # noqa: N802
         """Return the help page, which comes with the plugin."""

@@ -29,8 +29,11 @@ from .clouds import cloud_path
 from .inputs import INPUT
 from .pickers import Picker, fill_with_classes, fill_with_names
 from .sections import Section, sections_of
-from .settings import PRESET
+from .settings import CODES, PRESET
 from .texts import tr
+
+# The parameter of a composite whose class codes are written.
+_CODES = "CODES_CODES"
 
 # Outputs that are shown at once; further ones are folded.
 _OUTPUTS = 3
@@ -71,10 +74,16 @@ class GroupedPanel(ParametersPanel):
         self._hide_empty_advanced()
         self._fold_outputs(layout)
         self._add_presets(layout)
+        self._set_codes()
+
+    def _set_codes(self) -> None:
+        """Begin with the class codes of the options."""
+        if _CODES in self.wrappers and CODES.value != CODES.default:
+            self.wrappers[_CODES].setParameterValue(CODES.value, self.processing_context)
 
     def _is_advanced(self, name: str) -> bool:
         definition = self.algorithm().parameterDefinition(name)
-        return bool(definition.flags() & Qgis.ProcessingParameterFlag.Advanced)
+        return definition is not None and bool(definition.flags() & Qgis.ProcessingParameterFlag.Advanced)
 
     def _parts(self, name: str) -> tuple[Optional[QWidget], Optional[QWidget]]:
         """Return the label and the widget of a parameter."""

@@ -24,6 +24,7 @@ from ..algorithms.tiling.settings import SETTINGS, Setting
 from .clouds import CloudParameter, CloudsParameter, cloud_path, cloud_paths
 from .crs import crs_of
 from .feedback import is_step
+from .texts import tr
 
 INPUT, INPUTS, REFERENCE, OUTPUT, REPORT = "INPUT", "INPUTS", "REFERENCE", "OUTPUT", "REPORT"
 EXTENT, CRS = "EXTENT", "CRS"
@@ -40,20 +41,23 @@ def with_setting(
 ) -> QgsProcessingParameterDefinition:
     """Return the parameter with title and tooltip of its setting."""
     setting = settings[definition.name()]
-    definition.setDescription(setting.title)
-    return with_help(definition, setting.help)
+    definition.setDescription(tr(setting.title))
+    return with_help(definition, tr(setting.help))
 
 
 def input_parameter(several: bool) -> QgsProcessingParameterDefinition:
     """Return the parameter of the cloud, or of the clouds, that a stage or chain works on."""
     if several:
-        return with_help(CloudsParameter(INPUTS, "Point clouds"), "Files or layers of points, one or more.")
-    return with_help(CloudParameter(INPUT, "Point cloud"), "File or layer of the points.")
+        return with_help(CloudsParameter(INPUTS, tr("Point clouds")), tr("Files or layers of points, one or more."))
+    return with_help(CloudParameter(INPUT, tr("Point cloud")), tr("File or layer of the points."))
 
 
 def reference_parameter(stage: Stage) -> QgsProcessingParameterDefinition:
     """Return the parameter of the second cloud that a stage reads."""
-    return with_help(CloudParameter(REFERENCE, "Reference point cloud"), f"File or layer. {stage.reference}")
+    definition = CloudParameter(REFERENCE, tr("Reference point cloud"))
+    if not stage.needs_reference:
+        definition.setFlags(definition.flags() | Qgis.ProcessingParameterFlag.Optional)
+    return with_help(definition, f"{tr('File or layer.')} {tr(stage.reference)}")
 
 
 def input_paths(
@@ -72,10 +76,10 @@ def extent_parameter() -> QgsProcessingParameterDefinition:
 
 def crs_parameter(default: Optional[str] = None) -> QgsProcessingParameterDefinition:
     """Return the parameter of the coordinate reference system of clouds that name none."""
-    definition = QgsProcessingParameterCrs(CRS, "Coordinate reference system", default, optional=True)
+    definition = QgsProcessingParameterCrs(CRS, tr("Coordinate reference system"), default, optional=True)
     definition.setFlags(definition.flags() | Qgis.ProcessingParameterFlag.Advanced)
-    of_clouds = "Of clouds that name none, and of their results. Clouds that name one keep it."
-    return with_help(definition, "Of the simulated cloud." if default else of_clouds)
+    of_clouds = tr("Of clouds that name none, and of their results. Clouds that name one keep it.")
+    return with_help(definition, tr("Of the simulated cloud.") if default else of_clouds)
 
 
 def given_crs(

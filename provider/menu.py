@@ -31,21 +31,40 @@ def find_in_view_text() -> str:
 
 def add_menu(iface: Any) -> Callable[[], None]:
     """Add the menu and the toolbar button; return what takes them away again."""
-    find = QAction(QIcon(str(GROUP_ICONS / "buildings.svg")), find_in_view_text(), iface.mainWindow())
+    find = _action(iface, find_in_view_text(), GROUP_ICONS / "buildings.svg", lambda: open_dialog(iface))
     find.setToolTip(tr("Find the buildings of the active point cloud within the map view"))
-    find.triggered.connect(lambda: open_dialog(iface))
-    check = QAction(QIcon(str(ICON)), tr("Check installation…"), iface.mainWindow())
-    check.triggered.connect(lambda: _check_installation(iface))
-    for action in (find, check):
+    view = _action(iface, tr("Show models in 3D"), GROUP_ICONS / "3d.svg", lambda: _show_in_3d(iface))
+    sample = _action(iface, tr("Open sample data"), GROUP_ICONS / "simulation.svg", lambda: _open_sample(iface))
+    check = _action(iface, tr("Check installation…"), ICON, lambda: _check_installation(iface))
+    actions = (find, view, sample, check)
+    for action in actions:
         iface.addPluginToMenu(MENU, action)
     iface.addToolBarIcon(find)
 
     def remove() -> None:
         iface.removeToolBarIcon(find)
-        for action in (find, check):
+        for action in actions:
             iface.removePluginMenu(MENU, action)
 
     return remove
+
+
+def _action(iface: Any, text: str, icon: Path, run: Callable[[], None]) -> QAction:
+    action = QAction(QIcon(str(icon)), text, iface.mainWindow())
+    action.triggered.connect(run)
+    return action
+
+
+def _show_in_3d(iface: Any) -> None:
+    from .view3d import show_view
+
+    show_view(iface)
+
+
+def _open_sample(iface: Any) -> None:
+    from .sample import open_sample
+
+    open_sample(iface)
 
 
 def _check_installation(iface: Any) -> None:

@@ -17,6 +17,7 @@ from qgis.core import (
 )
 
 from ..algorithms.stage import Stage, Tunable
+from .texts import tr
 
 _NUMBERS = {float: Qgis.ProcessingNumberParameterType.Double, int: Qgis.ProcessingNumberParameterType.Integer}
 
@@ -35,23 +36,23 @@ def label(tunable: Tunable) -> str:
     """Return the label with its unit, and for automatic numbers how to ask for it."""
     facts = [tunable.param.unit] if tunable.param.unit else []
     if tunable.is_automatic:
-        facts.append(f"empty = {tunable.param.unset}")
-    return f"{tunable.param.label} ({', '.join(facts)})" if facts else tunable.param.label
+        facts.append(f"{tr('empty')} = {tr(tunable.param.unset)}")
+    return f"{tr(tunable.param.label)} ({', '.join(facts)})" if facts else tr(tunable.param.label)
 
 
 def plain_label(tunable: Tunable) -> str:
     """Return the label with its unit, for a dialog whose fields show what an empty one means."""
     param = tunable.param
-    return f"{param.label} ({param.unit})" if param.unit else param.label
+    return f"{tr(param.label)} ({param.unit})" if param.unit else tr(param.label)
 
 
 def help_text(tunable: Tunable) -> str:
     """Return the tooltip: what the tunable does, its range, what automatic means."""
-    parts = [tunable.param.help]
+    parts = [tr(tunable.param.help)]
     if tunable.param.bounds:
         parts.append(f"Range: {tunable.param.bounds}.")
     if tunable.is_automatic:
-        parts.append(tunable.param.unset_text)
+        parts.append(tr(tunable.param.unset_text))
     return " ".join(parts)
 
 

@@ -110,7 +110,10 @@ class PipelineAlgorithm(CheckedAlgorithm, QgsProcessingModelAlgorithm):
     def _mend_parameters(self) -> None:
         """Let the input take any path, and name outputs by their names instead of their titles."""
         # A model's file holds no tooltips.
-        helps = {name: definition.help() for name, definition in pipeline_parameters(self.pipeline).items()}
+        shown = pipeline_parameters(self.pipeline)
+        # In the language of QGIS, which the file is not in.
+        self._titles = {name: definition.description() for name, definition in shown.items()}
+        helps = {name: definition.help() for name, definition in shown.items()}
         helps.update({input_layer_name(layer): layer.help for layer in self.pipeline.input_layers.values()})
         mended = [self._mended(definition, helps) for definition in self.parameterDefinitions()]
         order = [output.name.upper() for output in sorted(self.pipeline.outputs, key=_rank)]
@@ -133,6 +136,7 @@ class PipelineAlgorithm(CheckedAlgorithm, QgsProcessingModelAlgorithm):
             return reference_parameter(self.pipeline.compared)
         mended = definition.clone()
         mended.setHelp(helps.get(definition.name(), definition.help()))
+        mended.setDescription(self._titles.get(definition.name(), definition.description()))
         if definition.isDestination():
             facts = definition.metadata()
             made = self.childAlgorithm(facts["_modelChildId"]).modelOutput(facts["_modelChildOutputName"])

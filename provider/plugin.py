@@ -11,6 +11,7 @@ from qgis.core import Qgis, QgsApplication, QgsMessageLog, QgsProcessingRegistry
 
 from .provider import Provider
 from .settings import add_options
+from .texts import install_translation
 
 # Tab of the log messages.
 LOG = "LiDAR Buildings"
@@ -30,6 +31,7 @@ class Plugin:
 
     def initProcessing(self) -> None:  # noqa: N802 - QGIS asks for this name
         """Add the provider to Processing."""
+        self._translator = install_translation()
         self._add_dependencies_folder()
         self.provider = Provider()
         self._registry().addProvider(self.provider)

@@ -60,7 +60,8 @@ def sections_of(algorithm: Any) -> list[Section]:
         section = Section("")
         section.add_setting("EXTENT")
         section.labels[CRS] = tr("Coordinate reference system")
-        for tunable in algorithm.stage.tunables.values():
+        stage = getattr(algorithm, "stage", None)
+        for tunable in stage.tunables.values() if stage is not None else ():
             section.add(parameter_name(tunable), tunable)
         return [section]
     sections = _of_steps(pipeline)

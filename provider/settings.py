@@ -7,8 +7,10 @@ from typing import Any, Callable
 
 from qgis.core import QgsSettings
 
+from ..algorithms.landcover.recode_classes import CODES as AGENCIES
 from ..algorithms.presets import PRESETS
 from ..algorithms.threads import use_threads
+from .texts import tr
 
 GROUP = "LiDAR Buildings"
 
@@ -47,9 +49,10 @@ class Option:
 SCHEDULERS = Option("LIDARBUILDINGS_SCHEDULERS", "Dask schedulers that may be used (addresses, with spaces between)")
 
 PRESET = Option("LIDARBUILDINGS_PRESET", "Kind of cloud that dialogs begin with", "automatic", tuple(PRESETS))
+CODES = Option("LIDARBUILDINGS_CODES", "Class codes that dialogs begin with", next(iter(AGENCIES)), tuple(AGENCIES))
 THREADS = Option("LIDARBUILDINGS_THREADS", "Threads (empty = one for each core)")
 
-OPTIONS = (PRESET, THREADS, SCHEDULERS)
+OPTIONS = (PRESET, CODES, THREADS, SCHEDULERS)
 
 
 def apply_threads() -> None:
@@ -81,7 +84,7 @@ def add_options() -> Callable[[], None]:
 
     for option in OPTIONS:
         kind = {"valuetype": Setting.SELECTION_STORE_STRING, "options": list(option.choices)} if option.choices else {}
-        setting = Setting(GROUP, option.name, option.title, option.default, **kind)
+        setting = Setting(GROUP, option.name, tr(option.title), option.default, **kind)
         setting.read()
         ProcessingConfig.addSetting(setting)
 

@@ -59,6 +59,7 @@ from .rasters import write_raster
 from .run_log import RunLog, about_run, complete_page, run_log
 from .styles import cloud_style, layer_style, show_on_load
 from .text_files import file_parameter, write_text
+from .texts import tr
 from .vectors import SOURCE_TYPES, plain
 
 # How far the progress is when clouds are read, when the stage is done, and when the cloud is written.
@@ -118,25 +119,25 @@ class StageAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         stage = self.stage
         if stage.makes_cloud:
             cloud = QgsProcessingParameterPointCloudDestination(OUTPUT, cloud_title([stage]))
-            self.addParameter(with_help(cloud, "A .las, .laz or .copc.laz file."))
+            self.addParameter(with_help(cloud, tr("A .las, .laz or .copc.laz file.")))
         # Who wants the cloud or the numbers may do without the layers.
         optional = bool(stage.makes_cloud or stage.measures or stage.files)
         for layer in stage.layers:
             sink = QgsProcessingParameterFeatureSink(
-                layer.name.upper(), layer.title, SOURCE_TYPES[layer.geometry], optional=optional
+                layer.name.upper(), tr(layer.title), SOURCE_TYPES[layer.geometry], optional=optional
             )
             # Of layers alone the first is what the stage is for.
             optional = True
-            self.addParameter(with_help(sink, "A GeoPackage or any other vector format that QGIS writes."))
+            self.addParameter(with_help(sink, tr("A GeoPackage or any other vector format that QGIS writes.")))
         optional = optional or len(stage.rasters) > 1
         for raster in stage.rasters:
-            image = QgsProcessingParameterRasterDestination(raster.name.upper(), raster.title, optional=optional)
-            self.addParameter(with_help(image, "A GeoTIFF, tiled and compressed."))
+            image = QgsProcessingParameterRasterDestination(raster.name.upper(), tr(raster.title), optional=optional)
+            self.addParameter(with_help(image, tr("A GeoTIFF, tiled and compressed.")))
         for file in stage.files:
             self.addParameter(file_parameter(file))
         if self.stage.measures:
-            page = QgsProcessingParameterFileDestination(REPORT, "Report", "HTML files (*.html)", optional=True)
-            self.addParameter(with_help(page, "A page that shows the numbers."))
+            page = QgsProcessingParameterFileDestination(REPORT, tr("Report"), "HTML files (*.html)", optional=True)
+            self.addParameter(with_help(page, tr("A page that shows the numbers.")))
 
     def _add_numbers(self) -> None:
         """Declare the numbers that the stage returns: what automatic tunables took, and its measures."""
@@ -156,7 +157,8 @@ class StageAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         job = _Job(tunable_values(self, self.stage, parameters, context))
         if self.stage.reads_cloud:
             job.inputs = input_paths(self, self.stage.merges, parameters, context)
-        if self.stage.reads_reference:
+        is_given = self.stage.needs_reference or parameters.get(REFERENCE) not in (None, "")
+        if self.stage.reads_reference and is_given:
             job.reference = cloud_path(self, REFERENCE, parameters, context)
         job.crs = given_crs(self, parameters, context) if self.parameterDefinition(CRS) else job.crs
         if job.inputs:

@@ -53,6 +53,11 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
         super().__init__()
         self.stem, self.fields, self.is_off, self.crs = stem, fields, is_off, crs
 
+    @staticmethod
+    def file(stem: str) -> Path:
+        """Return the file of a style."""
+        return STYLES / f"{stem}.qml"
+
     def copy(self) -> Styler:
         """Return another one that does the same."""
         return Styler(self.stem, self.fields, self.is_off, self.crs)

@@ -1,12 +1,26 @@
-"""Texts of menus and messages in the language of QGIS."""
+"""Texts of menus, dialogs and messages in the language of QGIS."""
 
 from __future__ import annotations
 
-from qgis.PyQt.QtCore import QCoreApplication
+from typing import Optional
 
-_CONTEXT = "LidarBuildings"
+from qgis.core import QgsApplication
+from qgis.PyQt.QtCore import QCoreApplication, QTranslator
+
+from .paths import TRANSLATIONS
+
+CONTEXT = "LidarBuildings"
 
 
 def tr(text: str) -> str:
     """Return a text in the language of QGIS, or as it is where there is no translation."""
-    return QCoreApplication.translate(_CONTEXT, text)
+    return QCoreApplication.translate(CONTEXT, text) if text else ""
+
+
+def install_translation() -> Optional[QTranslator]:
+    """Load the translation into the language of QGIS, if there is one; it holds as long as what is returned."""
+    translator = QTranslator()
+    if not translator.load(str(TRANSLATIONS / f"lidar_buildings_{QgsApplication.locale()}.qm")):
+        return None
+    QCoreApplication.installTranslator(translator)
+    return translator

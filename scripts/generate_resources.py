@@ -13,6 +13,7 @@ from pathlib import Path
 os.environ["QT_HASH_SEED"] = "0"
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
+from extract_texts import write_texts  # noqa: E402
 from qgis.core import QgsApplication  # noqa: E402
 
 import conftest  # noqa: E402, F401 - registers the checkout as the package lidar_buildings
@@ -48,6 +49,7 @@ def _replace(folder: Path, suffix: str, wanted: set) -> None:
 
 def main() -> None:
     """Write all files and remove those of algorithms that are no more."""
+    write_texts()
     pages = help_pages()
     _replace(HELP, ".html", set(pages))
     for name, text in pages.items():

@@ -7,13 +7,15 @@ from typing import Annotated, Optional
 
 import numpy as np
 
-from ..cloud.asprs import PointClass, parse_classes
+from ..cloud.asprs import NOISE, PointClass, parse_classes
 from ..geometry.cell_outlines import outline_cells
 from ..geometry.grid import Grid, connected_cells, find_cells, grid_over
+from ..geometry.points_in_polygons import are_in_polygons
+from ..geometry.polygon_overlap import as_polygons
 from ..params import IgnoredClasses, MinBuildingArea
 from ..report.page import Row, build_page, draw_map, outcome_of, percent
-from ..stage import Field, Layer, LayerFeatures, Measure, Param, Report, stage
-from .point_matching import compared_points
+from ..stage import Field, InputLayer, Layer, LayerFeatures, Measure, Param, Report, stage
+from .point_matching import counted_points, match_points
 
 _RATES = (
     ("completeness", "completeness", "%"),
@@ -68,12 +70,24 @@ _OBJECTS = Layer(
     tags="accuracy,completeness,correctness,F-score,F1,quality,evaluation,reference,validation,IoU,overlap",
     layers=(_OBJECTS,),
     measures=_MEASURES,
+    reference="The same points with the true values; or give polygons of the true buildings.",
+    input_layers=(
+        InputLayer(
+            "reference_map",
+            "True buildings",
+            "Polygon",
+            "Polygons of the buildings in place of a reference cloud: a base map, a cadastre or an earlier result. Of "
+            "the points within, all are building, also those of crowns over a roof.",
+            optional=True,
+        ),
+    ),
 )
 def assess_buildings(
     xyz,
     classification,
-    reference_xyz,
-    reference_classification,
+    reference_xyz=None,
+    reference_classification=None,
+    reference_map=None,
     *,
     ignored_classes: IgnoredClasses = "7, 17, 18, 26, 64-67",
     cell_size: Annotated[
@@ -102,10 +116,12 @@ def assess_buildings(
         Coordinates (m) of the input.
     classification : ndarray of shape (n,)
         Classes of the input; 6 is building.
-    reference_xyz : ndarray of shape (m, 3)
+    reference_xyz : ndarray of shape (m, 3), optional
         Coordinates (m) of the reference: the same points in any order, perhaps with others.
-    reference_classification : ndarray of shape (m,)
+    reference_classification : ndarray of shape (m,), optional
         True classes.
+    reference_map : LayerFeatures, optional
+        Polygons of the true buildings, where there is no reference cloud.
 
     Returns
     -------
@@ -118,7 +134,7 @@ def assess_buildings(
     Raises
     ------
     ValueError
-        If a point of the input is not in the reference, or every point is ignored.
+        If there is no reference, a point of the input is not in the reference, or every point is ignored.
 
     Notes
     -----
@@ -135,9 +151,8 @@ def assess_buildings(
     Santos et al. (2019), Building detection from LiDAR data using entropy and the k-means concept, section 3.2.
     [santos2019]
     """
-    xyz, called, true = compared_points(
-        xyz, classification, reference_xyz, reference_classification, parse_classes(ignored_classes)
-    )
+    true_classes = _true_classes(xyz, reference_xyz, reference_classification, reference_map, classification, monitor)
+    xyz, called, true = counted_points(xyz, classification, true_classes, parse_classes(ignored_classes))
     predicted, true = called == PointClass.BUILDING, true == PointClass.BUILDING
     if cell_size is None:
         per_square_meter = len(xyz) / max(float(np.ptp(xyz[:, :2], axis=0).prod()), 1.0)
@@ -156,6 +171,21 @@ def assess_buildings(
     objects = _objects(grid, (reference, cell[true]), (result, cell[predicted]), min_area)
     monitor.progress(0.9)
     return objects, Report(values, _page(xyz, predicted, true, values, min_area))
+
+
+def _true_classes(xyz, reference_xyz, reference_classification, reference_map, classification, monitor) -> np.ndarray:
+    """Return the true class (n,) of each point of the input; what lies in no polygon of a map keeps its class."""
+    if reference_xyz is None and reference_map is None:
+        raise ValueError(
+            "There is no reference; give a point cloud (REFERENCE) or polygons of the buildings (REFERENCE_MAP)."
+        )
+    if reference_xyz is not None:
+        if reference_map is not None:
+            monitor.warn("The reference cloud is compared with; the polygons are left out.")
+        return reference_classification[match_points(xyz, reference_xyz)]
+    inside = are_in_polygons(xyz[:, :2], as_polygons(reference_map.geometries), monitor.part(0.0, 0.3))
+    others = np.where(classification == PointClass.BUILDING, PointClass.UNCLASSIFIED, classification)
+    return np.where(inside & ~np.isin(classification, NOISE), PointClass.BUILDING, others)
 
 
 def rates(predicted: np.ndarray, true: np.ndarray) -> dict[str, float]:

@@ -33,7 +33,19 @@ def compared_points(
     ValueError
         If a point is not in the reference, or none is left to compare.
     """
-    true = reference_classification[match_points(xyz, reference_xyz)]
+    return counted_points(xyz, classification, reference_classification[match_points(xyz, reference_xyz)], ignored)
+
+
+def counted_points(
+    xyz: np.ndarray, classification: np.ndarray, true: np.ndarray, ignored: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return coordinates, classes and true classes of the points whose ``true`` class (n,) is not ``ignored``.
+
+    Raises
+    ------
+    ValueError
+        If none is left to compare.
+    """
     used = ~np.isin(true, ignored)
     if not used.any():
         classes = ", ".join(str(number) for number in np.unique(true))

@@ -103,6 +103,11 @@ class Stage:
         """Whether a second cloud is compared with."""
         return any(name.startswith(REFERENCE_PREFIX) for name in (*self.reads, *self.optional))
 
+    @property
+    def needs_reference(self) -> bool:
+        """Whether it can't do without the second cloud."""
+        return any(name.startswith(REFERENCE_PREFIX) for name in self.reads)
+
     def check(self, tunables: dict[str, Any]) -> dict[str, Any]:
         """Return all tunables, given ones checked, the others at their default."""
         unknown = sorted(set(tunables) - set(self.tunables))

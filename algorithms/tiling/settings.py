@@ -41,7 +41,7 @@ SETTINGS = by_name(
         Setting(
             "CRS",
             "Coordinate reference system",
-            "Of clouds that name none, and of what is made of them. Clouds that name one keep it.",
+            "Of clouds that name none, and of their results. Clouds that name one keep it.",
         ),
         Setting(
             "BLOCK_SIDE",

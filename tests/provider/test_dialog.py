@@ -10,7 +10,7 @@ from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.presets import PRESETS
 from lidar_buildings.provider.pickers import Picker, fill_with_classes, with_class
 from lidar_buildings.provider.sections import Section, sections_of
-from lidar_buildings.provider.settings import PRESET, THREADS, apply_threads
+from lidar_buildings.provider.settings import CODES, PRESET, THREADS, apply_threads
 
 
 @pytest.fixture
@@ -80,7 +80,7 @@ def test_a_preset_fills_fields_and_another_one_empties_them(dialog):
 @pytest.fixture
 def options():
     """The options of the plugin, as they were before afterwards."""
-    before = {one: one.value for one in (PRESET, THREADS)}
+    before = {one: one.value for one in (PRESET, CODES, THREADS)}
     yield before
     for one, value in before.items():
         one.set(value)
@@ -135,6 +135,12 @@ def test_without_parts_of_qgis_its_own_dialog_is_shown(provider, window, monkeyp
 
     monkeypatch.setitem(sys.modules, "lidar_buildings.provider.dialog", None)
     assert provider.algorithm("detectbuildings").create().createCustomParametersWidget(window) is None
+
+
+def test_every_algorithm_has_a_dialog(provider, window):
+    """That of *Cut into tiles* was an error."""
+    for name in ("cutintotiles", "simulatetown", "reportbuildings", "mergeclouds", "modelcityblock"):
+        assert provider.algorithm(name).create().createCustomParametersWidget(window) is not None
 
 
 @pytest.mark.parametrize("name", ["detectbuildingsintiles", "mergeclouds"])
@@ -209,3 +215,9 @@ def test_an_empty_extent_says_what_that_is(dialog):
     (line,) = dialog.mainWidget().wrappers["EXTENT"].wrappedWidget().findChildren(QgsFilterLineEdit)
     assert line.text() in ("", "the whole cloud")
     assert dialog.mainWidget().wrappers["EXTENT"].parameterValue() in (None, "")
+
+
+def test_dialogs_begin_with_the_class_codes_in_the_options(provider, window, options):
+    CODES.set("AHN (Netherlands)")
+    panel = provider.algorithm("detectbuildings").create().createCustomParametersWidget(window).mainWidget()
+    assert panel.wrappers["CODES_CODES"].parameterValue() == "AHN (Netherlands)"

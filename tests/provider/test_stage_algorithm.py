@@ -25,7 +25,7 @@ from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.provider import clouds, errors, memory, named_clouds
 from lidar_buildings.provider.crs import crs_of, crs_units
-from lidar_buildings.tests.provider.helpers import run
+from lidar_buildings.tests.provider.helpers import run, squares
 
 
 def heights(path):
@@ -426,3 +426,17 @@ def test_files_of_the_stage_are_gone_from_memory(provider, context, log, town_fi
     run("toylift", {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz")}, context, log)
     Path(town_file).unlink()
     assert np.isfinite(read_cloud(out / "a.laz").get("xyz")).all()
+
+
+def test_buildings_are_assessed_with_polygons_in_place_of_a_reference_cloud(provider, context, log, town_file, out):
+    polygons = squares((85_006.5, 446_006.5), size=7.0)
+    context.project().addMapLayer(polygons)
+    given = {"INPUT": str(town_file), "REFERENCE_MAP": polygons, "REPORT": str(out / "a.html")}
+    result = run("assessbuildings", given, context, log)
+    assert result["CELLS_COMPLETENESS"] == 100.0
+    assert result["CELLS_CORRECTNESS"] == 100.0
+    algorithm = provider.algorithm("assessbuildings").create()
+    accepted, why = algorithm.checkParameterValues({"INPUT": str(town_file)}, context)
+    assert accepted, why
+    with pytest.raises(QgsProcessingException, match="There is no reference"):
+        run("assessbuildings", {"INPUT": str(town_file)}, context, log)

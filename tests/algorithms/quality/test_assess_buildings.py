@@ -5,7 +5,7 @@ import pytest
 
 from lidar_buildings.algorithms.geometry.grid import grid_over
 from lidar_buildings.algorithms.quality.assess_buildings import assess_buildings, rates, topmost_points
-from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.algorithms.stage import LayerFeatures, Monitor
 
 
 def block(west, south, size, elevation, step=0.5):
@@ -175,3 +175,35 @@ def test_automatic_cell_size_is_told_and_page_has_the_figures():
     assert "93.8 %" in report.html  # 15 of 16
     assert "15 of 16 points" in report.html
     assert set(report.values) == {measure.name for measure in assess_buildings.stage.measures}
+
+
+def square(west, south, size):
+    return [np.array([[0, 0], [size, 0], [size, size], [0, size], [0, 0]]) + [west, south]]
+
+
+def test_polygons_are_a_reference_too():
+    """People have base maps, and no second cloud: it refused them, though the first steps said otherwise."""
+    ground = block(0, 0, 30, 0.0)
+    first, second, invented = block(1, 1, 4, 5.0), block(10, 1, 4, 5.0), block(20, 20, 5, 6.0)
+    noise = np.array([[2.0, 2, 90]])
+    xyz = np.concatenate([ground, first, second, invented, noise])
+    classes = np.repeat([2, 6, 1, 6, 18], [len(part) for part in (ground, first, second, invented, noise)])
+    keys = LayerFeatures([square(1, 1, 4), square(10, 1, 4)], {"id": [1, 2]})
+    objects, report = assess_buildings(xyz, classes, reference_map=keys, cell_size=0.5)
+    values = report.values
+    assert (values["cells_hits"], values["cells_misses"], values["cells_false"]) == (64, 64, 100)
+    assert (values["objects_true"], values["objects_predicted"]) == (2, 2)
+    assert objects.columns["kind"] == ["found", "missed", "invented"]
+    # The ground below the two roofs is within the polygons, noise above is not counted.
+    assert values["points_hits"] == 64
+    assert values["points_misses"] == 64 + 128
+
+
+def test_without_a_reference_it_says_so_and_of_two_the_cloud_counts():
+    xyz, classes = block(0, 0, 5, 0.0), np.full(100, 2)
+    with pytest.raises(ValueError, match="There is no reference"):
+        assess_buildings(xyz, classes)
+    monitor, keys = Monitor(), LayerFeatures([square(0, 0, 2)], {})
+    values = assess_buildings(xyz, classes, xyz, classes, keys, monitor=monitor)[1].values
+    assert values["points_misses"] == 0
+    assert monitor.warnings == ["The reference cloud is compared with; the polygons are left out."]

@@ -1,0 +1,110 @@
+"""A small town to try everything with: made in seconds, and opened as a project."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from qgis.core import (
+    QgsApplication,
+    QgsCoordinateReferenceSystem,
+    QgsPointCloudAttributeByRampRenderer,
+    QgsPointCloudLayer,
+    QgsProject,
+    QgsStyle,
+)
+from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtWidgets import QApplication
+
+from ..algorithms.cloud.asprs import PointClass
+from ..algorithms.cloud.cloud import Cloud
+from ..algorithms.cloud.files import write_cloud
+from ..algorithms.run import run_stage
+from ..algorithms.stages import STAGES
+from .named_clouds import SIMULATED_CRS, named
+from .styles import Styler, show_in_3d
+from .texts import tr
+
+# Side (m) and density (points/m²) of the town: about 2 MB, with houses, a hall, a river with bridges, and plants.
+_SIZE, _DENSITY = 110.0, 12.0
+
+# Files in the folder of the sample: the town as a scanner sees it, the truth, and the project.
+TOWN, TRUTH, PROJECT = "town.copc.laz", "town_truth.copc.laz", "town.qgz"
+
+
+def sample_folder() -> Path:
+    """Return the folder of the profile in which the sample is kept."""
+    return Path(QgsApplication.qgisSettingsDirPath()) / "lidar_buildings_sample"
+
+
+def open_sample(iface: Any) -> None:
+    """Make the town, if it is not there, and open it in a new project; a changed project is saved first, or kept."""
+    if not iface.newProject(True):
+        return
+    QApplication.setOverrideCursor(Qt.CursorShape.WaitCursor)
+    try:
+        make_sample(sample_folder())
+        fill_project(QgsProject.instance(), sample_folder())
+    finally:
+        QApplication.restoreOverrideCursor()
+    iface.mapCanvas().zoomToFullExtent()
+    iface.messageBar().pushInfo(
+        tr("Sample data"), tr("A simulated town without classes. Choose Plugins ▸ LiDAR Buildings ▸ Find buildings.")
+    )
+
+
+def make_sample(folder: Path) -> None:
+    """Write the town and its truth into a folder, where they are missing."""
+    if (folder / TOWN).is_file() and (folder / TRUTH).is_file():
+        return
+    folder.mkdir(parents=True, exist_ok=True)
+    made = run_stage(STAGES["simulate_town"], size=_SIZE, density=_DENSITY).cloud
+    truth = named(made, QgsCoordinateReferenceSystem(SIMULATED_CRS))
+    write_cloud(truth, folder / TRUTH)
+    write_cloud(_as_scanned(truth), folder / TOWN)
+
+
+def _as_scanned(truth: Cloud) -> Cloud:
+    """Return a cloud in which no point is classified, and none has the number of its object."""
+    cloud = truth.copy()
+    cloud.set("classification", np.full(len(cloud), PointClass.UNCLASSIFIED, np.uint8))
+    for name in ("segment_id", "cluster_id"):
+        if cloud.has(name):
+            cloud.set(name, np.zeros(len(cloud), np.int32))
+    return cloud
+
+
+def fill_project(project: QgsProject, folder: Path) -> None:
+    """Add the town, colored by its elevation, and the truth, switched off, to an empty project, and save that."""
+    crs = QgsCoordinateReferenceSystem(SIMULATED_CRS)
+    project.setCrs(crs)
+    town = QgsPointCloudLayer(str(folder / TOWN), tr("Town"), "copc")
+    truth = QgsPointCloudLayer(str(folder / TRUTH), tr("Town, true classes"), "copc")
+    for layer in (truth, town):
+        if not layer.crs().isValid():
+            layer.setCrs(crs)
+        project.addMapLayer(layer)
+    truth.loadNamedStyle(str(Styler.file("classification")))
+    _color_by_elevation(town)
+    for layer in (truth, town):
+        show_in_3d(layer)
+    project.layerTreeRoot().findLayer(truth.id()).setItemVisibilityChecked(False)
+    project.write(str(folder / PROJECT))
+
+
+def _color_by_elevation(layer: QgsPointCloudLayer) -> None:
+    """Color a cloud from its lowest to its highest point."""
+    low, high = layer.statistics().minimum("Z"), layer.statistics().maximum("Z")
+    renderer = QgsPointCloudAttributeByRampRenderer()
+    renderer.setAttribute("Z")
+    renderer.setMinimum(low)
+    renderer.setMaximum(high)
+    shader = renderer.colorRampShader()
+    shader.setSourceColorRamp(QgsStyle.defaultStyle().colorRamp("Viridis"))
+    shader.setMinimumValue(low)
+    shader.setMaximumValue(high)
+    shader.classifyColorRamp(5)
+    renderer.setColorRampShader(shader)
+    renderer.setPointSize(0.8)
+    layer.setRenderer(renderer)

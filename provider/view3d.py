@@ -1,0 +1,36 @@
+"""A view in three dimensions of what a run made, from the side."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from qgis.core import QgsLayerTree, QgsMapLayer, QgsVector3D, QgsVectorLayer
+
+from .texts import tr
+
+# The camera: degrees from straight down, and distances in sides of what is shown.
+_PITCH, _AWAY = 55.0, 1.2
+
+
+def show_view(iface: Any) -> None:
+    """Open a 3D view with the layers of the current group alone, or with all that are visible where none has models."""
+    layers = layers_to_show(iface.layerTreeView().currentGroupNode(), iface.mapCanvas().layers())
+    if not layers:
+        iface.messageBar().pushInfo(tr("3D"), tr("There is no layer to show; run a model first."))
+        return
+    canvas = iface.createNewMapCanvas3D(tr("3D: {}").format(layers[0].name()))
+    settings = canvas.mapSettings()
+    settings.setLayers(layers)
+    extent = layers[0].extent()
+    for layer in layers[1:]:
+        extent.combineExtentWith(layer.extent())
+    middle, origin = extent.center(), settings.origin()
+    at = QgsVector3D(middle.x() - origin.x(), 0.0, -(middle.y() - origin.y()))
+    canvas.cameraController().setLookingAtPoint(at, _AWAY * max(extent.width(), extent.height(), 1.0), _PITCH, 0.0)
+
+
+def layers_to_show(group: QgsLayerTree, visible: list[QgsMapLayer]) -> list[QgsMapLayer]:
+    """Return the visible layers of a group with models, else all visible layers that can be shown in space."""
+    of_group = [node.layer() for node in group.findLayers() if node.isVisible()]
+    chosen = of_group if any(isinstance(layer, QgsVectorLayer) for layer in of_group) else visible
+    return [layer for layer in chosen if layer is not None and layer.renderer3D() is not None]

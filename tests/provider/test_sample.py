@@ -1,0 +1,54 @@
+"""The sample data, and the view in three dimensions."""
+
+import numpy as np
+from qgis.core import QgsProject, QgsVectorLayer
+
+from lidar_buildings.algorithms.cloud.files import read_cloud
+from lidar_buildings.provider.sample import PROJECT, TOWN, TRUTH, fill_project, make_sample
+from lidar_buildings.provider.view3d import layers_to_show
+
+
+def test_the_sample_is_small_has_no_classes_and_is_a_project(provider, tmp_path):
+    make_sample(tmp_path)
+    assert (tmp_path / TOWN).stat().st_size < 3e6
+    town, truth = read_cloud(tmp_path / TOWN), read_cloud(tmp_path / TRUTH)
+    assert set(town.get("classification")) == {1}
+    assert {2, 5, 6} <= set(truth.get("classification"))
+    np.testing.assert_array_equal(town.get("xyz"), truth.get("xyz"))
+    written = (tmp_path / TOWN).stat().st_mtime_ns
+    make_sample(tmp_path)
+    assert (tmp_path / TOWN).stat().st_mtime_ns == written, "it is made once"
+
+    project = QgsProject()
+    fill_project(project, tmp_path)
+    assert project.crs().authid() == "EPSG:32631"
+    again = QgsProject()
+    assert again.read(str(tmp_path / PROJECT))
+    layers = {layer.name(): layer for layer in again.mapLayers().values()}
+    assert set(layers) == {"Town", "Town, true classes"}
+    assert all(layer.isValid() and layer.crs().isValid() for layer in layers.values())
+    low, high = (layers["Town"].renderer().minimum(), layers["Town"].renderer().maximum())
+    assert low < high
+    nodes = {node.name(): node.itemVisibilityChecked() for node in again.layerTreeRoot().findLayers()}
+    assert nodes == {"Town": True, "Town, true classes": False}
+
+
+def test_models_of_the_current_group_are_shown_alone(context):
+    from qgis._3d import QgsPolygon3DSymbol, QgsVectorLayer3DRenderer
+
+    root, layers = context.project().layerTreeRoot(), []
+    for name in ("walls", "helper", "earlier", "flat"):
+        layer = QgsVectorLayer("Polygon", name, "memory")
+        if name != "flat":
+            layer.setRenderer3D(QgsVectorLayer3DRenderer(QgsPolygon3DSymbol()))
+        context.project().addMapLayer(layer, False)
+        layers.append(layer)
+    group = root.addGroup("run")
+    for layer in layers[:2]:
+        group.addLayer(layer)
+    group.addLayer(layers[3])
+    root.addLayer(layers[2])
+    root.findLayer(layers[1].id()).setItemVisibilityChecked(False)
+    visible = [layers[0], layers[2], layers[3]]
+    assert layers_to_show(group, visible) == [layers[0]]
+    assert layers_to_show(root.addGroup("empty"), visible) == [layers[0], layers[2]]
