@@ -332,7 +332,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Automatic: 4 point spacings, from 3 to 20 m; 1.5 m in clouds of matched images, which are dense.</source>
+        <source>Automatic: 4 point spacings, from 3 to 20 m.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1028,10 +1028,6 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Decks</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <source>Density of points on walls, as a share of that on open ground.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -1229,6 +1225,10 @@
     </message>
     <message>
         <source>Everything is installed; the algorithms can run.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Existing</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1820,6 +1820,14 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Keep classes</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Keep existing classes</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Keep existing ground</source>
         <translation type="unfinished"></translation>
     </message>
@@ -1857,6 +1865,18 @@
     </message>
     <message>
         <source>Keep the points that lie in polygons, within an extent, or both; all their dimensions stay.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Kept</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Kept buildings</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Kept ground</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -2912,7 +2932,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Points up to this far above the roof belong to it where they cover a small part of it only (chimneys, dormers, masts); what covers more is a tree.</source>
+        <source>Points up to this far above the roof belong to it where they cover a small part of it only (chimneys, dormers, masts). Trees cover more.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -2985,6 +3005,10 @@
     </message>
     <message>
         <source>Pulse density</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Put back the classes that 'Keep classes' remembered.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3100,6 +3124,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Remember classes of a cloud that comes classified, for 'Restore classes' to put them back.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Remove</source>
         <translation type="unfinished"></translation>
     </message>
@@ -3113,6 +3141,10 @@
     </message>
     <message>
         <source>Residual of common walls and ends</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Restore classes</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3344,11 +3376,11 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Share of the points of a segment that must lie in the other one, more than 0.5, so that each segment has one counterpart at most. 0.8 is usual.</source>
+        <source>Share of the points at about the height of a building's roof, within the clearance above and below, that must lie on roof surfaces. In crowns with a smooth side it is less. 0 takes any; in clouds of matched images it is not examined.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Share of the points up to a meter above and below a building's roof that must lie on roof surfaces; in clouds of matched images of the points inside its edges. In crowns with a smooth side it is less. 0 takes any.</source>
+        <source>Share of the points of a segment that must lie in the other one, more than 0.5, so that each segment has one counterpart at most. 0.8 is usual.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -4032,7 +4064,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Where bridges are looked for: everywhere, or only within 20 m of classified water (9), in a fraction of the time.</source>
+        <source>Where bridges are looked for: everywhere, or only around level surfaces over a gap in the ground with ground at their height at both ends, in a fraction of the time.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -4045,6 +4077,10 @@
     </message>
     <message>
         <source>Where the clouds after the first go, in their order and separated by semicolons; empty for a cloud that stays. Six numbers: rotations about the axes to the east, to the north and up (°, in this order, counterclockwise), then offsets to the east, to the north and up (m). Or the 16 numbers of a 4x4 matrix, row by row. Or the path of a text file with either. '0 0 90 5 0 0; ; matrix.txt' turns and moves the second cloud, leaves the third and moves the fourth as the file says.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Which classes of a cloud that comes classified stay as they are: none, ground (2), ground and buildings (6), or all but 0 and 1. Where ground or buildings are kept, no others are looked for.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
