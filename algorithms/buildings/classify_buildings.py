@@ -37,9 +37,6 @@ ENTROPY = EntropyRules()
 # 0.01, half of what K-means moves the threshold by.
 _MEASURED = 256
 
-# Reach of neighborhoods, and of the surroundings of a cluster (m).
-_REACH = 5.0
-
 
 @stage(
     "Classify buildings",
@@ -47,7 +44,8 @@ _REACH = 5.0
     tags="building,entropy,k-means,unsupervised,classification,lasclassify",
     writes=("classification", "entropy", "cluster_entropy", "confidence", "reason"),
     measures=MEASURES,
-    reach=_REACH,
+    # Of neighborhoods, and of the surroundings of a cluster.
+    reach=5.0,
     of_whole=MEAN_ENTROPIES,
 )
 def classify_buildings(

@@ -11,7 +11,8 @@ from ..stage import Param, stage
 from .cluster_decisions import decide_by_entropy, no_clusters, written_to_points
 from .cluster_entropies import cluster_entropies
 from .cluster_report import MEASURES, Clusters, build_report
-from .entropy_split import MEAN_ENTROPIES, k_means, split_of_whole, two_means
+from .entropy_split import MEAN_ENTROPIES, split_of_whole
+from .two_means import k_means, two_means
 
 # A covariance of full rank takes more than three points; three are the fewest that have eigenvalues to compare.
 _MIN_NEIGHBORS = 3

@@ -13,11 +13,12 @@ from ..geometry.grid import raster_cells, refuse_sparse
 from ..params import MinBuildingArea, PointDensity, PointSource
 from ..rules import rule
 from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.kinds import IMAGES, LASER
 from ..segmentation.top_surface import TopSurface
 from ..stage import Param, stage
-from .building_columns import COLUMNS, ColumnPoints, Columns, column_size
+from .building_columns import ColumnPoints, Columns, column_size
 from .roof_coverage import Coverage, cells_with, covered_cells, mostly_roof, numbered, renumbered, roof_top
-from .roof_extent import IMAGE_ROOFS, RoofExtent, amid_rough, without_vehicles
+from .roof_extent import RoofExtent, amid_rough, without_vehicles
 
 
 @dataclass(frozen=True)
@@ -33,16 +34,14 @@ COMPLETION = CompletionRules()
 # Largest gap that is closed (m), the bound of the tunable.
 _MOST_GAP = 20.0
 
-# Gaps of 3 to 20 m are closed from both sides; usual clouds have the least (m).
-_REACH = 10.0
-
 
 @stage(
     "Complete buildings",
     group="Buildings",
     tags="building,roof,facade,chimney,dormer,attach",
     writes=("classification", "cluster_id", "confidence", "reason"),
-    reach=lambda tunables: tunables["gap"] or _REACH,
+    # Gaps are closed from both sides; usual clouds have the least.
+    reach=lambda tunables: tunables["gap"] or 10.0,
 )
 def complete_buildings(
     xyz,
@@ -239,7 +238,7 @@ def _coverage_in_scan(roofs: _Roofs, limits: _Limits) -> Coverage:
     refuse_sparse(roofs.xyz, cell_size)
     margin = int(np.ceil(limits.gap / cell_size)) + 2
     cell = raster_cells(roofs.xyz[:, :2], cell_size, margin)
-    raised = (roofs.height >= COLUMNS.wall_foot) & roofs.may_stand
+    raised = (roofs.height >= LASER.foot) & roofs.may_stand
     # Multipath through a skylight is no ground that shows in it.
     covered = covered_cells(cell, roofs.is_roof, ~raised & ~roofs.is_noise, limits.gap, cell_size)
     building, refused = numbered(covered, limits.min_area, cell_size)
@@ -265,9 +264,9 @@ def _coverage_in_images(roofs: _Roofs, limits: _Limits) -> Coverage:
     building, refused = without_vehicles(extent, building, refused)
     building = renumbered(np.bincount(building.ravel()) > 0)[building]
     # Nothing is seen beneath a roof but its own walls, down to their feet.
-    raised = (roofs.height >= COLUMNS.wall_foot) | (building[cell] > 0)
+    raised = (roofs.height >= LASER.foot) | (building[cell] > 0)
     building = extent.faces(building)
-    raised |= (building[cell] > 0) & (roofs.height >= IMAGE_ROOFS.foot)
+    raised |= (building[cell] > 0) & (roofs.height >= IMAGES.foot)
     top = roof_top(cell, roofs.xyz[:, 2], roofs.is_roof, covered)
     return Coverage(cell, surface.size, building, refused, top, raised & roofs.may_stand)
 

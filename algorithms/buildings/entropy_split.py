@@ -1,14 +1,13 @@
-"""Two mean entropies, of buildings and of everything else: by two means, or held by reference values."""
+"""Two mean entropies, of buildings and of everything else, held by reference values."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, Optional
+from typing import Callable
 
 import numpy as np
 
 from ..neighborhoods.covariance import shannon_entropy_lps, symmetric_eigenvalues
-from ..packages import cluster
 from ..rules import rule
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Monitor
@@ -18,10 +17,7 @@ from ..stage import Monitor
 class SplitRules:
     """How two mean entropies are found."""
 
-    same: float = rule(1e-3, "entropy", "means closer together are equal: clusters differ by 0.01 and more")
     weight: int = rule(100, "clusters", "chosen: a handful of clusters can not move a reference, thousands can")
-    starts: int = rule(10, "runs", "of K-means, of which the best counts: the default of scikit-learn for years")
-    rounds: int = rule(100, "rounds", "bound of two means, which settle in a few")
     simulated: int = rule(500, "points", "statistics: more change the reference entropies by less than 0.01")
 
 
@@ -70,45 +66,6 @@ def split_of_whole(sampling: CloudSampling, measure: Callable[[], Split]) -> Spl
     return split
 
 
-def two_means(means: np.ndarray, monitor: Monitor) -> Split:
-    """Separate the clusters' mean entropies (m,) in two so that the sum of squares within both classes is least.
-
-    This is what two-class K-means approaches by rounds. In one dimension each class is an interval, so that trying
-    every gap between the sorted values finds the optimum.
-    """
-    known = np.sort(means[np.isfinite(means)])
-    alike = _alike(known, monitor)
-    if alike is not None:
-        return alike
-    n_low = np.flatnonzero(np.diff(known) > 0) + 1
-    low = np.cumsum(known)[n_low - 1] / n_low
-    high = (known.sum() - n_low * low) / (len(known) - n_low)
-    # The sum of squares between the classes is greatest where that within them is least.
-    best = np.argmax(n_low * (len(known) - n_low) * (high - low) ** 2)
-    return Split(float(low[best]), float(high[best]))
-
-
-def k_means(means: np.ndarray, monitor: Monitor) -> Split:
-    """Separate the clusters' mean entropies (m,) by scikit-learn's K-means with two classes, from ten random starts."""
-    known = np.sort(means[np.isfinite(means)])
-    alike = _alike(known, monitor)
-    if alike is not None:
-        return alike
-    found = cluster.KMeans(n_clusters=2, n_init=SPLIT.starts, random_state=0).fit(known[:, None])
-    building, other = np.sort(found.cluster_centers_.ravel())
-    return Split(float(building), float(other))
-
-
-def _alike(known: np.ndarray, monitor: Monitor) -> Optional[Split]:
-    """Return the split of ascending mean entropies that can't be separated, and say so; None where they can."""
-    if len(known) >= 2 and np.ptp(known) >= SPLIT.same:
-        return None
-    one = "is only one cluster" if len(known) < 2 else "are only clusters of the same entropy"
-    monitor.warn(f"There {one}: nothing to separate, so nothing was called a building.")
-    same = float(known.mean()) if len(known) else np.nan
-    return Split(same, same)
-
-
 def held_means(means: np.ndarray, plane: float, volume: float, monitor: Monitor) -> Split:
     """Separate the clusters' mean entropies (m,) as K-means does, from reference entropies and held by them.
 
@@ -132,7 +89,8 @@ def held_means(means: np.ndarray, plane: float, volume: float, monitor: Monitor)
     """
     known = np.sort(means[np.isfinite(means)])
     low, high = plane, volume
-    for _ in range(SPLIT.rounds):
+    # Each round but the last moves clusters to the other mean, and none moves back.
+    for _ in range(len(known) + 1):
         is_low = known <= (low + high) / 2
         before = low, high
         low = float((known[is_low].sum() + SPLIT.weight * plane) / (is_low.sum() + SPLIT.weight))

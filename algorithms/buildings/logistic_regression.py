@@ -15,8 +15,7 @@ class _Rules:
 
     ridge: float = rule(1.0, "samples", "statistics: features that say the same get no weights that cancel")
     steps: int = rule(20, "steps", "numerics: Newton's method converges in 6 to 9")
-    change: float = rule(1e-6, "", "numerics: smaller changes of weights end it")
-    digits: int = rule(6, "decimals", "numerics: last bits of other processors change no rounded weight")
+    digits: int = rule(6, "decimals", "numerics: of weights; last bits change none, smaller steps end the fit")
     block: int = rule(64, "rows", "numerics: products this small are computed by one thread, in one order")
 
 
@@ -39,14 +38,14 @@ class LogisticRegression:
         terms = _terms(features, mean, scale)
         penalty = np.full(terms.shape[1], _RULES.ridge)
         # The constant is free; the little that is left keeps a single class from an infinite one.
-        penalty[0] = _RULES.change
+        penalty[0] = 10.0**-_RULES.digits
         weights = np.zeros(terms.shape[1])
         for _ in range(_RULES.steps):
             likely = _probability(terms, weights)
             gradient = np.einsum("ij,i->j", terms, labels - likely) - penalty * weights
             step = np.linalg.solve(_curvature(terms, likely * (1 - likely)) + np.diag(penalty), gradient)
             weights = weights + step
-            if np.abs(step).max() <= _RULES.change:
+            if np.abs(step).max() <= 10.0**-_RULES.digits:
                 break
         return cls(mean, scale, np.round(weights, _RULES.digits))
 

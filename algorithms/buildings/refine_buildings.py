@@ -14,8 +14,9 @@ from ..packages import ndimage
 from ..params import PointDensity, PointSource
 from ..rules import rule
 from ..sampling.cloud_sampling import CloudSampling, not_noise
+from ..sampling.kinds import LASER
 from ..stage import Monitor, Param, stage
-from .building_columns import COLUMNS, column_size
+from .building_columns import column_size
 from .cell_features import CellPoints, cell_features
 from .scene_learning import LabeledCells, learn_halves, predict, shared_by_surfaces
 from .space_cells import SpaceCells
@@ -44,16 +45,14 @@ class _Rules:
 
 _RULES = _Rules()
 
-# Points within the distance of edges, and the cells around those around them, decide on a point (m).
-_REACH = 10.0
-
 
 @stage(
     "Refine buildings",
     group="Buildings",
     tags="building,self-training,learning,logistic regression,refine",
     writes=("classification", "cluster_id", "confidence", "reason", "building_probability"),
-    reach=_REACH,
+    # Points within the distance of edges, and the cells around those around them, decide on a point.
+    reach=10.0,
     of_whole=(_LEARNED,),
 )
 def refine_buildings(
@@ -244,7 +243,7 @@ class _Scene:
         building[tuple(of[self.is_building] for of in cell)] = self.cluster_id[self.is_building]
         outside, nearest = ndimage.distance_transform_edt(building == 0, return_indices=True)
         inside = ndimage.distance_transform_edt(building > 0)
-        may_change = self.is_raised & (self.height > COLUMNS.wall_foot)
+        may_change = self.is_raised & (self.height > LASER.foot)
         may_change &= (np.maximum(outside, inside)[cell] * size <= _RULES.edge) & (building.max() > 0)
         becomes = np.flatnonzero(may_change & ~self.is_building & (probability > _RULES.becomes))
         ceases = np.flatnonzero(may_change & self.is_building & (probability < _RULES.ceases))

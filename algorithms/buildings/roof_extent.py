@@ -21,7 +21,6 @@ class ImageRoofRules:
     rounded: float = rule(0.7, "m", "physics: matching rounds edges of roofs over the size of its windows")
     half: float = rule(0.5, "share", "of a roof's height at its edge: a step is smeared evenly to both sides")
     steep: float = rule(1.0, "m per m", "physics: smeared walls fall as steeply; soil does not")
-    foot: float = rule(0.2, "m", "physics: lower points beyond the edge of a roof are ground, kerbs and low plants")
     surface_share: float = rule(
         0.5, "share", "most of what stands within the least width of a roof surface; less around spots of crowns"
     )
@@ -122,7 +121,7 @@ class RoofExtent:
         for _ in range(max(1, round(IMAGE_ROOFS.rounded / self.surface.size))):
             above = ndimage.grey_dilation(np.where(grown > 0, self.surface.elevation, -np.inf), footprint=cross)
             falls = self.surface.elevation <= above - IMAGE_ROOFS.steep * self.surface.size
-            is_face = (grown == 0) & falls & (self.surface.height >= IMAGE_ROOFS.foot)
+            is_face = (grown == 0) & falls & (self.surface.height >= IMAGES.foot)
             grown = np.where(is_face, ndimage.grey_dilation(grown, footprint=cross), grown)
         return grown
 

@@ -22,6 +22,8 @@ class CloudKind:
     lowest_roof: float = rule(2.0, "m", "physics: mean height of the lowest roof; cars are lower")
     raised: float = rule(1.5, "m", "physics: lower points are of kerbs, bonnets of cars and low plants")
 
+    foot: float = rule(0.5, "m", "physics: lower points are of the ground, of plants, kerbs and steps")
+
     def choose(self, laser: Choice, images: Choice) -> Choice:
         """Return the one of two methods that is for clouds of this kind."""
         return images if self.is_surface else laser
@@ -30,4 +32,5 @@ class CloudKind:
 LASER = CloudKind(is_surface=False)
 
 # Sheds and carports of 2 m have rounded edges, which lower the mean over their surface; cars differ by shape.
-IMAGES = CloudKind(is_surface=True, lowest_roof=1.2, raised=1.0)
+# Walls are seen down to their feet, and ground is smooth.
+IMAGES = CloudKind(is_surface=True, lowest_roof=1.2, raised=1.0, foot=0.2)

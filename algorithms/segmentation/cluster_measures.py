@@ -21,7 +21,6 @@ class MeasureRules:
     )
     least_cell: float = rule(0.3, "m", "side of the cells in which areas are counted, at least")
     beneath: float = rule(1.0, "m", "physics: points deeper below a group lie under it and not on it")
-    beside: float = rule(0.2, "share", "of a group beside others: the edge of a dormer is, the tip of a branch is not")
 
 
 MEASURES = MeasureRules()
@@ -130,18 +129,17 @@ def grow_to_adjacent_clusters(
     Returns
     -------
     ndarray of shape (group.max() + 1,), bool
-        Groups taken. A weak one is, when a fifth of its cells are cells of groups taken or next to one.
+        Groups taken. A weak one is, when a cell of it is a cell of groups taken or next to one.
     """
     grid, owner, cell = _occupied(xyz, group, density)
     cells, which = distinct(cell)
-    size = np.maximum(np.bincount(owner, minlength=len(strong)), 1)
     near, taken, joins = np.zeros(len(cells), bool), strong.copy(), strong
     while joins.any():
         fresh = np.unique(cell[joins[owner]])
         for step in (0, *grid.around):
             there, found = find_cells(cells, fresh + step)
             near[there[found]] = True
-        joins = weak & ~taken & (np.bincount(owner, near[which], len(strong)) >= MEASURES.beside * size)
+        joins = weak & ~taken & (np.bincount(owner, near[which], len(strong)) > 0)
         taken |= joins
     return taken
 

@@ -29,7 +29,6 @@ class RoofSurfaceRules:
     """Criteria of a roof surface."""
 
     low_share: float = rule(0.1, "share", "of low points, from which a surface goes on into the ground: a ramp")
-    low: float = rule(0.5, "m", "height above ground up to which points are low")
     dense: float = rule(10.0, "points/m²", "with fewer, planes reach farther than half a meter")
     farther: float = rule(0.12, "point spacings", "fitted on thinned clouds of two towns: deviation from these planes")
     link: float = rule(2.0, "point spacings", "statistics: random points of one object are hardly ever farther apart")
@@ -47,16 +46,14 @@ class ImageSurfaceRules:
 
 SURFACE, IMAGE_SURFACE = RoofSurfaceRules(), ImageSurfaceRules()
 
-# Reach (m) of the surroundings that decide on a cluster; clusters themselves may be of any size.
-_REACH = 5.0
-
 
 @stage(
     "Segment roofs",
     group="Segmentation",
     tags="roof,plane,planar,surface growing,segmentation",
     writes=("segment_id", "cluster_id", "reason"),
-    reach=_REACH,
+    # Of the surroundings that decide on a cluster; clusters themselves may be of any size.
+    reach=5.0,
 )
 def segment_roofs(
     xyz,
@@ -154,7 +151,7 @@ def segment_roofs(
     patch[used] = find_patches(xyz[used], sampling, _Planes(density, noise, max_slope), monitor.part(0, 0.75))
 
     # 2. Those that are high and large enough, and do not go on into the ground.
-    patches = _Patches(xyz, patch, height_above_ground, density)
+    patches = _Patches(xyz, patch, height_above_ground, density, kind.foot)
     monitor.progress(0.8)
     segment_id = _renumbered(patches.number, patches.roofs(min_height, min_area))
     monitor.progress(0.85)
@@ -231,6 +228,7 @@ class _Patches:
     number: np.ndarray
     height: np.ndarray
     density: float
+    foot: float
 
     def mean(self, values: np.ndarray) -> np.ndarray:
         """Return the mean value of the points of each patch."""
@@ -247,7 +245,7 @@ class _Patches:
     @cached_property
     def is_terrain(self) -> np.ndarray:
         """Which of them go on into the ground."""
-        return self.mean(self.height < SURFACE.low) > SURFACE.low_share
+        return self.mean(self.height < self.foot) > SURFACE.low_share
 
     def roofs(self, min_height: float, min_area: float) -> np.ndarray:
         """Return which of them are high and large enough, and do not go on into the ground."""

@@ -72,22 +72,19 @@ def test_penetration_by_hand(depth, expected):
     assert penetration(xyz, group, 1.0, np.ones(12), of_pulse)[1] == pytest.approx((expected + 0.1) / 2)
 
 
-def test_groups_grow_to_adjacent_clusters_others_on_a_fifth_of_their_cells():
-    """In a row: a strong group, a weak one of five cells, one beside that, one of six; and one over a strong one."""
-    groups = [(0,), (1, 2, 3, 4, 5), (6, 7), (8, 9, 10, 11, 12, 13), (30,), (30,)]
+def test_groups_grow_to_adjacent_clusters():
+    """In a row: a strong group, three weak ones that touch, and one apart; and one over a strong one."""
+    groups = [(0,), (1, 2, 3, 4, 5), (6, 7), (8, 9, 10, 11, 12, 13), (15, 16), (30,), (30,)]
     xyz = at_cells(*[column for columns in groups for column in columns])
-    group = np.repeat(np.arange(6), [len(columns) for columns in groups])
-    strong, weak = np.isin(np.arange(6), [0, 4]), np.ones(6, bool)
-    assert np.flatnonzero(~grow_to_adjacent_clusters(xyz, group, strong, weak, 1.0)).tolist() == [3]
-    # Without the second the third is beside nothing.
-    assert np.flatnonzero(~grow_to_adjacent_clusters(xyz, group, strong, weak & (np.arange(6) != 1), 1.0)).tolist() == [
-        1,
-        2,
-        3,
-    ]
-    assert np.flatnonzero(
-        ~grow_to_adjacent_clusters(xyz, np.where(group == 1, -1, group), strong, weak, 1.0)
-    ).tolist() == [1, 2, 3]
+    group = np.repeat(np.arange(7), [len(columns) for columns in groups])
+    strong, weak = np.isin(np.arange(7), [0, 5]), np.ones(7, bool)
+    assert np.flatnonzero(~grow_to_adjacent_clusters(xyz, group, strong, weak, 1.0)).tolist() == [4]
+    # Without the second the third and fourth are beside nothing.
+    without = [1, 2, 3, 4]
+    found = grow_to_adjacent_clusters(xyz, group, strong, weak & (np.arange(7) != 1), 1.0)
+    assert np.flatnonzero(~found).tolist() == without
+    found = grow_to_adjacent_clusters(xyz, np.where(group == 1, -1, group), strong, weak, 1.0)
+    assert np.flatnonzero(~found).tolist() == without
 
 
 def test_what_lies_beneath_by_hand():
