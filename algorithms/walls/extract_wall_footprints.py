@@ -8,11 +8,9 @@ from typing import Annotated, Optional
 
 import numpy as np
 
-from ..footprints.alpha_shape import trace_outlines, without_inside
-from ..footprints.regularization import regularize_outline
 from ..geometry.grid import SparsePointsError
 from ..geometry.groups import members
-from ..geometry.line_segments import are_inside, is_inside
+from ..geometry.line_segments import is_inside
 from ..geometry.rings import perimeter, signed_area
 from ..params import MinBuildingArea, Seed
 from ..sampling.cloud_sampling import CloudSampling
@@ -22,10 +20,11 @@ from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
 from .alleys import find_alley
 from .candidate_corners import ROOF_OUTLINE, TOO_SMALL, CandidateCorners, candidate_corners
 from .cheapest_outline import Limits
-from .surroundings import Surroundings, without_nested
+from .roof_outline import RoofOutline, outline_roof
+from .surroundings import Surroundings
 from .wall_edges import WallEdge, closed
 from .wall_lines import WallLine
-from .wall_outline import WallOutline, outline_roof, outline_walls, share_seen
+from .wall_outline import WallOutline, outline_walls, share_seen
 from .wall_report import MEASURES, WALL, point_counts, wall_report
 
 ROOF = "roof"
@@ -41,12 +40,6 @@ _MOST_TOLERANCE = 2.0
 
 # An edge of which this share has points was seen.
 _SEEN = 0.5
-
-# Simplification tolerance of roof outlines (point spacings).
-_WIGGLE_SPACINGS = 2.0
-
-# Least simplification tolerance of roof outlines (m).
-_LEAST_WIGGLE = 0.3
 
 _FIELDS = (
     Field("id", int, "number of the footprint, from 1"),
@@ -260,7 +253,7 @@ def _parts_of(
 ) -> tuple[Optional[WallOutline], list]:
     """Return the outline of walls, None where too little of them was seen, and the rings of each part of a house."""
     used = outline if outline is not None and house.seen_of(outline) >= min_seen else None
-    parts = _parts(used.rings) if used is not None else house.roof_outlines(limits, monitor)
+    parts = _parts(used.rings) if used is not None else _bare_parts(house)
     return used, [rings for rings in parts if sum(signed_area(closed(ring)) for ring in rings) >= min_area]
 
 
@@ -317,13 +310,9 @@ class _Building:
         return point_spacing(self.roof) if np.ptp(self.roof, axis=0).any() else 0.0
 
     @cached_property
-    def traced(self) -> list:
-        """Outlines of the roof: a list of rings for each part, the largest first."""
-        if not self.roof_spacing:
-            return []
-        points, stands_for = without_inside(self.whole_roof, self.roof_spacing)
-        traced = trace_outlines(points, np.ones(len(points), np.int64), self.roof_spacing, stands_for=stands_for)
-        return sorted(without_nested(traced.parts if traced else []), key=lambda rings: -sum(map(signed_area, rings)))
+    def roof_outline(self) -> Optional[RoofOutline]:
+        """Outline of the roof, None where it has no area."""
+        return outline_roof(self.whole_roof, self.roof_spacing) if self.roof_spacing else None
 
     @cached_property
     def whole_roof(self) -> np.ndarray:
@@ -358,26 +347,10 @@ class _Building:
 
     def walls_outline(self, limits: Limits, seed: int, monitor: Monitor) -> Optional[WallOutline]:
         """Return the outline of the walls near the origin, None where there are too few."""
-        if not len(self.walls) or not self.traced:
+        if not len(self.walls) or self.roof_outline is None:
             return None
         rng = np.random.default_rng(seed)
-        return outline_walls(
-            self.walls, self.whole_roof, self.traced[0], self.roof_spacing, limits, self.is_party, rng, monitor
-        )
-
-    def roof_outlines(self, limits: Limits, monitor: Monitor) -> list[list[list[WallEdge]]]:
-        """Return the outlines of the roof's parts as edges of which nothing is seen, straight where they nearly are."""
-        wiggle, outset = max(_LEAST_WIGGLE, _WIGGLE_SPACINGS * self.roof_spacing), self.roof_spacing / 2
-        outlines = []
-        for rings in self.traced:
-            straight = regularize_outline(rings, wiggle, outset) or regularize_outline(rings, 2 * wiggle, outset)
-            if straight:
-                outlines.append(_bare(straight))
-            else:
-                own = np.concatenate([self.whole_roof[are_inside(self.whole_roof, rings[0])], rings[0]])
-                made = outline_roof(own, rings, self.roof_spacing, limits, monitor)
-                outlines += _parts(made) or [_bare(rings)]
-        return outlines
+        return outline_walls(self.walls, self.whole_roof, self.roof_outline, limits, self.is_party, rng, monitor)
 
 
 def _buildings(
@@ -394,10 +367,10 @@ def _buildings(
     return buildings
 
 
-def _bare(rings: list) -> list[list[WallEdge]]:
-    """Return rings as edges of which nothing was seen."""
-    nan = float("nan")
-    return [[WallEdge(a, b, 0.0, 0, nan, nan) for a, b in zip(ring, ring[1:])] for ring in rings]
+def _bare_parts(house: _Building) -> list[list[list[WallEdge]]]:
+    """Return the outlines of the parts of a roof as rings of edges of which nothing was seen."""
+    parts, nan = house.roof_outline.parts if house.roof_outline else [], float("nan")
+    return [[[WallEdge(a, b, 0.0, 0, nan, nan) for a, b in zip(ring, ring[1:])] for ring in rings] for rings in parts]
 
 
 def _parts(rings: list[list[WallEdge]]) -> list[list[list[WallEdge]]]:

@@ -8,21 +8,14 @@ from typing import Optional
 
 import numpy as np
 
-from ..footprints.regularization import regularize_outline
 from ..geometry.line_segments import nearest_edge_distances
-from ..geometry.polylines import simplify_ring
+from ..geometry.rings import perimeter
 from ..stage import Monitor
 from .cheapest_outline import Limits, OutlineCase, OutlineCells, Simplification
 from .roof_cover import RoofCover
+from .roof_outline import RoofOutline
 from .wall_edges import WallEdge, points_near
 from .wall_lines import Scale, WallLine, find_lines, merge_lines, square_up, wall_scale
-
-# Tolerance (m) of the outline of a roof when its sides are made straight.
-_WIGGLE = 0.4
-
-# Larger tolerances (times the first) for roofs whose edges have bites from holes in the cloud; the larger one is used
-# only where no outline comes of the smaller.
-_OVER_BITES = (1.5, 2.0)
 
 # Fewest points that show where a wall is, where a side of the roof makes it likely.
 _FEW = 5
@@ -87,8 +80,7 @@ def share_seen(rings: list[list[WallEdge]]) -> float:
 def outline_walls(
     walls: np.ndarray,
     roof: np.ndarray,
-    traced: list,
-    spacing: float,
+    outline: RoofOutline,
     limits: Limits,
     is_party: Callable[[np.ndarray], np.ndarray],
     rng: np.random.Generator,
@@ -100,10 +92,8 @@ def outline_walls(
     ----------
     walls, roof : ndarray of shape (n, 2), (m, 2)
         Points of walls and of the roof in plan, near the origin (m).
-    traced : list of ndarray
-        Rings of the roof's outline.
-    spacing : float
-        Mean distance between the roof's points, m.
+    outline : RoofOutline
+        The roof's outline.
     limits : Limits
         What walls may be like.
     is_party : callable
@@ -113,73 +103,26 @@ def outline_walls(
     monitor : Monitor
         Receives progress.
     """
-    perimeter = float(np.hypot(*np.diff(simplify_ring(traced[0], 0.5), axis=0).T).sum())
-    scale = wall_scale(len(walls), perimeter, limits.tolerance)
-    cover = RoofCover(roof, traced[1:])
+    exterior, *courtyards = outline.parts[0]
+    scale = wall_scale(len(walls), perimeter(exterior), limits.tolerance)
+    cover = RoofCover(roof, courtyards)
     seen = find_lines(walls, scale, limits.min_length, rng, monitor.part(0.0, 0.3))
     seen = [line for line in seen if np.median(cover.depth_at(walls[line.points])) > -_FLUSH]
     seen = square_up(merge_lines(seen, walls, scale), walls)
     if not seen:
         return None
-    sides = _sides(traced, spacing)
+    sides = outline.sides
     on_walls = np.concatenate([walls[line.points] for line in seen])
     to_roof = nearest_edge_distances(on_walls, *np.moveaxis(sides, 1, 0))
     overhang = float(np.clip(np.median(to_roof), 0.0, limits.max_overhang))
-    straight, sides = len(sides), np.concatenate([sides, _bends(traced, sides, spacing)])
     overhangs = np.where(is_party(sides), 0.0, overhang)
-    seen = [_expectation(line, sides[:straight], overhangs[:straight]) for line in seen]
+    seen = [_expectation(line, sides, overhangs) for line in seen]
     lines = [*seen, *_from_roof(seen, sides, overhangs, walls, scale)]
     near = [points_near(walls, line, scale) for line in lines]
     case = OutlineCase(cover, scale, limits, overhang)
     cells = OutlineCells(lines, near, case, monitor.part(0.3, 0.4))
     rings = cells.rings(Simplification(cells).run(monitor.part(0.4, 1.0)))
     return WallOutline(rings, overhang, lines, scale, cover.low, cover.high) if rings else None
-
-
-def outline_roof(roof: np.ndarray, traced: list, spacing: float, limits: Limits, monitor: Monitor) -> list:
-    """Return the outline of a roof as rings of edges of which nothing was seen, made as those of walls are.
-
-    The parameters are those of :func:`outline_walls`. Bites out of the edge of the roof are left out where they cost
-    more corners than they are worth.
-
-    Parameters
-    ----------
-    roof : ndarray of shape (n, 3)
-        Points of the roof, m.
-    traced : list
-        Traced outlines of it.
-    spacing : float
-        Point spacing, m.
-    limits : Limits
-        What walls may be like.
-    monitor : Monitor
-        Receives the progress.
-    """
-    sides, nothing, scale = _sides(traced, spacing), np.zeros((0, 2)), Scale(limits.tolerance, 1.0)
-    sides = np.concatenate([sides, _bends(traced, sides, spacing)])
-    lines = _from_roof([], sides, np.zeros(len(sides)), nothing, scale)
-    case = OutlineCase(RoofCover(roof, traced[1:]), scale, limits, 0.0)
-    cells = OutlineCells(lines, [nothing] * len(lines), case, monitor.part(0.0, 0.5))
-    return cells.rings(Simplification(cells).run(monitor.part(0.5, 1.0)))
-
-
-def _sides(traced: list, spacing: float) -> np.ndarray:
-    """Return the sides of the roof (k, 2, 2) (m): start and end, the building to the left."""
-    straight = (regularize_outline(traced, times * _WIGGLE, spacing / 2) for times in _OVER_BITES)
-    rings = next((rings for rings in straight if rings), None) or [simplify_ring(ring, _WIGGLE) for ring in traced]
-    return _edges_of(rings)
-
-
-def _bends(traced: list, sides: np.ndarray, spacing: float) -> np.ndarray:
-    """Return the edges (k, 2, 2) of the roof's exterior as it was seen where the straight ``sides`` go over it (m)."""
-    ring = simplify_ring(traced[0], max(_WIGGLE, 2 * spacing))
-    is_over = nearest_edge_distances(ring, *np.moveaxis(sides, 1, 0)) > _WIGGLE
-    return _edges_of([ring])[is_over[:-1] | is_over[1:]]
-
-
-def _edges_of(rings: list) -> np.ndarray:
-    """Return the edges (k, 2, 2) of closed rings."""
-    return np.concatenate([np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings])
 
 
 def _expectation(line: WallLine, sides: np.ndarray, overhangs: np.ndarray) -> WallLine:
