@@ -8,7 +8,6 @@ from typing import Annotated, Optional
 import numpy as np
 
 from ..cloud.asprs import PointClass
-from ..geometry.grid import distinct, fixed_grid_over
 from ..params import PointSource
 from ..rules import rule
 from ..sampling.cloud_sampling import CloudSampling
@@ -29,11 +28,6 @@ class GroundRules:
     )
     sweep_noise: float = rule(4.0, "deviations", "beyond which low plants make the roughness larger than noise")
     sweep_bend: float = rule(0.1, "cells", "of the finished surface, the most beyond that")
-    misfit: float = rule(0.15, "m", "physics: strips that do not fit together lie no farther above one another")
-    region: float = rule(
-        40.0, "point spacings", "side of the squares in which higher strips are separated from plants: 1600 points"
-    )
-    over_strip: float = rule(0.1, "share", "physics: the air over a higher strip is empty, over plants it is not")
     angle: float = rule(20.0, "°", "iteration angle where no kind of terrain is given")
 
 
@@ -86,9 +80,8 @@ _SweepDistance = Annotated[
         unit="m",
         low=0,
         high=100,
-        automatic=f"{GROUND.sweep:g} times the roughness of the finished surface, the last third at most "
-        f"{GROUND.sweep_bend:g} cells; where a higher flight strip shows, twice that, at most {GROUND.misfit:g} m "
-        "more.",
+        automatic=f"{GROUND.sweep:g} times the roughness of the finished surface, or the surface noise where that is "
+        f"more; the last third at most {GROUND.sweep_bend:g} cells.",
         advanced=True,
     ),
 ]
@@ -232,8 +225,8 @@ def classify_ground_tin(
     tighten them. Free-standing segments, with steps down all round, are excluded from the seeds and from densification.
 
     The final sweep adds the points within the noise of the finished surface, which the paper leaves unclassified.
-    Where strips overlap that were not adjusted to one another, the surface follows the lower one. The points of the
-    other differ from plants by the empty air over them, and are ground too.
+    Where strips overlap that were not adjusted to one another, the surface follows the lower one; 'Complete ground'
+    takes the points of the other in.
 
     In clouds of matched images walls are smeared to slopes that the surface climbs; ground points on objects narrower
     than 4.5 m, and on the feet of walls, are taken out again. Halls on slopes, whose uphill eaves are 1 m or more above
@@ -304,7 +297,7 @@ def sweep(
 ) -> tuple[np.ndarray, float]:
     """Return which points lie within ``distance`` of the surface or are its nodes, and that distance.
 
-    Where it comes from the roughness, its bend is tied to ``scale`` (m), and points of higher strips are ground too.
+    Where it comes from the roughness, its bend is tied to ``scale`` (m).
 
     Parameters
     ----------
@@ -319,19 +312,8 @@ def sweep(
     """
     if distance is not None:
         return surface.within(distance), distance
-    roughness = sampling.shared(_ROUGHNESS, lambda: surface_roughness(surface.nodes, sampling.height_resolution))
+    of_nodes = sampling.shared(_ROUGHNESS, lambda: surface_roughness(surface.nodes, sampling.height_resolution))
+    # The lowest points of a dense cloud agree better than others do.
+    roughness = max(of_nodes, sampling.noise)
     distance = min(GROUND.sweep * roughness, GROUND.sweep_noise * roughness + GROUND.sweep_bend * scale)
-    square = distinct(fixed_grid_over(surface.points, GROUND.region * sampling.spacing).number(surface.points))[1]
-    return surface.within(distance) | _of_higher_strips(surface.above(), square, distance), distance
-
-
-def _of_higher_strips(above: np.ndarray, square: np.ndarray, distance: float) -> np.ndarray:
-    """Return which points (n,) lie farther ``above`` the surface (m) than ``distance`` because their strip does.
-
-    Squares are numbered from 0, none left out.
-    """
-    top = distance + min(distance, GROUND.misfit)
-    higher = (above > distance) & (above <= top)
-    over = (above > top) & (above <= 2 * top)
-    count = [np.bincount(square[band], minlength=square.max() + 1) for band in (higher, over)]
-    return higher & (count[1] <= GROUND.over_strip * count[0])[square]
+    return surface.within(distance), distance

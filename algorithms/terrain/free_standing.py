@@ -23,15 +23,9 @@ class FreeStandingRules:
     hall_step: float = rule(2.0, "m", "physics: steps around a segment wider than usual buildings; quays are lower")
     free_edge: float = rule(0.9, "share", "of its open edge with steps down; the rest is trees against its walls")
     open_edge: float = rule(0.4, "share", "of its edge, neither hidden behind higher surfaces nor rough")
-    open_if_cut: float = rule(0.7, "share", "the same of the rest of its outline, if much of it is cut off")
     most: float = rule(
         0.5, "share", "most: of steps as high as asked for, of the edge of a part of a hall, of a machine"
     )
-    one_side: float = rule(0.35, "share", "physics: one side of four that the end of the cloud cuts off, and a little")
-    corner: float = rule(0.55, "share", "physics: two sides that the end of the cloud cuts off, and a little")
-    corner_steps: float = rule(4.0, "steps", "physics: height of the walls of such a corner: a house of two floors")
-    cut: float = rule(0.7, "share", "physics: more than half of the outline that is cut off; the rest may be terrain")
-    cut_steps: float = rule(6.0, "steps", "physics: height of the walls of the rest: a house of two floors and a roof")
     least_cells: int = rule(4, "cells", "of a segment; smaller ones are undecided, as rough cells are")
 
 
@@ -166,7 +160,7 @@ def find_free_standing(
     monitor = monitor or Monitor()
     least = max(FREE.step, FREE.steep * max(cell_size, apart))
     usual_cells, largest_cells = usual / cell_size, largest / cell_size
-    number = _smooth_segments(surface, least)
+    number = smooth_segments(surface, least)
     monitor.progress(0.3)
     segments = _measured(surface, number)
     is_free = _are_free_standing(segments, least, usual_cells, largest_cells, low_uphill)
@@ -227,23 +221,17 @@ def _bounded_by_steps(segments: _Segments, is_free: np.ndarray, least_step: np.n
         Least height (m) of any step, of which the heights of walls that are cut off are multiples.
     """
     lengths = segments.edges.lengths(is_free, least_step)
-    down = lengths.down
     # The outline of its box is no longer for a jagged edge, nor for other segments inside.
     outline = np.minimum(lengths.whole + segments.ends, 2 * segments.sides.sum(axis=0))
-    found = np.zeros(len(is_free), bool)
-    # Of a whole segment, or one that is cut off on one side, any steps count; the more is cut off, the higher ones.
-    left = outline - segments.ends
-    for most_cut, storeys, is_open in (
-        (FREE.one_side, 1.0, lengths.open >= FREE.open_edge * (lengths.whole + segments.ends)),
-        (FREE.corner, FREE.corner_steps, lengths.open >= FREE.open_if_cut * left),
-        (FREE.cut, FREE.cut_steps, lengths.open >= FREE.open_if_cut * left),
-    ):
-        high = segments.edges.lengths(is_free, np.maximum(least_step, storeys * least))
-        found |= (segments.ends <= most_cut * outline) & is_open & (high.down >= FREE.most * down)
-    return found & (down > 0) & (down >= FREE.free_edge * lengths.open)
+    # The more the end of the cloud cuts off, the higher the walls: four times as high where half of it is left.
+    left = np.maximum(outline - segments.ends, 1)
+    high = segments.edges.lengths(is_free, np.maximum(least_step, least * (outline / left) ** 2))
+    is_seen = np.minimum(lengths.open, left) >= FREE.open_edge * (lengths.whole + segments.ends)
+    is_high = (lengths.down > 0) & (high.down >= FREE.most * lengths.down)
+    return is_seen & is_high & (lengths.down >= FREE.free_edge * lengths.open)
 
 
-def _smooth_segments(surface: np.ndarray, least: float) -> np.ndarray:
+def smooth_segments(surface: np.ndarray, least: float) -> np.ndarray:
     """Label (from 1) cells that join without a step; 0 are rough cells that have steps on all sides or nearly so."""
     beside = np.isnan(surface)
     for here, other in adjacent_cells(surface.ndim):

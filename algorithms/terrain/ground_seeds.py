@@ -37,10 +37,7 @@ USUAL_BUILDING = 60.0
 
 # Directions (°) of the three grids of cells that decide together: which points share a cell decides on single bushes
 # and roofs.
-_TURNS = (0.0, 30.0, 60.0)
-
-# Where the cells of each direction begin (parts of their side): no edges of cells meet on a whole side.
-_POSITIONS = ((0.0, 0.0), (1 / 3, 2 / 3), (2 / 3, 1 / 3))
+_TURNS = tuple(np.arange(0.0, 90.0, 30.0))
 
 
 @dataclass
@@ -138,7 +135,9 @@ def seeds_by_opening(
     angles = _TURNS if _is_compact(box) else _TURNS[:1]
 
     def view(number: int, slope: Optional[np.ndarray], part: Monitor) -> _View:
-        positions = turned_in_plan(xyz, angles[number]) + np.array([*_POSITIONS[number], 0.0]) * cell_size
+        # Cells begin a third of their side farther east and south in each: no edges of them meet on a whole side.
+        begin = np.array([number, -number, 0.0]) / len(angles) % 1
+        positions = turned_in_plan(xyz, angles[number]) + begin * cell_size
         cells = _Cells(positions, box, angles[number], cell_size, spacing, low_uphill)
         return _view(cells, max_building_size, slope, part)
 

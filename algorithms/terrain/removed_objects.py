@@ -6,7 +6,7 @@ of removed cells come back if they go on into the terrain around without a step,
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +16,7 @@ from ..geometry.raster_opening import open_surface
 from ..packages import ndimage
 from ..rules import rule
 from ..stage import Monitor
+from .free_standing import smooth_segments
 
 
 @dataclass(frozen=True)
@@ -25,24 +26,17 @@ class RemovalRules:
     step: float = rule(0.1, "m", "physics: terrain has kerbs, ruts and tussocks as high within any window")
     flat_slope: float = rule(0.1, "tangent", "physics: slope that terrain may have besides the one measured around it")
     slope_share: float = rule(
-        0.4, "share", "fitted on eight ISPRS samples: of the measured slope that may come on top of it"
-    )
-    flat_rise: float = rule(
-        1.0, "m", "physics: rise of flat terrain in any window, less than the lowest of large buildings"
+        0.4, "share", "fitted on eight ISPRS samples: of the measured slope that may come on top of these"
     )
     join_slope: float = rule(0.3, "tangent", "physics: of a step at the edge of a region that joins the terrain")
-    join_share: float = rule(0.5, "share", "of the local slope that is added to it")
     joined: float = rule(0.5, "share", "most of its open edge, on which a region must join the terrain")
     level_share: float = rule(
-        0.25, "share", "physics: of a region level with the terrain around, as are banks beside a cut; objects are not"
+        0.25, "share", "of a smooth part level with the terrain around, as of a bank beside a cut; objects are not"
     )
-    least_level: int = rule(4, "cells", "of such a region: the lowest leaf of a crown may be near the ground")
     steepest_bank: float = rule(2.0, "tangent", "physics: a step beside a slope as steep as itself is a bank up to 63°")
-    large_window: float = rule(0.5, "share", "of the largest window; larger ones remove spits, not houses")
     growth: float = rule(1.25, "ratio", "of one window to the one before: three windows to a doubling")
-    smoothing: float = rule(2.0, "m", "distance over which a surface is smoothed before its slope is measured")
-    slope_scale: float = rule(
-        4.0, "m", "distance of the mean square of slopes: on crests it is the slope of the flanks"
+    smoothing: float = rule(
+        2.0, "m", "physics: bushes are as wide; surfaces are smoothed over it, slopes over twice"
     )
 
 
@@ -80,59 +74,58 @@ class ObjectRemoval:
         """Return the slope of the terrain (rise over run), measured twice, each time without the objects before."""
         first = np.full(self.surface.shape, REMOVAL.flat_slope)
         # Without free-standing objects, a low roof beside a higher one is as narrow as it is.
-        removed = self.is_free_standing | (self.removed_by_opening(first, monitor.part(0, 0.5)) > 0)
+        removed = self.is_free_standing | self.removed_by_opening(first, monitor.part(0, 0.5))
         slope = self._slope_without(removed)
         return self._slope_without(self.objects(slope, monitor.part(0.5, 1)))
 
     def objects(self, slope: np.ndarray, monitor: Monitor) -> np.ndarray:
         """Return which cells are objects on terrain of this slope."""
         objects = self.without_joined(self.removed_by_opening(REMOVAL.slope_share * slope, monitor), slope)
-        return _without_level(objects, self.is_free_standing, self.surface)
+        return self._without_level(objects)
 
     def rise(self, slope: np.ndarray) -> np.ndarray:
         """Return how far (m) terrain of such slopes may rise within a cell."""
         return REMOVAL.step + (REMOVAL.flat_slope + slope) * self.cell_size
 
     def removed_by_opening(self, slope: np.ndarray, monitor: Monitor) -> np.ndarray:
-        """Return for each cell the radius (cells) of the first window that removes it, 0 where none does.
-
-        A window removes cells that it lowers by more than terrain of this slope may rise within it.
-        """
-        removed_by = np.zeros(self.surface.shape, np.int32)
+        """Return which cells a window lowers by more than terrain of this slope may rise within it."""
+        removed = np.zeros(self.surface.shape, bool)
         opened = self.surface
         for done, radius in enumerate(self.windows, start=1):
             previous, opened = opened, open_surface(opened, radius, self.is_free_standing)
             reach = radius * self.cell_size
-            is_removed = (
-                previous - opened > REMOVAL.step + min(REMOVAL.flat_slope * reach, REMOVAL.flat_rise) + slope * reach
-            )
-            removed_by[is_removed & (removed_by == 0)] = radius
+            removed |= previous - opened > REMOVAL.step + (REMOVAL.flat_slope + slope) * reach
             monitor.progress(done / len(self.windows))
-        return removed_by
+        return removed
 
-    def without_joined(self, removed_by: np.ndarray, slope: np.ndarray) -> np.ndarray:
+    def without_joined(self, removed: np.ndarray, slope: np.ndarray) -> np.ndarray:
         """Return which cells are objects: free-standing ones, and removed ones but for regions that join the terrain.
 
         Parameters
         ----------
-        removed_by : ndarray of shape (rows, columns), int32
-            Radius of the window that removed each cell, 0 for terrain.
+        removed : ndarray of shape (rows, columns), bool
+            Cells that a window removed.
         slope : ndarray of shape (rows, columns), float64
             Slope of the terrain (rise over run).
-
-        Notes
-        -----
-        Cells that smaller windows and those that larger windows removed make regions of their own: a house is removed
-        from the spit of land that comes back.
         """
-        objects = (removed_by > 0) | self.is_free_standing
-        is_large = removed_by > REMOVAL.large_window * self.windows[-1]
-        sides = [*_sides(self.surface, slope, self.cell_size, self.spacing)]
-        for group in (objects & ~is_large, is_large):
-            region, count = ndimage.label(group)
-            is_terrain = _region_edges(region, count, objects, sides).join_terrain()
-            objects &= ~is_terrain[region] | self.is_free_standing
-        return objects
+        objects = removed | self.is_free_standing
+        region, count = ndimage.label(objects)
+        sides = _sides(self.surface, slope, self.cell_size, self.spacing)
+        is_terrain = _region_edges(region, count, objects, sides).join_terrain()
+        return objects & ~is_terrain[region] | self.is_free_standing
+
+    def _without_level(self, objects: np.ndarray) -> np.ndarray:
+        """Return the objects but for smooth parts that are no higher than the terrain around on a share of their area.
+
+        Parts end at steps: of a bank and the bushes on it, removed together, the bank comes back alone.
+        """
+        candidates = np.where(objects & ~self.is_free_standing, self.surface, np.nan)
+        part = smooth_segments(candidates, REMOVAL.join_slope * max(self.cell_size, self.spacing))
+        above = self.surface - _interpolated(self.surface, objects)
+        level, area = np.bincount(part.ravel(), (above <= REMOVAL.step).ravel()), np.bincount(part.ravel())
+        is_terrain = level >= REMOVAL.level_share * area
+        is_terrain[0] = False
+        return objects & ~is_terrain[part]
 
     def _slope_without(self, objects: np.ndarray) -> np.ndarray:
         return _slope(_interpolated(self.surface, objects), self.cell_size)
@@ -163,7 +156,7 @@ def _sides(surface: np.ndarray, slope: np.ndarray, cell_size: float, spacing: fl
     """
     bank_cells = max(1, round(spacing / cell_size))
     bank = bank_cells * cell_size
-    allowed = (REMOVAL.join_slope + REMOVAL.join_share * slope) * cell_size
+    allowed = (REMOVAL.join_slope + REMOVAL.slope_share * slope) * cell_size
     for (here, beside), (fall, fall_beyond) in zip(adjacent_cells(surface.ndim), _flanks(surface, bank_cells)):
         step = surface[here] - surface[beside]
         highest_bank = np.minimum(
@@ -194,7 +187,7 @@ class _RegionEdges:
         return is_terrain
 
 
-def _region_edges(region: np.ndarray, count: int, objects: np.ndarray, sides: list[_Side]) -> _RegionEdges:
+def _region_edges(region: np.ndarray, count: int, objects: np.ndarray, sides: Iterable[_Side]) -> _RegionEdges:
     """Return the edges of regions, numbered from 1 to ``count``, among all objects."""
     counts = np.zeros((2, count + 1), np.int64)
     for side in sides:
@@ -244,20 +237,8 @@ def _slope(surface: np.ndarray, cell_size: float) -> np.ndarray:
     axes = [axis for axis in (0, 1) if smooth.shape[axis] > 1]
     gradients = [np.gradient(smooth, cell_size, axis=axis) for axis in axes]
     squares = sum((gradient**2 for gradient in gradients), np.zeros_like(smooth))
-    return np.sqrt(ndimage.gaussian_filter(squares, REMOVAL.slope_scale / cell_size, mode="nearest"))
-
-
-def _without_level(objects: np.ndarray, is_free_standing: np.ndarray, surface: np.ndarray) -> np.ndarray:
-    """Return the objects but for regions that are no higher than the terrain around on a share of their area.
-
-    Free-standing objects stay.
-    """
-    region, _ = ndimage.label(objects & ~is_free_standing)
-    above = surface - _interpolated(surface, objects)
-    level, area = np.bincount(region.ravel(), (above <= REMOVAL.step).ravel()), np.bincount(region.ravel())
-    is_terrain = (level >= REMOVAL.level_share * area) & (area >= REMOVAL.least_level)
-    is_terrain[0] = False
-    return objects & ~is_terrain[region]
+    # On crests, over twice the distance, it is the slope of the flanks.
+    return np.sqrt(ndimage.gaussian_filter(squares, 2 * REMOVAL.smoothing / cell_size, mode="nearest"))
 
 
 def _flanks(surface: np.ndarray, apart: int) -> Iterator[tuple[np.ndarray, np.ndarray]]:

@@ -349,19 +349,13 @@ WHOLE = (
         "terrain.classify_ground_tin:last_returns",
         lambda number, numbers, usable: np.ones(len(usable), bool),
     ),
-    _out("ground: higher strips", "terrain.classify_ground_tin:_of_higher_strips", _nowhere),
     _out(
         "ground: banks", "terrain.removed_objects:REMOVAL", _set("terrain.removed_objects:REMOVAL", steepest_bank=0.0)
     ),
     _out(
-        "ground: regions of large windows apart",
-        "terrain.removed_objects:REMOVAL",
-        _set("terrain.removed_objects:REMOVAL", large_window=1.0),
-    ),
-    _out(
         "ground: regions that join the terrain",
         "terrain.removed_objects:ObjectRemoval.without_joined",
-        lambda self, removed_by, slope: (removed_by > 0) | self.is_free_standing,
+        lambda self, removed, slope: removed | self.is_free_standing,
     ),
     _out(
         "ground: free-standing segments",
@@ -375,11 +369,6 @@ WHOLE = (
         lambda segments, *_: np.zeros_like(segments.number),
     ),
     _out("free-standing: machines on halls", "terrain.free_standing:_on_roof", _nowhere),
-    _out(
-        "free-standing: cut off by two sides and more",
-        "terrain.free_standing:FREE",
-        _set("terrain.free_standing:FREE", corner=0.0, cut=0.0),
-    ),
     _out(
         "roofs: surfaces that go on into the ground",
         "segmentation.segment_roofs:SURFACE",

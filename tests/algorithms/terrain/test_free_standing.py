@@ -104,9 +104,9 @@ def test_what_has_fewer_than_four_cells_off_its_edge_is_too_rough_to_tell(side, 
 @pytest.mark.parametrize(("length", "is_object"), [(4, True), (12, False)])
 def test_what_the_terrain_is_above_on_more_than_a_tenth_of_the_edge_is_a_terrace(length, is_object):
     surface = slope(80, 80)
-    house = block(surface, slice(30, 50), slice(30, 50), 3.8)
-    surface[24:30, 30 : 30 + length] = 5.9  # a bank up to the wall
-    surface[:24] = 5.9
+    house = block(surface, slice(30, 50), slice(30, 50), 3.5)
+    surface[24:30, 30 : 30 + length] = 5.6  # a bank up to the wall
+    surface[:24] = 5.6
     assert find_free_standing(surface, 1.0, USUAL)[0][house].all() == is_object
 
 
@@ -121,9 +121,11 @@ def test_two_fifths_of_the_edge_must_be_seen(seen, is_object):
     assert find_free_standing(surface, 1.0, USUAL)[0][house].all() == is_object
 
 
-@pytest.mark.parametrize(("rows", "height", "is_object"), [(60, 1.2, True), (30, 3.8, False), (30, 4.2, True)])
-def test_a_third_of_the_edge_may_lie_where_the_cloud_ends(rows, height, is_object):
-    """A building of 25 m that crosses a cloud as long as that; half of it may, if it is no causeway."""
+@pytest.mark.parametrize(
+    ("rows", "height", "is_object"), [(60, 1.9, False), (60, 2.1, True), (30, 3.3, False), (30, 3.5, True)]
+)
+def test_a_part_of_the_edge_may_lie_where_the_cloud_ends(rows, height, is_object):
+    """A building of 25 m that crosses a cloud as long as that, if it is no causeway."""
     for turned in (np.asarray, np.transpose):
         surface = slope(rows, 80)
         crossing = block(surface, slice(None), slice(30, 55), height)
@@ -261,21 +263,20 @@ def test_terraces_and_hills_are_terrain():
 
 def test_a_house_at_the_end_of_the_cloud_stands_free_on_its_other_sides():
     surface = slope(60, 60)
-    house = block(surface, slice(0, 14), slice(20, 34), 1.5)
+    house = block(surface, slice(0, 14), slice(20, 34), 1.8)
     np.testing.assert_array_equal(find_free_standing(surface, 1.0, USUAL)[0], house)
 
 
 @pytest.mark.parametrize(
     ("rows", "columns", "lowest"),
     [
-        (slice(0, 10), slice(10, 50), 4.0),  # of its outline 0.4 is cut off
+        (slice(0, 10), slice(10, 50), 2.8),  # of its outline 0.4 is cut off
         (slice(40, 60), slice(40, 60), 4.0),  # a corner: half
-        (slice(30, 60), slice(0, 60), 6.0),  # two thirds: one side is left
-        (slice(15, 60), slice(0, 60), np.inf),  # more: it may be the terrain from which something is dug out
+        (slice(30, 60), slice(0, 60), np.inf),  # two thirds: it may be the terrain from which something is dug out
     ],
 )
 def test_the_more_of_a_building_is_cut_off_the_higher_its_walls_must_be(rows, columns, lowest):
-    for height in (1.2, 1.8, 2.2, 3.8, 4.2, 5.8, 6.2, 9.0):
+    for height in (1.2, 1.8, 2.7, 2.9, 3.8, 4.2, 9.0):
         for turned in (np.asarray, np.transpose, np.rot90):
             surface = slope(60, 60)
             building = block(surface, rows, columns, height)
@@ -302,23 +303,13 @@ def test_half_of_what_is_left_of_the_walls_must_be_high(rows, height, is_object)
     np.testing.assert_array_equal(find_free_standing(surface, 1.0, USUAL)[0], corner & is_object)
 
 
-@pytest.mark.parametrize(("seen", "is_object"), [(9, True), (7, False)])
-def test_of_what_is_cut_off_seven_tenths_of_the_rest_must_be_seen(seen, is_object):
+@pytest.mark.parametrize(("seen", "is_object"), [(13, True), (11, False)])
+def test_of_what_is_cut_off_two_fifths_of_the_whole_outline_must_be_seen(seen, is_object):
     """A corner of 20 m by 20 m, on one side behind a tower."""
     surface = slope(60, 60)
     corner = block(surface, slice(40, 60), slice(40, 60), 6.0)
     surface[28:40, 40 + seen : 60] = 30.0
     assert find_free_standing(surface, 1.0, USUAL)[0][corner].all() == is_object
-
-
-def test_machines_make_no_terrain_of_a_building_that_is_cut_off():
-    """Their edges are longer than the visible ones of the roof around them."""
-    surface = slope(60, 60)
-    building = block(surface, slice(29, 60), slice(8, 52), 4.2)
-    for row in (33, 43):
-        for column in (12, 22, 32, 42):
-            block(surface, slice(row, row + 6), slice(column, column + 6), 3.0)
-    np.testing.assert_array_equal(find_free_standing(surface, 1.0, USUAL)[0], building)
 
 
 def test_a_square_open_to_the_end_of_the_cloud_is_terrain():
@@ -330,14 +321,6 @@ def test_a_square_open_to_the_end_of_the_cloud_is_terrain():
         for column in (6, 24, 42):
             houses |= block(surface, slice(row, row + 12), slice(column, column + 12), 7.0)
     np.testing.assert_array_equal(find_free_standing(surface, 1.0, USUAL)[0], houses & square)
-
-
-def test_halves_of_a_smaller_roof_stand_together_where_the_cloud_ends(rng):
-    """Windows of its size would not fit in the cloud."""
-    surface = slope(60, 60)
-    roof = block(surface, slice(10, 60), slice(8, 60), 9.0)
-    cut_across(surface, 33, slice(8, 60), rng)
-    np.testing.assert_array_equal(find_free_standing(surface, 1.0, USUAL)[0], roof)
 
 
 @pytest.mark.parametrize("side", [40, 80])

@@ -27,58 +27,51 @@ def test_the_slope_of_a_crest_is_that_of_its_flanks_and_a_plane_keeps_its_own():
     assert (crest < 0.5 + 1e-9).all()
 
 
-def removed_square(side=10, radius=4):
+def removed_square(side=10):
     """Return a level surface of 40 by 40 cells of 1 m and what windows removed from it: a square from (15, 15)."""
-    removed_by = np.zeros((40, 40), np.int32)
-    removed_by[15 : 15 + side, 15 : 15 + side] = radius
-    return np.zeros((40, 40)), removed_by
+    removed = np.zeros((40, 40), bool)
+    removed[15 : 15 + side, 15 : 15 + side] = True
+    return np.zeros((40, 40)), removed
 
 
-def objects_of(surface, removed_by, slope=0.0, free=False):
+def objects_of(surface, removed, slope=0.0, free=False):
     everywhere = np.ones(surface.shape)
     removal = ObjectRemoval(surface, everywhere.astype(bool) & free, largest=60.0, cell_size=1.0)
-    return removal.without_joined(removed_by, slope * everywhere)
+    return removal.without_joined(removed, slope * everywhere)
 
 
 @pytest.mark.parametrize(("smooth", "stays"), [(10, False), (9, True)])
 def test_what_joins_the_terrain_on_half_of_its_edge_comes_back(smooth, stays):
     """Of a square of 10 m two sides and so much of a third join the terrain, or a little less; there are four."""
-    surface, removed_by = removed_square()
+    surface, removed = removed_square()
     surface[:15] = surface[:, :15] = -2.0
     surface[25:, 15 : 25 - smooth] = -2.0
-    np.testing.assert_array_equal(objects_of(surface, removed_by), (removed_by > 0) & stays)
-
-
-def test_what_stands_on_a_spit_objects_of_where_the_spit_comes_back():
-    surface, removed_by = removed_square(side=20, radius=16)
-    removed_by[20:26, 20:26] = 4
-    surface[20:26, 20:26] = 5.0
-    np.testing.assert_array_equal(objects_of(surface, removed_by), removed_by == 4)
+    np.testing.assert_array_equal(objects_of(surface, removed), removed & stays)
 
 
 def test_what_stands_free_stays_an_object_in_a_region_that_comes_back():
     """It has no wall there: removed by the same windows, it joins the region around."""
-    surface, removed_by = removed_square(side=20)
-    free = np.zeros(removed_by.shape, bool)
+    surface, removed = removed_square(side=20)
+    free = np.zeros(removed.shape, bool)
     free[20:26, 20:26] = True
-    np.testing.assert_array_equal(objects_of(surface, removed_by, free=free), free)
-    np.testing.assert_array_equal(objects_of(surface, np.zeros_like(removed_by), free=free), free)
+    np.testing.assert_array_equal(objects_of(surface, removed, free=free), free)
+    np.testing.assert_array_equal(objects_of(surface, np.zeros_like(removed), free=free), free)
 
 
 @pytest.mark.parametrize(("slope", "stays"), [(1.2, False), (1.9, False), (2.3, True)])
 def test_flanks_as_steep_as_the_step_make_a_bank_of_it_up_to_a_slope_of_two(slope, stays):
-    _, removed_by = removed_square()
+    _, removed = removed_square()
     rows, columns = np.mgrid[:40, :40]
     pyramid = -slope * np.maximum(np.abs(rows - 19.5), np.abs(columns - 19.5))
-    np.testing.assert_array_equal(objects_of(pyramid, removed_by), (removed_by > 0) & stays)
+    np.testing.assert_array_equal(objects_of(pyramid, removed), removed & stays)
 
 
-@pytest.mark.parametrize(("slope", "stays"), [(0.0, True), (0.5, True), (0.7, False)])
+@pytest.mark.parametrize(("slope", "stays"), [(0.0, True), (0.7, True), (0.8, False)])
 def test_on_slopes_higher_steps_are_smooth(slope, stays):
-    """A step of 0.6 m joins where terrain may rise by 0.3 m and half its slope from cell to cell."""
-    surface, removed_by = removed_square()
-    surface[removed_by > 0] = 0.6
-    np.testing.assert_array_equal(objects_of(surface, removed_by, slope), (removed_by > 0) & stays)
+    """A step of 0.6 m joins where terrain may rise by 0.3 m and 0.4 of its slope from cell to cell."""
+    surface, removed = removed_square()
+    surface[removed] = 0.6
+    np.testing.assert_array_equal(objects_of(surface, removed, slope), removed & stays)
 
 
 @pytest.mark.parametrize(
@@ -89,9 +82,6 @@ def test_on_slopes_higher_steps_are_smooth(slope, stays):
         (7, 0.45, 0.0, False),
         (7, 1.35, 0.2, True),
         (7, 1.25, 0.2, False),
-        # Flat terrain rises by no more than a meter however large the window.
-        (45, 1.15, 0.0, True),
-        (45, 1.05, 0.0, False),
     ],
 )
 def test_a_window_removes_what_rises_more_than_terrain_may(side, height, slope, is_removed):
@@ -99,9 +89,9 @@ def test_a_window_removes_what_rises_more_than_terrain_may(side, height, slope, 
     surface, square = np.zeros((140, 140)), slice(70 - side // 2, 71 + side // 2)
     surface[square, square] = height
     removal = ObjectRemoval(surface, np.zeros(surface.shape, bool), largest=60.0, cell_size=1.0)
-    removed_by = removal.removed_by_opening(np.full(surface.shape, slope), Monitor())
-    assert (removed_by[70, 70] > 0) == is_removed
-    assert not removed_by[surface == 0].any()
+    removed = removal.removed_by_opening(np.full(surface.shape, slope), Monitor())
+    assert removed[70, 70] == is_removed
+    assert not removed[surface == 0].any()
 
 
 @pytest.mark.parametrize("cell_size", [0.5, 2.0])
