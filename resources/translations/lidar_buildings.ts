@@ -352,7 +352,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Automatic: 6 times the roughness of the finished surface, the last third at most 0.1 cells; where a higher flight strip shows, twice that, at most 0.15 m more.</source>
+        <source>Automatic: 6 times the roughness of the finished surface, or the surface noise where that is more; the last third at most 0.1 cells.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
