@@ -35,9 +35,7 @@ class RemovalRules:
     )
     steepest_bank: float = rule(2.0, "tangent", "physics: a step beside a slope as steep as itself is a bank up to 63°")
     growth: float = rule(1.25, "ratio", "of one window to the one before: three windows to a doubling")
-    smoothing: float = rule(
-        2.0, "m", "physics: bushes are as wide; surfaces are smoothed over it, slopes over twice"
-    )
+    smoothing: float = rule(2.0, "m", "physics: bushes are as wide; surfaces are smoothed over it, slopes over twice")
 
 
 REMOVAL = RemovalRules()
