@@ -10,7 +10,7 @@ from .cloud.dimensions import DIMENSIONS
 from .stage import Stage
 from .stages import STAGES
 
-_SEGMENTS = "Each segment in a color of its own, points of none in gray."
+_SEGMENTS = "Each segment in a color of its own, points without a segment in gray."
 
 _CAPTIONS = {
     "detectbuildings": (
@@ -47,7 +47,7 @@ _CAPTIONS = {
     "detectspheres": "A sphere of a simulated plant in color.",
     "segmenttree": "Stem and branches of a simulated tree in a color each; leaves are gray.",
     "segmentvoxels": "Components of connected voxels, each in a color of its own.",
-    "classifybuildings": "How sure it is that a cluster is a building, from blue to red.",
+    "classifybuildings": "Confidence that a cluster is a building, from blue, low, to red, high.",
     "classifyvegetation": "Crowns, hedges and bushes in green, the darker the higher; buildings red, walls gray.",
     "keepclasses": "A simulated town in the colors of the classes that it came with.",
     "classifywater": "The river of a simulated town in blue, below its bridges.",

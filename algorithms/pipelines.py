@@ -68,9 +68,9 @@ _PIPELINES = (
         description=(
             "Noise, ground, bridges and heights first; then roof surfaces and clusters of everything else "
             "above the ground. A cluster is a building by its mean entropy, compared with that of planes and volumes, "
-            "and by how much of the beam passes through it. Then whole buildings with their walls, whose edges are "
-            "corrected by what all buildings of the cloud look like, water, wires, vegetation among "
-            "the rest, and outlines. Distances and tolerances follow the density and the noise of the cloud."
+            "and by how much of the beam passes through it. Then come walls, edges corrected by what all buildings "
+            "of the cloud look like, water, wires, vegetation among the rest, and outlines. Distances and tolerances "
+            "follow the density and the noise of the cloud."
         ),
         references=_SANTOS,
         steps=(
@@ -187,10 +187,10 @@ _PIPELINES = (
             "Noise is removed and one point left per voxel; progressive TIN densification finds the ground, which "
             "flat roofs of any size are kept out of. A terrain model is made of it; planes high above it are roofs, "
             "and low upright surfaces below them are their walls. Footprints are the outlines of walls, "
-            "without the eaves, with a quality for every edge. Where too little of the walls was seen, which is what "
-            "clouds from airplanes come to, they are outlines of roofs and say so. "
+            "without the eaves, with a quality for every edge. Where too little of the walls was seen, as in most "
+            "airborne clouds, they are outlines of roofs, and their attributes say so. "
             "Where an old map is given, its corners are compared with the new ones. The terrain and the cloud of every "
-            "step can be kept. The paper's ground filter, a cloth, lies down on large flat roofs; to use it, open the "
+            "step can be kept. The paper's ground filter, a cloth, settles on large flat roofs; to use it, open the "
             "model and put 'Classify ground points (cloth)' in the place of the ground step."
         ),
         references=_HRUTKA,

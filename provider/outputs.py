@@ -137,7 +137,7 @@ def _check_database(value: Any) -> None:
 def _check_target(definition, path: Path, inputs: list) -> None:
     if _is_cloud(definition):
         check_output(path, inputs)
-        # The last step of a model reads what the step before it wrote, so it can't know the first input itself.
+        # The last step of a model reads the output of the step before, so it can't know the model's input.
         if kind_of(path) != COPC:
             check_place(path, inputs)
     elif isinstance(definition, QgsProcessingParameterRasterDestination):
@@ -201,7 +201,7 @@ class Run:
         return str(self._files.beside(path, files_of(definition, str(path))[1:]))
 
     def check(self) -> None:
-        """Refuse to replace what came into the place of a cloud's view since the run began."""
+        """Refuse to replace a file that was put where a cloud's view goes since the run began."""
         for path in self._clouds:
             if kind_of(path) != COPC:
                 check_place(path, ())

@@ -15,7 +15,7 @@ from .space_cells import SpaceCells
 
 @dataclass(frozen=True)
 class _Rules:
-    """How a scene is learned; fitted on seven real airborne clouds. Squares of 5 and 20 m gain 0.1 more and less."""
+    """How a scene is learned; fitted on seven real airborne clouds."""
 
     half: float = rule(10.0, "m", "physics: side of the squares of the two halves, that of a small house")
     sample: int = rule(10_000, "cells", "fitted: learned at most; with 25,000 or all the gain is the same")

@@ -125,7 +125,7 @@ def segment_facade_lines(
     gps_time : ndarray of shape (n,), float64
         Time of each pulse, s.
     point_source_id : ndarray of shape (n,), uint16, optional
-        Scanner of each point; the lines of each are taken for themselves. Without it all are of one.
+        Scanner of each point; lines are of one scanner each. Without it all points are of one.
 
     Returns
     -------

@@ -55,7 +55,7 @@ _LEAST_POINTS, _LEAST_COVERED = 6, 0.1
 # the distance between these positions (m).
 _GROUND_PERCENTILE, _GROUND_STEP = 5.0, 2.0
 
-# Footprints without a model that a warning names.
+# Number of footprints without a model that a warning names.
 _NAMED = 5
 
 # Vertices of footprints nearer to each other than this (m) are one; those nearer to the line of their neighbors are
@@ -200,7 +200,7 @@ def reconstruct_roofs(
     solids of their own. A level that is farther from the points than a simpler one is left out. The ground is level,
     at the 5th percentile of the ground points nearest to the outline. Curved roofs become strips.
 
-    Other than in the publications, lines cut only the cells along which planes are beside each other, so that the cost
+    Other than in the publications, lines cut only the cells along which planes adjoin, so that the cost
     grows with the border of planes and not with the square of their number. A border costs its length and the
     wall that it needs, in the same unit as the roof that no plane explains: square meters.
 

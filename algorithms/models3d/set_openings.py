@@ -21,7 +21,7 @@ class _Rules:
     off: float = 0.5
     # Distance (m) that stays between an opening and the edge of its wall: thinner strips make no sound triangles.
     margin: float = 0.03
-    # An opening is cut back to its wall, of which it keeps this share of its area at least.
+    # An opening is cut to its wall if at least this share of its area remains.
     kept: float = 0.8
 
 

@@ -1,4 +1,4 @@
-"""What is wrong with a solid, by the rules of ISO 19107, and in which of its faces."""
+"""Faults of a solid, by the rules of ISO 19107, and in which of its faces they are."""
 
 from __future__ import annotations
 
@@ -220,7 +220,7 @@ class _Face:
                 rings_at[corner].append(number)
         links = [(ring, len(self.rings) + k) for k, at in enumerate(rings_at.values()) if len(at) > 1 for ring in at]
         group = groups_of(links, len(self.rings) + len(rings_at))
-        # A forest has one link less than nodes in each of its trees.
+        # Each tree of a forest has one link less than nodes.
         return len(links) > len(group) - len(set(group))
 
     def holds(self, xyz: np.ndarray) -> np.ndarray:

@@ -82,10 +82,10 @@ def downsample_voxels(
     ] = 0.1,
     monitor=None,
 ):
-    """Leave one point in every voxel that has any: the center of gravity of the points in it.
+    """Leave one point in every occupied voxel: the center of gravity of its points.
 
     Evens out the density of scans, where near and twice seen surfaces have many times the points of others, and makes
-    clouds smaller. Everything but place, class and count comes from the point nearest to the center.
+    clouds smaller. Everything but position, class and count comes from the point nearest to the center.
 
     Parameters
     ----------

@@ -41,7 +41,7 @@ def clean_map(features: LayerFeatures, called: str, monitor: Monitor) -> Buildin
     rings = [proper[row] for row in usable]
     polygons = as_polygons(rings)
     area, every = polygons.area, np.arange(len(rings))
-    # Positions around which the rings wind twice, or the wrong way, count otherwise in the overlap with itself.
+    # Where rings wind twice, or the wrong way, the overlap of a polygon with itself differs from its area.
     crossing = int((np.abs(shared_areas(polygons, polygons, every, every, Monitor()) - area) > 0.01 * area).sum())
     if crossing:
         monitor.warn(
@@ -54,7 +54,7 @@ def clean_map(features: LayerFeatures, called: str, monitor: Monitor) -> Buildin
 
 
 def refuse_elsewhere(old: BuildingMap, new: BuildingMap, called: str, other: str) -> None:
-    """Refuse maps of which the one lies far from the other.
+    """Refuse two maps that lie far from each other.
 
     Parameters
     ----------

@@ -85,9 +85,9 @@ def penetration(
 
     Notes
     -----
-    The beam passes through leaves and not through roofs. Along edges there are points beneath a roof
-    too, so a roof has a small share and not none. Cells hold as many points at any density: were there more,
-    each would sooner have some beneath.
+    The beam passes through leaves and not through roofs. Along edges there are points beneath a roof too, so the share
+    of a roof is small, but not zero. Cells hold the same number of points at any density, as larger numbers would raise
+    the share.
     """
     owner, _, beneath = _columns(xyz, group, MEASURES.cell / np.sqrt(density))
     beneath = np.bincount(owner, beneath > 0) / np.maximum(np.bincount(owner), 1)
@@ -124,7 +124,7 @@ def grow_to_adjacent_clusters(
     xyz, group, density
         As of :func:`penetration`.
     strong, weak : ndarray of shape (group.max() + 1,), bool
-        Which groups are taken in any case, and which ones beside others.
+        Groups that are always taken, and groups that are taken next to others.
 
     Returns
     -------

@@ -31,7 +31,7 @@ _GROUND_CELL = 1.0
 def ground_level(xyz: np.ndarray, positions: np.ndarray) -> np.ndarray:
     """Return the height (m) of the lowest of points (n, 3) in the cell of each position (m, 2) and the cells around it.
 
-    Each place is that of one of the points.
+    Each position is that of one of the points.
     """
     grid = grid_over(xyz, _GROUND_CELL)
     cells, which = distinct(grid.number(xyz))

@@ -52,7 +52,7 @@ class Monitor:
 
 
 class ProgressOnly(Monitor):
-    """Passes progress on; values and warnings stay here, as those of work that a run does besides its own."""
+    """Passes progress on; values and warnings stay here: they are of auxiliary work, not of the run."""
 
     def __init__(self, listener: Monitor) -> None:
         super().__init__()

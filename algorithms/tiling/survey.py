@@ -44,7 +44,7 @@ class Window:
     cloud : Cloud
         Every measurement once, in an order that depends on neither the files nor their order.
     source, position : ndarrays of shape (n,), int32 and int64
-        File, by its position in the survey, and place in that file of every record.
+        Of every record, the position of its file in the survey and its own in that file.
     point : ndarray of shape (n,), int64
         Which point of ``cloud`` a record is; records of one measurement in overlapping tiles are the same point.
     """
@@ -307,7 +307,7 @@ def files_of_survey(paths: Iterable[Union[str, Path]]) -> list[Path]:
     for path in map(Path, paths):
         inside = sorted(one for one in path.iterdir() if one.is_file() and kind_of(one)) if path.is_dir() else [path]
         for file in inside:
-            # A VPC in a folder names files that are in the folder too, or it was put there to be read.
+            # A VPC in the folder adds its files: those of the folder count once, and others were meant to be read.
             found.update({one.resolve(): one for one in files_of(file)})
     if not found:
         raise ValueError("There are no point clouds in the folder; choose one with .las, .laz or .copc.laz files.")

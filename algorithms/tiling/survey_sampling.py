@@ -52,7 +52,7 @@ def samplings_of(
     boxes, corner = _sample_boxes(survey), survey.corner
     clouds, survey = _sampled(survey, boxes, sampling)
     if len(clouds) < len(boxes) / 4:
-        # It fills little of its extent, as a corridor or a coast does.
+        # The survey fills little of its extent, as a corridor or a coast does.
         positions = survey.positions(_SAMPLES_ACROSS**2, sampling.part(1.0, 1.0))
         clouds, _ = _sampled(survey, _squares_around(positions, _sample_side(survey)), sampling.part(1.0, 1.0))
     if not clouds:
