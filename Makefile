@@ -54,11 +54,12 @@ test-pythons: ## the tests of the core with the oldest and the newest Python and
 	@scripts/other_python.sh bullseye 3.9 .pythons 'numpy==1.24.*' 'scipy==1.10.*' 'scikit-learn==1.2.*' 'laspy==2.5.*' $(OF_TESTS) -- -n auto $(CORE_TESTS)
 	@scripts/other_python.sh trixie 3.13 .pythons 'numpy>=2' scipy scikit-learn 'laspy<3' $(OF_TESTS) -- -n auto $(CORE_TESTS)
 
-lint: $(VENV)/made ## ruff, mypy, and words that make text hard to read
+lint: $(VENV)/made ## ruff, mypy, spelling, and words that make text hard to read
 	@$(VENV)/bin/ruff check .
 	@$(VENV)/bin/ruff format --check --quiet .
 	@$(VENV)/bin/mypy
 	@$(PYTHON) scripts/words.py
+	@$(VENV)/bin/codespell algorithms provider tests scripts docs *.md *.txt *.toml Makefile
 	@$(PYTHON) scripts/metadata.py --check
 
 bench: install $(VENV)/made ## time and memory of every stage (a table, and benchmarks/times.json)
