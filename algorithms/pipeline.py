@@ -52,12 +52,11 @@ class Output:
 class Pipeline:
     """A chain of stages that users meet as one algorithm.
 
-    The last step that makes a cloud gives the composite's OUTPUT. Every layer, raster, file and
-    report of every step is an output of its own, and so are the clouds of the steps that
-    ``kept`` names. ``shared`` names tunables that are one parameter of the composite and go
-    to all the steps beside them; they have the same declaration and default there. ``shown``
-    are the parameters that users meet first, in this order; all others are folded away. ``switched_off`` are layers
-    that are loaded switched off: those of steps that another step has taken further.
+    The last step that makes a cloud gives the composite's OUTPUT. Every layer, raster, file and report of every step is
+    an output of its own. So are the clouds of the steps that ``kept`` names. ``shared`` names tunables that are one
+    parameter of the composite and go to all the steps beside them; they have the same declaration and default there.
+    ``shown`` are the parameters that users meet first, in this order; all others are folded away. ``switched_off`` are
+    layers that are loaded switched off: those of steps that another step has taken further.
     """
 
     name: str

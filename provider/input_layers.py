@@ -154,7 +154,7 @@ def _brought_to(
     if box.isEmpty():
         return None
     try:
-        # This way round: a cloud is small, while the box of a layer may leave what the cloud's system is made for.
+        # The box of the cloud is transformed: that of a layer may exceed the area that the cloud's system is made for.
         transform = _transform(input_layer, layer, crs, context, Monitor())
         return transform.transformBoundingBox(box, Qgis.TransformDirection.Reverse)
     except QgsCsException:
@@ -176,7 +176,7 @@ def read_input_layer(
     """Return a layer as a stage is given it: parts of geometries in local meters, with all attributes.
 
     Arcs become lines. Features without a sound geometry of the declared kind are left out, which a
-    warning counts. Heights are taken in the vertical unit of the place; geometries that lack some are flat.
+    warning counts. Heights are taken in the vertical unit of the cloud; geometries that lack some are flat.
 
     Raises
     ------
@@ -217,7 +217,7 @@ def _transform(
     context: QgsProcessingContext,
     monitor: Monitor,
 ) -> QgsCoordinateTransform:
-    """Return what brings a layer to the CRS of the place; nothing to do where one of the two names none."""
+    """Return the transform of a layer to the CRS of the cloud; none is needed where one of the two names no CRS."""
     own = crs_of_layer(layer)
     if own.isValid() and there.isValid():
         return QgsCoordinateTransform(own, there, context.transformContext())

@@ -28,10 +28,9 @@ _LARGEST_INT = 2**31 - 1
 class Cloud:
     """A point cloud: the records of a file, and what stages have set.
 
-    Memory: the records as they are in the file (20 to 67 bytes per point plus
-    extra bytes), plus each array that was set (1 to 12 bytes per point).
-    ``get("xyz")`` makes a new array of 24 bytes per point each time; keep it
-    no longer than needed.
+    Memory: the records as they are in the file take 20 to 67 bytes per point plus extra bytes. Each array that was set
+    takes 1 to 12 bytes per point. ``get("xyz")`` makes a new array of 24 bytes per point each time; keep it no longer
+    than needed.
 
     Attributes
     ----------
@@ -151,7 +150,7 @@ class Cloud:
         for i, axis in enumerate("XYZ"):
             steps = xyz[:, i] + (self.origin[i] - self.header.offset[i] * self.units.factors[i])
             steps /= step[i]
-            # Halves go up, as the center of two points often is one: to the even step, they would go by the offset.
+            # Round half up, as the center of two points often is a half: half to even would depend on the offset.
             np.floor(steps + (0.5 + _HALF), out=steps)
             if not max(steps.max(), -steps.min()) <= _LARGEST_INT:
                 raise ValueError(

@@ -84,7 +84,7 @@ _NEARLY = 0.985
 # Lines closer than this (m) are the same wall.
 _SAME = 0.8
 
-# Of these, the one that parts the roofs best is taken from those of at least this share of the greatest strength.
+# Among lines with at least this share of the greatest strength, the one that separates the roofs best is chosen.
 _STRONG = 0.5
 
 # Largest scrap that a party wall may cut off (spacings squared): a strip along a side of the outline, which is known to
@@ -202,7 +202,7 @@ def _runs_of_party_walls(
 ) -> tuple[np.ndarray, ...]:
     """Return column, first row and the one after the last, strength (m²) and mean misfit (m) of runs like a party wall.
 
-    Only beside roofs of the ``least`` height (m) a wall has to be seen.
+    A wall has to be seen only where roofs have the ``least`` height (m).
     """
     weight, beside, misfit = _evidence(roof, seen, step)
     is_high = beside >= least

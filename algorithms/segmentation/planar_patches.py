@@ -95,7 +95,7 @@ def segment_patches(
     on_surface = (planes.deviation[plane] <= ON_PLANE * off_plane) & (plane >= 0)
     on_surface &= planes.planes[plane, 2] >= np.sin(np.radians(90 - max_slope))
     links = _links(points, planes, plane, on_surface, PATCHES.same_surface * off_plane, monitor.part(0.8, 1))
-    # The search for components takes the memory of these.
+    # The search for components needs the memory that these take.
     del points, planes, plane
     component = np.empty(len(order), np.int32)
     component[order] = np.where(on_surface, _components(*links), -1)

@@ -93,7 +93,7 @@ def classify_multipath(
     surface, _, _ = grow(points, seeds, is_ground, rules, monitor.part(0, 0.5))
     low = false_pits(points, surface.is_node, surface.above(), is_last, sampling.spacing, monitor.part(0.5, 0.7))
     if len(low):
-        # What such a group drew down is looked at again.
+        # The surface that such a group drew down is examined again.
         is_ground, _ = sweep(surface.without(low, monitor.part(0.7, 0.9)), None, scale, sampling)
         near = np.isfinite(spatial.cKDTree(points[low, :2]).query(points[:, :2], distance_upper_bound=_REACH)[0])
         undecided = near & np.isin(classes, (PointClass.NEVER_CLASSIFIED, PointClass.UNCLASSIFIED, PointClass.GROUND))

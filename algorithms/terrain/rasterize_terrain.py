@@ -168,7 +168,7 @@ def _fill_gaps(surface: np.ndarray, middle: np.ndarray, reach: float, monitor: M
     monitor.progress(0.2)
     if not gap.any():
         return
-    # Cells inside the surface have no say in its gaps.
+    # Cells inside the surface don't influence its gaps.
     rim = ~empty & ndimage.binary_dilation(empty, np.ones((3, 3), bool))
     nodes = middle[rim]
     nodes[:, 2] = surface[rim]

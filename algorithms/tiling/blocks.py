@@ -105,7 +105,7 @@ class BlockResult:
     Attributes
     ----------
     source, position : ndarrays of shape (n,)
-        File and place in it of every record of the block.
+        File, and position in it, of every record of the block.
     stays : ndarray of shape (n,), bool
         Which records are left by a chain that selects; empty where all are.
     dimensions : dict of str to ndarray of shape (n, ...)
@@ -117,7 +117,8 @@ class BlockResult:
     most : dict of str to ndarray of shape (1,), int64
         For each numbered dimension the largest number that is used in the next two.
     inside, beside : dict of str to ndarray of shape (m, 3), int64
-        For each numbered dimension file, place and number of records that lie just inside and just outside the edges.
+        For each numbered dimension file, position and number of records that lie just inside and just outside the
+        edges.
     rasters : dict of str to ndarray of shape (rows, columns), float32
         Cells whose middles lie in the block.
     lattices : dict of str to ndarray of shape (5,)
@@ -366,7 +367,7 @@ def _written(pipeline: Pipeline, made: Results, point: np.ndarray, origin: np.nd
     """Return the dimensions that steps wrote or cleared for each record, coordinates in m from the zero of the map."""
     cloud = made.cloud
     names = dict.fromkeys(name for step in pipeline.steps for name in step.stage.writes)
-    # What an earlier run said of numbers that a step writes anew was cleared.
+    # Numbers of an earlier run were cleared where a step writes them anew.
     names.update(dict.fromkeys(one.name for one in DIMENSIONS.values() if one.of in names))
     values = {name: cloud.get(name)[point] for name in names if cloud is not None and cloud.has(name)}
     if "xyz" in values:
