@@ -70,3 +70,9 @@ def test_the_body_of_a_stage_is_near_its_name(stage):
         pytest.fail(f"{stage.name} has no module")
     (node,) = [one for _, one in functions() if one.name == stage.name]
     assert node.body[1].lineno - node.lineno <= FAR
+
+
+@pytest.mark.parametrize("stage", STAGES.values(), ids=lambda stage: stage.name)
+def test_a_stage_has_an_example_that_runs(stage):
+    """The doctests of its module run it."""
+    assert ">>>" in stage.section("Examples")

@@ -38,6 +38,30 @@ ENTROPY = EntropyRules()
 _MEASURED = 256
 
 
+_MaxPenetration = Annotated[
+    float,
+    Param(
+        "Maximum penetration",
+        "Share of the beam that may pass through a building: cells with points below, and returns that are not "
+        "the last.",
+        low=0,
+        high=1,
+        open_low=True,
+    ),
+]
+
+_MinShareAround = Annotated[
+    float,
+    Param(
+        "Minimum share of buildings around",
+        "Share of the points within a few meters around a building that must belong to buildings, its own "
+        "included. Around smooth spots of crowns it is less.",
+        low=0,
+        high=1,
+    ),
+]
+
+
 @stage(
     "Classify buildings",
     group="Buildings",
@@ -65,27 +89,8 @@ def classify_buildings(
         Optional[int],
         nearest_points("the smallest neighborhood in which neither noise nor scan lines blur a plane."),
     ] = None,
-    max_penetration: Annotated[
-        float,
-        Param(
-            "Maximum penetration",
-            "Share of the beam that may pass through a building: cells with points below, and returns that are not "
-            "the last.",
-            low=0,
-            high=1,
-            open_low=True,
-        ),
-    ] = 0.4,
-    min_share_around: Annotated[
-        float,
-        Param(
-            "Minimum share of buildings around",
-            "Share of the points within a few meters around a building that must belong to buildings, its own "
-            "included. Around smooth spots of crowns it is less.",
-            low=0,
-            high=1,
-        ),
-    ] = 0.4,
+    max_penetration: _MaxPenetration = 0.4,
+    min_share_around: _MinShareAround = 0.4,
     density: PointDensity = None,
     source: PointSource = "automatic",
     sampling: Optional[CloudSampling] = None,
@@ -163,6 +168,16 @@ def classify_buildings(
     ----------
     Santos, R. C. dos, Pessoa, G. G., Carrilho, A. C., Galo, M., 2019. Building detection from LiDAR data using entropy
     and the k-means concept, section 2.4. [santos2019]
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> classes = np.where(z > 0, 1, 2)
+    >>> found, _, _, _, _, report = classify_buildings(xyz, classes, np.where(z > 0, 1, 0))
+    >>> bool((found[z > 0] == 6).all())
+    True
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     xyz = sampling.from_corner(xyz)

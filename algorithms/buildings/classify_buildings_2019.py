@@ -106,6 +106,17 @@ def classify_buildings_2019(
     ----------
     Santos, R. C. dos, Pessoa, G. G., Carrilho, A. C., Galo, M., 2019. Building detection from LiDAR data using entropy
     and the k-means concept, section 2.4. [santos2019]
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> rng = np.random.default_rng(1)
+    >>> x, y, u = rng.uniform(0, 10, (3, 4000))
+    >>> crown = np.arange(4000) >= 2000
+    >>> xyz = np.column_stack([x + 20 * crown, y, np.where(crown, u, 5.0)])
+    >>> found, *_ = classify_buildings_2019(xyz, np.ones(4000), 1 + crown)
+    >>> bool((found[~crown] == 6).all()), bool((found[crown] == 6).any())
+    (True, False)
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     if density is None:

@@ -141,6 +141,16 @@ def refine_buildings(
     Weinmann, M., Jutzi, B., Hinz, S., Mallet, C., 2015. Semantic point cloud interpretation based on optimal
     neighborhoods, relevant features and efficient classifiers. ISPRS Journal of Photogrammetry and Remote Sensing 105,
     286-304 (features). [weinmann2015]
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> classes = np.where(z > 0, 6, 2)
+    >>> found, *_ = refine_buildings(xyz, classes, z, np.where(z > 0, 1, 0))
+    >>> bool((found == classes).all())
+    True
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.effective_density if density is None else density

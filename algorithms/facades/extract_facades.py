@@ -188,6 +188,14 @@ def extract_facades(
     ----------
     Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on vehicle
     LIDAR. EURASIP Journal on Image and Video Processing 2018:121, sections 3.1 to 3.3. [peng2018]
+
+    Examples
+    --------
+    >>> x, z = np.mgrid[0:10:0.1, 0:6:0.1].reshape(2, -1)
+    >>> xyz = np.column_stack([x, 0 * x, z])
+    >>> ids, facades = extract_facades(xyz, np.zeros(len(xyz)))
+    >>> len(facades)
+    1
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     tolerance = _ON_PLANE * float(np.hypot(sampling.noise, _RELIEF)) if tolerance is None else tolerance

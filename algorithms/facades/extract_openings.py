@@ -127,6 +127,15 @@ def extract_openings(
     ----------
     Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on vehicle
     LIDAR. EURASIP Journal on Image and Video Processing 2018:121, section 4. [peng2018]
+
+    Examples
+    --------
+    >>> x, z = np.mgrid[0:10:0.05, 0:6:0.05].reshape(2, -1)
+    >>> wall = (abs(x - 5) > 0.5) | (abs(z - 3) > 0.7)
+    >>> xyz = np.column_stack([x, np.where(wall, 0, 0.3), z])
+    >>> facades, openings = extract_openings(xyz, np.where(wall, 1, 0))
+    >>> len(openings), openings.columns["kind"][0]
+    (1, 'window')
     """
     edge_factor = longest_edge(boundary) if edge_factor is None else edge_factor
     monitor.resolved(edge_factor=edge_factor)

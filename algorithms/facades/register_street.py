@@ -125,6 +125,18 @@ def register_street(
     ----------
     Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on vehicle
     LIDAR. EURASIP Journal on Image and Video Processing 2018:121, sections 3 and 4. [peng2018]
+
+    Examples
+    --------
+    >>> from lidar_buildings.algorithms.stage import LayerFeatures
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> classes = np.where(z > 0, 6, 2)
+    >>> ring = np.array([[15, 16], [25, 16], [25, 24], [15, 24], [15, 16.0]])
+    >>> facades, openings, report = register_street(xyz, classes, xyz, classes, LayerFeatures([[ring]], {}))
+    >>> sorted(report.values)
+    ['ends', 'ground', 'overhang', 'residual', 'shift_x', 'shift_y', 'shift_z', 'walls']
     """
     is_ground = classification == PointClass.GROUND
     if not is_ground.any():

@@ -151,6 +151,14 @@ def segment_facade_lines(
     ----------
     Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on vehicle
     LIDAR. EURASIP Journal on Image and Video Processing 2018:121, section 3.4. [peng2018]
+
+    Examples
+    --------
+    >>> from lidar_buildings.algorithms.simulation.simulate_street import simulate_street
+    >>> xyz, *others = simulate_street(length=20.0, line_rate=20.0, clutter=False)
+    >>> ids, lines = segment_facade_lines(xyz, others[6])
+    >>> len(lines) > 0
+    True
     """
     if np.ptp(gps_time) == 0:
         raise ValueError(

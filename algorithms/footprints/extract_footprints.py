@@ -165,6 +165,16 @@ def extract_footprints(
     Lorensen and Cline (1987), Marching cubes: a high resolution 3D surface construction algorithm. [lorensen1987]
     Santos et al. (2019), Building detection from LiDAR data using entropy and the k-means concept. [santos2019]
     Perez and Vidal (1994), Optimum polygonal approximation of digitized curves. [perez1994]
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> classes = np.where(z > 0, 6, 2)
+    >>> footprints = extract_footprints(xyz, classes)
+    >>> len(footprints), round(float(footprints.columns["area"][0]))
+    (1, 72)
     """
     building = _building_points(classification, cluster_id, monitor)
     if not len(building) or not np.ptp(xyz[building, :2], axis=0).any():

@@ -135,6 +135,14 @@ def classify_vegetation(
     References
     ----------
     ASPRS, 2019. LAS specification 1.4, R15, table 17. [asprs2019]
+
+    Examples
+    --------
+    >>> rng = np.random.default_rng(1)
+    >>> xyz = rng.uniform(0, 5, (500, 3))
+    >>> found = classify_vegetation(xyz, np.ones(500), xyz[:, 2])
+    >>> sorted({int(code) for code in found})
+    [1, 3, 4]
     """
     classes = classification.astype(np.uint8)
     if not look_for:

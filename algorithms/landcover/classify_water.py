@@ -79,6 +79,15 @@ def classify_water(
     Höfle, B., Vetter, M., Pfeifer, N., Mandlburger, G., Stötter, J., 2009. Water surface mapping from airborne laser
     scanning using signal intensity and elevation data. Earth Surface Processes and Landforms 34(12), 1635-1649.
     [hoefle2009]
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> classes = np.where(z > 0, 1, 2)
+    >>> bool((classify_water(xyz, classes) == 9).any())
+    False
     """
     classes = classification.astype(np.uint8)
     if not look_for:

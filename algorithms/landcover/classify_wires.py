@@ -88,6 +88,15 @@ def classify_wires(
     Austrian Association for Pattern Recognition, 47-54. [melzer2004]
     Fischler, M. A., Bolles, R. C., 1981. Random sample consensus. Communications of the ACM 24(6), 381-395.
     [fischler1981]
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> classes = np.where(z > 0, 1, 2)
+    >>> bool((classify_wires(xyz, classes, z) == 14).any())
+    False
     """
     classes = classification.astype(np.uint8)
     if not look_for:

@@ -62,7 +62,12 @@ def keep_classes(
 
     References
     ----------
-    ASPRS, 2019. LAS specification 1.4, R15, table 17.
+    ASPRS, 2019. LAS specification 1.4, R15, table 17. [asprs2019]
+
+    Examples
+    --------
+    >>> keep_classes([[0, 0, 0], [1, 0, 5]], np.array([2, 6]), keep="ground")
+    array([2, 0], dtype=uint8)
     """
     monitor.progress(1.0)
     if keep == _NONE and earlier_class is None:

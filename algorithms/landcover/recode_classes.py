@@ -95,6 +95,11 @@ def recode_classes(
     ASPRS, 2019. LAS specification 1.4, R15, table 17. [asprs2019]
     IGN, 2023. LiDAR HD: descriptif de contenu des nuages de points classés. [ign2023]
     USGS, 2024. Lidar base specification, table 5. [usgs2024]
+
+    Examples
+    --------
+    >>> recode_classes([[0, 0, 0], [1, 0, 0]], np.array([6, 17]), codes="AHN (Netherlands)")
+    array([ 6, 26], dtype=uint8)
     """
     table = np.arange(256, dtype=np.uint8)
     for number, code in {**CODES[codes], **parse_mapping(mapping)}.items():

@@ -59,7 +59,13 @@ def restore_classes(
 
     References
     ----------
-    ASPRS, 2019. LAS specification 1.4, R15, table 17.
+    ASPRS, 2019. LAS specification 1.4, R15, table 17. [asprs2019]
+
+    Examples
+    --------
+    >>> xyz = np.array([[0, 0, 0.0], [1, 0, 5.0]])
+    >>> restore_classes(xyz, np.array([1, 6]), earlier_class=np.array([2, 0]))[0]
+    array([2, 6], dtype=uint8)
     """
     classes = classification.astype(np.uint8)
     if earlier_class is None or not earlier_class.any():

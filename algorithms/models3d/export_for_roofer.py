@@ -88,6 +88,18 @@ def export_for_roofer(
     Peters, R., Dukai, B., Vitalis, S., van Liempt, J., Stoter, J., 2022. Automated 3D reconstruction of LoD2 and LoD1
     models for all 10 million buildings of the Netherlands. Photogrammetric Engineering & Remote Sensing 88(3).
     [peters2022]
+
+    Examples
+    --------
+    >>> from lidar_buildings.algorithms.stage import LayerFeatures
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> classes = np.where(z > 0, 6, 2)
+    >>> ring = np.array([[15, 16], [25, 16], [25, 24], [15, 24], [15, 16.0]])
+    >>> kept, *_ = export_for_roofer(xyz, classes, footprints=LayerFeatures([[ring]], {}))
+    >>> len(kept) <= len(xyz)
+    True
     """
     require_buildings(classification)
     require_ground(classification)

@@ -128,6 +128,19 @@ def reconstruct_block(
     Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on vehicle
     LIDAR. EURASIP Journal on Image and Video Processing 2018:121. [peng2018]
     CityJSON Specifications 2.0.1, section 3.3 (semantics of geometric primitives). [cityjson2024]
+
+    Examples
+    --------
+    >>> from lidar_buildings.algorithms.stage import LayerFeatures
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> classes = np.where(z > 0, 6, 2)
+    >>> ring = np.array([[15, 16], [25, 16], [25, 24], [15, 24], [15, 16.0]])
+    >>> house, none = LayerFeatures([[ring]], {}), LayerFeatures([], {})
+    >>> buildings, walls, roofs, *_ = reconstruct_block(xyz, classes, house, none, none)
+    >>> len(buildings), len(roofs)
+    (1, 1)
     """
     segments = facade_segments(facades)
     fitted, seen = fitted_to_walls(footprints, segments)

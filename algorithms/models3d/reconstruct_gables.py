@@ -119,6 +119,15 @@ def reconstruct_gables(
     ----------
     Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on vehicle
     LIDAR. EURASIP Journal on Image and Video Processing 2018:121, section 3.4. [peng2018]
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> is_roof = (abs(x - 20) < 5) & (abs(y - 20) < 4)
+    >>> xyz = np.column_stack([x, y, np.where(is_roof, 8 - abs(y - 20), 0)])
+    >>> planes = np.where(is_roof & (y > 20), 1, np.where(is_roof & (y < 20), 2, 0))
+    >>> len(reconstruct_gables(xyz, np.where(is_roof, 6, 2), planes)[0])
+    7
     """
     groups = list(members(segment_id).values())
     houses = []

@@ -214,6 +214,18 @@ def reconstruct_roofs(
     point clouds. Remote Sensing 14(9). [huang2022]
     Biljecki, F., Ledoux, H., Stoter, J., 2016. An improved LOD specification for 3D building models. Computers,
     Environment and Urban Systems 59. [biljecki2016]
+
+    Examples
+    --------
+    >>> from lidar_buildings.algorithms.stage import LayerFeatures
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> classes = np.where(z > 0, 6, 2)
+    >>> ring = np.array([[15, 16], [25, 16], [25, 24], [15, 24], [15, 16.0]])
+    >>> buildings, walls, roofs, *_ = reconstruct_roofs(xyz, classes, footprints=LayerFeatures([[ring]], {}))
+    >>> len(buildings), len(walls), len(roofs)
+    (1, 4, 1)
     """
     building, ground = _points(xyz, classification)
     outlines = _outlines(footprints, id_field, monitor)

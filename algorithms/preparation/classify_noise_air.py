@@ -51,6 +51,15 @@ def classify_noise_air(xyz, classification, *, sampling: Optional[CloudSampling]
     ----------
     Carrilho et al. (2018), Statistical outlier detection method for airborne LiDAR data. [carrilho2018] The stage is
     this project's.
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> bird = np.vstack([xyz, [20, 20, 60]])
+    >>> int(classify_noise_air(bird, np.zeros(len(bird)))[-1])
+    18
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     xyz = sampling.from_corner(xyz)

@@ -96,6 +96,15 @@ def classify_noise_histogram_2019(
     Carrilho et al. (2018), Statistical outlier detection method for airborne LiDAR data. [carrilho2018]
     Santos et al. (2019), Building detection from LiDAR data using entropy and the k-means concept, section 2.1.
     [santos2019]
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> bird = np.vstack([xyz, [20, 20, 60]])
+    >>> int(classify_noise_histogram_2019(bird, np.zeros(len(bird)))[-1])
+    18
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     xyz = sampling.from_corner(xyz)

@@ -100,6 +100,15 @@ def classify_noise_statistical(
     References
     ----------
     Rusu et al. (2008), Towards 3D point cloud based object maps for household environments. [rusu2008]
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> bird = np.vstack([xyz, [20, 20, 60]])
+    >>> int(classify_noise_statistical(bird, np.zeros(len(bird)))[-1])
+    18
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     xyz = sampling.from_corner(xyz)

@@ -66,6 +66,14 @@ def clip_cloud(
     ----------
     Shimrat, M., 1962. Algorithm 112: position of point relative to polygon. Communications of the ACM 5(8).
     [shimrat1962]
+
+    Examples
+    --------
+    >>> from lidar_buildings.algorithms.stage import LayerFeatures
+    >>> ring = np.array([[15, 16], [25, 16], [25, 24], [15, 24], [15, 16.0]])
+    >>> xyz = [[20, 20, 5], [5, 5, 0]]
+    >>> clip_cloud(xyz, polygons=LayerFeatures([[ring]], {}))
+    array([0])
     """
     if polygons is None:
         if outside:

@@ -122,6 +122,11 @@ def filter_points(
     References
     ----------
     Hrutka, B. P., Siki, Z., Takács, B., 2022, section 2.2 (heights of 0.3 and 2.5 m). [hrutka2022]
+
+    Examples
+    --------
+    >>> filter_points([[0, 0, 0], [1, 0, 0], [2, 0, 9]], [2, 6, 6], classes="6")
+    array([1, 2])
     """
     kept = np.ones(len(xyz), bool)
     numbers = parse_classes(classes, "Classes")

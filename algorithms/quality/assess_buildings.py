@@ -150,6 +150,16 @@ def assess_buildings(
     Wiedemann et al. (1998), Empirical evaluation of automatically extracted road axes. [wiedemann1998]
     Santos et al. (2019), Building detection from LiDAR data using entropy and the k-means concept, section 3.2.
     [santos2019]
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> classes = np.where(z > 0, 6, 2)
+    >>> objects, report = assess_buildings(xyz, classes, xyz, classes)
+    >>> float(report.values["cells_f"])
+    100.0
     """
     true_classes = _true_classes(xyz, reference_xyz, reference_classification, reference_map, classification, monitor)
     xyz, called, true = counted_points(xyz, classification, true_classes, parse_classes(ignored_classes))

@@ -106,6 +106,16 @@ def assess_classes(
     ----------
     Congalton, R. G., 1991. A review of assessing the accuracy of classifications of remotely sensed data. Remote
     Sensing of Environment 37(1), 35-46. [congalton1991]
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> classes = np.where(z > 0, 6, 2)
+    >>> report = assess_classes(xyz, classes, xyz, classes)
+    >>> float(report.values["accuracy"])
+    100.0
     """
     groups = parse_groups(merged_classes)
     xyz, called, true = compared_points(

@@ -165,6 +165,15 @@ def assess_footprints(
     [rutzinger2009]
     Huttenlocher, D. P., Klanderman, G. A., Rucklidge, W. J., 1993. Comparing images using the Hausdorff distance. IEEE
     Transactions on Pattern Analysis and Machine Intelligence 15(9). [huttenlocher1993]
+
+    Examples
+    --------
+    >>> from lidar_buildings.algorithms.stage import LayerFeatures
+    >>> ring = np.array([[15, 16], [25, 16], [25, 24], [15, 24], [15, 16.0]])
+    >>> one = LayerFeatures([[ring]], {"id": [1]})
+    >>> buildings, report = assess_footprints(footprints=one, reference_map=one)
+    >>> buildings.columns["status"]
+    ['found']
     """
     new = clean_map(footprints, "footprints", monitor)
     true = clean_map(reference_map, "buildings of the reference", monitor)

@@ -67,6 +67,16 @@ def assess_ground(
     References
     ----------
     Sithole and Vosselman (2004), Experimental comparison of filter algorithms for bare-Earth extraction. [sithole2004]
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> classes = np.where(z > 0, 6, 2)
+    >>> report = assess_ground(xyz, classes, xyz, classes)
+    >>> float(report.values["total"])
+    0.0
     """
     xyz, called, true = compared_points(
         xyz, classification, reference_xyz, reference_classification, parse_classes(ignored_classes)

@@ -158,6 +158,15 @@ def compare_corners(
     ----------
     Hrutka, B. P., Siki, Z., Takács, B., 2022. Voxel-based point cloud segmentation and building detection, section 4,
     table 2. [hrutka2022]
+
+    Examples
+    --------
+    >>> from lidar_buildings.algorithms.stage import LayerFeatures
+    >>> ring = np.array([[15, 16], [25, 16], [25, 24], [15, 24], [15, 16.0]])
+    >>> one = LayerFeatures([[ring]], {"id": [1]})
+    >>> displacements, buildings, report = compare_corners(footprints=one, old_map=one)
+    >>> report.values["corners"]
+    4
     """
     if old_map is None:
         monitor.warn("There is no old map to compare with" + (", so all footprints are new." if footprints else "."))

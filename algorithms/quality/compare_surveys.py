@@ -175,6 +175,16 @@ def compare_surveys(
     ----------
     Murakami, H., Nakagawa, K., Hasegawa, H., Shibata, T., Iwanami, E., 1999. Change detection of buildings using an
     airborne laser scanner. ISPRS Journal of Photogrammetry and Remote Sensing 54(2-3). [murakami1999]
+
+    Examples
+    --------
+    >>> from lidar_buildings.algorithms.stage import LayerFeatures
+    >>> ring = np.array([[15, 16], [25, 16], [25, 24], [15, 24], [15, 16.0]])
+    >>> old = LayerFeatures([[ring]], {"id": [1]})
+    >>> new = LayerFeatures([[ring], [ring + 20]], {"id": [1, 2]})
+    >>> buildings, report = compare_surveys(footprints=new, earlier=old)
+    >>> buildings.columns["status"]
+    ['unchanged', 'new']
     """
     new = clean_map(footprints, "footprints", monitor)
     old = clean_map(earlier, "footprints of the earlier survey", monitor)

@@ -76,6 +76,14 @@ def report_buildings(xyz=None, classification=None, footprints=None, *, monitor=
     -------
     Report
         Number of buildings and of doubtful ones, total area (m²) and volume (m³, NaN if unknown), and the page.
+
+    Examples
+    --------
+    >>> from lidar_buildings.algorithms.stage import LayerFeatures
+    >>> ring = np.array([[15, 16], [25, 16], [25, 24], [15, 24], [15, 16.0]])
+    >>> report = report_buildings(footprints=LayerFeatures([[ring]], {"id": [1]}))
+    >>> float(report.values["buildings"])
+    1.0
     """
     facts = _Facts.of(footprints)
     monitor.progress(0.1)

@@ -96,6 +96,15 @@ def classify_ground_segments(
     section 5.3. [vosselman2004]
     Sithole, G., Vosselman, G., 2003. Automatic structure detection in a point cloud of an urban landscape. URBAN 2003,
     Berlin, 67-71. [sithole2003]
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> classes = classify_ground_segments(xyz, np.zeros(len(xyz)), np.where(z > 0, 1, 2))
+    >>> bool((classes[z == 0] == 2).all()), bool((classes[z > 0] == 2).any())
+    (True, False)
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.density if density is None else density

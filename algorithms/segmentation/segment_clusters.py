@@ -92,6 +92,16 @@ def segment_clusters(
     Ester, M., Kriegel, H.-P., Sander, J., Xu, X., 1996. A density-based algorithm for discovering clusters in large
     spatial databases with noise. KDD-96, 226-231. [ester1996]
     Hrutka, B. P., Siki, Z., Takács, B., 2022, section 2.3. [hrutka2022]
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> classes = np.where(z > 0, 1, 2)
+    >>> ids = segment_clusters(xyz, classes)
+    >>> bool((ids[z > 0] == 1).all()), int(ids.max())
+    (True, 1)
     """
     used = candidates(classification, height_above_ground, min_height)
     sampling = sampling or CloudSampling.of(xyz, classification)

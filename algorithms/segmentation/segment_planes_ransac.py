@@ -136,6 +136,15 @@ def segment_planes_ransac(
     ACM 24 (6), 381-395. [fischler1981]
     Moisan, L., Stival, B., 2004. A probabilistic criterion to detect rigid point matches. International Journal of
     Computer Vision 57 (3), 201-218. [moisan2004]
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> ids, normals = segment_planes_ransac(xyz, np.zeros(len(xyz)))
+    >>> int(ids.max())
+    2
     """
     if min_slope > max_slope:
         raise ValueError(f"The minimum slope ({min_slope:g}°) is above the maximum slope ({max_slope:g}°); lower it.")

@@ -165,6 +165,15 @@ def segment_recorded_lines(
     sections 2.1 and 3.1. [vosselman2004]
     Jiang, X. Y., Bunke, H., 1994. Fast segmentation of range images into planar regions by scan line grouping. Machine
     Vision and Applications 7 (2), 115-122. [jiang1994]
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> ids = segment_recorded_lines(xyz, np.zeros(len(xyz)))
+    >>> int(ids.max())
+    2
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.surface_density if density is None else density

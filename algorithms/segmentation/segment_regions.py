@@ -110,6 +110,16 @@ def segment_regions(
     and the k-means concept, section 2.3. [santos2019]
     Sampath, A., Shan, J., 2007. Building boundary tracing and regularization from airborne LiDAR point clouds.
     Photogrammetric Engineering and Remote Sensing 73 (7), 805-812. [sampath2007]
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> classes = np.where(z > 0, 1, 2)
+    >>> ids = segment_regions(xyz, classes)
+    >>> bool((ids[z > 0] == 1).all()), int(ids.max())
+    (True, 1)
     """
     used = candidates(classification, height_above_ground, min_height)
     sampling = sampling or CloudSampling.of(xyz, classification)

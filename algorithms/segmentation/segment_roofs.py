@@ -133,6 +133,16 @@ def segment_roofs(
     Santos, R. C. dos, Pessoa, G. G., Carrilho, A. C., Galo, M., 2019. Building detection from LiDAR data using entropy
     and the k-means concept, section 4. [santos2019]
     Sampath, A., Shan, J., 2007, as in "Segment regions". [sampath2007]
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> classes = np.where(z > 0, 1, 2)
+    >>> segments, clusters, _ = segment_roofs(xyz, classes, z)
+    >>> bool((segments[z > 0] == 1).all()), int(segments.max())
+    (True, 1)
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     xyz = sampling.from_corner(xyz)

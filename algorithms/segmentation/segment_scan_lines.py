@@ -142,6 +142,15 @@ def segment_scan_lines(
     section 2.1. [vosselman2004]
     Sithole, G., Vosselman, G., 2003. Automatic structure detection in a point cloud of an urban landscape. URBAN 2003,
     Berlin, 67-71. [sithole2003]
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> ids = segment_scan_lines(xyz, np.zeros(len(xyz)))
+    >>> int(ids.max())
+    2
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.density if density is None else density

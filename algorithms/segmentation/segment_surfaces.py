@@ -195,6 +195,15 @@ def segment_surfaces(
     sections 2.2, 3.1 and 4.1. [vosselman2004]
     Hoover, A., et al., 1996. An experimental comparison of range image segmentation algorithms. IEEE Transactions on
     Pattern Analysis and Machine Intelligence 18 (7), 673-689. [hoover1996]
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> ids = segment_surfaces(xyz, np.zeros(len(xyz)))
+    >>> int(ids.max())
+    2
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.surface_density if density is None else density

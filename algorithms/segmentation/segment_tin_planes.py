@@ -101,6 +101,15 @@ def segment_tin_planes(
     section 3.2. [vosselman2004]
     Gorte, B., 2002. Segmentation of TIN-structured surface models. Joint International Symposium on Geospatial Theory,
     Processing and Applications, Ottawa. [gorte2002]
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> ids = segment_tin_planes(xyz, np.zeros(len(xyz)))
+    >>> int(ids.max())
+    2
     """
     sampling = sampling or CloudSampling.of(xyz, classification)
     density = sampling.density if density is None else density

@@ -129,6 +129,14 @@ def detect_cylinders(
     18 (2), 120-122. [kimme1975]
     Rabbani, T., van den Heuvel, F., 2005. Efficient Hough transform for automatic detection of cylinders in point
     clouds. [rabbani2005]
+
+    Examples
+    --------
+    >>> angle, along = np.mgrid[0:6.28:0.05, 0:4:0.05].reshape(2, -1)
+    >>> xyz = np.column_stack([along, 0.5 * np.cos(angle), 0.5 * np.sin(angle)])
+    >>> ids, shapes, axes = detect_cylinders(xyz, np.zeros(len(xyz)))
+    >>> len(axes), round(float(axes.columns["radius"][0]), 2)
+    (1, 0.5)
     """
 
     def search(around: Surroundings, low: float, high: float, monitor: Monitor) -> list[Found]:

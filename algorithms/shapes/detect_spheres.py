@@ -108,6 +108,16 @@ def detect_spheres(
     ----------
     Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point clouds,
     section 4.3. [vosselman2004]
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> angle, up = np.mgrid[0:6.28:0.05, -1.5:1.5:0.05].reshape(2, -1)
+    >>> level = np.column_stack([np.cos(angle), np.sin(angle)]) * np.cos(up)[:, None]
+    >>> xyz = np.column_stack([level, np.sin(up)])
+    >>> ids, shapes, centers = detect_spheres(xyz, np.zeros(len(xyz)))
+    >>> len(centers), round(float(centers.columns["radius"][0]), 2)
+    (1, 1.0)
     """
 
     def search(around: Surroundings, low: float, high: float, monitor: Monitor) -> list[FoundSphere]:

@@ -73,6 +73,13 @@ def reconstruct_pipes(
     Notes
     -----
     Lines and points without heights are drawn at height 0.
+
+    Examples
+    --------
+    >>> from lidar_buildings.algorithms.stage import LayerFeatures
+    >>> axis = LayerFeatures([np.array([[0, 0, 1.0], [5, 0, 1.0]])], {"radius": [0.2]})
+    >>> len(reconstruct_pipes(axis))
+    16
     """
     faces: list[np.ndarray] = []
     columns: dict[str, list] = {"kind": [], "of": [], "radius": []}

@@ -209,6 +209,15 @@ def segment_planes_hough(
     Hough, P. V. C., 1962. Method and means for recognizing complex patterns. U.S. Patent 3,069,654. [hough1962]
     Vosselman, G., Dijkman, S., 2001. 3D building model reconstruction from point clouds and ground plans.
     [vosselman2001]
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> ids, shapes, planes = segment_planes_hough(xyz, np.zeros(len(xyz)))
+    >>> len(planes)
+    2
     """
     refuse_line(xyz)
     sampling = sampling or CloudSampling.of(xyz, classification)

@@ -146,6 +146,14 @@ def segment_tree(
     Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point clouds,
     section 5.4. [vosselman2004]
     McMahon, T. A., 1973. Size and shape in biology. Science 179, 1201-1204. [mcmahon1973]
+
+    Examples
+    --------
+    >>> from lidar_buildings.algorithms.simulation.simulate_tree import simulate_tree
+    >>> xyz, classes, *_ = simulate_tree(leaves=0.0, density=500.0)
+    >>> ids, branches = segment_tree(xyz, classes)
+    >>> len(branches) > 0
+    True
     """
     refuse_line(xyz)
     rows = candidates(classification, None, 0)

@@ -131,6 +131,15 @@ def classify_ground_cloth(
     Zhang, W., Qi, J., Wan, P., Wang, H., Xie, D., Wang, X., Yan, G., 2016. An easy-to-use airborne LiDAR data filtering
     method based on cloth simulation. Remote Sensing 8 (6), 501. [zhang2016]
     Hrutka, B. P., Siki, Z., Takács, B., 2022, section 2.2. [hrutka2022]
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> classes = classify_ground_cloth(xyz, np.zeros(len(xyz)))
+    >>> bool((classes[z == 0] == 2).all()), bool((classes[z > 0] == 2).any())
+    (True, False)
     """
     usable = usable_points(xyz, classification)
     points = xyz[usable]

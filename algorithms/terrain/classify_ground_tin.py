@@ -239,6 +239,15 @@ def classify_ground_tin(
     ----------
     Axelsson, P., 2000. DEM generation from laser scanner data using adaptive TIN models. International Archives of
     Photogrammetry and Remote Sensing 33 (B4), 110-117. [axelsson2000]
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> classes = classify_ground_tin(xyz, np.zeros(len(xyz)))
+    >>> bool((classes[z == 0] == 2).all()), bool((classes[z > 0] == 2).any())
+    (True, False)
     """
     if keep_ground and (classification == PointClass.GROUND).any():
         monitor.progress(1.0)

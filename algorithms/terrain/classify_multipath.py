@@ -76,6 +76,15 @@ def classify_multipath(
     ----------
     Axelsson, P., 2000. DEM generation from laser scanner data using adaptive TIN models. International Archives of
     Photogrammetry and Remote Sensing 33 (B4), 110-117. [axelsson2000] The search for multipath is this project's.
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> low = np.vstack([xyz, [5.2, 5.2, -3]])
+    >>> int(classify_multipath(low, np.where(low[:, 2] > 0, 1, 2))[-1])
+    7
     """
     if not (classification == PointClass.GROUND).any():
         raise ValueError("The cloud has no ground points (class 2); run 'Classify ground points (TIN)' first.")

@@ -64,6 +64,12 @@ def complete_ground(
     ----------
     ASPRS, 2014. Positional accuracy standards for digital geospatial data, edition 1, version 1.0, table 7.5.
     [asprs2014]
+
+    Examples
+    --------
+    >>> xyz = [[0, 0, 0.0], [1, 0, 0.05], [2, 0, 0.9]]
+    >>> complete_ground(xyz, np.array([2, 1, 1]), np.array([0.0, 0.05, 0.9]))
+    array([2, 2, 1], dtype=uint8)
     """
     classes = classification.astype(np.uint8)
     is_near = np.isin(classification, _OPEN) & (np.abs(height_above_ground) <= max_distance)

@@ -59,6 +59,15 @@ def compute_height_above_ground(xyz, classification, *, monitor=None):
     References
     ----------
     Hrutka, B. P., Siki, Z., Takács, B., 2022, section 2.2. [hrutka2022]
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> classes = np.where(z > 0, 1, 2)
+    >>> float(compute_height_above_ground(xyz, classes).max())
+    5.0
     """
     is_ground = classification == PointClass.GROUND
     if not is_ground.any():

@@ -148,6 +148,16 @@ def classify_walls(
     Hrutka, B. P., Siki, Z., Takács, B., 2022. Voxel-based point cloud segmentation and building detection.
     International Archives of the Photogrammetry, Remote Sensing and Spatial Information Sciences XLVIII-4/W1, section
     2.3. [hrutka2022]
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> classes = np.where(z > 0, 6, 2)
+    >>> found, roof = classify_walls(xyz, classes, z, np.where(z > 0, 1, 0))
+    >>> int(roof.max())
+    0
     """
     if min_height > split_height:
         raise ValueError(

@@ -86,6 +86,30 @@ _CORNER_FIELDS = (
 )
 
 
+_Tolerance = Annotated[
+    Optional[float],
+    Param(
+        "Tolerance",
+        "Distance within which points lie on a wall.",
+        unit="m",
+        low=0.01,
+        high=2,
+        automatic=f"{_ON_WALL:g} times the roughness: {ROUGHNESS}.",
+    ),
+]
+
+_MaxOverhang = Annotated[
+    float,
+    Param(
+        "Maximum overhang",
+        "How far roofs may jut out over their walls; parts deeper under a roof are inside.",
+        unit="m",
+        low=0,
+        high=10,
+    ),
+]
+
+
 @stage(
     "Extract wall footprints",
     group="Buildings",
@@ -110,16 +134,7 @@ def extract_wall_footprints(
         float,
         Param("Minimum wall length", "Length of the shortest wall that is looked for.", unit="m", low=0.2, high=100),
     ] = 1.2,
-    max_overhang: Annotated[
-        float,
-        Param(
-            "Maximum overhang",
-            "How far roofs may jut out over their walls; parts deeper under a roof are inside.",
-            unit="m",
-            low=0,
-            high=10,
-        ),
-    ] = 1.2,
+    max_overhang: _MaxOverhang = 1.2,
     min_seen: Annotated[
         float,
         Param(
@@ -129,17 +144,7 @@ def extract_wall_footprints(
             high=1,
         ),
     ] = 0.25,
-    tolerance: Annotated[
-        Optional[float],
-        Param(
-            "Tolerance",
-            "Distance within which points lie on a wall.",
-            unit="m",
-            low=0.01,
-            high=2,
-            automatic=f"{_ON_WALL:g} times the roughness: {ROUGHNESS}.",
-        ),
-    ] = None,
+    tolerance: _Tolerance = None,
     seed: Seed = 1,
     sampling: Optional[CloudSampling] = None,
     monitor=None,
@@ -209,6 +214,16 @@ def extract_wall_footprints(
     2.4. [hrutka2022]
     Fischler, M. A., Bolles, R. C., 1981. Random sample consensus: a paradigm for model fitting. Communications of the
     ACM 24 (6), 381-395. [fischler1981]
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
+    >>> z = np.where((abs(x - 20) < 5) & (abs(y - 20) < 4), 5.0, 0.0)
+    >>> xyz = np.column_stack([x, y, z])
+    >>> classes = np.where(z > 0, 6, 2)
+    >>> footprints, edges, corners, report = extract_wall_footprints(xyz, np.where(z > 0, 1, 0))
+    >>> len(footprints)
+    1
     """
     footprints = LayerFeatures([], {field.name: [] for field in _FIELDS})
     edges = LayerFeatures([], {field.name: [] for field in _EDGE_FIELDS})
