@@ -1972,7 +1972,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Leave one point in every voxel that has any: the center of gravity of the points in it.</source>
+        <source>Leave one point in every occupied voxel: the center of gravity of its points.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
