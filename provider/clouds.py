@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any, Optional
+from typing import Any, Callable, Optional
 
 from qgis.core import (
     Qgis,
@@ -36,9 +36,14 @@ def reads_las() -> bool:
 class _TakesFiles:
     """What parameters for point clouds have in common: they take the paths of files that QGIS may be unable to open."""
 
+    # Of QGIS's own class, which follows among the bases.
+    flags: Callable[[], Any]
+    help: Callable[[], str]
+    metadata: Callable[[], dict]
+
     def createFileFilter(self) -> str:  # noqa: N802 - QGIS asks for these names
         """Return the filter of the browse dialog, LAS and LAZ first."""
-        return f"{FILTER};;{super().createFileFilter()}"
+        return f"{FILTER};;{super().createFileFilter()}"  # type: ignore[misc]
 
     def checkValueIsAcceptable(self, value: Any, context: Optional[QgsProcessingContext] = None) -> bool:  # noqa: N802
         """Whether ``value`` may be a point cloud or several; what it really is, :func:`cloud_path` finds out."""

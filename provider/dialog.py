@@ -132,10 +132,12 @@ class GroupedPanel(ParametersPanel):
         if name not in self.wrappers:
             return
         shown, widget = self._parts(name)
-        for part in (shown, widget):
-            if isinstance(part, QLabel) or (part is widget and shown is None and hasattr(part, "setText")):
-                part.setText(label)
-                return
+        labels = [part for part in (shown, widget) if isinstance(part, QLabel)]
+        # A check box is its own label.
+        own = widget if shown is None and hasattr(widget, "setText") else None
+        part = labels[0] if labels else own
+        if part is not None:
+            part.setText(label)
 
     def _name_automatic(self, sections: list[Section]) -> None:
         """Say what an empty field means in the field itself, with one word everywhere."""

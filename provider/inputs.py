@@ -24,6 +24,7 @@ from ..algorithms.tiling.settings import SETTINGS, Setting
 from .clouds import CloudParameter, CloudsParameter, cloud_path, cloud_paths
 from .crs import crs_of
 from .feedback import is_step
+from .styles import subject_of_file
 from .texts import tr
 
 INPUT, INPUTS, REFERENCE, OUTPUT, REPORT = "INPUT", "INPUTS", "REFERENCE", "OUTPUT", "REPORT"
@@ -128,7 +129,7 @@ def extent_box(
 
 def subject_of(clouds: Sequence[Path], feedback: QgsProcessingFeedback) -> str:
     """Return what the results of a run are of, the name of its first cloud; "" for a step, which reads temporaries."""
-    return clouds[0].name.split(".")[0] if clouds and not is_step(feedback) else ""
+    return subject_of_file(clouds[0]) if clouds and not is_step(feedback) else ""
 
 
 def cloud_title(stages: Sequence[Stage]) -> str:

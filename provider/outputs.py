@@ -187,7 +187,8 @@ class Run:
     """
 
     def __init__(self, definitions: list, parameters: dict, context: QgsProcessingContext, files: ResultFiles) -> None:
-        self._files, self._clouds = files, []
+        self._files = files
+        self._clouds: list[Path] = []
         self.parameters = dict(parameters)
         for definition in definitions:
             value = parameters.get(definition.name())

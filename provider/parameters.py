@@ -82,7 +82,8 @@ def _number(tunable: Tunable) -> QgsProcessingParameterDefinition:
 def _decimals(tunable: Tunable) -> int:
     """Return how many decimals the spin box needs for the default and the bounds, at least 3."""
     numbers = (tunable.default, tunable.param.low, tunable.param.high)
-    return max(3, *(-Decimal(repr(float(number))).as_tuple().exponent for number in numbers if number is not None), 0)
+    exponents = [Decimal(repr(float(number))).as_tuple().exponent for number in numbers if number is not None]
+    return max(3, *(-exponent for exponent in exponents if isinstance(exponent, int)), 0)
 
 
 def _boolean(tunable: Tunable) -> QgsProcessingParameterDefinition:

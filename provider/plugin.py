@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from importlib import import_module
 from pathlib import Path
-from typing import Callable
+from typing import Callable, Optional
 
 from qgis.core import Qgis, QgsApplication, QgsMessageLog, QgsProcessingRegistry
 
@@ -25,7 +25,7 @@ class Plugin:
 
     def __init__(self, iface) -> None:
         self.iface = iface
-        self.provider = None
+        self.provider: Optional[Provider] = None
         self._undo: list[Callable[[], None]] = []
         self._added_path = ""
 
@@ -33,10 +33,10 @@ class Plugin:
         """Add the provider to Processing."""
         self._translator = install_translation()
         self._add_dependencies_folder()
-        self.provider = Provider()
-        self._registry().addProvider(self.provider)
+        provider = self.provider = Provider()
+        self._registry().addProvider(provider)
         # Models look their children up in the registry, where they are only now.
-        self.provider.refreshAlgorithms()
+        provider.refreshAlgorithms()
 
     def initGui(self) -> None:  # noqa: N802 - QGIS asks for this name
         """Add the provider, and then the optional parts."""

@@ -19,7 +19,7 @@ from qgis.PyQt.QtWidgets import QApplication
 
 from ..algorithms.cloud.asprs import PointClass
 from ..algorithms.cloud.cloud import Cloud
-from ..algorithms.cloud.files import write_cloud
+from ..algorithms.cloud.files import read_cloud, write_cloud
 from ..algorithms.run import run_stage
 from ..algorithms.stages import STAGES
 from .named_clouds import SIMULATED_CRS, named
@@ -28,6 +28,9 @@ from .texts import tr
 
 # Side (m) and density (points/m²) of the town: about 2 MB, with houses, a hall, a river with bridges, and plants.
 _SIZE, _DENSITY = 110.0, 12.0
+
+# Percentiles of the elevations that have colors: birds and low noise would take most of them.
+_SHOWN = (1.0, 99.5)
 
 # Files in the folder of the sample: the town as a scanner sees it, the truth, and the project.
 TOWN, TRUTH, PROJECT = "town.copc.laz", "town_truth.copc.laz", "town.qgz"
@@ -86,16 +89,16 @@ def fill_project(project: QgsProject, folder: Path) -> None:
             layer.setCrs(crs)
         project.addMapLayer(layer)
     truth.loadNamedStyle(str(Styler.file("classification")))
-    _color_by_elevation(town)
+    _color_by_elevation(town, np.percentile(read_cloud(folder / TOWN).get("xyz")[:, 2], _SHOWN))
     for layer in (truth, town):
         show_in_3d(layer)
     project.layerTreeRoot().findLayer(truth.id()).setItemVisibilityChecked(False)
     project.write(str(folder / PROJECT))
 
 
-def _color_by_elevation(layer: QgsPointCloudLayer) -> None:
-    """Color a cloud from its lowest to its highest point."""
-    low, high = layer.statistics().minimum("Z"), layer.statistics().maximum("Z")
+def _color_by_elevation(layer: QgsPointCloudLayer, limits: np.ndarray) -> None:
+    """Color a cloud between two elevations."""
+    low, high = limits.tolist()
     renderer = QgsPointCloudAttributeByRampRenderer()
     renderer.setAttribute("Z")
     renderer.setMinimum(low)

@@ -46,7 +46,7 @@ class Section:
 
     def add_setting(self, name: str) -> None:
         """Add a parameter that is no tunable; what an empty field means is in its title."""
-        title, empty = _EMPTY.match(SETTINGS[name].title).groups()
+        title, empty = _EMPTY.findall(SETTINGS[name].title)[0]
         self.labels[name] = f"{title.rstrip(',')})" if "(" in title else title.rstrip()
         if empty:
             self.unset[name] = tr(empty)

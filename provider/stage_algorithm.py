@@ -223,13 +223,17 @@ class StageAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         input_layers = {
             input_layer.name: read_input_layer(input_layer, layer, place, context, monitor.part(_READ, _READ))
             for input_layer, layer in given.items()
+            if place is not None
         }
         cloud = clouds if self.stage.merges else clouds[0] if clouds else None
         tunables = self.job.tunables
         outcome = run_stage(self.stage, cloud, reference, monitor.part(_READ, _RUN), input_layers, **tunables)
         if self.stage.creates and outcome.cloud is not None:
             outcome.cloud = named(outcome.cloud, self.job.crs)
-        return outcome, place_of_cloud(outcome.cloud) if outcome.cloud is not None else place
+        place = place_of_cloud(outcome.cloud) if outcome.cloud is not None else place
+        if place is None:
+            raise ValueError(f"{self.displayName()} has neither a point cloud nor a layer; choose one.")
+        return outcome, place
 
     def _points(self) -> int:
         return sum(count_points(path, self.job.box) for path in self.job.paths)
@@ -278,17 +282,16 @@ class StageAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         return {name: target}
 
     def _write_report(
-        self, html: str, place: Optional[Place], log: RunLog, parameters: dict, context: QgsProcessingContext
+        self, html: str, place: Place, log: RunLog, parameters: dict, context: QgsProcessingContext
     ) -> dict:
         """Write the page of numbers, if it is wanted; return its output. That of a step, the chain completes."""
         target = self.parameterAsFileOutput(parameters, REPORT, context)
         if not target:
             return {}
-        page = with_coordinates(html, place.to_map) if place is not None else html
+        page = with_coordinates(html, place.to_map)
         with replacing(Path(target)) as stream:
             stream.write(page.encode())
         if self._alone:
-            wkt = place.crs.toWkt(FULL) if place is not None else ""
-            rows = about_run(self.displayName(), self.job.paths, self._points(), wkt)
+            rows = about_run(self.displayName(), self.job.paths, self._points(), place.crs.toWkt(FULL))
             complete_page(Path(target), rows, log.steps)
         return {REPORT: target}

@@ -64,7 +64,8 @@ class Styler(QgsProcessingLayerPostProcessorInterface):
 
     def postProcessLayer(self, layer, context, feedback) -> None:  # noqa: N802 - QGIS asks for this name
         """Load the style, if there is one, and say so in the log when it can't be."""
-        if self.crs and not layer.crs().isValid():
+        # That of a virtual point cloud is the one that catalogs look it up by.
+        if self.crs and (not layer.crs().isValid() or layer.providerType() == "vpc"):
             layer.setCrs(crs_of(self.crs))
         if self.stem is not None:
             message, loaded = layer.loadNamedStyle(str(STYLES / f"{self.stem}.qml"))
@@ -195,7 +196,7 @@ def stack_results(context: QgsProcessingContext) -> None:
     root = context.project().layerTreeRoot()
     found = {node: _key_of(node.layer(), keys) for node in root.findLayers() if node.layer() is not None}
     nodes = [node for node, key in found.items() if key is not None]
-    wanted = sorted(nodes, key=lambda node: -found[node])
+    wanted = sorted(nodes, key=lambda node: found[node] or 0, reverse=True)
     if wanted == nodes or len({node.parent() for node in nodes}) > 1:
         return
     parent = nodes[0].parent()
@@ -233,21 +234,32 @@ def name_after(context: QgsProcessingContext, titles: Collection[str], subject: 
     The group is named after the input and the ``run``, and has a number where there is one of that name.
     """
     layers = context.layersToLoadOnCompletion()
-    group = _new_group(context, f"{subject}: {run}" if run else subject)
+    group, is_group = _new_group(context, f"{subject}: {run}" if run else subject)
     for path, details in layers.items():
         loaded = context.layerToLoadOnCompletionDetails(path)
+        _SUBJECTS[path] = subject
         if details.name in titles:
             loaded.name = f"{details.name} ({subject})"
-        if len(layers) > 1 and not details.groupName:
+        # Beside groups QGIS would put a single layer into the current one.
+        if (len(layers) > 1 or is_group) and not details.groupName:
             loaded.groupName = group
 
 
-def _new_group(context: QgsProcessingContext, name: str) -> str:
-    """Return a name that no group of the project has."""
+# What files that were loaded are of, so that runs on them say so, too: those of temporary files have no names.
+_SUBJECTS: dict[str, str] = {}
+
+
+def subject_of_file(path: Path) -> str:
+    """Return what a file is of: that of the run that made it, else its name."""
+    return _SUBJECTS.get(str(path), path.name.split(".")[0])
+
+
+def _new_group(context: QgsProcessingContext, name: str) -> tuple[str, bool]:
+    """Return a name that no group of the project has, and whether the project has groups."""
     project = context.project()
     taken = {group.name() for group in project.layerTreeRoot().findGroups()} if project is not None else set()
     numbered = (f"{name} {number}" if number > 1 else name for number in count(1))
-    return next(one for one in numbered if one not in taken)
+    return next(one for one in numbered if one not in taken), bool(taken)
 
 
 def _without_styler(details: QgsProcessingContext.LayerDetails) -> QgsProcessingContext.LayerDetails:

@@ -20,6 +20,7 @@ from qgis.core import (
     QgsProcessingParameterNumber,
     QgsProcessingParameterRasterDestination,
     QgsProcessingParameterString,
+    QgsProcessingUtils,
 )
 
 from ..algorithms.cloud.outputs import COPC, replacing, stem_of
@@ -190,7 +191,7 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         sinks = [one for one in self.destinationParameterDefinitions() if one.name() != OUTPUT]
         cancelled = f"Cancelled; what was done is kept in {folder}, and the same run goes on with it."
         with as_processing_errors(feedback, cancelled):
-            with all_in_place(sinks, parameters, context, folder.name, self.displayName()) as run:
+            with all_in_place(sinks, parameters, context, self._subject(folder), self.displayName()) as run:
                 results: dict[str, Any] = {}
                 outcome = self._run(folder, run.parameters, context, monitor, results)
                 results.update(self._write_layers(outcome, run.parameters, context, monitor))
@@ -212,9 +213,16 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         files = [folder / SHOWN / f"{stem_of(tile)}{COPC}" for tile in outcome.tiles]
         shown = str(write_survey(outcome.survey, files, folder / SHOWN, context, monitor))
         title = cloud_title([step.stage for step in self.tiled.pipeline.steps if step.stage.makes_cloud])
-        details = QgsProcessingContext.LayerDetails(f"{title} ({folder.name})", context.project(), VPC)
+        # Without the hint QGIS takes it for polygons in JSON.
+        hint = QgsProcessingUtils.LayerHint.PointCloud
+        details = QgsProcessingContext.LayerDetails(f"{title} ({self._subject(folder)})", context.project(), VPC, hint)
         context.addLayerToLoadOnCompletion(shown, details)
         show_on_load(context, shown, "Cloud", self._cloud_style(), crs=self.wkt)
+
+    def _subject(self, folder: Path) -> str:
+        """Return what the layers are of: the folder of the tiles, or the input where that is temporary."""
+        is_temporary = Path(QgsProcessingUtils.tempFolder()) in folder.parents
+        return self.paths[0].name.split(".")[0] if is_temporary else folder.name
 
     def _cloud_style(self) -> Optional[str]:
         """Return the style of the tiles: that of the last step that makes a cloud and has one."""

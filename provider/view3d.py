@@ -9,7 +9,7 @@ from qgis.core import QgsLayerTree, QgsMapLayer, QgsVector3D, QgsVectorLayer
 from .texts import tr
 
 # The camera: degrees from straight down, and distances in sides of what is shown.
-_PITCH, _AWAY = 55.0, 1.2
+_PITCH, _AWAY = 55.0, 1.8
 
 
 def show_view(iface: Any) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from osgeo import gdal
@@ -43,6 +45,7 @@ from lidar_buildings.provider.styles import (
     put_below,
     show_on_load,
     stack_results,
+    subject_of_file,
     switch_off,
 )
 from lidar_buildings.tests.provider.helpers import vector
@@ -400,3 +403,19 @@ def test_a_cloud_in_which_qgis_finds_no_system_gets_that_of_the_run(context, log
     layer = QgsPointCloudLayer(str(tmp_path / "named.copc.laz"), "cloud", "copc")
     Styler(None, crs=QgsCoordinateReferenceSystem("EPSG:2154").toWkt()).postProcessLayer(layer, context, log)
     assert layer.crs().authid() == "EPSG:28992"
+
+
+def test_a_single_layer_beside_groups_has_its_own(context):
+    """QGIS put the objects of *Assess buildings* into the group of the models, which was the current one."""
+    context.project().layerTreeRoot().addGroup("delft: Model buildings")
+    context.addLayerToLoadOnCompletion("a.gpkg", QgsProcessingContext.LayerDetails("Objects", context.project()))
+    name_after(context, ["Objects"], "delft", "Assess buildings")
+    assert context.layersToLoadOnCompletion()["a.gpkg"].groupName == "delft: Assess buildings"
+
+
+def test_runs_on_temporary_results_are_named_after_the_first_input(context):
+    """Layers of chained runs were called "Footprints (OUTPUT)"."""
+    context.addLayerToLoadOnCompletion("/tmp/x/OUTPUT.laz", QgsProcessingContext.LayerDetails("", context.project()))
+    name_after(context, [], "delft", "Detect buildings")
+    assert subject_of_file(Path("/tmp/x/OUTPUT.laz")) == "delft"
+    assert subject_of_file(Path("/tmp/y/tile_1.copc.laz")) == "tile_1"

@@ -334,7 +334,7 @@ def test_one_page_over_a_survey_has_its_map_and_what_the_steps_took(algorithm, c
 
 def test_the_tiles_are_loaded_with_points_style_and_the_layers_in_one_group(algorithm, context, log, folder, tmp_path):
     """QGIS shows only the outlines of tiles that are no COPC; none were loaded at all."""
-    from qgis.core import QgsPointCloudLayer, QgsProcessingOutputLayerDefinition
+    from qgis.core import QgsPointCloudLayer, QgsProcessingOutputLayerDefinition, QgsProcessingUtils
 
     out = tmp_path / "tiles"
     target = str(tmp_path / "footprints.gpkg")
@@ -348,6 +348,7 @@ def test_the_tiles_are_loaded_with_points_style_and_the_layers_in_one_group(algo
         shown: ("Classified point cloud (tiles)", "tiles: Detect buildings, in tiles"),
         target: ("Footprints (tiles)", "tiles: Detect buildings, in tiles"),
     }
+    assert layers[shown].layerTypeHint == QgsProcessingUtils.LayerHint.PointCloud, "QGIS took it for polygons"
     assert layers[shown].layerSortKey < layers[target].layerSortKey
     assert context.layerToLoadOnCompletionDetails(shown).postProcessor().stem == "classification"
     layer = QgsPointCloudLayer(shown, "tiles", "vpc")
