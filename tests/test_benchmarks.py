@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.terrain import free_standing
-from lidar_buildings.tests.benchmarks import worth
+from lidar_buildings.tests.benchmarks import history, worth
 from lidar_buildings.tests.benchmarks.results import Table
 from lidar_buildings.tests.benchmarks.surveys import Job, simulate
 
@@ -54,6 +54,42 @@ def test_every_script_starts_and_tells_where_its_results_go(script):
     done = subprocess.run([sys.executable, FOLDER / script, "--help"], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert "--output" in done.stdout
+
+
+def times(**cpu_seconds):
+    """Return rows of a run on 0.1 million points, with a floor of 2 s unless another one is given."""
+    return [
+        {"name": name, "millions": 0.1, "cpu_seconds": s} for name, s in {history.FLOOR: 2.0, **cpu_seconds}.items()
+    ]
+
+
+def test_times_are_compared_in_units_of_the_floor_of_their_own_run():
+    slower_machine = [{**row, "cpu_seconds": 3 * row["cpu_seconds"]} for row in times(ground=4.0, roofs=6.0)]
+    compared = history.changes(times(ground=4.0, roofs=3.0, gone=1.0), [*slower_machine, *times(new=1.0)[1:]])
+    assert compared == [(0.1, "ground", 2.0, 2.0), (0.1, "roofs", 1.5, 3.0)]
+
+
+def test_other_sizes_and_runs_without_a_floor_are_not_compared():
+    large = [{**row, "millions": 1.0} for row in times(ground=4.0)]
+    assert history.changes(times(ground=4.0), large) == []
+    assert history.changes(times(ground=4.0)[1:], times(ground=4.0)) == []
+
+
+def test_each_commit_is_kept_once_and_compared_with_the_one_before(tmp_path):
+    def run(commit, date, changed=False, **seconds):
+        content = {"table": "times", "commit": commit, "changed": changed, "date": date, "rows": times(**seconds)}
+        path = tmp_path / "times.json"
+        path.write_text(json.dumps(content), encoding="utf-8")
+        return history.sentences(history.kept(path))
+
+    assert run("a" * 40, "2026-01-01", ground=9.0) == ["No earlier results are kept to compare with."]
+    run("a" * 40, "2026-01-02", ground=4.0)
+    second = run("b" * 40, "2026-01-03", ground=3.0)
+    assert "aaaaaaaaaaaa:" in second[0]
+    assert second[1].split() == ["ground", "0.1", "M", "2.00", "1.50", "-25%", "*"]
+    assert run("b" * 40, "2026-01-04", changed=True, ground=3.06)[1].split()[-2:] == ["1.53", "+2%"]
+    kept = {path.name for path in (tmp_path / "history").iterdir()}
+    assert kept == {f"times-{name}.json" for name in ("a" * 40, "b" * 40, "b" * 40 + "-changed")}
 
 
 def test_the_simulation_of_a_survey_agrees_with_what_is_known_without_it():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Optional
+from typing import Any, Optional
 
 import numpy as np
 
@@ -39,12 +39,12 @@ class CellPoints:
     intensity: Optional[np.ndarray]
 
 
-def cell_features(points: CellPoints, cells: SpaceCells, chosen: np.ndarray) -> np.ndarray:
+def cell_features(points: CellPoints, cells: SpaceCells, chosen: np.ndarray, around: Any) -> np.ndarray:
     """Return the features (k, f), float64, of the ``chosen`` cells (k,), rows of all cells.
 
-    Two neighborhoods give the shape: the cell, and the cell with those around it.
+    ``around`` is the matrix of these and the cells that touch them, see :meth:`.SpaceCells.around`. Two neighborhoods
+    give the shape: the cell, and the cell with those around it.
     """
-    around = cells.around[chosen]
     own, block = cells.moments[chosen], around @ cells.moments
     count = own[:, 0]
     features = [_shapes(block), _shapes(own), np.log(block[:, :1]), np.log(own[:, :1])]

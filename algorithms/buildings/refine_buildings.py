@@ -231,9 +231,10 @@ class _Scene:
             _returns(return_number, number_of_returns),
             intensity if intensity is not None and intensity.any() else None,
         )
-        features = cell_features(points, cells, chosen)
+        around = cells.around(chosen)
+        features = cell_features(points, cells, chosen, around)
         monitor.progress(1.0)
-        return LabeledCells(cells, chosen, raised[chosen], label, features)
+        return LabeledCells(cells, chosen, around, raised[chosen], label, features)
 
     def of_points(self, labeled: LabeledCells, likely: np.ndarray) -> np.ndarray:
         """Return the probability (n,) of points, that (k,) of their cells; 0 where they are not raised."""

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Optional
+from typing import Any, Optional
 
 import numpy as np
 
 from ..geometry.grid import lattice
 from ..rules import rule
+from ..stage import Monitor
+from ..threads import in_chunks
 from .logistic_regression import LogisticRegression
 from .space_cells import SpaceCells
+
+# Cells that probabilities are predicted of at once: their terms take 10 MB.
+_CHUNK = 20_000
 
 
 @dataclass(frozen=True)
@@ -36,6 +41,8 @@ class LabeledCells:
         All cells.
     chosen : ndarray of shape (k,), int64
         Rows of those with raised points.
+    around : sparse matrix of shape (k, m)
+        1 for each of these and the cells that touch it.
     raised : ndarray of shape (k,)
         Raised points of each.
     label : ndarray of shape (k,)
@@ -46,6 +53,7 @@ class LabeledCells:
 
     cells: SpaceCells
     chosen: np.ndarray
+    around: Any
     raised: np.ndarray
     label: np.ndarray
     features: np.ndarray
@@ -70,7 +78,7 @@ class LabeledCells:
 
     def smooth(self, likely: np.ndarray) -> np.ndarray:
         """Return probabilities (k,) halfway to the mean of the cells around, which count by their raised points."""
-        around = self.cells.around[self.chosen][:, self.chosen]
+        around = self.around[:, self.chosen]
         return (likely + around @ (self.raised * likely) / (around @ self.raised)) / 2
 
 
@@ -95,8 +103,12 @@ def predict(learned: tuple[float, ...], features: np.ndarray, half: np.ndarray) 
     likely, count = np.zeros(len(features)), features.shape[1]
     for number, values in enumerate(np.reshape(learned, (2, -1))):
         mean, scale, weights = np.split(values, (count, 2 * count))
-        others = half != number
-        likely[others] = LogisticRegression(mean, scale, weights).predict(features[others])
+        regression = LogisticRegression(mean, scale, weights)
+
+        def work(rows: np.ndarray, regression: LogisticRegression = regression) -> None:
+            likely[rows] = regression.predict(features[rows])
+
+        in_chunks(work, np.flatnonzero(half != number), _CHUNK, Monitor())
     return likely
 
 

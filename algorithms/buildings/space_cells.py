@@ -40,13 +40,18 @@ class SpaceCells:
         """Return the sum (m,) of the values (n,) of the points of each cell."""
         return np.bincount(self.cell, values, len(self.count))
 
-    @cached_property
-    def around(self) -> Any:
-        """Sparse matrix (m, m): 1 for each cell itself and the up to 26 that touch it."""
+    def around(self, chosen: np.ndarray) -> Any:
+        """Return a sparse matrix (k, m): 1 for each of the cells ``chosen`` (k,) and the up to 26 that touch it."""
         one, other, _ = neighbor_pairs(self.voxels, 26)
-        own = np.arange(len(self.count))
-        rows, columns = np.concatenate([one, other, own]), np.concatenate([other, one, own])
-        return sparse.csr_matrix((np.ones(len(rows)), (rows, columns)), (len(own), len(own)))
+        row = np.full(len(self.count), -1, np.int32)
+        row[chosen] = np.arange(len(chosen))
+        pairs = [(row[chosen], chosen)]
+        for own, beside in ((one, other), (other, one)):
+            is_own = row[own] >= 0
+            pairs.append((row[own[is_own]], beside[is_own].astype(np.int32)))
+        del one, other
+        rows, columns = (np.concatenate(of_pairs, dtype=np.int32) for of_pairs in zip(*pairs))
+        return sparse.csr_matrix((np.ones(len(rows)), (rows, columns)), (len(chosen), len(self.count)))
 
     @cached_property
     def centers(self) -> np.ndarray:
@@ -57,8 +62,8 @@ class SpaceCells:
     def moments(self) -> np.ndarray:
         """Number of points, sums of x, y, z and of their six products (m, 10), m and m², about the points' middle."""
         off = np.ascontiguousarray((self.xyz - self._origin).T)
-        products = [off[a] * off[b] for a, b in PAIRS]
-        return np.column_stack([self.count.astype(float), *(self.sums(values) for values in (*off, *products))])
+        sums = [*(self.sums(values) for values in off), *(self.sums(off[a] * off[b]) for a, b in PAIRS)]
+        return np.column_stack([self.count.astype(float), *sums])
 
     @cached_property
     def _origin(self) -> np.ndarray:

@@ -23,7 +23,9 @@ B/point     The same without what was there before the cloud was read, by points
             points it is mostly workspace of a fixed size.
 ==========  ==========================================================================================================
 
-Nothing is judged here: times depend on the machine. Compare two versions by running both on one, with nothing beside.
+Nothing is judged here: times depend on the machine. The results of each commit are kept in ``benchmarks/history``; at
+the end the change since those kept last is printed, in processor time in units of "read + neighbors" of the same run,
+with a star from 5 % on.
 ``accuracy.py`` in this folder prints how good the results are, ``structure.py`` repeats a published drone flight.
 """
 
@@ -44,6 +46,7 @@ import conftest  # noqa: E402, F401 - registers the checkout as the package lida
 from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 from lidar_buildings.algorithms.threads import n_threads  # noqa: E402
+from lidar_buildings.tests.benchmarks.history import FLOOR, kept, sentences  # noqa: E402
 from lidar_buildings.tests.benchmarks.measured import PEERS  # noqa: E402
 from lidar_buildings.tests.benchmarks.results import FOLDER, machine, write  # noqa: E402
 
@@ -78,7 +81,7 @@ class Bench:
         self._scene("simulate_town" in wanted)
         self._row("read", "read")
         self._row("neighbors", "neighbors")
-        self._sum("read + neighbors", self.rows[-2:])
+        self._sum(FLOOR, self.rows[-2:])
         print(flush=True)
         others = [name for name in wanted if name in STAGES and name not in _steps() and name != "simulate_town"]
         needed = max((_place(name) for name in wanted if name in STAGES), default=0)
@@ -104,11 +107,12 @@ class Bench:
     def _compare(self) -> None:
         """Print "Detect buildings" from file to file beside the floor, the cores and the programs of others."""
         rows = {row["name"]: row for row in self.rows}
-        own, floor = rows[FILES], rows["read + neighbors"]
+        own, floor = rows[FILES], rows[FLOOR]
         per_million, least = own["seconds"] / self.millions, floor["seconds"] / self.millions
         print(
             f"\nDetect buildings, from file to file: {per_million:.1f} s per million points, "
-            f"{per_million / least:.1f} times {floor['name']} ({least:.1f} s), "
+            f"{per_million / least:.1f} times {floor['name']} ({least:.1f} s) and "
+            f"{own['cpu_seconds'] / floor['cpu_seconds']:.1f} times its processor time, "
             f"{own['busy']:.0%} of the cores busy, {own['bytes_per_point']:.0f} bytes per point"
         )
         for peer in PEERS:
@@ -149,7 +153,7 @@ class Bench:
         row["millions"] = self.millions
         row["bytes_per_point"] = (row["peak_bytes"] - row["base_bytes"]) / row["points"]
         self.rows.append(row)
-        unit = next((kept["seconds"] for kept in self.rows if kept["name"] == "read + neighbors"), None)
+        unit = next((row["seconds"] for row in self.rows if row["name"] == FLOOR), None)
         row["ratio"] = row["seconds"] / unit if unit else None
         row["busy"] = row["cpu_seconds"] / (row["seconds"] * n_threads())
         print(
@@ -205,7 +209,8 @@ def main() -> None:
             bench = Bench(millions, chosen.cache, Path(states))
             bench.run(chosen.stages)
         rows += bench.rows
-    print(f"\n{write(chosen.output, 'times', rows)}")
+    path = write(chosen.output, "times", rows)
+    print("", *sentences(kept(path)), "", path, sep="\n")
 
 
 if __name__ == "__main__":

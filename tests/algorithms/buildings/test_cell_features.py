@@ -14,7 +14,8 @@ def features_of(xyz, size, is_ground=None, returns=None, intensity=None):
     is_ground = np.zeros(len(xyz), bool) if is_ground is None else is_ground
     cells = SpaceCells(xyz, size)
     points = CellPoints(xyz, xyz[:, 2], is_ground, returns, intensity)
-    return cell_features(points, cells, np.arange(len(cells.count))), cells
+    every = np.arange(len(cells.count))
+    return cell_features(points, cells, every, cells.around(every)), cells
 
 
 def lattice(*axes):
