@@ -1,6 +1,10 @@
 """Chains of stages in memory: what they find, how their tunables are named, what they tell, how they stop."""
 
+import os
+import subprocess
+import sys
 from collections import Counter
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,6 +21,7 @@ from lidar_buildings.algorithms.stages import STAGES
 from lidar_buildings.tests.monitors import Listening
 from lidar_buildings.tests.toys import TOY_MAPPING, TOYS
 
+ROOT = Path(__file__).resolve().parents[2]
 FIELD, HOUSE, SHED, CROWN, BIRD = range(5)
 
 
@@ -455,3 +460,32 @@ def test_layers_that_are_switched_off_are_outputs_and_not_all_of_them(pipeline):
     layers = {one.name for one in pipeline.outputs if one.of in [layer.name for layer in one.step.stage.layers]}
     assert set(pipeline.switched_off) <= {*layers, CLOUD}
     assert not layers or not layers <= set(pipeline.switched_off)
+
+
+_WITH_THREADS = """
+import sys, conftest, numpy as np
+from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.cloud.files import write_cloud
+from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.run import run_pipeline
+from lidar_buildings.algorithms.threads import use_threads
+use_threads(int(sys.argv[1]))
+made = run_pipeline(PIPELINES["detect_buildings"], create_cloud({"xyz": np.load(sys.argv[2])}))
+write_cloud(made.cloud, sys.argv[3])
+print(len(made.layers["footprints"]), [ring.tolist() for rings in made.layers["footprints"].geometries for ring in rings])
+"""
+
+
+def test_any_number_of_threads_gives_the_same_bytes(tmp_path):
+    """Also those that compress the file, which has three chunks."""
+    np.save(tmp_path / "xyz.npy", hamlet(density=30)[0])
+    made = []
+    for count in ("1", "3"):
+        file = tmp_path / f"{count}.laz"
+        command = [sys.executable, "-c", _WITH_THREADS, count, str(tmp_path / "xyz.npy"), str(file)]
+        environment = {**os.environ, "RAYON_NUM_THREADS": count}
+        done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        made.append((done.stdout, file.read_bytes()))
+    assert made[0][0].startswith("2 ")
+    assert made[0] == made[1]
