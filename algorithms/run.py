@@ -127,7 +127,7 @@ def sampling_of(cloud: Cloud, corner: Optional[np.ndarray] = None) -> CloudSampl
     """
     used = counted(cloud)
     corner = _corner(cloud) if corner is None else corner
-    return CloudSampling(lambda: cloud.get("xyz")[used], not has_several_returns(cloud), corner)
+    return CloudSampling(lambda: cloud.get("xyz").compress(used, axis=0), not has_several_returns(cloud), corner)
 
 
 def _corner(cloud: Cloud) -> np.ndarray:

@@ -159,7 +159,9 @@ def refine_buildings(
     used = not_noise(classification)
     if not learn or sampling.is_closed_surface(source) or not len(used):
         return classification, cluster_id, confidence, reason, None
-    scene = _Scene(sampling.from_corner(xyz[used]), classification[used], height_above_ground[used], cluster_id[used])
+    scene = _Scene(
+        sampling.from_corner(xyz.take(used, axis=0)), classification[used], height_above_ground[used], cluster_id[used]
+    )
 
     # 1. Learn from the cells of each half, or take what was learned on the whole survey.
     number, of, strength = (_of(values, used) for values in (return_number, number_of_returns, intensity))

@@ -177,7 +177,7 @@ def extract_footprints(
     (1, 72)
     """
     building = _building_points(classification, cluster_id, monitor)
-    if not len(building) or not np.ptp(xyz[building, :2], axis=0).any():
+    if not len(building) or not np.ptp(plan_box(xyz.take(building, axis=0)), axis=0).any():
         return _features([], [], min_area)
     sampling = sampling or CloudSampling.of(xyz, classification)
     # Not the spacing of the cloud: a roof stops every pulse once, while crowns and the ground under them return many.

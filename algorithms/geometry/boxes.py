@@ -55,20 +55,23 @@ class Boxes:
     """
 
     def __init__(self, xyz: np.ndarray, side, from_zero: bool = False) -> None:
-        start = np.floor(xyz.min(axis=0) / side) * side if from_zero else xyz.min(axis=0)
-        box = np.floor((xyz - start) / side).astype(np.int64)
-        box -= box.min(axis=0)
+        # Column by column: numpy works on three numbers at a time where rows are as short.
+        sides = np.broadcast_to(np.asarray(side, float), 3)
+        low = np.array([column.min() for column in xyz.T])
+        start = np.floor(low / sides) * sides if from_zero else low
+        box = [np.floor((xyz[:, axis] - start[axis]) / sides[axis]).astype(np.int64) for axis in range(3)]
+        box = [column - column.min() for column in box]
         # Room on all sides keeps neighbors from wrapping around.
-        self.shape = box.max(axis=0) + 2 * _REACH + 1
+        self.shape = np.array([column.max() for column in box]) + 2 * _REACH + 1
         if math.prod(self.shape.tolist()) > _MOST_BOXES:
             spread = " by ".join(f"{extent:,.0f}" for extent in np.ptp(xyz, axis=0))
             raise ValueError(
                 f"The points are spread over {spread} m, too far to be looked at in boxes of {np.min(side):.2g} m; "
                 "remove points that lie far off, or choose larger distances."
             )
-        key = self._key(box)
+        key = (box[0] * self.shape[1] + box[1]) * self.shape[2] + box[2]
         order = np.argsort(key, kind="stable")
-        self._fill(order, xyz[order], key[order])
+        self._fill(order, xyz.take(order, axis=0), key[order])
 
     def _fill(self, order: np.ndarray, xyz: np.ndarray, key: np.ndarray) -> None:
         self.order, self.xyz = order, xyz

@@ -147,7 +147,7 @@ def refuse_sparse(xyz: np.ndarray, size: float, most_cells: int = _MOST_CELLS) -
     SparsePointsError
         If the raster had more cells than that and more than twenty for each point.
     """
-    width, height = np.ptp(xyz[:, :2], axis=0)
+    width, height = np.ptp(plan_box(xyz), axis=0)
     if (width / size + 1) * (height / size + 1) > max(most_cells, _MOST_CELLS_PER_POINT * len(xyz)):
         raise SparsePointsError(
             f"The {len(xyz)} points are spread over {width:,.0f} m by {height:,.0f} m, which is nearly empty in cells "

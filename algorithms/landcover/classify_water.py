@@ -100,7 +100,7 @@ def classify_water(
     if sampling.is_closed_surface():
         return classes
     used = not_noise(classification)
-    points = sampling.from_corner(xyz[used])
+    points = sampling.from_corner(xyz.take(used, axis=0))
     is_ground = np.isin(classification[used], (PointClass.GROUND, PointClass.WATER))
     is_pulse = np.ones(len(used), bool)
     if return_number is not None and return_number.any():

@@ -123,7 +123,7 @@ class Surroundings:
     def __init__(self, xyz: np.ndarray, solid: np.ndarray, off: float) -> None:
         self.xyz, self.solid, self.off = xyz, solid, off
         self._order = [np.argsort(points[:, 0], kind="stable") for points in (xyz, solid)]
-        self._eastward = [points[order] for points, order in zip((xyz, solid), self._order)]
+        self._eastward = [points.take(order, axis=0) for points, order in zip((xyz, solid), self._order)]
 
     def on_wire(self, span: Span, beyond: float = 0.0) -> np.ndarray:
         """Return the rows (k,) of the points on a span, and on it up to ``beyond`` (m) its ends."""

@@ -144,10 +144,10 @@ def classify_noise_histogram(
     xyz = sampling.from_corner(xyz)
     made = classification.astype(np.uint8)
     used = np.flatnonzero(~np.isin(made, NOISE))
-    if not len(used) or not np.ptp(plan_box(xyz[used]), axis=0).any():
+    if not len(used) or not np.ptp(plan_box(xyz.take(used, axis=0)), axis=0).any():
         monitor.warn("No noise was looked for: the points that are not noise already have no extent in plan.")
         return made
-    points = xyz[used]
+    points = xyz.take(used, axis=0)
     spacing = sampling.spacing
     cell_size, bin_height = _automatic(cell_size, bin_height, spacing, monitor)
     monitor.progress(0.2)
@@ -160,7 +160,7 @@ def classify_noise_histogram(
     is_high[hanging[_in_group(points[hanging], max(1.0, HISTOGRAM.group_reach * spacing))]] = False
     if isolated:
         rest = np.flatnonzero(~(is_low | is_high))
-        is_low[rest[under_ground(points[rest], spacing, monitor.part(0.7, 1.0))]] = True
+        is_low[rest[under_ground(points.take(rest, axis=0), spacing, monitor.part(0.7, 1.0))]] = True
     made[used[is_low]] = PointClass.LOW_NOISE
     made[used[is_high]] = PointClass.HIGH_NOISE
     monitor.resolved(low_noise=int(is_low.sum()), high_noise=int(is_high.sum()))

@@ -14,6 +14,8 @@ from typing import Callable
 
 import numpy as np
 
+from ..geometry.grid import plan_box
+
 # Distinguishable with any color vision and in gray (Tol's high-contrast scheme); the last is the paper.
 _COLORS = ((221, 221, 221), (0, 68, 136), (221, 170, 51), (187, 85, 102), (255, 255, 255))
 REST, HIT, MISS, FALSE, _EMPTY = range(5)
@@ -140,7 +142,8 @@ def draw_map(xyz: np.ndarray, outcome: np.ndarray, names: tuple[str, str, str, s
     names : tuple of str
         What the legend calls these four.
     """
-    low, extent = xyz[:, :2].min(axis=0), np.ptp(xyz[:, :2], axis=0)
+    low, high = plan_box(xyz)
+    extent = high - low
     # Four points per pixel on average leave few pixels empty.
     size = max(float(extent.max()) / _MAP_SIDE, float(np.sqrt(4 * extent.prod() / len(xyz))), 1e-3)
     column, row = np.floor((xyz[:, :2] - low) / size).astype(np.int64).T

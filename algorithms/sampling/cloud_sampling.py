@@ -91,7 +91,7 @@ class CloudSampling:
         if classification is None:
             return cls(lambda: xyz)
         counted = without_noise(classification)
-        return cls(lambda: xyz[counted], corner=plan_box(xyz)[0])
+        return cls(lambda: xyz.compress(counted, axis=0), corner=plan_box(xyz)[0])
 
     @cached_property
     def corner(self) -> np.ndarray:
@@ -100,7 +100,11 @@ class CloudSampling:
 
     def from_corner(self, xyz: np.ndarray) -> np.ndarray:
         """Return points (n, 3), m, with easting and northing from the corner, where the cells of all stages begin."""
-        return xyz - np.append(self.corner, 0.0)
+        moved = xyz.copy()
+        # Column by column: numpy is slow on rows of three.
+        for axis, start in enumerate(self.corner):
+            moved[:, axis] -= start
+        return moved
 
     def shared(self, name: str, measure: Callable[[], float]) -> float:
         """Return the value of that name of the whole; where the cloud is the whole, the one that ``measure`` returns.

@@ -100,7 +100,7 @@ class Decks:
         others = np.flatnonzero(is_earth & (votes < DECK.least_directions))
         # A filter may leave the last meters before a deck out of the ground: they count with the ground beyond.
         terrain = np.flatnonzero((is_terrain | is_earth) & (votes < DECK.least_directions))
-        beside = connect(xyz[terrain], self.reach, DECK.same_level, monitor.part(0.9, 1))
+        beside = connect(xyz.take(terrain, axis=0), self.reach, DECK.same_level, monitor.part(0.9, 1))
         size = np.bincount(beside, minlength=1)
         ground = np.bincount(beside, is_terrain[terrain], len(size))
         size = np.where(ground >= DECK.most_below * size, size, 0)[beside]
@@ -120,7 +120,7 @@ class Decks:
     def _raised(self, xyz: np.ndarray, is_earth: np.ndarray, direction: float) -> np.ndarray:
         """Return which points (n,) are of pieces of one direction that have lower points beyond both ends."""
         order, line = slices(xyz, direction, self.line_width)
-        points = xyz[order]
+        points = xyz.take(order, axis=0)
         angle = np.radians(direction)
         along = points[:, 0] * np.cos(angle) + points[:, 1] * np.sin(angle)
         height = np.ascontiguousarray(points[:, 2])

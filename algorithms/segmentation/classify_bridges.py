@@ -112,7 +112,7 @@ def classify_bridges(
     noise = sampling.noise if noise is None else noise
     monitor.resolved(density=density, noise=noise)
     used = not_noise(classification)
-    points = sampling.from_corner(xyz[used])
+    points = sampling.from_corner(xyz.take(used, axis=0))
     decks = Decks.of(min_height, max_width, min_bridge_area, 1 / float(np.sqrt(density)), noise)
     may_be_deck = ~np.isin(classification[used], _NO_DECK)
     if search == _OVER_GAPS:

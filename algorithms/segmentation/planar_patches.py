@@ -85,7 +85,7 @@ def segment_patches(
     # Points that are near each other follow each other, so that values of neighbors are in the processor's caches.
     order = spatial.cKDTree(xyz, balanced_tree=False).indices.astype(np.int32)
     neighborhood = replace(neighborhood, count=min(neighborhood.count, len(xyz)))
-    xyz = xyz[order]
+    xyz = xyz.take(order, axis=0)
     planes = _local_planes(xyz, neighborhood, monitor.part(0, 0.6))
     points = np.column_stack([xyz - xyz[0], np.full(len(xyz), -1.0)])
     del xyz

@@ -158,7 +158,9 @@ def segment_roofs(
     used = np.flatnonzero(is_used)
     patch = np.full(len(xyz), -1, np.int32)
     find_patches = kind.choose(_patches_of_scan, _patches_of_images)
-    patch[used] = find_patches(xyz[used], sampling, _Planes(density, noise, max_slope), monitor.part(0, 0.75))
+    patch[used] = find_patches(
+        xyz.take(used, axis=0), sampling, _Planes(density, noise, max_slope), monitor.part(0, 0.75)
+    )
 
     # 2. Those that are high and large enough, and do not go on into the ground.
     patches = _Patches(xyz, patch, height_above_ground, density, kind.foot)
@@ -171,7 +173,7 @@ def segment_roofs(
     goes_on = patches.points_of(patches.is_terrain)
     others = used[(raised & (segment_id == 0) & ~goes_on)[used]]
     part = monitor.part(0.85, 1)
-    ids = _clusters(xyz[others], height_above_ground[others], min_height, min_area, density, part)
+    ids = _clusters(xyz.take(others, axis=0), height_above_ground[others], min_height, min_area, density, part)
     cluster_id = segment_id.copy()
     cluster_id[others] = np.where(ids > 0, ids + segment_id.max(initial=0), 0)
     return segment_id, cluster_id, np.where(raised & goes_on, np.uint8(Reason.INTO_GROUND), np.uint8(0))

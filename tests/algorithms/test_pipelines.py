@@ -472,7 +472,8 @@ from lidar_buildings.algorithms.threads import use_threads
 use_threads(int(sys.argv[1]))
 made = run_pipeline(PIPELINES["detect_buildings"], create_cloud({"xyz": np.load(sys.argv[2])}))
 write_cloud(made.cloud, sys.argv[3])
-print(len(made.layers["footprints"]), [ring.tolist() for rings in made.layers["footprints"].geometries for ring in rings])
+outlines = made.layers["footprints"].geometries
+print(len(outlines), [ring.tolist() for rings in outlines for ring in rings])
 """
 
 
