@@ -8,10 +8,12 @@ from typing import Any, Optional
 import numpy as np
 
 from ..footprints.alpha_shape import Tracing, trace_outlines, triangulated
-from ..footprints.regularization import regularize_outline
+from ..footprints.drawn_blocks import CORNER
+from ..footprints.outline_pieces import sampled
 from ..geometry.groups import items
 from ..geometry.line_segments import are_inside, edge_distances, is_valid, nearest_edge_distances
-from ..geometry.polylines import simplify_ring
+from ..geometry.ring_directions import direction_weights, main_directions
+from ..geometry.ring_drawing import Prices, draw_ring
 from ..geometry.rings import signed_area
 from ..packages import spatial
 
@@ -112,11 +114,19 @@ def outline_of(
     if boundary == "key points":
         ring, limit = key_points(traced), np.inf
     else:
-        found = regularize_outline([traced], tolerance)
-        ring, limit = (found[0] if found else simplify_ring(traced, tolerance)), 2 * tolerance
+        ring, limit = _straightened(traced, tolerance), 2 * tolerance
     if not is_valid([ring]):
         ring = traced
     return Outline(pushed_out(ring, traced[:-1], limit), spacing, float(hull.volume), seen)
+
+
+def _straightened(traced: np.ndarray, tolerance: float) -> np.ndarray:
+    """Return the closed ring of straight edges along a traced one, to a tolerance (m)."""
+    scale = tolerance / _TOLERANCE_SPACINGS
+    samples = sampled(traced, scale)
+    weights = direction_weights(samples)
+    edges = draw_ring(samples, main_directions(weights, weights, len(samples)), Prices(CORNER * scale**3))
+    return np.array([edge.start for edge in [*edges, edges[0]]])
 
 
 def completed(ring: np.ndarray) -> np.ndarray:

@@ -66,11 +66,11 @@ def find_pieces(building: int, shares: Shares, spacing: float, min_area: float, 
         if size >= min_area:
             own = [hole for hole in holes if is_inside(hole[0], ring)]
             area = size + sum(map(signed_area, own))
-            pieces.append(Piece(building, [_sampled(one, _SAMPLE * spacing) for one in [ring, *own]], area))
+            pieces.append(Piece(building, [sampled(one, _SAMPLE * spacing) for one in [ring, *own]], area))
     return pieces
 
 
-def _sampled(ring: np.ndarray, step: float) -> np.ndarray:
+def sampled(ring: np.ndarray, step: float) -> np.ndarray:
     """Return positions (n, 2) at equal steps of about ``step`` (m) along a closed ring."""
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(ring, axis=0).T))])
     count = max(_FEWEST, round(perimeter(ring) / step))
