@@ -7,7 +7,6 @@ from typing import Any, Optional
 
 import numpy as np
 
-from ..footprints.alpha_shape import Tracing, trace_outlines, triangulated
 from ..footprints.drawn_blocks import CORNER
 from ..footprints.outline_pieces import sampled
 from ..geometry.groups import items
@@ -16,6 +15,7 @@ from ..geometry.ring_directions import direction_weights, main_directions
 from ..geometry.ring_drawing import Prices, draw_ring
 from ..geometry.rings import signed_area
 from ..packages import spatial
+from .alpha_shape import Tracing, trace_outlines, triangulated
 
 # The angle (°) between the edges at a boundary point below which it is no key point: in the first round, and after as
 # many rounds of one degree (paper, section 3.3, step 3).
@@ -220,14 +220,14 @@ def _traced(
     positions: np.ndarray, triangulation: Any, spacing: float, edge_factor: float, max_gap: float
 ) -> Optional[np.ndarray]:
     """Return the exterior ring of the largest piece of triangles without long edges."""
-    label, max_edge = np.ones(len(positions), np.int64), edge_factor * spacing
+    max_edge = edge_factor * spacing
     while True:
-        tracing = trace_outlines(positions, label, spacing, max_edge, min_hole_area=np.inf, triangulation=triangulation)
+        tracing = trace_outlines(positions, max_edge, triangulation)
         piece = None if tracing is None else _largest(tracing)
         if max_edge >= max_gap or (tracing is not None and piece is not None and _share(tracing, piece) >= _WHOLE):
             break
         max_edge = min(max_edge * _GROWTH, max_gap)
-    return None if tracing is None or piece is None else tracing.parts[piece][0]
+    return None if tracing is None or piece is None else tracing.parts[piece]
 
 
 def _largest(tracing: Tracing) -> Optional[int]:
