@@ -7,7 +7,6 @@ from typing import Any, Optional
 
 import numpy as np
 
-from ..footprints.drawn_blocks import CORNER
 from ..footprints.outline_pieces import sampled
 from ..geometry.groups import items
 from ..geometry.line_segments import are_inside, edge_distances, is_valid, nearest_edge_distances
@@ -36,6 +35,10 @@ _PERCENTILE = 95
 
 # Tolerance of straight edges: spacings, m, and the largest share of the width of a facade, lest a narrow one be a line.
 _TOLERANCE_SPACINGS, _LEAST_TOLERANCE, _TOLERANCE_SHARE = 2.0, 0.05, 0.2
+
+# A corner costs as much as this many cubed tolerances of squared distance along the boundary; fitted on simulated
+# outlines.
+_CORNER = 0.5
 
 # Angles (rad) within which an edge of the hull is the foot of a facade, which may lie on a slope, and a side.
 _FOOT_ANGLE, _SIDE_ANGLE = np.radians(12.0), np.radians(4.0)
@@ -122,10 +125,9 @@ def outline_of(
 
 def _straightened(traced: np.ndarray, tolerance: float) -> np.ndarray:
     """Return the closed ring of straight edges along a traced one, to a tolerance (m)."""
-    scale = tolerance / _TOLERANCE_SPACINGS
-    samples = sampled(traced, scale)
+    samples = sampled(traced, tolerance / _TOLERANCE_SPACINGS)
     weights = direction_weights(samples)
-    edges = draw_ring(samples, main_directions(weights, weights, len(samples)), Prices(CORNER * scale**3))
+    edges = draw_ring(samples, main_directions(weights, weights, len(samples)), Prices(_CORNER * tolerance**3))
     return np.array([edge.start for edge in [*edges, edges[0]]])
 
 

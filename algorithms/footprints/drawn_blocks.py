@@ -21,7 +21,7 @@ from .soft_shares import Lattice, Shares
 
 # A corner costs as much as this many cubed spacings of squared distance along an outline: a bay of two spacings by four
 # is not drawn. From 16 on outlines hardly change any more when points do (tried from 4 to 24).
-CORNER = 10.0
+_CORNER = 10.0
 
 # Edges of two rings on both sides of a border, or of a front that goes on, lie this close (spacings) to one line: that
 # of the longest one. They were drawn from the same points.
@@ -153,7 +153,7 @@ def _at_middle(cells: Subdivision, cell: int, values: np.ndarray, lattice: Latti
 
 def _drawn(ring: np.ndarray, directions: np.ndarray, how: Drawing) -> list[Edge]:
     """Return the straight edges of a ring of samples."""
-    return draw_ring(ring, directions, Prices(CORNER * how.scale**3))
+    return draw_ring(ring, directions, Prices(_CORNER * how.scale**3))
 
 
 def _shares_of(
