@@ -208,21 +208,7 @@ class _Limits:
 
 @dataclass(frozen=True)
 class _Roofs:
-    """All points (n,), with the roofs among them.
-
-    Attributes
-    ----------
-    xyz : ndarray of shape (n, 3), float64
-        Coordinates, m.
-    height : ndarray of shape (n,)
-        Heights above ground, m.
-    is_roof, is_noise : ndarray of shape (n,), bool
-        Points of roofs to start from, and of noise.
-    may_stand : ndarray of shape (n,), bool
-        Points that can be of a building: neither noise nor bridge deck.
-    segment_id : ndarray of shape (n,), int32, optional
-        Roof surfaces; 0 if unassigned.
-    """
+    """All points (n,), with the roofs to start from; noise and bridge decks can be of no building."""
 
     xyz: np.ndarray
     height: np.ndarray

@@ -12,7 +12,8 @@ from ..geometry.groups import items
 from ..params import PointDensity
 from ..sampling.cloud_sampling import CloudSampling, not_noise
 from ..stage import Monitor, Param, stage
-from .surface_growing import Criteria, LocalPlanes, grow_planes, grow_surfaces, local_planes
+from .local_planes import Criteria, LocalPlanes, local_planes
+from .surface_growing import grow_planes, grow_surfaces
 
 # Reach of a neighborhood in point spacings on surfaces: it holds 28 points, of which the nearest are taken, and crosses
 # gaps between scan lines three times as wide as points lie apart on the average.

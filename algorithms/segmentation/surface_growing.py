@@ -1,8 +1,7 @@
-"""Surface growing: local planes of points, seed surfaces where they are smooth, and growth from these."""
+"""Surface growing: seed surfaces where local planes are smooth, and growth from these."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import partial
 from typing import Callable, Optional
 
@@ -10,35 +9,14 @@ import numpy as np
 
 from ..geometry.disjoint_sets import DisjointSets
 from ..geometry.groups import components
-from ..neighborhoods.covariance import smallest_eigenvectors, symmetric_eigenvalues
-from ..neighborhoods.nearest_blocks import PAIRS
-from ..packages import spatial
 from ..stage import Monitor
 from ..threads import in_chunks
 from .best_pairs import common_deviation, merge_best_pairs
 from .least_squares_planes import Planes, planes_of
-
-# A plane and how far points lie off it take this many points.
-_LEAST_POINTS = 5
-
-# Robust planes hold at least this share of their neighborhood: with less the other side of an edge is as good a plane.
-_LEAST_SHARE = 0.5
-
-# Fits of a robust plane, each to the points near the one before.
-_REFITS = 3
-
-# Directions of the local Hough transform, even on the half sphere: 13° apart, so that a plane between two of them
-# leaves most of its points within the bins of one.
-_DIRECTIONS = 128
-
-# Neighbors of a chunk, 60 bytes each and 15 MB in all. The Hough transform takes 10 times as much for each of them.
-_CHUNK_NEIGHBORS, _HOUGH_NEIGHBORS = 240_000, 24_000
+from .local_planes import CHUNK_NEIGHBORS, LEAST_POINTS, Criteria, LocalPlanes, fit_planes, store_planes
 
 # Points of a chunk.
 _CHUNK = 20_000
-
-# Points of a leaf of the tree, at most: searched in as much time as the usual 16, in a third less memory.
-_LEAF = 24
 
 # Neighbors by which seeds are connected first: most of the others then are of the same surface already.
 _FIRST_NEIGHBORS = 3
@@ -46,206 +24,8 @@ _FIRST_NEIGHBORS = 3
 # Growth by one neighborhood in each round: more than the widest gap between seeds takes.
 _MAX_ROUNDS = 1000
 
-
 # Whether the surfaces at some points (m,) hold other points (m,), by their numbers.
 Hold = Callable[[np.ndarray, np.ndarray], np.ndarray]
-
-
-@dataclass(frozen=True)
-class Criteria:
-    """When a point belongs to the surface beside it.
-
-    Attributes
-    ----------
-    tolerance : float or None
-        Largest distance to the plane of the surface, m; None leaves the criterion out.
-    cosine : float or None
-        Least cosine of the angle between the normals; None leaves the criterion out.
-    """
-
-    tolerance: Optional[float]
-    cosine: Optional[float]
-
-    def hold(self, away: np.ndarray, normal: np.ndarray, other: np.ndarray) -> np.ndarray:
-        """Return whether surfaces hold points.
-
-        Parameters
-        ----------
-        away : ndarray of shape (m, 3)
-            Points, from a point on the plane of each surface (m).
-        normal, other : ndarray of shape (m, 3)
-            Normals of the surfaces, and of the points.
-        """
-        held = np.ones(len(away), bool)
-        if self.tolerance is not None:
-            held &= np.abs(np.einsum("ij,ij->i", away, normal)) <= self.tolerance
-        if self.cosine is not None:
-            held &= np.abs(np.einsum("ij,ij->i", normal, other)) >= self.cosine
-        return held
-
-
-@dataclass
-class LocalPlanes:
-    """The plane of each point and its neighbors.
-
-    Attributes
-    ----------
-    xyz : ndarray of shape (n, 3), float64
-        The points, m.
-    offset : ndarray of shape (n, 3), float32
-        Center of the plane from its point, m.
-    normal : ndarray of shape (n, 3), float32
-        Unit normals, upward; 0 where there is no plane.
-    deviation : ndarray of shape (n,), float32
-        Root mean square distance of its points, free of the degrees of freedom of the fit, m; inf without a plane.
-    neighbors : ndarray of shape (n, k), int32
-        Points near each point, nearest first; the point itself where there are fewer.
-    """
-
-    xyz: np.ndarray
-    offset: np.ndarray
-    normal: np.ndarray
-    deviation: np.ndarray
-    neighbors: np.ndarray
-
-    def hold(self, criteria: Criteria, plane: np.ndarray, point: np.ndarray) -> np.ndarray:
-        """Return whether the planes of some points (m,) hold others (m,)."""
-        away = (self.xyz[point] - self.xyz[plane]).astype(np.float32) - self.offset[plane]
-        return criteria.hold(away, self.normal[plane], self.normal[point])
-
-    def agree(self, criteria: Criteria, one: np.ndarray, other: np.ndarray) -> np.ndarray:
-        """Return whether the planes of points (m,) and of others (m,) hold one another's points and centers.
-
-        At an edge the planes of both sides hold points of the other side, but not where the middle of its points is.
-        """
-        apart = (self.xyz[other] - self.xyz[one]).astype(np.float32)
-        agreed = np.ones(len(one), bool)
-        for a, b, step in ((one, other, apart), (other, one, -apart)):
-            away = step - self.offset[a]
-            for offset in (0, self.offset[b]):
-                agreed &= criteria.hold(away + offset, self.normal[a], self.normal[b])
-        return agreed
-
-
-def local_planes(
-    xyz: np.ndarray, count: int, radius: float, method: str, tolerance: float, monitor: Monitor
-) -> LocalPlanes:
-    """Fit a plane to the neighborhood of each point.
-
-    Parameters
-    ----------
-    xyz : ndarray of shape (n, 3), float64
-        Points (m).
-    count : int
-        Points of a neighborhood at most, the point itself among them.
-    radius : float
-        Reach of a neighborhood, m.
-    method : {"least squares", "robust", "hough"}
-        How planes are fitted.
-    tolerance : float
-        Distance within which a point lies on a robust plane, m.
-    monitor : Monitor
-        Receives progress.
-
-    Returns
-    -------
-    LocalPlanes
-        Planes, by point.
-    """
-    # Balanced: of points at the same distance it hardly depends on their order which are found.
-    n, tree = len(xyz), spatial.cKDTree(xyz, _LEAF)
-    # Points at the radius itself are near, however coordinates are rounded.
-    count, reach = min(count, n), radius * (1 + 1e-7)
-    planes = LocalPlanes(
-        xyz,
-        np.zeros((n, 3), np.float32),
-        np.zeros((n, 3), np.float32),
-        np.full(n, np.inf, np.float32),
-        np.empty((n, count - 1), np.int32),
-    )
-    inliers = {"least squares": _every, "robust": _without_outliers, "hough": _voted}[method]
-
-    def work(rows: np.ndarray) -> None:
-        own = xyz[rows]
-        neighbors = tree.query(own, k=count, distance_upper_bound=reach)[1].reshape(len(rows), count)
-        near = neighbors < n
-        neighbors = np.where(near, neighbors, rows[:, None])
-        planes.neighbors[rows] = neighbors[:, 1:]
-        offsets = (xyz[neighbors] - own[:, None]).astype(np.float32)
-        chosen = inliers(offsets, near, tolerance)
-        enough = chosen.sum(axis=1) >= np.maximum(_LEAST_POINTS, _LEAST_SHARE * near.sum(axis=1))
-        _store(planes, rows[enough], *_fitted(offsets[enough], chosen[enough]))
-
-    # In the order of the tree's leaves the neighbors of one chunk lie together in memory.
-    chunk = (_HOUGH_NEIGHBORS if method == "hough" else _CHUNK_NEIGHBORS) // max(count, 1)
-    in_chunks(work, tree.indices, max(chunk, 1), monitor)
-    return planes
-
-
-def _store(planes: LocalPlanes, rows: np.ndarray, center, normal, deviation) -> None:
-    defined = np.isfinite(normal).all(axis=1)
-    rows = rows[defined]
-    planes.offset[rows], planes.normal[rows] = center[defined], normal[defined]
-    planes.deviation[rows] = deviation[defined]
-
-
-def _fitted(offsets: np.ndarray, chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return center (m, 3), normal (m, 3) and deviation (m,) of the ``chosen`` (m, k) points of neighborhoods."""
-    weight = chosen.astype(np.float32)
-    count = np.maximum(weight.sum(axis=1), 1).astype(float)
-    center = np.einsum("ijk,ij->ik", offsets, weight) / count[:, None]
-    away = (offsets - center[:, None].astype(np.float32)) * weight[..., None]
-    products = np.column_stack([np.einsum("ij,ij->i", away[..., a], away[..., b]) for a, b in PAIRS]) / count[:, None]
-    eigenvalues = symmetric_eigenvalues(products)
-    free = np.maximum(count - 3, 1)
-    return center, smallest_eigenvectors(products, eigenvalues), np.sqrt(eigenvalues[:, 2] * count / free)
-
-
-def _every(offsets: np.ndarray, near: np.ndarray, tolerance: float) -> np.ndarray:
-    return near
-
-
-def _without_outliers(offsets: np.ndarray, near: np.ndarray, tolerance: float) -> np.ndarray:
-    """Return which points are no outliers of a plane by least squares, fitted again without those of the one before."""
-    chosen = near
-    for share in (0.8, 0.65, _LEAST_SHARE, _LEAST_SHARE):
-        distance = _distances(offsets, *_fitted(offsets, chosen)[:2])
-        distance[~near] = np.inf
-        rank = np.ceil(share * near.sum(axis=1)).astype(int) - 1
-        nearest = np.take_along_axis(np.sort(distance, axis=1), rank[:, None], axis=1)
-        chosen = near & (distance <= np.maximum(nearest, tolerance))
-    return near & (_distances(offsets, *_fitted(offsets, chosen)[:2]) <= tolerance)
-
-
-def _voted(offsets: np.ndarray, near: np.ndarray, tolerance: float) -> np.ndarray:
-    """Return which points lie on the plane through the point that most neighbors vote for."""
-    size = offsets.shape
-    distance = np.abs(offsets.reshape(-1, 3) @ _half_sphere().T).reshape(size[0], size[1], -1)
-    # Points in the middle of a bin count more: of several planes with all points the best one wins.
-    np.divide(distance, -2 * tolerance, out=distance)
-    distance += 1
-    np.maximum(distance, 0, out=distance)
-    distance *= near[..., None]
-    best = distance.sum(axis=1).argmax(axis=1)
-    chosen = near & (np.take_along_axis(distance, best[:, None, None], axis=2)[..., 0] > 0)
-    for _ in range(_REFITS):
-        center, normal, _ = _fitted(offsets, chosen)
-        chosen = near & (_distances(offsets, center, normal) <= tolerance)
-    return chosen
-
-
-def _half_sphere() -> np.ndarray:
-    """Return directions (d, 3), float32, even on the upper half sphere (Fibonacci's spiral)."""
-    number = np.arange(_DIRECTIONS) + 0.5
-    up = 1 - number / _DIRECTIONS
-    angle = np.pi * (1 + np.sqrt(5)) * number
-    out = np.sqrt(1 - up**2)
-    return np.column_stack([out * np.cos(angle), out * np.sin(angle), up]).astype(np.float32)
-
-
-def _distances(offsets: np.ndarray, center: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    level = np.einsum("ij,ij->i", center, normal)
-    return np.abs(np.einsum("ijk,ik->ij", offsets, np.nan_to_num(normal)) - np.nan_to_num(level)[:, None])
 
 
 def grow_surfaces(planes: LocalPlanes, is_seed: np.ndarray, criteria: Criteria, monitor: Monitor) -> np.ndarray:
@@ -399,12 +179,12 @@ def _refit(planes: LocalPlanes, rows: np.ndarray, parent: np.ndarray, surface: n
         around = np.column_stack([some, planes.neighbors[some]])
         same = surface[around] == surface[some, None]
         same[:, 1:] &= around[:, 1:] != some[:, None]
-        enough = same.sum(axis=1) >= _LEAST_POINTS
+        enough = same.sum(axis=1) >= LEAST_POINTS
         some, around, same = some[enough], around[enough], same[enough]
         offsets = (planes.xyz[around] - planes.xyz[some, None]).astype(np.float32)
-        _store(planes, some, *_fitted(offsets, same))
+        store_planes(planes, some, *fit_planes(offsets, same))
 
-    in_chunks(work, np.arange(len(rows)), max(_CHUNK_NEIGHBORS // (planes.neighbors.shape[1] + 1), 1), Monitor())
+    in_chunks(work, np.arange(len(rows)), max(CHUNK_NEIGHBORS // (planes.neighbors.shape[1] + 1), 1), Monitor())
 
 
 def grow_planes(

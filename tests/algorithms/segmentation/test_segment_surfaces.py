@@ -8,8 +8,10 @@ import pytest
 
 from lidar_buildings.algorithms import threads
 from lidar_buildings.algorithms.segmentation import best_pairs, least_squares_planes, surface_growing
+from lidar_buildings.algorithms.segmentation import local_planes as local_planes_module
+from lidar_buildings.algorithms.segmentation.local_planes import Criteria, local_planes
 from lidar_buildings.algorithms.segmentation.segment_surfaces import segment_surfaces as stage
-from lidar_buildings.algorithms.segmentation.surface_growing import Criteria, connected_seeds, local_planes
+from lidar_buildings.algorithms.segmentation.surface_growing import connected_seeds
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.tests.builders import FAR
 from lidar_buildings.tests.monitors import Listening
@@ -319,7 +321,8 @@ def test_memory_is_bounded_by_the_points(planarity, most, monkeypatch):
     segment_surfaces(np.zeros((10, 3)), radius=1.0, tolerance=0.1, noise=0.01, density=1.0)  # imports packages
     for module in (surface_growing, best_pairs, least_squares_planes):
         monkeypatch.setattr(module, "_CHUNK", 1000)
-    monkeypatch.setattr(surface_growing, "_CHUNK_NEIGHBORS", 12_000)
+    for module in (surface_growing, local_planes_module):
+        monkeypatch.setattr(module, "CHUNK_NEIGHBORS", 12_000)
     # With several threads it depends on their timing how many chunks are in memory at once.
     monkeypatch.setattr(threads, "_TOLD", [1])
     few, many = (peak_memory(n_points, planarity) for n_points in (10_000, 30_000))
