@@ -358,6 +358,11 @@ WHOLE = (
         lambda self, removed, slope: removed | self.is_free_standing,
     ),
     _out(
+        "ground: level regions",
+        "terrain.removed_objects:ObjectRemoval._without_level",
+        lambda self, objects: objects,
+    ),
+    _out(
         "ground: free-standing segments",
         "terrain.ground_seeds:find_free_standing",
         lambda surface, *_: (np.zeros(surface.shape, bool), 0.0),
