@@ -25,19 +25,14 @@ class UnderGroundRules:
     depth: float = rule(0.45, "m", "physics: less deep are grass, ruts, and the noise of the scanner")
     depth_spacings: float = rule(0.4, "point spacings", "physics: the ground bends between points; the larger counts")
     close_cell: float = rule(2.0, "point spacings", "statistics: four points a cell, the lowest of which is its level")
-    around_cell: float = rule(10.0, "m", "physics: some ground is seen in each such cell, even among trees")
-    around_cell_spacings: float = rule(16.0, "point spacings", "statistics: 256 points a cell; the larger counts")
+    around_cell: float = rule(10.0, "m", "physics: some ground is seen in each, even among trees; or 8 close cells")
     around_share: float = rule(0.02, "share", "statistics: points of a cell below its level; more of them are ground")
-    smooth_step: float = rule(0.3, "m", "physics: steps between cells of ground and of roofs; crowns have larger ones")
-    on_ground: float = rule(0.5, "m", "physics: as far over the ground around, a smooth surface is ground itself")
     shallow: float = rule(2.0, "m", "physics: deeper points are beside a smooth surface, not under it")
     rounds: int = rule(3, "rounds", "low points that are found hide others beneath the surface that they pull down")
     support_points: int = rule(3, "points", "others at its height make a point part of a surface")
-    support_height: float = rule(0.3, "m", "physics: half the height of the disk of these, that of tufts")
+    step: float = rule(0.3, "m", "physics: of ground and roofs from cell to cell, of tufts; crowns have larger ones")
     support_radius: float = rule(2.5, "point spacings", "physics: a wider disk would reach a slope where it is as low")
-    support_reach: float = rule(1.25, "m", "the same in dense clouds")
-    support_most: float = rule(5.0, "point spacings", "the most that this may be")
-    floor_points: int = rule(5, "points", "others at one level that make a floor")
+    support_reach: float = rule(1.25, "m", "the same in dense clouds, where that is more")
     floor_level: float = rule(0.1, "m", "physics: floors are level to this, echoes of detours come at all depths")
     floor_reach: float = rule(5.0, "m", "physics: half the length of a court or shaft in which the floor is seen")
     floor_extent: float = rule(2.0, "m", "physics: points closer together may be echoes of one mirror")
@@ -67,7 +62,7 @@ def under_ground(xyz: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarra
     n_points = np.bincount(which)
     start = np.cumsum(n_points) - n_points
     middle = xyz[order[start + n_points // 2]]
-    size = max(UNDER_GROUND.around_cell, UNDER_GROUND.around_cell_spacings * spacing)
+    size = max(UNDER_GROUND.around_cell, 8 * UNDER_GROUND.close_cell * spacing)
     depth = max(UNDER_GROUND.depth, UNDER_GROUND.depth_spacings * spacing)
 
     found, n_found = np.zeros(len(xyz), bool), np.zeros(len(cells), np.int64)
@@ -135,11 +130,9 @@ def _is_supported(xyz: np.ndarray, rows: np.ndarray, is_near: np.ndarray, spacin
     """
     if not len(rows):
         return np.zeros(0, bool)
-    radius = max(
-        UNDER_GROUND.support_radius * spacing, min(UNDER_GROUND.support_most * spacing, UNDER_GROUND.support_reach)
-    )
+    radius = max(UNDER_GROUND.support_radius * spacing, UNDER_GROUND.support_reach)
     # Heights are stretched so that the neighborhood is a flat disk.
-    stretch = np.array([1.0, 1.0, radius / UNDER_GROUND.support_height])
+    stretch = np.array([1.0, 1.0, radius / UNDER_GROUND.step])
     tree = spatial.cKDTree(xyz[is_near] * stretch)
     distance = tree.query(xyz[rows] * stretch, UNDER_GROUND.support_points + 1)[0]
     return distance[:, -1] <= radius
@@ -149,7 +142,7 @@ def _is_under(z: np.ndarray, close: np.ndarray, is_smooth: np.ndarray, around: n
     """Return which elevations (m) below the surface close by are below the ground, too."""
     # Among crowns, walls and water the ground may be anywhere down to where it is seen to be, and as much lower again.
     unsure = np.where(is_smooth, around[:, 1], 2 * around[:, 0] - around[:, 2])
-    is_on_ground = is_smooth & (close <= around[:, 1] + UNDER_GROUND.on_ground)
+    is_on_ground = is_smooth & (close <= around[:, 1] + depth)
     return (z < unsure - depth) | (is_on_ground & (z >= close - UNDER_GROUND.shallow))
 
 
@@ -188,7 +181,7 @@ def _close_surface(
         slope[part] = _slope(beside)
         low = _flattened(beside, slope[part])
         mid = _flattened(_beside(around, middle, middle[part]), slope[part])
-        smooth = low[:, 4:] - low[:, :4] <= UNDER_GROUND.smooth_step
+        smooth = low[:, 4:] - low[:, :4] <= UNDER_GROUND.step
         is_smooth[part] = smooth.any(axis=1)
         base = np.take_along_axis(low, np.argmax(smooth, axis=1)[:, None], axis=1)[:, 0]
         rough = low[:, 1] - (low[:, 3] - low[:, 1])
@@ -256,6 +249,6 @@ def _is_floor(low: np.ndarray) -> np.ndarray:
     near = spatial.cKDTree(positions).query_ball_point(positions, UNDER_GROUND.floor_reach, return_sorted=True)
     is_floor = np.zeros(len(low), bool)
     for row, others in enumerate(near):
-        if len(others) > UNDER_GROUND.floor_points:
+        if len(others) > UNDER_GROUND.support_points:
             is_floor[row] = np.ptp(low[others, :2], axis=0).max() >= UNDER_GROUND.floor_extent
     return is_floor

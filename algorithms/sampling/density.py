@@ -9,6 +9,7 @@ import numpy as np
 
 from ..geometry.grid import distinct, grid_over, plan_box
 from ..rules import rule
+from .height_resolution import LEAST_RESOLUTION
 
 
 @dataclass(frozen=True)
@@ -16,9 +17,6 @@ class DensityRules:
     """How the area is measured that points occupy."""
 
     points_per_cell: float = rule(5.0, "points", "statistics: random points leave one such cell in 150 empty")
-    least_cell: float = rule(
-        0.01, "m", "files keep a centimeter: in smaller cells, walls and masts would have ever less area"
-    )
     filled_cell: float = rule(1.5, "point spacings", "statistics: random points leave a tenth of such cells empty")
     least_filled: float = rule(
         0.75, "share", "of these that hold points at the right spacing; usual scanners fill four fifths"
@@ -65,7 +63,7 @@ def point_density(xyz: np.ndarray) -> float:
         )
     density = len(xyz) / area
     for _ in range(20):
-        size = max(float(np.sqrt(DENSITY.points_per_cell / density)), DENSITY.least_cell)
+        size = max(float(np.sqrt(DENSITY.points_per_cell / density)), LEAST_RESOLUTION)
         occupied = len(distinct(grid_over(xyz, size).number(xyz))[0])
         found = len(xyz) / (occupied * size * size)
         if abs(found - density) < 0.01 * density:

@@ -16,10 +16,7 @@ class HeightRules:
     least: float = rule(0.01, "m", "files keep a centimeter; smaller deviations can not be distinguished from zero")
     levels: int = rule(10, "levels", "fewer are those of flat roofs, not of rounded heights")
     most_step: float = rule(0.5, "m", "physics: larger steps between levels are those of storeys")
-    even_share: float = rule(
-        0.5, "share", "of the levels of rounded heights that follow the next lower one by the usual step"
-    )
-    even: float = rule(0.01, "share", "of a step, within which steps are the same")
+    even: float = rule(0.01, "share", "of the usual step, within which half of all are the same")
 
 
 HEIGHTS = HeightRules()
@@ -44,8 +41,8 @@ def rounding_deviation(elevation: np.ndarray) -> float:
     if len(steps) < HEIGHTS.levels:
         return 0.0
     step = float(np.median(steps))
-    is_even = np.abs(steps - step) <= HEIGHTS.even * step
-    return step / float(np.sqrt(12)) if step <= HEIGHTS.most_step and is_even.mean() >= HEIGHTS.even_share else 0.0
+    is_even = np.median(np.abs(steps - step)) <= HEIGHTS.even * step
+    return step / float(np.sqrt(12)) if is_even and step <= HEIGHTS.most_step else 0.0
 
 
 def height_resolution(elevation: np.ndarray) -> float:

@@ -34,7 +34,6 @@ class SurfaceRules:
     least_reach: float = rule(0.5, "m", "physics: leaves and twigs look smooth over less, roofs are planes over more")
     least_neighbors: int = rule(8, "points", "statistics: five degrees of freedom for a plane")
     most_neighbors: int = rule(100, "points", "half a meter around at 125 points per m²")
-    narrow_share: float = rule(0.2, "share", "of smooth neighborhoods that are narrow where points lie on lines")
     uneven: float = rule(2.0, "ratio", "of the density around the median point to the cloud's, from which it counts")
     least_roughness: float = rule(0.025, "m", "physics: relief of roof tiles, gravel and gutters")
     roughness_of_spacing: float = rule(0.065, "point spacings", "chosen: surfaces bend between points")
@@ -199,7 +198,7 @@ class SurfaceSample:
         eigenvalues = self._variances(count)
         smooth = eigenvalues[:, 2] <= np.quantile(eigenvalues[:, 2], SURFACES.smooth_share)
         width = np.sqrt(eigenvalues[smooth, 1] / np.maximum(eigenvalues[smooth, 0], 1e-12))
-        return bool(np.quantile(width, SURFACES.narrow_share) < LEAST_WIDTH)
+        return bool(np.quantile(width, SURFACES.smooth_share) < LEAST_WIDTH)
 
     def _variances(self, count: int) -> np.ndarray:
         """Return the variances (s, 3), descending, of the ``count`` points nearest to each point of the sample, m²."""
