@@ -27,7 +27,6 @@ class UnderGroundRules:
     close_cell: float = rule(2.0, "point spacings", "statistics: four points a cell, the lowest of which is its level")
     around_cell: float = rule(10.0, "m", "physics: some ground is seen in each, even among trees; or 8 close cells")
     around_share: float = rule(0.02, "share", "statistics: points of a cell below its level; more of them are ground")
-    shallow: float = rule(2.0, "m", "physics: deeper points are beside a smooth surface, not under it")
     rounds: int = rule(3, "rounds", "low points that are found hide others beneath the surface that they pull down")
     support_points: int = rule(3, "points", "others at its height make a point part of a surface")
     step: float = rule(0.3, "m", "physics: of ground and roofs from cell to cell, of tufts; crowns have larger ones")
@@ -35,7 +34,6 @@ class UnderGroundRules:
     support_reach: float = rule(1.25, "m", "the same in dense clouds, where that is more")
     floor_level: float = rule(0.1, "m", "physics: floors are level to this, echoes of detours come at all depths")
     floor_reach: float = rule(5.0, "m", "physics: half the length of a court or shaft in which the floor is seen")
-    floor_extent: float = rule(2.0, "m", "physics: points closer together may be echoes of one mirror")
 
 
 UNDER_GROUND = UnderGroundRules()
@@ -143,7 +141,7 @@ def _is_under(z: np.ndarray, close: np.ndarray, is_smooth: np.ndarray, around: n
     # Among crowns, walls and water the ground may be anywhere down to where it is seen to be, and as much lower again.
     unsure = np.where(is_smooth, around[:, 1], 2 * around[:, 0] - around[:, 2])
     is_on_ground = is_smooth & (close <= around[:, 1] + depth)
-    return (z < unsure - depth) | (is_on_ground & (z >= close - UNDER_GROUND.shallow))
+    return (z < unsure - depth) | is_on_ground
 
 
 @dataclass(frozen=True)
@@ -246,9 +244,5 @@ def _is_floor(low: np.ndarray) -> np.ndarray:
     # Heights are stretched so that the neighborhood is a flat disk.
     stretch = np.array([1.0, 1.0, UNDER_GROUND.floor_reach / UNDER_GROUND.floor_level])
     positions = low * stretch
-    near = spatial.cKDTree(positions).query_ball_point(positions, UNDER_GROUND.floor_reach, return_sorted=True)
-    is_floor = np.zeros(len(low), bool)
-    for row, others in enumerate(near):
-        if len(others) > UNDER_GROUND.support_points:
-            is_floor[row] = np.ptp(low[others, :2], axis=0).max() >= UNDER_GROUND.floor_extent
-    return is_floor
+    near = spatial.cKDTree(positions).query_ball_point(positions, UNDER_GROUND.floor_reach, return_length=True)
+    return near > UNDER_GROUND.support_points
