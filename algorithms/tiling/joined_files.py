@@ -11,7 +11,7 @@ import numpy as np
 
 from ..pipeline import Pipeline
 from ..stage import FileContent, FileItem
-from .blocks import BlockResult
+from .block_result import BlockResult
 from .joining import new_names
 from .tiled_steps import files_of
 

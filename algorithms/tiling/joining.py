@@ -12,7 +12,8 @@ from ..geometry.grid import find_cells
 from ..geometry.groups import components
 from ..pipeline import Pipeline
 from ..stage import Layer, LayerFeatures, Monitor
-from .blocks import NUMBERED, Block, BlockResult, feature_boxes, take_features
+from .block_result import BlockResult
+from .blocks import NUMBERED, Block, feature_boxes, take_features
 from .same_features import leaders
 from .tiled_steps import layers_of
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .blocks import BlockResult
+from .block_result import BlockResult
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,8 @@ from ..report.hillshade import CELLS
 from ..run import run_stage
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import FileContent, LayerFeatures, Monitor, Report
-from .blocks import Block, BlockResult, BlockTask, work_on_block
+from .block_result import BlockResult
+from .blocks import Block, BlockTask, work_on_block
 from .cutting import cut_into_tiles
 from .joined_files import join_files
 from .joining import References, feature_numbers, join_belonging, join_features, join_numbers, refer_to_features

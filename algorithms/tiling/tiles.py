@@ -15,7 +15,8 @@ from ..cloud.header import COPC_HIERARCHY, COPC_INFO, LASZIP, Header
 from ..cloud.points import chunks_near, open_header
 from ..cloud.units import Units, wkt_of
 from ..stage import Monitor
-from .blocks import REFERRING, BlockResult, StoppableMonitor
+from .block_result import BlockResult
+from .blocks import REFERRING, StoppableMonitor
 from .views import View
 
 

@@ -3,7 +3,8 @@
 import numpy as np
 
 from lidar_buildings.algorithms.stage import Layer, LayerFeatures, Monitor
-from lidar_buildings.algorithms.tiling.blocks import Block, BlockResult
+from lidar_buildings.algorithms.tiling.block_result import BlockResult
+from lidar_buildings.algorithms.tiling.blocks import Block
 from lidar_buildings.algorithms.tiling.joining import join_features, join_numbers
 
 FOOTPRINTS = Layer("footprints", "Footprints", "Polygon", ())

@@ -17,7 +17,7 @@ from lidar_buildings.algorithms.cloud.files import write_cloud
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.algorithms.tiling import processes
-from lidar_buildings.algorithms.tiling.blocks import BlockResult
+from lidar_buildings.algorithms.tiling.block_result import BlockResult
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
 from lidar_buildings.algorithms.tiling.work_folder import remove_work, work_folder
 from lidar_buildings.algorithms.tiling.workers import Workers, run_all

@@ -1,0 +1,203 @@
+"""What came of a block of a survey: arrays and features in one file."""
+
+from __future__ import annotations
+
+import json
+import zipfile
+import zlib
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..cloud.outputs import replacing
+from ..stage import LayerFeatures
+
+# Arrays of a result that are kept by the names of dimensions.
+_KINDS = (
+    "dimensions",
+    "used",
+    "counts",
+    "most",
+    "inside",
+    "beside",
+    "rasters",
+    "lattices",
+    "pieces",
+    "seconds",
+    "values",
+)
+
+# Those of them that grow with the points of a block; they are left out where all blocks are in memory at once.
+_LARGE = ("dimensions", "inside", "beside", "rasters")
+
+
+@dataclass
+class BlockResult:
+    """What came of a block.
+
+    Attributes
+    ----------
+    source, position : ndarrays of shape (n,)
+        File, and position in it, of every record of the block.
+    stays : ndarray of shape (n,), bool
+        Which records are left by a chain that selects; empty where all are.
+    dimensions : dict of str to ndarray of shape (n, ...)
+        Dimensions that the chain wrote; coordinates in meters from the zero of the map.
+    used : dict of str to ndarray of shape (k,), int64
+        For each numbered dimension the numbers that records of the block have, ascending.
+    counts : dict of str to ndarray of shape (k,), int64
+        For each of them how many points of the block have it.
+    most : dict of str to ndarray of shape (1,), int64
+        For each numbered dimension the largest number that is used in the next two.
+    inside, beside : dict of str to ndarray of shape (m, 3), int64
+        For each numbered dimension file, position and number of records that lie just inside and just outside the
+        edges.
+    rasters : dict of str to ndarray of shape (rows, columns), float32
+        Cells whose middles lie in the block.
+    lattices : dict of str to ndarray of shape (5,)
+        For each raster its southern row, western column, rows, columns, and the side of a cell (m); rows and columns
+        are counted from the survey's origin, northward and eastward.
+    layers : dict of str to LayerFeatures
+        Features that have a part in the block, in meters from the survey's origin.
+    pieces : dict of str to ndarray of shape (n,), bool
+        Of layers whose features can be put together from pieces which of them the edge of the window may have cut off.
+    items : dict of str to list
+        Of text files the records of items that belong to these features, with their names in the block, by their class:
+        files of one stage are written of the same items.
+    seconds : dict of str to ndarray of shape ()
+        How long each step took.
+    values : dict of str to ndarray of shape ()
+        What automatic tunables took, and other values that steps found, by the names that they have in the chain.
+    messages, absent : list of str
+        Warnings, and sentences of steps that found nothing, each once.
+    tries : ndarray of shape (k, 4)
+        What each window that was tried cost: what lay around the block at most (m), points, and processor time for
+        reading and for the chain (s).
+    """
+
+    source: np.ndarray
+    position: np.ndarray
+    stays: np.ndarray = field(default_factory=lambda: np.zeros(0, bool))
+    dimensions: dict[str, np.ndarray] = field(default_factory=dict)
+    used: dict[str, np.ndarray] = field(default_factory=dict)
+    counts: dict[str, np.ndarray] = field(default_factory=dict)
+    most: dict[str, np.ndarray] = field(default_factory=dict)
+    inside: dict[str, np.ndarray] = field(default_factory=dict)
+    beside: dict[str, np.ndarray] = field(default_factory=dict)
+    rasters: dict[str, np.ndarray] = field(default_factory=dict)
+    lattices: dict[str, np.ndarray] = field(default_factory=dict)
+    layers: dict[str, LayerFeatures] = field(default_factory=dict)
+    pieces: dict[str, np.ndarray] = field(default_factory=dict)
+    items: dict[str, list[tuple[str, dict[str, Any]]]] = field(default_factory=dict)
+    seconds: dict[str, np.ndarray] = field(default_factory=dict)
+    values: dict[str, np.ndarray] = field(default_factory=dict)
+    messages: list[str] = field(default_factory=list)
+    absent: list[str] = field(default_factory=list)
+    tries: np.ndarray = field(default_factory=lambda: np.zeros((0, 4)))
+
+    def write(self, path: Path) -> None:
+        """Write everything to a file, which is complete when it appears."""
+        arrays = {"source": self.source, "position": self.position, "stays": self.stays, "tries": self.tries}
+        for kind in _KINDS:
+            arrays.update({f"{kind}.{name}": values for name, values in getattr(self, kind).items()})
+        for name, features in self.layers.items():
+            arrays.update({f"layer.{name}.{key}": values for key, values in _flat(features).items()})
+        arrays.update({f"items.{kind}": _text(items) for kind, items in self.items.items()})
+        arrays.update({"messages": _text(self.messages), "absent": _text(self.absent)})
+        with replacing(path) as stream:
+            np.savez(stream, **arrays)
+
+    @classmethod
+    def read(cls, path: Path, with_points: bool = True) -> BlockResult:
+        """Return what :meth:`write` wrote; without the points, arrays that grow with them are left out."""
+        # numpy leaves a file open that it can't read.
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
+            by_kind: dict[str, dict[str, np.ndarray]] = {kind: {} for kind in _KINDS}
+            layers: dict[str, dict[str, np.ndarray]] = {}
+            for key in stored.files:
+                kind, _, name = key.partition(".")
+                if kind == "layer":
+                    layer, _, part = name.partition(".")
+                    layers.setdefault(layer, {})[part] = stored[key]
+                elif kind in by_kind and (with_points or kind not in _LARGE):
+                    by_kind[kind][name] = stored[key]
+            return cls(
+                stored["source"] if with_points else np.zeros(0, np.int32),
+                stored["position"] if with_points else np.zeros(0, np.int64),
+                stored["stays"] if with_points else np.zeros(0, bool),
+                **by_kind,
+                layers={name: _features(parts) for name, parts in layers.items()},
+                messages=json.loads(bytes(stored["messages"])),
+                absent=json.loads(bytes(stored["absent"])),
+                tries=stored["tries"],
+            )
+
+    @classmethod
+    def is_complete(cls, path: Path) -> bool:
+        """Whether a file holds what :meth:`write` wrote; one that is missing, cut off or damaged does not."""
+        try:
+            cls.read(path)
+        except (OSError, EOFError, KeyError, ValueError, TypeError, zipfile.BadZipFile, zlib.error):
+            return False
+        return True
+
+    @classmethod
+    def edges(cls, path: Path) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+        """Return the records inside and beside the edges from a file of :meth:`write`."""
+        with np.load(path, allow_pickle=False) as stored:
+            kinds = [
+                {key.partition(".")[2]: stored[key] for key in stored.files if key.startswith(f"{kind}.")}
+                for kind in ("inside", "beside")
+            ]
+        return kinds[0], kinds[1]
+
+    @classmethod
+    def items_of(cls, path: Path, kind: str) -> list[tuple[str, dict[str, Any]]]:
+        """Return the items of one class in a file of :meth:`write`, none where the block has no points."""
+        with np.load(path, allow_pickle=False) as stored:
+            return json.loads(bytes(stored[f"items.{kind}"])) if f"items.{kind}" in stored.files else []
+
+    @classmethod
+    def raster(cls, path: Path, name: str) -> np.ndarray:
+        """Return the cells (rows, columns) of one raster in a file of :meth:`write`."""
+        with np.load(path, allow_pickle=False) as stored:
+            return stored[f"rasters.{name}"]
+
+
+def _flat(features: LayerFeatures) -> dict[str, np.ndarray]:
+    """Return features as arrays: vertices, how many each ring has, how many rings each feature has, columns as JSON."""
+    rings = [geometry if isinstance(geometry, list) else [np.asarray(geometry)] for geometry in features.geometries]
+    all_rings = [ring for of_one in rings for ring in of_one]
+    kind = "rings" if features.geometries and isinstance(features.geometries[0], list) else "array"
+    columns = {name: np.asarray(values).tolist() for name, values in features.columns.items()}
+    return {
+        "vertices": np.concatenate([np.ravel(ring) for ring in all_rings]) if all_rings else np.zeros(0),
+        "shapes": np.array([_shape(ring) for ring in all_rings], np.int64).reshape(-1, 3),
+        "counts": np.array([len(of_one) for of_one in rings], np.int64),
+        "columns": _text({"kind": kind, "values": columns}),
+    }
+
+
+def _shape(ring: np.ndarray) -> tuple[int, ...]:
+    """Return the number of axes of vertices (m, 2 or 3) or of a point (2 or 3,), and their lengths."""
+    return (2, *ring.shape) if np.ndim(ring) > 1 else (1, len(ring), 0)
+
+
+def _features(parts: dict[str, np.ndarray]) -> LayerFeatures:
+    """Return the features that :func:`_flat` flattened."""
+    described = json.loads(bytes(parts["columns"]))
+    rings, start = [], 0
+    for axes, rows, columns in parts["shapes"].tolist():
+        size = rows * columns if axes > 1 else rows
+        shape = (rows, columns) if axes > 1 else (rows,)
+        rings.append(parts["vertices"][start : start + size].reshape(shape))
+        start += size
+    ends = np.cumsum(parts["counts"])
+    grouped = [rings[end - count : end] for end, count in zip(ends, parts["counts"])]
+    return LayerFeatures(grouped if described["kind"] == "rings" else [one[0] for one in grouped], described["values"])
+
+
+def _text(value: Any) -> np.ndarray:
+    return np.frombuffer(json.dumps(value).encode(), np.uint8)
