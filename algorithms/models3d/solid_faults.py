@@ -157,6 +157,8 @@ class _Face:
         width = self._least_width()
         if width < RULES.apart:
             return "edges of a face touch"
+        if len(self.edge) == 3:
+            return ""
         if self._crosses_itself():
             return "edges of a face cross"
         fault = self._ring_fault() if len(self.rings) > 1 else ""
@@ -178,7 +180,7 @@ class _Face:
         """Return whether a triangle of the face turns too far from it, where it is ``width`` (m) wide everywhere."""
         longest = float(np.hypot(*np.ptp(self.start, axis=0)))
         # A short edge seen from the other end of a strip makes the lowest triangle.
-        if len(self.edge) == 3 or 2 * self.off * longest <= width**2 * np.tan(np.deg2rad(RULES.turn)):
+        if 2 * self.off * longest <= width**2 * np.tan(np.deg2rad(RULES.turn)):
             return False
         corner = self.vertices[np.array(triangulate_face(self.vertices, self.rings))]
         across = _cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
@@ -293,9 +295,12 @@ def _meeting_faults(solid: Solid, faces: list[_Face]) -> dict[int, str]:
         found[owner[a, b].number] = found[owner[b, a].number] = "faces are folded"
     one, two = solid.vertices[edge[:, 0]], solid.vertices[edge[:, 1]]
     low, high = np.minimum(one, two), np.maximum(one, two)
+    is_corner = np.zeros(len(solid.vertices), bool)
     for face in faces:
         near = np.flatnonzero((low <= face.high).all(axis=1) & (high >= face.low).all(axis=1))
-        near = near[~np.isin(edge[near], face.edge).all(axis=1)]
+        is_corner[face.edge[:, 0]] = True
+        near = near[~is_corner[edge[near]].all(axis=1)]
+        is_corner[face.edge[:, 0]] = False
         if len(near) and _is_crossed(face, one[near], two[near]):
             found[face.number] = "faces cross"
     return found
