@@ -6,6 +6,8 @@ is not named here, and writes a dimension of the points it reads, is shown on a 
 
 from __future__ import annotations
 
+from functools import cache
+
 from .cloud.dimensions import DIMENSIONS
 from .stage import Stage
 from .stages import STAGES
@@ -87,7 +89,8 @@ def derived_caption(stage: Stage) -> str:
     return f"A simulated town by {DIMENSIONS[first].disk[0]}, from blue, low, to red, high."
 
 
-CAPTIONS = {
-    **{stage.id: derived_caption(stage) for stage in STAGES.values() if derived_caption(stage)},
-    **_CAPTIONS,
-}
+@cache
+def captions() -> dict[str, str]:
+    """Return the captions of all algorithms that have a picture, by their ids."""
+    derived = {stage.id: derived_caption(stage) for stage in STAGES.values()}
+    return {**{one: text for one, text in derived.items() if text}, **_CAPTIONS}

@@ -7,7 +7,7 @@ import re
 import sys
 from typing import Optional
 
-from .captions import CAPTIONS
+from .captions import captions
 from .cloud.dimensions import DIMENSIONS
 from .pipeline import Output, Pipeline, Step
 from .rules import rules_of
@@ -115,9 +115,9 @@ def with_picture(text: str, algorithm: str, folder: str) -> str:
 
     ``folder`` is the URL of the folder with the pictures.
     """
-    if algorithm not in CAPTIONS:
+    if algorithm not in captions():
         return text
-    caption = html.escape(CAPTIONS[algorithm])
+    caption = html.escape(captions()[algorithm])
     picture = (
         f'<p><img src="{folder}/{algorithm}.png" width="{_PICTURE_WIDTH}" alt="{caption}"></p>\n<p><i>{caption}</i></p>'
     )

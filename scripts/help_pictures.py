@@ -27,7 +27,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 importlib.import_module("conftest")
 
-from lidar_buildings.algorithms.captions import CAPTIONS  # noqa: E402
+from lidar_buildings.algorithms.captions import captions  # noqa: E402
 from lidar_buildings.algorithms.cloud.cloud import Cloud  # noqa: E402
 from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
 from lidar_buildings.algorithms.run import Outcome, run_pipeline, run_stage  # noqa: E402
@@ -326,7 +326,7 @@ def main() -> None:
     application = QGuiApplication([])
     PICTURES.mkdir(exist_ok=True)
     by_id = {stage.id: stage for stage in STAGES.values()}
-    for name in sys.argv[1:] or [name for name in CAPTIONS if name != "segmentplaneshough"]:
+    for name in sys.argv[1:] or [name for name in captions() if name != "segmentplaneshough"]:
         image = drawn(SCENES[name] if name in SCENES else derived_scene(by_id[name]))
         if not image.save(str(PICTURES / f"{name}.png")):
             raise SystemExit(f"{PICTURES} can't be written")

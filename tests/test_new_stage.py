@@ -65,10 +65,7 @@ def copy(tmp_path_factory) -> Path:
     (example,) = re.findall(r"```python\n(.*?)```", (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8"), re.DOTALL)
     (copy / MODULE).write_text(example, encoding="utf-8")
     stages = copy / "algorithms" / "stages.py"
-    inserted(
-        stages, "from .segmentation.segment_surfaces", "from .segmentation.segment_storeys import segment_storeys\n"
-    )
-    inserted(stages, "    segment_surfaces,\n", "    segment_storeys,\n")
+    inserted(stages, '    "segmentation.segment_surfaces",\n', '    "segmentation.segment_storeys",\n')
     inserted(copy / "tests" / "test_contract.py", '    "segmentsurfaces",\n', '    "segmentstoreys",\n')
     (copy / TEST).write_text(TEST_TEXT, encoding="utf-8")
     inserted(copy / "CHANGELOG.md", "- ", "- *Segment storeys* numbers the storeys of a cloud.\n")

@@ -41,6 +41,17 @@ def counted_points(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return coordinates, classes and true classes of the points whose ``true`` class (n,) is not ``ignored``.
 
+    Parameters
+    ----------
+    xyz : ndarray of shape (n, 3)
+        Points, m.
+    classification : ndarray of shape (n,)
+        Their classes.
+    true : ndarray of shape (n,)
+        Their true classes.
+    ignored : ndarray of shape (k,)
+        True classes of points that are not counted.
+
     Raises
     ------
     ValueError

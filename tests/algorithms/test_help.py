@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from lidar_buildings.algorithms.captions import CAPTIONS
+from lidar_buildings.algorithms.captions import captions
 from lidar_buildings.algorithms.help import (
     as_text,
     inline,
@@ -39,8 +39,8 @@ def test_pages_are_what_the_stages_say():
 
 def test_every_picture_has_a_caption_and_belongs_to_an_algorithm():
     ids = {declared.id for declared in (*STAGES.values(), *PIPELINES.values())}
-    assert set(CAPTIONS) <= ids
-    assert {path.stem for path in (HELP / "pictures").glob("*.png")} == set(CAPTIONS)
+    assert set(captions()) <= ids
+    assert {path.stem for path in (HELP / "pictures").glob("*.png")} == set(captions())
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in (HELP / "pictures").iterdir())
 
 
