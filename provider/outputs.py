@@ -248,7 +248,7 @@ def all_in_place(
         except (ValueError, QgsProcessingException) as error:
             raise type(error)(run.final(str(error))) from error
     load_from(context, run.final)
-    if subject:
+    if subject or title:
         name_after(context, {definition.description() for definition in definitions}, subject, title)
 
 

@@ -178,10 +178,12 @@ class StageAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         warn_unknown_parameters(self, parameters, feedback)
         monitor = FeedbackMonitor(feedback, self.stage, self.job.tunables)
         definitions, subject = self.destinationParameterDefinitions(), subject_of(self.job.paths, feedback)
+        # The layers of a step are those of its chain.
+        title = self.displayName() if self._alone else ""
         with (
             run_log() as log,
             as_processing_errors(feedback),
-            all_in_place(definitions, parameters, context, subject, self.displayName()) as run,
+            all_in_place(definitions, parameters, context, subject, title) as run,
         ):
             log.begin(self.stage, self.job.tunables)
             outcome, place = self._run(parameters, context, monitor)

@@ -234,11 +234,11 @@ def name_after(context: QgsProcessingContext, titles: Collection[str], subject: 
     The group is named after the input and the ``run``, and has a number where there is one of that name.
     """
     layers = context.layersToLoadOnCompletion()
-    group, is_group = _new_group(context, f"{subject}: {run}" if run else subject)
+    group, is_group = _new_group(context, ": ".join(part for part in (subject, run) if part))
     for path, details in layers.items():
         loaded = context.layerToLoadOnCompletionDetails(path)
         _SUBJECTS[path] = subject
-        if details.name in titles:
+        if subject and details.name in titles:
             loaded.name = f"{details.name} ({subject})"
         # Beside groups QGIS would put a single layer into the current one.
         if (len(layers) > 1 or is_group) and not details.groupName:
@@ -251,7 +251,7 @@ _SUBJECTS: dict[str, str] = {}
 
 def subject_of_file(path: Path) -> str:
     """Return what a file is of: that of the run that made it, else its name."""
-    return _SUBJECTS.get(str(path), path.name.split(".")[0])
+    return _SUBJECTS.get(str(path)) or path.name.split(".")[0]
 
 
 def _new_group(context: QgsProcessingContext, name: str) -> tuple[str, bool]:

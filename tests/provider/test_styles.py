@@ -419,3 +419,13 @@ def test_runs_on_temporary_results_are_named_after_the_first_input(context):
     name_after(context, [], "delft", "Detect buildings")
     assert subject_of_file(Path("/tmp/x/OUTPUT.laz")) == "delft"
     assert subject_of_file(Path("/tmp/y/tile_1.copc.laz")) == "tile_1"
+
+
+def test_simulated_layers_without_an_input_make_a_group_of_their_own(context):
+    """They went into the group of another run."""
+    for path in ("a.gpkg", "b.laz"):
+        context.addLayerToLoadOnCompletion(path, QgsProcessingContext.LayerDetails("True axes", context.project()))
+    name_after(context, ["True axes"], "", "Simulate plant")
+    layers = context.layersToLoadOnCompletion()
+    assert {(one.name, one.groupName) for one in layers.values()} == {("True axes", "Simulate plant")}
+    assert subject_of_file(Path("b.laz")) == "b"
