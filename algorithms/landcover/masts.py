@@ -25,8 +25,6 @@ class _Rules:
         Radius (m) of poles with their fittings, and of towers as a share of their height.
     above : float
         Height (m) over the highest wire up to which a mast reaches: insulators and the tip.
-    foot : float
-        Height (m) above the ground from which its points are not those of plants at its foot.
     part, filled : float
         Height (m) of the parts of a mast, and least share of those of its upper and of its lower half that hold points.
     trunk : tuple of float
@@ -39,7 +37,6 @@ class _Rules:
     radius: float = 0.6
     spread: float = 0.08
     above: float = 2.0
-    foot: float = 0.5
     part: float = 1.5
     filled: float = 0.5
     trunk: tuple[float, float] = (0.25, 0.65)
@@ -71,7 +68,7 @@ def on_masts(xyz: np.ndarray, height: np.ndarray, is_wire: np.ndarray, spans: li
     pairs = spatial.cKDTree(ends[:, :2]).query_pairs(2 * float(reach.max()), output_type="ndarray")
     near = np.hypot(*(ends[pairs[:, 0], :2] - ends[pairs[:, 1], :2]).T) <= reach[pairs[:, 0]] + reach[pairs[:, 1]]
     count, group = components(pairs[near, 0], pairs[near, 1], len(ends))
-    rows = np.flatnonzero(~is_wire & (height >= _RULES.foot))
+    rows = np.flatnonzero(~is_wire)
     tree = spatial.cKDTree(xyz[rows, :2])
     found = [np.zeros(0, np.int64)]
     for members in split_groups(group, count):

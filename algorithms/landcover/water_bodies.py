@@ -27,35 +27,27 @@ class _Rules:
         Side of the cells: 1 m, and 1.5 point spacings, so that cells of land hold a point.
     window : float
         Side (m) of the square in which pulses are counted: the least width of a ditch that is seen.
-    few : float
-        Largest number of pulses, as a share of that of land. Canals and simulated rivers give 0.1 to 0.4.
+    half : float
+        Largest number of pulses, as a share of that of land: canals and simulated rivers give 0.1 to 0.4. Least share
+        of a body's ground that has its level, and of the ground around it that is higher.
     land : float
         Quantile of the cells by their pulses that is land in one flight line: others lie in two, fewer in water.
     half_width : float
         Largest gap that is no end of the cloud, half of it (m).
     level : float
         Largest difference of height (m) on water within 10 m: waves, and the fall of rivers that are not torrents.
-    on_level : float
-        Least share of a body's ground that has its level.
-    higher : float
-        Least share of the ground around a body that is higher than its level.
     ring : int
         Width (cells) of its surroundings, and of the strip at its edges in which pulses from land count, too.
-    seen : int
-        Least number of its cells with ground.
     """
 
     least_cell: float = 1.0
     cell_spacings: float = 1.5
     window: float = 5.0
-    few: float = 0.5
+    half: float = 0.5
     land: float = 0.25
     half_width: float = 25.0
     level: float = 0.15
-    on_level: float = 0.8
-    higher: float = 0.5
     ring: int = 3
-    seen: int = 4
 
 
 _RULES = _Rules()
@@ -112,7 +104,7 @@ def _sparse(pulses: np.ndarray, is_seen: np.ndarray, size: float) -> np.ndarray:
     side = 2 * round(_RULES.window / size / 2) + 1
     covered = ndimage.uniform_filter(inside.astype(float), side, mode="constant")
     density = ndimage.uniform_filter(pulses, side, mode="constant") / np.maximum(covered, 1 / side**2)
-    return inside & (density < _RULES.few * np.quantile(density[is_seen], _RULES.land))
+    return inside & (density < _RULES.half * np.quantile(density[is_seen], _RULES.land))
 
 
 def _without_gaps(is_seen: np.ndarray, reach: float) -> np.ndarray:
@@ -131,7 +123,7 @@ def _bodies(
     is_water = np.zeros(candidates.shape, bool)
     shows_level = np.zeros(candidates.shape, bool)
     for number, tight in enumerate(ndimage.find_objects(part), 1):
-        if size[number] < min_cells or seen[number] < _RULES.seen:
+        if size[number] < min_cells or not seen[number]:
             continue
         box = tuple(slice(max(0, side.start - _RULES.ring), side.stop + _RULES.ring) for side in tight)
         inside = part[box] == number
@@ -151,6 +143,6 @@ def _on_level(inside: np.ndarray, is_low: np.ndarray, lowest: np.ndarray) -> Opt
     level = float(np.median(lowest[seen]))
     on_level = seen & (np.abs(lowest - level) <= _RULES.level)
     banks = ndimage.binary_dilation(inside, _EIGHT, iterations=_RULES.ring) & ~inside & np.isfinite(lowest)
-    if on_level.sum() < _RULES.on_level * seen.sum() or not banks.any():
+    if on_level.sum() < _RULES.half * seen.sum() or not banks.any():
         return None
-    return on_level if (lowest[banks] > level + _RULES.level).mean() >= _RULES.higher else None
+    return on_level if (lowest[banks] > level + _RULES.level).mean() >= _RULES.half else None

@@ -10,6 +10,7 @@ from ..geometry.grid import fixed_grid_over
 from ..geometry.groups import components, items, run_starts
 from ..geometry.sparse_voxels import voxelize
 from ..packages import spatial
+from .wire_spans import RULES
 
 
 @dataclass(frozen=True)
@@ -31,12 +32,6 @@ class _Rules:
         Radius (m) in which other points are counted.
     most_around : int
         Most points in it, thinned: three parallel wires have 18 in dense clouds, surfaces 28, crowns more.
-    aside, beyond : float
-        Points within the first distance (m) of a line are on it: the footprint of the beam. Between one and a half and
-        two and a half times of it there are no more than half of their number: parallel wires are farther away,
-        surfaces go on.
-    least : int
-        Least number of points on a line.
     most_trials : int
         Lines through each point that are tried.
     steepest : float
@@ -52,8 +47,6 @@ class _Rules:
     thinning: float = 1.0
     around: float = 3.0
     most_around: int = 20
-    aside: float = 0.3
-    least: int = 5
     most_trials: int = 8
     steepest: float = 0.4
     turn: float = 8.0
@@ -98,7 +91,7 @@ def strands(xyz: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
     reach : float
         Distance (m) within which points are on a line together.
     """
-    if len(xyz) < _RULES.least:
+    if len(xyz) < RULES.least_points:
         return np.full(len(xyz), -1), np.zeros((len(xyz), 3))
     # Wires run far in plan and little in height.
     pairs = spatial.cKDTree(xyz * [1.0, 1.0, 2.0]).query_pairs(reach, output_type="ndarray")
@@ -107,13 +100,13 @@ def strands(xyz: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
     one, other = one[order], other[order]
     offset = xyz[other] - xyz[one]
     count, direction = _best_lines(one, offset, len(xyz), reach)
-    is_linear = count >= _RULES.least - 1
+    is_linear = count >= RULES.least_points - 1
     near = is_linear[one] & is_linear[other]
     one, other, offset = one[near], other[near], offset[near]
     aside, off_height, along = _off_line(offset, direction[one])
     alike = np.abs((direction[one, :2] * direction[other, :2]).sum(axis=1)) > np.cos(np.radians(_RULES.turn))
     # A wire bends: farther points are higher than its tangent.
-    on_line = (aside <= _RULES.aside) & (off_height <= _RULES.aside + 0.02 * np.abs(along)) & alike
+    on_line = (aside <= RULES.aside) & (off_height <= RULES.aside + 0.02 * np.abs(along)) & alike
     _, line = components(one[on_line], other[on_line], len(xyz))
     return np.where(is_linear, line, -1), direction
 
@@ -133,8 +126,9 @@ def _best_lines(one: np.ndarray, offset: np.ndarray, count: int, reach: float) -
         line = offset[tried[chunk]] / distance[tried[chunk], None]
         which, item = items(size[rows])
         aside, off_height, _ = _off_line(offset[start[rows][which] + item], line[which])
-        on_line = np.bincount(which, (aside <= _RULES.aside) & (off_height <= _RULES.aside), len(rows))
-        in_gap = (aside > 1.5 * _RULES.aside) & (aside <= 2.5 * _RULES.aside) & (off_height <= 1.5 * _RULES.aside)
+        on_line = np.bincount(which, (aside <= RULES.aside) & (off_height <= RULES.aside), len(rows))
+        in_gap = (aside > 1.5 * RULES.aside) & (aside <= 2.5 * RULES.aside) & (off_height <= 1.5 * RULES.aside)
+        # Parallel wires are farther away, surfaces go on.
         beside = np.bincount(which, in_gap, len(rows))
         score = np.where(beside <= on_line / 2, on_line - beside, 0).astype(np.int64)
         order = np.lexsort((-score, rows))

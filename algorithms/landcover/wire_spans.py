@@ -17,11 +17,10 @@ class _Rules:
 
     Attributes
     ----------
-    starts, trials : int
+    tries, trials : int
         Points from which a span is looked for along their direction, and parabolas through three points that are tried
-        from each. Half of the points there are of one span, an eighth of the trials good.
-    failures : int
-        Wrong spans in a row after which a strand is given up: those of crowns are many.
+        from each. Half of the points there are of one span, an eighth of the trials good. As many wrong spans in a row
+        end the search in a strand, those of crowns are many, and a span goes on as many times.
     longest : float
         Distance (m) along the wire within which these points are.
     apart : float
@@ -31,17 +30,16 @@ class _Rules:
         swing of the wire.
     least_off, noises : float
         And within the larger of this height (m) and this many standard deviations of the noise of the parabola.
-    tightest, most_bent : float
-        Curvature (1/m), half of the second derivative, of the tightest parabola that is tried and of the deepest: a sag
-        of a tenth over a span of 20 m.
+    most_bent : float
+        Curvature (1/m), half of the second derivative, of the deepest parabola: a sag of a tenth over a span of 20 m.
     certain : float
         A fitted curvature exceeds zero by this many standard errors: beams, rails and edges are straight, wires sag.
     least_points, least_length : float
         Least number of thinned points of a span and of all its points, and least length (m).
+    beyond : float
+        A span goes on where its parabola meets points within this distance (m) of its ends.
     largest_gap : float
         Largest gap between neighboring points, as a share of the length.
-    rounds, beyond : int, float
-        A span goes on for at most this many times where its parabola meets points within this distance (m) of its ends.
     below : float
         Height (m) under the wire in which crowns and roofs have points.
     most_below : float
@@ -51,21 +49,18 @@ class _Rules:
         Distance (m) in plan and in height from eaves and ridges within which lines are edges of buildings.
     """
 
-    starts: int = 10
+    tries: int = 10
     trials: int = 40
-    failures: int = 6
     longest: float = 60.0
     apart: float = 1.5
     aside: float = 0.3
     least_off: float = 0.1
     noises: float = 3.0
-    tightest: float = -5e-4
     most_bent: float = 0.02
     certain: float = 2.0
-    least_points: int = 6
+    least_points: int = 5
     least_length: float = 10.0
     largest_gap: float = 0.4
-    rounds: int = 10
     beyond: float = 5.0
     below: float = 2.0
     most_below: float = 0.25
@@ -134,7 +129,7 @@ class Surroundings:
 
     def extended(self, span: Span) -> Span:
         """Return the span fitted anew to all points on it, and beyond its ends as far as they go on."""
-        for _ in range(RULES.rounds):
+        for _ in range(RULES.tries):
             rows = self.on_wire(span, RULES.beyond)
             longer = fitted(self.xyz[rows])
             if longer is None or longer.end - longer.start <= span.end - span.start:
@@ -203,7 +198,7 @@ def spans_of(
     """
     for rows in split_groups(strand, strand.max(initial=-1) + 1):
         left, failures = rows, 0
-        while len(left) >= RULES.least_points and failures <= RULES.failures:
+        while len(left) >= RULES.least_points and failures <= RULES.tries:
             chosen = _most_points(xyz[left], direction[left], around.off, reach, rng)
             if not len(chosen):
                 break
@@ -228,7 +223,7 @@ def _most_points(
 ) -> np.ndarray:
     """Return the rows (k,) of the span with the most points that a few starts find; empty for none."""
     best = np.zeros(0, np.int64)
-    for start in rng.choice(len(xyz), min(RULES.starts, len(xyz)), replace=False):
+    for start in rng.choice(len(xyz), min(RULES.tries, len(xyz)), replace=False):
         offset = xyz[:, :2] - xyz[start, :2]
         aside = np.abs(offset[:, 0] * direction[start, 1] - offset[:, 1] * direction[start, 0])
         near = np.flatnonzero((aside <= 2 * RULES.aside) & (np.abs(offset).max(axis=1) <= RULES.longest))
@@ -256,7 +251,7 @@ def _best_parabola(xyz: np.ndarray, off: float, reach: float, rng: np.random.Gen
     slope = (middle[:, 2] - first[:, 2]) / safe
     bend = ((last[:, 2] - middle[:, 2]) / (total - safe) - slope) / total
     height = first[:, 2, None] + slope[:, None] * along + bend[:, None] * along * (along - safe[:, None])
-    usable &= (bend >= RULES.tightest) & (bend <= RULES.most_bent)
+    usable &= (bend >= 0) & (bend <= RULES.most_bent)
     on_curve = usable[:, None] & (aside <= RULES.aside) & (np.abs(xyz[:, 2] - height) <= off)
     best: Any = int(on_curve.sum(axis=1).argmax())
     rows = np.flatnonzero(on_curve[best])
