@@ -93,12 +93,12 @@ def extract_footprints(
             advanced=True,
         ),
     ] = None,
-    split_rows: Annotated[
+    merge_touching: Annotated[
         bool,
         Param(
-            "Split rows",
-            "Outline three houses of a row or more one by one where valleys between their roofs, steps or walls above "
-            "them show which is which.",
+            "Merge touching buildings",
+            "Outline buildings that touch as one block. Otherwise each has its own footprint, and so have three houses "
+            "of a row or more where valleys between their roofs, steps or walls above them show which is which.",
         ),
     ] = False,
     sampling: Optional[CloudSampling] = None,
@@ -109,7 +109,7 @@ def extract_footprints(
     Each place, seen from above, has a share of every building: that of the points around it. Outlines follow the lines
     where a building has the largest share, in straight walls along the two main directions of the building where that
     explains the line; other walls keep their own direction. Buildings that touch share their border exactly, and so do
-    the houses of a row that are split.
+    the houses of a row.
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ def extract_footprints(
     attached points with another one more than a meter (or three spacings) higher. They count as points of the building
     but don't widen its outline. One point counts for each cell of half a square spacing.
 
-    Shares are of a lattice of half a spacing, with weights of a Gaussian of one spacing. Roof points count against the
+    Shares are of a lattice of half a spacing, with weights of a Gaussian of 0.9 spacings. Roof points count against the
     ground seen next to them, and against emptiness, by which a position falls short of roofs around. Gaps with roofs
     all around are filled. The spacing is that of the building points of the whole cloud or survey, in steps of a fifth.
 
@@ -152,12 +152,12 @@ def extract_footprints(
     chords. The walls of all buildings of a block cut the plane into cells, and a minimum cut gives each cell to a
     building or to the ground. Clusters whose points lie on one line have no area and give no polygon.
 
-    With 'Split rows', houses of a row are parted along straight lines from one side of a building to the other, in its
-    main directions. Along at least 60 % of such a line, without low parts, both roofs slope up from it, parallel roofs
-    step by 0.4 m, any by 1 m, or a wall rises 0.3 m above both. There must be two such lines side by side at least, 3.5
-    to 13 m apart, and 25 m² of every house. At a step the lower house must have three quarters of the height of the
-    higher one: two roofs may be one house, and low or small parts belong to one. Houses keep the number of their
-    cluster.
+    Houses of a row are parted along straight lines from one side of a building to the other, in its main directions.
+    Along such a line both roofs slope up from it, parallel roofs step by 0.4 m, any by 1 m, or a wall rises 0.3 m above
+    both. A row has at least two such lines side by side, 3.5 to 13 m apart, each seen on half of its length without low
+    parts; 30 % are enough for a further one. Two roofs may be one house. Low parts and pieces under 25 m² belong to
+    one. At a step the lower house must have three quarters of the height of the higher one. Houses keep the number of
+    their cluster.
 
     References
     ----------
@@ -182,14 +182,14 @@ def extract_footprints(
     sampling = sampling or CloudSampling.of(xyz, classification)
     # Not the spacing of the cloud: a roof stops every pulse once, while crowns and the ground under them return many.
     spacing = _rounded(sampling.shared(_ROOF_SPACING, lambda: point_spacing(xyz[building])))
-    if split_rows and spacing > MAX_SPACING:
-        monitor.warn(
+    if not merge_touching and spacing > MAX_SPACING:
+        monitor.inform(
             f"Points are {spacing:.1f} m apart, too far to see where the houses of a row part; they are left in one."
         )
     if tolerance is None:
         tolerance = _TOLERANCE_SPACINGS * spacing
         monitor.resolved(tolerance=tolerance)
-    how = Drawing(spacing, tolerance / _TOLERANCE_SPACINGS, min_area, min_hole_area)
+    how = Drawing(spacing, tolerance / _TOLERANCE_SPACINGS, min_area, min_hole_area, merge_touching)
     measures = PointMeasures(xyz, sampling.corner, height_above_ground, cluster_entropy, confidence, reason)
     cluster = np.ones(len(building), np.int64) if cluster_id is None else cluster_id[building].astype(np.int64)
     parts = _parts(measures, classification, building, cluster, spacing)
@@ -199,7 +199,7 @@ def extract_footprints(
     rings: list = []
     attributes: list = []
     for number, (part, one, own) in enumerate(zip(parts, seen, directions)):
-        houses = _houses(part, one, own, measures, how) if split_rows else {}
+        houses = _houses(part, one, own, measures, how) if not merge_touching else {}
         outlines = [
             outlined
             for block in blocks_of(one.pieces, spacing)

@@ -6,7 +6,7 @@ A party wall is seen along a straight line from one side of a building to the ot
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Optional
 
 import numpy as np
@@ -30,8 +30,9 @@ _NEAR = 0.3
 # ... to here (m), before the ridge of a house of the least width.
 _FAR = 1.6
 
-# Spacing of points (m) up to which two samples of the grid fit in the roof beside a wall, as a slope needs.
-MAX_SPACING = _FAR / (2 * _STEP_SPACINGS)
+# Spacing of points (m) up to which six samples of the grid fit in the roof beside a wall, so that noise makes no slope:
+# with four and five points per m² simulated single houses were split.
+MAX_SPACING = _FAR / (6 * _STEP_SPACINGS)
 
 # Least slope (tangent) of a roof that rises from a valley.
 _RISE = 0.25
@@ -61,8 +62,12 @@ _WIDE = 2.5
 # Least share of the higher house's height that the lower one has beside their wall: lower parts are wings.
 _LEAST_SHARE = 0.75
 
-# Least share of a party wall that is seen, where there are roofs beside it. Fitted on simulated rows.
-_SEEN = 0.6
+# Least share of a party wall that is seen, where there are roofs beside it, of one that shows that there is a row, and
+# its least mean strength (m, or tangent): noise on pitched roofs of matched images reaches 0.17.
+_SEEN, _EVIDENT = 0.5, 0.2
+
+# Least share that is seen of a further wall of such a row: hips hide the valley between two houses at its ends.
+_GLIMPSED = 0.3
 
 # Least height of such roofs, as a share of the median height.
 _HIGH = 0.5
@@ -75,7 +80,7 @@ _DEEPEST = 22.0
 _NARROWEST = 3.5
 _WIDEST = 13.0
 
-# Least area of a house (m²); smaller ones are parts of one.
+# Least area of a house (m²); smaller pieces that party walls cut off are parts of a house next to them.
 _HOUSE = 25.0
 
 # Cosine of the greatest angle between party walls of one row: 10°.
@@ -86,10 +91,6 @@ _SAME = 0.8
 
 # Among lines with at least this share of the greatest strength, the one that separates the roofs best is chosen.
 _STRONG = 0.5
-
-# Largest scrap that a party wall may cut off (spacings squared): a strip along a side of the outline, which is known to
-# a spacing. It stays with the house beside it. With 2, 8 and 30, 25, 37 and 48 of 118 houses in Delft are found.
-_SCRAP = 30.0
 
 
 @dataclass(frozen=True)
@@ -135,31 +136,33 @@ def split_row(
     if spacing > MAX_SPACING or is_inside.sum() * lattice.step**2 < 3 * _HOUSE or not known.any():
         return whole
     found = [_lines(lattice, is_inside, plan[known], height[known], np.radians(angle), spacing) for angle in angles]
-    return _parted(lattice, is_inside, found, spacing) or whole
+    return _parted(lattice, is_inside, found) or whole
 
 
 def _lines(
     lattice: Lattice, is_inside: np.ndarray, plan: np.ndarray, height: np.ndarray, angle: float, spacing: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the ends (w, 2, 2) (m) and strengths (w,) (m²) of what may be party walls in a building.
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the ends (w, 2, 2) (m) and strengths (w,) (m²) of what may be party walls, and which (w,) are clear.
 
     They run along a direction (rad) or square to it.
     """
     step = max(_STEP, _STEP_SPACINGS * spacing)
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    positions = lattice.positions[is_inside.ravel()] @ turn
+    positions = lattice.in_plan(np.argwhere(is_inside)[:, ::-1]) @ turn
     low, high = positions.min(axis=0) - 2 * step, positions.max(axis=0) + 2 * step
     u, v = (np.arange(a, b, step) for a, b in zip(low, high))
     inside = _inside(lattice, is_inside, (u, v), turn)
     roof, seen = _averaged(plan @ turn, height, low, step, inside.shape)
     # Farther than the building on both sides, so that the line parts it where the outline has a notch, too.
     beyond = _ALONG + spacing
-    column, first, last, strength = _along_first_axis(roof, seen, inside, step)
-    along_u = np.stack([[u[first] - beyond, v[column]], [u[last] + beyond, v[column]]])
-    column, first, last, more = _along_first_axis(roof.T, seen.T, inside.T, step)
-    along_v = np.stack([[u[column], v[first] - beyond], [u[column], v[last] + beyond]])
-    ends = np.concatenate([along_u, along_v], axis=2)
-    return np.moveaxis(ends, 2, 0) @ turn.T, np.concatenate([strength, more])
+    one, other = _along_first_axis(roof, seen, inside, step), _along_first_axis(roof.T, seen.T, inside.T, step)
+    across = v[one.column] + step * one.shift
+    along_u = np.stack([[u[one.first] - beyond, across], [u[one.last - 1] + beyond, across]])
+    across = u[other.column] + step * other.shift
+    along_v = np.stack([[across, v[other.first] - beyond], [across, v[other.last - 1] + beyond]])
+    ends = np.moveaxis(np.concatenate([along_u, along_v], axis=2), 2, 0) @ turn.T
+    both = ((one.strength, other.strength), (one.is_clear, other.is_clear))
+    return ends, np.concatenate(both[0]), np.concatenate(both[1])
 
 
 def _inside(
@@ -186,34 +189,65 @@ def _averaged(
     return total / np.maximum(count, 1), count.astype(float)
 
 
-def _along_first_axis(
-    roof: np.ndarray, seen: np.ndarray, is_inside: np.ndarray, step: float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return column, first and last row, and strength (m²) of what may be party walls along the first axis."""
+@dataclass(frozen=True)
+class _Runs:
+    """What may be party walls along the first axis of a grid.
+
+    Attributes
+    ----------
+    column, first, last : ndarray of shape (r,), int64
+        Column of each, its first row and the one after the last.
+    shift : ndarray of shape (r,)
+        Columns from there to where two lines fit the roof best.
+    strength : ndarray of shape (r,)
+        How much speaks for it, m².
+    misfit : ndarray of shape (r,)
+        Mean deviation of the roof from two lines, m.
+    is_clear : ndarray of shape (r,), bool
+        Whether most of it is seen.
+    """
+
+    column: np.ndarray
+    first: np.ndarray
+    last: np.ndarray
+    shift: np.ndarray
+    strength: np.ndarray
+    misfit: np.ndarray
+    is_clear: np.ndarray
+
+    def take(self, index: np.ndarray) -> _Runs:
+        """Return some of them."""
+        return _Runs(*(getattr(self, field.name)[index] for field in fields(self)))
+
+
+def _along_first_axis(roof: np.ndarray, seen: np.ndarray, is_inside: np.ndarray, step: float) -> _Runs:
+    """Return what may be party walls along the first axis, one of those that lie side by side."""
     counted = is_inside & (seen > 0)
     least = _HIGH * np.median(roof[counted]) if counted.any() else 0.0
-    column, first, last, strength, misfit = _runs_of_party_walls(roof, seen, is_inside, least, step)
-    chosen = _distinct(column, first, last, strength, misfit, _SAME / step)
-    return column[chosen], first[chosen], last[chosen] - 1, strength[chosen]
+    runs = _runs_of_party_walls(roof, seen, is_inside, least, step)
+    return runs.take(_distinct(runs, _SAME / step))
 
 
-def _runs_of_party_walls(
-    roof: np.ndarray, seen: np.ndarray, is_inside: np.ndarray, least: float, step: float
-) -> tuple[np.ndarray, ...]:
-    """Return column, first row and the one after the last, strength (m²) and mean misfit (m) of runs like a party wall.
-
-    A wall has to be seen only where roofs have the ``least`` height (m).
-    """
-    weight, beside, misfit = _evidence(roof, seen, step)
-    is_high = beside >= least
+def _runs_of_party_walls(roof: np.ndarray, seen: np.ndarray, is_inside: np.ndarray, least: float, step: float) -> _Runs:
+    """Return the runs like a party wall. Only beside roofs of the ``least`` height (m) a wall has to be seen."""
+    weight, height, misfit = _evidence(roof, seen, step)
+    is_high = height >= least
     column, first, last = _runs(is_inside)
     length = (last - first) * step
     is_seen = ndimage.maximum_filter1d(weight, 3, axis=1) > 0
-    counted, supported, strength, misfit = (
-        _sums(values, column, first, last) * step for values in (is_high, is_seen & is_high, weight, misfit)
+    counted, supported, strength = (
+        _sums(values, column, first, last) * step for values in (is_high, is_seen & is_high, weight)
     )
-    good = (length >= _SHORTEST) & (length <= _DEEPEST) & (supported >= np.maximum(_SHORTEST, _SEEN * counted))
-    return tuple(values[good] for values in (column, first, last, strength, misfit / length))
+    beside = (np.clip(column + at, 0, roof.shape[1] - 1) for at in (-1, 0, 1))
+    before, here, after = (_sums(misfit, at, first, last) * step / length for at in beside)
+    bend = before - 2 * here + after
+    # Beside a wall above both roofs the misfit is that of the wall, and its least value says nothing.
+    is_sharp = bend > here / 2
+    shift = np.where(is_sharp, np.clip((before - after) / np.where(is_sharp, 2 * bend, 1.0), -0.5, 0.5), 0.0)
+    is_clear = (supported >= np.maximum(_SHORTEST, _SEEN * counted)) & (strength >= _EVIDENT * counted)
+    is_long = (length >= _SHORTEST) & (length <= _DEEPEST)
+    good = np.flatnonzero(is_long & (supported >= _GLIMPSED * np.maximum(_SHORTEST, counted)))
+    return _Runs(column, first, last, shift, strength, here, is_clear).take(good)
 
 
 def _evidence(roof: np.ndarray, seen: np.ndarray, step: float) -> tuple[np.ndarray, ...]:
@@ -232,13 +266,23 @@ def _evidence(roof: np.ndarray, seen: np.ndarray, step: float) -> tuple[np.ndarr
     is_large = (jump > _LARGE_STEP) & (np.maximum(np.abs(left_rise), np.abs(right_rise)) < _STEEPEST) & ~is_ridge
     is_smooth = np.maximum(left_rough, right_rough) < _ROUGH
     is_house = np.minimum(left_mean, right_mean) >= _LEAST_SHARE * np.maximum(left_mean, right_mean)
-    above = ndimage.maximum_filter1d(roof, 3, axis=1) - np.maximum(left, right)
+    above = _above(roof, (left, left_rise), (right, right_rise), step)
     is_step = (is_parallel | is_large) & is_smooth & is_house & _goes_on(roof, is_known, right - left, step)
     is_parapet = (above > _PARAPET) & is_smooth
     strength = np.where(is_step, np.minimum(jump, 2 * _LARGE_STEP), np.where(is_parapet, above, 0.0))
     strength = np.where(is_valley, np.minimum(left_rise, right_rise), strength)
     rough = [np.nan_to_num(_side(roof, is_known, step, sign, 0.0)[2]) for sign in (-1, 1)]
     return strength, np.nan_to_num(np.maximum(left_mean, right_mean)), rough[0] + rough[1]
+
+
+def _above(roof: np.ndarray, left: tuple, right: tuple, step: float) -> np.ndarray:
+    """Return how high (m) a roof is at each place, or beside it, above both lines: height here and rise outward."""
+    above = np.full(roof.shape, -np.inf)
+    for at in (-1, 0, 1):
+        beside = ndimage.shift(roof, (0, -at), order=0, mode="nearest")
+        lines = left[0] - at * step * left[1], right[0] + at * step * right[1]
+        above = np.maximum(above, beside - np.maximum(*lines))
+    return above
 
 
 def _goes_on(roof: np.ndarray, is_known: np.ndarray, jump: np.ndarray, step: float) -> np.ndarray:
@@ -285,11 +329,10 @@ def _sums(values: np.ndarray, column: np.ndarray, first: np.ndarray, last: np.nd
     return total[last, column] - total[first, column]
 
 
-def _distinct(
-    column: np.ndarray, first: np.ndarray, last: np.ndarray, strength: np.ndarray, misfit: np.ndarray, same: float
-) -> list[int]:
+def _distinct(runs: _Runs, same: float) -> np.ndarray:
     """Return one of the runs that lie side by side: where two lines fit the roof best, of those with much for them."""
     found = []
+    column, first, last, strength = runs.column, runs.first, runs.last, runs.strength
     is_left = np.ones(len(column), bool)
     for best in np.argsort(-strength, kind="stable").tolist():
         if not is_left[best]:
@@ -298,17 +341,21 @@ def _distinct(
         beside = is_left & (2 * shared > last[best] - first[best])
         near = beside & (np.abs(column - column[best]) <= same)
         strong = np.flatnonzero(near & (strength >= _STRONG * strength[best]))
-        found.append(int(strong[np.argmin(misfit[strong])]))
+        found.append(int(strong[np.argmin(runs.misfit[strong])]))
         is_left &= ~beside | (np.abs(column - column[found[-1]]) > same)
         is_left[best] = False
-    return found
+    return np.array(found, np.int64)
 
 
-def _parted(lattice: Lattice, is_inside: np.ndarray, found: list, spacing: float) -> Optional[Houses]:
+def _parted(lattice: Lattice, is_inside: np.ndarray, found: list) -> Optional[Houses]:
     """Return the houses between party walls, of which ``found`` are ends and strengths; None without any."""
-    ends, strength = (np.concatenate(values) for values in zip(*found)) if found else (np.zeros((0, 2, 2)), np.zeros(0))
-    ends = ends[np.argsort(-strength, kind="stable")]
-    ends = ends[_in_rows(ends)]
+    if not found:
+        return None
+    ends, strength, is_clear = (np.concatenate(values) for values in zip(*found))
+    order = np.lexsort((-strength, ~is_clear))
+    ends, is_clear = ends[order], is_clear[order]
+    in_rows = _in_rows(ends, is_clear)
+    ends, is_clear = ends[in_rows], is_clear[in_rows]
     if not len(ends):
         return None
     pairs, middle = _pairs(lattice, is_inside)
@@ -320,45 +367,53 @@ def _parted(lattice: Lattice, is_inside: np.ndarray, found: list, spacing: float
     cell = _pieces(pairs[~is_crossed], len(middle))
     pairs, number = cell[pairs[is_crossed]], np.cumsum(is_crossed) - 1
     crossed, size = [number[own] for own in crossed], area * np.bincount(cell)
-    kept = _kept(ends, crossed, pairs, size, _SCRAP * spacing**2)
-    walls = ends[kept[_in_rows(ends[kept])]]
+    kept = _kept(ends, crossed, pairs, size)
+    kept = kept[_in_rows(ends[kept], is_clear[kept])]
+    walls = ends[kept]
     is_cut = np.zeros(len(pairs), bool)
-    for wall in kept[_in_rows(ends[kept])]:
+    for wall in kept:
         is_cut[crossed[wall]] = True
     house = np.zeros(is_inside.shape, np.int64)
-    house[is_inside] = 1 + _without_scraps(_pieces(pairs[~is_cut], len(size)), pairs, size, _SCRAP * spacing**2)[cell]
+    house[is_inside] = 1 + _without_small(_pieces(pairs[~is_cut], len(size)), pairs, size)[cell]
     return Houses(walls, house) if len(walls) else None
 
 
-def _kept(ends: np.ndarray, crossed: list, pairs: np.ndarray, area: np.ndarray, scrap: float) -> np.ndarray:
-    """Return the party walls, of those that come first, that leave room between them and no piece smaller than a house.
+def _kept(ends: np.ndarray, crossed: list, pairs: np.ndarray, area: np.ndarray) -> np.ndarray:
+    """Return the party walls, of those that come first, that leave room between them and part two houses.
 
     ``crossed`` are the ``pairs`` of cells that each parts, ``area`` (m²) is that of the cells.
     """
     kept: list = []
-    is_cut = np.zeros(len(pairs), bool)
+    is_cut, before, houses_before = np.zeros(len(pairs), bool), 1, 1
     for wall, own in enumerate(crossed):
         if kept and _is_close(ends[wall], ends[kept]):
             continue
         more = is_cut.copy()
         more[own] = True
         size = np.bincount(_pieces(pairs[~more], len(area)), area)
-        if ((size >= _HOUSE) | (size < scrap)).all():
+        houses = int((size >= _HOUSE).sum())
+        # A wall beside a courtyard parts nothing before another one does on the other side.
+        if houses > houses_before or len(size) == before:
             kept.append(wall)
-            is_cut = more
+            is_cut, before, houses_before = more, len(size), houses
     return np.array(kept, np.int64)
 
 
-def _without_scraps(piece: np.ndarray, pairs: np.ndarray, area: np.ndarray, scrap: float) -> np.ndarray:
-    """Return the pieces of cells, from 0, with those of less than ``scrap`` (m²) in the largest one beside them."""
-    size = np.bincount(piece, area)
-    beside = piece[np.concatenate([pairs, pairs[:, ::-1]])]
-    beside = beside[(size[beside[:, 0]] < scrap) & (size[beside[:, 1]] >= scrap)]
-    # The largest comes last for each scrap, and stays.
-    beside = beside[np.argsort(size[beside[:, 1]], kind="stable")]
-    target = np.arange(len(size))
-    target[beside[:, 0]] = beside[:, 1]
-    return np.unique(target[piece], return_inverse=True)[1]
+def _without_small(piece: np.ndarray, pairs: np.ndarray, area: np.ndarray) -> np.ndarray:
+    """Return the pieces of cells, from 0, with those smaller than a house in the one that they share most border with.
+
+    The smallest comes first.
+    """
+    piece = piece.copy()
+    while True:
+        size = np.bincount(piece, area)
+        beside = piece[pairs]
+        beside = beside[beside[:, 0] != beside[:, 1]]
+        small = np.flatnonzero((size > 0) & (size < _HOUSE) & np.isin(np.arange(len(size)), beside))
+        if not len(small):
+            return np.unique(piece, return_inverse=True)[1]
+        own = beside == small[np.argmin(size[small])]
+        piece[piece == small[np.argmin(size[small])]] = np.bincount(beside[own[:, ::-1]]).argmax()
 
 
 def _pairs(lattice: Lattice, is_inside: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -367,7 +422,7 @@ def _pairs(lattice: Lattice, is_inside: np.ndarray) -> tuple[np.ndarray, np.ndar
     number[is_inside] = np.arange(is_inside.sum())
     beside = [(number[:, :-1], number[:, 1:]), (number[:-1], number[1:])]
     both = np.concatenate([np.column_stack([one.ravel(), other.ravel()]) for one, other in beside])
-    return both[(both >= 0).all(axis=1)], lattice.positions[is_inside.ravel()]
+    return both[(both >= 0).all(axis=1)], lattice.in_plan(np.argwhere(is_inside)[:, ::-1])
 
 
 def _pieces(pairs: np.ndarray, count: int) -> np.ndarray:
@@ -379,11 +434,13 @@ def _crossed(ends: np.ndarray, segments: np.ndarray) -> list:
     """Return for each party wall the segments (n, 2, 2) that lead across it."""
     middle, step = segments.mean(axis=1), ends[:, 1] - ends[:, 0]
     length = np.hypot(*step.T)
-    reach = (length + np.hypot(*(segments[:, 1] - segments[:, 0]).T).max(initial=0.0)) / 2
-    near = spatial.cKDTree(middle).query_ball_point(ends.mean(axis=1), reach)
+    half = np.hypot(*(segments[:, 1] - segments[:, 0]).T).max(initial=0.0) / 2
+    near = spatial.cKDTree(middle).query_ball_point(ends.mean(axis=1), length / 2 + half)
     found = []
     for start, (x, y), size, beside in zip(ends[:, 0], step / length[:, None], length, near):
         own = np.sort(np.array(beside, np.int64))
+        # Most lie too far from the line to cross it.
+        own = own[np.abs((middle[own] - start) @ [-y, x]) <= half]
         offset = segments[own] - start
         side = x * offset[..., 1] - y * offset[..., 0] > 0
         along = (middle[own] - start) @ [x, y]
@@ -400,18 +457,17 @@ def _is_close(wall: np.ndarray, others: np.ndarray) -> bool:
     return bool(min(from_wall.min(), to_wall.min()) < _NARROWEST)
 
 
-def _in_rows(ends: np.ndarray) -> np.ndarray:
-    """Return which party walls (w,) have another one a house away: two roofs may be one house, three are a row."""
+def _in_rows(ends: np.ndarray, is_clear: np.ndarray) -> np.ndarray:
+    """Return which party walls (w,) are of a row: three houses or more, with two clear walls side by side."""
     length = np.hypot(*(ends[:, 1] - ends[:, 0]).T)
     reach = _WIDEST + length.max(initial=0.0)
     near = spatial.cKDTree(ends.mean(axis=1)).query_pairs(reach, output_type="ndarray")
     near = np.concatenate([near, near[:, ::-1]])
     one, other = near[_are_next(ends[near[:, 0]], ends[near[:, 1]])].T
-    kept, count = np.ones(len(ends), bool), len(ends) + 1
-    while kept.sum() < count:
-        count = kept.sum()
-        kept = np.bincount(one[kept[one] & kept[other]], minlength=len(ends)) > 0
-    return kept
+    count, row = components(one, other, len(ends))
+    is_row = np.zeros(count, bool)
+    is_row[row[one[is_clear[one] & is_clear[other]]]] = True
+    return is_row[row]
 
 
 def _are_next(walls: np.ndarray, others: np.ndarray) -> np.ndarray:

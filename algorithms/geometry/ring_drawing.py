@@ -54,7 +54,8 @@ class Prices:
     sharp : float
         Of a corner that turns by 170° or more; from 110° on the price grows toward it.
     second : float
-        Of an edge along the second main direction.
+        Of an edge along the second main direction. With 1.0 the short side of a house whose front is askew followed the
+        front.
     other : float
         Of an edge along neither of them.
     curved, other_curved : float
@@ -67,7 +68,7 @@ class Prices:
     flat: float = 1.5
     step: float = 2.0
     sharp: float = 4.0
-    second: float = 1.0
+    second: float = 0.5
     other: float = 1.75
     curved: float = 15.0
     other_curved: float = 0.5

@@ -123,6 +123,8 @@ def classify_roofs(
         bent = bent_roofs(xyz, classification, height_above_ground, cluster_id, sampling, monitor.part(0.5, 0.9))
         is_bent = _is_on_roof(bent, height_above_ground, split_height) & (cluster_id == 0)
         cluster_id = with_bent_roofs(xyz, cluster_id, is_bent, gap, min_area, density, monitor.part(0.9, 0.95))
+        # A plane whose building was only found with its bent parts is surrounded by these, from close by.
+        cluster_id = join_stacked(xyz, cluster_id - 1, gap / 2) + 1
         cluster_id = split_blocks(xyz, height_above_ground, cluster_id, sampling.spacing, monitor.part(0.95, 1))
     monitor.progress(1.0)
     result[cluster_id > 0] = PointClass.BUILDING

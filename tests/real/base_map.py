@@ -33,13 +33,14 @@ def polygon(rings):
 
 
 @functools.cache
-def footprints(kind):
-    """Return the footprints, and the cloud, of the true or the found buildings."""
+def footprints(kind, in_blocks=False):
+    """Return the footprints, and the cloud, of the true or the found buildings, in blocks or house by house."""
     if kind == "chain":
-        return detected(DELFT).layers["footprints"], detected(DELFT).cloud
-    cloud = read_cloud(path_of(DELFT))
-    cloud.set("classification", truth(DELFT))
-    return run_stage(STAGES["extract_footprints"], cloud).layers["footprints"], cloud
+        cloud = detected(DELFT).cloud
+    else:
+        cloud = read_cloud(path_of(DELFT))
+        cloud.set("classification", truth(DELFT))
+    return run_stage(STAGES["extract_footprints"], cloud, merge_touching=in_blocks).layers["footprints"], cloud
 
 
 @functools.cache
@@ -118,7 +119,7 @@ def _covered(rings, shape):
 
 
 def map_distances(kind, level):
-    """Return how many buildings of the map are found, and how far their corners are; level 0 is houses, 1 blocks."""
-    found, cloud = footprints(kind)
+    """Return how many buildings of the map are found, and how far their corners are; 0 is houses, 1 blocks."""
+    found, cloud = footprints(kind, in_blocks=True)
     made = [polygon([cloud.to_map(ring) for ring in rings]) for rings in found.geometries]
     return corner_distances(made, base_map()[level])
