@@ -2276,6 +2276,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Merge touching buildings</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Merged classes</source>
         <translation type="unfinished"></translation>
     </message>
@@ -2628,15 +2632,15 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Outline buildings that touch as one block. Otherwise each has its own footprint, and so have three houses of a row or more where valleys between their roofs, steps or walls above them show which is which.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Outline each building as a polygon with its area, heights, volume, entropy and confidence.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
         <source>Outline the walls of each building, without the eaves: corners where walls meet, and a quality for every edge.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>Outline three houses of a row or more one by one where valleys between their roofs, steps or walls above them show which is which.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3625,10 +3629,6 @@
     </message>
     <message>
         <source>Split recorded scan lines into straight pieces and merge those of adjacent lines to planes or smooth surfaces.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>Split rows</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
