@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..geometry.polygons import area_vector
 from ..geometry.rings import signed_area
 from ..stage import LayerFeatures
 
@@ -60,8 +61,7 @@ def facade_segments(facades: LayerFeatures) -> PlanSegments:
         ring = np.asarray(rings[0], float)
         if ring.shape[1] < 3:
             continue
-        offset = ring[:-1] - ring[0]
-        normal = np.cross(offset, np.roll(offset, -1, axis=0)).sum(axis=0)
+        normal = area_vector(ring)
         across = np.hypot(*normal[:2])
         if across <= 1e-9:
             continue

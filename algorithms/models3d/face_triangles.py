@@ -6,6 +6,8 @@ from collections import deque
 
 import numpy as np
 
+from ..geometry.polygons import area_vector, axes_across
+
 # Corners whose triangle has less area than this (m²) are in line by rounding.
 _FLAT = 1e-9
 
@@ -72,12 +74,9 @@ def _is_better(a, b, c, d) -> bool:
 
 def _in_plane(vertices: np.ndarray, rings: list[list[int]], used: list[int]) -> np.ndarray:
     """Return the vertices of a face in two axes of its plane, counterclockwise for the exterior."""
-    corners = vertices[rings[0]] - vertices[rings[0][0]]
-    normal = np.cross(corners, np.roll(corners, -1, axis=0)).sum(axis=0)
-    normal /= np.linalg.norm(normal)
-    axis = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
-    axis /= np.linalg.norm(axis)
-    return (vertices[used] - vertices[rings[0][0]]) @ np.column_stack([axis, np.cross(normal, axis)])
+    normal = area_vector(vertices[rings[0]])
+    axes = axes_across(normal / np.linalg.norm(normal))
+    return (vertices[used] - vertices[rings[0][0]]) @ np.column_stack(axes)
 
 
 def _corner(ring: list[int], i: int) -> tuple[int, int, int]:

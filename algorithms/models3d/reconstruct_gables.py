@@ -9,6 +9,7 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..geometry.groups import members
+from ..geometry.polygons import area_vector
 from ..packages import spatial
 from ..segmentation.least_squares_planes import Planes, planes_of
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, TextFile, stage
@@ -298,11 +299,11 @@ def _features(houses: list[House]) -> LayerFeatures:
         faces = [(kind, face) for kind, all_faces in FACES.items() for face in all_faces]
         for k, (kind, face) in enumerate(faces, start=1):
             ring = own[[vertex - 1 for vertex in (*face, face[0])]]
-            normal = np.cross(ring[:-1] - ring[0], ring[1:] - ring[0]).sum(axis=0)
+            normal = area_vector(ring)
             size = float(np.linalg.norm(normal))
             slope = float(np.degrees(np.arccos(np.clip(abs(normal[2]) / size, 0, 1))))
             geometries.append([ring])
-            values: tuple = (number, k, kind, size / 2, slope, *own[:6, :2].ravel().tolist())
+            values: tuple = (number, k, kind, size, slope, *own[:6, :2].ravel().tolist())
             values += (float(own[0, 2]), float(own[2, 2]), float(own[6, 2]), house.rms)
             for name, value in zip(columns, values):
                 columns[name].append(value)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..geometry.line_segments import are_inside, is_valid
+from ..geometry.polygons import area_vector
 from .solids import WALL, Solid
 
 WINDOW, DOOR = "window", "door"
@@ -87,8 +88,7 @@ class _Wall:
 
 def _best_wall(walls: list[_Wall], opening: Opening) -> tuple:
     """Return the nearest wall that an opening can be set into, and its open ring (m, 2) there; None without any."""
-    offset = opening.ring - opening.ring[0]
-    normal = np.cross(offset, np.roll(offset, -1, axis=0)).sum(axis=0)
+    normal = area_vector(opening.ring)
     normal /= np.linalg.norm(normal)
     middle = opening.ring.mean(axis=0)
     off = [abs(float((middle - wall.origin) @ wall.normal)) for wall in walls]

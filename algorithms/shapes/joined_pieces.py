@@ -9,6 +9,7 @@ from ..geometry.grid import connected_cells, grid_over
 from ..geometry.line_segments import is_valid
 from ..geometry.points_in_polygons import are_in_polygons
 from ..geometry.polygon_overlap import as_polygons, shared_areas
+from ..geometry.polygons import area_vector, axes_across
 from ..geometry.polylines import simplify_ring
 from ..geometry.rings import signed_area
 from ..stage import LayerFeatures, Monitor
@@ -84,13 +85,8 @@ def _mean(pieces: LayerFeatures, name: str, power: int = 1) -> float:
 
 def _frame(rings: list) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return two unit vectors along the plane of a polygon, counterclockwise as its ring, and a point of it."""
-    start = rings[0][:-1].mean(axis=0)
-    flat = rings[0] - start
-    normal = np.cross(flat[:-1], flat[1:]).sum(axis=0)
-    normal /= max(float(np.linalg.norm(normal)), 1e-12)
-    first = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
-    first /= np.linalg.norm(first)
-    return first, np.cross(normal, first), start
+    normal = area_vector(rings[0])
+    return (*axes_across(normal / max(float(np.linalg.norm(normal)), 1e-12)), rings[0][:-1].mean(axis=0))
 
 
 def _outline(flat: list) -> list[np.ndarray]:

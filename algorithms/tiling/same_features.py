@@ -8,6 +8,7 @@ import numpy as np
 
 from ..geometry.groups import components
 from ..geometry.polygon_overlap import as_polygons, meeting_boxes, shared_areas
+from ..geometry.polygons import area_vector, axes_across
 from ..stage import Layer, LayerFeatures, Monitor
 from .blocks import feature_boxes
 
@@ -169,7 +170,7 @@ def _shared_in_space(
     in_plane = np.flatnonzero(off <= np.maximum(tolerance[one], tolerance[other]))
     flat: list[list] = [[], []]
     for pair in in_plane:
-        axes, start = _axes(normal[large[pair]]), features.geometries[large[pair]][0][0]
+        axes, start = np.stack(axes_across(normal[large[pair]])), features.geometries[large[pair]][0][0]
         for side, feature in zip(flat, (large[pair], small[pair])):
             side.append([(ring - start) @ axes.T for ring in features.geometries[feature]])
     shared = np.zeros(len(one))
@@ -185,24 +186,12 @@ def _tolerance(features: LayerFeatures, layer: Layer) -> np.ndarray:
 
 def _areas(geometries: list) -> tuple[np.ndarray, np.ndarray]:
     """Return the area (n,), m², and the unit normal (n, 3) of polygons in space, from their rings."""
-    twice = np.zeros((len(geometries), 3))
-    for row, rings in enumerate(geometries):
-        for ring in rings:
-            flat = ring - rings[0][0]
-            twice[row] += np.cross(flat[:-1], flat[1:]).sum(axis=0)
-    length = np.linalg.norm(twice, axis=1)
-    return length / 2, twice / np.maximum(length, 1e-12)[:, None]
+    vector = np.array([sum(map(area_vector, rings)) for rings in geometries]).reshape(-1, 3)
+    length = np.linalg.norm(vector, axis=1)
+    return length, vector / np.maximum(length, 1e-12)[:, None]
 
 
 def _off(rings: list, normal: np.ndarray, others: list) -> float:
     """Return how far (root mean square, m) the corners of a polygon lie off the plane of another one."""
     corners = others[0][:-1] - rings[0][:-1].mean(axis=0)
     return float(np.sqrt(np.mean((corners @ normal) ** 2)))
-
-
-def _axes(normal: np.ndarray) -> np.ndarray:
-    """Return two unit vectors (2, 3) that span the plane of a normal."""
-    least = np.eye(3)[np.argmin(np.abs(normal))]
-    first = np.cross(normal, least)
-    first /= np.linalg.norm(first)
-    return np.stack([first, np.cross(normal, first)])
