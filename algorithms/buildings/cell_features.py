@@ -44,6 +44,17 @@ def cell_features(points: CellPoints, cells: SpaceCells, chosen: np.ndarray, aro
 
     ``around`` is the matrix of these and the cells that touch them, see :meth:`.SpaceCells.around`. Two neighborhoods
     give the shape: the cell, and the cell with those around it.
+
+    Parameters
+    ----------
+    points : CellPoints
+        Measures of the points.
+    cells : SpaceCells
+        All cells.
+    chosen : ndarray of shape (k,), int64
+        Rows of the cells that features are wanted of.
+    around : sparse matrix
+        Which cells touch each chosen one.
     """
     own, block = cells.moments[chosen], around @ cells.moments
     count = own[:, 0]

@@ -165,7 +165,19 @@ def local_planes(
 
 
 def store_planes(planes: LocalPlanes, rows: np.ndarray, center, normal, deviation) -> None:
-    """Set the planes of some points, where they are defined."""
+    """Set the planes of some points, where they are defined.
+
+    Parameters
+    ----------
+    planes : LocalPlanes
+        Planes of all points; changed.
+    rows : ndarray of shape (k,)
+        The points.
+    center, normal : ndarray of shape (k, 3)
+        Centers, m, and unit normals of their planes.
+    deviation : ndarray of shape (k,)
+        Root mean square distances from these, m.
+    """
     defined = np.isfinite(normal).all(axis=1)
     rows = rows[defined]
     planes.offset[rows], planes.normal[rows] = center[defined], normal[defined]
