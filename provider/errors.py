@@ -23,7 +23,7 @@ def as_processing_errors(
     """Turn the core's errors into Processing's, one sentence each.
 
     Who cancels a run, in ``feedback``, gets a message and no error; but on the command line, where the run would end
-    with exit code 0 without one; ``cancelled`` is the sentence. What is neither of these is a fault of the program and
+    with exit code 0 without one; ``cancelled`` is the sentence. Any other error is a fault of the program and
     keeps its traceback.
     """
     try:

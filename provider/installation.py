@@ -1,4 +1,4 @@
-"""What is installed, in text to copy, and the installation of packages that are missing."""
+"""Versions that are installed, in text to copy, and the installation of packages that are missing."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Files that GDAL makes in memory before they are written to a disk.
 
-On a disk that fills up GDAL fails where it can't report it: when it closes a file. What is written of memory here fails
-with the reason of the system, or is complete.
+On a disk that fills up GDAL fails where it can't report it: when it closes a file. Files written from memory here are
+complete, or writing fails with the reason of the system.
 """
 
 from __future__ import annotations

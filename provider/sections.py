@@ -83,7 +83,7 @@ def _of_steps(pipeline: Pipeline) -> list[Section]:
     sections.update({step.name: Section(tr(step_title(step))) for step in pipeline.steps})
     for name, (step, tunable) in pipeline.parameters.items():
         is_shared = name in pipeline.shared
-        # What is shown at once has no group that says which step it is of.
+        # Parameters that are shown at once have no group that names their step.
         prefix = step_title(step) if name in pipeline.shown and not is_shared else ""
         sections["" if is_shared else step.name].add(name.upper(), tunable, prefix)
     return [section for section in sections.values() if section.labels]

@@ -61,7 +61,7 @@ def apply_threads() -> None:
     Raises
     ------
     ValueError
-        If what is set is no number of threads.
+        If the setting is no number of threads.
     """
     text = THREADS.value
     if text and not (text.isdigit() and int(text)):

@@ -18,7 +18,7 @@ def tr(text: str) -> str:
 
 
 def install_translation() -> Optional[QTranslator]:
-    """Load the translation into the language of QGIS, if there is one; it holds as long as what is returned."""
+    """Load the translation into the language of QGIS, if there is one; it holds as long as the returned object."""
     translator = QTranslator()
     if not translator.load(str(TRANSLATIONS / f"lidar_buildings_{QgsApplication.locale()}.qm")):
         return None

@@ -11,7 +11,7 @@ from ..stage import Param, stage
 
 _NONE, _ALL = "none", "all"
 
-# What is kept of a classified cloud: classes, or None for all but those of points that nobody has classified.
+# Classes that are kept of a classified cloud, or None for all but those of points that nobody has classified.
 _KEPT = {
     _NONE: (),
     "ground": (PointClass.GROUND,),

@@ -126,7 +126,7 @@ def scan(
     Parameters
     ----------
     scene : Scene
-        What is scanned.
+        The scene to scan.
     density : float
         Pulses per m².
     pattern : str

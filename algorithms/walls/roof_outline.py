@@ -14,7 +14,7 @@ from ..geometry.ring_directions import direction_weights, main_directions
 from ..geometry.rings import signed_area
 from .surroundings import without_nested
 
-# Least spacing (m) that roofs are drawn with: noise and the overhang hide what is smaller.
+# Least spacing (m) that roofs are drawn with: noise and the overhang hide smaller detail.
 _LEAST_SPACING = 0.25
 
 # Area of the smallest part and of the smallest courtyard (square spacings).
