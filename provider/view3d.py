@@ -4,12 +4,21 @@ from __future__ import annotations
 
 from typing import Any
 
-from qgis.core import QgsLayerTree, QgsMapLayer, QgsVector3D, QgsVectorLayer
+from qgis.core import (
+    QgsCoordinateTransform,
+    QgsLayerTree,
+    QgsMapLayer,
+    QgsProject,
+    QgsRectangle,
+    QgsVector3D,
+    QgsVectorLayer,
+)
 
 from .texts import tr
 
-# The camera: degrees from straight down, and distances in sides of what is shown.
-_PITCH, _AWAY = 55.0, 1.8
+# The camera: degrees from straight down and from south, as upright planes would be lines seen from there, and distance
+# in sides of the extent that is shown.
+_PITCH, _YAW, _AWAY = 55.0, 35.0, 1.8
 
 
 def show_view(iface: Any) -> None:
@@ -21,12 +30,23 @@ def show_view(iface: Any) -> None:
     canvas = iface.createNewMapCanvas3D(tr("3D: {}").format(layers[0].name()))
     settings = canvas.mapSettings()
     settings.setLayers(layers)
-    extent = layers[0].extent()
-    for layer in layers[1:]:
-        extent.combineExtentWith(layer.extent())
+    extent = QgsRectangle()
+    for layer in layers:
+        change = QgsCoordinateTransform(layer.crs(), settings.crs(), QgsProject.instance())
+        extent.combineExtentWith(change.transformBoundingBox(layer.extent()))
     middle, origin = extent.center(), settings.origin()
-    at = QgsVector3D(middle.x() - origin.x(), 0.0, -(middle.y() - origin.y()))
-    canvas.cameraController().setLookingAtPoint(at, _AWAY * max(extent.width(), extent.height(), 1.0), _PITCH, 0.0)
+    at = QgsVector3D(middle.x() - origin.x(), _elevation(layers) - origin.z(), -(middle.y() - origin.y()))
+    canvas.cameraController().setLookingAtPoint(at, _AWAY * max(extent.width(), extent.height(), 1.0), _PITCH, _YAW)
+
+
+def _elevation(layers: list[QgsMapLayer]) -> float:
+    """Return the elevation of a corner of the first layer with heights, 0 without."""
+    for layer in layers:
+        feature = next(layer.getFeatures(), None) if isinstance(layer, QgsVectorLayer) else None
+        corner = next(feature.geometry().vertices(), None) if feature is not None else None
+        if corner is not None and corner.is3D():
+            return float(corner.z())
+    return 0.0
 
 
 def layers_to_show(group: QgsLayerTree, visible: list[QgsMapLayer]) -> list[QgsMapLayer]:
