@@ -22,7 +22,7 @@ class ImageRoofRules:
     half: float = rule(0.5, "share", "of a roof's height at its edge: a step is smeared evenly to both sides")
     steep: float = rule(1.0, "m per m", "physics: smeared walls fall as steeply; soil does not")
     surface_share: float = rule(
-        0.5, "share", "most of what stands within the least width of a roof surface; less around spots of crowns"
+        0.5, "share", "fitted on a town of matched images: most of what is within the least width of a roof surface"
     )
 
 
@@ -31,7 +31,7 @@ class VehicleRules:
     """Sizes of cars and vans, with their smeared edges; buses are wider and longer."""
 
     width: float = rule(2.6, "m", "physics: the width that roads admit")
-    least_length: float = rule(4.0, "m", "physics: length of a usual car; the shortest van has 4.3 m")
+    least_length: float = rule(4.0, "m", "fitted: 4.3 m, the shortest van, loses 0.4 % of F of a real town")
     most_length: float = rule(7.5, "m", "physics: length of the longest van")
     height: float = rule(3.0, "m", "physics: height of the highest van")
 
