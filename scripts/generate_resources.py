@@ -12,7 +12,7 @@ from pathlib import Path
 # Qt shuffles the attributes of XML unless it is told not to, before it starts: each model would be a new file.
 os.environ["QT_HASH_SEED"] = "0"
 ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT))
+sys.path[:0] = [str(ROOT), str(ROOT / "scripts")]
 from extract_texts import write_texts  # noqa: E402
 from qgis.core import QgsApplication  # noqa: E402
 

@@ -174,7 +174,7 @@ def extract_footprints(
     >>> classes = np.where(z > 0, 6, 2)
     >>> footprints = extract_footprints(xyz, classes)
     >>> len(footprints), round(float(footprints.columns["area"][0]))
-    (1, 72)
+    (1, 71)
     """
     building = _building_points(classification, cluster_id, monitor)
     if not len(building) or not np.ptp(plan_box(xyz.take(building, axis=0)), axis=0).any():

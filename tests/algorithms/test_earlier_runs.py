@@ -119,7 +119,11 @@ def test_numbering_anew_clears_what_described_the_old_numbers():
 @pytest.mark.parametrize("name", PIPELINES)
 def test_no_step_reads_what_only_a_later_one_writes(name):
     """A dimension that is read before a step of the composite has written or cleared it is of an earlier run."""
-    known, stale = set(), []
+    # "Keep classes" reads what it forgets; "Restore classes" numbers kept buildings anew where any were numbered.
+    known, stale = (
+        {"earlier_class", "cluster_id"} if "existing" in [one.name for one in PIPELINES[name].steps] else set(),
+        [],
+    )
     for step in PIPELINES[name].steps:
         stage = step.stage
         reads = {one for one in (*stage.reads, *stage.optional) if one in written(name)}
