@@ -90,7 +90,7 @@ def test_a_window_removes_what_rises_more_than_terrain_may(side, height, slope, 
     surface[square, square] = height
     removal = ObjectRemoval(surface, np.zeros(surface.shape, bool), largest=60.0, cell_size=1.0)
     removed = removal.removed_by_opening(np.full(surface.shape, slope), Monitor())
-    assert removed[70, 70] == is_removed
+    assert (removed[70, 70] > 0) == is_removed
     assert not removed[surface == 0].any()
 
 
