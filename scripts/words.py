@@ -81,15 +81,17 @@ def _parted(text: str, line: int) -> Iterator[tuple[int, str]]:
 
 
 def _of_comments(source: str) -> Iterator[tuple[int, str]]:
+    """Comments on lines of their own continue; those behind code are paragraphs, as each describes its line."""
     own: list[str] = []
     start = last = 0
     for token in tokenize.generate_tokens(io.StringIO(source).readline):
         if token.type != tokenize.COMMENT:
             continue
-        if own and token.start[0] != last + 1:
+        is_behind = bool(token.line[: token.start[1]].strip())
+        if own and (token.start[0] != last + 1 or is_behind):
             yield start, " ".join(own)
             own = []
-        start, last = start if own else token.start[0], token.start[0]
+        start, last = start if own else token.start[0], -1 if is_behind else token.start[0]
         own.append(token.string.lstrip("#: "))
     if own:
         yield start, " ".join(own)

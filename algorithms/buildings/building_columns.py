@@ -35,25 +35,14 @@ COLUMNS = ColumnRules()
 
 @dataclass(frozen=True)
 class ColumnPoints:
-    """All points (n,), as they are compared with buildings.
+    """All points (n,), as they are compared with buildings."""
 
-    Attributes
-    ----------
-    cell : tuple of two ndarrays of shape (n,)
-        Row and column of the cell that each is in.
-    elevation, height : ndarray of shape (n,)
-        Elevation and height above ground, m.
-    raised : ndarray of shape (n,), bool
-        Higher than the foot of a wall, and no noise.
-    goes_on : ndarray of shape (n,), bool
-        Whether the pulse went on to another return, as it does in crowns; walls stop it.
-    """
-
-    cell: tuple[np.ndarray, np.ndarray]
+    cell: tuple[np.ndarray, np.ndarray]  #: tuple of two (n,): row and column of the cell that each is in
+    #: elevation, height, (n,): elevation and height above ground, m
     elevation: np.ndarray
     height: np.ndarray
-    raised: np.ndarray
-    goes_on: np.ndarray
+    raised: np.ndarray  #: (n,), bool: higher than the foot of a wall, and no noise
+    goes_on: np.ndarray  #: (n,), bool: whether the pulse went on to another return, as it does in crowns; walls stop it
 
 
 def column_size(density: float) -> float:

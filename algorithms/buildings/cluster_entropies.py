@@ -21,28 +21,16 @@ _BITS = 24
 
 @dataclass(frozen=True)
 class ClusterEntropies:
-    """The entropies of k clustered points and of their m clusters.
+    """The entropies of k clustered points and of their m clusters."""
 
-    Attributes
-    ----------
-    rows : ndarray of shape (k,), int64
-        Indices of the clustered points in the cloud.
-    position : ndarray of shape (k,), int64
-        The cluster of each, as an index into ``ids``.
-    values : ndarray of shape (k,), float64
-        Entropy of each clustered point, 0 to ln 3; NaN where its neighborhood has no extent.
-    ids, sizes : ndarray of shape (m,), int64
-        Number and points of each cluster.
-    means : ndarray of shape (m,), float64
-        Mean entropy of each cluster; NaN where no point of it has one.
-    """
-
-    rows: np.ndarray
-    position: np.ndarray
+    rows: np.ndarray  #: (k,), int64: indices of the clustered points in the cloud
+    position: np.ndarray  #: (k,), int64: the cluster of each, as an index into ``ids``
+    #: (k,), float64: entropy of each clustered point, 0 to ln 3; NaN where its neighborhood has no extent
     values: np.ndarray
+    #: ids, sizes, (m,), int64: number and points of each cluster
     ids: np.ndarray
     sizes: np.ndarray
-    means: np.ndarray
+    means: np.ndarray  #: (m,), float64: mean entropy of each cluster; NaN where no point of it has one
 
     def groups(self, n_points: int) -> np.ndarray:
         """Return the cluster of each of the cloud's points (n_points,), as an index into ``ids``; -1 for none."""

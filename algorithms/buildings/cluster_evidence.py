@@ -24,29 +24,14 @@ _SPLIT_AT_EDGES = 0.3
 
 @dataclass(frozen=True)
 class ClusterEvidence:
-    """Clusters (m,) among all points (n,) of a cloud.
+    """Clusters (m,) among all points (n,) of a cloud."""
 
-    Attributes
-    ----------
-    xyz : ndarray of shape (n, 3), float64
-        Coordinates (m).
-    group : ndarray of shape (n,), int
-        Cluster of each point from 0, negative for none.
-    numbers : ndarray of shape (m,), int
-        The clusters that have points, ascending.
-    density : float
-        Points per square meter.
-    min_area : float
-        Area of the smallest building, m².
-    return_number, number_of_returns : ndarray of shape (n,), optional
-        Where the scanner numbered its returns.
-    """
-
-    xyz: np.ndarray
-    group: np.ndarray
-    numbers: np.ndarray
-    density: float
-    min_area: float
+    xyz: np.ndarray  #: (n, 3), float64: coordinates (m)
+    group: np.ndarray  #: (n,), int: cluster of each point from 0, negative for none
+    numbers: np.ndarray  #: (m,), int: the clusters that have points, ascending
+    density: float  #: Points per square meter
+    min_area: float  #: Area of the smallest building, m²
+    #: return_number, number_of_returns, (n,): where the scanner numbered its returns
     return_number: Optional[np.ndarray]
     number_of_returns: Optional[np.ndarray]
 

@@ -16,30 +16,15 @@ _EIGHT = np.ones((3, 3), bool)
 
 @dataclass(frozen=True)
 class Coverage:
-    """The cells that buildings cover.
+    """The cells that buildings cover."""
 
-    Attributes
-    ----------
-    cell : tuple of two ndarrays of shape (n,)
-        Row and column of the cell that each point is in.
-    cell_size : float
-        Their size, m.
-    building : ndarray of shape (rows, columns), int32
-        Number of the building that covers each cell; 0 for cells without building.
-    refused : ndarray of shape (rows, columns), uint8
-        Reason why the roof over a cell was rejected.
-    top : ndarray of shape (rows, columns)
-        Elevation of the roof in each cell or the nearest one with a roof, m.
-    raised : ndarray of shape (n,), bool
-        Points that belong to a building if their cell does.
-    """
-
-    cell: Cell
-    cell_size: float
+    cell: Cell  #: tuple of two (n,): row and column of the cell that each point is in
+    cell_size: float  #: Their size, m
+    #: (rows, columns), int32: number of the building that covers each cell; 0 for cells without building
     building: np.ndarray
-    refused: np.ndarray
-    top: np.ndarray
-    raised: np.ndarray
+    refused: np.ndarray  #: (rows, columns), uint8: reason why the roof over a cell was rejected
+    top: np.ndarray  #: (rows, columns): elevation of the roof in each cell or the nearest one with a roof, m
+    raised: np.ndarray  #: (n,), bool: points that belong to a building if their cell does
 
     def refusal(self, owner: np.ndarray) -> np.ndarray:
         """Return why points (n,) are of no building, as :class:`~..cloud.reasons.Reason`; 0 for points of one."""

@@ -70,18 +70,10 @@ def amid_rough(surface: TopSurface, xyz: np.ndarray, segment_id: np.ndarray) -> 
 
 @dataclass(frozen=True)
 class RoofExtent:
-    """Roofs in the cells of a surface, up to their edges.
+    """Roofs in the cells of a surface, up to their edges."""
 
-    Parameters
-    ----------
-    surface : TopSurface
-        The surface seen from above.
-    is_roof : ndarray of shape (rows, columns), bool
-        Cells with points of roofs that are buildings.
-    """
-
-    surface: TopSurface
-    is_roof: np.ndarray
+    surface: TopSurface  #: The surface seen from above
+    is_roof: np.ndarray  #: (rows, columns), bool: cells with points of roofs that are buildings
 
     def covered(self, gap: float) -> np.ndarray:
         """Return the cells (rows, columns) that roofs cover.

@@ -33,30 +33,14 @@ RULES = _Rules()
 
 @dataclass(frozen=True)
 class LabeledCells:
-    """Cells with raised points, and what they are like.
+    """Cells with raised points, and what they are like."""
 
-    Attributes
-    ----------
-    cells : SpaceCells
-        All cells.
-    chosen : ndarray of shape (k,), int64
-        Rows of those with raised points.
-    around : sparse matrix of shape (k, m)
-        1 for each of these and the cells that touch it.
-    raised : ndarray of shape (k,)
-        Raised points of each.
-    label : ndarray of shape (k,)
-        Share of these that are building.
-    features : ndarray of shape (k, f)
-        Features, see :func:`.cell_features.cell_features`.
-    """
-
-    cells: SpaceCells
-    chosen: np.ndarray
-    around: Any
-    raised: np.ndarray
-    label: np.ndarray
-    features: np.ndarray
+    cells: SpaceCells  #: All cells
+    chosen: np.ndarray  #: (k,), int64: rows of those with raised points
+    around: Any  #: sparse matrix of shape (k, m): 1 for each of these and the cells that touch it
+    raised: np.ndarray  #: (k,): raised points of each
+    label: np.ndarray  #: (k,): share of these that are building
+    features: np.ndarray  #: (k, f): features, see :func:`.cell_features.cell_features`
 
     @property
     def half(self) -> np.ndarray:

@@ -34,27 +34,13 @@ _WAVEFORM_BITS = 2 | 4
 
 @dataclass(frozen=True)
 class Octree:
-    """Points by node: node i holds ``order[ends[i-1]:ends[i]]``.
+    """Points by node: node i holds ``order[ends[i-1]:ends[i]]``."""
 
-    Attributes
-    ----------
-    low : array, (3,)
-        Least corner of the root cube, in file coordinates.
-    side : float
-        Its side.
-    order : integer array, (n,)
-        Positions of the points, node after node.
-    keys : int array, (m, 4)
-        Level, x, y, z of each node.
-    ends : int array, (m,)
-        Where each node's points end in ``order``.
-    """
-
-    low: np.ndarray
-    side: float
-    order: np.ndarray
-    keys: np.ndarray
-    ends: np.ndarray
+    low: np.ndarray  #: Least corner of the root cube, in file coordinates
+    side: float  #: Its side
+    order: np.ndarray  #: Positions of the points, node after node
+    keys: np.ndarray  #: Level, x, y, z of each node
+    ends: np.ndarray  #: Where each node's points end in ``order``
 
     @property
     def spacing(self) -> float:

@@ -23,14 +23,9 @@ _DEEPEST = 42
 
 @dataclass(frozen=True)
 class CopcIndex:
-    """Nodes that have points, in the order of their chunks in the file.
+    """Nodes that have points, in the order of their chunks in the file."""
 
-    Attributes
-    ----------
-    low, high : ndarrays of shape (m, 2)
-        Least and greatest easting and northing of each node, in coordinates of the file.
-    """
-
+    #: low, high, (m, 2): least and greatest easting and northing of each node, in coordinates of the file
     low: np.ndarray
     high: np.ndarray
 

@@ -17,21 +17,14 @@ class Tracing:
     """Triangles over points, and the piece that each is part of.
 
     The half-edge ``3 t + i`` lies opposite corner i of triangle t and has the triangle on its left.
-
-    Attributes
-    ----------
-    xy : ndarray of shape (n, 2)
-        The points (m).
-    triangles, neighbors : ndarray of shape (t, 3)
-        Points of each triangle, counterclockwise, and the triangle across from each, -1 for none.
-    face : ndarray of shape (t,)
-        Piece of each triangle, from 0; -1 outside.
     """
 
-    xy: np.ndarray
+    xy: np.ndarray  #: (n, 2): the points (m)
+    #: triangles, neighbors, (t, 3): points of each triangle, counterclockwise, and the triangle across from each, -1
+    #: for none
     triangles: np.ndarray
     neighbors: np.ndarray
-    face: np.ndarray
+    face: np.ndarray  #: (t,): piece of each triangle, from 0; -1 outside
 
     @property
     def areas(self) -> np.ndarray:

@@ -15,17 +15,10 @@ _LEAST_SINE = np.sin(np.radians(5.0))
 
 @dataclass(frozen=True)
 class Frame:
-    """Position along, up and out of a plane that is not level.
+    """Position along, up and out of a plane that is not level."""
 
-    Attributes
-    ----------
-    origin : ndarray of shape (3,)
-        A point on the plane (m).
-    along, up, normal : ndarray of shape (3,)
-        Unit vectors: level and to the right, seen from outside; up the plane; out of the facade.
-    """
-
-    origin: np.ndarray
+    origin: np.ndarray  #: (3,): a point on the plane (m)
+    #: along, up, normal, (3,): unit vectors: level and to the right, seen from outside; up the plane; out of the facade
     along: np.ndarray
     up: np.ndarray
     normal: np.ndarray

@@ -58,24 +58,12 @@ _PARALLEL = 0.05
 
 @dataclass(frozen=True)
 class Outline:
-    """The boundary of a facade.
+    """The boundary of a facade."""
 
-    Attributes
-    ----------
-    ring : ndarray of shape (m, 2)
-        Closed, counterclockwise, along and up the facade (m).
-    spacing : float
-        Distance between points where they are farthest apart, m.
-    hull_area : float
-        Area of the convex hull of the points, m².
-    seen_area : float
-        Area of the triangles between the points, m².
-    """
-
-    ring: np.ndarray
-    spacing: float
-    hull_area: float
-    seen_area: float
+    ring: np.ndarray  #: (m, 2): closed, counterclockwise, along and up the facade (m)
+    spacing: float  #: Distance between points where they are farthest apart, m
+    hull_area: float  #: Area of the convex hull of the points, m²
+    seen_area: float  #: Area of the triangles between the points, m²
 
 
 def longest_edge(boundary: str) -> float:

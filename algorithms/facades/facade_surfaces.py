@@ -19,42 +19,18 @@ _THICKNESS = 0.05
 
 @dataclass(frozen=True)
 class Facade:
-    """A facade: a plane with a boundary.
+    """A facade: a plane with a boundary."""
 
-    Attributes
-    ----------
-    number : int
-        Segment that it was made of.
-    frame : Frame
-        Its plane.
-    ring : ndarray of shape (m, 2)
-        Boundary along and up the plane, closed and counterclockwise seen from outside (m).
-    points : ndarray of shape (k,)
-        Its points in the cloud.
-    rms : float
-        Root mean square distance of these from the plane, m.
-    spacing : float
-        Distance between these where they are farthest apart, m.
-    hull_area : float
-        Area of their convex hull, m².
-    seen_area : float
-        Area of the triangles between them, m².
-    neighbors : int
-        Facades with which it shares a border.
-    holes : list of ndarray of shape (m, 2)
-        Openings, clockwise.
-    """
-
-    number: int
-    frame: Frame
-    ring: np.ndarray
-    points: np.ndarray
-    rms: float
-    spacing: float
-    hull_area: float
-    seen_area: float
-    neighbors: int = 0
-    holes: list = field(default_factory=list)
+    number: int  #: Segment that it was made of
+    frame: Frame  #: Its plane
+    ring: np.ndarray  #: (m, 2): boundary along and up the plane, closed and counterclockwise seen from outside (m)
+    points: np.ndarray  #: (k,): its points in the cloud
+    rms: float  #: Root mean square distance of these from the plane, m
+    spacing: float  #: Distance between these where they are farthest apart, m
+    hull_area: float  #: Area of their convex hull, m²
+    seen_area: float  #: Area of the triangles between them, m²
+    neighbors: int = 0  #: Facades with which it shares a border
+    holes: list = field(default_factory=list)  #: list of (m, 2): openings, clockwise
 
     @property
     def area(self) -> float:

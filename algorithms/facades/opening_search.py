@@ -53,30 +53,14 @@ _RECTANGULAR = 0.75
 
 @dataclass(frozen=True)
 class Opening:
-    """One window or door.
+    """One window or door."""
 
-    Attributes
-    ----------
-    ring : ndarray of shape (m, 2)
-        Closed, counterclockwise, along and up the facade (m).
-    kind : str
-        "window" or "door".
-    depth : float
-        Median distance of its points behind the wall, m.
-    enclosed : float
-        Share of its outline that has wall beside it, 0 to 1.
-    seen : float
-        Share of its area with points, 0 to 1.
-    points : ndarray of shape (k,)
-        Its points in the cloud.
-    """
-
-    ring: np.ndarray
-    kind: str
-    depth: float
-    enclosed: float
-    seen: float
-    points: np.ndarray
+    ring: np.ndarray  #: (m, 2): closed, counterclockwise, along and up the facade (m)
+    kind: str  #: "window" or "door"
+    depth: float  #: Median distance of its points behind the wall, m
+    enclosed: float  #: Share of its outline that has wall beside it, 0 to 1
+    seen: float  #: Share of its area with points, 0 to 1
+    points: np.ndarray  #: (k,): its points in the cloud
 
     @property
     def box(self) -> np.ndarray:

@@ -13,19 +13,12 @@ from ..stage import LayerFeatures
 
 @dataclass(frozen=True)
 class PlanSegments:
-    """Directed segments in plan, with the building on their left.
+    """Directed segments in plan, with the building on their left."""
 
-    Attributes
-    ----------
-    start, end : ndarray of shape (k, 2)
-        Ends, m.
-    owner : ndarray of shape (k,)
-        Facade or footprint, from 0, of each.
-    """
-
+    #: start, end, (k, 2): ends, m
     start: np.ndarray
     end: np.ndarray
-    owner: np.ndarray
+    owner: np.ndarray  #: (k,): facade or footprint, from 0, of each
 
     def __len__(self) -> int:
         return len(self.start)

@@ -47,23 +47,12 @@ _RULES = _Rules()
 
 @dataclass(frozen=True)
 class Registration:
-    """How a street scan is moved onto an airborne one.
+    """How a street scan is moved onto an airborne one."""
 
-    Attributes
-    ----------
-    shift : ndarray of shape (3,)
-        Vector (m) by which the street scan is moved.
-    residual : float
-        Root mean square distance (m) of common walls and ends after that; NaN without any.
-    overhang : float
-        How far outlines from the air lie before the walls (m), in the mean.
-    walls, ends, ground : int
-        Common walls, ends of walls, and cells of ground.
-    """
-
-    shift: np.ndarray
-    residual: float
-    overhang: float
+    shift: np.ndarray  #: (3,): vector (m) by which the street scan is moved
+    residual: float  #: Root mean square distance (m) of common walls and ends after that; NaN without any
+    overhang: float  #: How far outlines from the air lie before the walls (m), in the mean
+    #: walls, ends, ground: Common walls, ends of walls, and cells of ground
     walls: int
     ends: int
     ground: int

@@ -14,21 +14,15 @@ _NUDGE = 1e-6
 
 @dataclass(frozen=True)
 class Edges:
-    """Pieces of lines between two crossings, in the direction of their lines.
+    """Pieces of lines between two crossings, in the direction of their lines."""
 
-    Attributes
-    ----------
-    line, start, end, left, right : ndarray of shape (e,), int64
-        The line; the crossings at its ends; the cells beside it.
-    low, high : ndarray of shape (e,)
-        Positions of its ends along the line, from the line's point (m).
-    """
-
+    #: line, start, end, left, right, (e,), int64: the line; the crossings at its ends; the cells beside it
     line: np.ndarray
     start: np.ndarray
     end: np.ndarray
     left: np.ndarray
     right: np.ndarray
+    #: low, high, (e,): positions of its ends along the line, from the line's point (m)
     low: np.ndarray
     high: np.ndarray
 

@@ -36,21 +36,13 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class Triangulation:
-    """Triangles between positions in plan.
+    """Triangles between positions in plan."""
 
-    Attributes
-    ----------
-    plan : ndarray of shape (n, 2), float64
-        Positions (m).
-    facets : ndarray of shape (f, 3), int32
-        The corners of each triangle, as numbers of nodes, counterclockwise. Of nodes at one position, one is used.
-    neighbors : ndarray of shape (f, 3), int32
-        The triangle across from each corner, -1 if unassigned.
-    """
-
-    plan: np.ndarray
+    plan: np.ndarray  #: (n, 2), float64: positions (m)
+    #: (f, 3), int32: the corners of each triangle, as numbers of nodes, counterclockwise. Of nodes at one position, one
+    #: is used.
     facets: np.ndarray
-    neighbors: np.ndarray
+    neighbors: np.ndarray  #: (f, 3), int32: the triangle across from each corner, -1 if unassigned
 
     def with_positions(self, plan: np.ndarray, facet: np.ndarray) -> tuple[Triangulation, np.ndarray]:
         """Return the triangulation with more positions (m, 2), and the new number of each facet (f,), -1 if it is gone.

@@ -41,38 +41,21 @@ _FARTHEST = 6.0
 
 @dataclass(frozen=True)
 class Prices:
-    """What corners and directions cost; each is a multiple of ``corner``.
+    """What corners and directions cost; each is a multiple of ``corner``."""
 
-    Attributes
-    ----------
-    corner : float
-        Of a right-angled corner, m³: as much as a bay of two spacings by four that is not drawn.
-    flat : float
-        Of a corner that turns by less than 20°, which noise makes more easily than a sharper one.
-    step : float
-        Of a step or a turn by 180°, both of which are drawn with two corners.
-    sharp : float
-        Of a corner that turns by 170° or more; from 110° on the price grows toward it.
-    second : float
-        Of an edge along the second main direction. With 1.0 the short side of a house whose front is askew followed the
-        front.
-    other : float
-        Of an edge along neither of them.
-    curved, other_curved : float
-        Of a ring with curved walls, and of each of its edges along neither direction, where that is less together.
-    round : float
-        Of a corner of a ring without main directions, which is drawn in chords.
-    """
-
-    corner: float
-    flat: float = 1.5
-    step: float = 2.0
-    sharp: float = 4.0
+    corner: float  #: Of a right-angled corner, m³: as much as a bay of two spacings by four that is not drawn
+    flat: float = 1.5  #: Of a corner that turns by less than 20°, which noise makes more easily than a sharper one
+    step: float = 2.0  #: Of a step or a turn by 180°, both of which are drawn with two corners
+    sharp: float = 4.0  #: Of a corner that turns by 170° or more; from 110° on the price grows toward it
+    #: Of an edge along the second main direction. With 1.0 the short side of a house whose front is askew followed the
+    #: front.
     second: float = 0.5
-    other: float = 1.75
+    other: float = 1.75  #: Of an edge along neither of them
+    #: curved, other_curved: Of a ring with curved walls, and of each of its edges along neither direction, where that
+    #: is less together
     curved: float = 15.0
     other_curved: float = 0.5
-    round: float = 0.2
+    round: float = 0.2  #: Of a corner of a ring without main directions, which is drawn in chords
 
 
 @dataclass(frozen=True)
@@ -131,27 +114,13 @@ def _drawn(samples: np.ndarray, ways: _Ways) -> tuple[float, list[Edge]]:
 
 @dataclass(frozen=True)
 class _Ways:
-    """Oriented directions, the main ones first; others may turn by half of the angle between them.
+    """Oriented directions, the main ones first; others may turn by half of the angle between them."""
 
-    Attributes
-    ----------
-    angle : ndarray of shape (k,)
-        Directions, °.
-    unit : ndarray of shape (k, 2)
-        Unit vectors along these.
-    is_main : ndarray of shape (k,), bool
-        Which of these are main directions.
-    price : ndarray of shape (k,)
-        What a run costs, m³.
-    turn : ndarray of shape (k, k)
-        What a turn from one to another and the run after it cost, m³.
-    """
-
-    angle: np.ndarray
-    unit: np.ndarray
-    is_main: np.ndarray
-    price: np.ndarray
-    turn: np.ndarray
+    angle: np.ndarray  #: (k,): directions, °
+    unit: np.ndarray  #: (k, 2): unit vectors along these
+    is_main: np.ndarray  #: (k,), bool: which of these are main directions
+    price: np.ndarray  #: (k,): what a run costs, m³
+    turn: np.ndarray  #: (k, k): what a turn from one to another and the run after it cost, m³
 
     @property
     def n_fixed(self) -> int:

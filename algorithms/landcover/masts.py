@@ -14,31 +14,22 @@ from .wire_spans import Span
 
 @dataclass(frozen=True)
 class _Rules:
-    """What a mast is.
+    """What a mast is."""
 
-    Attributes
-    ----------
-    search, arms : float
-        Distance (m) from where spans end within which their mast is looked for, and the same as a share of the height
-        of masts. Wires hang from arms, and end some meters before them where points are few.
-    radius, spread : float
-        Radius (m) of poles with their fittings, and of towers as a share of their height.
-    above : float
-        Height (m) over the highest wire up to which a mast reaches: insulators and the tip.
-    part, filled : float
-        Height (m) of the parts of a mast, and least share of those of its upper and of its lower half that hold points.
-    trunk : tuple of float
-        Shares of the height between which a mast has no arms and a tree has its crown: around it there are fewer
-        points than in it.
-    """
-
+    #: search, arms: Distance (m) from where spans end within which their mast is looked for, and the same as a share of
+    #: the height of masts. Wires hang from arms, and end some meters before them where points are few.
     search: float = 3.0
     arms: float = 0.2
+    #: radius, spread: Radius (m) of poles with their fittings, and of towers as a share of their height
     radius: float = 0.6
     spread: float = 0.08
-    above: float = 2.0
+    above: float = 2.0  #: Height (m) over the highest wire up to which a mast reaches: insulators and the tip
+    #: part, filled: Height (m) of the parts of a mast, and least share of those of its upper and of its lower half that
+    #: hold points
     part: float = 1.5
     filled: float = 0.5
+    #: Shares of the height between which a mast has no arms and a tree has its crown: around it there are fewer points
+    #: than in it
     trunk: tuple[float, float] = (0.25, 0.65)
 
 

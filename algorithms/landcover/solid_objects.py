@@ -21,41 +21,24 @@ REACH = 2.5
 
 @dataclass(frozen=True)
 class _Rules:
-    """What solid objects are.
+    """What solid objects are."""
 
-    Attributes
-    ----------
-    gap_spacings, least_gap : float
-        Points of one object are closer in plan: 2 point spacings, as clusters of the building chain, at least 0.5 m.
-    step : float
-        And closer in height (m): the distance between the bonnet of a car and its roof is less.
-    highest : float
-        Highest smooth object (m): vans, containers and garden walls are lower, the smooth sides of crowns higher.
-    most_passed : float
-        Largest share of points whose pulse had several returns. Edges of cars give 0.1; crowns and bushes of the
-        clouds with truth 0.3 to 0.9.
-    radius : float
-        Surfaces are planes over at least this (m), leaves and twigs over less.
-    most_neighbors : int
-        Points that show a plane: more cost time only.
-    smooth_share : float
-        Least share of points on smooth surfaces: most points.
-    slenderness : float
-        Least ratio of the height of poles to their extent in plan: lamps with an arm have 4, trees 1 to 2.
-    least_pole : float
-        Least height (m) of poles.
-    """
-
+    #: gap_spacings, least_gap: Points of one object are closer in plan: 2 point spacings, as clusters of the building
+    #: chain, at least 0.5 m
     gap_spacings: float = 2.0
     least_gap: float = 0.5
-    step: float = 1.0
+    step: float = 1.0  #: And closer in height (m): the distance between the bonnet of a car and its roof is less
+    #: Highest smooth object (m): vans, containers and garden walls are lower, the smooth sides of crowns higher
     highest: float = 3.5
+    #: Largest share of points whose pulse had several returns. Edges of cars give 0.1; crowns and bushes of the clouds
+    #: with truth 0.3 to 0.9.
     most_passed: float = 0.2
-    radius: float = 0.5
-    most_neighbors: int = 100
-    smooth_share: float = 0.5
+    radius: float = 0.5  #: Surfaces are planes over at least this (m), leaves and twigs over less
+    most_neighbors: int = 100  #: Points that show a plane: more cost time only
+    smooth_share: float = 0.5  #: Least share of points on smooth surfaces: most points
+    #: Least ratio of the height of poles to their extent in plan: lamps with an arm have 4, trees 1 to 2
     slenderness: float = 4.0
-    least_pole: float = 2.5
+    least_pole: float = 2.5  #: Least height (m) of poles
 
 
 _RULES = _Rules()

@@ -19,34 +19,21 @@ _EIGHT = np.ones((3, 3), bool)
 
 @dataclass(frozen=True)
 class _Rules:
-    """What water is to a laser: most pulses are reflected away from the sensor, the others return from one level.
+    """What water is to a laser: most pulses are reflected away from the sensor, the others return from one level."""
 
-    Attributes
-    ----------
-    least_cell, cell_spacings : float
-        Side of the cells: 1 m, and 1.5 point spacings, so that cells of land hold a point.
-    window : float
-        Side (m) of the square in which pulses are counted: the least width of a ditch that is seen.
-    half : float
-        Largest number of pulses, as a share of that of land: canals and simulated rivers give 0.1 to 0.4. Least share
-        of a body's ground that has its level, and of the ground around it that is higher.
-    land : float
-        Quantile of the cells by their pulses that is land in one flight line: others lie in two, fewer in water.
-    half_width : float
-        Largest gap that is no end of the cloud, half of it (m).
-    level : float
-        Largest difference of height (m) on water within 10 m: waves, and the fall of rivers that are not torrents.
-    ring : int
-        Width (cells) of its surroundings, and of the strip at its edges in which pulses from land count, too.
-    """
-
+    #: least_cell, cell_spacings: Side of the cells: 1 m, and 1.5 point spacings, so that cells of land hold a point
     least_cell: float = 1.0
     cell_spacings: float = 1.5
-    window: float = 5.0
+    window: float = 5.0  #: Side (m) of the square in which pulses are counted: the least width of a ditch that is seen
+    #: Largest number of pulses, as a share of that of land: canals and simulated rivers give 0.1 to 0.4. Least share of
+    #: a body's ground that has its level, and of the ground around it that is higher.
     half: float = 0.5
+    #: Quantile of the cells by their pulses that is land in one flight line: others lie in two, fewer in water
     land: float = 0.25
-    half_width: float = 25.0
+    half_width: float = 25.0  #: Largest gap that is no end of the cloud, half of it (m)
+    #: Largest difference of height (m) on water within 10 m: waves, and the fall of rivers that are not torrents
     level: float = 0.15
+    #: Width (cells) of its surroundings, and of the strip at its edges in which pulses from land count, too
     ring: int = 3
 
 

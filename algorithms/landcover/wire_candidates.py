@@ -15,41 +15,21 @@ from .wire_spans import RULES
 
 @dataclass(frozen=True)
 class _Rules:
-    """Where wires are looked for.
+    """Where wires are looked for."""
 
-    Attributes
-    ----------
-    least_column, column_spacings : float
-        Side of the columns in which heights are compared: 1 m, and 2 point spacings, so that columns in crowns hold
-        several points.
-    free : float
-        Height (m) below a bundle of wires that holds no points: crowns hold some.
-    thickest : float
-        Largest height (m) of a bundle of wires one above the other.
-    thinning : float
-        Side (m) of the voxels of which one point each is looked at.
-    around : float
-        Radius (m) in which other points are counted.
-    most_around : int
-        Most points in it, thinned: three parallel wires have 18 in dense clouds, surfaces 28, crowns more.
-    most_trials : int
-        Lines through each point that are tried.
-    steepest : float
-        Steepest slope of a wire (tangent), at masts in hills.
-    turn : float
-        Largest angle (°) between directions at points of one wire.
-    """
-
+    #: least_column, column_spacings: Side of the columns in which heights are compared: 1 m, and 2 point spacings, so
+    #: that columns in crowns hold several points
     least_column: float = 1.0
     column_spacings: float = 2.0
-    free: float = 3.0
-    thickest: float = 1.5
-    thinning: float = 1.0
-    around: float = 3.0
+    free: float = 3.0  #: Height (m) below a bundle of wires that holds no points: crowns hold some
+    thickest: float = 1.5  #: Largest height (m) of a bundle of wires one above the other
+    thinning: float = 1.0  #: Side (m) of the voxels of which one point each is looked at
+    around: float = 3.0  #: Radius (m) in which other points are counted
+    #: Most points in it, thinned: three parallel wires have 18 in dense clouds, surfaces 28, crowns more
     most_around: int = 20
-    most_trials: int = 8
-    steepest: float = 0.4
-    turn: float = 8.0
+    most_trials: int = 8  #: Lines through each point that are tried
+    steepest: float = 0.4  #: Steepest slope of a wire (tangent), at masts in hills
+    turn: float = 8.0  #: Largest angle (°) between directions at points of one wire
 
 
 _RULES = _Rules()

@@ -13,57 +13,36 @@ from ..geometry.groups import split_groups
 
 @dataclass(frozen=True)
 class _Rules:
-    """What the span of a wire is.
+    """What the span of a wire is."""
 
-    Attributes
-    ----------
-    tries, trials : int
-        Points from which a span is looked for along their direction, and parabolas through three points that are tried
-        from each. Half of the points there are of one span, an eighth of the trials good. As many wrong spans in a row
-        end the search in a strand, those of crowns are many, and a span goes on as many times.
-    longest : float
-        Distance (m) along the wire within which these points are.
-    apart : float
-        Least distance along the wire between two of these points (m): nearer ones give no curvature.
-    aside : float
-        Points within this distance (m) of the plane of the wire are on it: the radius of the beam's footprint and the
-        swing of the wire.
-    least_off, noises : float
-        And within the larger of this height (m) and this many standard deviations of the noise of the parabola.
-    most_bent : float
-        Curvature (1/m), half of the second derivative, of the deepest parabola: a sag of a tenth over a span of 20 m.
-    certain : float
-        A fitted curvature exceeds zero by this many standard errors: beams, rails and edges are straight, wires sag.
-    least_points, least_length : float
-        Least number of thinned points of a span and of all its points, and least length (m).
-    beyond : float
-        A span goes on where its parabola meets points within this distance (m) of its ends.
-    largest_gap : float
-        Largest gap between neighboring points, as a share of the length.
-    below : float
-        Height (m) under the wire in which crowns and roofs have points.
-    most_below : float
-        Largest share of the length of a span (in parts of 1 m) that has points there or of buildings beside it: those
-        of masts and plants under it.
-    beside : float
-        Distance (m) in plan and in height from eaves and ridges within which lines are edges of buildings.
-    """
-
+    #: tries, trials: Points from which a span is looked for along their direction, and parabolas through three points
+    #: that are tried from each. Half of the points there are of one span, an eighth of the trials good. As many wrong
+    #: spans in a row end the search in a strand, those of crowns are many, and a span goes on as many times.
     tries: int = 10
     trials: int = 40
-    longest: float = 60.0
-    apart: float = 1.5
+    longest: float = 60.0  #: Distance (m) along the wire within which these points are
+    apart: float = 1.5  #: Least distance along the wire between two of these points (m): nearer ones give no curvature
+    #: Points within this distance (m) of the plane of the wire are on it: the radius of the beam's footprint and the
+    #: swing of the wire
     aside: float = 0.3
+    #: least_off, noises: And within the larger of this height (m) and this many standard deviations of the noise of the
+    #: parabola
     least_off: float = 0.1
     noises: float = 3.0
+    #: Curvature (1/m), half of the second derivative, of the deepest parabola: a sag of a tenth over a span of 20 m
     most_bent: float = 0.02
+    #: A fitted curvature exceeds zero by this many standard errors: beams, rails and edges are straight, wires sag
     certain: float = 2.0
+    #: least_points, least_length: Least number of thinned points of a span and of all its points, and least length (m)
     least_points: int = 5
     least_length: float = 10.0
-    largest_gap: float = 0.4
-    beyond: float = 5.0
-    below: float = 2.0
+    largest_gap: float = 0.4  #: Largest gap between neighboring points, as a share of the length
+    beyond: float = 5.0  #: A span goes on where its parabola meets points within this distance (m) of its ends
+    below: float = 2.0  #: Height (m) under the wire in which crowns and roofs have points
+    #: Largest share of the length of a span (in parts of 1 m) that has points there or of buildings beside it: those of
+    #: masts and plants under it
     most_below: float = 0.25
+    #: Distance (m) in plan and in height from eaves and ridges within which lines are edges of buildings
     beside: float = 1.0
 
 
@@ -72,21 +51,14 @@ RULES = _Rules()
 
 @dataclass(frozen=True)
 class Span:
-    """A parabola in an upright plane.
+    """A parabola in an upright plane."""
 
-    Attributes
-    ----------
-    middle, direction : ndarray of shape (2,)
-        A point of the wire in plan (m), and the unit vector along it.
-    curve : ndarray of shape (3,)
-        Elevation (m) by the distance from the middle (m): coefficients of its square, of it, and the constant.
-    start, end : float
-        Distances (m) from the middle between which the span was seen.
-    """
-
+    #: middle, direction, (2,): a point of the wire in plan (m), and the unit vector along it
     middle: np.ndarray
     direction: np.ndarray
+    #: (3,): elevation (m) by the distance from the middle (m): coefficients of its square, of it, and the constant
     curve: np.ndarray
+    #: start, end: Distances (m) from the middle between which the span was seen
     start: float
     end: float
 

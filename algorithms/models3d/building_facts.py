@@ -35,18 +35,12 @@ _MANSARD = 12.0
 
 @dataclass(frozen=True)
 class Checks:
-    """Which models are to be looked at.
+    """Which models are to be looked at."""
 
-    Attributes
-    ----------
-    doubtful, poor : float
-        Shares of roof points off the model: twice and five times those of the median building on maps.
-    covered : float
-        Share of the area with points: walls hide a strip of narrow courts, water and glass all of a roof.
-    """
-
+    #: doubtful, poor: Shares of roof points off the model: twice and five times those of the median building on maps
     doubtful: float = 0.1
     poor: float = 0.25
+    #: Share of the area with points: walls hide a strip of narrow courts, water and glass all of a roof
     covered: float = 0.75
 
 

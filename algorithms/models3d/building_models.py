@@ -51,47 +51,25 @@ class Settings:
 
 @dataclass
 class BuildingModel:
-    """A building's solids by level of detail, and the facts about its best level.
+    """A building's solids by level of detail, and the facts about its best level."""
 
-    Attributes
-    ----------
-    level : str
-        The best level that it has, "" where it has none.
-    reason : str
-        Why it is not the level that was wanted, "" where it is.
-    solids : dict of str to list of Solid
-        By level; parts of the footprint that only touch in a point are solids of their own.
-    base : float
-        Height of the ground (m): that of the base of the solids.
-    terrain : float
-        Median height of the ground along the outline (m).
-    ridge : float
-        98th percentile of the heights of the roof points (m).
-    rms : float
-        Root mean square height of the roof points above or below the best level (m).
-    rms_of : dict of str to float
-        That of the points on planes by level, none farther than counts when levels are compared.
-    explained, off, covered : float
-        Shares of the roof points that lie on the model and that are off it, and of its area that has points, 0 to 1.
-    n_points : int
-        Points of the building.
-    face_rms : dict of int to float
-        Of each plane of the best level (m).
-    """
-
-    base: float
-    level: str = ""
-    reason: str = ""
+    base: float  #: Height of the ground (m): that of the base of the solids
+    level: str = ""  #: The best level that it has, "" where it has none
+    reason: str = ""  #: Why it is not the level that was wanted, "" where it is
+    #: By level; parts of the footprint that only touch in a point are solids of their own
     solids: dict[str, list[Solid]] = field(default_factory=dict)
-    terrain: float = np.nan
-    ridge: float = np.nan
-    rms: float = np.nan
+    terrain: float = np.nan  #: Median height of the ground along the outline (m)
+    ridge: float = np.nan  #: 98th percentile of the heights of the roof points (m)
+    rms: float = np.nan  #: Root mean square height of the roof points above or below the best level (m)
+    #: That of the points on planes by level, none farther than counts when levels are compared
     rms_of: dict[str, float] = field(default_factory=dict)
+    #: explained, off, covered: Shares of the roof points that lie on the model and that are off it, and of its area
+    #: that has points, 0 to 1
     explained: float = np.nan
     off: float = np.nan
     covered: float = np.nan
-    n_points: int = 0
-    face_rms: dict[int, float] = field(default_factory=dict)
+    n_points: int = 0  #: Points of the building
+    face_rms: dict[int, float] = field(default_factory=dict)  #: Of each plane of the best level (m)
 
     @property
     def best(self) -> list[Solid]:

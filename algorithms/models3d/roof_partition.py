@@ -49,24 +49,12 @@ _GAP_CELL = 0.5
 
 @dataclass
 class Partition:
-    """Cells of a footprint, and the planes on top of them.
+    """Cells of a footprint, and the planes on top of them."""
 
-    Attributes
-    ----------
-    cells : Subdivision
-        The cells; those beside the footprint too.
-    label : ndarray of shape (cells,)
-        Plane of each cell, -1 outside of the footprint.
-    coefficients : ndarray of shape (m, 3)
-        The planes z = a x + b y + c.
-    cost : ndarray of shape (cells, m)
-        What each plane costs in each cell, m² that are not explained.
-    """
-
-    cells: Subdivision
-    label: np.ndarray
-    coefficients: np.ndarray
-    cost: np.ndarray = field(repr=False)
+    cells: Subdivision  #: The cells; those beside the footprint too
+    label: np.ndarray  #: (cells,): plane of each cell, -1 outside of the footprint
+    coefficients: np.ndarray  #: (m, 3): the planes z = a x + b y + c
+    cost: np.ndarray = field(repr=False)  #: (cells, m): what each plane costs in each cell, m² that are not explained
 
 
 def inside_rings(xy: np.ndarray, rings: list) -> np.ndarray:

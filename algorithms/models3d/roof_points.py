@@ -11,25 +11,17 @@ from ..geometry.grid import find_cells, grid_over
 
 @dataclass(frozen=True)
 class Rules:
-    """Which points lie on top, and which of them lie off a model.
+    """Which points lie on top, and which of them lie off a model."""
 
-    Attributes
-    ----------
-    below : float
-        A point that lies under another one of a building by this (m), in its cell or in one beside, is on a wall or on
-        a floor seen through glass.
-    cell, cell_spacings : float
-        Size of the cells (m, and point spacings; the larger one counts).
-    farthest : float
-        Distances count at most this much (m): a tree that is classified as building says nothing of the model.
-    off : float
-        A roof point farther from the model than this (m) is off it: the step of a storey's half, more than any noise.
-    """
-
+    #: A point that lies under another one of a building by this (m), in its cell or in one beside, is on a wall or on a
+    #: floor seen through glass
     below: float = 1.0
+    #: cell, cell_spacings: Size of the cells (m, and point spacings; the larger one counts)
     cell: float = 0.5
     cell_spacings: float = 1.5
+    #: Distances count at most this much (m): a tree that is classified as building says nothing of the model
     farthest: float = 5.0
+    #: A roof point farther from the model than this (m) is off it: the step of a storey's half, more than any noise
     off: float = 0.5
 
     def cell_size(self, spacing: float) -> float:

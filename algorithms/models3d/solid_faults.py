@@ -16,26 +16,17 @@ from .solids import Ring, Solid, edges_of, groups_of
 
 @dataclass(frozen=True)
 class Rules:
-    """How exact a solid has to be.
+    """How exact a solid has to be."""
 
-    Attributes
-    ----------
-    off_plane : float
-        Corners lie no farther off the plane of their face than this (m): the default of val3dity.
-    turn : float
-        Triangles of a face turn by no more than this (°): ten times less than val3dity's default of 20°. A corner off
-        the plane turns a triangle by its distance over the height of the triangle.
-    apart : float
-        Corners, and corners and edges of a face, are no nearer to each other than this (m): programs join vertices
-        within a millimeter.
-    folded : float
-        Faces that share an edge are at least this far (°) from lying on each other.
-    """
-
+    #: Corners lie no farther off the plane of their face than this (m): the default of val3dity
     off_plane: float = 0.01
+    #: Triangles of a face turn by no more than this (°): ten times less than val3dity's default of 20°. A corner off
+    #: the plane turns a triangle by its distance over the height of the triangle.
     turn: float = 2.0
+    #: Corners, and corners and edges of a face, are no nearer to each other than this (m): programs join vertices
+    #: within a millimeter
     apart: float = 0.001
-    folded: float = 0.1
+    folded: float = 0.1  #: Faces that share an edge are at least this far (°) from lying on each other
 
 
 RULES = Rules()

@@ -58,25 +58,14 @@ _IN_A_POINT = 3
 
 @dataclass
 class Solid:
-    """A closed surface.
+    """A closed surface."""
 
-    Attributes
-    ----------
-    vertices : ndarray of shape (n, 3)
-        Positions (m).
-    faces : list of list of list of int
-        The rings of each face, exterior first: counterclockwise seen from outside the solid, holes clockwise; open
-        (the last vertex is not the first one again).
-    kinds : list of str
-        "roof", "wall" or "ground".
-    planes : list of int
-        Of which plane a roof face is part, -1 for others.
-    """
-
-    vertices: np.ndarray
+    vertices: np.ndarray  #: (n, 3): positions (m)
+    #: The rings of each face, exterior first: counterclockwise seen from outside the solid, holes clockwise; open (the
+    #: last vertex is not the first one again)
     faces: list[list[Ring]] = field(default_factory=list)
-    kinds: list[str] = field(default_factory=list)
-    planes: list[int] = field(default_factory=list)
+    kinds: list[str] = field(default_factory=list)  #: "roof", "wall" or "ground"
+    planes: list[int] = field(default_factory=list)  #: Of which plane a roof face is part, -1 for others
 
     @cached_property
     def normals(self) -> np.ndarray:

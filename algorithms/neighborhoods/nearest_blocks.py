@@ -52,44 +52,25 @@ _PRODUCT = 26_000
 
 @dataclass
 class Shapes:
-    """Sums over the neighborhoods of m points.
+    """Sums over the neighborhoods of m points."""
 
-    Attributes
-    ----------
-    covariances : ndarray of shape (m, 6)
-        xx, yy, zz, xy, xz, yz (m²), divided by the number of points.
-    counts : ndarray of shape (m,)
-        Points of each neighborhood, the point itself among them.
-    height_range, plan_radius : ndarray of shape (m,)
-        Highest less lowest elevation, and the largest horizontal distance from the point (m); empty unless asked for.
-    """
-
-    covariances: np.ndarray
-    counts: np.ndarray
+    covariances: np.ndarray  #: (m, 6): xx, yy, zz, xy, xz, yz (m²), divided by the number of points
+    counts: np.ndarray  #: (m,): points of each neighborhood, the point itself among them
+    #: height_range, plan_radius, (m,): highest less lowest elevation, and the largest horizontal distance from the
+    #: point (m); empty unless asked for
     height_range: np.ndarray = field(default_factory=lambda: np.empty(0))
     plan_radius: np.ndarray = field(default_factory=lambda: np.empty(0))
 
 
 @dataclass
 class Batch:
-    """Some blocks, in coordinates (m) from the middle of each.
+    """Some blocks, in coordinates (m) from the middle of each."""
 
-    Attributes
-    ----------
-    rows : ndarray of shape (b, s)
-        Which points each block holds; of smaller blocks among larger ones the last point several times.
-    own : ndarray of shape (b, s, 3)
-        Where they are.
-    others : ndarray of shape (3, b, c)
-        The candidates.
-    distances : ndarray of shape (b, c)
-        Those of the candidates from the middle, in ascending order.
-    """
-
+    #: (b, s): which points each block holds; of smaller blocks among larger ones the last point several times
     rows: np.ndarray
-    own: np.ndarray
-    others: np.ndarray
-    distances: np.ndarray
+    own: np.ndarray  #: (b, s, 3): where they are
+    others: np.ndarray  #: (3, b, c): the candidates
+    distances: np.ndarray  #: (b, c): those of the candidates from the middle, in ascending order
 
     @cached_property
     def offsets(self) -> np.ndarray:

@@ -27,21 +27,11 @@ _LARGEST_KEY = 2**63 - 1
 
 @dataclass(frozen=True)
 class _Sorted:
-    """The points in the order of their voxels.
+    """The points in the order of their voxels."""
 
-    Attributes
-    ----------
-    order : int64 array, (n,)
-        Positions of the points, by voxel, then as in the file.
-    starts : int64 array, (m,)
-        Where each voxel's points begin in ``order``.
-    count : int64 array, (m,)
-        Points of each voxel.
-    """
-
-    order: np.ndarray
-    starts: np.ndarray
-    count: np.ndarray
+    order: np.ndarray  #: Positions of the points, by voxel, then as in the file
+    starts: np.ndarray  #: Where each voxel's points begin in ``order``
+    count: np.ndarray  #: Points of each voxel
 
     def rows(self, voxels: np.ndarray) -> np.ndarray:
         """Return the positions of the points of some voxels, voxel after voxel."""

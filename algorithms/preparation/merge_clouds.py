@@ -26,21 +26,11 @@ _LONGEST_FILE = 10_000
 
 @dataclass(frozen=True)
 class Transform:
-    """A rotation and an offset: x becomes ``rotation @ x + offset``.
+    """A rotation and an offset: x becomes ``rotation @ x + offset``."""
 
-    Parameters
-    ----------
-    rotation : ndarray of shape (3, 3)
-        A rotation, exact to rounding.
-    offset : ndarray of shape (3,)
-        In meters.
-    given : ndarray of shape (3, 3)
-        The rotation as the user wrote it.
-    """
-
-    rotation: np.ndarray
-    offset: np.ndarray
-    given: np.ndarray
+    rotation: np.ndarray  #: (3, 3): a rotation, exact to rounding
+    offset: np.ndarray  #: (3,): in meters
+    given: np.ndarray  #: (3, 3): the rotation as the user wrote it
 
     def __call__(self, xyz: np.ndarray) -> np.ndarray:
         """Return points (n, 3) (m) where the transform puts them."""

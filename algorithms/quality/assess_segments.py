@@ -119,23 +119,15 @@ def assess_segments(
 
 @dataclass(frozen=True)
 class Matches:
-    """What became of segments.
+    """What became of segments."""
 
-    Attributes
-    ----------
-    counterpart : ndarray of shape (k + 1,), int64
-        For each segment of the reference (k) the correct one of the input, 0 for none.
-    is_over, is_under, is_missed : ndarray of shape (k + 1,), bool
-        What else became of it.
-    is_noise : ndarray of shape (l + 1,), bool
-        Which segments of the input (l) have no part in any of these.
-    """
-
+    #: (k + 1,), int64: for each segment of the reference (k) the correct one of the input, 0 for none
     counterpart: np.ndarray
+    #: is_over, is_under, is_missed, (k + 1,), bool: what else became of it
     is_over: np.ndarray
     is_under: np.ndarray
     is_missed: np.ndarray
-    is_noise: np.ndarray
+    is_noise: np.ndarray  #: (l + 1,), bool: which segments of the input (l) have no part in any of these
 
 
 def match_segments(found: np.ndarray, true: np.ndarray, min_overlap: float) -> Matches:

@@ -88,21 +88,13 @@ def _proper(rings: list) -> list:
 
 @dataclass(frozen=True)
 class Overlap:
-    """What two layers of buildings share.
+    """What two layers of buildings share."""
 
-    Attributes
-    ----------
-    one, other : ndarray of shape (k,), int64
-        Pairs of buildings whose boxes meet, by the first layer, then by the second.
-    shared : ndarray of shape (k,)
-        Area that both have, m².
-    area, other_area : ndarray
-        Areas of all buildings of the two layers, m².
-    """
-
+    #: one, other, (k,), int64: pairs of buildings whose boxes meet, by the first layer, then by the second
     one: np.ndarray
     other: np.ndarray
-    shared: np.ndarray
+    shared: np.ndarray  #: (k,): area that both have, m²
+    #: area, other_area: Areas of all buildings of the two layers, m²
     area: np.ndarray
     other_area: np.ndarray
 

@@ -21,38 +21,21 @@ _SHARP = 70.0
 
 @dataclass(frozen=True)
 class Matches:
-    """The polygons of one layer, each beside the one of another layer that it overlaps most.
+    """The polygons of one layer, each beside the one of another layer that it overlaps most."""
 
-    Attributes
-    ----------
-    one, other : ndarray of shape (k,), int64
-        Positions in the two layers.
-    iou : ndarray of shape (k,)
-        Intersection over union, 0 to 1.
-    """
-
+    #: one, other, (k,), int64: positions in the two layers
     one: np.ndarray
     other: np.ndarray
-    iou: np.ndarray
+    iou: np.ndarray  #: (k,): intersection over union, 0 to 1
 
 
 @dataclass(frozen=True)
 class Regularity:
-    """How regular the outlines of a layer are.
+    """How regular the outlines of a layer are."""
 
-    Attributes
-    ----------
-    along : float
-        Share of the length of all edges along the two main directions of their own building, 0 to 1.
-    sharp : float
-        Share of the corners with an angle below 70°.
-    per_100_m : float
-        Vertices per 100 m of outline.
-    """
-
-    along: float
-    sharp: float
-    per_100_m: float
+    along: float  #: Share of the length of all edges along the two main directions of their own building, 0 to 1
+    sharp: float  #: Share of the corners with an angle below 70°
+    per_100_m: float  #: Vertices per 100 m of outline
 
 
 def match_polygons(first: list, second: list, monitor: Monitor) -> Matches:

@@ -78,21 +78,11 @@ def surface_density(xyz: np.ndarray) -> float:
 
 @dataclass(frozen=True)
 class MeasuredSurfaces:
-    """The numbers measured on a :class:`SurfaceSample` from which neighborhoods follow.
+    """The numbers measured on a :class:`SurfaceSample` from which neighborhoods follow."""
 
-    Attributes
-    ----------
-    n_points : int
-        Points of the sample.
-    surface_density : float
-        Points per square meter of surfaces.
-    narrow_below : int
-        Smooth neighborhoods of fewer points than this are narrow in plan, because points lie on lines.
-    """
-
-    n_points: int
-    surface_density: float
-    narrow_below: int
+    n_points: int  #: Points of the sample
+    surface_density: float  #: Points per square meter of surfaces
+    narrow_below: int  #: Smooth neighborhoods of fewer points than this are narrow in plan, because points lie on lines
 
     def neighborhood(self, density: float, deviation: float) -> Union[Nearest, Wide]:
         """Return which points show the plane of a surface, see :meth:`SurfaceSample.neighborhood`."""

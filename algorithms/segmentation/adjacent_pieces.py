@@ -21,22 +21,14 @@ _CHUNK = 3_000
 
 @dataclass(frozen=True)
 class Adjacency:
-    """Pairs of pieces on adjacent lines, each in both directions, sorted by the first piece.
+    """Pairs of pieces on adjacent lines, each in both directions, sorted by the first piece."""
 
-    Attributes
-    ----------
-    one, other : ndarray of shape (k,), int64
-        The two pieces.
-    overlap : ndarray of shape (k,), float64
-        Share of the points of the shorter piece that have a neighbor in the longer one.
-    offset : ndarray of shape (k, 3), float64
-        Mean way to the neighbors, square to ``one``, m: its side.
-    """
-
+    #: one, other, (k,), int64: the two pieces
     one: np.ndarray
     other: np.ndarray
+    #: (k,), float64: share of the points of the shorter piece that have a neighbor in the longer one
     overlap: np.ndarray
-    offset: np.ndarray
+    offset: np.ndarray  #: (k, 3), float64: mean way to the neighbors, square to ``one``, m: its side
 
     def neighbors(self, count: int) -> list[list[int]]:
         """Return the adjacent pieces of each of ``count`` pieces."""

@@ -44,28 +44,15 @@ DECK = DeckRules()
 
 @dataclass(frozen=True)
 class Decks:
-    """Criteria of bridges.
+    """Criteria of bridges."""
 
-    Attributes
-    ----------
-    min_height : float
-        Height above the terrain beside it, m.
-    max_width, min_area : float
-        Widest section (m) and least area (m²).
-    cell : float
-        Side of cells, m.
-    line_width : float
-        Width of a line, m.
-    near : NearPoints
-        Which points of a line are of one section.
-    """
-
-    min_height: float
+    min_height: float  #: Height above the terrain beside it, m
+    #: max_width, min_area: Widest section (m) and least area (m²)
     max_width: float
     min_area: float
-    cell: float
-    line_width: float
-    near: NearPoints
+    cell: float  #: Side of cells, m
+    line_width: float  #: Width of a line, m
+    near: NearPoints  #: Which points of a line are of one section
 
     @property
     def reach(self) -> float:

@@ -35,18 +35,10 @@ _LEAF = 24
 
 @dataclass(frozen=True)
 class Criteria:
-    """When a point belongs to the surface beside it.
+    """When a point belongs to the surface beside it."""
 
-    Attributes
-    ----------
-    tolerance : float or None
-        Largest distance to the plane of the surface, m; None leaves the criterion out.
-    cosine : float or None
-        Least cosine of the angle between the normals; None leaves the criterion out.
-    """
-
-    tolerance: Optional[float]
-    cosine: Optional[float]
+    tolerance: Optional[float]  #: Largest distance to the plane of the surface, m; None leaves the criterion out
+    cosine: Optional[float]  #: Least cosine of the angle between the normals; None leaves the criterion out
 
     def hold(self, away: np.ndarray, normal: np.ndarray, other: np.ndarray) -> np.ndarray:
         """Return whether surfaces hold points.
@@ -68,26 +60,15 @@ class Criteria:
 
 @dataclass
 class LocalPlanes:
-    """The plane of each point and its neighbors.
+    """The plane of each point and its neighbors."""
 
-    Attributes
-    ----------
-    xyz : ndarray of shape (n, 3), float64
-        The points, m.
-    offset : ndarray of shape (n, 3), float32
-        Center of the plane from its point, m.
-    normal : ndarray of shape (n, 3), float32
-        Unit normals, upward; 0 where there is no plane.
-    deviation : ndarray of shape (n,), float32
-        Root mean square distance of its points, free of the degrees of freedom of the fit, m; inf without a plane.
-    neighbors : ndarray of shape (n, k), int32
-        Points near each point, nearest first; the point itself where there are fewer.
-    """
-
-    xyz: np.ndarray
-    offset: np.ndarray
-    normal: np.ndarray
+    xyz: np.ndarray  #: (n, 3), float64: the points, m
+    offset: np.ndarray  #: (n, 3), float32: center of the plane from its point, m
+    normal: np.ndarray  #: (n, 3), float32: unit normals, upward; 0 where there is no plane
+    #: (n,), float32: root mean square distance of its points, free of the degrees of freedom of the fit, m; inf without
+    #: a plane
     deviation: np.ndarray
+    #: (n, k), int32: points near each point, nearest first; the point itself where there are fewer
     neighbors: np.ndarray
 
     def hold(self, criteria: Criteria, plane: np.ndarray, point: np.ndarray) -> np.ndarray:

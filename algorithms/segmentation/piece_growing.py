@@ -21,21 +21,11 @@ _STRETCH = 200
 
 @dataclass(frozen=True)
 class Growth:
-    """When a piece belongs to a region.
+    """When a piece belongs to a region."""
 
-    Attributes
-    ----------
-    tolerance : float
-        Distance of both ends of a piece from the plane, m.
-    seed_deviation : float
-        Root mean square distance of the points of a seed from its plane, m.
-    is_planar : bool
-        Whether the plane is that of the whole region, or of the pieces beside the new one.
-    """
-
-    tolerance: float
-    seed_deviation: float
-    is_planar: bool
+    tolerance: float  #: Distance of both ends of a piece from the plane, m
+    seed_deviation: float  #: Root mean square distance of the points of a seed from its plane, m
+    is_planar: bool  #: Whether the plane is that of the whole region, or of the pieces beside the new one
 
 
 class Regions:

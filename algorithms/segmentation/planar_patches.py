@@ -36,22 +36,13 @@ _CHUNK, _CHUNK_CANDIDATES = 20_000, 250_000
 
 @dataclass
 class _PointPlanes:
-    """The planes of points and their neighbors.
+    """The planes of points and their neighbors."""
 
-    Attributes
-    ----------
-    planes : ndarray of shape (n, 4), float64
-        Unit normal upward, and how far along it the plane lies from the first of the points (m): the distance of
-        (x, y, z, -1) from the plane is one sum of products.
-    deviation : ndarray of shape (n,), float64
-        Standard deviation across the plane, m.
-    neighbors : ndarray of shape (n, k), int32
-        Points that showed the plane.
-    """
-
+    #: (n, 4), float64: unit normal upward, and how far along it the plane lies from the first of the points (m): the
+    #: distance of (x, y, z, -1) from the plane is one sum of products
     planes: np.ndarray
-    deviation: np.ndarray
-    neighbors: np.ndarray
+    deviation: np.ndarray  #: (n,), float64: standard deviation across the plane, m
+    neighbors: np.ndarray  #: (n, k), int32: points that showed the plane
 
 
 def segment_patches(

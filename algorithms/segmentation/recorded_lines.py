@@ -23,23 +23,13 @@ _STEPS, _TURN = 3, -0.5
 
 @dataclass(frozen=True)
 class Recording:
-    """What a scanner recorded of its points, each array (n,) or None where the cloud has it not.
+    """What a scanner recorded of its points, each array (n,) or None where the cloud has it not."""
 
-    Attributes
-    ----------
-    gps_time : ndarray, s
-        Time of the pulses.
-    scan_angle : ndarray, °
-        Angles of the beams.
-    point_source_id : ndarray
-        Flight line or scanner.
-    scan_direction_flag, edge_of_flight_line : ndarray
-        Direction in which the mirror turns, and whether a point is the last one before it turns.
-    """
-
-    gps_time: Optional[np.ndarray] = None
-    scan_angle: Optional[np.ndarray] = None
-    point_source_id: Optional[np.ndarray] = None
+    gps_time: Optional[np.ndarray] = None  #: Time of the pulses
+    scan_angle: Optional[np.ndarray] = None  #: Angles of the beams
+    point_source_id: Optional[np.ndarray] = None  #: Flight line or scanner
+    #: scan_direction_flag, edge_of_flight_line: Direction in which the mirror turns, and whether a point is the last
+    #: one before it turns
     scan_direction_flag: Optional[np.ndarray] = None
     edge_of_flight_line: Optional[np.ndarray] = None
 

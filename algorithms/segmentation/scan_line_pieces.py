@@ -15,21 +15,11 @@ _WINDOW = 8
 
 @dataclass(frozen=True)
 class NearPoints:
-    """When two points of a line belong to one piece.
+    """When two points of a line belong to one piece."""
 
-    Attributes
-    ----------
-    distance : float
-        Largest distance in space, m.
-    slope : float
-        Tangent of the steepest line between them.
-    step : float
-        Difference in height that needs no distance: noise, m.
-    """
-
-    distance: float
-    slope: float
-    step: float
+    distance: float  #: Largest distance in space, m
+    slope: float  #: Tangent of the steepest line between them
+    step: float  #: Difference in height that needs no distance: noise, m
 
     def hold(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
         """Return which points (k, 3) of a line belong to the piece of others (k, 3), m."""

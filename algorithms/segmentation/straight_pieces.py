@@ -19,21 +19,11 @@ _BLOCK = 200_000
 
 @dataclass(frozen=True)
 class Pieces:
-    """Straight pieces of scan lines.
+    """Straight pieces of scan lines."""
 
-    Attributes
-    ----------
-    points : Planes
-        Number of points, center and covariance of each piece (m of them).
-    direction : ndarray of shape (m, 3)
-        Unit vectors along them.
-    ends : ndarray of shape (m, 2, 3)
-        Ends of the straight line through the points of each by least squares, m.
-    """
-
-    points: Planes
-    direction: np.ndarray
-    ends: np.ndarray
+    points: Planes  #: Number of points, center and covariance of each piece (m of them)
+    direction: np.ndarray  #: (m, 3): unit vectors along them
+    ends: np.ndarray  #: (m, 2, 3): ends of the straight line through the points of each by least squares, m
 
     def __len__(self) -> int:
         return len(self.points)

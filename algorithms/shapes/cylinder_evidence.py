@@ -18,55 +18,36 @@ MOST_LOOKED_AT = 1500
 
 @dataclass(frozen=True)
 class _Rules:
-    """What points on a cylinder have in common.
+    """What points on a cylinder have in common."""
 
-    Attributes
-    ----------
-    close : float
-        Least share of the points within the tolerance, of those that face the axis within twice the tolerance. It is
-        0.97 of plates that protrude by one to two standard deviations, 0.82 of elbows, 0.5 without a surface.
-    median_angle : float
-        Largest median angle (°) between normals and the directions away from the axis, in addition to that of uneven
-        points: the rounded normals of an edge have more.
-    uneven_angle : float
-        Median angle (°, times point spacing over radius) by which normals are off because points are uneven. The center
-        of random points in a disk deviates by 1 / (2 √π) spacings from its middle, and the normal is that there.
-    confidence : float
-        Where normals are farther off than at most edges, the points must be as close as the noise lets them. The root
-        mean square of k points exceeds the deviation by 2 / √(2 k) of it in one case of forty.
-    bent : float
-        Largest part of the distances (standard deviations of the noise) that a bend, a cone or faces explain.
-    as_built : float
-        Largest part of the distances (of the radius) that is no noise: steel tanks of 12 to 45 m may be built 19 mm off
-        their radius at the foot and three times that above (API 650, 7.5.3).
-    inside : float
-        Most points inside, per point on it, in the middle one of the slices along the axis: solids have more.
-    slices : int
-        Slices along the axis: the roof in a tank lies in one or two.
-    goes_on : float
-        Least points beyond each end of the arc where the surface goes on, of those that it would have if none lay
-        within the tolerance: that takes half of them.
-    stray : float
-        Share of the points that lie at either end of the arc by chance.
-    length, short : float
-        Least length (diameters): shorter pieces cannot be distinguished from elbows, or from spheres.
-    long_enough : float
-        Length (m) that is enough for any diameter: of a tank less may be seen.
-    """
-
+    #: Least share of the points within the tolerance, of those that face the axis within twice the tolerance. It is
+    #: 0.97 of plates that protrude by one to two standard deviations, 0.82 of elbows, 0.5 without a surface.
     close: float = 0.9
+    #: Largest median angle (°) between normals and the directions away from the axis, in addition to that of uneven
+    #: points: the rounded normals of an edge have more
     median_angle: float = 10.0
+    #: Median angle (°, times point spacing over radius) by which normals are off because points are uneven. The center
+    #: of random points in a disk deviates by 1 / (2 √π) spacings from its middle, and the normal is that there.
     uneven_angle: float = 10.9
+    #: Where normals are farther off than at most edges, the points must be as close as the noise lets them. The root
+    #: mean square of k points exceeds the deviation by 2 / √(2 k) of it in one case of forty.
     confidence: float = 2.0
+    #: Largest part of the distances (standard deviations of the noise) that a bend, a cone or faces explain
     bent: float = 0.6
+    #: Largest part of the distances (of the radius) that is no noise: steel tanks of 12 to 45 m may be built 19 mm off
+    #: their radius at the foot and three times that above (API 650, 7.5.3)
     as_built: float = 0.003
+    #: Most points inside, per point on it, in the middle one of the slices along the axis: solids have more
     inside: float = 0.15
-    slices: int = 10
+    slices: int = 10  #: Slices along the axis: the roof in a tank lies in one or two
+    #: Least points beyond each end of the arc where the surface goes on, of those that it would have if none lay within
+    #: the tolerance: that takes half of them
     goes_on: float = 0.25
-    stray: float = 0.02
+    stray: float = 0.02  #: Share of the points that lie at either end of the arc by chance
+    #: length, short: Least length (diameters): shorter pieces cannot be distinguished from elbows, or from spheres
     length: float = 1.5
     short: float = 0.3
-    long_enough: float = 1.0
+    long_enough: float = 1.0  #: Length (m) that is enough for any diameter: of a tank less may be seen
 
 
 _RULES = _Rules()
@@ -82,18 +63,12 @@ class Points:
 
 @dataclass(frozen=True)
 class Evidence:
-    """Noise, tolerance and spacing (m) of the points among which cylinders are looked for, and all these points.
-
-    Attributes
-    ----------
-    positions : ndarray of shape (n, 3)
-        All points, m, sorted by elevation, those of all segments where they are.
-    """
+    """Noise, tolerance and spacing (m) of the points among which cylinders are looked for, and all these points."""
 
     noise: float
     tolerance: float
     spacing: float
-    positions: np.ndarray
+    positions: np.ndarray  #: (n, 3): all points, m, sorted by elevation, those of all segments where they are
 
     def is_round(self, cylinder: Cylinder, own: Points, near: Points) -> bool:
         """Return whether points (k) look like those of a cylinder among all points (m) near it."""

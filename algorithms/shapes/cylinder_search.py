@@ -79,26 +79,14 @@ def _radii(low: float, high: float) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Found:
-    """A cylinder with ends.
+    """A cylinder with ends."""
 
-    Attributes
-    ----------
-    cylinder : Cylinder
-        Its axis and radius; the ends lie at ``low`` and ``high`` (m) along the axis from its center.
-    points : ndarray of shape (k,)
-        Points on it.
-    rms : float
-        Root mean square distance of the points from it, m.
-    seen : float
-        Share of the circumference that has points.
-    """
-
-    cylinder: Cylinder
+    cylinder: Cylinder  #: Its axis and radius; the ends lie at ``low`` and ``high`` (m) along the axis from its center
     low: float
     high: float
-    points: np.ndarray
-    rms: float
-    seen: float
+    points: np.ndarray  #: (k,): points on it
+    rms: float  #: Root mean square distance of the points from it, m
+    seen: float  #: Share of the circumference that has points
 
     @property
     def ends(self) -> np.ndarray:

@@ -56,24 +56,12 @@ F = TypeVar("F", bound=FoundShape)
 
 @dataclass(frozen=True)
 class SearchedPoints:
-    """Points in an order of their own, which does not depend on that of the cloud.
+    """Points in an order of their own, which does not depend on that of the cloud."""
 
-    Attributes
-    ----------
-    rows : ndarray of shape (k,), int64
-        Which point of the cloud each is.
-    xyz : ndarray of shape (k, 3), float64
-        Coordinates (m) from the least of the cloud, segments moved apart along x.
-    shift : ndarray of shape (k,), float64
-        How far (m) each was moved along x.
-    origin : ndarray of shape (3,)
-        Offset that was subtracted from the coordinates of the cloud (m).
-    """
-
-    rows: np.ndarray
-    xyz: np.ndarray
-    shift: np.ndarray
-    origin: np.ndarray
+    rows: np.ndarray  #: (k,), int64: which point of the cloud each is
+    xyz: np.ndarray  #: (k, 3), float64: coordinates (m) from the least of the cloud, segments moved apart along x
+    shift: np.ndarray  #: (k,), float64: how far (m) each was moved along x
+    origin: np.ndarray  #: (3,): offset that was subtracted from the coordinates of the cloud (m)
 
     def in_place(self, positions: np.ndarray, point: int) -> np.ndarray:
         """Return positions (..., 3) found beside the point numbered ``point`` in the coordinates of the cloud, m."""
@@ -185,51 +173,27 @@ def named(
 
 @dataclass(frozen=True)
 class Surroundings:
-    """Settings of a search besides the radii.
+    """Settings of a search besides the radii."""
 
-    Attributes
-    ----------
-    xyz, normals : ndarray of shape (k, 3)
-        Searched points (m), sorted by elevation, and their unit normals; zero if undefined.
-    noise : float
-        Standard deviation across smooth surfaces, m.
-    tolerance : float
-        Distance within which a point lies on a surface, m.
-    spacing : float
-        Distance between points on surfaces, m.
-    shift : ndarray of shape (k,)
-        How far each point was moved along x, m, as segments are searched apart.
-    """
-
+    #: xyz, normals, (k, 3): searched points (m), sorted by elevation, and their unit normals; zero if undefined
     xyz: np.ndarray
     normals: np.ndarray
-    noise: float
-    tolerance: float
-    spacing: float
-    shift: np.ndarray
+    noise: float  #: Standard deviation across smooth surfaces, m
+    tolerance: float  #: Distance within which a point lies on a surface, m
+    spacing: float  #: Distance between points on surfaces, m
+    shift: np.ndarray  #: (k,): how far each point was moved along x, m, as segments are searched apart
 
 
 @dataclass(frozen=True)
 class SearchResult(Generic[F]):
-    """Shapes of one kind in a cloud.
+    """Shapes of one kind in a cloud."""
 
-    Attributes
-    ----------
-    segment_id, shape : ndarray of shape (n,), int32 and uint8
-        The dimensions of the cloud.
-    shapes : list
-        The shapes, by number.
-    numbers : list of int
-        Their numbers in ``segment_id``.
-    points : SearchedPoints
-        The points that were searched.
-    """
-
+    #: segment_id, shape, (n,), int32 and uint8: the dimensions of the cloud
     segment_id: np.ndarray
     shape: np.ndarray
-    shapes: list[F]
-    numbers: list[int]
-    points: SearchedPoints
+    shapes: list[F]  #: The shapes, by number
+    numbers: list[int]  #: Their numbers in ``segment_id``
+    points: SearchedPoints  #: The points that were searched
 
 
 def search_shapes(

@@ -17,22 +17,13 @@ WINDOW, _THINNING = 4.0, 0.15
 
 @dataclass(frozen=True)
 class Level:
-    """Radii that are looked for together.
+    """Radii that are looked for together."""
 
-    Attributes
-    ----------
-    low, high : float
-        Their range (m).
-    rows : ndarray of shape (k,)
-        Points that are left for it, thinned to one per cell.
-    windows : list of ndarray
-        Which of ``rows`` lie in each window, the fullest window first.
-    """
-
+    #: low, high: Their range (m)
     low: float
     high: float
-    rows: np.ndarray
-    windows: list[np.ndarray]
+    rows: np.ndarray  #: (k,): points that are left for it, thinned to one per cell
+    windows: list[np.ndarray]  #: Which of ``rows`` lie in each window, the fullest window first
 
 
 def levels(low: float, high: float) -> list[tuple[float, float]]:

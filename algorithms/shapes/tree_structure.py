@@ -44,47 +44,24 @@ _CLEAR = 0.5
 
 @dataclass(frozen=True)
 class Voxels:
-    """Closed voxels of a cloud and the steps between them.
+    """Closed voxels of a cloud and the steps between them."""
 
-    Attributes
-    ----------
-    positions : ndarray of shape (m, 3)
-        Centers of the voxels (m).
-    of_point : ndarray of shape (n,)
-        The voxel of each point, -1 if unassigned.
-    one, other : ndarray of shape (k,)
-        The voxels at both ends of each step.
-    length : ndarray of shape (k,)
-        Lengths of the steps (m), gaps at their price.
-    """
-
-    positions: np.ndarray
-    of_point: np.ndarray
+    positions: np.ndarray  #: (m, 3): centers of the voxels (m)
+    of_point: np.ndarray  #: (n,): the voxel of each point, -1 if unassigned
+    #: one, other, (k,): the voxels at both ends of each step
     one: np.ndarray
     other: np.ndarray
-    length: np.ndarray
+    length: np.ndarray  #: (k,): lengths of the steps (m), gaps at their price
 
 
 @dataclass(frozen=True)
 class Slices:
-    """Slices across stems and branches: connected voxels about as far from the root.
+    """Slices across stems and branches: connected voxels about as far from the root."""
 
-    Attributes
-    ----------
-    positions : ndarray of shape (s, 3)
-        Means of their voxels (m).
-    parent : ndarray of shape (s,)
-        The slice on the way to the root, before it in the order; -1 for roots.
-    tree : ndarray of shape (s,)
-        Which root they belong to.
-    of_voxel : ndarray of shape (m,)
-        Slice of each voxel, -1 where no root reaches it.
-    """
-
-    positions: np.ndarray
-    parent: np.ndarray
-    tree: np.ndarray
-    of_voxel: np.ndarray
+    positions: np.ndarray  #: (s, 3): means of their voxels (m)
+    parent: np.ndarray  #: (s,): the slice on the way to the root, before it in the order; -1 for roots
+    tree: np.ndarray  #: (s,): which root they belong to
+    of_voxel: np.ndarray  #: (m,): slice of each voxel, -1 where no root reaches it
 
 
 @dataclass(frozen=True)

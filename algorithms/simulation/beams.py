@@ -26,22 +26,13 @@ _PRECISION = 1e-5
 
 @dataclass(frozen=True)
 class Beams:
-    """Beams of one strip.
+    """Beams of one strip."""
 
-    Parameters
-    ----------
-    pulse : ndarray of shape (n,)
-        The pulse that each belongs to.
-    origin, direction : ndarray of shape (n, 3)
-        Where they start (m), and unit vectors.
-    aim : ndarray of shape (n, 2)
-        Where they meet the plane that the ground follows (m).
-    """
-
-    pulse: np.ndarray
+    pulse: np.ndarray  #: (n,): the pulse that each belongs to
+    #: origin, direction, (n, 3): where they start (m), and unit vectors
     origin: np.ndarray
     direction: np.ndarray
-    aim: np.ndarray
+    aim: np.ndarray  #: (n, 2): where they meet the plane that the ground follows (m)
 
     def __len__(self) -> int:
         return len(self.aim)

@@ -33,30 +33,14 @@ _BANK = 0.67
 
 @dataclass(frozen=True)
 class Kind:
-    """What a lot holds.
+    """What a lot holds."""
 
-    Attributes
-    ----------
-    half_width : float
-        Half the width of the obstacle between its edges, m.
-    depth : float
-        Its depth under the land, m.
-    bank : float
-        Slope of its banks, a tangent; they lie within ``half_width``.
-    is_water : bool
-        Whether it holds water.
-    decks : tuple of float
-        Widths of the decks side by side, m; none where nothing crosses it.
-    arch : float
-        Height of the middle of a deck over its ends, m.
-    """
-
-    half_width: float
-    depth: float
-    bank: float
-    is_water: bool = False
-    decks: tuple[float, ...] = (9.0,)
-    arch: float = 0.0
+    half_width: float  #: Half the width of the obstacle between its edges, m
+    depth: float  #: Its depth under the land, m
+    bank: float  #: Slope of its banks, a tangent; they lie within ``half_width``
+    is_water: bool = False  #: Whether it holds water
+    decks: tuple[float, ...] = (9.0,)  #: Widths of the decks side by side, m; none where nothing crosses it
+    arch: float = 0.0  #: Height of the middle of a deck over its ends, m
 
     @property
     def behind(self) -> float:
@@ -155,15 +139,9 @@ class Lot:
 
 @dataclass(frozen=True)
 class BridgeRelief(Relief):
-    """Level land with the obstacles of lots.
+    """Level land with the obstacles of lots."""
 
-    Parameters
-    ----------
-    lots : tuple of Lot
-        Each fills a square of :data:`LOT` around its middle.
-    """
-
-    lots: tuple[Lot, ...] = field(default=())
+    lots: tuple[Lot, ...] = field(default=())  #: Each fills a square of :data:`LOT` around its middle
 
     @property
     def spread(self) -> float:

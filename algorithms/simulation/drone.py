@@ -44,24 +44,12 @@ _BLOCK, _BLOCK_TIME = 50_000, 1.0
 
 @dataclass(frozen=True)
 class Flight:
-    """Where a drone is and how it hangs at any time: it climbs, turns once and lands.
+    """Where a drone is and how it hangs at any time: it climbs, turns once and lands."""
 
-    Parameters
-    ----------
-    foot : ndarray of shape (3,)
-        Where its scanners are before it takes off (m).
-    climb : float
-        How far it climbs (m).
-    duration : float
-        From take-off to landing (s).
-    phases : ndarray of shape (6, 3)
-        Phases (rad) of the waves that it sways in: east, north, up, roll, pitch, heading.
-    """
-
-    foot: np.ndarray
-    climb: float
-    duration: float
-    phases: np.ndarray
+    foot: np.ndarray  #: (3,): where its scanners are before it takes off (m)
+    climb: float  #: How far it climbs (m)
+    duration: float  #: From take-off to landing (s)
+    phases: np.ndarray  #: (6, 3): phases (rad) of the waves that it sways in: east, north, up, roll, pitch, heading
 
     def positions(self, time: np.ndarray) -> np.ndarray:
         """Return where the scanners are (n, 3) (m) at times (n,) (s)."""

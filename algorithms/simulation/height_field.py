@@ -24,18 +24,12 @@ _LUMPS = ((1.2, 0.35), (0.5, 0.15))
 
 @dataclass
 class HeightField:
-    """The highest surface of each cell.
+    """The highest surface of each cell."""
 
-    Attributes
-    ----------
-    ground, top : ndarray of shape (rows, columns)
-        Elevation of the ground and of the visible surface, m.
-    classification, object_id : ndarray of shape (rows, columns)
-        What it is.
-    """
-
+    #: ground, top, (rows, columns): elevation of the ground and of the visible surface, m
     ground: np.ndarray
     top: np.ndarray
+    #: classification, object_id, (rows, columns): what it is
     classification: np.ndarray
     object_id: np.ndarray
 

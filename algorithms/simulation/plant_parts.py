@@ -16,33 +16,16 @@ Sampler = Callable[[np.random.Generator, int], tuple[np.ndarray, np.ndarray]]
 
 @dataclass(frozen=True)
 class Part:
-    """One surface of a plant.
+    """One surface of a plant."""
 
-    Attributes
-    ----------
-    kind : str
-        "pipe", "tank", "sphere", "elbow", "flange", "beam", "grating", "roof", "floor" or "clutter".
-    shape : int
-        Its value of the dimension ``shape``.
-    area : float
-        Its area, m².
-    middle : ndarray of shape (3,)
-        A place in its middle (m).
-    sample : callable
-        Draws points on it.
-    axis : ndarray of shape (2, 3), optional
-        Ends of the axis of a pipe or tank, or twice the center of a sphere (m).
-    radius : float
-        Radius of a pipe, tank or sphere (m), otherwise 0.
-    """
-
-    kind: str
-    shape: int
-    area: float
-    middle: np.ndarray
-    sample: Sampler
+    kind: str  #: "pipe", "tank", "sphere", "elbow", "flange", "beam", "grating", "roof", "floor" or "clutter"
+    shape: int  #: Its value of the dimension ``shape``
+    area: float  #: Its area, m²
+    middle: np.ndarray  #: (3,): a place in its middle (m)
+    sample: Sampler  #: Draws points on it
+    #: (2, 3): ends of the axis of a pipe or tank, or twice the center of a sphere (m)
     axis: Optional[np.ndarray] = None
-    radius: float = 0.0
+    radius: float = 0.0  #: Radius of a pipe, tank or sphere (m), otherwise 0
 
 
 def cylinder(kind: str, start: np.ndarray, end: np.ndarray, radius: float) -> Part:

@@ -27,31 +27,15 @@ class Relief:
 
     All coordinates are in the frame of the town, which is turned against east and north. *across* is the
     direction in which the ground rises and the streets run, *along* that of the river, both from the town's center.
-
-    Parameters
-    ----------
-    size : float
-        Side of the town, a square from (0, 0) to (size, size), m.
-    angle : float
-        Direction of *across*, radians from east.
-    gradient : float
-        Rise per meter, tangent of the slope.
-    hills : float
-        Height between the deepest hollow and the highest hill, about, m.
-    terrace_height : float
-        Rise of the steps in the slope, m.
-    river : float, optional
-        Position of the river's axis across the town, m; None for no river.
-    waves : ndarray of shape (k, 3)
-        Hills: wave numbers across and along (rad/m) and phase (rad).
     """
 
-    size: float
-    angle: float = 0.0
-    gradient: float = 0.0
-    hills: float = 0.0
-    terrace_height: float = 0.0
-    river: Optional[float] = None
+    size: float  #: Side of the town, a square from (0, 0) to (size, size), m
+    angle: float = 0.0  #: Direction of *across*, radians from east
+    gradient: float = 0.0  #: Rise per meter, tangent of the slope
+    hills: float = 0.0  #: Height between the deepest hollow and the highest hill, about, m
+    terrace_height: float = 0.0  #: Rise of the steps in the slope, m
+    river: Optional[float] = None  #: Position of the river's axis across the town, m; None for no river
+    #: (k, 3): hills: wave numbers across and along (rad/m) and phase (rad)
     waves: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
 
     def local(self, x, y) -> tuple[np.ndarray, np.ndarray]:

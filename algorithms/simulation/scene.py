@@ -13,24 +13,12 @@ from .solids import Rect, Solid, rectangles
 
 @dataclass(frozen=True)
 class Building:
-    """One building: what it is, its outline, and the solids that it is made of.
+    """One building: what it is, its outline, and the solids that it is made of."""
 
-    Parameters
-    ----------
-    object_id : int
-        The ``segment_id`` of its points.
-    kind : str
-        "gable", "hip", "flat", "L", "row", "shed" or "hall".
-    outline : ndarray of shape (m, 2)
-        Closed ring of the walls, counterclockwise (m).
-    solids : tuple of Solid
-        Wings, dormers, chimneys; the roof is the highest of them.
-    """
-
-    object_id: int
-    kind: str
-    outline: np.ndarray
-    solids: tuple[Solid, ...]
+    object_id: int  #: The ``segment_id`` of its points
+    kind: str  #: "gable", "hip", "flat", "L", "row", "shed" or "hall"
+    outline: np.ndarray  #: (m, 2): closed ring of the walls, counterclockwise (m)
+    solids: tuple[Solid, ...]  #: Wings, dormers, chimneys; the roof is the highest of them
 
     def roof(self, x, y) -> np.ndarray:
         """Elevation of the roof (m), NaN beside the building."""
@@ -53,14 +41,9 @@ class Building:
 
 @dataclass
 class Crowns:
-    """Ellipsoids that a beam gets through in part: leaves and twigs.
+    """Ellipsoids that a beam gets through in part: leaves and twigs."""
 
-    Attributes
-    ----------
-    rows : list of tuple
-        x, y, z of the center, horizontal and vertical radius (m), mean way of a beam to the next leaf (m), object id.
-    """
-
+    #: x, y, z of the center, horizontal and vertical radius (m), mean way of a beam to the next leaf (m), object id
     rows: list[tuple] = field(default_factory=list)
 
     def add(self, x: float, y: float, z: float, radius: float, half_height: float, path: float, object_id: int) -> None:
@@ -75,27 +58,14 @@ class Crowns:
 
 @dataclass
 class Scene:
-    """Everything that a scanner can see, with its truth.
+    """Everything that a scanner can see, with its truth."""
 
-    Attributes
-    ----------
-    relief : Relief
-        Ground and water.
-    buildings : list of Building
-        The buildings; their object ids are unique among all objects.
-    solids : list of Solid
-        All solid things, those of the buildings too.
-    crowns : Crowns
-        Trees, bushes, hedges.
-    wires : list of tuple
-        Straight pieces: start and end (x, y, z each, m) and object id.
-    """
-
-    relief: Relief
+    relief: Relief  #: Ground and water
+    #: The buildings; their object ids are unique among all objects
     buildings: list[Building] = field(default_factory=list)
-    solids: list[Solid] = field(default_factory=list)
-    crowns: Crowns = field(default_factory=Crowns)
-    wires: list[tuple] = field(default_factory=list)
+    solids: list[Solid] = field(default_factory=list)  #: All solid things, those of the buildings too
+    crowns: Crowns = field(default_factory=Crowns)  #: Trees, bushes, hedges
+    wires: list[tuple] = field(default_factory=list)  #: Straight pieces: start and end (x, y, z each, m) and object id
     objects: int = 0
 
     @property

@@ -157,24 +157,13 @@ def simulate_plant(
 
 @dataclass(frozen=True)
 class _Candidates:
-    """Positions on surfaces that a scanner may see.
+    """Positions on surfaces that a scanner may see."""
 
-    Attributes
-    ----------
-    xyz : ndarray of shape (n, 3), float64
-        Positions (m).
-    normal : ndarray of shape (n, 3), float32
-        Outward normals of the surfaces.
-    part : ndarray of shape (n,), int32
-        Numbers of the parts they lie on.
-    reach : ndarray of shape (n,), float32
-        Largest distance (m) of a station that looks at a position. The share of a surface that a station samples
-        falls with the square of its distance, as the density of its points does.
-    """
-
-    xyz: np.ndarray
-    normal: np.ndarray
-    part: np.ndarray
+    xyz: np.ndarray  #: (n, 3), float64: positions (m)
+    normal: np.ndarray  #: (n, 3), float32: outward normals of the surfaces
+    part: np.ndarray  #: (n,), int32: numbers of the parts they lie on
+    #: (n,), float32: largest distance (m) of a station that looks at a position. The share of a surface that a station
+    #: samples falls with the square of its distance, as the density of its points does.
     reach: np.ndarray
 
 

@@ -58,27 +58,15 @@ class Rect:
 
 @dataclass(frozen=True)
 class Solid:
-    """A rectangle from its bottom to the lowest of its top planes.
+    """A rectangle from its bottom to the lowest of its top planes."""
 
-    Parameters
-    ----------
-    rect : Rect
-        The footprint.
-    tops : ndarray of shape (k, 3), k from 1 to 4
-        Planes z = a x + b y + c.
-    bottom : float
-        Elevation of the underside where it is lowest (m).
-    classification, object_id : int
-        What the points on it are.
-    under : ndarray of shape (3,), optional
-        Plane of the underside, (a, b, c) like a top's; level where it is not given.
-    """
-
-    rect: Rect
-    tops: np.ndarray
-    bottom: float
+    rect: Rect  #: The footprint
+    tops: np.ndarray  #: (k, 3), k from 1 to 4: planes z = a x + b y + c
+    bottom: float  #: Elevation of the underside where it is lowest (m)
+    #: classification, object_id: What the points on it are
     classification: int
     object_id: int
+    #: (3,): plane of the underside, (a, b, c) like a top's; level where it is not given
     under: Optional[np.ndarray] = None
 
     def top(self, x, y) -> np.ndarray:

@@ -22,20 +22,11 @@ _BLOCK, _BLOCK_WAY = 50_000, 1.0
 
 @dataclass(frozen=True)
 class Drive:
-    """A straight drive.
+    """A straight drive."""
 
-    Parameters
-    ----------
-    start : ndarray of shape (3,)
-        Where the scanners are at first (m).
-    way : ndarray of shape (3,)
-        Unit vector of the drive.
-    length, speed : float
-        m and m/s.
-    """
-
-    start: np.ndarray
-    way: np.ndarray
+    start: np.ndarray  #: (3,): where the scanners are at first (m)
+    way: np.ndarray  #: (3,): unit vector of the drive
+    #: length, speed: m and m/s
     length: float
     speed: float
 

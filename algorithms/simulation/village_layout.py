@@ -28,21 +28,12 @@ _HILLS = 2.0
 
 @dataclass(frozen=True)
 class Village:
-    """A scene with its plots.
+    """A scene with its plots."""
 
-    Parameters
-    ----------
-    scene : Scene
-        All its objects.
-    owner : ndarray of shape (m,)
-        By object id, the id of the building where the object is its roof; the object's own id elsewhere.
-    free : list of Rect
-        Plots without a house.
-    """
-
-    scene: Scene
+    scene: Scene  #: All its objects
+    #: (m,): by object id, the id of the building where the object is its roof; the object's own id elsewhere
     owner: np.ndarray
-    free: list[Rect]
+    free: list[Rect]  #: Plots without a house
 
 
 def build_village(

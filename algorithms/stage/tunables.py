@@ -11,41 +11,22 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Param:
-    """One tunable: everything but its name, type and default, which the signature gives.
+    """One tunable: everything but its name, type and default, which the signature gives."""
 
-    Parameters
-    ----------
-    label : str
-        What the dialog calls it, sentence case, without the unit.
-    help : str
-        One or two sentences: what it does and when to change it.
-    unit : str
-        Unit of the number ("m", "°", "points/m²", ""), appended to labels.
-    low, high : float, optional
-        Bounds, inclusive unless ``open_low`` / ``open_high``.
-    choices : tuple of str
-        Allowed words of a ``str``, or the elements of a ``tuple``.
-    automatic : str
-        For tunables whose value the stage finds itself when it is None: which, as the
-        end of the sentence "Automatic: …".
-    empty : str
-        For tunables that have no effect when they are None: what happens then, as the
-        end of the sentence "Empty: …".
-    advanced : bool
-        Folded away in the dialog.
-    """
-
-    label: str
-    help: str
-    unit: str = ""
+    label: str  #: What the dialog calls it, sentence case, without the unit
+    help: str  #: One or two sentences: what it does and when to change it
+    unit: str = ""  #: Unit of the number ("m", "°", "points/m²", ""), appended to labels
+    #: low, high: Bounds, inclusive unless ``open_low`` / ``open_high``
     low: Optional[float] = None
     high: Optional[float] = None
     open_low: bool = False
     open_high: bool = False
-    choices: tuple[str, ...] = ()
+    choices: tuple[str, ...] = ()  #: Allowed words of a ``str``, or the elements of a ``tuple``
+    #: For tunables whose value the stage finds itself when it is None: which, as the end of the sentence "Automatic: …"
     automatic: str = ""
+    #: For tunables that have no effect when they are None: what happens then, as the end of the sentence "Empty: …"
     empty: str = ""
-    advanced: bool = False
+    advanced: bool = False  #: Folded away in the dialog
 
     @property
     def title(self) -> str:

@@ -146,25 +146,15 @@ class _Order:
 
 @dataclass
 class _State:
-    """State of the particles, as they are stored; in the margin nothing moves or draws.
+    """State of the particles, as they are stored; in the margin nothing moves or draws."""
 
-    Attributes
-    ----------
-    height, before : ndarray
-        Height (m), and that of the step before.
-    floor : ndarray
-        Height (m) at which the particle lands; -inf in the margin.
-    movable : ndarray
-        1 until it has landed, then 0.
-    draw : ndarray
-        Share of a height difference by which it draws a movable neighbor: that one moves all of the way or, if both are
-        movable, half of it.
-    """
-
+    #: height, before: Height (m), and that of the step before
     height: np.ndarray
     before: np.ndarray
-    floor: np.ndarray
-    movable: np.ndarray
+    floor: np.ndarray  #: Height (m) at which the particle lands; -inf in the margin
+    movable: np.ndarray  #: 1 until it has landed, then 0
+    #: Share of a height difference by which it draws a movable neighbor: that one moves all of the way or, if both are
+    #: movable, half of it
     draw: np.ndarray
 
     def copy(self) -> _State:

@@ -174,27 +174,13 @@ def _levels(ground: np.ndarray, positions: np.ndarray, monitor: Monitor) -> _Lev
 
 @dataclass(frozen=True)
 class _Near:
-    """The last returns near the points that lie under the ground.
+    """The last returns near the points that lie under the ground."""
 
-    Attributes
-    ----------
-    rows : ndarray of shape (m,), int64
-        Their indices in the cloud.
-    xyz : ndarray of shape (m, 3), float64
-        Their coordinates, m.
-    height : ndarray of shape (m,), float64
-        Their height over the ground around, m.
-    limit : ndarray of shape (m,), float64
-        Depth from which on they are under it, m.
-    spacing : float
-        Point spacing of the cloud, m.
-    """
-
-    rows: np.ndarray
-    xyz: np.ndarray
-    height: np.ndarray
-    limit: np.ndarray
-    spacing: float
+    rows: np.ndarray  #: (m,), int64: their indices in the cloud
+    xyz: np.ndarray  #: (m, 3), float64: their coordinates, m
+    height: np.ndarray  #: (m,), float64: their height over the ground around, m
+    limit: np.ndarray  #: (m,), float64: depth from which on they are under it, m
+    spacing: float  #: Point spacing of the cloud, m
 
     @classmethod
     def around(

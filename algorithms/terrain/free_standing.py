@@ -34,38 +34,21 @@ FREE = FreeStandingRules()
 
 @dataclass(frozen=True)
 class _Lengths:
-    """Lengths of the edges of segments (s,), in cells.
+    """Lengths of the edges of segments (s,), in cells."""
 
-    Attributes
-    ----------
-    whole : ndarray of shape (s,), int64
-        All of it but the end of the cloud.
-    open : ndarray of shape (s,), int64
-        What nothing hides of it.
-    down : ndarray of shape (s,), int64
-        Steps down.
-    """
-
-    whole: np.ndarray
-    open: np.ndarray
-    down: np.ndarray
+    whole: np.ndarray  #: (s,), int64: all of it but the end of the cloud
+    open: np.ndarray  #: (s,), int64: what nothing hides of it
+    down: np.ndarray  #: (s,), int64: steps down
 
 
 @dataclass(frozen=True)
 class _Edges:
-    """The edges of segments, cell by cell and side by side.
+    """The edges of segments, cell by cell and side by side."""
 
-    Attributes
-    ----------
-    own, other : ndarray of shape (e,), int
-        Segment on this and on the other side.
-    step : ndarray of shape (e,), float64
-        How much higher this side is (m).
-    """
-
+    #: own, other, (e,), int: segment on this and on the other side
     own: np.ndarray
     other: np.ndarray
-    step: np.ndarray
+    step: np.ndarray  #: (e,), float64: how much higher this side is (m)
 
     def lengths(self, is_free: np.ndarray, least_step: np.ndarray) -> _Lengths:
         """Return the lengths of edges, with steps of at least some height (s,) (m).
@@ -82,24 +65,12 @@ class _Edges:
 
 @dataclass(frozen=True)
 class _Segments:
-    """Numbered segments of a surface, from 1; 0 where too rough.
+    """Numbered segments of a surface, from 1; 0 where too rough."""
 
-    Attributes
-    ----------
-    number : ndarray of shape (rows, columns), int
-        Segment of each cell.
-    sides : ndarray of shape (2, s), int64
-        Sides of each segment's box, in cells.
-    edges : _Edges
-        Where segments are beside others.
-    ends : ndarray of shape (s,), float64
-        Length of each one's edge that is the end of the cloud, in cells.
-    """
-
-    number: np.ndarray
-    sides: np.ndarray
-    edges: _Edges
-    ends: np.ndarray
+    number: np.ndarray  #: (rows, columns), int: segment of each cell
+    sides: np.ndarray  #: (2, s), int64: sides of each segment's box, in cells
+    edges: _Edges  #: Where segments are beside others
+    ends: np.ndarray  #: (s,), float64: length of each one's edge that is the end of the cloud, in cells
 
     @property
     def width(self) -> np.ndarray:

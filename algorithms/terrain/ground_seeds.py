@@ -156,53 +156,27 @@ def seeds_by_opening(
 
 @dataclass(frozen=True)
 class _View:
-    """Evidence of cells that are laid in one direction.
+    """Evidence of cells that are laid in one direction."""
 
-    Attributes
-    ----------
-    candidates : ndarray of shape (m,), int64
-        Lowest points of the cells, without pits.
-    says_terrain : ndarray of shape (n,), int8
-        1 for points on or below the lowest surface where it is terrain, 0 over it, -1 where it is an object.
-    stands_free : ndarray of shape (n,), bool
-        Which points lie on a free-standing segment, or above one.
-    size : float
-        Shorter side (m) of the largest free-standing segment.
-    slope : ndarray of shape (n,), float64
-        Slope of the terrain (rise over run) at each point.
-    """
-
-    candidates: np.ndarray
+    candidates: np.ndarray  #: (m,), int64: lowest points of the cells, without pits
+    #: (n,), int8: 1 for points on or below the lowest surface where it is terrain, 0 over it, -1 where it is an object
     says_terrain: np.ndarray
-    stands_free: np.ndarray
-    size: float
-    slope: np.ndarray
+    stands_free: np.ndarray  #: (n,), bool: which points lie on a free-standing segment, or above one
+    size: float  #: Shorter side (m) of the largest free-standing segment
+    slope: np.ndarray  #: (n,), float64: slope of the terrain (rise over run) at each point
 
 
 @dataclass(frozen=True)
 class _Cells:
-    """Square cells over points that were turned.
+    """Square cells over points that were turned."""
 
-    Attributes
-    ----------
-    xyz : ndarray of shape (n, 3), float64
-        The points as they are turned, m.
-    box : ndarray of shape (2, 2), float64
-        The least and greatest easting and northing (m) that they had before.
-    angle : float
-        By how much they were turned, °.
-    size, spacing : float
-        Size of the cells and spacing of the points, m.
-    low_uphill : bool
-        Whether the uphill eaves of halls may be as low as those of any roof.
-    """
-
-    xyz: np.ndarray
-    box: np.ndarray
-    angle: float
+    xyz: np.ndarray  #: (n, 3), float64: the points as they are turned, m
+    box: np.ndarray  #: (2, 2), float64: the least and greatest easting and northing (m) that they had before
+    angle: float  #: By how much they were turned, °
+    #: size, spacing: Size of the cells and spacing of the points, m
     size: float
     spacing: float
-    low_uphill: bool = False
+    low_uphill: bool = False  #: Whether the uphill eaves of halls may be as low as those of any roof
 
     def outside(self, lowest: Lowest) -> np.ndarray:
         """Return which cells lie outside the box."""

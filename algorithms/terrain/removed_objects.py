@@ -44,23 +44,13 @@ REMOVAL = RemovalRules()
 
 @dataclass(frozen=True)
 class ObjectRemoval:
-    """The removal of objects from a surface by windows of growing size.
+    """The removal of objects from a surface by windows of growing size."""
 
-    Attributes
-    ----------
-    surface : ndarray of shape (rows, columns), float64
-        Lowest elevation of each cell, m.
-    is_free_standing : ndarray of shape (rows, columns), bool
-        Cells of objects that are known already; windows leave them out.
-    largest : float
-        Largest window, m.
-    cell_size, spacing : float
-        Size of the cells, and spacing of the points where that is more, m.
-    """
-
-    surface: np.ndarray
+    surface: np.ndarray  #: (rows, columns), float64: lowest elevation of each cell, m
+    #: (rows, columns), bool: cells of objects that are known already; windows leave them out
     is_free_standing: np.ndarray
-    largest: float
+    largest: float  #: Largest window, m
+    #: cell_size, spacing: Size of the cells, and spacing of the points where that is more, m
     cell_size: float
     spacing: float = 0.0
 
@@ -136,19 +126,12 @@ class ObjectRemoval:
 
 @dataclass(frozen=True)
 class _Side:
-    """The cells of a surface and those beside them on one side.
+    """The cells of a surface and those beside them on one side."""
 
-    Attributes
-    ----------
-    here, beside : tuple of slice
-        What selects them.
-    joins : ndarray of bool
-        Whether a cell joins the one beside it without a step.
-    """
-
+    #: here, beside: What selects them
     here: tuple[slice, ...]
     beside: tuple[slice, ...]
-    joins: np.ndarray
+    joins: np.ndarray  #: Whether a cell joins the one beside it without a step
 
 
 def _sides(surface: np.ndarray, slope: np.ndarray, cell_size: float, spacing: float) -> Iterator[_Side]:
@@ -170,18 +153,10 @@ def _sides(surface: np.ndarray, slope: np.ndarray, cell_size: float, spacing: fl
 
 @dataclass(frozen=True)
 class _RegionEdges:
-    """The edges of regions (r,), in cells; the first are the cells of no region.
+    """The edges of regions (r,), in cells; the first are the cells of no region."""
 
-    Attributes
-    ----------
-    open : ndarray of shape (r,), int64
-        Cells along its edge that have no other object beside them, one for each side.
-    joined : ndarray of shape (r,), int64
-        Those that join the terrain.
-    """
-
-    open: np.ndarray
-    joined: np.ndarray
+    open: np.ndarray  #: (r,), int64: cells along its edge that have no other object beside them, one for each side
+    joined: np.ndarray  #: (r,), int64: those that join the terrain
 
     def join_terrain(self) -> np.ndarray:
         """Return which regions join the terrain on enough of their edge."""

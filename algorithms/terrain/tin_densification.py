@@ -40,40 +40,21 @@ _ROUND_PROGRESS = 0.07
 
 @dataclass(frozen=True)
 class JoinRules:
-    """When a point joins the TIN.
+    """When a point joins the TIN."""
 
-    Attributes
-    ----------
-    max_angle : float
-        Largest angle between the facet and the lines to its nodes, °.
-    max_distance : float, optional
-        Largest distance from the facet, m; None is estimated in each round.
-    bend : float
-        Part of an estimated distance that allows for bends of the terrain between points, m.
-    edge_length : float
-        Facets whose edges are all shorter are closed, m.
-    least : float
-        Least roughness of a surface, m: that of rounded heights.
-    estimates_angle : bool
-        Whether the largest angle is estimated in each round, and ``max_angle`` bounds the estimate.
-    terrain_angle : float
-        Steepest line from a point to the nodes of its facet, °.
-    is_exhaustive : bool
-        Whether rounds go on until no point qualifies, and every point is tried in each. Else rounds that add little
-        are the last, and points far from the first TIN or in closed facets are not tried again, which is faster.
-    beyond : callable, optional
-        Returns the angles (°) of points that do not fit their facets as they lie, inf where they do not fit at all:
-        see :func:`.mirror_points.mirrored_angle`.
-    """
-
-    max_angle: float
-    max_distance: Optional[float]
-    bend: float
-    edge_length: float
-    least: float = LEAST_RESOLUTION
+    max_angle: float  #: Largest angle between the facet and the lines to its nodes, °
+    max_distance: Optional[float]  #: Largest distance from the facet, m; None is estimated in each round
+    bend: float  #: Part of an estimated distance that allows for bends of the terrain between points, m
+    edge_length: float  #: Facets whose edges are all shorter are closed, m
+    least: float = LEAST_RESOLUTION  #: Least roughness of a surface, m: that of rounded heights
+    #: Whether the largest angle is estimated in each round, and ``max_angle`` bounds the estimate
     estimates_angle: bool = False
-    terrain_angle: float = 90.0
+    terrain_angle: float = 90.0  #: Steepest line from a point to the nodes of its facet, °
+    #: Whether rounds go on until no point qualifies, and every point is tried in each. Else rounds that add little are
+    #: the last, and points far from the first TIN or in closed facets are not tried again, which is faster.
     is_exhaustive: bool = False
+    #: Returns the angles (°) of points that do not fit their facets as they lie, inf where they do not fit at all: see
+    #: :func:`.mirror_points.mirrored_angle`
     beyond: Optional[Callable[[Tin, np.ndarray, np.ndarray, float, int], np.ndarray]] = None
 
     def is_last(self, step: int, n_joining: int, n_nodes: int) -> bool:

@@ -35,66 +35,47 @@ _LARGE = ("dimensions", "inside", "beside", "rasters")
 
 @dataclass
 class BlockResult:
-    """What came of a block.
+    """What came of a block."""
 
-    Attributes
-    ----------
-    source, position : ndarrays of shape (n,)
-        File, and position in it, of every record of the block.
-    stays : ndarray of shape (n,), bool
-        Which records are left by a chain that selects; empty where all are.
-    dimensions : dict of str to ndarray of shape (n, ...)
-        Dimensions that the chain wrote; coordinates in meters from the zero of the map.
-    used : dict of str to ndarray of shape (k,), int64
-        For each numbered dimension the numbers that records of the block have, ascending.
-    counts : dict of str to ndarray of shape (k,), int64
-        For each of them how many points of the block have it.
-    most : dict of str to ndarray of shape (1,), int64
-        For each numbered dimension the largest number that is used in the next two.
-    inside, beside : dict of str to ndarray of shape (m, 3), int64
-        For each numbered dimension file, position and number of records that lie just inside and just outside the
-        edges.
-    rasters : dict of str to ndarray of shape (rows, columns), float32
-        Cells whose middles lie in the block.
-    lattices : dict of str to ndarray of shape (5,)
-        For each raster its southern row, western column, rows, columns, and the side of a cell (m); rows and columns
-        are counted from the survey's origin, northward and eastward.
-    layers : dict of str to LayerFeatures
-        Features that have a part in the block, in meters from the survey's origin.
-    pieces : dict of str to ndarray of shape (n,), bool
-        Of layers whose features can be put together from pieces which of them the edge of the window may have cut off.
-    items : dict of str to list
-        Of text files the records of items that belong to these features, with their names in the block, by their class:
-        files of one stage are written of the same items.
-    seconds : dict of str to ndarray of shape ()
-        How long each step took.
-    values : dict of str to ndarray of shape ()
-        What automatic tunables took, and other values that steps found, by the names that they have in the chain.
-    messages, absent : list of str
-        Warnings, and sentences of steps that found nothing, each once.
-    tries : ndarray of shape (k, 4)
-        What each window that was tried cost: what lay around the block at most (m), points, and processor time for
-        reading and for the chain (s).
-    """
-
+    #: source, position, (n,): file, and position in it, of every record of the block
     source: np.ndarray
     position: np.ndarray
+    #: (n,), bool: which records are left by a chain that selects; empty where all are
     stays: np.ndarray = field(default_factory=lambda: np.zeros(0, bool))
+    #: dict of str to (n, ...): dimensions that the chain wrote; coordinates in meters from the zero of the map
     dimensions: dict[str, np.ndarray] = field(default_factory=dict)
+    #: dict of str to (k,), int64: for each numbered dimension the numbers that records of the block have, ascending
     used: dict[str, np.ndarray] = field(default_factory=dict)
+    #: dict of str to (k,), int64: for each of them how many points of the block have it
     counts: dict[str, np.ndarray] = field(default_factory=dict)
+    #: dict of str to (1,), int64: for each numbered dimension the largest number that is used in the next two
     most: dict[str, np.ndarray] = field(default_factory=dict)
+    #: inside, beside, dict of str to (m, 3), int64: for each numbered dimension file, position and number of records
+    #: that lie just inside and just outside the edges
     inside: dict[str, np.ndarray] = field(default_factory=dict)
     beside: dict[str, np.ndarray] = field(default_factory=dict)
+    #: dict of str to (rows, columns), float32: cells whose middles lie in the block
     rasters: dict[str, np.ndarray] = field(default_factory=dict)
+    #: dict of str to (5,): for each raster its southern row, western column, rows, columns, and the side of a cell (m);
+    #: rows and columns are counted from the survey's origin, northward and eastward
     lattices: dict[str, np.ndarray] = field(default_factory=dict)
+    #: Features that have a part in the block, in meters from the survey's origin
     layers: dict[str, LayerFeatures] = field(default_factory=dict)
+    #: dict of str to (n,), bool: Of layers whose features can be put together from pieces which of them the edge of the
+    #: window may have cut off
     pieces: dict[str, np.ndarray] = field(default_factory=dict)
+    #: Of text files the records of items that belong to these features, with their names in the block, by their class:
+    #: files of one stage are written of the same items
     items: dict[str, list[tuple[str, dict[str, Any]]]] = field(default_factory=dict)
-    seconds: dict[str, np.ndarray] = field(default_factory=dict)
+    seconds: dict[str, np.ndarray] = field(default_factory=dict)  #: dict of str to (): how long each step took
+    #: dict of str to (): what automatic tunables took, and other values that steps found, by the names that they have
+    #: in the chain
     values: dict[str, np.ndarray] = field(default_factory=dict)
+    #: messages, absent: Warnings, and sentences of steps that found nothing, each once
     messages: list[str] = field(default_factory=list)
     absent: list[str] = field(default_factory=list)
+    #: (k, 4): what each window that was tried cost: what lay around the block at most (m), points, and processor time
+    #: for reading and for the chain (s)
     tries: np.ndarray = field(default_factory=lambda: np.zeros((0, 4)))
 
     def write(self, path: Path) -> None:

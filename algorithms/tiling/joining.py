@@ -153,17 +153,10 @@ def _record_keys(source: np.ndarray, position: np.ndarray) -> np.ndarray:
 
 @dataclass
 class References:
-    """How points refer to features by a dimension: the numbers of features are those of their points.
+    """How points refer to features by a dimension: the numbers of features are those of their points."""
 
-    Attributes
-    ----------
-    counts : list of dict of int to int
-        Of each block how many of its points have each number there.
-    known : dict of (int, int) to int
-        What numbers of features are now, by the position of the block and the number in it.
-    """
-
-    counts: list[dict[int, int]]
+    counts: list[dict[int, int]]  #: Of each block how many of its points have each number there
+    #: What numbers of features are now, by the position of the block and the number in it
     known: dict[tuple[int, int], int] = field(default_factory=dict)
 
     @classmethod

@@ -13,27 +13,15 @@ from .block_result import BlockResult
 
 @dataclass(frozen=True)
 class RasterMosaic:
-    """A raster in parts, each in the file of its block.
+    """A raster in parts, each in the file of its block."""
 
-    Attributes
-    ----------
-    name : str
-        The composite's output.
-    west, north : float
-        Outer edges, m from the survey's origin.
-    cell_size : float
-        Side of a cell, m.
-    shape : tuple of int
-        Rows and columns.
-    parts : tuple of (Path, int, int)
-        For each part the file, and the row and the column of its north-western cell.
-    """
-
-    name: str
+    name: str  #: The composite's output
+    #: west, north: Outer edges, m from the survey's origin
     west: float
     north: float
-    cell_size: float
-    shape: tuple[int, int]
+    cell_size: float  #: Side of a cell, m
+    shape: tuple[int, int]  #: Rows and columns
+    #: For each part the file, and the row and the column of its north-western cell
     parts: tuple[tuple[Path, int, int], ...]
 
     def __iter__(self) -> Iterator[tuple[int, int, np.ndarray]]:

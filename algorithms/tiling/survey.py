@@ -37,50 +37,29 @@ class Source:
 
 @dataclass(frozen=True)
 class Window:
-    """The points of a survey that lie in a box.
+    """The points of a survey that lie in a box."""
 
-    Attributes
-    ----------
-    cloud : Cloud
-        Every measurement once, in an order that depends on neither the files nor their order.
-    source, position : ndarrays of shape (n,), int32 and int64
-        Of every record, the position of its file in the survey and its own in that file.
-    point : ndarray of shape (n,), int64
-        Which point of ``cloud`` a record is; records of one measurement in overlapping tiles are the same point.
-    """
-
-    cloud: Cloud
+    cloud: Cloud  #: Every measurement once, in an order that depends on neither the files nor their order
+    #: source, position, (n,), int32 and int64: Of every record, the position of its file in the survey and its own in
+    #: that file
     source: np.ndarray
     position: np.ndarray
+    #: (n,), int64: which point of ``cloud`` a record is; records of one measurement in overlapping tiles are the same
+    #: point
     point: np.ndarray
 
 
 @dataclass(frozen=True)
 class Survey:
-    """Files that are tiles of one cloud.
+    """Files that are tiles of one cloud."""
 
-    Attributes
-    ----------
-    sources : tuple of Source
-        The files.
-    header : Header
-        Of all points as one cloud: finest scale, all dimensions.
-    units : Units
-        Meters per unit of the coordinates.
-    wkt : str
-        Coordinate reference system, as :attr:`.Cloud.wkt`.
-    origin : float64 array, (3,)
-        What local coordinates are relative to, m.
-    extent : ndarray of shape (2, 2), optional
-        Only points within belong to the survey, edges included; least and greatest easting and northing in
-        coordinates of the files.
-    """
-
-    sources: tuple[Source, ...]
-    header: Header
-    units: Units
-    wkt: str
-    origin: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    sources: tuple[Source, ...]  #: The files
+    header: Header  #: Of all points as one cloud: finest scale, all dimensions
+    units: Units  #: Meters per unit of the coordinates
+    wkt: str  #: Coordinate reference system, as :attr:`.Cloud.wkt`
+    origin: np.ndarray = field(default_factory=lambda: np.zeros(3))  #: What local coordinates are relative to, m
+    #: (2, 2): only points within belong to the survey, edges included; least and greatest easting and northing in
+    #: coordinates of the files
     extent: Optional[np.ndarray] = None
 
     def __len__(self) -> int:

@@ -42,21 +42,14 @@ _MOST_PROCESSES = 61
 
 @dataclass(frozen=True)
 class Workers:
-    """Where blocks are worked on.
+    """Where blocks are worked on."""
 
-    Attributes
-    ----------
-    processes : int or None
-        Processes of this machine; None is one for each core that this program may use. With 1 the work is done in
-        this process.
-    scheduler : str
-        Address of a Dask scheduler ("tcp://host:8786", "tls://host:8786"); "" for processes of this machine.
-    certificates : tuple of str
-        For tls: files of the certificate authority, of this program's certificate and of its key.
-    """
-
+    #: Processes of this machine; None is one for each core that this program may use. With 1 the work is done in this
+    #: process.
     processes: Optional[int] = None
+    #: Address of a Dask scheduler ("tcp://host:8786", "tls://host:8786"); "" for processes of this machine
     scheduler: str = ""
+    #: For tls: files of the certificate authority, of this program's certificate and of its key
     certificates: tuple[str, ...] = ()
 
     @contextmanager

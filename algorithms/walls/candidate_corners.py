@@ -28,27 +28,14 @@ _PARALLEL = 1e-9
 
 @dataclass(frozen=True)
 class CandidateCorners:
-    """Intersections of the lines of one building, in pairs.
+    """Intersections of the lines of one building, in pairs."""
 
-    Attributes
-    ----------
-    position : ndarray of shape (k, 2)
-        Positions, m.
-    angle : ndarray of shape (k,)
-        Angle between the two lines, 0 to 90 degrees.
-    n_seen : ndarray of shape (k,)
-        How many of the two lines have wall points, 0 to 2.
-    gap : ndarray of shape (k,)
-        Distance to the nearest wall point on each line, the larger of the two, m; NaN where a line has no points.
-    outcome : list of str
-        What became of each.
-    """
-
-    position: np.ndarray
-    angle: np.ndarray
-    n_seen: np.ndarray
+    position: np.ndarray  #: (k, 2): positions, m
+    angle: np.ndarray  #: (k,): angle between the two lines, 0 to 90 degrees
+    n_seen: np.ndarray  #: (k,): how many of the two lines have wall points, 0 to 2
+    #: (k,): distance to the nearest wall point on each line, the larger of the two, m; NaN where a line has no points
     gap: np.ndarray
-    outcome: list[str]
+    outcome: list[str]  #: What became of each
 
 
 def candidate_corners(outline: WallOutline, rejected: str = "") -> CandidateCorners:

@@ -28,17 +28,10 @@ _FINE = 0.6
 
 @dataclass(frozen=True)
 class RoofOutline:
-    """The outline of a roof.
+    """The outline of a roof."""
 
-    Attributes
-    ----------
-    parts : list of list of ndarray
-        The rings of its parts, the largest part first: closed (m), the exterior first.
-    sides : ndarray of shape (k, 2, 2)
-        Start and end (m) of the sides of the largest part, drawn more finely, with the roof to the left.
-    """
-
-    parts: list[list[np.ndarray]]
+    parts: list[list[np.ndarray]]  #: The rings of its parts, the largest part first: closed (m), the exterior first
+    #: (k, 2, 2): start and end (m) of the sides of the largest part, drawn more finely, with the roof to the left
     sides: np.ndarray
 
 

@@ -17,28 +17,15 @@ _CORNER_SHARE = 0.25
 
 @dataclass(frozen=True)
 class WallEdge:
-    """One edge of a footprint.
+    """One edge of a footprint."""
 
-    Attributes
-    ----------
-    start, end : ndarray of shape (2,)
-        Its corners, m.
-    quality : float
-        Share of it that has wall points, corners left out, 0 to 1.
-    points : int
-        Wall points on it.
-    deviation : float
-        Standard deviation of these across it, m; NaN without any.
-    precision : float
-        Standard deviation of its own place across, m; NaN without points.
-    """
-
+    #: start, end, (2,): its corners, m
     start: np.ndarray
     end: np.ndarray
-    quality: float
-    points: int
-    deviation: float
-    precision: float
+    quality: float  #: Share of it that has wall points, corners left out, 0 to 1
+    points: int  #: Wall points on it
+    deviation: float  #: Standard deviation of these across it, m; NaN without any
+    precision: float  #: Standard deviation of its own place across, m; NaN without points
 
 
 def closed(ring: list[WallEdge]) -> np.ndarray:

@@ -62,29 +62,14 @@ _ONE_WALL = 0.45
 
 @dataclass(frozen=True)
 class WallLine:
-    """A straight wall in plan.
+    """A straight wall in plan."""
 
-    Parameters
-    ----------
-    point : ndarray of shape (2,)
-        Middle of its points, m.
-    direction : ndarray of shape (2,)
-        Unit vector.
-    points : ndarray of shape (k,)
-        Numbers of the wall points on it; none where it was derived from the roof.
-    along : ndarray of shape (k,)
-        Where these lie along the direction from the middle, m.
-    deviation : float
-        Standard deviation of the points across the line, m.
-    expected : bool
-        Whether a side of the roof runs as far outside of it as the roof juts out over the other walls.
-    """
-
-    point: np.ndarray
-    direction: np.ndarray
-    points: np.ndarray
-    along: np.ndarray
-    deviation: float
+    point: np.ndarray  #: (2,): middle of its points, m
+    direction: np.ndarray  #: (2,): unit vector
+    points: np.ndarray  #: (k,): numbers of the wall points on it; none where it was derived from the roof
+    along: np.ndarray  #: (k,): where these lie along the direction from the middle, m
+    deviation: float  #: Standard deviation of the points across the line, m
+    #: Whether a side of the roof runs as far outside of it as the roof juts out over the other walls
     expected: bool = False
 
     @property

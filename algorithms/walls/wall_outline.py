@@ -41,26 +41,13 @@ _AS_EXPECTED = 0.15
 
 @dataclass(frozen=True)
 class WallOutline:
-    """The outline of one building's walls.
+    """The outline of one building's walls."""
 
-    Attributes
-    ----------
-    rings : list of list of WallEdge
-        Edges in order, exteriors first.
-    overhang : float
-        Overhang of the roof, m.
-    lines : list of WallLine
-        All lines that the outline could have been made of.
-    scale : Scale
-        Tolerance and bins of this building's walls.
-    low, high : ndarray of shape (2,)
-        Corners of the rectangle that holds the roof and the room around it, m.
-    """
-
-    rings: list[list[WallEdge]]
-    overhang: float
-    lines: list[WallLine]
-    scale: Scale
+    rings: list[list[WallEdge]]  #: Edges in order, exteriors first
+    overhang: float  #: Overhang of the roof, m
+    lines: list[WallLine]  #: All lines that the outline could have been made of
+    scale: Scale  #: Tolerance and bins of this building's walls
+    #: low, high, (2,): corners of the rectangle that holds the roof and the room around it, m
     low: np.ndarray
     high: np.ndarray
 
