@@ -52,7 +52,7 @@ test-core: ## the tests of the core with CORE_PYTHON, which needs no QGIS but re
 
 test-pythons: ## the tests of the core with the oldest and the newest Python and numpy, in Debian's own builds (in .pythons)
 	@scripts/other_python.sh bullseye 3.9 .pythons 'numpy==1.24.*' 'scipy==1.10.*' 'scikit-learn==1.2.*' 'laspy==2.5.*' $(OF_TESTS) -- -n auto $(CORE_TESTS)
-	@scripts/other_python.sh trixie 3.13 .pythons 'numpy>=2' scipy scikit-learn 'laspy<3' $(OF_TESTS) -- -n auto $(CORE_TESTS)
+	@scripts/other_python.sh trixie 3.13 .pythons 'numpy>=2' scipy scikit-learn 'laspy<3' 'pysfcgal==2.3.*' $(OF_TESTS) -- -n auto $(CORE_TESTS)
 
 lint: $(VENV)/made ## ruff, mypy, spelling, and words that make text hard to read
 	@$(VENV)/bin/ruff check .

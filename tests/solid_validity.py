@@ -2,16 +2,14 @@
 
 import itertools
 import json
-import re
+import sys
 
 import numpy as np
-from pysfcgal.geometry import Geometry
-from scipy.spatial import cKDTree
 
 PLANAR = 0.01
 
-# Triangles of a face turn by no more than this from its plane (°), the default of val3dity.
-MOST_TURN = 20.0
+# The Python 3.9 that "make test-pythons" takes has an older C library than wheels of PySFCGAL need.
+WITH_SFCGAL = sys.version_info >= (3, 10)
 
 # A cube of 1 m, and its sides seen from outside.
 CUBE = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], float)
@@ -27,7 +25,10 @@ def assert_valid_solid(vertices, faces):
         assert_plane_and_simple(vertices, rings)
     assert signed_volume(vertices, faces) > 0, "the faces look inward"
     assert_no_crossing(vertices, faces)
-    assert_valid_for_sfcgal(vertices, faces)
+    if WITH_SFCGAL:
+        from .sfcgal_solids import assert_valid_for_sfcgal
+
+        assert_valid_for_sfcgal(vertices, faces)
 
 
 def edges_of(rings):
@@ -159,47 +160,6 @@ def deep_inside(place, rings):
             if (a[1] > place[1]) != (b[1] > place[1]):
                 odd ^= bool(place[0] < a[0] + (place[1] - a[1]) * (b[0] - a[0]) / (b[1] - a[1]))
     return odd
-
-
-def assert_valid_for_sfcgal(vertices, faces):
-    """A second opinion, with exact arithmetic: the solid of the constrained Delaunay triangles of all faces is valid.
-
-    The triangles turn from the planes of their faces by no more than val3dity allows.
-    """
-    triangles = []
-    for rings in faces:
-        normal = sum(newell(vertices[ring]) for ring in rings)
-        of_face = triangulated(vertices, rings)
-        for a, b, c in of_face:
-            across = np.cross(vertices[b] - vertices[a], vertices[c] - vertices[a])
-            cosine = across @ normal / (np.linalg.norm(across) * np.linalg.norm(normal))
-            assert cosine > np.cos(np.deg2rad(MOST_TURN)), f"a triangle turns by {np.degrees(np.arccos(cosine)):.0f}°"
-        triangles += of_face
-    # Vertices are rounded where files round them, relative to a corner nearby.
-    local = vertices - np.floor(vertices.min(axis=0))
-    texts = [
-        "((" + ",".join("{:.4f} {:.4f} {:.4f}".format(*local[v]) for v in (*ring, ring[0])) + "))" for ring in triangles
-    ]
-    solid = Geometry.from_wkt("SOLID Z((" + ",".join(texts) + "))")
-    assert solid.is_valid(), str(solid.is_valid_detail()[0])[:200]
-
-
-def triangulated(vertices, rings):
-    """Return the constrained Delaunay triangles of a face in its plane, by CGAL."""
-    if len(rings) == 1 and len(rings[0]) == 3:
-        return [list(rings[0])]
-    normal = sum(newell(vertices[ring]) for ring in rings)
-    used = sorted({v for ring in rings for v in ring})
-    plan = dict(zip(used, in_plane(vertices[used] - vertices[used[0]], normal / np.linalg.norm(normal))))
-    texts = ["(" + ",".join("{:.9f} {:.9f}".format(*plan[v]) for v in (*ring, ring[0])) + ")" for ring in rings]
-    mesh = Geometry.from_wkt("POLYGON(" + ",".join(texts) + ")").tessellate()
-    tree = cKDTree(list(plan.values()))
-    triangles = []
-    for text in re.findall(r"\(\(([^()]*)\)\)", mesh.to_wkt(9)):
-        corners = np.array([[float(value) for value in place.split()] for place in text.split(",")[:3]])
-        numbers = [used[k] for k in tree.query(corners[:, :2])[1]]
-        triangles.append(numbers if turn(*(plan[v] for v in numbers)) > 0 else numbers[::-1])
-    return triangles
 
 
 # Surfaces that levels of detail below 3 don't have, and level 3 may have.

@@ -6,7 +6,6 @@ import pytest
 from lidar_buildings.tests.solid_validity import (
     CUBE,
     SIDES,
-    assert_valid_for_sfcgal,
     assert_valid_solid,
     assert_vertices_have_one_umbrella,
 )
@@ -34,23 +33,6 @@ def test_a_hole_may_touch_the_edge_of_its_face():
     faces = [[ring] for ring in SIDES]
     faces[1].append(hole)
     assert_valid_solid(vertices, faces + pit)
-
-
-def test_sfcgal_sees_a_spike_through_the_bottom():
-    """The tip of an upturned pyramid in the top of a cube lies below its bottom."""
-    sides = [[4, 5, 8], [5, 7, 8], [7, 6, 8], [6, 4, 8]]
-    vertices = np.concatenate([CUBE, [[0.5, 0.5, -0.5]]])
-    faces = [[ring] for ring in [SIDES[0], *SIDES[2:], *sides]]
-    with pytest.raises(AssertionError, match="self intersects"):
-        assert_valid_for_sfcgal(vertices, faces)
-
-
-def test_a_triangle_that_stands_on_a_face_is_refused():
-    """A corner 2 mm above the top and 5 mm beside another one turns a triangle by 22°."""
-    vertices = np.concatenate([CUBE, [[0.995, 1, 1.002]]])
-    faces = [SIDES[0], [4, 5, 7, 8, 6], *SIDES[2:4], [3, 2, 6, 8, 7], SIDES[5]]
-    with pytest.raises(AssertionError, match="a triangle turns by"):
-        assert_valid_for_sfcgal(vertices, [[ring] for ring in faces])
 
 
 def test_a_repeated_vertex_does_not_go_on_forever():

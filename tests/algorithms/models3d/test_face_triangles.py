@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from lidar_buildings.algorithms.models3d.face_triangles import triangulate_face
-from lidar_buildings.tests.solid_validity import triangulated
 
 SQUARE = [(0, 0), (4, 0), (4, 4), (0, 4)]
 
@@ -32,19 +31,3 @@ def test_a_hole_that_touches_the_boundary_stays_a_hole(touches):
     size = abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
     rings = [list(range(4)), list(range(4, 8))]
     assert area_of([*SQUARE, *hole], rings)[0] == pytest.approx(16 - size)
-
-
-@pytest.mark.parametrize("seed", range(5))
-def test_triangles_are_those_of_cgal(seed):
-    """A sloping star with a hole: of all triangulations, the constrained Delaunay one has the widest angles."""
-    rng = np.random.default_rng(seed)
-    angle = np.arange(24) * 2 * np.pi / 24
-    reach = np.concatenate([rng.uniform(4, 9, 24), rng.uniform(1, 3, 24)])
-    xy = reach[:, None] * np.column_stack([np.cos([*angle, *angle]), np.sin([*angle, *angle])])
-    vertices = np.column_stack([xy, xy @ [0.5, 0.2]])
-    rings = [list(range(24)), list(range(47, 23, -1))]
-    ours, theirs = (
-        {frozenset(corners) for corners in made(vertices, rings)} for made in (triangulate_face, triangulated)
-    )
-    assert len(ours) == 24 + 24
-    assert ours == theirs
