@@ -22,7 +22,7 @@ _HRUTKA = (
 _VOSSELMAN = (
     "Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner "
     "point clouds. International Archives of Photogrammetry, Remote Sensing and Spatial Information Sciences "
-    "46 (8/W2), 33-38."
+    "36 (8/W2), 33-38."
 )
 
 _PETERS = (
