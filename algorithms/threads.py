@@ -19,6 +19,9 @@ from .stage import Cancelled, Monitor
 _MOST_THREADS = 32
 
 
+# Positions that a thread searches the neighbors of, at least: starting it takes as long as searching for a few hundred.
+_SEARCHED = 5_000
+
 # Seconds between two looks at whether the user wants to stop.
 _BETWEEN_LOOKS = 0.2
 
@@ -33,6 +36,11 @@ def n_threads() -> int:
     # Where batch systems and containers give a process some of the cores, only Linux shows which.
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     return min(cores, _MOST_THREADS)
+
+
+def searchers(count: int) -> int:
+    """Return how many threads search the neighbors of ``count`` positions: no more than are worth starting."""
+    return max(1, min(n_threads(), count // _SEARCHED))
 
 
 def use_threads(count: Optional[int]) -> None:
@@ -105,7 +113,9 @@ def made_ahead(work: Callable[[int, Monitor], Any], count: int, monitor: Monitor
     """
     if count < 2 or n_threads() < 2:
         for item in range(count):
-            yield work(item, monitor.part(item / count, (item + share) / count))
+            made = work(item, monitor.part(item / count, (item + share) / count))
+            monitor.progress((item + share) / count)
+            yield made
         return
     stop, pool, ahead = Event(), ThreadPoolExecutor(n_threads()), n_threads()
     heard = [_Thread(stop) for _ in range(count)]

@@ -18,7 +18,7 @@ from ..sampling.cloud_sampling import CloudSampling
 from ..sampling.density import point_spacing
 from ..stage import Layer, LayerFeatures, Monitor, Param, stage
 from ..threads import made_ahead
-from .drawn_blocks import Drawing, draw_block
+from .drawn_blocks import Drawing, Outlined, draw_block
 from .footprint_attributes import FIELDS, PointMeasures, footprint_attributes
 from .outline_pieces import Piece, blocks_of, find_pieces
 from .roof_points import edge_weights, find_non_building_points, find_roof_points, topmost
@@ -48,8 +48,8 @@ _INFLUENCE = 0.5
 # Name of the mean distance of building points of the whole.
 _ROOF_SPACING = "roof_spacing"
 
-# Share of the progress that the evidence takes; drawing takes the rest.
-_TRACING = 0.4
+# Progress when the evidence is found, and when the outlines are drawn; attributes take the rest.
+_TRACING, _DRAWN = 0.4, 0.9
 
 
 @stage(
@@ -193,22 +193,30 @@ def extract_footprints(
     measures = PointMeasures(xyz, sampling.corner, height_above_ground, cluster_entropy, confidence, reason)
     cluster = np.ones(len(building), np.int64) if cluster_id is None else cluster_id[building].astype(np.int64)
     parts = _parts(measures, classification, building, cluster, spacing)
-    evidence = made_ahead(lambda number, _: _evidence_of(parts[number], measures, how), len(parts), monitor, _TRACING)
-    seen = [one for one in evidence]
+    traced = monitor.part(0.0, _TRACING)
+    seen = list(made_ahead(lambda number, _: _evidence_of(parts[number], measures, how), len(parts), traced))
     directions = _shared_directions(seen) if regularize else [dict.fromkeys(one.shares, np.zeros(0)) for one in seen]
-    rings: list = []
-    attributes: list = []
-    for number, (part, one, own) in enumerate(zip(parts, seen, directions)):
-        houses = _houses(part, one, own, measures, how) if not merge_touching else {}
-        outlines = [
+    # Threads work on the arrays of houses and attributes; drawing is many small calls, which hold the interpreter.
+    rows = made_ahead(
+        lambda number, _: _houses(parts[number], seen[number], directions[number], measures, how),
+        len(parts),
+        monitor.part(_TRACING, _DRAWN),
+    )
+    outlines = [
+        [
             outlined
             for block in blocks_of(one.pieces, spacing)
             for outlined in draw_block(block, one.shares, own, houses, how)
         ]
-        if outlines:
-            attributes += footprint_attributes(outlines, part.roof, part.members, measures, spacing)
-            rings += [[ring + sampling.corner for ring in outlined.rings] for outlined in outlines]
-        monitor.progress(_TRACING + (1 - _TRACING) * (number + 1) / len(parts))
+        for houses, one, own in zip(rows, seen, directions)
+    ]
+    described = made_ahead(
+        lambda number, _: _attributes(parts[number], outlines[number], measures, spacing),
+        len(parts),
+        monitor.part(_DRAWN, 1.0),
+    )
+    attributes = [one for of_part in described for one in of_part]
+    rings = [[ring + sampling.corner for ring in outlined.rings] for of_part in outlines for outlined in of_part]
     return _features(rings, attributes, min_area)
 
 
@@ -353,7 +361,9 @@ def _shared_directions(evidence: list[_Evidence]) -> list[dict[int, np.ndarray]]
 def _houses(
     part: _Part, evidence: _Evidence, directions: dict[int, np.ndarray], measures: PointMeasures, how: Drawing
 ) -> dict[int, Houses]:
-    """Return the houses of each building of a part."""
+    """Return the houses of each building of a part; none where blocks are to be whole."""
+    if how.is_merged:
+        return {}
     height = measures.over_lowest(part.roof, part.members)
     found = {}
     for number, shares in evidence.shares.items():
@@ -362,6 +372,11 @@ def _houses(
         is_inside = shares.share > shares.rest
         found[number] = split_row(shares.lattice, is_inside, plan, height[own], directions[number], how.spacing)
     return found
+
+
+def _attributes(part: _Part, outlines: list[Outlined], measures: PointMeasures, spacing: float) -> list[dict[str, Any]]:
+    """Return the attributes of the outlines of a part."""
+    return footprint_attributes(outlines, part.roof, part.members, measures, spacing) if outlines else []
 
 
 def _features(geometries: list, attributes: list[dict[str, Any]], min_area: float) -> LayerFeatures:

@@ -12,7 +12,7 @@ from ..geometry.groups import split_groups
 from ..geometry.rings import perimeter, signed_area
 from ..packages import ndimage, spatial
 from ..stage import Field
-from ..threads import n_threads
+from ..threads import searchers
 from .drawn_blocks import Outlined
 from .soft_shares import Lattice, smoothed
 
@@ -220,7 +220,7 @@ def _own_roof(roof: np.ndarray, plan: np.ndarray, shared: np.ndarray, spacing: f
     """
     if not len(shared) or not len(roof):
         return roof
-    inner = roof[spatial.cKDTree(shared).query(plan[roof], workers=n_threads())[0] > spacing]
+    inner = roof[spatial.cKDTree(shared).query(plan[roof], workers=searchers(len(roof)))[0] > spacing]
     return inner if len(inner) else roof
 
 
@@ -235,12 +235,13 @@ def _eave_heights(
     plan, height = plan[defined], height[defined]
     if not len(plan):
         return np.full(len(border), np.nan)
-    at_border = height[spatial.cKDTree(plan).query(border, workers=n_threads())[1]]
-    inner = spatial.cKDTree(along).query(plan, workers=n_threads())[0] >= _INNER * spacing
+    workers = searchers(len(border))
+    at_border = height[spatial.cKDTree(plan).query(border, workers=workers)[1]]
+    inner = spatial.cKDTree(along).query(plan, workers=searchers(len(plan)))[0] >= _INNER * spacing
     plan, height = plan[inner], height[inner]
     if not len(plan):
         return at_border
-    distance, beside = spatial.cKDTree(plan).query(border, min(_PLANE, len(plan)), workers=n_threads())
+    distance, beside = spatial.cKDTree(plan).query(border, min(_PLANE, len(plan)), workers=workers)
     distance, beside = distance.reshape(len(border), -1), beside.reshape(len(border), -1)
     weight = (distance <= _BESIDE * spacing).astype(float)
     factors = np.concatenate([np.ones((*weight.shape, 1)), plan[beside] - border[:, None]], axis=2)

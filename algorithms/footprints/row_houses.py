@@ -11,7 +11,7 @@ from typing import Optional
 
 import numpy as np
 
-from ..geometry.groups import components
+from ..geometry.groups import components, split_groups
 from ..geometry.line_segments import edge_distances, segments_meet
 from ..packages import ndimage, spatial
 from .soft_shares import Lattice
@@ -434,17 +434,34 @@ def _crossed(ends: np.ndarray, segments: np.ndarray) -> list:
     """Return for each party wall the segments (n, 2, 2) that lead across it."""
     middle, step = segments.mean(axis=1), ends[:, 1] - ends[:, 0]
     length = np.hypot(*step.T)
+    unit = step / length[:, None]
     half = np.hypot(*(segments[:, 1] - segments[:, 0]).T).max(initial=0.0) / 2
-    near = spatial.cKDTree(middle).query_ball_point(ends.mean(axis=1), length / 2 + half)
     found = []
-    for start, (x, y), size, beside in zip(ends[:, 0], step / length[:, None], length, near):
-        own = np.sort(np.array(beside, np.int64))
-        # Most lie too far from the line to cross it.
-        own = own[np.abs((middle[own] - start) @ [-y, x]) <= half]
+    for start, (x, y), size, beside in zip(ends[:, 0], unit, length, _beside_lines(ends[:, 0], unit, middle, half)):
+        own = np.sort(beside)
         offset = segments[own] - start
         side = x * offset[..., 1] - y * offset[..., 0] > 0
         along = (middle[own] - start) @ [x, y]
         found.append(own[(side[:, 0] != side[:, 1]) & (along >= 0) & (along <= size)])
+    return found
+
+
+def _beside_lines(start: np.ndarray, unit: np.ndarray, positions: np.ndarray, within: float) -> list:
+    """Return for each line, from a start (w, 2) in a direction (w, 2), the positions (n, 2) not farther than that (m).
+
+    Lines in few directions: along each of these, positions are sorted once.
+    """
+    found = [np.zeros(0, np.int64)] * len(unit)
+    # From the first start, so that what rounding of the direction leads away by is less than the room left for it.
+    _, group = np.unique(np.round(unit, 9), axis=0, return_inverse=True)
+    for own in split_groups(group.ravel(), int(group.max()) + 1):
+        normal = np.array([-unit[own[0], 1], unit[own[0], 0]])
+        across = (positions - start[0]) @ normal
+        order = np.argsort(across)
+        at, room = (start[own] - start[0]) @ normal, within + 1e-6
+        low, high = np.searchsorted(across[order], [at - room, at + room])
+        for line, first, last in zip(own.tolist(), low.tolist(), high.tolist()):
+            found[line] = order[first:last]
     return found
 
 

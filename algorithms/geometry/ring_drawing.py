@@ -235,35 +235,44 @@ class _Chain:
             ends = batch[at : at + _SHORTEST]
             rows, columns = starts.rows(at), slice(at, at + len(ends))
             firsts, of = starts.samples[rows], np.arange(len(ends))[:, None]
-            before = begun[firsts][:, None]
-            total = before + allowed[rows, columns]
+            before = begun[firsts]
+            total = before[:, None] + allowed[rows, columns]
             best = total.argmin(axis=0)
             cost[ends] = reached = total[best, of, every]
             came[ends] = firsts[best]
             turns = reached[:, :, None] + self.ways.turn
             turned[ends] = way = turns.argmin(axis=1)
             begun[ends] = begins = turns[of, way, every]
-            # A run from a later sample on costs no more: runs that are farther off begin there.
-            is_behind = (before + least[rows, columns] >= begins).all(axis=2) & (ends - firsts[:, None] >= _SHORTEST)
-            starts.leave_out(rows[is_behind.any(axis=1)])
-        last = cost[length] + end
-        return float(last.min()), self._traced(last, came, turned)
+            # A run from the last of these on costs no more: runs that are farther off begin there.
+            last = len(ends) - 1
+            is_behind = self._is_no_less(before, [cost[rows, at + last] for cost in least], begins[last])
+            starts.leave_out(rows[is_behind & (ends[last] - firsts >= _SHORTEST)])
+        whole = cost[length] + end
+        return float(whole.min()), self._traced(whole, came, turned)
 
-    def _run_costs(self, firsts: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return what runs from samples (a,) to samples (b,) cost by each way (a, b, k): those that can be, and all.
+    def _is_no_less(self, before: np.ndarray, least: list[np.ndarray], begins: np.ndarray) -> np.ndarray:
+        """Return which starts (a,) reach an end at no less cost by any way than a run that begins there has (k,).
 
-        Of all other ways, only the one nearest to the line that fits best can be.
+        ``before`` (a, k) is what it costs to begin at these starts, ``least`` what their runs cost by each main way
+        (a, m) and by the others (a,).
         """
-        n_fixed, shape = self.ways.n_fixed, (len(firsts), len(ends))
+        (fixed, free), n_fixed = least, self.ways.n_fixed
+        is_fixed = (before[:, :n_fixed] + fixed >= begins[:n_fixed]).all(axis=1)
+        return is_fixed & (before[:, n_fixed:] + free[:, None] >= begins[n_fixed:]).all(axis=1)
+
+    def _run_costs(self, firsts: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
+        """Return what runs from samples (a,) to samples (b,) cost by each way (a, b, k), infinite where they can't be.
+
+        Of all other ways, only the one nearest to the line that fits best can be. What the runs cost, whether they can
+        be or not, follows for each main way (a, b, m) and for the others (a, b).
+        """
         fixed, is_run = self._fixed_costs(firsts, ends)
         free, way, is_free_run = self._free_costs(firsts, ends)
-        least = np.empty((*shape, len(self.ways.price)))
-        least[..., :n_fixed], least[..., n_fixed:] = fixed, free[..., None]
-        allowed = np.full_like(least, np.inf)
-        allowed[..., :n_fixed][is_run] = fixed[is_run]
+        allowed = np.full((*free.shape, len(self.ways.price)), np.inf)
+        np.copyto(allowed[..., : self.ways.n_fixed], fixed, where=is_run)
         row, column = np.nonzero(is_free_run)
         allowed[row, column, way[row, column]] = free[row, column]
-        return allowed, least
+        return allowed, (fixed, free)
 
     def _fixed_costs(self, firsts: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return what runs from samples (a,) to samples (b,) by each main way cost (a, b, k), and which can be."""

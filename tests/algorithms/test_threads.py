@@ -8,7 +8,7 @@ import pytest
 
 from lidar_buildings.algorithms import threads
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
-from lidar_buildings.algorithms.threads import in_chunks, made_ahead, n_threads, use_threads
+from lidar_buildings.algorithms.threads import in_chunks, made_ahead, n_threads, searchers, use_threads
 from lidar_buildings.tests.monitors import Listening
 
 
@@ -23,6 +23,11 @@ def test_each_row_is_worked_on_once(rng, size):
     np.testing.assert_array_equal(seen, 1)
     n_chunks = -(-100 // size)
     np.testing.assert_allclose(monitor.heard, np.arange(1, n_chunks + 1) / n_chunks)
+
+
+def test_few_positions_start_no_threads(monkeypatch):
+    monkeypatch.setattr(threads, "_TOLD", [4])
+    assert [searchers(count) for count in (0, 9_999, 10_000, 1_000_000)] == [1, 1, 2, 4]
 
 
 def test_without_rows_no_work_is_called():
