@@ -54,13 +54,7 @@ def pipeline_help(pipeline: Pipeline, made: Optional[list[str]] = None) -> str:
         in_order = sorted(pipeline.outputs, key=lambda output: output.name != "output")
         made = [output_text(pipeline, output) for output in in_order]
     return "\n".join(
-        part
-        for part in (
-            *parts,
-            _list("Outputs", made),
-            _section("References", pipeline.references),
-        )
-        if part
+        part for part in (*parts, _list("Outputs", made), _section("References", pipeline.references)) if part
     )
 
 

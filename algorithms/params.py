@@ -59,8 +59,7 @@ PointDensity = Annotated[
 ]
 
 MinBuildingArea = Annotated[
-    float,
-    Param("Minimum building area", "Area of the smallest building to be found.", unit="m²", low=0.1, high=10_000),
+    float, Param("Minimum building area", "Area of the smallest building to be found.", unit="m²", low=0.1, high=10_000)
 ]
 
 PointSource = Annotated[
@@ -124,13 +123,7 @@ BridgeHeight = Annotated[
 
 BridgeWidth = Annotated[
     float,
-    Param(
-        "Maximum bridge width",
-        "Width of the widest bridge; 0 looks for no bridges.",
-        unit="m",
-        low=0,
-        high=1000,
-    ),
+    Param("Maximum bridge width", "Width of the widest bridge; 0 looks for no bridges.", unit="m", low=0, high=1000),
 ]
 
 BridgeArea = Annotated[
@@ -158,8 +151,7 @@ IgnoredClasses = Annotated[
 ]
 
 FacadeTilt = Annotated[
-    float,
-    Param("Maximum tilt", "Largest angle of a facade to the vertical.", unit="°", low=0, high=45),
+    float, Param("Maximum tilt", "Largest angle of a facade to the vertical.", unit="°", low=0, high=45)
 ]
 
 FacadeGap = Annotated[

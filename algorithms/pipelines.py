@@ -206,11 +206,7 @@ _PIPELINES = (
             Step("footprints", "extract_wall_footprints"),
             Step("comparison", "compare_corners", layers={"footprints": "footprints.wall_footprints"}),
         ),
-        shared={
-            "min_area": ("roofs", "footprints"),
-            "split_height": ("roofs", "walls"),
-            "source": ("ground", "roofs"),
-        },
+        shared={"min_area": ("roofs", "footprints"), "split_height": ("roofs", "walls"), "source": ("ground", "roofs")},
         shown=("min_area", "voxels_voxel_size", "ground_max_building_size", "split_height", "footprints_min_seen"),
         kept=("noise", "voxels", "ground", "height", "planes", "roofs"),
         switched_off=("candidate_corners",),
@@ -231,10 +227,7 @@ _PIPELINES = (
             "Peng, C., Yu, Z., 2018. Research on 3D building information extraction and image post-processing based on "
             "vehicle LIDAR. EURASIP Journal on Image and Video Processing 2018:121."
         ),
-        steps=(
-            Step("planes", "extract_facades"),
-            Step("openings", "extract_openings"),
-        ),
+        steps=(Step("planes", "extract_facades"), Step("openings", "extract_openings")),
         shared={
             name: ("planes", "openings")
             for name in ("max_tilt", "max_gap", "edge_factor", "corner_distance", "boundary", "complete")

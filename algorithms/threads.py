@@ -18,7 +18,6 @@ from .stage import Cancelled, Monitor
 # than the cloud.
 _MOST_THREADS = 32
 
-
 # Positions that a thread searches the neighbors of, at least: starting it takes as long as searching for a few hundred.
 _SEARCHED = 5_000
 

@@ -32,11 +32,9 @@ class EntropyRules:
 
 ENTROPY = EntropyRules()
 
-
 # Points of each cluster whose entropy is measured, about. Those of a cluster scatter by 0.15: a mean of 256 is good to
 # 0.01, half of what K-means moves the threshold by.
 _MEASURED = 256
-
 
 _MaxPenetration = Annotated[
     float,
@@ -86,8 +84,7 @@ def classify_buildings(
     *,
     min_area: MinBuildingArea = 4.0,
     n_neighbors: Annotated[
-        Optional[int],
-        nearest_points("the smallest neighborhood in which neither noise nor scan lines blur a plane."),
+        Optional[int], nearest_points("the smallest neighborhood in which neither noise nor scan lines blur a plane.")
     ] = None,
     max_penetration: _MaxPenetration = 0.4,
     min_share_around: _MinShareAround = 0.4,

@@ -17,7 +17,6 @@ from .two_means import k_means, two_means
 # A covariance of full rank takes more than three points; three are the fewest that have eigenvalues to compare.
 _MIN_NEIGHBORS = 3
 
-
 _SPLITS = {"exact": two_means, "k-means": k_means}
 
 # Neighborhoods of 4 m², in sparse clouds more (m).

@@ -67,11 +67,7 @@ def complete_buildings(
     roof_clearance: Annotated[
         float,
         Param(
-            "Clearance above the roof",
-            "Points up to this far above the roof belong to it.",
-            unit="m",
-            low=0,
-            high=20,
+            "Clearance above the roof", "Points up to this far above the roof belong to it.", unit="m", low=0, high=20
         ),
     ] = 1.0,
     structure_height: Annotated[

@@ -23,7 +23,6 @@ class SplitRules:
 
 SPLIT = SplitRules()
 
-
 # Names of the two means among what parts of a cloud take of the whole.
 MEAN_ENTROPIES = ("building_entropy", "other_entropy")
 

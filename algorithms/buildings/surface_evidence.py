@@ -41,11 +41,7 @@ def decide_in_images(
     is_candidate = is_surface & ~is_green
     share = evidence.share_around(is_candidate)
     is_building = is_candidate & (share >= min_share)
-    found = {
-        Reason.GREEN: is_green,
-        Reason.SURFACE: is_building,
-        Reason.AMID_OTHERS: is_candidate,
-    }
+    found = {Reason.GREEN: is_green, Reason.SURFACE: is_building, Reason.AMID_OTHERS: is_candidate}
     reasons = np.select(list(found.values()), list(found), Reason.ROUGH).astype(np.uint8)
     confidence = np.where(is_building, 0.5 + 0.5 * np.maximum(share, 0.02), 0.5 * share)
     return Decisions(confidence, reasons)

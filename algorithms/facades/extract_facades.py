@@ -66,15 +66,7 @@ FACADE_FIELDS = (
     tags="facade,wall,street,mobile mapping,terrestrial,TIN,convex hull,boundary,polygon,3D,Peng",
     writes=("segment_id",),
     layers=(
-        Layer(
-            "facades",
-            "Facades",
-            "Polygon",
-            FACADE_FIELDS,
-            style="facades",
-            deviation="rms",
-            around=AROUND_CORNER,
-        ),
+        Layer("facades", "Facades", "Polygon", FACADE_FIELDS, style="facades", deviation="rms", around=AROUND_CORNER),
     ),
     reach=_AROUND,
 )

@@ -77,8 +77,7 @@ def extract_openings(
         ),
     ] = 0.8,
     min_size: Annotated[
-        float,
-        Param("Minimum size", "Least width and height of a window or door.", unit="m", low=0.05, high=10),
+        float, Param("Minimum size", "Least width and height of a window or door.", unit="m", low=0.05, high=10)
     ] = 0.4,
     max_tilt: FacadeTilt = 10.0,
     max_gap: FacadeGap = 1.0,

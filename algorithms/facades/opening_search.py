@@ -120,13 +120,7 @@ class Raster:
         return np.where(self.behind, label, 0), count
 
 
-def find_openings(
-    facade: Facade,
-    xyz: np.ndarray,
-    rows: np.ndarray,
-    max_depth: float,
-    min_size: float,
-) -> list:
+def find_openings(facade: Facade, xyz: np.ndarray, rows: np.ndarray, max_depth: float, min_size: float) -> list:
     """Return the openings of a facade, from its left to its right.
 
     Parameters

@@ -78,8 +78,7 @@ def register_street(
         ),
     ] = 3.0,
     min_size: Annotated[
-        float,
-        Param("Minimum size", "Least width and height of a window or door.", unit="m", low=0.05, high=10),
+        float, Param("Minimum size", "Least width and height of a window or door.", unit="m", low=0.05, high=10)
     ] = 0.4,
     monitor=None,
 ):

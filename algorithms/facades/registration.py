@@ -69,11 +69,7 @@ class _Common:
 
 
 def register(
-    walls: PlanSegments,
-    outlines: PlanSegments,
-    street: np.ndarray,
-    ground: np.ndarray,
-    max_shift: float,
+    walls: PlanSegments, outlines: PlanSegments, street: np.ndarray, ground: np.ndarray, max_shift: float
 ) -> Optional[Registration]:
     """Return the shift of a street scan, None where it has no wall in common with the outlines.
 

@@ -33,7 +33,6 @@ _LEAST_FACADE = 0.5
 KINDS = ("other", "ground", "facade")
 _OTHER, _GROUND, _FACADE = range(3)
 
-
 LINE_FIELDS = (
     Field("id", int, "SegmentID of its points"),
     Field("line", int, "Number of the scan line, from 1, by scanner and time"),
@@ -107,8 +106,7 @@ def segment_facade_lines(
         ),
     ] = 1.5,
     min_points: Annotated[
-        int,
-        Param("Minimum points", "Points of the shortest segment; shorter ones are stray points.", low=3, high=1000),
+        int, Param("Minimum points", "Points of the shortest segment; shorter ones are stray points.", low=3, high=1000)
     ] = 5,
     monitor=None,
 ):

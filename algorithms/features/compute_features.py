@@ -46,11 +46,9 @@ _FEATURES = (
 # Features that need more than the covariance.
 _OF_EXTENT = {"height_range", "plan_radius", "plan_density"}
 
-
 # How far a neighborhood reaches (m) where its radius is not set: the 50 points of one by default lie that close on
 # surfaces with 0.64 points per square meter and more, the 100 of 'optimal' with 1.3.
 _REACH = 5.0
-
 
 _Radius = Annotated[
     Optional[float],
@@ -129,8 +127,7 @@ def compute_features(
     ] = 100,
     neighbors_step: _NeighborsStep = 1,
     features: Annotated[
-        tuple[str, ...],
-        Param("Features", "What to compute; each becomes a dimension of the cloud.", choices=_FEATURES),
+        tuple[str, ...], Param("Features", "What to compute; each becomes a dimension of the cloud.", choices=_FEATURES)
     ] = ("linearity", "planarity", "scattering", "entropy", "surface_variation", "verticality"),
     sampling: Optional[CloudSampling] = None,
     monitor=None,

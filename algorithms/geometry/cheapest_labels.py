@@ -15,7 +15,6 @@ _STEPS, _STEPS_OF_LABELS, _LARGEST = 1000, 10_000, 3e8
 # Sweeps over all labels; costs hardly change after the second one.
 _SWEEPS = 4
 
-
 # Returns what two labels (k,) on the two sides of some edges (k,) cost (k,).
 Border = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 

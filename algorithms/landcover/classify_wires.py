@@ -47,8 +47,7 @@ def classify_wires(
         bool, Param("Look for wires", "Without it no class changes: for models that have this step.")
     ] = True,
     min_height: Annotated[
-        float,
-        Param("Minimum height", "Height above the ground of the lowest wires.", unit="m", low=1, high=100),
+        float, Param("Minimum height", "Height above the ground of the lowest wires.", unit="m", low=1, high=100)
     ] = 4.0,
     noise: SurfaceNoise = None,
     seed: Seed = 0,

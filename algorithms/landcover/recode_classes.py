@@ -24,11 +24,7 @@ CODES: dict[str, dict[int, int]] = {
         int(PointClass.BRIDGE_DECK): 26,
     },
     # Lasting objects above the ground are 64, artefacts 65.
-    "IGN LiDAR HD (France)": {
-        0: _OTHER,
-        **{int(one): 64 for one in _WIRES},
-        **{int(one): 65 for one in _NOISE},
-    },
+    "IGN LiDAR HD (France)": {0: _OTHER, **{int(one): 64 for one in _WIRES}, **{int(one): 65 for one in _NOISE}},
     # The base specification has no class for plants and wires; buildings are an optional one.
     "USGS 3DEP (United States)": {int(one): _OTHER for one in (0, *_VEGETATION, *_WIRES)},
 }

@@ -25,13 +25,7 @@ _GAP_SPACINGS, _LEAST_GAP = 2.0, 0.5
     writes=("classification", "cluster_id"),
 )
 def restore_classes(
-    xyz,
-    classification,
-    cluster_id=None,
-    earlier_class=None,
-    *,
-    sampling: Optional[CloudSampling] = None,
-    monitor=None,
+    xyz, classification, cluster_id=None, earlier_class=None, *, sampling: Optional[CloudSampling] = None, monitor=None
 ):
     """Put back the classes that 'Keep classes' remembered.
 

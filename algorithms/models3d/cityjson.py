@@ -22,13 +22,7 @@ FORMATS = {CITYJSON: (".city.json", ".json"), CITYJSON_SEQ: (".city.jsonl", ".js
 # Vertices are whole numbers of this (map units), as solids have them: faces stay plane.
 _SCALE = 10.0**-DECIMALS
 
-_SURFACES = {
-    ROOF: "RoofSurface",
-    WALL: "WallSurface",
-    GROUND: "GroundSurface",
-    WINDOW: "Window",
-    DOOR: "Door",
-}
+_SURFACES = {ROOF: "RoofSurface", WALL: "WallSurface", GROUND: "GroundSurface", WINDOW: "Window", DOOR: "Door"}
 
 # Decimals of attributes.
 _DIGITS = 3

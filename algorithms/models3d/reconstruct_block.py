@@ -146,12 +146,7 @@ def reconstruct_block(
     fitted, seen = fitted_to_walls(footprints, segments)
     monitor.progress(0.1)
     buildings, _, roofs, models, _ = reconstruct_roofs(
-        xyz,
-        classification,
-        fitted,
-        min_plane_area=min_plane_area,
-        sampling=sampling,
-        monitor=monitor.part(0.1, 0.9),
+        xyz, classification, fitted, min_plane_area=min_plane_area, sampling=sampling, monitor=monitor.part(0.1, 0.9)
     )
     pierced, done = _pierced(models, _openings(openings))
     if not len(segments):

@@ -13,16 +13,7 @@ from ..geometry.rings import signed_area
 from ..packages import spatial
 from ..sampling.cloud_sampling import CloudSampling
 from ..sampling.density import point_spacing
-from ..stage import (
-    InputLayer,
-    Layer,
-    LayerFeatures,
-    Monitor,
-    Param,
-    TextFile,
-    feature_names,
-    stage,
-)
+from ..stage import InputLayer, Layer, LayerFeatures, Monitor, Param, TextFile, feature_names, stage
 from . import cityjson, wavefront
 from .building_facts import (
     BUILDING_FIELDS,
@@ -36,14 +27,7 @@ from .building_facts import (
     map_attributes,
 )
 from .building_models import LEVELS, Settings, model_building
-from .model_inputs import (
-    NO_AREA,
-    TOLERANCE_TEXT,
-    plane_tolerance,
-    require_buildings,
-    require_ground,
-    tell_without_area,
-)
+from .model_inputs import NO_AREA, TOLERANCE_TEXT, plane_tolerance, require_buildings, require_ground, tell_without_area
 from .roof_partition import inside_rings
 from .roof_points import are_low
 from .solids import ROOF, WALL
@@ -61,7 +45,6 @@ _NAMED = 5
 # Vertices of footprints nearer to each other than this (m) are one; those nearer to the line of their neighbors are
 # superfluous.
 _CLOSE = 0.01
-
 
 _Tolerance = Annotated[
     Optional[float],
@@ -138,17 +121,12 @@ def reconstruct_roofs(
     min_step: Annotated[
         float,
         Param(
-            "Minimum step",
-            "At level 1.3, parts of a roof that step by less are one part.",
-            unit="m",
-            low=0,
-            high=100,
+            "Minimum step", "At level 1.3, parts of a roof that step by less are one part.", unit="m", low=0, high=100
         ),
     ] = 3.0,
     top_percentile: _TopPercentile = 70.0,
     max_slope: Annotated[
-        float,
-        Param("Maximum slope", "Slope of the steepest roof plane.", unit="°", low=1, high=85, advanced=True),
+        float, Param("Maximum slope", "Slope of the steepest roof plane.", unit="°", low=1, high=85, advanced=True)
     ] = 75.0,
     tolerance: _Tolerance = None,
     id_field: Annotated[

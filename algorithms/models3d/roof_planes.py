@@ -128,12 +128,7 @@ class _Growth:
     """Growing of planes over the graph of nearest points."""
 
     def __init__(
-        self,
-        xyz: np.ndarray,
-        neighbors: np.ndarray,
-        normal: np.ndarray,
-        tolerance: float,
-        least_upward: float,
+        self, xyz: np.ndarray, neighbors: np.ndarray, normal: np.ndarray, tolerance: float, least_upward: float
     ) -> None:
         self.xyz, self.neighbors, self.normal = xyz, neighbors, normal
         self.tolerance, self.least_upward = tolerance, least_upward

@@ -30,7 +30,6 @@ class HistogramRules:
 
 HISTOGRAM = HistogramRules()
 
-
 # A cell borrows the histograms of the cells around it, which are some 5 to 10 m wide (m).
 _REACH = 10.0
 
@@ -183,12 +182,7 @@ def _automatic(
 
 
 def _beyond_scene(
-    points: np.ndarray,
-    cell_size: float,
-    bin_height: float,
-    min_frequency: int,
-    max_clearance: float,
-    monitor: Monitor,
+    points: np.ndarray, cell_size: float, bin_height: float, min_frequency: int, max_clearance: float, monitor: Monitor
 ) -> Optional[tuple[np.ndarray, np.ndarray, np.ndarray]]:
     """Return which points (n,) lie below the scene, which above it, and which not too far above to belong to it.
 

@@ -20,7 +20,6 @@ _POINTS_PER_CELL = 4000
 _MIN_BIN_HEIGHT = 1.0
 _BIN_SPACINGS = 2.0
 
-
 # A cell borrows the histograms of the cells around it, which are some 5 to 10 m wide (m).
 _REACH = 10.0
 

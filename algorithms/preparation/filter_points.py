@@ -83,8 +83,7 @@ def filter_points(
         ),
     ] = None,
     invert: Annotated[
-        bool,
-        Param("Invert", "Keep the points that any of the limits leaves out, and leave out the others."),
+        bool, Param("Invert", "Keep the points that any of the limits leaves out, and leave out the others.")
     ] = False,
     monitor=None,
 ):

@@ -32,10 +32,8 @@ _MEASURES = {
 # dense (points/m²) that ten points share a cell in which that is measured. Between the two kinds of clouds, see there.
 _MOST_SEEN_THROUGH, _LEAST_DENSITY = 0.02, 8.0
 
-
 # Files keep coordinates to a millimeter: rounding to it leaves this deviation (m).
 _LEAST_SCAN_NOISE = 0.001 / float(np.sqrt(12))
-
 
 # Returns the numbers that a table shows.
 Learn = Callable[[np.ndarray], tuple[float, ...]]

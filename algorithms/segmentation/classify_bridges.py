@@ -23,7 +23,6 @@ _NO_DECK = (
     PointClass.WATER,
 )
 
-
 # Where bridges are looked for.
 _EVERYWHERE, _OVER_GAPS = "everywhere", "gaps in the ground"
 

@@ -25,7 +25,6 @@ class MeasureRules:
 
 MEASURES = MeasureRules()
 
-
 # Width, depth and height (m) of the boxes in which points around a group are counted, with the 26 next to each: a house
 # or a tree is as wide, and trees are twice as high.
 _BOX = np.array([2.0, 2.0, 4.0])

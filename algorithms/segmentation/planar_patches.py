@@ -99,9 +99,7 @@ def _local_planes(xyz: np.ndarray, neighborhood: Union[Nearest, Wide], monitor: 
     tree = spatial.cKDTree(xyz, balanced_tree=False)
     columns = np.ascontiguousarray(xyz.T)
     made = _PointPlanes(
-        np.empty((len(xyz), 4)),
-        np.empty(len(xyz)),
-        np.empty((len(xyz), neighborhood.n_named), np.int32),
+        np.empty((len(xyz), 4)), np.empty(len(xyz)), np.empty((len(xyz), neighborhood.n_named), np.int32)
     )
 
     def work(rows: np.ndarray) -> None:

@@ -197,12 +197,7 @@ def grown_planes(
 
 
 def nearest_plane(
-    boxes: Boxes,
-    voxel: np.ndarray,
-    group: np.ndarray,
-    planes: Planes,
-    tolerance: float,
-    monitor: Monitor,
+    boxes: Boxes, voxel: np.ndarray, group: np.ndarray, planes: Planes, tolerance: float, monitor: Monitor
 ) -> np.ndarray:
     """Return the plane (n,), of those in its voxel and the voxels around, that each point lies nearest to.
 

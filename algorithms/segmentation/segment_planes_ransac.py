@@ -72,13 +72,11 @@ def segment_planes_ransac(
         Param("Maximum slope", "Slope of the steepest plane that is kept; 90° keeps walls.", unit="°", low=0, high=90),
     ] = 60.0,
     min_area: Annotated[
-        float,
-        Param("Minimum plane area", "Area of the smallest plane, measured on it.", unit="m²", low=0, high=10_000),
+        float, Param("Minimum plane area", "Area of the smallest plane, measured on it.", unit="m²", low=0, high=10_000)
     ] = 2.0,
     min_height: MinClusterHeight = 0.0,
     max_planes: Annotated[
-        int,
-        Param("Planes per voxel", "Planes that are looked for in one voxel.", low=1, high=20, advanced=True),
+        int, Param("Planes per voxel", "Planes that are looked for in one voxel.", low=1, high=20, advanced=True)
     ] = 4,
     trials: Annotated[
         int,
@@ -87,8 +85,7 @@ def segment_planes_ransac(
         ),
     ] = 100,
     normals: Annotated[
-        bool,
-        Param("Write normals", "Give each point the normal of its plane (NormalX, NormalY, NormalZ)."),
+        bool, Param("Write normals", "Give each point the normal of its plane (NormalX, NormalY, NormalZ).")
     ] = False,
     seed: Seed = 1,
     sampling: Optional[CloudSampling] = None,

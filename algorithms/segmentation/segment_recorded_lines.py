@@ -35,7 +35,6 @@ _LINES = 3.0
 # Steps between points of a line at most, in the same distances and in median steps of the lines.
 _LINE_GAPS, _STEP_GAPS = 3.0, 10.0
 
-
 _Tolerance = Annotated[
     Optional[float],
     Param(
@@ -104,15 +103,11 @@ def segment_recorded_lines(
     min_overlap: Annotated[
         float,
         Param(
-            "Minimum overlap",
-            "Share of the shorter of two pieces of a seed that lies beside the other.",
-            low=0,
-            high=1,
+            "Minimum overlap", "Share of the shorter of two pieces of a seed that lies beside the other.", low=0, high=1
         ),
     ] = 0.5,
     min_piece: Annotated[
-        int,
-        Param("Minimum points of a piece", "Straight pieces with fewer points join nothing.", low=3, high=10_000),
+        int, Param("Minimum points of a piece", "Straight pieces with fewer points join nothing.", low=3, high=10_000)
     ] = 5,
     min_points: Annotated[
         int, Param("Minimum points", "Segments with fewer points get no id.", low=1, high=10_000_000)

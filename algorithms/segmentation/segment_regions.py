@@ -19,7 +19,6 @@ _HEIGHT_NOISE_FACTOR = 10.0
 # whose noise is measured too large, roofs and crowns grow together.
 _MIN_HEIGHT_DISTANCE, _MAX_HEIGHT_DISTANCE = 0.2, 0.3
 
-
 # Points of one region are linked over less than this; the regions themselves may be of any size (m).
 _REACH = 5.0
 

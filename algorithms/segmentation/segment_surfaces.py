@@ -35,11 +35,9 @@ _OF_RADIUS = 0.25
 # planes have more (chi-square).
 _SMOOTH = 1.55
 
-
 # Neighborhoods decide on neighborhoods beside them (radii), and a radius (m) that automatic ones seldom exceed: that of
 # 36 points per m².
 _GROWTH, _WIDE_RADIUS = 4.0, 0.5
-
 
 _Noise = Annotated[
     Optional[float],
@@ -118,10 +116,7 @@ def segment_surfaces(
     ] = "local",
     smooth_normals: Annotated[
         bool,
-        Param(
-            "Smooth normals",
-            "Points are accepted only if their normals are like that of the surface beside them.",
-        ),
+        Param("Smooth normals", "Points are accepted only if their normals are like that of the surface beside them."),
     ] = False,
     proximity: Annotated[
         str,
@@ -134,8 +129,7 @@ def segment_surfaces(
     ] = "radius",
     radius: _Radius = None,
     neighbors: Annotated[
-        int,
-        Param("Neighbors", "Nearest points within the radius that are used, the point included.", low=6, high=200),
+        int, Param("Neighbors", "Nearest points within the radius that are used, the point included.", low=6, high=200)
     ] = _NEIGHBORS,
     tolerance: _Tolerance = None,
     max_angle: Annotated[

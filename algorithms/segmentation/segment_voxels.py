@@ -29,7 +29,6 @@ _VOXEL_SPACINGS = 2.0
 
 _OPERATIONS = {"erosion": erode, "dilation": dilate, "opening": open_voxels, "closing": close_voxels}
 
-
 _VoxelSize = Annotated[
     Optional[float],
     Param(
@@ -120,8 +119,7 @@ def segment_voxels(
         ),
     ] = 1,
     min_points: Annotated[
-        int,
-        Param("Minimum points", "Segments with fewer points get no id.", low=1, high=1_000_000),
+        int, Param("Minimum points", "Segments with fewer points get no id.", low=1, high=1_000_000)
     ] = 1,
     thin: Annotated[
         bool,

@@ -65,10 +65,7 @@ def split_lines(xyz: np.ndarray, line: np.ndarray, tolerance: float, min_points:
         farthest, distance = _farthest_in_blocks(xyz, first, last, partial(monitor.progress, 1 - n_open / n_all))
         bent = distance > tolerance
         done.append(np.column_stack([first[~bent], last[~bent]]))
-        first, last = (
-            np.concatenate([first[bent], farthest[bent]]),
-            np.concatenate([farthest[bent], last[bent]]),
-        )
+        first, last = (np.concatenate([first[bent], farthest[bent]]), np.concatenate([farthest[bent], last[bent]]))
         n_open = int((last - first).sum())
         monitor.progress(1 - n_open / n_all)
     return _numbered(np.concatenate(done) if done else np.zeros((0, 2), np.int64), len(xyz), min_points)

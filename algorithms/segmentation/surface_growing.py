@@ -88,10 +88,7 @@ def _met(planes: LocalPlanes, surface: np.ndarray, rows: np.ndarray, criteria: C
 
 
 def _adjacent(
-    planes: LocalPlanes,
-    surface: np.ndarray,
-    rows: np.ndarray,
-    agree: Optional[Hold] = None,
+    planes: LocalPlanes, surface: np.ndarray, rows: np.ndarray, agree: Optional[Hold] = None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return pairs of surfaces (k,), each once, between which points ``rows`` have a neighbor that they ``agree`` with.
 

@@ -41,7 +41,6 @@ _WIDE_WINDOW, _WIDE_GAP = 1.0, 0.5
 # Angle (°) between the normals of a plane and of its points: three deviations of normals of 3°, rounded up.
 _MOST_ANGLE = 10.0
 
-
 _Tolerance = Annotated[
     Optional[float],
     Param(

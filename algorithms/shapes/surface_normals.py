@@ -8,12 +8,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from ..neighborhoods.covariance import (
-    Nearest,
-    defined_eigenvalues,
-    reduce_neighborhoods,
-    smallest_eigenvectors,
-)
+from ..neighborhoods.covariance import Nearest, defined_eigenvalues, reduce_neighborhoods, smallest_eigenvectors
 from ..neighborhoods.nearest_blocks import Shapes
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Monitor, Param

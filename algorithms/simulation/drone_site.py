@@ -27,14 +27,7 @@ _TRIES, _ROOM = 60, 3.0
 
 
 def build_site(
-    *,
-    size: float,
-    slope: float,
-    terrace_height: float,
-    buildings: float,
-    trees: float,
-    halls: int,
-    seed: int,
+    *, size: float, slope: float, terrace_height: float, buildings: float, trees: float, halls: int, seed: int
 ) -> Scene:
     """Make up a site. The tunables are those of :func:`.simulate_drone_site.simulate_drone_site`.
 

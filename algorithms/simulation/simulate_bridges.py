@@ -52,8 +52,7 @@ def simulate_bridges(
     cars: Annotated[bool, Param("Cars", "Cars on the decks.")] = True,
     trees: Annotated[bool, Param("Trees", "Trees on the land.")] = True,
     range_noise: Annotated[
-        float,
-        Param("Range noise", "Standard deviation of the measured distances.", unit="m", low=0, high=0.2),
+        float, Param("Range noise", "Standard deviation of the measured distances.", unit="m", low=0, high=0.2)
     ] = 0.02,
     seed: Seed = 1,
     monitor: Optional[Monitor] = None,

@@ -32,16 +32,7 @@ _FIELDS = (
     "Simulate drone site",
     group="Simulation",
     tags="synthetic,drone,UAV,photogrammetry,dense matching,color,shadow,demo,example,test,truth,teaching",
-    creates=(
-        "xyz",
-        "classification",
-        "return_number",
-        "number_of_returns",
-        "red",
-        "green",
-        "blue",
-        "segment_id",
-    ),
+    creates=("xyz", "classification", "return_number", "number_of_returns", "red", "green", "blue", "segment_id"),
     layers=(Layer("footprints", "True footprints", "Polygon", _FIELDS),),
 )
 def simulate_drone_site(
@@ -50,8 +41,7 @@ def simulate_drone_site(
         float, Param("Size", "Side of the site, a square from (0, 0).", unit="m", low=40, high=400)
     ] = 150.0,
     density: Annotated[
-        float,
-        Param("Point density", "Points on open ground, seen from above.", unit="points/m²", low=5, high=400),
+        float, Param("Point density", "Points on open ground, seen from above.", unit="points/m²", low=5, high=400)
     ] = 40.0,
     slope: Annotated[float, Param("Slope", "Slope of the ground on the whole.", unit="°", low=0, high=20)] = 4.0,
     terrace_height: Annotated[
@@ -62,8 +52,7 @@ def simulate_drone_site(
     ] = 16.0,
     trees: Annotated[float, Param("Trees", "Trees in gardens.", unit="per ha", low=0, high=200)] = 30.0,
     halls: Annotated[
-        int,
-        Param("Flat halls", "Flat roofs with parapets, 10 to 100 m long, where there is room.", low=0, high=20),
+        int, Param("Flat halls", "Flat roofs with parapets, 10 to 100 m long, where there is room.", low=0, high=20)
     ] = 2,
     unevenness: Annotated[
         float,
@@ -76,16 +65,13 @@ def simulate_drone_site(
         ),
     ] = 0.12,
     rounding: Annotated[
-        float,
-        Param("Rounding of edges", "Distance over which eaves and ridges are rounded.", unit="m", low=0, high=2),
+        float, Param("Rounding of edges", "Distance over which eaves and ridges are rounded.", unit="m", low=0, high=2)
     ] = 0.5,
     waves: Annotated[
-        float,
-        Param("Waves", "Standard deviation of errors that neighboring points share.", unit="m", low=0, high=0.3),
+        float, Param("Waves", "Standard deviation of errors that neighboring points share.", unit="m", low=0, high=0.3)
     ] = 0.03,
     walls: Annotated[
-        float,
-        Param("Share of walls", "Density of points on walls, as a share of that on open ground.", low=0, high=1),
+        float, Param("Share of walls", "Density of points on walls, as a share of that on open ground.", low=0, high=1)
     ] = 0.6,
     noise: Annotated[
         float, Param("Noise", "Standard deviation of each point in every direction.", unit="m", low=0, high=0.2)

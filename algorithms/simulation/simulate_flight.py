@@ -20,8 +20,7 @@ from .street_site import build_site
 def simulate_flight(
     *,
     height: Annotated[
-        float,
-        Param("Flight height", "How high over the street the drone climbs.", unit="m", low=2, high=25),
+        float, Param("Flight height", "How high over the street the drone climbs.", unit="m", low=2, high=25)
     ] = 8.0,
     duration: Annotated[
         float,
@@ -45,8 +44,7 @@ def simulate_flight(
     trees: Annotated[int, Param("Trees", "Trees along the street.", low=0, high=22)] = 4,
     slope: Annotated[float, Param("Slope", "Slope of the ground, which is a plane.", unit="°", low=0, high=10)] = 1.5,
     line_rate: Annotated[
-        float,
-        Param("Line rate", "Scan lines of each scanner.", unit="1/s", low=1, high=200, advanced=True),
+        float, Param("Line rate", "Scan lines of each scanner.", unit="1/s", low=1, high=200, advanced=True)
     ] = 40.0,
     angular_step: Annotated[
         float,
@@ -55,8 +53,7 @@ def simulate_flight(
         ),
     ] = 0.25,
     max_range: Annotated[
-        float,
-        Param("Maximum range", "How far the scanners see.", unit="m", low=1, high=40, advanced=True),
+        float, Param("Maximum range", "How far the scanners see.", unit="m", low=1, high=40, advanced=True)
     ] = 30.0,
     range_noise: Annotated[
         float,

@@ -33,8 +33,7 @@ def simulate_power_line(
         float, Param("Share of forest", "Share of the site that is forest, also under the lines.", low=0, high=1)
     ] = 0.15,
     range_noise: Annotated[
-        float,
-        Param("Range noise", "Standard deviation of the measured distances.", unit="m", low=0, high=0.2),
+        float, Param("Range noise", "Standard deviation of the measured distances.", unit="m", low=0, high=0.2)
     ] = 0.02,
     seed: Seed = 1,
     monitor: Optional[Monitor] = None,

@@ -54,7 +54,6 @@ _HOUSE_FIELDS = (
 )
 _CORNER_FIELDS = (Field("facade", int, "number of the facade"),)
 
-
 _Unevenness = Annotated[
     float,
     Param(
@@ -70,12 +69,7 @@ _Unevenness = Annotated[
 _Density = Annotated[
     float,
     Param(
-        "Pulse density",
-        "Laser pulses of the scan from the air.",
-        unit="pulses/m²",
-        low=0.5,
-        high=100,
-        advanced=True,
+        "Pulse density", "Laser pulses of the scan from the air.", unit="pulses/m²", low=0.5, high=100, advanced=True
     ),
 ]
 
@@ -111,14 +105,12 @@ def simulate_street(
     ] = 16.0,
     slope: Annotated[float, Param("Slope", "Slope along the street.", unit="°", low=0, high=10)] = 1.0,
     clutter: Annotated[
-        bool,
-        Param("Clutter", "Put parked cars, trees, poles and people before the fronts, which hide parts of them."),
+        bool, Param("Clutter", "Put parked cars, trees, poles and people before the fronts, which hide parts of them.")
     ] = True,
     stoops: _Stoops = 0.0,
     unevenness: _Unevenness = 0.0,
     houses: Annotated[
-        bool,
-        Param("Houses", "Put houses with gable roofs behind the fronts; no front is curved then."),
+        bool, Param("Houses", "Put houses with gable roofs behind the fronts; no front is curved then.")
     ] = False,
     view: Annotated[
         str,
@@ -131,13 +123,7 @@ def simulate_street(
     density: _Density = 12.0,
     glass: Annotated[
         float,
-        Param(
-            "Glass",
-            "Share of the pulses on window panes that pass them and are lost.",
-            unit="%",
-            low=0,
-            high=100,
-        ),
+        Param("Glass", "Share of the pulses on window panes that pass them and are lost.", unit="%", low=0, high=100),
     ] = 70.0,
     speed: Annotated[float, Param("Speed", "Speed of the vehicle.", unit="m/s", low=0.5, high=30, advanced=True)] = 5.0,
     line_rate: Annotated[

@@ -36,14 +36,7 @@ _Buildings = Annotated[
 
 _RangeNoise = Annotated[
     float,
-    Param(
-        "Range noise",
-        "Standard deviation of the measured distances.",
-        unit="m",
-        low=0,
-        high=0.2,
-        advanced=True,
-    ),
+    Param("Range noise", "Standard deviation of the measured distances.", unit="m", low=0, high=0.2, advanced=True),
 ]
 
 _NoisePoints = Annotated[

@@ -62,13 +62,11 @@ def simulate_tree(
     *,
     height: Annotated[float, Param("Height", "Height of the tree.", unit="m", low=3, high=60)] = 14.0,
     dbh: Annotated[
-        float,
-        Param("Stem diameter", "Diameter of the stem at breast height, 1.3 m.", unit="m", low=0.05, high=2),
+        float, Param("Stem diameter", "Diameter of the stem at breast height, 1.3 m.", unit="m", low=0.05, high=2)
     ] = 0.3,
     n_branches: Annotated[int, Param("Branches", "Branches of the stem.", low=0, high=100)] = 14,
     leaves: Annotated[
-        float,
-        Param("Leaves", "Points of leaves around the ends of branches, per point of wood.", low=0, high=5),
+        float, Param("Leaves", "Points of leaves around the ends of branches, per point of wood.", low=0, high=5)
     ] = 0.2,
     density: Annotated[
         float, Param("Point density", "Points on wood.", unit="points/m²", low=100, high=100_000)

@@ -23,16 +23,7 @@ _MAX_POINTS = 3e7
 # Where matching fails, nothing is found within this distance (m); these areas are looked for in cells of that size.
 _HOLE = 0.5
 
-_CREATED = (
-    "xyz",
-    "classification",
-    "return_number",
-    "number_of_returns",
-    "red",
-    "green",
-    "blue",
-    "segment_id",
-)
+_CREATED = ("xyz", "classification", "return_number", "number_of_returns", "red", "green", "blue", "segment_id")
 
 _FOOTPRINT_FIELDS = (
     Field("id", int, "object id of the building, as SegmentID of its points"),
@@ -46,7 +37,6 @@ _MAP_FIELDS = (
     Field("building", int, "object id of the building there, 0 where it was demolished"),
     Field("state", str, "kept or demolished"),
 )
-
 
 _Oblique = Annotated[
     float,
@@ -111,8 +101,7 @@ def simulate_village(
         float, Param("Noise", "Standard deviation of a point in every direction.", unit="m", low=0, high=0.2)
     ] = 0.03,
     holes: Annotated[
-        float,
-        Param("Share of holes", "Share of all surfaces where matching found nothing, about.", low=0, high=0.5),
+        float, Param("Share of holes", "Share of all surfaces where matching found nothing, about.", low=0, high=0.5)
     ] = 0.1,
     oblique: _Oblique = 28.0,
     noise_points: Annotated[

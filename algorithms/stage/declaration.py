@@ -22,7 +22,6 @@ VALUES, DIMENSION = "values", "dimension"
 # Keyword arguments that the runner fills in: no tunables.
 MONITOR, SAMPLING = "monitor", "sampling"
 
-
 # Meters, or what gives them from the tunables of a run.
 Reach = Union[float, Callable[[dict[str, Any]], float]]
 

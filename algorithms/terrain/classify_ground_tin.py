@@ -34,23 +34,18 @@ class GroundRules:
 
 GROUND = GroundRules()
 
-
 # Name of what parts of a cloud take of the whole: the roughness (m) of the finished surface.
 _ROUGHNESS = "surface_roughness"
-
 
 # The kinds of terrain: shorter side of the largest building, m.
 _TERRAINS = {"nature": 20.0, "village": 40.0, "town": USUAL_BUILDING, "city": 2 * USUAL_BUILDING, "industry": 250.0}
 
-
 # The granularities: least cell, m; cells are the point spacing wide where that is more, half of it where fine.
 _GRANULARITIES = {"coarse": 2.0, "medium": 1.0, "fine": 1.0, "extra fine": 0.5}
-
 
 # In blocks of Delft with this much around them, and 40 m for all other steps, the buildings are those of the whole
 # cloud on 99.8 % of the points, as with twice as much. The rest is where cells fall (m).
 _REACH = 40.0
-
 
 _IterationDistance = Annotated[
     Optional[float],

@@ -26,10 +26,8 @@ _MIN_EDGE = 2.0
 # Distance in plan over which points are mirrored: at least this, m, and the point spacing.
 _MIN_MIRROR_REACH = 1.0
 
-
 # The largest building that a cell of the seeds sees past where nothing is set (m).
 _REACH = 60.0
-
 
 _IterationDistance = Annotated[
     Optional[float],

@@ -31,7 +31,6 @@ class SeedRules:
 
 SEEDS = SeedRules()
 
-
 # Without a largest building given, windows go up to this size (m); larger halls are found as free-standing segments.
 USUAL_BUILDING = 60.0
 

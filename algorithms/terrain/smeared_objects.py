@@ -31,7 +31,6 @@ class SmearedRules:
 
 SMEARED = SmearedRules()
 
-
 _EIGHT = np.ones((3, 3), bool)
 
 

@@ -30,7 +30,6 @@ class DensificationRules:
 
 DENSIFICATION = DensificationRules()
 
-
 # Nodes whose residuals show the roughness of a surface, about: a median of these is good to 2 %.
 _SAMPLE = 5_000
 

@@ -26,7 +26,6 @@ _ID, _CLUSTER = "id", "cluster_id"
 
 _NONE = np.zeros(0, np.int64)
 
-
 # What gives the records inside and beside the edges of a block, by its position.
 Edges = Callable[[int], tuple[dict[str, np.ndarray], dict[str, np.ndarray]]]
 

@@ -34,15 +34,7 @@ from .joining import References, feature_numbers, join_belonging, join_features,
 from .mosaics import RasterMosaic, join_rasters
 from .survey import Source, Survey, boxes_meet, check_folder, files_of_survey, open_survey
 from .survey_sampling import samplings_of
-from .tiled_steps import (
-    afterwards,
-    in_blocks,
-    layers_of,
-    made_by,
-    owners,
-    tunables_of,
-    why_whole,
-)
+from .tiled_steps import afterwards, in_blocks, layers_of, made_by, owners, tunables_of, why_whole
 from .tiles import TileTask, points_outside, rows_of, write_tile
 from .views import View
 from .work_folder import remove_work, work_folder

@@ -66,11 +66,7 @@ def _between(one: WallLine, other: WallLine) -> Optional[WallLine]:
 
 
 def _is_alley(
-    alley: WallLine,
-    walls: tuple[WallLine, WallLine],
-    rings: list[np.ndarray],
-    outline: WallOutline,
-    min_area: float,
+    alley: WallLine, walls: tuple[WallLine, WallLine], rings: list[np.ndarray], outline: WallOutline, min_area: float
 ) -> bool:
     """Return whether walls on both sides are seen wherever a line crosses the outline, with houses behind both."""
     chords = _chords(alley, rings)

@@ -57,13 +57,11 @@ def classify_walls(
     cluster_id,
     *,
     min_height: Annotated[
-        float,
-        Param("Minimum height", "Lower points may be ground, kerbs and plants.", unit="m", low=0, high=10),
+        float, Param("Minimum height", "Lower points may be ground, kerbs and plants.", unit="m", low=0, high=10)
     ] = 0.3,
     split_height: SplitHeight = 2.5,
     max_tilt: Annotated[
-        float,
-        Param("Maximum tilt", "Angle of a wall's normal to the horizontal.", unit="°", low=0, high=90),
+        float, Param("Maximum tilt", "Angle of a wall's normal to the horizontal.", unit="°", low=0, high=90)
     ] = 30.0,
     neighborhood: Annotated[
         str,

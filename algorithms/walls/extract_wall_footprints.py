@@ -85,7 +85,6 @@ _CORNER_FIELDS = (
     Field("gap", float, "distance to the nearest point on each of the walls, the larger of the two", "m"),
 )
 
-
 _Tolerance = Annotated[
     Optional[float],
     Param(
@@ -259,12 +258,7 @@ def extract_wall_footprints(
 
 
 def _parts_of(
-    house: _Building,
-    outline: Optional[WallOutline],
-    limits: Limits,
-    min_seen: float,
-    min_area: float,
-    monitor: Monitor,
+    house: _Building, outline: Optional[WallOutline], limits: Limits, min_seen: float, min_area: float, monitor: Monitor
 ) -> tuple[Optional[WallOutline], list]:
     """Return the outline of walls, None where too little of them was seen, and the rings of each part of a house."""
     used = outline if outline is not None and house.seen_of(outline) >= min_seen else None
