@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Optional
+from functools import cached_property
+from typing import Callable, Optional
 
 import numpy as np
 
@@ -30,8 +31,13 @@ class RoofOutline:
     """The outline of a roof."""
 
     parts: list[list[np.ndarray]]  #: The rings of its parts, the largest part first: closed (m), the exterior first
-    #: (k, 2, 2): start and end (m) of the sides of the largest part, drawn more finely, with the roof to the left
-    sides: np.ndarray
+    drawn: Callable[[float], list[list[np.ndarray]]]  #: Draws the parts at another scale (spacings)
+
+    @cached_property
+    def sides(self) -> np.ndarray:
+        """Start and end (m) of the sides (k, 2, 2) of the largest part, drawn more finely, the roof to the left."""
+        rings = [ring for part in self.drawn(_FINE)[:1] for ring in part]
+        return np.concatenate([np.zeros((0, 2, 2)), *(np.stack([ring[:-1], ring[1:]], axis=1) for ring in rings)])
 
 
 def outline_roof(roof: np.ndarray, spacing: float) -> Optional[RoofOutline]:
@@ -58,7 +64,5 @@ def outline_roof(roof: np.ndarray, spacing: float) -> Optional[RoofOutline]:
         found = [one.rings for block in blocks for one in draw_block(block, shares, directions, {}, how)]
         return without_nested(sorted(found, key=lambda part: -sum(map(signed_area, part))))
 
-    parts, fine = drawn(1.0), drawn(_FINE)
-    if not parts or not fine:
-        return None
-    return RoofOutline(parts, np.concatenate([np.stack([ring[:-1], ring[1:]], axis=1) for ring in fine[0]]))
+    parts = drawn(1.0)
+    return RoofOutline(parts, drawn) if parts else None

@@ -96,7 +96,8 @@ def outline_walls(
     seen = find_lines(walls, scale, limits.min_length, rng, monitor.part(0.0, 0.3))
     seen = [line for line in seen if np.median(cover.depth_at(walls[line.points])) > -_FLUSH]
     seen = square_up(merge_lines(seen, walls, scale), walls)
-    if not seen:
+    # Where no wall is seen, the sides are not drawn.
+    if not seen or not len(outline.sides):
         return None
     sides = outline.sides
     on_walls = np.concatenate([walls[line.points] for line in seen])
