@@ -12,6 +12,7 @@ import pytest
 
 from lidar_buildings.algorithms.terrain import free_standing
 from lidar_buildings.tests.benchmarks import history, worth
+from lidar_buildings.tests.benchmarks.classes import rates
 from lidar_buildings.tests.benchmarks.results import Table
 from lidar_buildings.tests.benchmarks.surveys import Job, simulate
 
@@ -38,6 +39,14 @@ def test_what_is_no_number_is_null(tmp_path):
     table = Table("empty", "of", "mean", texts=1)
     table.add("none", float("nan"))
     assert json.loads(table.write(tmp_path).read_text(encoding="utf-8"))["rows"] == [{"of": "none", "mean": None}]
+
+
+def test_rates_of_merged_classes_leave_out_points_that_nobody_classified():
+    """Of four points of plants one is missed and one is another plant; the car of class 1 does not count."""
+    true, made = np.array([2, 2, 3, 4, 5, 5, 1]), np.array([2, 2, 3, 5, 5, 1, 3])
+    accuracy, ground, plants, *others = rates(true, made)
+    assert (accuracy, ground, plants) == pytest.approx((500 / 6, 100.0, 600 / 7))
+    assert others == [None] * 4
 
 
 def test_a_row_has_as_many_cells_as_the_table_and_no_heading_comes_twice():

@@ -681,10 +681,34 @@ def assert_no_noise_found(stage: Stage, made: StageResults) -> None:
     """Noise is of no segment, and no ground."""
     if "segment_id" in stage.writes:
         assert not made.dimensions["segment_id"].any()
-    # What a cloud came with is put back, whatever it is.
-    is_restored = "earlier_class" in stage.optional
-    if "classification" in stage.writes and "noise" not in stage.name and not is_restored:
-        assert not (made.dimensions["classification"] == PointClass.GROUND).any()
+    if "classification" in stage.writes and "noise" not in stage.name:
+        classes = made.dimensions["classification"]
+        is_restored = assert_restored(stage, all_noise(), classes)
+        assert not (classes[~is_restored] == PointClass.GROUND).any()
+
+
+def assert_restored(stage: Stage, cloud: dict[str, np.ndarray], classes: np.ndarray) -> np.ndarray:
+    """A stage that puts classes back puts back what the cloud came with; return which points (n,) came with some."""
+    if "earlier_class" not in stage.optional:
+        return np.zeros(len(classes), bool)
+    earlier = cloud["earlier_class"]
+    np.testing.assert_array_equal(classes[earlier > 0], earlier[earlier > 0])
+    return earlier > 0
+
+
+RESTORING = [
+    stage for stage in ALL.values() if "earlier_class" in stage.optional and "classification" in stage.writes
+]
+
+
+@pytest.mark.parametrize("stage", RESTORING, ids=lambda stage: stage.name)
+def test_a_stage_that_restores_gives_back_what_came_and_finds_nothing_of_its_own(stage):
+    classes = made_by(stage, scene())[0].dimensions["classification"]
+    is_restored = assert_restored(stage, scene(), classes)
+    assert is_restored.any() and not is_restored.all()
+    came = scene()["classification"][~is_restored]
+    is_changed = classes[~is_restored] != came
+    assert (classes[~is_restored][is_changed] == PointClass.UNCLASSIFIED).all()
 
 
 @pytest.mark.parametrize("stage", [stage for stage in ALL.values() if stage.merges], ids=lambda stage: stage.name)

@@ -103,18 +103,23 @@ class Boxes:
         return here, there[here]
 
     def beside_all(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-        """Yield, for one of each two opposite steps to boxes around, which boxes have one there, and which that is."""
+        """Yield, for one of each two opposite columns of boxes around, which boxes have one there, and which that is.
+
+        A box occurs as often as there are boxes in the column.
+        """
         half = {offset[:2] for offset in around() if offset > (0, 0, 0)}
         for column in sorted(half, key=lambda step: (step[0] ** 2 + step[1] ** 2, step)):
             lowest = -_REACH if any(column) else 1
             wanted = self.keys + self._key(np.array([*column, lowest]))
             there = np.searchsorted(self.keys, wanted)
+            found = []
             for _ in range(lowest, _REACH + 1):
                 here = np.flatnonzero(self.keys[np.minimum(there, len(self) - 1)] == wanted)
-                yield here, there[here]
+                found.append((here, there[here]))
                 # Numbers count on upward: the next box is the next number, or the position stays.
                 there[here] += 1
                 wanted += 1
+            yield np.concatenate([one for one, _ in found]), np.concatenate([other for _, other in found])
 
     def pairs(
         self, here: np.ndarray, other: Boxes, there: np.ndarray
@@ -163,18 +168,19 @@ def connected(boxes: Boxes, is_near: Callable[[np.ndarray], np.ndarray], monitor
         near, box = is_near(boxes.xyz[here] - boxes.xyz[there]), boxes.box()
         monitor.progress(1.0)
         return _joined(component, box[here[near]], box[there[near]])
-    half = len(around()) // 2
-    left: list[tuple[np.ndarray, np.ndarray]] = []
+    n_columns = (2 * _REACH + 1) ** 2 // 2 + 1
     first = boxes.xyz[boxes.start]
-    for done, pairs in enumerate(boxes.beside_all(), start=1):
-        here, there = _apart(pairs, component)
+    # Steps of one column together: what joins boxes costs as much for few pairs as for many.
+    left: list[tuple[np.ndarray, np.ndarray]] = []
+    for done, column in enumerate(boxes.beside_all(), start=1):
+        here, there = _apart(column, component)
         touching = is_near(first[here] - first[there])
         component = _joined(component, here[touching], there[touching])
         left.append((here[~touching], there[~touching]))
-        monitor.progress(done / (2 * half))
+        monitor.progress(done / (2 * n_columns))
     for done, pairs in enumerate(left, start=1):
         component = _compared(boxes, _apart(pairs, component), component, is_near)
-        monitor.progress(0.5 + done / (2 * half))
+        monitor.progress(0.5 + done / (2 * n_columns))
     return component
 
 

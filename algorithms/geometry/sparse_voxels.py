@@ -75,6 +75,13 @@ def voxelize(xyz: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray, np.n
     return index[order[starts]], voxel, count
 
 
+def one_per_voxel(xyz: np.ndarray, size: float) -> np.ndarray:
+    """Return the rows (m,), ascending, of the lowest point of each voxel of a ``size`` (m), in any order of points."""
+    _, voxel, _ = voxelize(xyz, size)
+    order = np.lexsort((xyz[:, 0], xyz[:, 1], xyz[:, 2], voxel))
+    return np.sort(order[run_starts(voxel[order])])
+
+
 def neighbor_offsets(connectivity: int) -> np.ndarray:
     """Return the steps to the neighbors, sorted int64 (6, 18 or 26, 3); step i is opposite to step -1 - i."""
     steps = np.array(list(itertools.product((-1, 0, 1), repeat=3)))

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..geometry.grid import fixed_grid_over
 from ..geometry.groups import components, items, run_starts
-from ..geometry.sparse_voxels import voxelize
+from ..geometry.sparse_voxels import one_per_voxel
 from ..packages import spatial
 from .wire_spans import RULES
 
@@ -35,7 +35,7 @@ class _Rules:
 _RULES = _Rules()
 
 # Pairs of points that are compared at once.
-_CHUNK = 4000
+_CHUNK = 1000
 
 
 def over_free_space(xyz: np.ndarray, spacing: float) -> np.ndarray:
@@ -54,9 +54,7 @@ def over_free_space(xyz: np.ndarray, spacing: float) -> np.ndarray:
 
 def thinned(xyz: np.ndarray) -> np.ndarray:
     """Return the rows (m,) of one point per voxel, of those with few others around."""
-    _, voxel, _ = voxelize(xyz, _RULES.thinning)
-    order = np.lexsort((xyz[:, 0], xyz[:, 1], xyz[:, 2], voxel))
-    rows = np.sort(order[run_starts(voxel[order])])
+    rows = one_per_voxel(xyz, _RULES.thinning)
     count = spatial.cKDTree(xyz[rows]).query_ball_point(xyz[rows], _RULES.around, return_length=True)
     return rows[count <= _RULES.most_around]
 
@@ -94,6 +92,9 @@ def strands(xyz: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
 def _best_lines(one: np.ndarray, offset: np.ndarray, count: int, reach: float) -> tuple[np.ndarray, np.ndarray]:
     """Return how many neighbors (n,) are on the best line through each point, and its direction (n, 3), 1 m in plan."""
     distance = np.hypot(offset[:, 0], offset[:, 1])
+    # Neighbors above and below all lines are on none and beside none.
+    near = np.abs(offset[:, 2]) <= _RULES.steepest * distance + 1.5 * RULES.aside
+    one, offset, distance = one[near], offset[near], distance[near]
     far = np.flatnonzero((distance >= reach / 3) & (np.abs(offset[:, 2]) <= _RULES.steepest * distance))
     start, size = np.searchsorted(one, np.arange(count)), np.bincount(one, minlength=count)
     # Evenly spread over the neighbors of a point.

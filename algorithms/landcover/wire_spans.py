@@ -8,7 +8,7 @@ from typing import Any, Optional
 
 import numpy as np
 
-from ..geometry.groups import split_groups
+from ..geometry.groups import members
 
 
 @dataclass(frozen=True)
@@ -168,7 +168,7 @@ def spans_of(
     rng : numpy.random.Generator
         Draws the points.
     """
-    for rows in split_groups(strand, strand.max(initial=-1) + 1):
+    for rows in members(np.where(np.bincount(1 + strand)[1 + strand] >= RULES.least_points, 1 + strand, 0)).values():
         left, failures = rows, 0
         while len(left) >= RULES.least_points and failures <= RULES.tries:
             chosen = _most_points(xyz[left], direction[left], around.off, reach, rng)

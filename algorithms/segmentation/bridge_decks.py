@@ -10,6 +10,7 @@ import numpy as np
 from ..geometry.components import connect
 from ..geometry.grid import distinct, find_cells, fixed_grid_over
 from ..geometry.groups import items, run_starts
+from ..geometry.sparse_voxels import one_per_voxel
 from ..packages import spatial
 from ..rules import rule
 from ..stage import Monitor
@@ -50,8 +51,8 @@ class Decks:
     #: max_width, min_area: Widest section (m) and least area (m²)
     max_width: float
     min_area: float
-    cell: float  #: Side of cells, m
-    line_width: float  #: Width of a line, m
+    cell: float  #: Side of cells and width of lines, m
+    is_thinned: bool  #: Whether one point per third of a cell is looked at: in denser clouds the others show no more
     near: NearPoints  #: Which points of a line are of one section
 
     @property
@@ -62,13 +63,26 @@ class Decks:
     @classmethod
     def of(cls, min_height: float, max_width: float, min_area: float, spacing: float, noise: float) -> Decks:
         """Return the criteria of bridges in a cloud with this point spacing and noise, m."""
-        near = NearPoints(DECK.line**2 * spacing, float(np.tan(np.radians(DECK.slope))), DECK.noise_step * noise)
-        return cls(min_height, max_width, min_area, cell_size(spacing), DECK.line * spacing, near)
+        cell = cell_size(spacing)
+        near = NearPoints(DECK.line * cell, float(np.tan(np.radians(DECK.slope))), DECK.noise_step * noise)
+        return cls(min_height, max_width, min_area, cell, cell > DECK.line * spacing, near)
 
     def find(self, xyz: np.ndarray, is_earth: np.ndarray, is_terrain: np.ndarray, monitor: Monitor) -> np.ndarray:
         """Return which points (n,) of the bare earth ``is_earth`` (n,) are decks that lead to ``is_terrain`` (n,)."""
+        is_deck = np.zeros(len(xyz), bool)
         if not self.max_width or not len(xyz):
-            return np.zeros(len(xyz), bool)
+            return is_deck
+        if not self.is_thinned:
+            return self._decks(xyz, is_earth, is_terrain, monitor)
+        rows = one_per_voxel(xyz, self.cell / DECK.line)
+        deck = rows[self._decks(xyz[rows], is_earth[rows], is_terrain[rows], monitor)]
+        is_deck[deck] = True
+        if len(deck):
+            is_deck[self._with_edges(xyz, deck, np.flatnonzero(is_earth & ~is_deck))] = True
+        return is_deck
+
+    def _decks(self, xyz: np.ndarray, is_earth: np.ndarray, is_terrain: np.ndarray, monitor: Monitor) -> np.ndarray:
+        """Return which points are decks, see :meth:`find`."""
         votes = np.zeros(len(xyz), np.int8)
         # Directions of lines as doubled angles: their sum gives the one across which a deck is raised.
         across = np.zeros(len(xyz), np.complex64)
@@ -106,7 +120,7 @@ class Decks:
 
     def _raised(self, xyz: np.ndarray, is_earth: np.ndarray, direction: float) -> np.ndarray:
         """Return which points (n,) are of pieces of one direction that have lower points beyond both ends."""
-        order, line = slices(xyz, direction, self.line_width)
+        order, line = slices(xyz, direction, self.cell)
         points = xyz.take(order, axis=0)
         angle = np.radians(direction)
         along = points[:, 0] * np.cos(angle) + points[:, 1] * np.sin(angle)
@@ -152,7 +166,7 @@ class Decks:
         follows = np.flatnonzero(is_low | (np.abs(below) <= DECK.rough))
         first = follows[run_starts(which[follows])]
         ends[which[first[is_low[first]]]] = True
-        most = DECK.rough * self.line_width * (DECK.line / self.line_width) ** 2
+        most = DECK.rough * DECK.line**2 / self.cell
         return ends & (np.bincount(which[beside], minlength=len(end)) <= most)
 
     def _large(self, xyz: np.ndarray, candidates: np.ndarray, part: np.ndarray):

@@ -19,7 +19,7 @@ def deck_sites(xyz: np.ndarray, is_open: np.ndarray, is_ground: np.ndarray, deck
 
     In cells of one meter and more, a surface over the ground hides it, and ground between two lower sides may itself be
     a deck. Such cells are joined where they are level, and the parts that are as large as bridges and reach ground of
-    their own height at both ends stay, with what is around them.
+    their own height at both ends stay, with what is around them and no higher.
 
     Parameters
     ----------
@@ -48,9 +48,14 @@ def deck_sites(xyz: np.ndarray, is_open: np.ndarray, is_ground: np.ndarray, deck
     is_site = np.zeros(shape, bool)
     raised, beside = np.argwhere(is_raised), np.argwhere(np.isfinite(surface) & ~is_raised)
     is_site[tuple(raised[_leads_on(raised, beside, surface, decks)].T)] = True
-    return (ndimage.distance_transform_edt(~is_site) * decks.cell <= DECK.far * decks.reach)[
-        row, column
-    ] & is_site.any()
+    if not is_site.any():
+        return np.zeros(len(xyz), bool)
+    reach = DECK.far * decks.reach
+    is_near = ndimage.distance_transform_edt(~is_site) * decks.cell <= reach
+    # What is higher than roads that rise from surfaces around is crowns beside them and over them.
+    side = 2 * int(np.ceil(reach / decks.cell)) + 1
+    highest = ndimage.maximum_filter(np.where(is_site, surface, -np.inf), side) + decks.near.slope * reach
+    return is_near[row, column] & (xyz[:, 2] <= highest[row, column])
 
 
 def _lowest(cell: np.ndarray, height: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
@@ -69,15 +74,25 @@ def _between_lower(surface: np.ndarray, ground: np.ndarray, decks: Decks) -> np.
     result = np.zeros(ground.shape, bool)
     for down, right in _STEPS:
         count = max(1, int(decks.max_width / 2 / decks.cell / np.hypot(down, right)))
-        ray = np.zeros((2 * count + 1, 2 * count + 1), bool)
-        ahead = np.arange(1, count + 1)
-        ray[count + down * ahead, count + right * ahead] = True
-        sides = [
-            ndimage.minimum_filter(ground, footprint=one, mode="constant", cval=np.inf)
-            for one in (ray, ray[::-1, ::-1])
-        ]
+        sides = [_lowest_ahead(ground, sign * down, sign * right, count) for sign in (1, -1)]
         result |= np.maximum(*sides) <= surface - decks.min_height
     return result & np.isfinite(surface)
+
+
+def _lowest_ahead(ground: np.ndarray, down: int, right: int, count: int) -> np.ndarray:
+    """Return the least height of the next ``count`` cells in a direction, m; infinite beyond the raster."""
+    lowest, seen = _ahead(ground, down, right), 1
+    while seen < count:
+        more = min(seen, count - seen)
+        lowest = np.minimum(lowest, _ahead(lowest, more * down, more * right))
+        seen += more
+    return lowest
+
+
+def _ahead(values: np.ndarray, down: int, right: int) -> np.ndarray:
+    """Return the value of the cell some rows and columns further for each cell, infinite beyond the raster."""
+    padded = np.pad(values, [(max(0, -step), max(0, step)) for step in (down, right)], constant_values=np.inf)
+    return padded[max(0, down) :, max(0, right) :][: values.shape[0], : values.shape[1]]
 
 
 def _leads_on(raised: np.ndarray, beside: np.ndarray, surface: np.ndarray, decks: Decks) -> np.ndarray:

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Print how good the results are: ``accuracy.py [table …]``, all by default.
 
-``buildings``, ``ground``, ``noise`` and ``noise_apart`` are of real clouds, ``turned`` of the same when cells fall
-elsewhere, ``harder`` of the same with fewer points or more noise, ``uneven`` of the same with points on lines, in bands
-or in pairs,
+``buildings``, ``classes`` (all of them, beside Whitebox), ``ground``, ``noise`` and ``noise_apart`` are of real clouds,
+``turned`` of the same when cells fall elsewhere, ``harder`` of the same with fewer points or more noise, ``uneven`` of
+the same with points on lines, in bands or in pairs,
 ``pieces`` of squares cut out of clouds, ``objects`` of real houses, trees, cars, fences and poles on simulated ground,
 ``footprints`` of outlines, ``towns``, ``pits``, ``scenes``, ``villages``, ``places`` and ``confidence`` of simulated
 scenes, whose truth is exact, and ``maps`` of old maps with known differences.
@@ -40,6 +40,7 @@ from lidar_buildings.algorithms.run import (
 from lidar_buildings.algorithms.stage import Monitor  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 from lidar_buildings.tests.aged_maps import aged, with_plain_corners  # noqa: E402
+from lidar_buildings.tests.benchmarks.classes import classes  # noqa: E402
 from lidar_buildings.tests.benchmarks.drone import drone, photos  # noqa: E402
 from lidar_buildings.tests.benchmarks.drone_scenes import places as drone_places  # noqa: E402
 from lidar_buildings.tests.benchmarks.likeness import likeness  # noqa: E402
@@ -552,6 +553,7 @@ TABLES = {
         table.__name__: table
         for table in (
             buildings,
+            classes,
             turned,
             harder,
             uneven,
