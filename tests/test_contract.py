@@ -696,16 +696,15 @@ def assert_restored(stage: Stage, cloud: dict[str, np.ndarray], classes: np.ndar
     return earlier > 0
 
 
-RESTORING = [
-    stage for stage in ALL.values() if "earlier_class" in stage.optional and "classification" in stage.writes
-]
+RESTORING = [stage for stage in ALL.values() if "earlier_class" in stage.optional and "classification" in stage.writes]
 
 
 @pytest.mark.parametrize("stage", RESTORING, ids=lambda stage: stage.name)
 def test_a_stage_that_restores_gives_back_what_came_and_finds_nothing_of_its_own(stage):
     classes = made_by(stage, scene())[0].dimensions["classification"]
     is_restored = assert_restored(stage, scene(), classes)
-    assert is_restored.any() and not is_restored.all()
+    assert is_restored.any()
+    assert not is_restored.all()
     came = scene()["classification"][~is_restored]
     is_changed = classes[~is_restored] != came
     assert (classes[~is_restored][is_changed] == PointClass.UNCLASSIFIED).all()

@@ -15,8 +15,8 @@ from lidar_buildings.algorithms.cloud.asprs import NOISE, PointClass
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
 from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.quality.confusion import class_rates, confusion, overall_accuracy
-from lidar_buildings.tests.builders import VEGETATION
 from lidar_buildings.tests.benchmarks.results import Table
+from lidar_buildings.tests.builders import VEGETATION
 from lidar_buildings.tests.real.clouds import path_of, run_on, truth
 
 WITH_CLASSES = tuple(
