@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import dataclasses
 import html
 import shutil
-import sys
 import textwrap
 from pathlib import Path
-from types import ModuleType
+
+from constants import constants_page, tiling_page
 
 from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.cloud.dimensions import DIMENSIONS
@@ -16,7 +15,6 @@ from lidar_buildings.algorithms.cloud.reasons import Reason
 from lidar_buildings.algorithms.help import pipeline_help, stage_help, step_title
 from lidar_buildings.algorithms.pipeline import Pipeline, Step
 from lidar_buildings.algorithms.pipelines import PIPELINES
-from lidar_buildings.algorithms.rules import rules_of
 from lidar_buildings.algorithms.stage import Stage
 from lidar_buildings.algorithms.stages import STAGES
 
@@ -32,8 +30,9 @@ def write(docs: Path) -> None:
         folder.mkdir(parents=True)
     for name, pipeline in PIPELINES.items():
         (charts / f"{name}.svg").write_text(flow_chart(pipeline), encoding="utf-8")
-        (charts / f"{name}_constants.md").write_text(_constants(pipeline), encoding="utf-8")
+        (charts / f"{name}_constants.md").write_text(constants_page(pipeline), encoding="utf-8")
         _page(reference / f"{pipeline.id}.md", pipeline.title, pipeline_help(pipeline))
+    (charts / "in_tiles_constants.md").write_text(tiling_page(), encoding="utf-8")
     for stage in STAGES.values():
         _page(reference / f"{stage.id}.md", stage.title, stage_help(stage))
     (reference / "algorithms.md").write_text(_algorithms(), encoding="utf-8")
@@ -93,41 +92,6 @@ def _passing(pipeline: Pipeline, step: Step) -> list[str]:
     before = pipeline.steps[: pipeline.steps.index(step)]
     written = {name for one in before for name in one.stage.writes}
     return [disk for name in step.stage.reads if name in written for disk in DIMENSIONS[name].disk[:1]] or ["points"]
-
-
-def _constants(pipeline: Pipeline) -> str:
-    """Return the page of the constants of a composite: by step, those of the stage's module and its helpers."""
-    rows = ["---", "orphan: true", "---", f"# Constants of {pipeline.title}", ""]
-    rows += ["Constants that follow from the cloud or are tunables are on the pages of the algorithms.", ""]
-    for stage in {step.stage.name: step.stage for step in pipeline.steps}.values():
-        found = [(module, *one) for module in _helpers(stage.function.__module__) for one in rules_of(module)]
-        if found:
-            rows += [
-                f"## {stage.title}",
-                "",
-                "| constant | value | unit | where it comes from |",
-                "| --- | ---: | --- | --- |",
-            ]
-            rows += [_constant(*one) for one in found]
-            rows.append("")
-    return "\n".join(rows) + "\n"
-
-
-def _constant(module: ModuleType, name: str, field: dataclasses.Field) -> str:
-    unit, why = field.metadata["unit"], field.metadata["why"]
-    return f"| `{module.__name__.rsplit('.', 1)[1]}.{name}` | {field.default} | {unit} | {why} |"
-
-
-def _helpers(name: str) -> list[ModuleType]:
-    """Return the module of a stage and those of its room that it imports, with what these import."""
-    room, found, waiting = name.rsplit(".", 1)[0] + ".", [], [name]
-    while waiting:
-        module = sys.modules[waiting.pop(0)]
-        if module not in found:
-            found.append(module)
-            used = {getattr(value, "__module__", "") for value in vars(module).values()}
-            waiting += sorted(one for one in used if one and one.startswith(room))
-    return found
 
 
 def _page(path: Path, title: str, body: str) -> None:
