@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 import re
 import sys
-from typing import Optional
+from typing import Callable, Optional
 
 from .captions import captions
 from .cloud.dimensions import DIMENSIONS
@@ -87,6 +87,16 @@ def lower_first(text: str) -> str:
     return text[:1].lower() + text[1:] if text[1:2].islower() else text
 
 
+def translated(text: str, translate: Callable[[str], str]) -> str:
+    """Return a help with what each of its lines says, without the tags of blocks around it, translated."""
+    return _LINE.sub(lambda line: line[1] + translate(line[2]) + line[3], text)
+
+
+# A line of a help: tags of blocks, what it says, and tags of blocks.
+_BLOCK = r"(?:</?(?:p|li|ul|ol|h3)>)*"
+_LINE = re.compile(rf"^({_BLOCK})(.+?)({_BLOCK})$", re.MULTILINE)
+
+
 def as_text(text: str) -> str:
     """Return a help for the command line: no HTML, and no summary and parameters, which QGIS prints itself."""
     sections = re.split(r"\n(?=<h3>)", text)
@@ -104,14 +114,14 @@ def as_text(text: str) -> str:
 _LIST = re.compile("<(/?)[ou]l>(?:</li>)?")
 
 
-def with_picture(text: str, algorithm: str, folder: str) -> str:
+def with_picture(text: str, algorithm: str, folder: str, translate: Callable[[str], str] = str) -> str:
     """Return a help text with the picture of an algorithm (id), where it has one, below the summary.
 
     ``folder`` is the URL of the folder with the pictures.
     """
     if algorithm not in captions():
         return text
-    caption = html.escape(captions()[algorithm])
+    caption = html.escape(translate(captions()[algorithm]))
     picture = (
         f'<p><img src="{folder}/{algorithm}.png" width="{_PICTURE_WIDTH}" alt="{caption}"></p>\n<p><i>{caption}</i></p>'
     )

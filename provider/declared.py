@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Optional, Union
 
-from qgis.core import QgsApplication
+from qgis.core import QgsApplication, QgsProcessingOutputHtml
 from qgis.PyQt.QtCore import QUrl
 from qgis.PyQt.QtGui import QIcon
 from qgis.PyQt.QtWidgets import QWidget
 
-from ..algorithms.help import as_text, with_picture
+from ..algorithms.help import as_text, translated, with_picture
 from ..algorithms.pipeline import Pipeline
 from ..algorithms.stage import Stage
 from .paths import GROUP_ICONS, HELP, ICON, PICTURES
@@ -75,11 +75,17 @@ class DeclaredAlgorithm:
             return None
         return GroupedDialog(self, parent=parent)
 
+    def name_pages(self) -> None:
+        """Name the algorithm with its pages: QGIS lists those of all runs by the names of outputs alone."""
+        for output in self.outputDefinitions():  # type: ignore[attr-defined]
+            if isinstance(output, QgsProcessingOutputHtml):
+                output.setDescription(f"{output.description()} ({self.displayName()})")
+
     def shown(self, text: str) -> str:
         """Return its help as dialogs, with the picture, or the command line show it."""
         if on_command_line():
             return as_text(text)
-        return with_picture(text, self.declared.id, QUrl.fromLocalFile(str(PICTURES)).toString())
+        return with_picture(translated(text, tr), self.declared.id, QUrl.fromLocalFile(str(PICTURES)).toString(), tr)
 
 
 def on_command_line() -> bool:

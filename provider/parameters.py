@@ -128,9 +128,10 @@ def number_outputs(stage: Stage) -> dict[str, str]:
     """Return names and titles of the numbers that a run gives: measures, and what automatic tunables took."""
     numbers = {}
     for measure in stage.measures:
-        numbers[measure.name.upper()] = f"{measure.title} ({measure.unit})" if measure.unit else measure.title
+        title = tr(measure.title)
+        numbers[measure.name.upper()] = f"{title} ({measure.unit})" if measure.unit else title
     for tunable in automatic_numbers(stage):
-        numbers[used_name(tunable)] = f"{tunable.param.title}, as used"
+        numbers[used_name(tunable)] = tr("{}, as used").format(plain_label(tunable))
     return numbers
 
 

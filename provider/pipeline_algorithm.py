@@ -167,6 +167,7 @@ class PipelineAlgorithm(CheckedAlgorithm, QgsProcessingModelAlgorithm):
         for step in self.pipeline.steps:
             for name, title in number_outputs(step.stage).items():
                 self.addOutput(QgsProcessingOutputNumber(step_output_name(step, name), step_label(step, title)))
+        self.name_pages()
 
     def shortHelpString(self) -> str:  # noqa: N802
         """Return the help that the dialog shows beside the parameters."""

@@ -113,6 +113,7 @@ class StageAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
             self.addParameter(crs_parameter(SIMULATED_CRS if self.stage.creates else None))
         self._add_destinations()
         self._add_numbers()
+        self.name_pages()
 
     def _add_destinations(self) -> None:
         """Declare what the stage writes: cloud, layers, rasters, text files, report."""

@@ -65,6 +65,7 @@ from .schedulers import check_scheduler
 from .styles import layer_style, show_on_load, style_of
 from .surveys import VPC, WGS84, check_vpc, place_of_survey, write_survey
 from .text_files import file_parameter, write_text
+from .texts import tr
 from .vectors import SOURCE_TYPES
 
 BLOCK_SIDE, PROCESSES, SCHEDULER, CERTIFICATES, COMPRESSED, LOAD = (
@@ -113,25 +114,27 @@ class TilesAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         self.addParameter(with_setting(crs_parameter(), SETTINGS))
         for definition in _work_parameters():
             self.addParameter(definition)
-        folder = QgsProcessingParameterFolderDestination(OUTPUT, "Folder of the tiles")
-        self.addParameter(with_help(folder, "A tile for each file, and a virtual point cloud over all of them."))
+        folder = QgsProcessingParameterFolderDestination(OUTPUT, tr("Folder of the tiles"))
+        self.addParameter(with_help(folder, tr("A tile for each file, and a virtual point cloud over all of them.")))
         for output in self.tiled.layers:
             layer = next(one for one in output.step.stage.layers if one.name == output.of)
             sink = QgsProcessingParameterFeatureSink(
-                output.name.upper(), layer.title, SOURCE_TYPES[layer.geometry], optional=True
+                output.name.upper(), tr(layer.title), SOURCE_TYPES[layer.geometry], optional=True
             )
-            self.addParameter(with_help(sink, "A GeoPackage or any other vector format that QGIS writes."))
+            self.addParameter(with_help(sink, tr("A GeoPackage or any other vector format that QGIS writes.")))
         for output in self.tiled.rasters:
-            image = QgsProcessingParameterRasterDestination(output.name.upper(), _raster(output).title, optional=True)
-            self.addParameter(with_help(image, "A GeoTIFF, tiled and compressed."))
+            title = tr(_raster(output).title)
+            image = QgsProcessingParameterRasterDestination(output.name.upper(), title, optional=True)
+            self.addParameter(with_help(image, tr("A GeoTIFF, tiled and compressed.")))
         for file in files_of(self.tiled.pipeline).values():
             self.addParameter(file_parameter(file[0]))
         if self.tiled.report:
-            page = QgsProcessingParameterFileDestination(REPORT, "Report", "HTML files (*.html)", optional=True)
-            self.addParameter(with_help(page, "A page that shows the numbers."))
-        self.addOutput(QgsProcessingOutputFile(VPC, "Virtual point cloud over the tiles"))
+            page = QgsProcessingParameterFileDestination(REPORT, tr("Report"), "HTML files (*.html)", optional=True)
+            self.addParameter(with_help(page, tr("A page that shows the numbers.")))
+        self.addOutput(QgsProcessingOutputFile(VPC, tr("Virtual point cloud over the tiles")))
         for name, title in _NUMBERS.items():
-            self.addOutput(QgsProcessingOutputNumber(name, title))
+            self.addOutput(QgsProcessingOutputNumber(name, tr(title)))
+        self.name_pages()
 
     def check(self, parameters: dict, context: QgsProcessingContext) -> None:
         """Find out files, tunables and workers; refuse what can be refused before the run."""

@@ -16,19 +16,25 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
 import conftest  # noqa: E402, F401 - registers the checkout as the package lidar_buildings
-from lidar_buildings.algorithms.help import step_title  # noqa: E402
+from lidar_buildings.algorithms.captions import captions  # noqa: E402
+from lidar_buildings.algorithms.help import pipeline_help, stage_help, step_title, translated  # noqa: E402
 from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
 from lidar_buildings.algorithms.presets import PRESETS  # noqa: E402
 from lidar_buildings.algorithms.stage import Stage  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 from lidar_buildings.algorithms.tiling.settings import CUT_SETTINGS, SETTINGS  # noqa: E402
-from lidar_buildings.algorithms.tiling.tiled_pipelines import CUT_INTO_TILES, TILED_PIPELINES  # noqa: E402
+from lidar_buildings.algorithms.tiling.tiled_pipelines import (  # noqa: E402
+    CUT_INTO_TILES,
+    TILED_PIPELINES,
+    survey_tool_help,
+    tiled_pipeline_help,
+)
 
 CONTEXT = "LidarBuildings"
 TARGET = ROOT / "resources" / "translations" / "lidar_buildings.ts"
 
 # Tables of provider/ whose values are texts that are translated where they are shown.
-_TABLES = ("_BY_ATTRIBUTE", "_BY_DIMENSION")
+_TABLES = ("_BY_ATTRIBUTE", "_BY_DIMENSION", "_NUMBERS")
 
 
 def texts() -> list[str]:
@@ -45,7 +51,18 @@ def texts() -> list[str]:
         if "empty = " in setting.title:
             found.add(setting.title.split("empty = ")[1].rstrip(")"))
     found.update(preset.title for preset in PRESETS.values())
+    found.update(captions().values())
+    for text in _helps():
+        translated(text, lambda line: found.add(line) or line)
     return sorted(found - {""})
+
+
+def _helps() -> Iterator[str]:
+    """Yield the helps of all algorithms."""
+    yield from map(stage_help, STAGES.values())
+    yield from map(pipeline_help, PIPELINES.values())
+    yield from map(tiled_pipeline_help, TILED_PIPELINES.values())
+    yield survey_tool_help(CUT_INTO_TILES)
 
 
 def _called(path: Path) -> Iterator[str]:
@@ -60,7 +77,7 @@ def _called(path: Path) -> Iterator[str]:
         elif isinstance(node, ast.Call) and getattr(node.func, "id", "") == "Option":
             yield node.args[1].value
         elif isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") in _TABLES:
-            yield from (value.value for value in node.value.values)
+            yield from (value.value for value in node.value.values if isinstance(value, ast.Constant))
 
 
 def _of_stage(stage: Stage) -> Iterator[str]:
@@ -68,7 +85,7 @@ def _of_stage(stage: Stage) -> Iterator[str]:
     yield from (stage.title, stage.group, stage.summary, stage.reference)
     for tunable in stage.tunables.values():
         yield from (tunable.param.label, tunable.param.help, tunable.param.unset, tunable.param.unset_text)
-    for made in (*stage.layers, *stage.rasters, *stage.measures, *stage.input_layers):
+    for made in (*stage.layers, *stage.rasters, *stage.measures, *stage.files, *stage.input_layers):
         yield made.title
     yield from (input_layer.help for input_layer in stage.input_layers)
 

@@ -33,6 +33,9 @@ _EXTENSIONS = (
     "https://stac-extensions.github.io/projection/v1.1.0/schema.json",
 )
 
+# Dimensions that PDAL calls otherwise than laspy; all others differ in underscores and capitals alone.
+_PDAL_NAMES = {"scan_angle": "ScanAngleRank", "nir": "Infrared"}
+
 ToDegrees = Callable[[np.ndarray], np.ndarray]
 
 
@@ -151,14 +154,15 @@ def _feature(tile: Path, folder: Path, to_degrees: Optional[ToDegrees]) -> dict:
 
 
 def _schemas(header: Header) -> list[dict]:
-    """Return the dimensions of the records of a tile."""
-    kinds = {"f": "floating", "u": "unsigned", "i": "signed"}
-    fields = header.layout.dtype.fields or {}
-    return [
-        {"name": name, "size": fields[name][0].itemsize, "type": kinds[fields[name][0].kind]}
-        for name in fields
-        if fields[name][0].kind in kinds
-    ]
+    """Return the dimensions of the points of a tile, by the names that QGIS and PDAL know them by."""
+    kinds, layout = {"f": "floating", "u": "unsigned", "i": "signed"}, header.layout
+    fields = layout.standard.fields or {}
+    # Bit fields share bytes.
+    stored = {name: fields[name][0] if name in fields else np.dtype(np.uint8) for name in layout.names}
+    named = {_PDAL_NAMES.get(name, name.title().replace("_", "")): dtype for name, dtype in stored.items()}
+    named.update(dict.fromkeys("XYZ", np.dtype(float)))
+    named.update({extra.name: extra.dtype for extra in layout.extras if extra.is_scalar and extra.name})
+    return [{"name": name, "size": dtype.itemsize, "type": kinds[dtype.kind]} for name, dtype in named.items()]
 
 
 def _href(tile: Path, folder: Path) -> str:

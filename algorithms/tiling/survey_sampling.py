@@ -64,6 +64,7 @@ def samplings_of(
         before = list(samplings.values())[-1]
         part = monitor.part(0.3 + 0.7 * done / len(steps), 0.3 + 0.7 * (done + 1) / len(steps))
         alone = part_of(pipeline, [step])
+        monitor.inform(f"Measured on parts of the survey: {step.stage.title}.")
         if step in prepares:
             parts = [part.part(at / len(clouds), (at + 1) / len(clouds)) for at in range(len(clouds))]
             made = [_made(alone, cloud, before, tunables, heard) for cloud, heard in zip(clouds, parts)]

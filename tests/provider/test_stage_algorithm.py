@@ -440,3 +440,10 @@ def test_buildings_are_assessed_with_polygons_in_place_of_a_reference_cloud(prov
     assert accepted, why
     with pytest.raises(QgsProcessingException, match="There is no reference"):
         run("assessbuildings", {"INPUT": str(town_file)}, context, log)
+
+
+def test_pages_are_named_after_their_algorithm_where_all_runs_are_listed(provider):
+    for name, title in (("assessbuildings", "Assess buildings"), ("detectbuildings", "Detect buildings")):
+        algorithm = provider.algorithm(name).create()
+        assert algorithm.outputDefinition("REPORT").description() == f"Report ({title})"
+        assert algorithm.parameterDefinition("REPORT").description() == "Report"

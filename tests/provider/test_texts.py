@@ -1,6 +1,7 @@
 """Texts that users see can be translated, and all of them are in the file for translators."""
 
 import importlib.util
+import re
 from xml.etree import ElementTree
 
 import pytest
@@ -88,6 +89,16 @@ def test_parameters_are_translated(provider, asked):
     stage, model = (provider.algorithm(name).create() for name in ("classifygroundtin", "detectbuildings"))
     assert stage.parameterDefinition("CELL_SIZE").description() == "[Grid cell size] (m, [empty] = [automatic])"
     assert "[" in model.parameterDefinition("GROUND_CELL_SIZE").description()
+
+
+def test_helps_are_translated_line_by_line(provider, script, asked):
+    for algorithm in provider.algorithms():
+        lines = [re.sub(r"</?(p|li|ul|ol|h3)>", "", line) for line in algorithm.create().shortHelpString().split("\n")]
+        said = [line for line in lines if line and not line.startswith("<img")]
+        assert said
+        assert all(line.startswith(("[", "<i>[")) for line in said), algorithm.id()
+    left_out = asked - set(script.texts())
+    assert not left_out, sorted(left_out)[:5]
 
 
 def test_the_file_is_up_to_date_and_can_be_read(script, monkeypatch):

@@ -354,6 +354,8 @@ def test_the_tiles_are_loaded_with_points_style_and_the_layers_in_one_group(algo
     layer = QgsPointCloudLayer(shown, "tiles", "vpc")
     assert layer.isValid()
     assert layer.pointCount() == results["POINTS"] == len(read_cloud(shown))
+    dimensions = {one.name() for one in layer.attributes().attributes()}
+    assert {"Classification", "Intensity", "HeightAboveGround", "Confidence", "Reason"} <= dimensions
     # The folder as input of another run has each point once.
     assert sum(len(read_cloud(one)) for one in files_of_survey([out])) == results["POINTS"]
 
