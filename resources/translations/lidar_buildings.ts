@@ -8628,7 +8628,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point clouds. International Archives of Photogrammetry, Remote Sensing and Spatial Information Sciences 46 (8/W2), 33-38.</source>
+        <source>Vosselman, G., Gorte, B. G. H., Sithole, G., Rabbani, T., 2004. Recognising structure in laser scanner point clouds. International Archives of Photogrammetry, Remote Sensing and Spatial Information Sciences 36 (8/W2), 33-38.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
