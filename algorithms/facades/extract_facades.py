@@ -16,7 +16,7 @@ from ..segmentation.segment_planes_ransac import segment_planes_ransac
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, ProgressOnly, stage
 from .common_borders import with_common_borders
 from .curved_fronts import as_strips
-from .facade_outline import longest_edge
+from .facade_outline import Drawing, longest_edge
 from .facade_surfaces import Facade, facade_features, plane_of, surfaces_of
 from .segment_facade_lines import are_of_facade_lines
 
@@ -59,15 +59,15 @@ FACADE_FIELDS = (
     Field("neighbors", int, "Facades with which it has a common border"),
 )
 
+FACADES = Layer("facades", "Facades", "Polygon", FACADE_FIELDS, style="facades", deviation="rms", around=AROUND_CORNER)
+
 
 @stage(
     "Extract facades",
     group="Facades",
     tags="facade,wall,street,mobile mapping,terrestrial,TIN,convex hull,boundary,polygon,3D,Peng",
     writes=("segment_id",),
-    layers=(
-        Layer("facades", "Facades", "Polygon", FACADE_FIELDS, style="facades", deviation="rms", around=AROUND_CORNER),
-    ),
+    layers=(FACADES,),
     reach=_AROUND,
 )
 def extract_facades(
@@ -213,16 +213,8 @@ def extract_facades(
     walls = as_strips(xyz, merged_planes(xyz, plane, tolerance, monitor.part(0.6, 0.65)), tolerance)
     pieces = split_at_gaps(xyz, walls, max_gap)
     _leave_small(xyz, pieces, min_height)
-    facades = surfaces_of(
-        xyz,
-        pieces,
-        max_tilt=max_tilt,
-        edge_factor=edge_factor,
-        max_gap=max_gap,
-        boundary=boundary,
-        complete=complete,
-        monitor=monitor.part(0.65, 0.95),
-    )
+    drawing = Drawing(max_tilt, max_gap, edge_factor, boundary, complete)
+    facades = surfaces_of(xyz, pieces, drawing, monitor.part(0.65, 0.95))
     # The area that was seen: the boundary of a post and of objects at its foot has a larger one.
     facades = [each for each in facades if min(each.area, each.seen_area) >= min_area and each.height >= min_height]
     facades = _numbered(facades)

@@ -12,8 +12,8 @@ from ..params import Boundary, CompleteFacades, CornerDistance, EdgeFactor, Faca
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
 from .approaches import BEFORE
 from .common_borders import with_common_borders
-from .extract_facades import AROUND_CORNER, FACADE_FIELDS
-from .facade_outline import longest_edge
+from .extract_facades import FACADES
+from .facade_outline import Drawing, longest_edge, ring_area
 from .facade_surfaces import Facade, facade_features, surfaces_of
 from .opening_search import Opening, find_openings
 from .shared_openings import drawn_once
@@ -43,23 +43,17 @@ OPENING_FIELDS = (
     Field("seen", float, "Share of its area with points"),
 )
 
+PIERCED = (
+    replace(FACADES, title="Facades with openings"),
+    Layer("openings", "Windows and doors", "Polygon", OPENING_FIELDS, style="openings"),
+)
+
 
 @stage(
     "Extract openings",
     group="Facades",
     tags="window,door,opening,facade,wall,shop front,glass,mobile mapping,terrestrial,Peng",
-    layers=(
-        Layer(
-            "facades",
-            "Facades with openings",
-            "Polygon",
-            FACADE_FIELDS,
-            style="facades",
-            deviation="rms",
-            around=AROUND_CORNER,
-        ),
-        Layer("openings", "Windows and doors", "Polygon", OPENING_FIELDS, style="openings"),
-    ),
+    layers=PIERCED,
     reach=lambda tunables: max(tunables["max_depth"], BEFORE),
 )
 def extract_openings(
@@ -138,16 +132,8 @@ def extract_openings(
     """
     edge_factor = longest_edge(boundary) if edge_factor is None else edge_factor
     monitor.resolved(edge_factor=edge_factor)
-    facades = surfaces_of(
-        xyz,
-        segment_id,
-        max_tilt=max_tilt,
-        edge_factor=edge_factor,
-        max_gap=max_gap,
-        boundary=boundary,
-        complete=complete,
-        monitor=monitor.part(0, 0.5),
-    )
+    drawing = Drawing(max_tilt, max_gap, edge_factor, boundary, complete)
+    facades = surfaces_of(xyz, segment_id, drawing, monitor.part(0, 0.5))
     if corner_distance:
         facades = with_common_borders(facades, corner_distance, monitor.part(0.5, 0.55))
     found = _searched(facades, xyz, max_depth, min_size, monitor.part(0.55, 1))
@@ -213,9 +199,7 @@ def _features(found: list[tuple[Facade, list[Opening]]]) -> LayerFeatures:
             geometries.append([facade.frame.space(opening.ring)])
             left, low = opening.box[0] - facade.ring.min(axis=0)
             width, height = opening.size
-            x, y = (opening.ring - opening.ring[0]).T
-            area = 0.5 * abs(float(np.sum(x[:-1] * y[1:] - x[1:] * y[:-1])))
-            size = (width, height, area)
+            size = (width, height, ring_area(opening.ring))
             values: tuple = (len(geometries), facade.number, opening.kind, row, position, *size, left, low)
             values += (opening.depth, opening.enclosed, opening.seen)
             for name, value in zip(columns, values):

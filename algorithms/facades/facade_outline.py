@@ -66,43 +66,38 @@ class Outline:
     seen_area: float  #: Area of the triangles between the points, m²
 
 
+@dataclass(frozen=True)
+class Drawing:
+    """How facades are drawn: tunables of 'Extract facades' and 'Extract openings'."""
+
+    max_tilt: float  #: Largest angle of a facade to the vertical, °
+    max_gap: float  #: Widest shadow that is bridged, m
+    edge_factor: float  #: Longest edge of a triangle, in spacings
+    boundary: str  #: "straight edges" by least squares, or "key points" of the boundary, where it turns
+    complete: bool  #: Whether what cars and trees hide of the foot and the sides is filled
+
+
 def longest_edge(boundary: str) -> float:
     """Return the longest edge of a triangle (spacings) for a kind of boundary."""
     return _PUBLISHED_EDGE if boundary == "key points" else _LONGEST_EDGE
 
 
-def outline_of(
-    positions: np.ndarray, edge_factor: float, max_gap: float, boundary: str, complete: bool
-) -> Optional[Outline]:
-    """Return the boundary of points on a plane, None where they have no area.
-
-    Parameters
-    ----------
-    positions : ndarray of shape (n, 2)
-        Positions along and up the facade (m).
-    edge_factor : float
-        Longest edge of a triangle, in spacings.
-    max_gap : float
-        Widest shadow (m) that is bridged.
-    boundary : str
-        "straight edges": edges by least squares; "key points": the points of the boundary where it turns.
-    complete : bool
-        Whether what cars and trees hide of the foot and the sides is filled.
-    """
+def outline_of(positions: np.ndarray, drawing: Drawing) -> Optional[Outline]:
+    """Return the boundary of points (n, 2), m along and up a plane; None where they have no area."""
     triangulation = triangulated(positions)
     if triangulation is None:
         return None
     spacing = sparse_spacing(positions, triangulation.simplices)
-    traced = _traced(positions, triangulation, spacing, edge_factor, max_gap)
+    traced = _traced(positions, triangulation, spacing, drawing)
     if traced is None:
         return None
     seen = ring_area(traced)
-    if complete:
+    if drawing.complete:
         traced = _divided(completed(traced), spacing)
     hull = spatial.ConvexHull(positions)
     width = float(hull.volume) / float(np.linalg.norm(np.ptp(positions, axis=0)))
     tolerance = max(min(_TOLERANCE_SPACINGS * spacing, _TOLERANCE_SHARE * width), _LEAST_TOLERANCE)
-    if boundary == "key points":
+    if drawing.boundary == "key points":
         ring, limit = key_points(traced), np.inf
     else:
         ring, limit = _straightened(traced, tolerance), 2 * tolerance
@@ -206,11 +201,9 @@ def sparse_spacing(positions: np.ndarray, triangles: np.ndarray) -> float:
     return float(np.percentile(smallest[np.isfinite(smallest)], _PERCENTILE)) / np.sqrt(2)
 
 
-def _traced(
-    positions: np.ndarray, triangulation: Any, spacing: float, edge_factor: float, max_gap: float
-) -> Optional[np.ndarray]:
+def _traced(positions: np.ndarray, triangulation: Any, spacing: float, drawing: Drawing) -> Optional[np.ndarray]:
     """Return the exterior ring of the largest piece of triangles without long edges."""
-    max_edge = edge_factor * spacing
+    max_edge, max_gap = drawing.edge_factor * spacing, drawing.max_gap
     while True:
         tracing = trace_outlines(positions, max_edge, triangulation)
         piece = None if tracing is None else _largest(tracing)

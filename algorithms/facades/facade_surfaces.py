@@ -10,7 +10,7 @@ from ..geometry.groups import members
 from ..segmentation.least_squares_planes import Planes, planes_of
 from ..stage import LayerFeatures, Monitor
 from .facade_frame import Frame, frame_of
-from .facade_outline import outline_of, ring_area
+from .facade_outline import Drawing, outline_of, ring_area
 from .facade_sides import facing_outside
 
 # Points nearer to a facade's plane than this (m) may be frames and reliefs of it: they don't show which side was seen.
@@ -48,17 +48,7 @@ class Facade:
         return [self.frame.space(ring) for ring in (self.ring, *self.holes)]
 
 
-def surfaces_of(
-    xyz: np.ndarray,
-    segment_id: np.ndarray,
-    *,
-    max_tilt: float,
-    edge_factor: float,
-    max_gap: float,
-    boundary: str,
-    complete: bool,
-    monitor: Monitor,
-) -> list[Facade]:
+def surfaces_of(xyz: np.ndarray, segment_id: np.ndarray, drawing: Drawing, monitor: Monitor) -> list[Facade]:
     """Return the facades of segments whose planes are steep and have an area, in the order of their numbers.
 
     Parameters
@@ -67,10 +57,8 @@ def surfaces_of(
         Coordinates of the whole cloud (m).
     segment_id : ndarray of shape (n,)
         Planes from 1; 0 if unassigned.
-    max_tilt : float
-        Largest angle (°) of a facade to the vertical.
-    edge_factor, max_gap, boundary, complete
-        As of :func:`.facade_outline.outline_of`.
+    drawing : Drawing
+        How they are drawn.
     monitor : Monitor
         Receives progress.
     """
@@ -79,14 +67,14 @@ def surfaces_of(
     if not groups:
         return []
     planes = {number: plane_of(xyz[points]) for number, points in groups.items()}
-    steep = [n for n, (frame, _) in planes.items() if len(groups[n]) >= 4 and abs(frame.tilt) <= max_tilt]
+    steep = [n for n, (frame, _) in planes.items() if len(groups[n]) >= 4 and abs(frame.tilt) <= drawing.max_tilt]
     thickness = np.array([max(_THICKNESS, 3 * planes[n][1]) for n in steep])
     rows = [groups[n] for n in steep]
     frames = facing_outside([planes[n][0] for n in steep], xyz, rows, thickness, monitor.part(0, 0.3))
     facades = []
     for done, (number, frame) in enumerate(zip(steep, frames), start=1):
         positions = frame.local(xyz[groups[number]])[:, :2]
-        outline = outline_of(positions, edge_factor, max_gap, boundary, complete)
+        outline = outline_of(positions, drawing)
         if outline is not None:
             found = outline.ring, groups[number], planes[number][1], outline.spacing
             facades.append(Facade(number, frame, *found, outline.hull_area, outline.seen_area))
@@ -108,7 +96,7 @@ def plane_of(xyz: np.ndarray) -> tuple[Frame, float]:
 
 
 def facade_features(facades: list[Facade]) -> LayerFeatures:
-    """Return facades as features of the layer that :data:`.extract_facades.FACADE_FIELDS` describes."""
+    """Return facades as features of the layer that :data:`.extract_facades.FACADES` describes."""
     columns: dict[str, list] = {
         "id": [facade.number for facade in facades],
         "area": [facade.area for facade in facades],

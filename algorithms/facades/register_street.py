@@ -8,9 +8,9 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..report.page import Row, build_page
-from ..stage import InputLayer, Layer, LayerFeatures, Measure, Param, Report, stage
-from .extract_facades import AROUND_CORNER, FACADE_FIELDS, extract_facades
-from .extract_openings import OPENING_FIELDS, extract_openings
+from ..stage import InputLayer, LayerFeatures, Measure, Param, Report, stage
+from .extract_facades import extract_facades
+from .extract_openings import PIERCED, extract_openings
 from .plan_segments import facade_segments, outline_segments
 from .registration import Registration, register
 
@@ -45,18 +45,7 @@ _MEANINGS = {
     input_layers=(
         InputLayer("footprints", "Footprints", "Polygon", "Outlines of the buildings, from the airborne cloud."),
     ),
-    layers=(
-        Layer(
-            "facades",
-            "Facades with openings",
-            "Polygon",
-            FACADE_FIELDS,
-            style="facades",
-            deviation="rms",
-            around=AROUND_CORNER,
-        ),
-        Layer("openings", "Windows and doors", "Polygon", OPENING_FIELDS, style="openings"),
-    ),
+    layers=PIERCED,
     measures=_MEASURES,
     reference="The street scan, from a vehicle or a tripod.",
 )

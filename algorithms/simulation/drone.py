@@ -148,19 +148,21 @@ def _half_widths(elevation: np.ndarray, radius: np.ndarray, distance: np.ndarray
     return np.column_stack([wide, high])
 
 
+@dataclass(frozen=True)
+class LineScan:
+    """What scanners do that turn a mirror, and record the first echo."""
+
+    line_rate: float  #: Lines per second
+    angular_step: float  #: Angle between pulses, °
+    max_range: float  #: Reach of the scanner, m
+    range_noise: float  #: Standard deviation of distances, m
+    seed: int  #: The same seed makes the same points
+
+
 def fly(
-    scene: Scene,
-    flight: Flight,
-    scanners: tuple[str, ...],
-    *,
-    line_rate: float,
-    angular_step: float,
-    max_range: float,
-    range_noise: float,
-    seed: int,
-    monitor: Monitor,
+    scene: Scene, flight: Flight, scanners: tuple[str, ...], scan: LineScan, monitor: Monitor
 ) -> dict[str, np.ndarray]:
-    """Scan a site from a drone. The tunables are those of :func:`.simulate_flight.simulate_flight`.
+    """Return the dimensions of a site scanned from a drone by name, in the order of time.
 
     Parameters
     ----------
@@ -170,51 +172,43 @@ def fly(
         The flight.
     scanners : tuple of str
         Names of the scanners.
-    line_rate : float
-        Lines per second.
-    angular_step : float
-        Angle between pulses, °.
-    max_range : float
-        Reach of the scanner, m.
-    range_noise : float
-        Standard deviation of distances, m.
-    seed : int
-        The same seed makes the same.
+    scan : LineScan
+        Their settings.
     monitor : Monitor
         Receives the progress.
-
-    Returns
-    -------
-    dict of str to ndarray
-        Dimensions by name, in the order of time.
     """
-    world, parts = Surroundings(scene, max_range), []
-    blocks = [(name, time) for name in scanners for time in _blocks(flight, line_rate, angular_step)]
-    generators = {name: np.random.default_rng([seed, 4, SCANNERS[name]]) for name in scanners}
+    world, parts = Surroundings(scene, scan.max_range), []
+    blocks = [(name, time) for name in scanners for time in _blocks(flight, scan)]
+    generators = {name: np.random.default_rng([scan.seed, 4, SCANNERS[name]]) for name in scanners}
     for i, (name, time) in enumerate(blocks):
         rng = generators[name]
-        beams, left = _pulses(flight, name, time, line_rate)
+        beams, left = _pulses(flight, name, time, scan.line_rate)
         echoes = first_met(world, beams, rng)
         # The noise of the range lies along the beam.
-        ranges = echoes.range + range_noise * rng.standard_normal(len(echoes))
+        ranges = echoes.range + scan.range_noise * rng.standard_normal(len(echoes))
         part = recorded(echoes, left, SCANNERS[name], rng)
         part["gps_time"] = time[echoes.pulse]
         part["xyz"] = beams.at(echoes.pulse, ranges)
         parts.append(part)
         monitor.progress((i + 1) / len(blocks))
+    return in_time_order(parts)
+
+
+def in_time_order(parts: list[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
+    """Return the dimensions of all parts of a scan, in the order of time."""
     made = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     order = np.argsort(made["gps_time"], kind="stable")
     return {name: values[order] for name, values in made.items()}
 
 
-def _blocks(flight: Flight, line_rate: float, angular_step: float) -> Iterator[np.ndarray]:
+def _blocks(flight: Flight, scan: LineScan) -> Iterator[np.ndarray]:
     """Yield the times (s) of the pulses of some scan lines each; a turn of the mirror is a line."""
-    per_line = pulses_per_line(angular_step)
-    n_lines, step = int(flight.duration * line_rate), max(1, min(_BLOCK // per_line, int(_BLOCK_TIME * line_rate)))
+    per_line, rate = pulses_per_line(scan.angular_step), scan.line_rate
+    n_lines, step = int(flight.duration * rate), max(1, min(_BLOCK // per_line, int(_BLOCK_TIME * rate)))
     for line in range(0, n_lines, step):
         lines = np.arange(line, min(line + step, n_lines))
-        pulse = np.arange(per_line) * (angular_step / 360.0)
-        yield (lines[:, None] + pulse).ravel() / line_rate
+        pulse = np.arange(per_line) * (scan.angular_step / 360.0)
+        yield (lines[:, None] + pulse).ravel() / rate
 
 
 def pulses_per_line(angular_step: float) -> int:

@@ -8,7 +8,7 @@ from ..cloud.asprs import PointClass
 from .scene import Scene
 from .solids import Rect, Solid, flat
 from .town_houses import Site
-from .town_layout import build_town, park_car
+from .town_layout import TownPlan, build_town, park_car
 
 # Halls (m): lengths and widths between these, heights of their roofs, and of the parapets on them.
 _HALL_SIZES = (10.0, 100.0)
@@ -26,52 +26,17 @@ _VAN_HEIGHT = (1.9, 2.6)
 _TRIES, _ROOM = 60, 3.0
 
 
-def build_site(
-    *, size: float, slope: float, terrace_height: float, buildings: float, trees: float, halls: int, seed: int
-) -> Scene:
-    """Make up a site. The tunables are those of :func:`.simulate_drone_site.simulate_drone_site`.
-
-    Parameters
-    ----------
-    size : float
-        Side of the square, m.
-    slope : float
-        Slope of the ground, °.
-    terrace_height : float
-        Rise of the terraces, m.
-    buildings : float
-        Buildings per hectare.
-    trees : float
-        Trees per hectare.
-    halls : int
-        Number of flat halls.
-    seed : int
-        The same seed makes the same.
-
-    Returns
-    -------
-    Scene
-        The same for the same arguments.
-    """
-    scene = build_town(
-        size=size,
-        slope=slope,
-        relief=2.0,
-        terrace_height=terrace_height,
-        buildings=buildings,
-        trees=trees,
-        forest=0.0,
-        river=False,
-        seed=seed,
-    )
+def build_site(plan: TownPlan, halls: int) -> Scene:
+    """Return a made-up site: a town without wires, with flat halls, vans and a block; the same for the same plan."""
+    scene = build_town(plan)
     # A camera doesn't see wires.
     scene.wires.clear()
-    rng = np.random.default_rng([seed, 5])
+    rng = np.random.default_rng([plan.seed, 5])
     for k in range(halls):
         _add_hall(scene, k, rng)
-    if buildings and halls:
+    if plan.buildings and halls:
         _add_block(scene, rng)
-    for _ in range(round(8 * size**2 / 1e4)):
+    for _ in range(round(8 * plan.size**2 / 1e4)):
         _add_van(scene, rng)
     return scene
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Optional, Union
+from typing import Annotated, Optional, Union
 
 import numpy as np
 
 from ..cloud.asprs import PointClass
-from ..stage import Monitor
+from ..stage import Monitor, Param
 from .beams import Beams, Echoes, World, join
 from .pairs import in_boxes, rank
 from .relief import Relief
@@ -29,6 +29,11 @@ RECORDED = (
     "gps_time",
     "segment_id",
 )
+
+RangeNoise = Annotated[
+    float,
+    Param("Range noise", "Standard deviation of the measured distances.", unit="m", low=0, high=0.2, advanced=True),
+]
 
 # Largest number of pulses: at about 100 bytes each they fit into the memory of an office computer.
 MAX_PULSES = 5e7
@@ -108,64 +113,37 @@ class _Block:
         return self.n_lines * self.pulses_per_line
 
 
-def scan(
-    scene: Scene,
-    *,
-    density: float = 8.0,
-    pattern: str = "lines",
-    max_scan_angle: float = 20.0,
-    overlap: float = 0.3,
-    range_noise: float = 0.02,
-    returns: bool = True,
-    noise_points: float = 10.0,
-    seed: int = 1,
-    monitor: Optional[Monitor] = None,
-) -> Scan:
-    """Scan a scene from the air. The tunables are those of :func:`.simulate_town.simulate_town`.
+@dataclass(frozen=True)
+class Survey:
+    """How a scanner flies over a scene and what it records: tunables of :func:`.simulate_town.simulate_town`."""
 
-    Parameters
-    ----------
-    scene : Scene
-        The scene to scan.
-    density : float
-        Pulses per m².
-    pattern : str
-        Scan pattern.
-    max_scan_angle : float
-        Angle to the vertical at the edge of a strip, °.
-    overlap : float
-        Share of a strip that the next one scans, too.
-    range_noise : float
-        Standard deviation of distances, m.
-    returns : bool
-        Whether all returns are recorded.
-    noise_points : float
-        Noise points per hectare.
-    seed : int
-        The same seed makes the same.
-    monitor : Monitor
-        Receives the progress.
+    density: float = 8.0  #: Pulses per m²
+    pattern: str = "lines"  #: Scan pattern, one of :data:`PATTERNS`
+    max_scan_angle: float = 20.0  #: Angle to the vertical at the edge of a strip, °
+    overlap: float = 0.3  #: Share of a strip that the next one scans, too
+    range_noise: float = 0.02  #: Standard deviation of distances, m
+    returns: bool = True  #: Whether all returns are recorded
+    noise_points: float = 10.0  #: Noise points per hectare
+    seed: int = 1  #: The same seed makes the same points
 
-    Returns
-    -------
-    Scan
-        The same for the same arguments.
-    """
+
+def scan(scene: Scene, survey: Survey, monitor: Optional[Monitor] = None) -> Scan:
+    """Return the points of a scene scanned from the air, the same for the same scene and survey."""
     monitor = monitor or Monitor()
-    rng = np.random.default_rng([seed, 1])
+    rng = np.random.default_rng([survey.seed, 1])
     world = World(scene)
-    blocks = list(_blocks(_strips(scene.relief, max_scan_angle, overlap), scene.size, density))
+    blocks = list(_blocks(_strips(scene.relief, survey.max_scan_angle, survey.overlap), scene.size, survey.density))
     firsts = np.cumsum([0] + [block.n_pulses for block in blocks])
-    noisy, heights = _noise(int(firsts[-1]), round(noise_points * scene.size**2 / 1e4), rng)
+    noisy, heights = _noise(int(firsts[-1]), round(survey.noise_points * scene.size**2 / 1e4), rng)
     parts = []
     for i, block in enumerate(blocks):
-        pulses, time = _pulses(world.relief, block, pattern, rng)
+        pulses, time = _pulses(world.relief, block, survey.pattern, rng)
         first, last = np.searchsorted(noisy, firsts[i : i + 2])
         noise = _noise_echoes(world, pulses.take(noisy[first:last] - firsts[i]), heights[first:last])
-        echoes = _replaced(_heard(world, pulses, block.strip, returns, rng), noise)
+        echoes = _replaced(_heard(world, pulses, block.strip, survey.returns, rng), noise)
         # The noise of the range lies along the beam.
-        ranges = echoes.range + range_noise * rng.standard_normal(len(echoes))
-        part = _recorded(echoes, time, block.strip, returns, rng)
+        ranges = echoes.range + survey.range_noise * rng.standard_normal(len(echoes))
+        part = _recorded(echoes, time, block.strip, survey.returns, rng)
         part["xyz"] = pulses.origin[echoes.pulse] + ranges[:, None] * echoes.direction
         part["pulse"] += firsts[i]
         parts.append(part)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, fields
 
 import numpy as np
 
+from ..stage import LayerFeatures
 from .pairs import in_boxes
 from .relief import CHANNEL, Relief
 from .solids import Rect, Solid, rectangles
@@ -100,3 +101,15 @@ class Scene:
         if self.relief.river is None:
             return np.zeros(np.shape(x), bool)
         return np.abs(self.relief.local(x, y)[0] - self.relief.river) < CHANNEL
+
+
+def footprint_layer(buildings: list[Building], corners: bool = False) -> LayerFeatures:
+    """Return the outlines of the walls with id, kind and area, and with the number of their corners if asked for."""
+    columns: dict[str, list] = {
+        "id": [building.object_id for building in buildings],
+        "kind": [building.kind for building in buildings],
+        "area": [building.area for building in buildings],
+    }
+    if corners:
+        columns["corners"] = [len(building.outline) - 1 for building in buildings]
+    return LayerFeatures([[building.outline] for building in buildings], columns)

@@ -8,7 +8,7 @@ from ..cloud.asprs import PointClass
 from ..params import Seed
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
 from .bridge_site import KINDS, Deck, build_site, land
-from .scanner import MAX_PULSES, RECORDED, scan
+from .scanner import MAX_PULSES, RECORDED, Survey, scan
 
 _ALL = "all"
 
@@ -64,21 +64,11 @@ def simulate_bridges(
 
     Returns
     -------
-    xyz : ndarray of shape (n, 3), float64
-        Coordinates (m), by time, then by return.
+    xyz, return_number, number_of_returns, intensity, scan_angle, point_source_id, gps_time : ndarray of shape (n, ...)
+        As of :func:`.simulate_town.simulate_town`.
     classification : ndarray of shape (n,), uint8
         The truth: 2 ground with banks, embankments and quays; 9 water; 17 bridge decks with their sides; 1 parapets,
         piers and cars; 3, 4, 5 trees.
-    return_number, number_of_returns : ndarray of shape (n,), uint8
-        Returns of a pulse, up to five.
-    intensity : ndarray of shape (n,), uint16
-        Brightness by material.
-    scan_angle : ndarray of shape (n,), float32
-        Angle of the beam to the vertical (°).
-    point_source_id : ndarray of shape (n,), uint16
-        Flight line, from 1.
-    gps_time : ndarray of shape (n,), float64
-        Time of the pulse, s.
     segment_id : ndarray of shape (n,), int32
         Number of the deck, car or tree; 0 for ground and water.
     decks : LayerFeatures
@@ -108,7 +98,7 @@ def simulate_bridges(
             f"The site of {scene.size:g} m with {density:g} pulses per m² has {density * scene.size**2 / 1e6:.0f} "
             f"million pulses, more than {MAX_PULSES / 1e6:.0f} million; lower the density."
         )
-    made = scan(scene, density=density, range_noise=range_noise, noise_points=0.0, seed=seed, monitor=monitor)
+    made = scan(scene, Survey(density, range_noise=range_noise, noise_points=0.0, seed=seed), monitor)
     x, y, z = made.xyz.T
     lies_on_land = land(scene, x, y) >= z - _ON_LAND
     made.classification[(made.classification == PointClass.BRIDGE_DECK) & lies_on_land] = PointClass.GROUND

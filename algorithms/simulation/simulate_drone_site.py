@@ -8,11 +8,12 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..params import Seed
-from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
+from ..stage import Field, Layer, Monitor, Param, stage
 from .drone_site import build_site
 from .height_field import HeightField, see_from_above
 from .image_matching import match, sample
-from .scene import Building
+from .scene import footprint_layer
+from .town_layout import TownPlan
 
 # Largest number of points: at about 200 bytes each they fit into the memory of an office computer.
 _MAX_POINTS = 3e7
@@ -20,6 +21,9 @@ _MAX_POINTS = 3e7
 # Points at this height above the ground (m) where there is only ground are of an adjacent object, smeared; plants and
 # cars whose points lie lower than this (m) are ground there.
 _SMEARED, _GROUND = 0.3, 0.1
+
+# Height from hollows to hills, m.
+_RELIEF = 2.0
 
 _FIELDS = (
     Field("id", int, "object id of the building, as SegmentID of its points"),
@@ -130,9 +134,8 @@ def simulate_drone_site(
             f"A site of {size:g} m with {density:g} points per m² has {density * size**2 / 1e6:.0f} million points, "
             f"more than {_MAX_POINTS / 1e6:.0f} million; lower size or density."
         )
-    scene = build_site(
-        size=size, slope=slope, terrace_height=terrace_height, buildings=buildings, trees=trees, halls=halls, seed=seed
-    )
+    plan = TownPlan(size, slope, _RELIEF, terrace_height, buildings, trees, forest=0.0, river=False, seed=seed)
+    scene = build_site(plan, halls)
     rng = np.random.default_rng([seed, 6])
     monitor.progress(0.1)
     field = see_from_above(scene, unevenness, rng)
@@ -145,7 +148,7 @@ def simulate_drone_site(
     classes, objects = _truth(field, xyz, row, column)
     ones = np.ones(len(xyz), np.uint8)
     monitor.progress(1.0)
-    return xyz, classes, ones, ones.copy(), *colors.T.copy(), objects, _footprints(scene.buildings)
+    return xyz, classes, ones, ones.copy(), *colors.T.copy(), objects, footprint_layer(scene.buildings)
 
 
 def _cells_of_objects(
@@ -167,15 +170,3 @@ def _truth(field: HeightField, xyz: np.ndarray, row: np.ndarray, column: np.ndar
     above = xyz[:, 2] - field.ground[row, column]
     is_ground = (classes != PointClass.BUILDING) & (above < _GROUND)
     return np.where(is_ground, PointClass.GROUND, classes).astype(np.uint8), np.where(is_ground, 0, objects)
-
-
-def _footprints(buildings: list[Building]) -> LayerFeatures:
-    """Return the outlines of the walls."""
-    return LayerFeatures(
-        [[building.outline] for building in buildings],
-        {
-            "id": [building.object_id for building in buildings],
-            "kind": [building.kind for building in buildings],
-            "area": [building.area for building in buildings],
-        },
-    )

@@ -6,8 +6,8 @@ from typing import Annotated, Optional
 
 from ..params import Seed
 from ..stage import Monitor, Param, stage
-from .drone import SCANNERS, fly, plan_flight, pulses_per_line
-from .scanner import MAX_PULSES, RECORDED
+from .drone import SCANNERS, LineScan, fly, plan_flight, pulses_per_line
+from .scanner import MAX_PULSES, RECORDED, RangeNoise
 from .street_site import build_site
 
 
@@ -55,10 +55,7 @@ def simulate_flight(
     max_range: Annotated[
         float, Param("Maximum range", "How far the scanners see.", unit="m", low=1, high=40, advanced=True)
     ] = 30.0,
-    range_noise: Annotated[
-        float,
-        Param("Range noise", "Standard deviation of the measured distances.", unit="m", low=0, high=0.2, advanced=True),
-    ] = 0.03,
+    range_noise: RangeNoise = 0.03,
     seed: Seed = 1,
     monitor: Optional[Monitor] = None,
 ):
@@ -125,18 +122,8 @@ def simulate_flight(
             f"A flight of {duration:g} s has {pulses / 1e6:.0f} million pulses, more than {MAX_PULSES / 1e6:.0f} "
             "million; lower the duration or the line rate, or take a larger angular step."
         )
-    scene = build_site(trees, slope, seed)
-    made = fly(
-        scene,
-        plan_flight(scene, height, duration, seed),
-        wanted,
-        line_rate=line_rate,
-        angular_step=angular_step,
-        max_range=max_range,
-        range_noise=range_noise,
-        seed=seed,
-        monitor=monitor,
-    )
+    scene, settings = build_site(trees, slope, seed), LineScan(line_rate, angular_step, max_range, range_noise, seed)
+    made = fly(scene, plan_flight(scene, height, duration, seed), wanted, settings, monitor)
     if not len(made["xyz"]):
         raise ValueError(f"Nothing is within {max_range:g} m of the scanner; raise the maximum range.")
     return tuple(made[name] for name in RECORDED)

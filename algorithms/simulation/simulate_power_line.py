@@ -7,7 +7,7 @@ from typing import Annotated, Optional
 from ..params import Seed
 from ..stage import Monitor, Param, stage
 from .line_site import build_line_site
-from .scanner import MAX_PULSES, RECORDED, scan
+from .scanner import MAX_PULSES, RECORDED, Survey, scan
 
 
 @stage(
@@ -45,20 +45,10 @@ def simulate_power_line(
 
     Returns
     -------
-    xyz : ndarray of shape (n, 3), float64
-        Coordinates (m), by time, then by return.
+    xyz, return_number, number_of_returns, intensity, scan_angle, point_source_id, gps_time : ndarray of shape (n, ...)
+        As of :func:`.simulate_town.simulate_town`.
     classification : ndarray of shape (n,), uint8
         The truth: 2 ground; 3, 4, 5 vegetation; 6 houses; 14 wires; 15 towers and poles.
-    return_number, number_of_returns : ndarray of shape (n,), uint8
-        Returns of a pulse, up to five.
-    intensity : ndarray of shape (n,), uint16
-        Brightness by material.
-    scan_angle : ndarray of shape (n,), float32
-        Angle of the beam to the vertical (°).
-    point_source_id : ndarray of shape (n,), uint16
-        Flight line, from 1.
-    gps_time : ndarray of shape (n,), float64
-        Time of the pulse, s.
     segment_id : ndarray of shape (n,), int32
         Number of the wire, mast, house or tree; 0 for ground.
 
@@ -85,5 +75,5 @@ def simulate_power_line(
             f"more than {MAX_PULSES / 1e6:.0f} million; lower the density or the size."
         )
     scene = build_line_site(size, span, angle, trees, forest, seed)
-    made = scan(scene, density=density, range_noise=range_noise, noise_points=0.0, seed=seed, monitor=monitor)
+    made = scan(scene, Survey(density, range_noise=range_noise, noise_points=0.0, seed=seed), monitor)
     return tuple(getattr(made, name) for name in RECORDED)

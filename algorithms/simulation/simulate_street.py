@@ -8,11 +8,12 @@ import numpy as np
 
 from ..params import Seed
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
-from .scanner import MAX_PULSES, scan
+from .drone import LineScan
+from .scanner import MAX_PULSES, RECORDED, RangeNoise, Survey, scan
 from .scene import Scene
 from .solids import Rect
 from .street_fronts import Truth
-from .street_scene import build_street
+from .street_scene import StreetPlan, build_street
 from .vehicle import Drive, drive_along, pulses_of
 
 # The scanners are this high over the street (m).
@@ -23,18 +24,7 @@ _ON_FRONT, _DEVIATIONS = 0.01, 4.0
 
 VIEWS = ("vehicle", "airplane")
 
-_CREATED = (
-    "xyz",
-    "classification",
-    "return_number",
-    "number_of_returns",
-    "intensity",
-    "scan_angle",
-    "point_source_id",
-    "gps_time",
-    "segment_id",
-    "cluster_id",
-)
+_CREATED = (*RECORDED, "cluster_id")
 
 _FACADE_FIELDS = (
     Field("id", int, "number of the facade, as SegmentID of its points"),
@@ -138,10 +128,7 @@ def simulate_street(
     max_range: Annotated[
         float, Param("Maximum range", "How far the scanners see.", unit="m", low=5, high=200, advanced=True)
     ] = 40.0,
-    range_noise: Annotated[
-        float,
-        Param("Range noise", "Standard deviation of the measured distances.", unit="m", low=0, high=0.2, advanced=True),
-    ] = 0.01,
+    range_noise: RangeNoise = 0.01,
     seed: Seed = 1,
     monitor: Optional[Monitor] = None,
 ):
@@ -199,26 +186,19 @@ def simulate_street(
     True
     """
     monitor = monitor or Monitor()
-    pulses = pulses_of(length, speed, line_rate, angular_step)
+    settings = LineScan(line_rate, angular_step, max_range, range_noise, seed)
+    pulses = pulses_of(length, speed, settings)
     if pulses > MAX_PULSES:
         raise ValueError(
             f"A street of {length:g} m has {pulses / 1e6:.0f} million pulses, more than {MAX_PULSES / 1e6:.0f} "
             "million; shorten it, lower the line rate, or take a larger speed or angular step."
         )
-    scene, truth, street = build_street(length, width, slope, clutter, seed, stoops, unevenness, houses)
+    plan = StreetPlan(length, width, slope, clutter, stoops, unevenness, houses, seed)
+    scene, truth, street = build_street(plan)
     if view == "airplane":
-        made = dict(vars(scan(scene, density=density, range_noise=range_noise, seed=seed, monitor=monitor)))
+        made = dict(vars(scan(scene, Survey(density, range_noise=range_noise, seed=seed), monitor)))
     else:
-        made = drive_along(
-            scene,
-            _drive(scene, street, speed),
-            line_rate=line_rate,
-            angular_step=angular_step,
-            max_range=max_range,
-            range_noise=range_noise,
-            seed=seed,
-            monitor=monitor,
-        )
+        made = drive_along(scene, _drive(scene, street, speed), settings, monitor)
     made = _with_numbers(_through_glass(made, truth, glass, seed), truth, range_noise)
     if not len(made["xyz"]):
         raise ValueError(f"Nothing is within {max_range:g} m of the scanners; raise the maximum range.")

@@ -6,8 +6,8 @@ from typing import Annotated, Optional
 
 from ..params import Seed
 from ..stage import Monitor, Param, stage
-from .scanner import MAX_PULSES, PATTERNS, RECORDED, scan
-from .town_layout import MAX_BUILDINGS, build_town
+from .scanner import MAX_PULSES, PATTERNS, RECORDED, RangeNoise, Survey, scan
+from .town_layout import MAX_BUILDINGS, TownPlan, build_town
 
 _MaxScanAngle = Annotated[
     float,
@@ -32,11 +32,6 @@ _Buildings = Annotated[
         low=0,
         high=MAX_BUILDINGS,
     ),
-]
-
-_RangeNoise = Annotated[
-    float,
-    Param("Range noise", "Standard deviation of the measured distances.", unit="m", low=0, high=0.2, advanced=True),
 ]
 
 _NoisePoints = Annotated[
@@ -116,7 +111,7 @@ def simulate_town(
             advanced=True,
         ),
     ] = 0.3,
-    range_noise: _RangeNoise = 0.02,
+    range_noise: RangeNoise = 0.02,
     noise_points: _NoisePoints = 10.0,
     returns: Annotated[
         bool,
@@ -187,29 +182,7 @@ def simulate_town(
             f"A town of {size:g} m with {density:g} pulses per m² has {density * size**2 / 1e6:.0f} million pulses, "
             f"more than {MAX_PULSES / 1e6:.0f} million; lower size or density."
         )
-    scene = build_town(
-        size=size,
-        slope=slope,
-        relief=relief,
-        terrace_height=terrace_height,
-        buildings=buildings,
-        trees=trees,
-        forest=forest,
-        river=river,
-        clutter=clutter,
-        seed=seed,
-        monitor=monitor.part(0.0, 0.15),
-    )
-    made = scan(
-        scene,
-        density=density,
-        pattern=pattern,
-        max_scan_angle=max_scan_angle,
-        overlap=overlap,
-        range_noise=range_noise,
-        returns=returns,
-        noise_points=noise_points,
-        seed=seed,
-        monitor=monitor.part(0.15, 1.0),
-    )
+    plan = TownPlan(size, slope, relief, terrace_height, buildings, trees, forest, river, clutter, seed)
+    survey = Survey(density, pattern, max_scan_angle, overlap, range_noise, returns, noise_points, seed)
+    made = scan(build_town(plan, monitor.part(0.0, 0.15)), survey, monitor.part(0.15, 1.0))
     return tuple(getattr(made, name) for name in RECORDED)

@@ -13,9 +13,9 @@ from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
 from .beams import Echoes
 from .camera import photograph
 from .relief import Relief
-from .scene import Building
+from .scene import footprint_layer
 from .solids import Rect
-from .village_layout import MAX_HOMES, Village, build_village
+from .village_layout import MAX_HOMES, Village, VillagePlan, build_village
 
 # Largest number of points: at about 200 bytes each they fit into the memory of an office computer.
 _MAX_POINTS = 3e7
@@ -189,9 +189,7 @@ def simulate_village(
             f"A village of {size:g} m with {density:g} points per m² has {density * size**2 / 1e6:.0f} million points, "
             f"more than {_MAX_POINTS / 1e6:.0f} million; lower size or density."
         )
-    village = build_village(
-        size=size, slope=slope, buildings=buildings, trees=trees, overhang=overhang, clutter=clutter, seed=seed
-    )
+    village = build_village(VillagePlan(size, slope, buildings, trees, overhang, clutter, seed))
     if buildings and not village.scene.buildings:
         monitor.warn(
             f"No house was built: too few plots lie wholly within {size:g} m; raise the size, or try another seed."
@@ -207,7 +205,7 @@ def simulate_village(
     cloud = _joined(xyz, seen, village, colors, *wrong)
     old_map = _old_map(village, map_shift, map_noise, map_changes, rng)
     monitor.progress(1.0)
-    return (*cloud, _footprints(village.scene.buildings), old_map)
+    return (*cloud, footprint_layer(village.scene.buildings, corners=True), old_map)
 
 
 def _outside_holes(xyz: np.ndarray, share: float, rng: np.random.Generator) -> np.ndarray:
@@ -265,19 +263,6 @@ def _joined(
         unknown.copy(),
         *np.concatenate([colors, gray]).T.copy(),
         np.concatenate([village.owner[seen.object_id], np.zeros(len(wrong))]).astype(np.int32),
-    )
-
-
-def _footprints(buildings: list[Building]) -> LayerFeatures:
-    """Return the outlines of the walls."""
-    return LayerFeatures(
-        [[building.outline] for building in buildings],
-        {
-            "id": [building.object_id for building in buildings],
-            "kind": [building.kind for building in buildings],
-            "area": [building.area for building in buildings],
-            "corners": [len(building.outline) - 1 for building in buildings],
-        },
     )
 
 

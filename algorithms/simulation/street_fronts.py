@@ -109,77 +109,51 @@ class Line:
         return Rect(float(x), float(y), along[1] - along[0], inward[1] - inward[0], angle)
 
 
-def build_front(scene: Scene, truth: Truth, line: Line, height: float, kind: str, raised: float = 0.0) -> None:
-    """Put the front of a house behind a line.
+@dataclass(frozen=True)
+class Front:
+    """The front of a house behind a line."""
 
-    The height (m) is over the ground at the start of the line, its ground floor ``raised`` (m) over the street.
+    line: Line  #: Its foot
+    height: float  #: Height over the ground at the start of the line, m, without what the ground floor is raised by
+    kind: str  #: One of :data:`KINDS`
+    raised: float = 0.0  #: Height of the ground floor over the street, m
 
-    Parameters
-    ----------
-    scene : Scene
-        Receives the objects.
-    truth : Truth
-        Receives the true polygons.
-    line : Line
-        Foot of the front.
-    height : float
-        Height over the ground, m.
-    kind : str
-        Kind of the front.
-    raised : float
-        Height of the ground floor over the street, m.
-    """
-    top = float(scene.relief.plane(*line.start)) + height + raised
-    for part, is_front in _parts(line, kind):
-        _build_wall(scene, truth, part, top, kind, raised, has_openings=is_front and part.length > 1.8)
-    if kind == "balconies":
-        _hang_balconies(scene, line, top, height)
+    def build(self, scene: Scene, truth: Truth) -> None:
+        """Put the front."""
+        line, kind = self.line, self.kind
+        top = float(scene.relief.plane(*line.start)) + self.height + self.raised
+        for part, is_front in _parts(line, kind):
+            _build_wall(scene, truth, part, top, kind, self.raised, has_openings=is_front and part.length > 1.8)
+        if kind == "balconies":
+            _hang_balconies(scene, line, top, self.height)
 
+    def build_house(self, scene: Scene, truth: Truth, pitch: float) -> None:
+        """Put a house behind a straight front: its other walls and a gable roof (°).
 
-def build_house(scene: Scene, truth: Truth, line: Line, height: float, kind: str, pitch: float) -> None:
-    """Put a house behind a straight front with this height over the ground: its other walls and a gable roof (°).
-
-    The roof is flush with the walls; its ridge runs along the street, and it goes on over a recess.
-
-    Parameters
-    ----------
-    scene : Scene
-        Receives the objects.
-    truth : Truth
-        Receives the true polygons.
-    line : Line
-        Foot of the front.
-    height : float
-        Height over the ground, m.
-    kind : str
-        Kind of the front.
-    pitch : float
-        Pitch of the roof, °.
-    """
-    ground = float(scene.relief.plane(*line.start))
-    top, across, number = ground + height, (0.0, line.length), scene.new_id()
-    inner = _STEP + _WALL if kind == "recess" else _WALL
-    for along, inward in ((across, (inner, _DEPTH)), *(((end, end + _WALL), (_WALL, inner)) for end in _ends(line))):
-        _block(scene, line, along, inward, ground - 2 * _BELOW, top, number)
-    rect = line.rect(across, (0.0, _DEPTH))
-    tops = gable(rect, top, float(np.tan(np.deg2rad(pitch))))
-    scene.solids.append(Solid(rect, tops, top, PointClass.BUILDING, number))
-    third, front = line.length / 3, [(0.0, 0.0)]
-    if kind == "bay":
-        # Between its walls: a beam never meets two faces at once.
-        lid = (third + _WALL, 2 * third - _WALL), (_WALL - _STEP, 0.0)
-        _block(scene, line, *lid, top - _LID, top, number)
-    if kind in ("bay", "recess"):
-        off = _STEP if kind == "recess" else -_STEP
-        front += [(third, 0.0), (third, off), (2 * third, off), (2 * third, 0.0)]
-    corners = [*front, (line.length, 0.0), (line.length, _DEPTH), (0.0, _DEPTH), (0.0, 0.0)]
-    truth.houses.append(np.array([(*line.at(*corner), ground) for corner in corners]))
-    truth.eaves.append(top)
-    truth.ridges.append(float(np.min(tops @ [rect.x, rect.y, 1.0])))
-
-
-def _ends(line: Line) -> tuple[float, float]:
-    return 0.0, line.length - _WALL
+        The roof is flush with the walls; its ridge runs along the street, and it goes on over a recess.
+        """
+        line, kind = self.line, self.kind
+        ground = float(scene.relief.plane(*line.start))
+        top, across, number = ground + (self.height + self.raised), (0.0, line.length), scene.new_id()
+        inner = _STEP + _WALL if kind == "recess" else _WALL
+        sides = [((end, end + _WALL), (_WALL, inner)) for end in (0.0, line.length - _WALL)]
+        for along, inward in [(across, (inner, _DEPTH)), *sides]:
+            _block(scene, line, along, inward, ground - 2 * _BELOW, top, number)
+        rect = line.rect(across, (0.0, _DEPTH))
+        tops = gable(rect, top, float(np.tan(np.deg2rad(pitch))))
+        scene.solids.append(Solid(rect, tops, top, PointClass.BUILDING, number))
+        third, front = line.length / 3, [(0.0, 0.0)]
+        if kind == "bay":
+            # Between its walls: a beam never meets two faces at once.
+            lid = (third + _WALL, 2 * third - _WALL), (_WALL - _STEP, 0.0)
+            _block(scene, line, *lid, top - _LID, top, number)
+        if kind in ("bay", "recess"):
+            off = _STEP if kind == "recess" else -_STEP
+            front += [(third, 0.0), (third, off), (2 * third, off), (2 * third, 0.0)]
+        corners = [*front, (line.length, 0.0), (line.length, _DEPTH), (0.0, _DEPTH), (0.0, 0.0)]
+        truth.houses.append(np.array([(*line.at(*corner), ground) for corner in corners]))
+        truth.eaves.append(top)
+        truth.ridges.append(float(np.min(tops @ [rect.x, rect.y, 1.0])))
 
 
 def _parts(line: Line, kind: str) -> list[tuple[Line, bool]]:

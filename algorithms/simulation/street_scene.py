@@ -11,7 +11,7 @@ from .plants import plant_tree
 from .relief import Relief
 from .scene import Scene
 from .solids import Rect, Solid, flat
-from .street_fronts import KINDS, Line, Truth, between, build_front, build_house, draw_pitch
+from .street_fronts import KINDS, Front, Line, Truth, between, draw_pitch
 from .town_layout import park_car
 
 # Widths of houses, and heights of the eaves of a side (m); houses of one side differ by less than a storey.
@@ -24,89 +24,59 @@ _PEOPLE, _TREES, _POLES, _CARS = 1.2, 2.2, 2.4, 3.6
 _PERSON, _POLE = (0.45, 1.75), (0.16, 6.0)
 
 
-def build_street(
-    length: float,
-    width: float,
-    slope: float,
-    clutter: bool,
-    seed: int,
-    raised: float = 0.0,
-    unevenness: float = 0.0,
-    houses: bool = False,
-) -> tuple[Scene, Truth, Rect]:
-    """Make up a street.
+@dataclass(frozen=True)
+class StreetPlan:
+    """What a street holds: tunables of :func:`.simulate_street.simulate_street`."""
 
-    Parameters
-    ----------
-    length, width : float
-        Of the street, from front to front (m).
-    slope : float
-        Slope along the street (°).
-    clutter : bool
-        Whether cars, trees, poles and people are before the fronts.
-    seed : int
-        For all that is drawn.
-    raised : float
-        Height of the doors over the street (m).
-    unevenness : float
-        Greatest distance (m) of the ends of fronts before or behind the line of the street.
-    houses : bool
-        Whether there are houses behind the fronts, none of which is curved then.
+    length: float  #: Length of the street, m
+    width: float  #: Distance from front to front, m
+    slope: float  #: Slope along the street, °
+    clutter: bool  #: Whether cars, trees, poles and people are before the fronts
+    stoops: float  #: Height of the doors over the street, m
+    unevenness: float  #: Greatest distance of the ends of fronts before or behind the line of the street, m
+    houses: bool  #: Whether there are houses behind the fronts, none of which is curved then
+    seed: int  #: The same seed makes the same street
 
-    Returns
-    -------
-    scene : Scene
-        The same for the same arguments.
-    truth : Truth
-        Of the fronts.
-    street : Rect
-        Between the fronts.
-    """
-    rng = np.random.default_rng([seed, 4])
+    def off_line(self, line: Line, rng: np.random.Generator) -> Line:
+        """Return a line whose ends are before or behind that of a line."""
+        first, last = rng.uniform(-1.0, 1.0, 2) * self.unevenness
+        return between(line.at(0.0, first), line.at(line.length, last)) if self.unevenness else line
+
+
+def build_street(plan: StreetPlan) -> tuple[Scene, Truth, Rect]:
+    """Return a made-up street, the truth of its fronts, and the area between these; the same for the same plan."""
+    rng, of_fronts = np.random.default_rng([plan.seed, 4]), np.random.default_rng([plan.seed, 7])
     angle = float(rng.uniform(0.0, 2 * np.pi))
-    size = length + 2 * width
-    scene, truth = Scene(Relief(size, angle, float(np.tan(np.deg2rad(slope))))), Truth()
-    street = Rect(size / 2, size / 2, length, width, angle)
-    fronts = _Fronts(raised, unevenness, houses, np.random.default_rng([seed, 7]))
+    size = plan.length + 2 * plan.width
+    scene, truth = Scene(Relief(size, angle, float(np.tan(np.deg2rad(plan.slope))))), Truth()
+    street = Rect(size / 2, size / 2, plan.length, plan.width, angle)
     for side in (1, -1):
-        _build_side(scene, truth, street, side, rng, fronts)
-    if clutter:
+        _build_side(scene, truth, street, side, plan, (rng, of_fronts))
+    if plan.clutter:
         for side in (1, -1):
             _put_clutter(scene, street, side, rng)
     return scene, truth, street
 
 
-@dataclass(frozen=True)
-class _Fronts:
-    """Height (m) of doors over the street, greatest distance (m) of fronts from its line, and whether houses follow."""
-
-    raised: float
-    unevenness: float
-    houses: bool
-    rng: np.random.Generator
-
-    def off_line(self, line: Line) -> Line:
-        """Return a line whose ends are before or behind that of a line."""
-        first, last = self.rng.uniform(-1.0, 1.0, 2) * self.unevenness
-        return between(line.at(0.0, first), line.at(line.length, last)) if self.unevenness else line
-
-
-def _build_side(scene: Scene, truth: Truth, street: Rect, side: int, rng: np.random.Generator, fronts: _Fronts) -> None:
+def _build_side(
+    scene: Scene, truth: Truth, street: Rect, side: int, plan: StreetPlan, chance: tuple[np.random.Generator, ...]
+) -> None:
     """Put houses side by side, each with another kind of front."""
+    rng, of_fronts = chance
     # Seen along the line, the street is on the right: on the left of the street the line runs forward.
     start = np.array(street.at(-side * street.length / 2, side * street.width / 2))
     way = side * np.array([np.cos(street.angle), np.sin(street.angle)])
     eave = rng.uniform(*_EAVES)
     widths = _divided(street.length, rng)
-    kinds = [kind for kind in KINDS if kind != "curved"] if fronts.houses else KINDS
+    kinds = [kind for kind in KINDS if kind != "curved"] if plan.houses else KINDS
     first = int(rng.integers(len(kinds)))
     for k, width in enumerate(widths):
         kind = kinds[(first + k) % len(kinds)]
         height = eave + rng.uniform(0, _DIFFERENCE)
-        line = fronts.off_line(Line(start, way, width))
-        build_front(scene, truth, line, height, kind, fronts.raised)
-        if fronts.houses:
-            build_house(scene, truth, line, height + fronts.raised, kind, draw_pitch(fronts.rng))
+        front = Front(plan.off_line(Line(start, way, width), of_fronts), height, kind, plan.stoops)
+        front.build(scene, truth)
+        if plan.houses:
+            front.build_house(scene, truth, draw_pitch(of_fronts))
         start = start + width * way
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import dataclass
 from typing import Optional
 
 import numpy as np
@@ -27,71 +28,44 @@ _HALL_STEP = 5.0
 MAX_BUILDINGS = 34
 
 
-def build_town(
-    *,
-    size: float = 200.0,
-    slope: float = 3.0,
-    relief: float = 2.0,
-    terrace_height: float = 1.5,
-    buildings: float = 20.0,
-    trees: float = 20.0,
-    forest: float = 0.1,
-    river: bool = True,
-    clutter: bool = True,
-    seed: int = 1,
-    monitor: Optional[Monitor] = None,
-) -> Scene:
-    """Make up a town. The tunables are those of :func:`.simulate_town.simulate_town`.
+@dataclass(frozen=True)
+class TownPlan:
+    """What a town holds: tunables of :func:`.simulate_town.simulate_town`."""
 
-    Parameters
-    ----------
-    size : float
-        Side of the square, m.
-    slope : float
-        Slope of the ground, °.
-    relief : float
-        Height from hollows to hills, m.
-    terrace_height : float
-        Rise of the terraces, m.
-    buildings : float
-        Buildings per hectare.
-    trees : float
-        Trees per hectare.
-    forest : float
-        Share that is forest.
-    river : bool
-        Whether there is a river.
-    clutter : bool
-        Whether there is clutter.
-    seed : int
-        The same seed makes the same.
-    monitor : Monitor
-        Receives the progress.
+    size: float = 200.0  #: Side of the square, m
+    slope: float = 3.0  #: Slope of the ground, °
+    relief: float = 2.0  #: Height from hollows to hills, m
+    terrace_height: float = 1.5  #: Rise of the terraces, m
+    buildings: float = 20.0  #: Buildings per hectare
+    trees: float = 20.0  #: Trees per hectare
+    forest: float = 0.1  #: Share that is forest
+    river: bool = True  #: Whether there is a river
+    clutter: bool = True  #: Whether there are cars, hedges, walls and wires
+    seed: int = 1  #: The same seed makes the same town
 
-    Returns
-    -------
-    Scene
-        The same for the same arguments.
-    """
+
+def build_town(plan: TownPlan, monitor: Optional[Monitor] = None) -> Scene:
+    """Return a made-up town, the same for the same plan."""
     monitor = monitor or Monitor()
-    rng = np.random.default_rng([seed, 0])
-    scene = Scene(make_relief(size, slope, relief, terrace_height, river, rng))
-    plots = _plots(scene, forest)
-    if buildings:
+    rng = np.random.default_rng([plan.seed, 0])
+    relief = make_relief(plan.size, plan.slope, plan.relief, plan.terrace_height, plan.river, rng)
+    scene = Scene(relief)
+    plots = _plots(scene, plan.forest)
+    if plan.buildings:
         hall = _hall_position(scene, plots)
         if hall is not None:
             build_hall(scene, hall)
             plots = [plot for plot in plots if not hall.contains(*plot.corners(-1.0).T).any()]
         # Every hectare of plots has the asked number of them built on, whatever river and forest leave.
-        built = min(len(plots), round(len(plots) * buildings / MAX_BUILDINGS))
+        built = min(len(plots), round(len(plots) * plan.buildings / MAX_BUILDINGS))
         for k, i in enumerate(np.sort(rng.permutation(len(plots))[:built])):
             build_house(scene, plots[i], rng)
             monitor.progress(0.4 * k / built)
-    if scene.relief.river is not None:
-        _build_bridges(scene, scene.relief.river)
-    if clutter:
+    if relief.river is not None:
+        _build_bridges(scene, relief.river)
+    if plan.clutter:
         _clutter(scene, plots, rng, monitor.part(0.4, 0.6))
-    plant_trees(scene, trees, forest, rng, monitor.part(0.6, 1.0))
+    plant_trees(scene, plan.trees, plan.forest, rng, monitor.part(0.6, 1.0))
     return scene
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..stage import Monitor
 from .beams import Beams
-from .drone import Surroundings, bearing, first_met, recorded
+from .drone import LineScan, Surroundings, bearing, first_met, in_time_order, recorded
 from .scene import Scene
 
 # Scanners turn in upright planes that look this far ahead of and behind the perpendicular of the way (°), as on most
@@ -35,18 +35,8 @@ class Drive:
         return self.start + self.speed * time[:, None] * self.way
 
 
-def drive_along(
-    scene: Scene,
-    drive: Drive,
-    *,
-    line_rate: float,
-    angular_step: float,
-    max_range: float,
-    range_noise: float,
-    seed: int,
-    monitor: Monitor,
-) -> dict[str, np.ndarray]:
-    """Scan a street from a vehicle. The tunables are those of :func:`.simulate_street.simulate_street`.
+def drive_along(scene: Scene, drive: Drive, scan: LineScan, monitor: Monitor) -> dict[str, np.ndarray]:
+    """Return the dimensions of a street scanned from a vehicle by name, in the order of time.
 
     Parameters
     ----------
@@ -54,56 +44,29 @@ def drive_along(
         The street.
     drive : Drive
         The way of the vehicle.
-    line_rate : float
-        Lines per second.
-    angular_step : float
-        Angle between pulses, °.
-    max_range : float
-        Reach of the scanner, m.
-    range_noise : float
-        Standard deviation of distances, m.
-    seed : int
-        The same seed makes the same.
+    scan : LineScan
+        Settings of its scanners.
     monitor : Monitor
         Receives the progress.
-
-    Returns
-    -------
-    dict of str to ndarray
-        Dimensions by name, in the order of time.
     """
-    world, parts = Surroundings(scene, max_range), []
-    blocks = [(number, time) for number in PLANES for time in _blocks(drive, line_rate, angular_step)]
+    world, parts = Surroundings(scene, scan.max_range), []
+    blocks = [(number, time) for number in PLANES for time in _blocks(drive, scan)]
     for i, (number, time) in enumerate(blocks):
-        rng = np.random.default_rng([seed, 5, i])
-        beams, left = _pulses(drive, PLANES[number], time, line_rate)
+        rng = np.random.default_rng([scan.seed, 5, i])
+        beams, left = _pulses(drive, PLANES[number], time, scan.line_rate)
         echoes = first_met(world, beams, rng)
         part = recorded(echoes, left, number, rng)
         part["gps_time"] = time[echoes.pulse]
         # The noise of the range lies along the beam.
-        part["xyz"] = beams.at(echoes.pulse, echoes.range + range_noise * rng.standard_normal(len(echoes)))
+        part["xyz"] = beams.at(echoes.pulse, echoes.range + scan.range_noise * rng.standard_normal(len(echoes)))
         parts.append(part)
         monitor.progress((i + 1) / len(blocks))
-    made = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-    order = np.argsort(made["gps_time"], kind="stable")
-    return {name: values[order] for name, values in made.items()}
+    return in_time_order(parts)
 
 
-def pulses_of(length: float, speed: float, line_rate: float, angular_step: float) -> float:
-    """Return how many pulses a drive has.
-
-    Parameters
-    ----------
-    length : float
-        Length of the drive, m.
-    speed : float
-        Speed, m/s.
-    line_rate : float
-        Lines per second.
-    angular_step : float
-        Angle between pulses, °.
-    """
-    return len(PLANES) * length / speed * line_rate * pulses_per_turn(angular_step)
+def pulses_of(length: float, speed: float, scan: LineScan) -> float:
+    """Return how many pulses a drive of a length (m) has at a speed (m/s)."""
+    return len(PLANES) * length / speed * scan.line_rate * pulses_per_turn(scan.angular_step)
 
 
 def pulses_per_turn(angular_step: float) -> int:
@@ -111,14 +74,14 @@ def pulses_per_turn(angular_step: float) -> int:
     return max(1, int(360.0 / angular_step + 1e-9))
 
 
-def _blocks(drive: Drive, line_rate: float, angular_step: float) -> Iterator[np.ndarray]:
+def _blocks(drive: Drive, scan: LineScan) -> Iterator[np.ndarray]:
     """Yield the times (s) of the pulses of some scan lines each."""
-    per_line = pulses_per_turn(angular_step)
-    n_lines = max(1, int(drive.length / drive.speed * line_rate))
-    step = max(1, min(_BLOCK // per_line, int(_BLOCK_WAY / drive.speed * line_rate)))
+    per_line, rate = pulses_per_turn(scan.angular_step), scan.line_rate
+    n_lines = max(1, int(drive.length / drive.speed * rate))
+    step = max(1, min(_BLOCK // per_line, int(_BLOCK_WAY / drive.speed * rate)))
     for line in range(0, n_lines, step):
         lines = np.arange(line, min(line + step, n_lines))
-        yield (lines[:, None] + np.arange(per_line) / per_line).ravel() / line_rate
+        yield (lines[:, None] + np.arange(per_line) / per_line).ravel() / rate
 
 
 def _pulses(drive: Drive, turn: float, time: np.ndarray, line_rate: float) -> tuple[Beams, np.ndarray]:

@@ -36,47 +36,35 @@ class Village:
     free: list[Rect]  #: Plots without a house
 
 
-def build_village(
-    *, size: float, slope: float, buildings: float, trees: float, overhang: float, clutter: bool, seed: int
-) -> Village:
-    """Make up a village. The tunables are those of :func:`.simulate_village.simulate_village`.
+@dataclass(frozen=True)
+class VillagePlan:
+    """What a village holds: tunables of :func:`.simulate_village.simulate_village`."""
 
-    Parameters
-    ----------
-    size : float
-        Side of the square, m.
-    slope : float
-        Slope of the ground, °.
-    buildings : float
-        Buildings per hectare.
-    trees : float
-        Trees per hectare.
-    overhang : float
-        Overhang of the eaves, m.
-    clutter : bool
-        Whether there is clutter.
-    seed : int
-        The same seed makes the same.
+    size: float  #: Side of the square, m
+    slope: float  #: Slope of the ground, °
+    buildings: float  #: Houses per hectare
+    trees: float  #: Trees per hectare
+    overhang: float  #: Overhang of the eaves, m
+    clutter: bool  #: Whether there are cars, hedges and bushes
+    seed: int  #: The same seed makes the same village
 
-    Returns
-    -------
-    Village
-        The same for the same arguments.
-    """
-    rng = np.random.default_rng([seed, 2])
-    scene = Scene(make_relief(size, slope, _HILLS, 0.0, False, rng))
+
+def build_village(plan: VillagePlan) -> Village:
+    """Return a made-up village, the same for the same plan."""
+    rng = np.random.default_rng([plan.seed, 2])
+    scene = Scene(make_relief(plan.size, plan.slope, _HILLS, 0.0, False, rng))
     plots = _plots(scene)
-    count = min(len(plots), round(len(plots) * buildings / MAX_HOMES))
+    count = min(len(plots), round(len(plots) * plan.buildings / MAX_HOMES))
     order = rng.permutation(len(plots))
     built, free = [plots[i] for i in np.sort(order[:count])], [plots[i] for i in order[count:]]
     roofs = []
     for plot in built:
-        roofs.append(build_home(scene, plot, overhang, rng))
+        roofs.append(build_home(scene, plot, plan.overhang, rng))
         if rng.random() < 2 / 3:
-            roofs.append(build_shed(scene, plot, overhang, rng))
-    if clutter:
+            roofs.append(build_shed(scene, plot, plan.overhang, rng))
+    if plan.clutter:
         _clutter(scene, built, rng)
-    plant_trees(scene, trees, 0.0, rng, Monitor())
+    plant_trees(scene, plan.trees, 0.0, rng, Monitor())
     owner = np.arange(scene.objects + 1)
     owner[roofs] = [building.object_id for building in scene.buildings]
     return Village(scene, owner, free)

@@ -10,7 +10,7 @@ import numpy as np
 from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.simulation.plants import plant_hedge, plant_tree, plant_trees
 from lidar_buildings.algorithms.simulation.relief import Relief
-from lidar_buildings.algorithms.simulation.scanner import Scan, scan
+from lidar_buildings.algorithms.simulation.scanner import Scan, Survey, scan
 from lidar_buildings.algorithms.simulation.scene import Scene
 from lidar_buildings.algorithms.simulation.solids import Rect, Solid, flat, gable, hip, lean_to
 from lidar_buildings.algorithms.simulation.town_houses import Site
@@ -199,7 +199,7 @@ SCENES: tuple[tuple[str, Callable[[], Scene], bool], ...] = (
 def scanned(make: Callable[[], Scene], misfit: bool, density: float) -> Scan:
     """Return the points of a scene at ``density`` pulses per m²."""
     scene = make()
-    made = scan(scene, density=density)
+    made = scan(scene, Survey(density))
     made.xyz[:, 2] += MISFIT * (misfit & (made.point_source_id % 2 == 0))
     if isinstance(scene, Farmland):
         _sow(scene.fields, made)

@@ -5,9 +5,8 @@ import pytest
 from qgis.core import QgsGeometry, QgsPointXY
 
 from lidar_buildings.algorithms.footprints.extract_footprints import extract_footprints
-from lidar_buildings.algorithms.simulation.scanner import scan
-from lidar_buildings.algorithms.simulation.town_layout import build_town
-from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.algorithms.simulation.scanner import Survey, scan
+from lidar_buildings.algorithms.simulation.town_layout import TownPlan, build_town
 from lidar_buildings.tests.builders import is_inside, turned
 
 SHAPES = {
@@ -163,31 +162,8 @@ def test_order_place_and_direction_change_nothing(rng):
 
 def test_houses_of_a_simulated_town():
     """Every house of a town on a slope, with shadows, trees over eaves and rows of different heights."""
-    scene = build_town(
-        size=120.0,
-        slope=5.0,
-        relief=2.0,
-        terrace_height=1.5,
-        buildings=20.0,
-        trees=20.0,
-        forest=0.0,
-        river=False,
-        clutter=True,
-        seed=4,
-        monitor=Monitor(),
-    )
-    made = scan(
-        scene,
-        density=8.0,
-        pattern="lines",
-        max_scan_angle=20.0,
-        overlap=0.3,
-        range_noise=0.02,
-        returns=True,
-        noise_points=10.0,
-        seed=4,
-        monitor=Monitor(),
-    )
+    scene = build_town(TownPlan(size=120.0, slope=5.0, forest=0.0, river=False, seed=4))
+    made = scan(scene, Survey(seed=4))
     cluster = np.where(made.classification == 6, made.segment_id, 0)
     found = extract_footprints(made.xyz, made.classification, cluster)
     polygons = dict(zip(found.columns["cluster_id"], found.geometries))

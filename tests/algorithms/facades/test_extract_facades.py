@@ -5,7 +5,7 @@ import pytest
 
 from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.facades.extract_facades import extract_facades, merged_planes, split_at_gaps
-from lidar_buildings.algorithms.facades.facade_outline import key_points, outline_of, pushed_out, ring_area
+from lidar_buildings.algorithms.facades.facade_outline import Drawing, key_points, outline_of, pushed_out, ring_area
 from lidar_buildings.algorithms.simulation.simulate_street import simulate_street
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
 from lidar_buildings.tests.builders import FAR, turned
@@ -248,7 +248,7 @@ def test_a_facade_narrower_than_its_tolerance_keeps_the_boundary_of_its_points(r
     """Sparse points of a strip 0.6 m wide: straight edges within two spacings would leave a line of it."""
     places = np.column_stack([rng.uniform(0, 0.6, 60), np.sort(rng.uniform(0, 4.5, 60))])
     places[::7, 1] += 0.4
-    outline = outline_of(places, 4.0, 1.0, "straight edges", True)
+    outline = outline_of(places, Drawing(10.0, 1.0, 4.0, "straight edges", True))
     assert len(outline.ring) > 3
     assert outline.seen_area <= ring_area(outline.ring) <= 1.1 * np.prod(np.ptp(places, axis=0))
 

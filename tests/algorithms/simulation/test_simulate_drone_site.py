@@ -12,6 +12,7 @@ from lidar_buildings.algorithms.features.greenness import greenness, plant_green
 from lidar_buildings.algorithms.sampling.cloud_sampling import CloudSampling
 from lidar_buildings.algorithms.simulation.drone_site import build_site
 from lidar_buildings.algorithms.simulation.simulate_drone_site import simulate_drone_site
+from lidar_buildings.algorithms.simulation.town_layout import TownPlan
 from lidar_buildings.tests.builders import VEGETATION, is_inside
 
 NAMES = (*simulate_drone_site.stage.creates, "footprints")
@@ -24,7 +25,7 @@ def site(**tunables) -> dict:
 
 
 def scene_of(slope=4.0, trees=30.0):
-    return build_site(size=44.0, slope=slope, terrace_height=1.5, buildings=16.0, trees=trees, halls=1, seed=3)
+    return build_site(TownPlan(44.0, slope, buildings=16.0, trees=trees, forest=0.0, river=False, seed=3), halls=1)
 
 
 def scene():

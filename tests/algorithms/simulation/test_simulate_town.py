@@ -9,10 +9,10 @@ import pytest
 
 from lidar_buildings.algorithms.cloud.asprs import NOISE, PointClass
 from lidar_buildings.algorithms.run import run_stage
-from lidar_buildings.algorithms.simulation.scanner import Scan, scan
+from lidar_buildings.algorithms.simulation.scanner import Scan, Survey, scan
 from lidar_buildings.algorithms.simulation.scene import Scene
 from lidar_buildings.algorithms.simulation.simulate_town import simulate_town
-from lidar_buildings.algorithms.simulation.town_layout import build_town
+from lidar_buildings.algorithms.simulation.town_layout import TownPlan, build_town
 from lidar_buildings.algorithms.stage import Cancelled
 from lidar_buildings.tests.builders import VEGETATION
 from lidar_buildings.tests.monitors import Listening
@@ -23,8 +23,8 @@ NAMES = simulate_town.stage.creates
 @lru_cache(maxsize=2)
 def exact_town(slope: float = 3.0) -> tuple[Scene, Scan]:
     """A town of 150 m scanned without range noise."""
-    scene = build_town(size=150.0, slope=slope, buildings=30.0)
-    return scene, scan(scene, density=6.0, range_noise=0.0)
+    scene = build_town(TownPlan(size=150.0, slope=slope, buildings=30.0))
+    return scene, scan(scene, Survey(density=6.0, range_noise=0.0))
 
 
 @cache
@@ -81,8 +81,8 @@ def test_nothing_is_seen_inside_a_building():
 
 
 def test_range_noise_moves_points_along_the_beam_only():
-    scene = build_town(size=100.0)
-    exact, rough = (scan(scene, density=4.0, range_noise=sigma) for sigma in (0.0, 0.05))
+    scene = build_town(TownPlan(size=100.0))
+    exact, rough = (scan(scene, Survey(density=4.0, range_noise=sigma)) for sigma in (0.0, 0.05))
     shift = rough.xyz - exact.xyz
     assert np.linalg.norm(shift, axis=1).std(ddof=0) > 0.02
     assert np.sqrt((shift**2).sum(axis=1).mean()) == pytest.approx(0.05, rel=0.02)
@@ -93,7 +93,7 @@ def test_range_noise_moves_points_along_the_beam_only():
 
 def test_outlines_are_closed_counterclockwise_and_as_large_as_the_roofs():
     scene, _ = exact_town()
-    kinds = {building.kind for building in build_town(size=300.0, forest=0.0, buildings=34.0).buildings}
+    kinds = {building.kind for building in build_town(TownPlan(size=300.0, forest=0.0, buildings=34.0)).buildings}
     assert kinds == {"gable", "hip", "flat", "L", "row", "shed", "hall"}
     for building in scene.buildings:
         np.testing.assert_array_equal(building.outline[0], building.outline[-1])
@@ -103,13 +103,13 @@ def test_outlines_are_closed_counterclockwise_and_as_large_as_the_roofs():
 
 
 def test_buildings_do_not_overlap():
-    scene = build_town(size=300.0, forest=0.0, buildings=34.0)
+    scene = build_town(TownPlan(size=300.0, forest=0.0, buildings=34.0))
     places = np.random.default_rng(0).uniform(0, 300, (100_000, 2))
     assert sum(building.contains(*places.T).astype(int) for building in scene.buildings).max() == 1
 
 
 def test_rows_share_walls_and_differ_in_height():
-    scene = build_town(size=300.0, forest=0.0, buildings=34.0)
+    scene = build_town(TownPlan(size=300.0, forest=0.0, buildings=34.0))
     rows = [building for building in scene.buildings if building.kind == "row"]
     shared = 0
     for a, b in zip(rows, rows[1:]):
@@ -160,10 +160,10 @@ def test_scan_angle_stays_within_its_bound_and_tells_the_side(max_scan_angle, sl
 
 
 def test_wider_strips_show_more_of_walls():
-    scene = build_town(size=150.0)
+    scene = build_town(TownPlan(size=150.0))
     seen = []
     for angle in (5.0, 30.0):
-        made = scan(scene, max_scan_angle=angle, range_noise=0.0)
+        made = scan(scene, Survey(max_scan_angle=angle, range_noise=0.0))
         x, y, z = made.xyz[of(made, PointClass.BUILDING)].T
         height = np.full(len(x), -np.inf)
         for building in scene.buildings:
@@ -240,8 +240,8 @@ def test_noise_points_are_as_many_as_asked_and_lie_far_off():
         made = small(noise_points=per_hectare)
         counts = [int((made["classification"] == noise).sum()) for noise in NOISE]
         assert counts == [per_hectare / 2, per_hectare / 2]
-    scene = build_town(size=100.0)
-    made = scan(scene, density=3.0, noise_points=200.0)
+    scene = build_town(TownPlan(size=100.0))
+    made = scan(scene, Survey(density=3.0, noise_points=200.0))
     height = made.xyz[:, 2] - scene.relief.ground(*made.xyz[:, :2].T)
     low, high = (height[of(made, noise)] for noise in (PointClass.LOW_NOISE, PointClass.HIGH_NOISE))
     # Heights lie along the beam; where the ground is steep that is a little less straight down.
@@ -331,7 +331,7 @@ def test_the_same_seed_gives_the_same_bytes():
 def test_density_does_not_change_the_town():
     coarse, fine = (set(small(density=density)["segment_id"]) for density in (10.0, 20.0))
     assert len(fine - coarse) < 0.1 * len(fine)
-    for a, b in zip(build_town(seed=3).buildings, build_town(seed=3).buildings):
+    for a, b in zip(build_town(TownPlan(seed=3)).buildings, build_town(TownPlan(seed=3)).buildings):
         np.testing.assert_array_equal(a.outline, b.outline)
 
 
