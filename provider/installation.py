@@ -115,11 +115,11 @@ def install_missing(parent: Optional[QWidget], ask: Optional[Callable[[str], boo
         return False
     if not absent or not (ask or (lambda command: _is_wanted(parent, command)))(shown_command(absent)):
         return not absent
-    told = _run(parent, python(), pip_arguments(absent))
+    output = _run(parent, python(), pip_arguments(absent))
     _find_new_packages()
     left = packages.absent()
     if left:
-        reason = told.strip().splitlines()[-1] if told.strip() else tr("the command gave no reason")
+        reason = output.strip().splitlines()[-1] if output.strip() else tr("the command gave no reason")
         QMessageBox.warning(parent, SOFTWARE, tr("Not installed: {}. Python says: {}").format(", ".join(left), reason))
     else:
         QMessageBox.information(parent, SOFTWARE, tr("Everything is installed; the algorithms can run."))

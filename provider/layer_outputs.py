@@ -29,7 +29,7 @@ def write_layer(
 ) -> dict:
     """Write a layer, if it is wanted, to the output ``name``; return it by that name.
 
-    Features are in meters from the origin of the place.
+    Features are in meters from the origin of the frame ``place``.
 
     Raises
     ------

@@ -42,12 +42,12 @@ FORMS = {
     "what is, for a noun": Form(r"\bwhat is\b(?! (?:missing|wrong|normal|new))", 0.1),
     "beside, for a comparison": Form(r"\bbeside (?:the (?:old |base )?maps?\b|the truth|other (?:work|programs))", 0.1),
 }
-SENTENCES, SENTENCE_BOUND = f"sentences over {LONGEST} words", 0.3
+SENTENCES, SENTENCE_BOUND = f"sentences over {LONGEST} words", 0.1
 
 # Where a sentence ends: a mark, and what begins the next one.
 _END = re.compile(r"(?<=[.!?])[\"')*]*\s+(?=[A-Z0-9\"*`\[('])")
 _WORD = re.compile(r"[A-Za-z][\w'-]*")
-# Code and formulas are read as one word.
+# Code and formulas are read as one word, which may begin a sentence.
 _CODE = re.compile(r"`[^`]*`|\$[^$]*\$")
 
 # Lines that begin a paragraph of their own in docstrings: sections, parameters, references, items.
@@ -125,7 +125,7 @@ def findings(text: str) -> Iterator[str]:
     for name, form in FORMS.items():
         yield from [name] * len(re.findall(form.pattern, text, re.IGNORECASE))
     yield from [SENTENCES] * sum(
-        len(_WORD.findall(sentence)) > LONGEST for sentence in _END.split(_CODE.sub("x", text))
+        len(_WORD.findall(sentence)) > LONGEST for sentence in _END.split(_CODE.sub("X", text))
     )
 
 

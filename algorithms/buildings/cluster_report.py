@@ -71,7 +71,7 @@ def _page(clusters: Clusters, values: dict, groups: dict) -> str:
     elif clusters.penetration is not None:
         lead += (
             " Their entropies were compared with those of planes and volumes at the density and noise of the cloud, "
-            "which the two means of the clusters move by little; the reasons below tell what decided."
+            "which the two means of the clusters move by little; the reasons below say what decided."
         )
     elif values["clusters"]:
         lead += " The two means of their entropies decided."

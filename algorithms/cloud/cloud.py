@@ -302,7 +302,7 @@ def create_cloud(arrays: dict[str, np.ndarray], wkt: str = "") -> Cloud:
     """
     xyz = np.asarray(arrays["xyz"], float)
     if not len(xyz) or not np.isfinite(xyz).all():
-        raise ValueError("A cloud needs points with finite coordinates; there are none or some are not.")
+        raise ValueError("A cloud needs points with finite coordinates; it has no points, or some are not finite.")
     header = Header(count=len(xyz), layout=Layout(7 if "red" in arrays else 6))
     header.vlrs, header.encoding = crs_records(wkt)
     units = units_of(header)

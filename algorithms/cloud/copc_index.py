@@ -15,7 +15,7 @@ from .header import COPC_INFO, Header, truncated
 INFO = struct.Struct("<3dddQQdd11Q")
 # Level, x, y, z of a node; position, bytes and number of points of its chunk.
 ENTRY = np.dtype([("key", "<i4", 4), ("offset", "<u8"), ("size", "<i4"), ("count", "<i4")])
-# What stands for the number of points where an entry leads to a further page of entries.
+# In the field for the number of points: the entry leads to a further page of entries.
 _PAGE = -1
 # No octree is deeper: a cell of this level of the whole Earth is a hundredth of a millimeter wide.
 _DEEPEST = 42

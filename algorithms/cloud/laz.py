@@ -119,10 +119,10 @@ class _Laz:
         head = self.header.layout.dtype.itemsize + 4
         for start, size in zip(self._chunks_at + np.cumsum(sizes) - sizes, sizes):
             self.stream.seek(int(start) + head)
-            told = self.stream.read(n_layers * 4)
-            if size and len(told) < n_layers * 4:
+            sizes_read = self.stream.read(n_layers * 4)
+            if size and len(sizes_read) < n_layers * 4:
                 raise truncated(self.path, f"a chunk of {size} bytes ends before the sizes of its {n_layers} layers")
-            layers = np.frombuffer(told, "<u4", len(told) // 4)
+            layers = np.frombuffer(sizes_read, "<u4", len(sizes_read) // 4)
             if size and head + layers.nbytes + layers.sum(dtype=np.int64) > size:
                 raise truncated(self.path, f"a chunk of {size} bytes has layers of {layers.sum(dtype=np.int64)} bytes")
 

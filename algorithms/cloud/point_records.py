@@ -128,7 +128,7 @@ def is_stored_as(field: ExtraField, disk: str, dimension: Dimension) -> bool:
 def merged_layout(layouts: list[Layout]) -> Layout:
     """Return a layout that holds the fields of all ``layouts``: their union, the first one's extras first.
 
-    A name that stands for different numbers (another type or scale) becomes float64.
+    A name of different numbers (another type or scale) becomes float64.
     """
     names = {name for layout in layouts for name in layout.names}
     point_format = min(i for i in FORMATS if names <= set(Layout(i).names))

@@ -106,7 +106,7 @@ def extract_footprints(
 ):
     """Outline each building as a polygon with its area, heights, volume, entropy and confidence.
 
-    Each place, seen from above, has a share of every building: that of the points around it. Outlines follow the lines
+    Each position in plan has a share of every building: that of the points around it. Outlines follow the lines
     where a building has the largest share, in straight walls along the two main directions of the building where that
     explains the line; other walls keep their own direction. Buildings that touch share their border exactly, and so do
     the houses of a row.

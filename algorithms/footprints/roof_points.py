@@ -24,7 +24,7 @@ _BELOW = 1.0
 # Slope (tangent) up to which the point is a part of a steep roof all the same: 72°.
 _UPRIGHT = 3.0
 
-# Side (spacings) of the cells of which one point stands for all: four fifths of evenly scattered points remain.
+# Side (spacings) of the cells of which one point is taken for all: four fifths of evenly scattered points remain.
 _THINNED = 0.71
 
 # Weight of the highest point of a cell with points on a wall: half of the cell is roof. Two fifths of such cells have a

@@ -30,8 +30,8 @@ _NEAR = 0.3
 # ... to here (m), before the ridge of a house of the least width.
 _FAR = 1.6
 
-# Spacing of points (m) up to which six samples of the grid fit in the roof beside a wall, so that noise makes no slope:
-# with four and five points per m² simulated single houses were split.
+# Spacing of points (m) up to which six samples of the grid fit in the roof beside a wall, so that noise makes no slope.
+# With four and five points per m² simulated single houses were split.
 MAX_SPACING = _FAR / (6 * _STEP_SPACINGS)
 
 # Least slope (tangent) of a roof that rises from a valley.
@@ -62,8 +62,8 @@ _WIDE = 2.5
 # Least share of the higher house's height that the lower one has beside their wall: lower parts are wings.
 _LEAST_SHARE = 0.75
 
-# Least share of a party wall that is seen, where there are roofs beside it, of one that shows that there is a row, and
-# its least mean strength (m, or tangent): noise on pitched roofs of matched images reaches 0.17.
+# A party wall shows that there is a row if at least this share of it is seen where there are roofs beside it, and if
+# its mean strength (m, or tangent) is this much. Noise on pitched roofs of matched images reaches 0.17.
 _SEEN, _EVIDENT = 0.5, 0.2
 
 # Least share that is seen of a further wall of such a row: hips hide the valley between two houses at its ends.
@@ -276,7 +276,7 @@ def _evidence(roof: np.ndarray, seen: np.ndarray, step: float) -> tuple[np.ndarr
 
 
 def _above(roof: np.ndarray, left: tuple, right: tuple, step: float) -> np.ndarray:
-    """Return how high (m) a roof is at each place, or beside it, above both lines: height here and rise outward."""
+    """Return how high (m) a roof is at each position, or beside it, above both lines: height here and rise outward."""
     above = np.full(roof.shape, -np.inf)
     for at in (-1, 0, 1):
         beside = ndimage.shift(roof, (0, -at), order=0, mode="nearest")

@@ -52,8 +52,8 @@ def cheapest_labels(
             break
         tried += 1
         more = cost[:, alpha] - cost[cells, label]
-        # Where a label costs more than all borders of a cell could save, the cell never takes it, and cells that border
-        # on each other take it only if one of them costs less without its present borders.
+        # Where a label costs more than all borders of a cell could save, the cell never takes it. Cells that border on
+        # each other take it only if one of them costs less without its present borders.
         wanted = more <= most
         own = np.bincount(edges.ravel(), np.repeat(now, 2), len(cost))
         if not (wanted & (more < own)).any():

@@ -64,7 +64,7 @@ class Triangulation:
             position, facet = np.divmod(pairs, len(spoilt))
             center, radius = circles(self.plan, self.facets[facet])
             distance = np.linalg.norm(plan[position] - center, axis=1)
-            # A new place lies in a facet without a circle, whose corners are on a line, at its edge.
+            # A new position lies in a facet without a circle, whose corners are on a line, at its edge.
             inside = ~(distance > radius * (1 + _ROUNDING))
             spoilt[facet[inside]] = True
             around = self.neighbors[facet[inside]].ravel()

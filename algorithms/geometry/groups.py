@@ -57,21 +57,21 @@ def members(group: np.ndarray) -> dict[int, np.ndarray]:
 
 
 def components(one: np.ndarray, other: np.ndarray, count: int) -> tuple[int, np.ndarray]:
-    """Group things that pairs of them hold together, directly or through others.
+    """Group items that are connected by pairs, directly or through others.
 
     Parameters
     ----------
     one, other : ndarray of shape (k,), int
-        The two things of each pair, numbered from 0.
+        The two items of each pair, numbered from 0.
     count : int
-        How many things there are.
+        Number of items.
 
     Returns
     -------
     n_groups : int
         Number of groups.
     group : ndarray of shape (count,), int32
-        The group of each thing, from 0 in the order of their first things.
+        The group of each item, from 0 in the order of their first items.
     """
     pairs = sparse.coo_matrix((np.ones(len(one), bool), (one, other)), (count, count))
     return csgraph.connected_components(pairs, directed=False)

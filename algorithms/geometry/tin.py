@@ -281,5 +281,5 @@ def node_residuals(nodes: np.ndarray, n_neighbors: int = 8, most: Optional[int] 
 
 
 def robust_deviation(residuals: np.ndarray, floor: float = 0.01) -> float:
-    """Return the standard deviation that the median of absolute residuals stands for, at least ``floor`` (m)."""
+    """Return the standard deviation that follows from the median of absolute residuals, at least ``floor`` (m)."""
     return max(1.4826 * float(np.median(np.abs(residuals))), floor)

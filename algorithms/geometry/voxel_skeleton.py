@@ -149,7 +149,7 @@ def is_simple(around: np.ndarray) -> np.ndarray:
     Parameters
     ----------
     around : ndarray of shape (m,), uint32
-        Which of the 26 neighbors belong to the object: bit i stands for step i of ``neighbor_offsets(26)``.
+        Which of the 26 neighbors belong to the object: bit i is of step i of ``neighbor_offsets(26)``.
 
     Notes
     -----

@@ -40,7 +40,7 @@ _PREFERENCE = 1.15
 
 @dataclass(frozen=True)
 class Piece:
-    """A piece of a line in plan: its ends (m), and its weight, the contacts that it stands for."""
+    """A piece of a line in plan: its ends (m), and its weight, the number of its contacts."""
 
     start: np.ndarray
     end: np.ndarray

@@ -102,7 +102,7 @@ def in_the_air(xyz: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarray:
 
 
 def _components(xyz: np.ndarray, link: float) -> np.ndarray:
-    """Return the thing (n,) that each point belongs to, from 0: occupied voxels of side ``link`` that touch."""
+    """Return the component (n,) of each point, from 0: occupied voxels of side ``link`` that touch."""
     steps = [np.floor((axis - axis.min()) / link).astype(np.int32) + 1 for axis in xyz.T]
     shape = [int(step.max()) + 2 for step in steps]
     number = (steps[2].astype(np.int64) * shape[1] + steps[1]) * shape[0] + steps[0]
@@ -120,7 +120,7 @@ def _components(xyz: np.ndarray, link: float) -> np.ndarray:
 
 
 def _loose(xyz: np.ndarray, component: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarray:
-    """Return which things let most pulses pass and are neither compact, nor lines, nor planes."""
+    """Return which components let most pulses pass and are neither compact, nor lines, nor planes."""
     n_points = np.bincount(component)
     small = np.flatnonzero((n_points < n_points.max())[component])
     cell = fixed_grid_over(xyz, _SHARE_SPACINGS * spacing).number(xyz)
@@ -142,7 +142,7 @@ def _loose(xyz: np.ndarray, component: np.ndarray, spacing: float, monitor: Moni
 
 
 def _is_cut(xyz: np.ndarray, component: np.ndarray, link: float) -> np.ndarray:
-    """Return which things of three points or more reach the border of the cloud: they may be parts of larger ones."""
+    """Return which components of three and more points reach the border of the cloud: they may be parts of others."""
     low, high = plan_box(xyz)
     x, y = xyz[:, 0], xyz[:, 1]
     is_outer = (x < low[0] + link) | (x > high[0] - link) | (y < low[1] + link) | (y > high[1] - link)
@@ -150,7 +150,7 @@ def _is_cut(xyz: np.ndarray, component: np.ndarray, link: float) -> np.ndarray:
 
 
 def _has_form(points: np.ndarray, compact: float) -> bool:
-    """Return whether points fill a small place, or lie along lines or in a plane."""
+    """Return whether points fill a small volume, or lie along lines or in a plane."""
     if (np.ptp(points, axis=0) <= compact).all():
         return True
     if len(points) < _TUBE_POINTS:

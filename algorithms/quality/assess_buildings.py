@@ -138,8 +138,8 @@ def assess_buildings(
 
     Notes
     -----
-    With TP points that are building in both, FN in the reference only and FP in the input only: completeness
-    TP / (TP + FN), correctness TP / (TP + FP), quality TP / (TP + FN + FP), and F the harmonic mean of the first two.
+    Points that are building in both are TP, in the reference only FN and in the input only FP. Completeness is
+    TP / (TP + FN), correctness TP / (TP + FP) and quality TP / (TP + FN + FP). F is the harmonic mean of the first two.
     Ignored by default are the reference's noise (7, 18), bridges (17; 26 in the Netherlands) and what other agencies
     keep for artefacts, civil works and virtual points (64-67). Objects are groups of building cells that touch by a
     side or a corner. Parts are distinguished from ragged edges by their size: they have the minimum area and are

@@ -96,8 +96,8 @@ def assess_classes(
 
     Notes
     -----
-    With TP points of a class in both, FN in the reference only and FP in the input only: completeness TP / (TP + FN),
-    correctness TP / (TP + FP), F their harmonic mean, intersection over union TP / (TP + FN + FP). The mean of the
+    Points of a class in both are TP, in the reference only FN and in the input only FP. Completeness is TP / (TP + FN),
+    correctness TP / (TP + FP), F their harmonic mean and intersection over union TP / (TP + FN + FP). The mean of the
     latter is that of the classes, as merged, that the reference has. Figures of ground (2), vegetation (3-5), building
     (6), water (9), wires and masts (13-16), bridges (17) and noise (7, 18) are outputs, too, however classes are
     merged. Classes of a reference that mean "everything else" (1) are best ignored.

@@ -40,7 +40,7 @@ class Series:
 
 @dataclass(frozen=True)
 class Mark:
-    """A place on the axis that is pointed out."""
+    """A position on the axis that is pointed out."""
 
     name: str
     value: float

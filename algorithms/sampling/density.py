@@ -85,8 +85,8 @@ def effective_density(xyz: np.ndarray, density: Optional[float] = None) -> float
     Returns
     -------
     float
-        That of :func:`point_density` where points are spread evenly; down to a quarter of it where they lie on lines
-        with gaps in between, in pairs, or far more densely in some parts than in others.
+        That of :func:`point_density` where points are spread evenly. It is down to a quarter of that where they lie on
+        lines with gaps in between, in pairs, or far more densely in some parts than in others.
 
     Raises
     ------

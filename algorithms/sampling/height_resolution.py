@@ -34,7 +34,7 @@ def rounding_deviation(elevation: np.ndarray) -> float:
     Returns
     -------
     float
-        The step between the levels on which all heights lie, over the square root of 12 (m); 0 where levels are
+        The step between the levels on which all heights lie, over the square root of 12 (m). It is 0 where levels are
         uneven, as those of finely measured heights are, few, or as far from one another as storeys.
     """
     steps = np.diff(np.unique(elevation))

@@ -91,7 +91,7 @@ class MeasuredSurfaces:
 
 
 class SurfaceSample:
-    """Squares spread over a cloud with all points in them: neighborhoods there stand for those of the whole cloud.
+    """Squares spread over a cloud with all points in them: neighborhoods there represent those of the whole cloud.
 
     Parameters
     ----------

@@ -156,8 +156,8 @@ def share_around(xyz: np.ndarray, group: np.ndarray, chosen: np.ndarray) -> np.n
     Returns
     -------
     ndarray of shape (group.max() + 1,)
-        The mean over the points of a group: the share of chosen groups among all grouped points within two to four
-        meters in plan and twice that in height, its own among them. 0 for groups without points.
+        The mean over the points of a group of the share of points of chosen groups around them, their own among them:
+        within two to four meters in plan and twice that in height. 0 for groups without points.
     """
     member = np.flatnonzero(group >= 0)
     owner = group[member]

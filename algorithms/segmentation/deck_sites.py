@@ -18,8 +18,8 @@ def deck_sites(xyz: np.ndarray, is_open: np.ndarray, is_ground: np.ndarray, deck
     """Return which points (n,) are near surfaces that may be decks.
 
     In cells of one meter and more, a surface over the ground hides it, and ground between two lower sides may itself be
-    a deck. Such cells are joined where they are level, and the parts that are as large as bridges and reach ground of
-    their own height at both ends stay, with what is around them and no higher.
+    a deck. Such cells are joined where they are level. The parts that are as large as bridges and reach ground of their
+    own height at both ends stay, with the points around them that are no higher.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def deck_sites(xyz: np.ndarray, is_open: np.ndarray, is_ground: np.ndarray, deck
         return np.zeros(len(xyz), bool)
     reach = DECK.far * decks.reach
     is_near = ndimage.distance_transform_edt(~is_site) * decks.cell <= reach
-    # What is higher than roads that rise from surfaces around is crowns beside them and over them.
+    # Points higher than roads that rise from surfaces around are of crowns beside them and over them.
     side = 2 * int(np.ceil(reach / decks.cell)) + 1
     highest = ndimage.maximum_filter(np.where(is_site, surface, -np.inf), side) + decks.near.slope * reach
     return is_near[row, column] & (xyz[:, 2] <= highest[row, column])

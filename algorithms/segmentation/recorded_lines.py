@@ -36,13 +36,13 @@ class Recording:
     @property
     def evidence(self) -> list[str]:
         """What distinguishes lines, in words; the points themselves always do."""
-        told = ["GPS time"] if _varies(self.gps_time) else ["order of the points"]
+        known = ["GPS time"] if _varies(self.gps_time) else ["order of the points"]
         names = {
             "scan direction": self.scan_direction_flag,
             "edge of flight line": self.edge_of_flight_line,
             "scan angle": self.scan_angle,
         }
-        return told + [name for name, values in names.items() if _varies(values)]
+        return known + [name for name, values in names.items() if _varies(values)]
 
     @property
     def has_times(self) -> bool:

@@ -132,7 +132,7 @@ def _frame(plant: Plant, middle: np.ndarray, along: np.ndarray, across: np.ndarr
 
 
 def _stations(plant: Plant, corner: np.ndarray) -> None:
-    """Add stations of the scanner at the four corners of a bay, low and high in turn, where there is none yet."""
+    """Add stations of the scanner at the four corners of a bay, low and high in turn, where no station is yet."""
     for i, j in ((0, 0), (1, 0), (0, 1), (1, 1)):
         position = corner + PITCH * np.array([i, j, 0.0])
         high = round(position[0] / PITCH + position[1] / PITCH) % 2

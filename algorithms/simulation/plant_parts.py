@@ -21,7 +21,7 @@ class Part:
     kind: str  #: "pipe", "tank", "sphere", "elbow", "flange", "beam", "grating", "roof", "floor" or "clutter"
     shape: int  #: Its value of the dimension ``shape``
     area: float  #: Its area, m²
-    middle: np.ndarray  #: (3,): a place in its middle (m)
+    middle: np.ndarray  #: (3,): a position in its middle (m)
     sample: Sampler  #: Draws points on it
     #: (2, 3): ends of the axis of a pipe or tank, or twice the center of a sphere (m)
     axis: Optional[np.ndarray] = None

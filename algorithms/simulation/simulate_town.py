@@ -137,9 +137,9 @@ def simulate_town(
     xyz : ndarray of shape (n, 3), float64
         Coordinates (m), by time, then by return.
     classification : ndarray of shape (n,), uint8
-        The truth: 2 ground; 3, 4, 5 vegetation under 0.5 m, under 2 m and higher (stems are 5); 6 buildings with walls,
-        chimneys and dormers; 7 and 18 low and high noise; 9 water; 14 wires; 15 their poles; 17 bridge decks; 1 cars,
-        walls and the rails of bridges.
+        The truth. Ground is 2; vegetation under 0.5 m, under 2 m and higher 3, 4 and 5 (stems are 5); buildings with
+        walls, chimneys and dormers are 6. Low and high noise is 7 and 18, water 9. Wires are 14, their poles 15, bridge
+        decks 17; cars, walls and the rails of bridges 1.
     return_number, number_of_returns : ndarray of shape (n,), uint8
         Returns of a pulse, up to five; all 0 without ``returns``.
     intensity : ndarray of shape (n,), uint16

@@ -95,9 +95,9 @@ class InputLayer:
 class LayerFeatures:
     """The content of a :class:`Layer` or :class:`InputLayer`: geometries and one column per field.
 
-    ``geometries`` holds, per feature of a polygon layer, a list of rings (float64
-    (m, 2) or (m, 3), meters, first the exterior counterclockwise, then the holes
-    clockwise, closed: last vertex equals first); for lines one (m, 2 or 3) array; for points one (2 or 3,) array.
+    ``geometries`` holds, per feature of a polygon layer, a list of rings, float64 (m, 2) or (m, 3), meters. The
+    exterior comes first, counterclockwise, then the holes, clockwise; all are closed: the last vertex equals the first.
+    Of a line layer it holds one (m, 2 or 3) array per feature, of points one (2 or 3,) array.
     Coordinates are relative to the cloud's origin, or, where a stage reads no cloud, to one that all its input
     layers share.
     ``columns`` maps each field's name to a sequence of the same length; those of an input layer are
@@ -291,7 +291,7 @@ class Report:
 
 @dataclass
 class StageResults:
-    """What a stage's function returned, each thing under its name; see :meth:`Stage.unpack`."""
+    """What a stage's function returned, each result under its name; see :meth:`Stage.unpack`."""
 
     selected: Optional[np.ndarray] = None
     dimensions: dict[str, Optional[np.ndarray]] = field(default_factory=dict)

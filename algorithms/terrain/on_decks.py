@@ -16,7 +16,7 @@ from ..rules import rule
 class DeckRules:
     """Objects on the deck of a bridge."""
 
-    near: float = rule(2.0, "point spacings", "statistics: one random place in 300,000 has no point as near in plan")
+    near: float = rule(2.0, "point spacings", "statistics: one random position in 300,000 has no point as near in plan")
     least_near: float = rule(0.5, "m", "the same, at least")
     neighbors: int = rule(8, "points", "statistics: that the spacing of a deck is measured with")
     hidden: float = rule(2.0, "m", "physics: cars and trucks hide the deck beneath them, to points on both sides")

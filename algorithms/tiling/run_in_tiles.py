@@ -463,7 +463,7 @@ class _Run:
                 outcome.reports[names[step.name, REPORT]] = made.report
 
     def _shown(self, outcome: TilesOutcome) -> Optional[Cloud]:
-        """Return what the tiles have kept of their points, None where there are none."""
+        """Return the points that the tiles have kept, None without any."""
         if self.view is None:
             return None
         xyz, classification = self.view.points(outcome.tiles)

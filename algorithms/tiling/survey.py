@@ -226,7 +226,7 @@ def open_survey(
     Parameters
     ----------
     paths : iterable of str or Path
-        A folder stands for all .las, .laz and .copc.laz files in it; a file that comes twice is one.
+        A folder means all .las, .laz and .copc.laz files in it; a file that comes twice is one.
     crs_units : callable, optional
         As for :func:`.read_cloud`.
     monitor : Monitor, optional
@@ -275,7 +275,7 @@ def _within_extent(sources: tuple[Source, ...], extent: np.ndarray) -> tuple[Sou
 
 
 def files_of_survey(paths: Iterable[Union[str, Path]]) -> list[Path]:
-    """Return the files that files, virtual point clouds and folders of files stand for, each once.
+    """Return the files that files, virtual point clouds and folders of files name, each once.
 
     Raises
     ------

@@ -21,13 +21,13 @@ them. A file of more than 25 million points becomes tiles of the size of a block
 survey, without seams and duplicates.
 
 The work is done in blocks of a lattice that starts at the zero of the map, each with the points around it as far as the
-steps reach, so that the result does not depend on how the points are spread over files. How the cloud was sampled is
+steps reach. So the result does not depend on how the points are spread over files. How the cloud was sampled is
 measured once for all blocks, and so are, where steps use them, the roughness of the ground and the mean entropies that
 clusters are compared with. A block that cuts off a building or a facade is worked on again with more around it; long
 pipes and large planes are put together from the pieces that blocks found. Rasters have the same cells in all blocks,
 and no seams. Steps that read layers alone are run once, on those of the whole survey.
 
-A run that was stopped goes on where it was when it is started again with the same input, parameters and version; until
+A run that was stopped goes on where it was when it is started again with the same input, parameters and version. Until
 it is complete, the results of blocks are kept in a hidden folder among the tiles. Blocks that fail are named at the
 end; the tiles that they touch are missing then, all others are written.
 

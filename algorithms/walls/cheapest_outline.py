@@ -218,7 +218,7 @@ def _cell_costs(cells: Arrangement, case: OutlineCase, monitor: Monitor) -> tupl
     if_inside = _OUTSIDE * area(depth < -_BEYOND) + _CERTAIN * cells.is_border
     if_outside = _INSIDE * area(depth > case.overhang + _WELL_INSIDE)
     if_outside += _DEEP * area(depth > min(case.limits.max_overhang, _DEEPER * depth.max()))
-    # The deepest place is inside at any cost.
+    # The deepest position is inside at any cost.
     if_outside[cell[np.argmax(depth)]] += _CERTAIN
     return if_inside, if_outside
 

@@ -67,7 +67,7 @@ _EDGE_FIELDS = (
     Field("quality", float, "share of the edge that has wall points, corners left out, 0 to 1"),
     Field("points", int, "wall points on it"),
     Field("deviation", float, "standard deviation of its points across it", "m"),
-    Field("precision", float, "standard deviation of its place across, from its points", "m"),
+    Field("precision", float, "standard deviation across its direction, from its points", "m"),
 )
 
 _CORNER_FIELDS = (
@@ -76,9 +76,9 @@ _CORNER_FIELDS = (
     Field(
         "outcome",
         str,
-        "corner: of the footprint; on an edge: the footprint runs straight on; off the outline: both walls have edges "
-        "elsewhere; wall not used: one of them has none; outline of the roof: too few walls were seen; too small: the "
-        "footprint would be",
+        "'corner': of the footprint. 'on an edge': the footprint runs straight on. 'off the outline': both walls have "
+        "edges elsewhere. 'wall not used': one of them has no edge. 'outline of the roof': too few walls were seen. "
+        "'too small': the footprint would be",
     ),
     Field("walls_seen", int, "how many of the two walls that meet in it have wall points, 0 to 2"),
     Field("angle", float, "angle between the two walls, 0 to 90", "°"),

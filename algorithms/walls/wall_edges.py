@@ -25,7 +25,7 @@ class WallEdge:
     quality: float  #: Share of it that has wall points, corners left out, 0 to 1
     points: int  #: Wall points on it
     deviation: float  #: Standard deviation of these across it, m; NaN without any
-    precision: float  #: Standard deviation of its own place across, m; NaN without points
+    precision: float  #: Standard deviation of its own position across, m; NaN without points
 
 
 def closed(ring: list[WallEdge]) -> np.ndarray:
