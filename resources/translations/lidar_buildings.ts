@@ -2896,7 +2896,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;i&gt;outcome&lt;/i&gt;: corner: of the footprint; on an edge: the footprint runs straight on; off the outline: both walls have edges elsewhere; wall not used: one of them has none; outline of the roof: too few walls were seen; too small: the footprint would be</source>
+        <source>&lt;i&gt;outcome&lt;/i&gt;: &amp;#x27;corner&amp;#x27;: of the footprint. &amp;#x27;on an edge&amp;#x27;: the footprint runs straight on. &amp;#x27;off the outline&amp;#x27;: both walls have edges elsewhere. &amp;#x27;wall not used&amp;#x27;: one of them has no edge. &amp;#x27;outline of the roof&amp;#x27;: too few walls were seen. &amp;#x27;too small&amp;#x27;: the footprint would be</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3000,7 +3000,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;i&gt;precision (m)&lt;/i&gt;: standard deviation of its place across, from its points</source>
+        <source>&lt;i&gt;precision (m)&lt;/i&gt;: standard deviation across its direction, from its points</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3408,7 +3408,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>A run that was stopped goes on where it was when it is started again with the same input, parameters and version; until it is complete, the results of blocks are kept in a hidden folder among the tiles. Blocks that fail are named at the end; the tiles that they touch are missing then, all others are written.</source>
+        <source>A run that was stopped goes on where it was when it is started again with the same input, parameters and version. Until it is complete, the results of blocks are kept in a hidden folder among the tiles. Blocks that fail are named at the end; the tiles that they touch are missing then, all others are written.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -4792,11 +4792,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Each particle of the cloth falls until it reaches the height of the point nearest to it in plan, and stays there. In each step neighbors draw each other to a common height, the more often the more rigid the cloth is. It ends when no particle moves by 5 mm. All returns are used: in woods of which the scanner saw through the leaves, 'Classify ground points (TIN)' finds more. What the paper leaves open (gravity, damping, in which order neighbors draw each other, particles without a point, from where the cloth falls) is as in the program that its authors published, and so are the defaults. Two things are not: of two points equally near to a particle it takes the lower, where the program takes the first in the file, so that the order of points has no influence. Particles at the corners of the cloud are let down as all others are, where the program leaves some of them out. Particles more than 20 grid cells from any point, with none in their row and column, take the height of the nearest point, where the program searches on over the links.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>Each place, seen from above, has a share of every building: that of the points around it. Outlines follow the lines where a building has the largest share, in straight walls along the two main directions of the building where that explains the line; other walls keep their own direction. Buildings that touch share their border exactly, and so do the houses of a row.</source>
+        <source>Each particle of the cloth falls until it reaches the height of the point nearest to it in plan, and stays there. In each step neighbors draw each other to a common height, the more often the more rigid the cloth is. It ends when no particle moves by 5 mm. All returns are used: in woods of which the scanner saw through the leaves, 'Classify ground points (TIN)' finds more. The paper leaves open gravity, damping, in which order neighbors draw each other, particles without a point, and from where the cloth falls. These and the defaults are as in the program that its authors published, with two differences. Of two points equally near to a particle the lower is taken, where the program takes the first in the file, so that the order of points has no influence. Particles at the corners of the cloud are let down as all others are, where the program leaves some of them out. Particles more than 20 grid cells from any point, with none in their row and column, take the height of the nearest point, where the program searches on over the links.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -4805,6 +4801,10 @@
     </message>
     <message>
         <source>Each point of a roof is compared with the face above or below it. Planes that grow over the points of a building by themselves show what the model lacks.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Each position in plan has a share of every building: that of the points around it. Outlines follow the lines where a building has the largest share, in straight walls along the two main directions of the building where that explains the line; other walls keep their own direction. Buildings that touch share their border exactly, and so do the houses of a row.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6940,6 +6940,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Points of a class in both are TP, in the reference only FN and in the input only FP. Completeness is TP / (TP + FN), correctness TP / (TP + FP), F their harmonic mean and intersection over union TP / (TP + FN + FP). The mean of the latter is that of the classes, as merged, that the reference has. Figures of ground (2), vegetation (3-5), building (6), water (9), wires and masts (13-16), bridges (17) and noise (7, 18) are outputs, too, however classes are merged. Classes of a reference that mean "everything else" (1) are best ignored.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Points of a line also belong together if their heights differ by no more than this.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -7041,6 +7045,10 @@
     </message>
     <message>
         <source>Points that a normal is made of, the point itself among them; used by the neighborhood 'nearest'.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Points that are building in both are TP, in the reference only FN and in the input only FP. Completeness is TP / (TP + FN), correctness TP / (TP + FP) and quality TP / (TP + FN + FP). F is the harmonic mean of the first two. Ignored by default are the reference's noise (7, 18), bridges (17; 26 in the Netherlands) and what other agencies keep for artefacts, civil works and virtual points (64-67). Objects are groups of building cells that touch by a side or a corner. Parts are distinguished from ragged edges by their size: they have the minimum area and are three cells wide somewhere.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8308,7 +8316,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>The work is done in blocks of a lattice that starts at the zero of the map, each with the points around it as far as the steps reach, so that the result does not depend on how the points are spread over files. How the cloud was sampled is measured once for all blocks, and so are, where steps use them, the roughness of the ground and the mean entropies that clusters are compared with. A block that cuts off a building or a facade is worked on again with more around it; long pipes and large planes are put together from the pieces that blocks found. Rasters have the same cells in all blocks, and no seams. Steps that read layers alone are run once, on those of the whole survey.</source>
+        <source>The work is done in blocks of a lattice that starts at the zero of the map, each with the points around it as far as the steps reach. So the result does not depend on how the points are spread over files. How the cloud was sampled is measured once for all blocks, and so are, where steps use them, the roughness of the ground and the mean entropies that clusters are compared with. A block that cuts off a building or a facade is worked on again with more around it; long pipes and large planes are put together from the pieces that blocks found. Rasters have the same cells in all blocks, and no seams. Steps that read layers alone are run once, on those of the whole survey.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8825,14 +8833,6 @@
     </message>
     <message>
         <source>Wires, poles and edges are linear, ground, roofs and walls planar, crowns and bushes volumetric. Nothing has to be trained; the scale of structure and noise is that of the neighborhood of 'Compute features', which comes before.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>With TP points of a class in both, FN in the reference only and FP in the input only: completeness TP / (TP + FN), correctness TP / (TP + FP), F their harmonic mean, intersection over union TP / (TP + FN + FP). The mean of the latter is that of the classes, as merged, that the reference has. Figures of ground (2), vegetation (3-5), building (6), water (9), wires and masts (13-16), bridges (17) and noise (7, 18) are outputs, too, however classes are merged. Classes of a reference that mean "everything else" (1) are best ignored.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>With TP points that are building in both, FN in the reference only and FP in the input only: completeness TP / (TP + FN), correctness TP / (TP + FP), quality TP / (TP + FN + FP), and F the harmonic mean of the first two. Ignored by default are the reference's noise (7, 18), bridges (17; 26 in the Netherlands) and what other agencies keep for artefacts, civil works and virtual points (64-67). Objects are groups of building cells that touch by a side or a corner. Parts are distinguished from ragged edges by their size: they have the minimum area and are three cells wide somewhere.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
