@@ -10,7 +10,7 @@ import numpy as np
 from ..geometry.groups import components
 from .heights_around import HeightsAround
 from .mending import mended
-from .roof_partition import Partition, divide_footprint, empty_partition
+from .roof_partition import FARTHEST, Partition, divide_footprint, empty_partition
 from .roof_planes import RoofPlanes, find_roof_planes, with_level_patches
 from .roof_points import are_on_roof, distances, root_mean_square, share_off
 from .solids import Solid
@@ -20,9 +20,6 @@ LEVELS = ("1.2", "1.3", "2.2")
 
 # A roof of which less than this share is explained by planes has no LoD2.2.
 _LEAST_EXPLAINED = 0.5
-
-# Distances off the model count at most this much (m) when levels are compared: points farther off are not roof.
-_FARTHEST = 1.0
 
 # Percentile of the heights of roof points that is the ridge's, as in 'Extract footprints': chimneys rise above it.
 _RIDGE = 98
@@ -234,7 +231,7 @@ def _off(top: _Top, above: np.ndarray, rows: np.ndarray) -> np.ndarray:
 
 def _worse(model: BuildingModel, level: str, top: _Top, above: np.ndarray) -> str:
     """Return why the next level is no improvement, "" where it is one."""
-    off = np.minimum(np.abs(above[np.isfinite(above) & top.is_roof & ~top.is_low]), _FARTHEST)
+    off = np.minimum(np.abs(above[np.isfinite(above) & top.is_roof & ~top.is_low]), FARTHEST)
     if not len(off):
         return "no points lie over it"
     if level == "2.2" and np.mean(off <= _EXPLAINED * top.settings.tolerance) < _LEAST_EXPLAINED:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..geometry.groups import components
 from .heights_around import RADIUS, HeightsAround
-from .roof_partition import Partition
+from .roof_partition import FARTHEST, Partition
 from .roof_planes import planes_through
 from .solid_faults import faults_of
 from .solids import DECIMALS, ROOF, Levels, Solid, build_solid, turns_around
@@ -25,9 +25,10 @@ _SLIVER = 0.01
 # dormers, and no wider than the distance of points.
 _LEAST_AREA, _LEAST_WIDTH = 1.0, 0.4
 
-# Distances off a plane count at most this much (m) when planes are compared for a part: points farther off are not
-# roof.
-_FARTHEST = 1.0
+# How far (m) from a high corner it is cut off, and whether with its whole part: first as far as points count for its
+# height, and farther until the piece is not small. Parts do so where their edges turn from the middle of the corner by
+# an angle of at least this cosine: before blunt corners the cut would run along the edge.
+_CUTS, _SHARP = ((RADIUS, False), (RADIUS, True), (1.5 * RADIUS, True), (2 * RADIUS, True)), 0.3
 
 
 @dataclass
@@ -70,7 +71,7 @@ def mended(
     for _ in range(_MENDINGS):
         mending.lower_high_cells()
         mending.join_small_parts()
-        pieces = _pieces(partition, base)
+        pieces = _pieces(partition, base, mending.highest)
         if not pieces:
             break
         found = [(piece, *one) for piece in pieces for one in faults_of(piece.solid).items()]
@@ -81,7 +82,7 @@ def mended(
     return [], "no solid could be made"
 
 
-def _pieces(partition: Partition, base: float) -> list[_Piece]:
+def _pieces(partition: Partition, base: float, highest: np.ndarray) -> list[_Piece]:
     """Return the solids of the connected parts; labels become those that they have, none where one cannot be made."""
     areas = partition.cells.areas()
     total = areas[partition.label >= 0].sum()
@@ -93,7 +94,7 @@ def _pieces(partition: Partition, base: float) -> list[_Piece]:
         # Slivers that touch the rest only in a point are no building.
         if areas[before].sum() <= _SLIVER * total:
             continue
-        levels = _cleared(part, base)
+        levels = _cleared(part, base, highest)
         if levels is None:
             return []
         if (before & (part.label < 0)).any():
@@ -115,7 +116,7 @@ def _connected(partition: Partition) -> list[Partition]:
     return [Partition(partition.cells.copy(), label, partition.coefficients, partition.cost) for label in labels]
 
 
-def _cleared(partition: Partition, base: float) -> Optional[Levels]:
+def _cleared(partition: Partition, base: float, highest: np.ndarray) -> Optional[Levels]:
     """Give cells other planes until at most two walls meet in any edge; return the heights, None if that fails."""
     for _ in range(_CLEARINGS):
         levels = Levels(partition.cells, partition.label, partition.coefficients, base)
@@ -128,32 +129,40 @@ def _cleared(partition: Partition, base: float) -> Optional[Levels]:
             around = levels.cells_around(vertex)
             if touched.isdisjoint(around):
                 touched.update(around)
-                is_changed |= _clear(partition, levels, vertex, around)
+                is_changed |= _clear(partition, levels, vertex, highest)
         if not is_changed:
             break
     return None
 
 
-def _clear(partition: Partition, levels: Levels, vertex: int, around: list[int]) -> bool:
-    """Give one of the cells around a vertex the plane of another one, the cheapest that clears it, if any does."""
+def _clear(partition: Partition, levels: Levels, vertex: int, highest: np.ndarray) -> bool:
+    """Give one of the cells around a vertex the plane of another one, the cheapest that clears it, if any does.
+
+    One with a corner above its limit (vertices,), m, is the last resort.
+    """
+    around = levels.cells_around(vertex)
     present = sorted({int(partition.label[cell]) for cell in around})
     height = {label: levels.height(vertex, label) for label in present}
-    best: Optional[tuple[float, int, int]] = None
+    planes = partition.coefficients
+    best: Optional[tuple[bool, float, int, int]] = None
     for position, cell in enumerate(around):
         own = int(partition.label[cell])
         if own < 0:
             continue
-        area = partition.cells.area(partition.cells.loops[cell])
+        loop = partition.cells.loops[cell]
+        area, limit = partition.cells.area(loop), highest[loop] + 10**-DECIMALS
+        corners = np.array([partition.cells.vertices[v] for v in loop])
         for label in present:
             changed = [int(partition.label[c]) for c in around]
             changed[position] = label
             if label == own or turns_around([height[k] for k in changed]) > 2:
                 continue
             loss = 3 * area if label < 0 else float(partition.cost[cell, label] - partition.cost[cell, own])
-            if best is None or (loss + 0.01 * area, cell, label) < best:
-                best = loss + 0.01 * area, cell, label
+            is_high = label >= 0 and bool((planes[label, :2] @ corners.T + planes[label, 2] > limit).any())
+            if best is None or (is_high, loss + 0.01 * area, cell, label) < best:
+                best = is_high, loss + 0.01 * area, cell, label
     if best is not None:
-        partition.label[best[1]] = best[2]
+        partition.label[best[2]] = best[3]
     return best is not None
 
 
@@ -180,7 +189,8 @@ class _Mending:
     def join_small_parts(self) -> None:
         """Give parts that are too small or too narrow the plane of a neighbor, the smallest one first."""
         for _ in range(_ROUNDS):
-            part, area, is_small = self._small_parts()
+            part = self._parts()
+            area, is_small = self._small(part)
             is_changed = False
             for number in sorted(np.flatnonzero(is_small).tolist(), key=lambda number: (area[number], number)):
                 cells = np.flatnonzero(part == number)
@@ -188,16 +198,27 @@ class _Mending:
             if not is_changed:
                 return
 
-    def _small_parts(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the part (cells,) of equal planes that each cell is in, the parts' areas, and which are too small."""
+    def _parts(self) -> np.ndarray:
+        """Return the part (cells,) of one plane that each cell is in."""
         label = self.partition.label
         same = label[self.beside[:, 0]] == label[self.beside[:, 1]]
-        count, part = components(self.beside[same, 0], self.beside[same, 1], len(label))
+        return components(*self.beside[same].T, len(label))[1]
+
+    def _small(self, part: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the areas (m²) of parts, and which of them are roof that is too small or too narrow."""
+        count = int(part.max()) + 1
+        apart = part[self.beside[:, 0]] != part[self.beside[:, 1]]
         area = np.bincount(part, self.areas, count)
-        perimeter = np.bincount(part[self.beside[~same]].ravel(), np.repeat(self.length[~same], 2), count)
+        perimeter = np.bincount(part[self.beside[apart]].ravel(), np.repeat(self.length[apart], 2), count)
         is_small = (area < _LEAST_AREA) | (2 * area < _LEAST_WIDTH * perimeter)
-        is_small[part[label < 0]] = False
-        return part, area, is_small
+        is_small[part[self.partition.label < 0]] = False
+        return area, is_small
+
+    def _is_small(self, cells: np.ndarray) -> bool:
+        """Return whether cells (k,) together are too small or too narrow a part."""
+        part = np.zeros(len(self.areas), int)
+        part[cells] = 1
+        return bool(self._small(part)[1][1])
 
     def lower_high_cells(self) -> None:
         """Give cells with a corner above its points another plane, or a level one.
@@ -207,18 +228,23 @@ class _Mending:
         if self.limits is None:
             return
         for _ in range(_ROUNDS):
-            label = self.partition.label
-            parts = [np.array([cell]) for cell in np.unique(self._high_corners()[0])]
-            changes = [self._take(part, [int(label[part[0]]), *self._neighbors(part)], True) for part in parts]
-            if not any(changes):
+            if not any([self._lower(np.array([cell])) for cell in np.unique(self._high_corners()[0])]):
                 break
+        for corner in np.unique(self._high_corners()[1]).tolist():
+            for cell in self._high_at(corner):
+                if cell in self._high_at(corner):
+                    piece, turned = self._cut_off(cell, corner)
+                    self._take(piece, self._neighbors(piece), True, turned)
+
+    def _lower(self, part: np.ndarray) -> bool:
+        """Give a part a better plane, if there is one; return whether it did. A small level one would join again."""
+        planes = [int(self.partition.label[part[0]]), *self._neighbors(part)]
+        return self._take(part, planes, not self._is_small(part))
+
+    def _high_at(self, corner: int) -> list[int]:
+        """Return the cells that are too high at a corner."""
         cells, corners = self._high_corners()
-        self._cut_off(cells, corners)
-        for corner in np.unique(corners).tolist():
-            cells, high = self._high_corners()
-            part = cells[high == corner]
-            if len(part):
-                self._take(part, self._neighbors(part), True, must_fit=True)
+        return cells[corners == corner].tolist()
 
     def _high_corners(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the cells (k,) that have corners above the points around, and these corners (k,)."""
@@ -230,22 +256,58 @@ class _Mending:
         is_high = a * x + b * y + c > self.highest[corner] + 10**-DECIMALS
         return cell[is_high], corner[is_high]
 
-    def _cut_off(self, cells: np.ndarray, corners: np.ndarray) -> None:
-        """Cut cells (k,) around their corners (k,), as far from them as points count for the heights there."""
+    def _cut_off(self, cell: int, corner: int) -> tuple[np.ndarray, np.ndarray]:
+        """Cut the part that a cell is in around one of its corners; return the piece, and its plane turned down there.
+
+        The cut is as far from the corner as points count for the heights there, or as makes a piece that is not small.
+        """
+        at = self.positions[corner]
+        for reach, is_whole in _CUTS:
+            part = self._parts()
+            cells = np.flatnonzero(part == part[cell]).tolist() if is_whole else [cell]
+            way, least_cosine = self._way_in(cells, corner)
+            if is_whole and least_cosine < _SHARP:
+                break
+            inward = way
+            piece = self._cut_across(cell, cells, at + reach * inward, inward)
+            if not self._is_small(piece):
+                break
+        corners = np.unique(np.concatenate([self.loops[one] for one in piece]))
+        depth = reach - (self.positions[corners] - at) @ inward
+        deep = corners[depth > reach / 2]
+        plane = self.partition.coefficients[self.partition.label[cell]]
+        slope = (self._above(deep, plane) / depth[depth > reach / 2]).max()
+        return piece, plane + slope * np.array([*inward, -reach - at @ inward])
+
+    def _way_in(self, cells: list[int], corner: int) -> tuple[np.ndarray, float]:
+        """Return the unit vector (2,) from a corner into those of some cells that have it, and its least cosine there.
+
+        The cosine is that to their edges at the corner.
+        """
+        around = [self.positions[self.loops[cell]] - self.positions[corner] for cell in cells]
+        around = [ring for ring in around if not ring.any(axis=1).all()]
+        ends = np.concatenate([np.roll(ring, step, axis=0)[~ring.any(axis=1)] for ring in around for step in (1, -1)])
+        ends /= np.hypot(*ends.T)[:, None]
+        inward = ends.sum(axis=0)
+        if np.hypot(*inward) < _SHARP * len(ends):
+            inward = np.sum([ring.mean(axis=0) for ring in around], axis=0)
+        inward /= np.hypot(*inward)
+        return inward, float((ends @ inward).min())
+
+    def _cut_across(self, cell: int, cells: list[int], position: np.ndarray, inward: np.ndarray) -> np.ndarray:
+        """Cut cells across a direction; return those of them (k,) that are on one side together with the first one."""
         partition = self.partition
-        places = partition.cells.vertices
-        pieces: dict[int, list[int]] = {}
-        for cell, corner in zip(cells.tolist(), corners.tolist()):
-            own = pieces.setdefault(cell, [cell])
-            piece = next(piece for piece in own if corner in partition.cells.loops[piece])
-            inward = np.mean([places[v] for v in partition.cells.loops[piece]], axis=0) - places[corner]
-            inward /= np.hypot(*inward)
-            if partition.cells.cut_cell(piece, places[corner] + RADIUS * inward, np.array([-inward[1], inward[0]])):
-                own.append(len(partition.label))
-                partition.label = np.append(partition.label, partition.label[cell])
-                partition.cost = np.vstack([partition.cost, partition.cost[cell]])
-        if len(cells):
-            self._measure()
+        for one in list(cells):
+            if partition.cells.cut_cell(one, position, np.array([-inward[1], inward[0]])):
+                cells.append(len(partition.label))
+                partition.label = np.append(partition.label, partition.label[one])
+                partition.cost = np.vstack([partition.cost, partition.cost[one]])
+        self._measure()
+        is_near = np.zeros(len(partition.label), bool)
+        is_near[cells] = (partition.cells.centers()[cells] - position) @ inward < 0
+        both = is_near[self.beside].all(axis=1)
+        _, group = components(*self.beside[both].T, len(is_near))
+        return np.flatnonzero(group == group[cell])
 
     def relabel(self, faces: list[tuple[_Piece, int]]) -> bool:
         """Give the smallest part beside each face another plane; return whether any had one to take."""
@@ -269,10 +331,13 @@ class _Mending:
         around = label[self.beside[is_part[self.beside].sum(axis=1) == 1]].ravel()
         return sorted(set(around[(around >= 0) & (around != label[part[0]])].tolist()))
 
-    def _take(self, part: np.ndarray, planes: list[int], may_be_level: bool = False, must_fit: bool = False) -> bool:
+    def _take(
+        self, part: np.ndarray, planes: list[int], may_be_level: bool = False, turned: Optional[np.ndarray] = None
+    ) -> bool:
         """Give a part the best of some planes, or a level one; return whether that is another one.
 
-        Planes that ``must_fit`` have no corner of the part above the points around.
+        With a plane ``turned`` (3,) down, that one and the one through its points are tried as well, and those that
+        have a corner of the part above the points around only if all have.
         """
         partition = self.partition
         own = int(partition.label[part[0]])
@@ -280,17 +345,19 @@ class _Mending:
         corners = np.unique(np.concatenate([self.loops[cell] for cell in part]))
         options = [(plane, partition.coefficients[plane]) for plane in planes]
         new = len(partition.coefficients)
-        if may_be_level and (must_fit or own not in self.level):
+        if may_be_level and (turned is not None or own not in self.level):
             options.append((new, self._level_plane(rows, corners, own)))
-        if must_fit and len(rows) > 3:
-            options.append((new, planes_through(self.xyz[rows], np.zeros(len(rows), int)).coefficients[0]))
+        if turned is not None:
+            options.append((new, turned))
+            if len(rows) > 3:
+                options.append((new, planes_through(self.xyz[rows], np.zeros(len(rows), int)).coefficients[0]))
         if not options:
             return False
         area = float(self.areas[part].sum())
 
         def loss(option: tuple) -> tuple[bool, float]:
             excess = self._excess(corners, option[1])
-            return excess > 10**-DECIMALS and must_fit, self._loss(rows, area, option[1]) + excess
+            return excess > 10**-DECIMALS and turned is not None, self._loss(rows, area, option[1]) + excess
 
         best, coefficients = min(options, key=loss)
         if best == new:
@@ -312,9 +379,12 @@ class _Mending:
         """Return how much a plane leaves out of a part (m³) by the heights of its points."""
         a, b, c = plane
         off = np.abs(self.xyz[rows, 2] - self.xyz[rows, :2] @ [a, b] - c)
-        return float(np.minimum(off, _FARTHEST).mean()) * area if len(rows) else 0.0
+        return float(np.minimum(off, FARTHEST).mean()) * area if len(rows) else 0.0
 
     def _excess(self, corners: np.ndarray, plane: np.ndarray) -> float:
         """Return how far (m) a plane is above the points around corners at most."""
-        a, b, c = plane
-        return float(np.maximum(self.positions[corners] @ [a, b] + c - self.highest[corners], 0.0).max())
+        return float(np.maximum(self._above(corners, plane), 0.0).max())
+
+    def _above(self, corners: np.ndarray, plane: np.ndarray) -> np.ndarray:
+        """Return how far (k,), m, a plane is above what corners may have."""
+        return self.positions[corners] @ plane[:2] + plane[2] - self.highest[corners]

@@ -26,7 +26,7 @@ _FAR_OFF = 2.0
 
 # All points on top draw their cells to planes nearby: one that is this far (m) off, or farther, counts for this share
 # of its area.
-_FARTHEST, _FAR_WEIGHT = 1.0, 0.5
+FARTHEST, _FAR_WEIGHT = 1.0, 0.5
 
 # A meter of border between two planes costs as much as this area (m²) of roof that no plane explains. So does a square
 # meter of the wall between them, up to a step of 1 m. A dormer of 1.5 m by 1.5 m has 6 m of border.
@@ -186,7 +186,7 @@ def _costs(
     for plane in range(len(planes)):
         off = np.abs(xyz[sample, 2] - planes.height(plane, xyz[sample, :2])) * planes.cosine[plane]
         share = on_plane[sample] * np.minimum(off / (_FAR_OFF * tolerance), 1.0) ** 2
-        share += _FAR_WEIGHT * np.minimum(off / _FARTHEST, 1.0) ** 2
+        share += _FAR_WEIGHT * np.minimum(off / FARTHEST, 1.0) ** 2
         cost[:, plane] = np.bincount(of_cell, weight * share, len(used))
     return cost
 

@@ -58,6 +58,19 @@ def test_what_lies_around_a_corner_far_above_its_points_is_cut_off():
     assert parts.cells.areas()[parts.label == 0].sum() > 90
 
 
+def test_a_corner_of_narrow_cells_is_cut_off_with_its_whole_part():
+    """A piece of the cell of 0.3 m at the corner would join its neighbor again, and the corner would be high again."""
+    xyz = level_points()
+    is_low = (xyz[:, 0] > 10.9) & (xyz[:, 1] > 6.4)
+    xyz[:, 2] = np.where(is_low, 11.0, 6.0 + 0.5 * xyz[:, 0])
+    parts = partition(xyz, [11.7], [[0.5, 0, 6.0]], lambda x: 0)
+    solids, why = mended(parts, 0.0, xyz, HeightsAround(xyz), 70.0)
+    assert why == ""
+    corners = np.concatenate([solid.vertices for solid in solids])
+    assert corners[(corners[:, :2] > [11.9, 7.9]).all(axis=1), 2].max() < 11.96
+    assert parts.cells.areas()[parts.label == 0].sum() > 90
+
+
 def test_without_limits_it_stays():
     xyz = level_points()
     parts = partition(xyz, [8.0], [[0, 0, 6.0], [0.5, 0, 6.0]], lambda x: int(x > 8))
