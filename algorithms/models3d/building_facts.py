@@ -54,7 +54,7 @@ BUILDING_FIELDS = (
     Field("building", str, "footprint below it: its attribute id, or its number", of="footprints"),
     Field("level", str, "level of detail that it has: 1.2, 1.3 or 2.2"),
     Field("reason", str, "why it has not the level that was wanted, empty where it has"),
-    Field("roof_type", str, "flat, stepped flat, shed, gable, hip, mansard or other"),
+    Field("roof_type", str, "flat, stepped flat, shed, gable, hip, mansard, truncated (with a flat top) or other"),
     Field("ground", float, "elevation of its base, the lowest ground beside it", "m"),
     Field("eave_height", float, "lower quartile of the heights above the terrain at which its roof ends outside", "m"),
     Field("ridge_height", float, "98th percentile of the heights of its roof points above the terrain", "m"),
@@ -235,18 +235,28 @@ def roof_type(solids: Sequence[Solid]) -> str:
     slope, azimuth = np.array([slope_and_azimuth(solid, face) for solid, face in roofs]).T
     # Annexes and lean-tos do not change the type of a sloping roof: they end below the middle of its largest face.
     heights = [solid.vertices[solid.faces[face][0], 2] for solid, face in roofs]
+    low, high = np.array([(z.min(), z.max()) for z in heights]).T
     largest = int(np.argmax(area))
     if slope[largest] > _FLAT:
-        middle = (heights[largest].min() + heights[largest].max()) / 2
-        is_body = np.array([z.max() >= middle for z in heights])
-        area, slope, azimuth = area[is_body], slope[is_body], azimuth[is_body]
+        is_body = high >= (low[largest] + high[largest]) / 2
+        area, slope, azimuth, low, high = area[is_body], slope[is_body], azimuth[is_body], low[is_body], high[is_body]
     kind = _type_of(area, slope, azimuth)
     if kind != "other":
         return kind
     # Neither do dormers; hips are small themselves.
     is_main = area >= _ANNEX * area.sum()
     kind = _type_of(area[is_main], slope[is_main], azimuth[is_main])
-    return "other" if kind == "hip" else kind
+    if kind not in ("hip", "other"):
+        return kind
+    return "truncated" if _has_flat_top(low[is_main], high[is_main], slope[is_main] <= _FLAT) else "other"
+
+
+def _has_flat_top(low: np.ndarray, high: np.ndarray, is_level: np.ndarray) -> bool:
+    """Return whether all level faces (n,), bool, are nearer to the ridge of the others than to their middle, m."""
+    if is_level.all() or not is_level.any():
+        return False
+    eave, ridge = low[~is_level].min(), high[~is_level].max()
+    return bool(low[is_level].min() >= ridge - (ridge - eave) / 4)
 
 
 def _type_of(area: np.ndarray, slope: np.ndarray, azimuth: np.ndarray) -> str:
@@ -263,7 +273,10 @@ def _type_of(area: np.ndarray, slope: np.ndarray, azimuth: np.ndarray) -> str:
     if len(ways) == 2 and opposite:
         steep = max(np.ptp(slope[sloping][_near(azimuth[sloping], way)]) for way in ways)
         return "mansard" if steep > _MANSARD and sloping.sum() >= 4 else "gable"
-    return "hip" if opposite and len(ways) in (3, 4) and sloping.sum() == len(ways) else "other"
+    # A hipped roof has one face each way, unless all ways have large ones: not those of dormers.
+    largely = [area[sloping][_near(azimuth[sloping], way)].sum() >= _ANNEX * area.sum() for way in ways]
+    is_hip = opposite and len(ways) in (3, 4) and (sloping.sum() == len(ways) or all(largely))
+    return "hip" if is_hip else "other"
 
 
 def _near(azimuth: np.ndarray, way: float) -> np.ndarray:

@@ -202,7 +202,7 @@ class _Mending:
         """Return the part (cells,) of one plane that each cell is in."""
         label = self.partition.label
         same = label[self.beside[:, 0]] == label[self.beside[:, 1]]
-        return components(*self.beside[same].T, len(label))[1]
+        return components(self.beside[same, 0], self.beside[same, 1], len(label))[1]
 
     def _small(self, part: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the areas (m²) of parts, and which of them are roof that is too small or too narrow."""
@@ -306,7 +306,7 @@ class _Mending:
         is_near = np.zeros(len(partition.label), bool)
         is_near[cells] = (partition.cells.centers()[cells] - position) @ inward < 0
         both = is_near[self.beside].all(axis=1)
-        _, group = components(*self.beside[both].T, len(is_near))
+        _, group = components(self.beside[both, 0], self.beside[both, 1], len(is_near))
         return np.flatnonzero(group == group[cell])
 
     def relabel(self, faces: list[tuple[_Piece, int]]) -> bool:
