@@ -3096,7 +3096,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;i&gt;roof_type&lt;/i&gt;: flat, stepped flat, shed, gable, hip, mansard or other</source>
+        <source>&lt;i&gt;roof_type&lt;/i&gt;: flat, stepped flat, shed, gable, hip, mansard, truncated (with a flat top) or other</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
