@@ -185,7 +185,8 @@ _PIPELINES = (
         summary="Map the walls of buildings from a drone's point cloud, and compare them with the old map.",
         description=(
             "Noise is removed and one point left per voxel; progressive TIN densification finds the ground, which "
-            "flat roofs of any size are kept out of. A terrain model is made of it; planes high above it are roofs, "
+            "flat roofs of any size are kept out of, and bridge decks lie over its gaps. A terrain model is made of "
+            "it; planes high above it are roofs, "
             "and low upright surfaces below them are their walls. Footprints are the outlines of walls, "
             "without the eaves, with a quality for every edge. Where too little of the walls was seen, as in most "
             "airborne clouds, they are outlines of roofs, and their attributes say so. "
@@ -198,6 +199,7 @@ _PIPELINES = (
             Step("noise", "classify_noise_statistical"),
             Step("voxels", "downsample_voxels"),
             Step("ground", "classify_ground_tin"),
+            Step("bridges", "classify_bridges", {"search": "gaps in the ground"}),
             Step("terrain", "rasterize_terrain"),
             Step("height", "compute_height_above_ground"),
             Step("planes", "segment_planes_ransac", {"min_height": 1.5}),

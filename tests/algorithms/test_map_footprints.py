@@ -3,10 +3,14 @@
 import numpy as np
 import pytest
 
+from lidar_buildings.algorithms.cloud.asprs import PointClass
 from lidar_buildings.algorithms.cloud.cloud import create_cloud
+from lidar_buildings.algorithms.geometry.points_in_polygons import are_in_polygons
+from lidar_buildings.algorithms.geometry.polygon_overlap import as_polygons
 from lidar_buildings.algorithms.pipelines import PIPELINES
-from lidar_buildings.algorithms.run import run_pipeline
+from lidar_buildings.algorithms.run import run_pipeline, run_stage
 from lidar_buildings.algorithms.stage import LayerFeatures, Monitor
+from lidar_buildings.algorithms.stages import STAGES
 from lidar_buildings.tests.villages import corner_distances, mapped, village
 
 CHAIN = PIPELINES["map_footprints"]
@@ -108,3 +112,14 @@ def test_without_ground_the_sentence_says_what_is_missing(rng):
     nothing = {"xyz": np.column_stack([np.arange(50.0), np.zeros(50), np.zeros(50)])}
     with pytest.raises(ValueError, match=r"line|ground"):
         mapped(nothing, None)
+
+
+def test_bridges_over_a_river_are_no_buildings():
+    town = run_stage(STAGES["simulate_town"], size=110.0, density=12.0).cloud
+    xyz, is_deck = town.get("xyz"), town.get("classification") == PointClass.BRIDGE_DECK
+    assert is_deck.sum() > 1000, "the town has bridges"
+    returns = {name: town.get(name) for name in ("return_number", "number_of_returns")}
+    made = run_pipeline(CHAIN, create_cloud({"xyz": xyz, **returns}))
+    outlines = as_polygons(made.layers["wall_footprints"].geometries)
+    assert len(made.layers["wall_footprints"]) == 5
+    assert not are_in_polygons(xyz[is_deck, :2], outlines, Monitor()).any()
