@@ -6376,7 +6376,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Noise is removed and one point left per voxel; progressive TIN densification finds the ground, which flat roofs of any size are kept out of. A terrain model is made of it; planes high above it are roofs, and low upright surfaces below them are their walls. Footprints are the outlines of walls, without the eaves, with a quality for every edge. Where too little of the walls was seen, as in most airborne clouds, they are outlines of roofs, and their attributes say so. Where an old map is given, its corners are compared with the new ones. The terrain and the cloud of every step can be kept. The paper's ground filter, a cloth, settles on large flat roofs; to use it, open the model and put 'Classify ground points (cloth)' in the place of the ground step.</source>
+        <source>Noise is removed and one point left per voxel; progressive TIN densification finds the ground, which flat roofs of any size are kept out of, and bridge decks lie over its gaps. A terrain model is made of it; planes high above it are roofs, and low upright surfaces below them are their walls. Footprints are the outlines of walls, without the eaves, with a quality for every edge. Where too little of the walls was seen, as in most airborne clouds, they are outlines of roofs, and their attributes say so. Where an old map is given, its corners are compared with the new ones. The terrain and the cloud of every step can be kept. The paper's ground filter, a cloth, settles on large flat roofs; to use it, open the model and put 'Classify ground points (cloth)' in the place of the ground step.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
