@@ -21,6 +21,9 @@ _MOST_THREADS = 32
 # Positions that a thread searches the neighbors of, at least: starting it takes as long as searching for a few hundred.
 _SEARCHED = 5_000
 
+# Rows that a thread works on at once: their values stay in the processor's caches.
+ROWS_AT_ONCE = 20_000
+
 # Seconds between two looks at whether the user wants to stop.
 _BETWEEN_LOOKS = 0.2
 

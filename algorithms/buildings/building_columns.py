@@ -12,9 +12,6 @@ from ..segmentation.top_surface import TOP
 
 _EIGHT = np.ones((3, 3), bool)
 
-# Sums of points that cancel out differ from zero by less.
-_ROUNDING = 1e-9
-
 
 @dataclass(frozen=True)
 class ColumnRules:
@@ -24,8 +21,6 @@ class ColumnRules:
     wall_reach: float = rule(1.0, "m", "physics: eaves reach out by up to this, and roof surfaces end before them")
     sparse_share: float = rule(0.3, "share", "chimneys and dormers cover less of the cells around, crowns more")
     bush_share: float = rule(0.33, "share", "of the roof's height, up to which points beside a roof may be bushes")
-    passed: float = rule(0.5, "share", "physics: of points around that the beam passed: most of a crown, few of a wall")
-    crown_cells: int = rule(2, "cells", "physics: least width of crowns; balconies and walls are narrower")
     around: int = rule(7, "cells", "side of the square in which cells and pulses are counted, some 4 m")
     bush_height: float = rule(2.5, "m", "physics: hedges and bushes at walls are trimmed lower than a floor")
 
@@ -90,9 +85,8 @@ class Columns:
         apart = points.raised & (self.building[points.cell] == 0) & (self.beside[points.cell] == 0)
         shape = self.building.shape
         number = np.ravel_multi_index(points.cell, shape)[apart]
-        # Each point that the beam passed speaks for a crown, each other one against it.
-        says = points.goes_on[apart] - COLUMNS.passed
-        crown, size = (np.bincount(number, of, np.prod(shape)).reshape(shape) for of in (says, None))
-        is_wide = ndimage.binary_opening(size > 0, np.ones((COLUMNS.crown_cells,) * 2, bool))
-        is_crown = is_wide & (ndimage.uniform_filter(crown, COLUMNS.around, mode="constant") > _ROUNDING)
-        return ndimage.binary_dilation(is_crown, _EIGHT)
+        passed, size = (np.bincount(number, of, np.prod(shape)).reshape(shape) for of in (points.goes_on[apart], None))
+        # Balconies and walls are narrower. Most points of a crown are passed by the beam, few of a wall.
+        is_wide = ndimage.binary_opening(size > 0, _EIGHT)
+        most = ndimage.uniform_filter(2.0 * passed - size, COLUMNS.around, mode="constant")
+        return ndimage.binary_dilation(is_wide & (np.rint(COLUMNS.around**2 * most) > 0), _EIGHT)

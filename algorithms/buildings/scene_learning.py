@@ -10,12 +10,9 @@ import numpy as np
 from ..geometry.grid import lattice
 from ..rules import rule
 from ..stage import Monitor
-from ..threads import in_chunks
+from ..threads import ROWS_AT_ONCE, in_chunks
 from .logistic_regression import LogisticRegression
 from .space_cells import SpaceCells
-
-# Cells that probabilities are predicted of at once: their terms take 10 MB.
-_CHUNK = 20_000
 
 
 @dataclass(frozen=True)
@@ -92,7 +89,7 @@ def predict(learned: tuple[float, ...], features: np.ndarray, half: np.ndarray) 
         def work(rows: np.ndarray, regression: LogisticRegression = regression) -> None:
             likely[rows] = regression.predict(features[rows])
 
-        in_chunks(work, np.flatnonzero(half != number), _CHUNK, Monitor())
+        in_chunks(work, np.flatnonzero(half != number), ROWS_AT_ONCE, Monitor())
     return likely
 
 

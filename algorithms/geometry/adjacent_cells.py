@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+# Rows and columns of a step from a cell in each of the four directions in which others touch it.
+DIRECTIONS = ((0, 1), (1, 1), (1, 0), (1, -1))
+
 
 def adjacent_cells(dimensions: int) -> Iterator[tuple[tuple[slice, ...], tuple[slice, ...]]]:
     """Yield the slices of an array without its last or first cells, and of the cells beside those.

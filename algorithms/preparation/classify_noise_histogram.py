@@ -15,7 +15,7 @@ from ..rules import rule
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Monitor, Param, stage
 from .height_histograms import Histogram, pooled_histogram, with_borrowed_ranges
-from .points_under_ground import under_ground
+from .points_under_ground import UNDER_GROUND, under_ground
 
 
 @dataclass(frozen=True)
@@ -30,16 +30,14 @@ class HistogramRules:
 
 HISTOGRAM = HistogramRules()
 
-# A cell borrows the histograms of the cells around it, which are some 5 to 10 m wide (m).
-_REACH = 10.0
-
 
 @stage(
     "Classify noise by height histogram",
     group="Preparation",
     tags="noise,outliers,birds,low points,high points,multipath,histogram,clean,denoise,lasnoise",
     writes=("classification",),
-    reach=_REACH,
+    # Cells, which borrow the histograms of those around, are as wide.
+    reach=UNDER_GROUND.around,
 )
 def classify_noise_histogram(
     xyz,
@@ -116,10 +114,10 @@ def classify_noise_histogram(
     adjoins the scene stays too (chimneys, masts, treetops, slopes), and so do three high points close together (a
     lamp, a wire). A cell whose surroundings have no full bin borrows the range of the nearest one that has.
 
-    Isolated points under the ground are found without histograms: single points or a few, 0.45 m or more (0.4 point
-    spacings) below the surface on all sides. They are not near others of the same height, as ground seen between leaves
-    is. Points that share a level over meters are a floor, seen through glass or in a shaft. Among crowns and in narrow
-    yards points just below the ground are left alone.
+    Isolated points under the ground are found without histograms: single points or a few, 0.45 m or more below the
+    surface on all sides. They are not near others of the same height, as ground seen between leaves is. More than three
+    that share a level over meters are a floor, seen through glass or in a shaft. Among crowns and in narrow yards
+    points just below the ground are left alone.
 
     The filter of the paper (T_f) has no gap, no groups, no pooled cells and no isolated points; see 'Classify noise by
     height histogram (as published 2019)'.

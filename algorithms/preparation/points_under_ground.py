@@ -7,6 +7,7 @@ floor. Points of multipath come at all depths, those of a floor agree.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import count
 
 import numpy as np
 
@@ -14,32 +15,21 @@ from ..geometry.grid import Grid, distinct, find_cells, fixed_grid_over
 from ..geometry.groups import ordered
 from ..packages import spatial
 from ..rules import rule
+from ..sampling.density import DENSITY
 from ..stage import Monitor
-from ..threads import in_chunks
+from ..threads import ROWS_AT_ONCE, in_chunks
 
 
 @dataclass(frozen=True)
 class UnderGroundRules:
     """Points under the ground, and which of them are a floor."""
 
-    depth: float = rule(0.45, "m", "physics: less deep are grass, ruts, and the noise of the scanner")
-    depth_spacings: float = rule(0.4, "point spacings", "physics: the ground bends between points; the larger counts")
-    close_cell: float = rule(2.0, "point spacings", "statistics: four points a cell, the lowest of which is its level")
-    around_cell: float = rule(10.0, "m", "physics: some ground is seen in each, even among trees; or 8 close cells")
-    around_share: float = rule(0.02, "share", "statistics: points of a cell below its level; more of them are ground")
-    rounds: int = rule(3, "rounds", "low points that are found hide others beneath the surface that they pull down")
-    support_points: int = rule(3, "points", "others at its height make a point part of a surface")
-    step: float = rule(0.3, "m", "physics: of ground and roofs from cell to cell, of tufts; crowns have larger ones")
-    support_radius: float = rule(2.5, "point spacings", "physics: a wider disk would reach a slope where it is as low")
-    support_reach: float = rule(1.25, "m", "the same in dense clouds, where that is more")
-    floor_level: float = rule(0.1, "m", "physics: floors are level to this, echoes of detours come at all depths")
-    floor_reach: float = rule(5.0, "m", "physics: half the length of a court or shaft in which the floor is seen")
+    depth: float = rule(0.45, "m", "physics: less differ ground, grass and ruts from cell to cell, and floors")
+    around: float = rule(10.0, "m", "physics: cells in each of which some ground is seen, even among trees")
+    few: int = rule(3, "points", "of a group under the ground; more at one level within half a cell are a floor")
 
 
 UNDER_GROUND = UnderGroundRules()
-
-# Cells at once, so that memory stays small.
-_CHUNK = 50_000
 
 
 def under_ground(xyz: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarray:
@@ -54,35 +44,41 @@ def under_ground(xyz: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarra
     monitor : Monitor
         Receives progress.
     """
-    grid = fixed_grid_over(xyz, UNDER_GROUND.close_cell * spacing)
+    cell = float(np.sqrt(DENSITY.points_per_cell)) * spacing
+    grid = fixed_grid_over(xyz, cell)
     cells, which = distinct(grid.number(xyz))
     order = _by_cell_and_height(which, xyz)
     n_points = np.bincount(which)
     start = np.cumsum(n_points) - n_points
-    middle = xyz[order[start + n_points // 2]]
-    size = max(UNDER_GROUND.around_cell, 8 * UNDER_GROUND.close_cell * spacing)
-    depth = max(UNDER_GROUND.depth, UNDER_GROUND.depth_spacings * spacing)
+    size = max(UNDER_GROUND.around, 8 * cell)
 
-    found, n_found = np.zeros(len(xyz), bool), np.zeros(len(cells), np.int64)
+    found, is_floor, n_found = *np.zeros((2, len(xyz)), bool), np.zeros(len(cells), np.int64)
     near = np.arange(len(cells))
-    for turn in range(UNDER_GROUND.rounds):
+    # Points that are found hide others beneath the surface that they pull down.
+    for turn in count(1):
         # Without the points found before, which are the lowest of their cells, their companions become the lowest.
-        lowest = xyz[order[start + np.minimum(n_found, n_points - 1)]]
+        lowest, middle = (
+            xyz[order[start + np.minimum(rank, n_points - 1)]] for rank in (n_found, (n_found + n_points) // 2)
+        )
         lowest[n_found == n_points] = np.nan
         # Below the surface close by, below the ground around, and not beside others of the same height.
         surface = _close_surface(grid, cells, lowest, middle, near)
-        rows = _deep(xyz, which, np.flatnonzero(mask_of(len(cells), near)[which] & ~found), surface, depth)
+        is_left = mask_of(len(cells), near)[which] & ~(found | is_floor)
+        rows = _deep(xyz, which, np.flatnonzero(is_left), surface)
         around = _surroundings(lowest[n_found < n_points], xyz[rows], size)
         close, is_smooth = surface.at(xyz, rows, which), surface.is_smooth[which[rows]]
-        rows = rows[_is_under(xyz[rows, 2], close, is_smooth, around, depth)]
+        rows = rows[_is_under(xyz[rows, 2], close, is_smooth, around)]
         near = near_cells(grid, cells, which[rows])
-        rows = rows[~_is_supported(xyz, rows, mask_of(len(cells), near)[which], spacing)]
-        monitor.progress((turn + 1) / UNDER_GROUND.rounds)
+        beside = np.flatnonzero(mask_of(len(cells), near)[which])
+        rows = rows[_at_level(xyz[rows], xyz[beside], cell) <= UNDER_GROUND.few]
+        monitor.progress(1 - 0.5**turn)
         if not len(rows):
-            break
+            return found
         found[rows] = True
         low = np.flatnonzero(found)
-        found[low[_is_floor(xyz[low])]] = False
+        # Points of a floor that is seen here and there lie apart.
+        is_floor[low] = _at_level(xyz[low], xyz[low], UNDER_GROUND.around / 2) > UNDER_GROUND.few
+        found &= ~is_floor
         n_found = np.bincount(which[found], minlength=len(cells))
         near = near_cells(grid, cells, which[rows])
     return found
@@ -104,14 +100,14 @@ def _by_cell_and_height(which: np.ndarray, xyz: np.ndarray) -> np.ndarray:
     return ordered(key, x, y)
 
 
-def _deep(xyz: np.ndarray, which: np.ndarray, rows: np.ndarray, surface: _Surface, depth: float) -> np.ndarray:
-    """Return those of the rows that lie more than ``depth`` (m) below the surface, or where it is not known."""
+def _deep(xyz: np.ndarray, which: np.ndarray, rows: np.ndarray, surface: _Surface) -> np.ndarray:
+    """Return those of the rows that lie deep below the surface, or where it is not known."""
     is_deep = np.zeros(len(xyz), bool)
 
     def work(part: np.ndarray) -> None:
-        is_deep[part] = ~(xyz[part, 2] >= surface.at(xyz, part, which) - depth)
+        is_deep[part] = ~(xyz[part, 2] >= surface.at(xyz, part, which) - UNDER_GROUND.depth)
 
-    in_chunks(work, rows, _CHUNK, Monitor())
+    in_chunks(work, rows, ROWS_AT_ONCE, Monitor())
     return rows[is_deep[rows]]
 
 
@@ -121,27 +117,12 @@ def near_cells(grid: Grid, cells: np.ndarray, which: np.ndarray) -> np.ndarray:
     return np.unique(at[is_cell])
 
 
-def _is_supported(xyz: np.ndarray, rows: np.ndarray, is_near: np.ndarray, spacing: float) -> np.ndarray:
-    """Return which points have others close by at their own height: ground seen between leaves or walls.
-
-    Echoes that took a detour come at all depths, those of the ground agree to centimeters.
-    """
-    if not len(rows):
-        return np.zeros(0, bool)
-    radius = max(UNDER_GROUND.support_radius * spacing, UNDER_GROUND.support_reach)
-    # Heights are stretched so that the neighborhood is a flat disk.
-    stretch = np.array([1.0, 1.0, radius / UNDER_GROUND.step])
-    tree = spatial.cKDTree(xyz[is_near] * stretch)
-    distance = tree.query(xyz[rows] * stretch, UNDER_GROUND.support_points + 1)[0]
-    return distance[:, -1] <= radius
-
-
-def _is_under(z: np.ndarray, close: np.ndarray, is_smooth: np.ndarray, around: np.ndarray, depth: float) -> np.ndarray:
+def _is_under(z: np.ndarray, close: np.ndarray, is_smooth: np.ndarray, around: np.ndarray) -> np.ndarray:
     """Return which elevations (m) below the surface close by are below the ground, too."""
     # Among crowns, walls and water the ground may be anywhere down to where it is seen to be, and as much lower again.
     unsure = np.where(is_smooth, around[:, 1], 2 * around[:, 0] - around[:, 2])
-    is_on_ground = is_smooth & (close <= around[:, 1] + depth)
-    return (z < unsure - depth) | is_on_ground
+    is_on_ground = is_smooth & (close <= around[:, 1] + UNDER_GROUND.depth)
+    return (z < unsure - UNDER_GROUND.depth) | is_on_ground
 
 
 @dataclass(frozen=True)
@@ -179,14 +160,14 @@ def _close_surface(
         slope[part] = _slope(beside)
         low = _flattened(beside, slope[part])
         mid = _flattened(_beside(around, middle, middle[part]), slope[part])
-        smooth = low[:, 4:] - low[:, :4] <= UNDER_GROUND.step
+        smooth = low[:, 4:] - low[:, :4] <= UNDER_GROUND.depth
         is_smooth[part] = smooth.any(axis=1)
         base = np.take_along_axis(low, np.argmax(smooth, axis=1)[:, None], axis=1)[:, 0]
         rough = low[:, 1] - (low[:, 3] - low[:, 1])
         origin[part, :2] = middle[part, :2]
         origin[part, 2] = np.minimum(np.where(is_smooth[part], base, rough), mid[:, 0])
 
-    in_chunks(work, wanted, _CHUNK, Monitor())
+    in_chunks(work, wanted, ROWS_AT_ONCE, Monitor())
     return _Surface(origin, slope, is_smooth)
 
 
@@ -195,9 +176,10 @@ def _surroundings(levels: np.ndarray, points: np.ndarray, size: float) -> np.nda
     grid = fixed_grid_over(levels, size)
     cells, which = distinct(grid.number(levels))
     order = _by_cell_and_height(which, levels)
-    count = np.bincount(which)
-    start = np.cumsum(count) - count
-    chosen = levels[order[start + np.floor(UNDER_GROUND.around_share * count).astype(np.int64)]]
+    n_levels = np.bincount(which)
+    start = np.cumsum(n_levels) - n_levels
+    # Levels that low points have pulled down are few.
+    chosen = levels[order[start + np.minimum(UNDER_GROUND.few, n_levels // 2)]]
     number = grid.number(points)
     beside = _beside([find_cells(cells, number + step) for step in grid.around], chosen, points)
     return _flattened(beside, _slope(beside))
@@ -239,10 +221,8 @@ def _middle(values: np.ndarray) -> np.ndarray:
     return np.where(known > 0, middle, 0.0)
 
 
-def _is_floor(low: np.ndarray) -> np.ndarray:
-    """Return which low points (n, 3) belong to a floor: others lie at their level, spread over meters."""
+def _at_level(points: np.ndarray, others: np.ndarray, reach: float) -> np.ndarray:
+    """Return how many of others (m, 3) lie at the height of points (n, 3), up to a distance ``reach`` (m)."""
     # Heights are stretched so that the neighborhood is a flat disk.
-    stretch = np.array([1.0, 1.0, UNDER_GROUND.floor_reach / UNDER_GROUND.floor_level])
-    positions = low * stretch
-    near = spatial.cKDTree(positions).query_ball_point(positions, UNDER_GROUND.floor_reach, return_length=True)
-    return near > UNDER_GROUND.support_points
+    stretch = [1.0, 1.0, reach / UNDER_GROUND.depth]
+    return spatial.cKDTree(others * stretch).query_ball_point(points * stretch, reach, return_length=True)

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..geometry.adjacent_cells import DIRECTIONS
 from ..geometry.components import connect
 from ..geometry.grid import raster_cells, refuse_sparse
 from ..packages import ndimage, spatial
 from ..stage import Monitor
 from .bridge_decks import DECK, Decks
-
-# Rows and columns of a step in each direction in which ground on both sides of a raised strip is looked for.
-_STEPS = ((0, 1), (1, 1), (1, 0), (1, -1))
 
 
 def deck_sites(xyz: np.ndarray, is_open: np.ndarray, is_ground: np.ndarray, decks: Decks) -> np.ndarray:
@@ -72,7 +70,7 @@ def _count(cell: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
 def _between_lower(surface: np.ndarray, ground: np.ndarray, decks: Decks) -> np.ndarray:
     """Return which cells have a surface over the ground on both sides, within the width of decks."""
     result = np.zeros(ground.shape, bool)
-    for down, right in _STEPS:
+    for down, right in DIRECTIONS:
         count = max(1, int(decks.max_width / 2 / decks.cell / np.hypot(down, right)))
         sides = [_lowest_ahead(ground, sign * down, sign * right, count) for sign in (1, -1)]
         result |= np.maximum(*sides) <= surface - decks.min_height

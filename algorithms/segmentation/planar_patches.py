@@ -14,7 +14,7 @@ from ..packages import csgraph, sparse, spatial
 from ..rules import rule
 from ..sampling.surface_noise import LEAST_NEIGHBORS, ON_PLANE
 from ..stage import Monitor
-from ..threads import in_chunks
+from ..threads import ROWS_AT_ONCE, in_chunks
 
 
 @dataclass(frozen=True)
@@ -29,9 +29,6 @@ class PatchRules:
 
 
 PATCHES = PatchRules()
-
-# Points, and candidates for their planes, of a chunk: their values stay in the processor's caches.
-_CHUNK, _CHUNK_CANDIDATES = 20_000, 250_000
 
 
 @dataclass
@@ -139,7 +136,7 @@ def _smoothest_plane(points: np.ndarray, planes: _PointPlanes, reach: float, mon
             rest = ~holds
             left, own, candidates, deviation = left[rest], own[rest], candidates[rest], deviation[rest]
 
-    in_chunks(work, np.arange(len(found)), max(1, _CHUNK_CANDIDATES // planes.neighbors.shape[1]), monitor)
+    in_chunks(work, np.arange(len(found)), Nearest(planes.neighbors.shape[1]).rows_per_chunk(len(found)), monitor)
     return found
 
 
@@ -158,7 +155,7 @@ def _links(
     One surface is within ``reach`` (m) of both points.
     """
     n_links = np.zeros(len(plane) + 1, np.int64)
-    there: list[np.ndarray] = [np.empty(0, np.int32)] * -(-len(plane) // _CHUNK)
+    there: list[np.ndarray] = [np.empty(0, np.int32)] * -(-len(plane) // ROWS_AT_ONCE)
 
     def work(rows: np.ndarray) -> None:
         neighbors = planes.neighbors[rows]
@@ -173,9 +170,9 @@ def _links(
         same &= np.abs(np.einsum("ij,ij->i", points[a], of_b)) <= reach
         is_link[apart] = same
         n_links[rows + 1] = is_link.sum(axis=1)
-        there[rows[0] // _CHUNK] = neighbors[is_link]
+        there[rows[0] // ROWS_AT_ONCE] = neighbors[is_link]
 
-    in_chunks(work, np.arange(len(plane)), _CHUNK, monitor)
+    in_chunks(work, np.arange(len(plane)), ROWS_AT_ONCE, monitor)
     return np.concatenate(there), np.cumsum(n_links)
 
 

@@ -26,6 +26,7 @@ class SeedRules:
     pit_share: float = rule(0.1, "share", "physics: more pulses reach the ground of dense forest")
     pit_steps: int = rule(10, "cells", "up to which each cell is examined; beyond, as many steps")
     most_turned: float = rule(2.5, "ratio", "of the box of a turned cloud to its own; narrow strips have more")
+    grids: int = rule(3, "grids of cells", "turned, decide together: on bushes it matters which points share a cell")
     rim: float = rule(0.8, "m", "physics: depth of the rounded rim of a roof in matched images")
 
 
@@ -33,10 +34,6 @@ SEEDS = SeedRules()
 
 # Without a largest building given, windows go up to this size (m); larger halls are found as free-standing segments.
 USUAL_BUILDING = 60.0
-
-# Directions (°) of the three grids of cells that decide together: which points share a cell decides on single bushes
-# and roofs.
-_TURNS = tuple(np.arange(0.0, 90.0, 30.0))
 
 
 @dataclass
@@ -131,7 +128,7 @@ def seeds_by_opening(
     """
     refuse_sparse(xyz, cell_size)
     box = plan_box(xyz)
-    angles = _TURNS if _is_compact(box) else _TURNS[:1]
+    angles = _turns() if _is_compact(box) else np.zeros(1)
 
     def view(number: int, slope: Optional[np.ndarray], part: Monitor) -> _View:
         # Cells begin a third of their side farther east and south in each: no edges of them meet on a whole side.
@@ -220,10 +217,15 @@ def _rim_levels(surface: np.ndarray, is_free: np.ndarray) -> np.ndarray:
     return np.where(is_free, -np.inf, level)
 
 
+def _turns() -> np.ndarray:
+    """Return the directions (°) of the grids of cells, of which a quarter turn makes the same."""
+    return 90.0 * np.arange(SEEDS.grids) / SEEDS.grids
+
+
 def _is_compact(box: np.ndarray) -> bool:
     """Return whether the boxes around a turned ``box`` (2, 2) are small enough to be covered by cells."""
     sides = np.ptp(box, axis=0)
-    turns = ((np.cos(angle), np.sin(angle)) for angle in np.radians(_TURNS))
+    turns = ((np.cos(angle), np.sin(angle)) for angle in np.radians(_turns()))
     return all((cos * sides + sin * sides[::-1]).prod() <= SEEDS.most_turned * sides.prod() for cos, sin in turns)
 
 

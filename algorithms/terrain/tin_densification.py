@@ -24,7 +24,6 @@ class DensificationRules:
     )
     node_distance: float = rule(0.25, "share", "of the edge length: nearer points make slivers and add no information")
     least_growth: float = rule(0.005, "share", "of the nodes that a round must add to have another one after it")
-    most_rounds: int = rule(50, "rounds", "bound of the time")
     candidate: float = rule(5.0, "largest distances", "from the first TIN, beyond which points are no candidates")
 
 
@@ -32,9 +31,6 @@ DENSIFICATION = DensificationRules()
 
 # Nodes whose residuals show the roughness of a surface, about: a median of these is good to 2 %.
 _SAMPLE = 5_000
-
-# Share of the remaining progress that a round is taken for: how many rounds there are shows at the end only.
-_ROUND_PROGRESS = 0.07
 
 
 @dataclass(frozen=True)
@@ -56,11 +52,11 @@ class JoinRules:
     #: :func:`.mirror_points.mirrored_angle`
     beyond: Optional[Callable[[Tin, np.ndarray, np.ndarray, float, int], np.ndarray]] = None
 
-    def is_last(self, step: int, n_joining: int, n_nodes: int) -> bool:
-        """Return whether the round ``step`` (from 1), in which points joined ``n_nodes`` nodes, is the last."""
+    def is_last(self, n_joining: int, n_nodes: int) -> bool:
+        """Return whether a round in which points joined ``n_nodes`` nodes is the last."""
         if self.is_exhaustive:
             return n_joining == 0
-        return n_joining <= DENSIFICATION.least_growth * n_nodes or step == DENSIFICATION.most_rounds
+        return n_joining <= DENSIFICATION.least_growth * n_nodes
 
     def limits(self, nodes: np.ndarray) -> tuple[float, float]:
         """Return the largest distance (m) and angle (°) at which a point joins the TIN of ``nodes``."""
@@ -171,8 +167,8 @@ def grow(
         open_candidates, joining = _joining(surface, candidates, distance, angle, rules, len(start))
         surface.add(joining)
         candidates = np.setdiff1d(candidates if rules.is_exhaustive else open_candidates, joining, assume_unique=True)
-        monitor.progress(1 - 0.5 * (1 - _ROUND_PROGRESS) ** step)
-        is_last = rules.is_last(step, len(joining), n_nodes)
+        monitor.progress(1 - 0.5 / step)
+        is_last = rules.is_last(len(joining), n_nodes)
         distance, angle = (distance, angle) if is_last else rules.limits(surface.nodes)
     return surface, float(distance), float(angle)
 

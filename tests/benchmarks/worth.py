@@ -332,18 +332,13 @@ WHOLE = (
     Rule("noise: isolated points", tunables={"noise": {"isolated": False}}),
     _out("noise: isolated points under the ground", "preparation.points_under_ground:under_ground", _nowhere),
     _out(
-        "noise: low points are supported by others",
-        "preparation.points_under_ground:_is_supported",
-        lambda xyz, rows, *_: np.zeros(len(rows), bool),
-    ),
-    _out(
-        "noise: floors are not noise",
-        "preparation.points_under_ground:_is_floor",
-        _nowhere,
+        "noise: low points at one level are not noise",
+        "preparation.points_under_ground:_at_level",
+        lambda points, others, reach: np.zeros(len(points), np.int64),
     ),
     _out("noise: groups in histograms are kept", "preparation.classify_noise_histogram:_in_group", _nowhere),
     _out("ground: pits", "terrain.ground_seeds:_pits", _nowhere),
-    _out("ground: three directions", "terrain.ground_seeds:_TURNS", (0.0,)),
+    _out("ground: three directions", "terrain.ground_seeds:SEEDS", _set("terrain.ground_seeds:SEEDS", grids=1)),
     _out(
         "ground: last returns only",
         "terrain.classify_ground_tin:last_returns",
