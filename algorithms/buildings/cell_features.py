@@ -9,10 +9,8 @@ import numpy as np
 
 from ..geometry.grid import distinct, lattice
 from ..neighborhoods.covariance import dimensionality, shannon_entropy, smallest_eigenvectors, symmetric_eigenvalues
+from ..sampling.height_resolution import LEAST_RESOLUTION
 from .space_cells import SpaceCells, covariances
-
-# Smallest variance (m²) of points along an axis: coordinates are given to a centimeter, or few points share a plane.
-_LEAST_VARIANCE = 1e-4
 
 # Side of the columns in plan (cells), as far as the cells around reach.
 _COLUMN = 3
@@ -86,7 +84,7 @@ def _shapes(moments: np.ndarray) -> np.ndarray:
     of the spread that is upright, size and spread of elevations.
     """
     spread = covariances(moments)
-    eigenvalues = np.maximum(symmetric_eigenvalues(spread), _LEAST_VARIANCE)
+    eigenvalues = np.maximum(symmetric_eigenvalues(spread), LEAST_RESOLUTION**2)
     normal = smallest_eigenvectors(spread, eigenvalues)
     shares = dimensionality(eigenvalues)
     total, upright = eigenvalues.sum(axis=1), np.maximum(spread[:, 2], 0)

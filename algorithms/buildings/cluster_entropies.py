@@ -7,16 +7,11 @@ from typing import Optional, Union
 
 import numpy as np
 
+from ..geometry.mixing import mixed
 from ..neighborhoods.covariance import Nearest, neighborhood_eigenvalues, shannon_entropy_lps
 from ..neighborhoods.wide_in_plan import Wide
 from ..packages import spatial
 from ..stage import Monitor
-
-# Large odd numbers mix the bits of coordinates; the high ones of the products are mixed well.
-_MIXERS = (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9)
-
-# Bits of the mixed number that are compared with a share.
-_BITS = 24
 
 
 @dataclass(frozen=True)
@@ -88,13 +83,8 @@ def _sample(xyz: np.ndarray, share: np.ndarray) -> np.ndarray:
 
     The coordinates alone decide, so that a cluster has the same sample in every part of a survey that holds it.
     """
-    mixed = np.zeros(len(xyz), np.uint64)
-    for column, mixer in zip(xyz.T, _MIXERS):
-        # Tenths of a millimeter: coordinates that were stored in steps may differ by rounding.
-        mixed += np.rint(column * 1e4).astype(np.int64).view(np.uint64) * np.uint64(mixer)
-        mixed ^= mixed >> np.uint64(29)
-    mixed *= np.uint64(_MIXERS[0])
-    chosen = (mixed >> np.uint64(64 - _BITS)) < share * 2.0**_BITS
+    # Tenths of a millimeter: coordinates that were stored in steps may differ by rounding.
+    chosen = mixed(np.rint(xyz * 1e4).astype(np.int64)) < share
     # Without any, the mean of a small cluster would be undefined by chance.
     return chosen if chosen.any() else np.ones(len(xyz), bool)
 

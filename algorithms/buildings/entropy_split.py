@@ -18,7 +18,6 @@ class SplitRules:
     """How two mean entropies are found."""
 
     weight: int = rule(100, "clusters", "chosen: a handful of clusters can not move a reference, thousands can")
-    simulated: int = rule(500, "points", "statistics: more change the reference entropies by less than 0.01")
 
 
 SPLIT = SplitRules()
@@ -126,7 +125,6 @@ def reference_entropies(n_points: int, roughness: float = 0.0, trials: int = 400
         The random numbers are fixed: the same arguments always give the same two figures.
     """
     generator = np.random.default_rng(0)
-    n_points = min(n_points, SPLIT.simulated)
     directions = generator.normal(size=(trials, n_points, 3))
     ball = directions / np.linalg.norm(directions, axis=2, keepdims=True)
     ball *= generator.random((trials, n_points, 1)) ** (1 / 3)

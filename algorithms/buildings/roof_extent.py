@@ -9,8 +9,9 @@ import numpy as np
 from ..cloud.reasons import Reason
 from ..packages import ndimage
 from ..rules import rule
-from ..sampling.kinds import IMAGES
+from ..sampling.kinds import IMAGES, MATCHING
 from ..segmentation.top_surface import TopSurface
+from ..terrain.free_standing import FREE
 
 
 @dataclass(frozen=True)
@@ -18,9 +19,7 @@ class ImageRoofRules:
     """Roofs and vehicles in clouds of matched images."""
 
     least_width: float = rule(1.5, "m", "physics: narrower objects are walls, railings or hedges")
-    rounded: float = rule(0.7, "m", "physics: matching rounds edges of roofs over the size of its windows")
     half: float = rule(0.5, "share", "of a roof's height at its edge: a step is smeared evenly to both sides")
-    steep: float = rule(1.0, "m per m", "physics: smeared walls fall as steeply; soil does not")
     surface_share: float = rule(
         0.5, "share", "fitted on a town of matched images: most of what is within the least width of a roof surface"
     )
@@ -96,7 +95,7 @@ class RoofExtent:
             return core
         nearest = ndimage.distance_transform_edt(~core, return_distances=False, return_indices=True)
         is_edge = self.surface.height >= IMAGE_ROOFS.half * self.surface.height[tuple(nearest)]
-        steps = max(1, round(IMAGE_ROOFS.rounded / self.surface.size))
+        steps = max(1, round(MATCHING.rounded / self.surface.size))
         cross = ndimage.generate_binary_structure(2, 1)
         grown = ndimage.binary_dilation(core, cross, steps, mask=core | is_edge)
         # Smeared walls, fences and branches that reach out are thinner than the objects that carry them.
@@ -110,9 +109,9 @@ class RoofExtent:
         """
         cross = ndimage.generate_binary_structure(2, 1)
         grown = building.copy()
-        for _ in range(max(1, round(IMAGE_ROOFS.rounded / self.surface.size))):
+        for _ in range(max(1, round(MATCHING.rounded / self.surface.size))):
             above = ndimage.grey_dilation(np.where(grown > 0, self.surface.elevation, -np.inf), footprint=cross)
-            falls = self.surface.elevation <= above - IMAGE_ROOFS.steep * self.surface.size
+            falls = self.surface.elevation <= above - FREE.steep * self.surface.size
             is_face = (grown == 0) & falls & (self.surface.height >= IMAGES.foot)
             grown = np.where(is_face, ndimage.grey_dilation(grown, footprint=cross), grown)
         return grown

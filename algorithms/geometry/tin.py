@@ -15,6 +15,9 @@ from .grid import plan_box
 # Points looked for and planes fitted at once, on each core: their arrays stay small beside the cloud.
 _CHUNK, _FIT_CHUNK = 100_000, 20_000
 
+# Points that a plane needs.
+PLANE_POINTS = 3
+
 # Far more steps than a walk from the nearest node takes.
 _MAX_STEPS = 1000
 

@@ -9,13 +9,11 @@ import numpy as np
 from ..cloud.asprs import PointClass
 from ..geometry.components import connect
 from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.density import DENSITY
 from ..stage import stage
 
 # Classes of which no others are found where a cloud came with some.
 _WHOLE = (PointClass.GROUND, PointClass.BUILDING)
-
-# Kept buildings are one where points are closer in plan: 2 point spacings, at least 0.5 m, as in all steps.
-_GAP_SPACINGS, _LEAST_GAP = 2.0, 0.5
 
 
 @stage(
@@ -72,7 +70,7 @@ def restore_classes(
     if cluster_id is None or not is_building.any():
         return classes, None
     sampling = sampling or CloudSampling.of(xyz, classification)
-    gap = max(_GAP_SPACINGS * sampling.spacing, _LEAST_GAP)
+    gap = max(DENSITY.link * sampling.spacing, DENSITY.least_link)
     points = xyz[is_building]
     number = np.zeros(len(xyz), np.int32)
     number[is_building] = 1 + connect(points, gap, 1 + float(np.ptp(points[:, 2])), monitor)

@@ -52,7 +52,8 @@ def under_ground(xyz: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarra
     start = np.cumsum(n_points) - n_points
     size = max(UNDER_GROUND.around, 8 * cell)
 
-    found, is_floor, n_found = *np.zeros((2, len(xyz)), bool), np.zeros(len(cells), np.int64)
+    found, is_floor = np.zeros((2, len(xyz)), bool)
+    n_found = np.zeros(len(cells), np.int64)
     near = np.arange(len(cells))
     # Points that are found hide others beneath the surface that they pull down.
     for turn in count(1):

@@ -29,8 +29,16 @@ class CloudKind:
         return images if self.is_surface else laser
 
 
+@dataclass(frozen=True)
+class MatchingRules:
+    """What matching does to clouds of images."""
+
+    rounded: float = rule(0.7, "m", "physics: images are matched by windows as large, which round edges of roofs")
+
+
 LASER = CloudKind(is_surface=False)
 
 # Sheds and carports of 2 m have rounded edges, which lower the mean over their surface; cars differ by shape.
 # Walls are seen down to their feet, and ground is smooth.
 IMAGES = CloudKind(is_surface=True, lowest_roof=1.2, raised=1.0, foot=0.2)
+MATCHING = MatchingRules()

@@ -9,6 +9,8 @@ from typing import Callable, Optional, Union
 import numpy as np
 
 from ..geometry.grid import plan_box
+from ..geometry.mixing import mixed
+from ..geometry.tin import PLANE_POINTS
 from ..neighborhoods.covariance import Nearest, symmetric_eigenvalues
 from ..neighborhoods.wide_in_plan import LEAST_WIDTH, MOST_ACROSS_LINES, Wide
 from ..packages import spatial, special
@@ -42,9 +44,6 @@ class SurfaceRules:
 SURFACES = SurfaceRules()
 ON_PLANE, LEAST_NEIGHBORS = SURFACES.on_plane, SURFACES.least_neighbors
 ROUGHNESS_OF_SPACING = SURFACES.roughness_of_spacing
-
-# Parameters of a plane: residuals of k points have k - 3 degrees of freedom.
-_PLANE_PARAMETERS = 3
 
 # The roughness of surfaces, for the help of parameters that follow it.
 ROUGHNESS = (
@@ -131,7 +130,8 @@ class SurfaceSample:
         is divided by its expected share of the true deviation, so that a cloud of planes has its true noise.
         """
         count = min(SURFACES.neighbors, len(self))
-        degrees = count - _PLANE_PARAMETERS
+        # Residuals of k points over their plane have k - 3 degrees of freedom.
+        degrees = count - PLANE_POINTS
         if degrees < 1:
             return resolution
         across = np.sqrt(self._variances(count)[:, 2] * count / degrees)
@@ -225,15 +225,10 @@ def _squares(xyz: np.ndarray, spacing: Optional[float]) -> tuple[np.ndarray, np.
     if len(xyz) < 2 * SURFACES.sample or not (high > low).any():
         return everything, everything
     side = SURFACES.square * (point_spacing(xyz) if spacing is None else spacing)
-    square, middle = np.zeros(len(xyz), np.uint64), everything.copy()
-    # Large odd numbers mix the coordinates; the high bits of the products are the well mixed ones.
-    for axis, mixer in enumerate((0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F)):
-        position = (xyz[:, axis] - low[axis]) / side
-        number = np.floor(position)
-        middle &= np.abs(position - number - 0.5) <= SURFACES.middle / 2
-        square += number.astype(np.uint64) * np.uint64(mixer)
-    share = min(1.0, SURFACES.sample / (SURFACES.middle**2 * len(xyz)))
-    chosen = (square >> np.uint64(40)).astype(np.float64) < share * 2**24
+    position = (xyz[:, :2] - low) / side
+    square = np.floor(position)
+    middle = (np.abs(position - square - 0.5) <= SURFACES.middle / 2).all(axis=1)
+    chosen = mixed(square.astype(np.int64)) < min(1.0, SURFACES.sample / (SURFACES.middle**2 * len(xyz)))
     middle &= chosen
     # A cloud on few squares, a mast or a wall, is looked at whole.
     return (chosen, middle) if middle.sum() >= SURFACES.least_of_sample * SURFACES.sample else (everything, everything)

@@ -10,15 +10,13 @@ import numpy as np
 
 from ..geometry.grid import Grid, distinct, find_cells, fixed_grid_over, lattice
 from ..rules import rule
+from ..sampling.density import DENSITY
 
 
 @dataclass(frozen=True)
 class MeasureRules:
     """How clusters are counted in cells."""
 
-    cell: float = rule(
-        1.5, "point spacings", "statistics: cells hold two points, by which areas and points beneath are counted"
-    )
     least_cell: float = rule(0.3, "m", "side of the cells in which areas are counted, at least")
     beneath: float = rule(1.0, "m", "physics: points deeper below a group lie under it and not on it")
 
@@ -32,7 +30,7 @@ _BOX = np.array([2.0, 2.0, 4.0])
 
 def _cell_size(density: float) -> float:
     """Return the side (m) of the cells that area is counted in."""
-    return max(MEASURES.least_cell, MEASURES.cell / np.sqrt(density))
+    return max(MEASURES.least_cell, DENSITY.filled_cell / np.sqrt(density))
 
 
 def plan_areas(xyz: np.ndarray, group: np.ndarray, density: float) -> np.ndarray:
@@ -88,7 +86,7 @@ def penetration(
     of a roof is small, but not zero. Cells hold the same number of points at any density, as larger numbers would raise
     the share.
     """
-    owner, _, beneath = _columns(xyz, group, MEASURES.cell / np.sqrt(density))
+    owner, _, beneath = _columns(xyz, group, DENSITY.filled_cell / np.sqrt(density))
     beneath = np.bincount(owner, beneath > 0) / np.maximum(np.bincount(owner), 1)
     if not _numbered(number_of_returns):
         return beneath

@@ -15,6 +15,7 @@ from ..neighborhoods.covariance import Nearest
 from ..params import PointDensity, PointSource, SurfaceNoise
 from ..rules import rule
 from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.density import DENSITY
 from ..sampling.kinds import IMAGES, LASER
 from ..sampling.surface_noise import LEAST_NEIGHBORS, SURFACES, plane_roughness
 from ..stage import Monitor, Param, stage
@@ -31,16 +32,12 @@ class RoofSurfaceRules:
     low_share: float = rule(0.1, "share", "of low points, from which a surface goes on into the ground: a ramp")
     dense: float = rule(10.0, "points/m²", "with fewer, planes reach farther than half a meter")
     farther: float = rule(0.12, "point spacings", "fitted on thinned clouds of two towns: deviation from these planes")
-    link: float = rule(2.0, "point spacings", "statistics: random points of one object are hardly ever farther apart")
 
 
 @dataclass(frozen=True)
 class ImageSurfaceRules:
     """Planes in clouds of matched images."""
 
-    off_plane: float = rule(
-        0.04, "m", "fitted on seven clouds, of matching, shared by neighbors; 0.035 to 0.045 m cost 0.2 %"
-    )
     cell: float = rule(0.15, "m", "one point of each is taken: as dense as planes need, which bounds time and memory")
 
 
@@ -219,7 +216,8 @@ def _patches_of_images(xyz: np.ndarray, sampling: CloudSampling, planes: _Planes
     # Of cells that hold points at random, with the density's number on the average, these have one.
     kept = -np.expm1(-planes.density * rules.cell**2) / rules.cell**2
     count = max(LEAST_NEIGHBORS, round(np.pi * SURFACES.least_reach**2 * kept))
-    deviation = max(planes.off_plane, rules.off_plane)
+    # Matched points share the error of their window, which is as large as their own.
+    deviation = float(np.sqrt(2)) * planes.off_plane
     return segment_patches(xyz[highest], Nearest(count), deviation, planes.max_slope, monitor)[under]
 
 
@@ -227,7 +225,7 @@ def _clusters(
     xyz: np.ndarray, height: np.ndarray, min_height: float, min_area: float, density: float, monitor: Monitor
 ) -> np.ndarray:
     """Return the cluster (k,), from 1, of points that are of no roof surface; 0 for low and small ones."""
-    reach = SURFACE.link / np.sqrt(density)
+    reach = DENSITY.link / np.sqrt(density)
     component = connect(xyz, reach, reach, monitor)
     return number_large(_high(component, height, min_height), min_area * density)
 

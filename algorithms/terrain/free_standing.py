@@ -19,7 +19,7 @@ class FreeStandingRules:
     """Steps at the edge of a segment that make it a building."""
 
     step: float = rule(1.0, "m", "physics: least height of a step, lower than any eave")
-    steep: float = rule(1.0, "tangent", "physics: least slope of a step, 45°, steeper than soil")
+    steep: float = rule(1.0, "tangent", "physics: least slope of a step, 45°, and of smeared walls; soil is less steep")
     hall_step: float = rule(2.0, "m", "physics: steps around a segment wider than usual buildings; quays are lower")
     free_edge: float = rule(0.9, "share", "of its open edge with steps down; the rest is trees against its walls")
     open_edge: float = rule(0.4, "share", "of its edge, neither hidden behind higher surfaces nor rough")

@@ -8,19 +8,17 @@ import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
 from ..geometry.grid import grid_over
+from ..geometry.tin import PLANE_POINTS
 from ..sampling.height_resolution import LEAST_RESOLUTION
 
 # Side of the squares by which points are ordered, in point spacings: a few hundred points each, which fit a cache.
 _SQUARE_SPACINGS = 10.0
 
-# Points that a plane needs.
-_MIN_POINTS = 3
-
 
 def usable_points(xyz: np.ndarray, classification: np.ndarray) -> np.ndarray:
     """Return the indices of the points that are not noise; refuse those that span no area in plan."""
     usable = np.flatnonzero(~np.isin(classification, NOISE))
-    if len(usable) < _MIN_POINTS:
+    if len(usable) < PLANE_POINTS:
         raise ValueError(
             f"Ground needs at least 3 points that are not noise, got {len(usable)}; choose a larger cloud."
         )
@@ -51,7 +49,7 @@ def last_returns(
     if return_number is None or number_of_returns is None:
         return np.ones(len(usable), bool)
     last = return_number[usable] >= number_of_returns[usable]
-    return last if last.sum() >= _MIN_POINTS else np.ones(len(usable), bool)
+    return last if last.sum() >= PLANE_POINTS else np.ones(len(usable), bool)
 
 
 def with_ground(classification: np.ndarray, ground: np.ndarray) -> np.ndarray:

@@ -11,6 +11,7 @@ from ..geometry.grid import lattice, plan_box, refuse_sparse, turned_in_plan
 from ..geometry.raster_opening import open_surface
 from ..packages import ndimage
 from ..rules import rule
+from ..sampling.kinds import MATCHING
 from ..stage import Monitor
 from ..threads import made_ahead
 from .free_standing import find_free_standing
@@ -27,7 +28,6 @@ class SeedRules:
     pit_steps: int = rule(10, "cells", "up to which each cell is examined; beyond, as many steps")
     most_turned: float = rule(2.5, "ratio", "of the box of a turned cloud to its own; narrow strips have more")
     grids: int = rule(3, "grids of cells", "turned, decide together: on bushes it matters which points share a cell")
-    rim: float = rule(0.8, "m", "physics: depth of the rounded rim of a roof in matched images")
 
 
 SEEDS = SeedRules()
@@ -204,7 +204,7 @@ def _view(cells: _Cells, max_building_size: Optional[float], slope: Optional[np.
     stands_free = lowest.at_points(is_free) & (above >= 0)
     if cells.low_uphill:
         below = lowest.at_points(_rim_levels(surface, is_free)) - cells.xyz[:, 2]
-        stands_free |= (below >= 0) & (below <= SEEDS.rim)
+        stands_free |= (below >= 0) & (below <= MATCHING.rounded)
     return _View(lowest.points(~unknown), says_terrain, stands_free, found, slope)
 
 

@@ -10,15 +10,14 @@ import numpy as np
 from ..cloud.asprs import PointClass
 from ..packages import spatial
 from ..rules import rule
+from ..sampling.density import DENSITY
+from ..sampling.surface_noise import LEAST_NEIGHBORS
 
 
 @dataclass(frozen=True)
 class DeckRules:
     """Objects on the deck of a bridge."""
 
-    near: float = rule(2.0, "point spacings", "statistics: one random position in 300,000 has no point as near in plan")
-    least_near: float = rule(0.5, "m", "the same, at least")
-    neighbors: int = rule(8, "points", "statistics: that the spacing of a deck is measured with")
     hidden: float = rule(2.0, "m", "physics: cars and trucks hide the deck beneath them, to points on both sides")
     below: float = rule(0.3, "m", "objects on a deck have no points of their own this far below it")
     traffic: float = rule(4.5, "m", "physics: the clearance of roads, over vehicles, parapets and signs")
@@ -46,13 +45,13 @@ def on_decks(points: np.ndarray, deck: np.ndarray, least: float = -DECK.below) -
     level : ndarray of shape (k,), float64
         Elevation of the deck there, m.
     """
-    if len(deck) <= DECK.neighbors or not len(points):
+    if len(deck) <= LEAST_NEIGHBORS or not len(points):
         return np.zeros(0, np.int64), np.zeros(0)
     around = (points[:, :2] >= deck[:, :2].min(axis=0) - DECK.hidden).all(axis=1)
     around &= (points[:, :2] <= deck[:, :2].max(axis=0) + DECK.hidden).all(axis=1)
     rows = np.flatnonzero(around)
     tree = spatial.cKDTree(deck[:, :2])
-    near = max(DECK.least_near, DECK.near * _spacing(deck, tree))
+    near = max(DENSITY.least_link, DENSITY.link * _spacing(deck, tree))
     distance, nearest = tree.query(points[rows, :2], distance_upper_bound=max(near, DECK.hidden))
     known = np.isfinite(distance)
     rows, distance, nearest = rows[known], distance[known], nearest[known]
@@ -76,8 +75,8 @@ def on_bridges(xyz: np.ndarray, classification: np.ndarray) -> np.ndarray:
 
 def _spacing(deck: np.ndarray, tree: Any) -> float:
     """Return the point spacing (m) of decks in plan, by how far around its points the neighbors lie."""
-    radius = float(np.median(tree.query(deck[:, :2], k=[DECK.neighbors + 1])[0]))
-    return radius * float(np.sqrt(np.pi / DECK.neighbors))
+    radius = float(np.median(tree.query(deck[:, :2], k=[LEAST_NEIGHBORS + 1])[0]))
+    return radius * float(np.sqrt(np.pi / LEAST_NEIGHBORS))
 
 
 def _has_deck_behind(positions: np.ndarray, nearest: np.ndarray, tree: Any) -> np.ndarray:

@@ -10,14 +10,14 @@ from ..geometry.grid import raster_cells, refuse_sparse
 from ..geometry.raster_opening import open_surface
 from ..packages import ndimage
 from ..rules import rule
+from ..sampling.density import DENSITY
 
 
 @dataclass(frozen=True)
 class SmearedRules:
     """Small objects with smeared walls in matched images."""
 
-    cell: float = rule(1.5, "point spacings", "side of the cells of the surface: two points in each")
-    least_cell: float = rule(0.5, "m", "the same, at least")
+    least_cell: float = rule(0.5, "m", "side of the cells of the surface, at least")
     width: float = rule(
         4.5, "m", "physics: narrower raised surfaces are objects: a shed of 3 m, walls smeared over 0.7 m"
     )
@@ -60,7 +60,7 @@ def on_smeared_objects(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -
     """
     if not is_ground.any():
         return np.zeros(len(xyz), bool)
-    size = max(SMEARED.least_cell, SMEARED.cell * spacing)
+    size = max(SMEARED.least_cell, DENSITY.filled_cell * spacing)
     refuse_sparse(xyz, size)
     radius = max(1, round(SMEARED.width / 2 / size))
     row, column = raster_cells(xyz, size, radius + 1)
