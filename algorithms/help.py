@@ -314,7 +314,7 @@ def rules_table(package: str = __package__) -> str:
     """Return all rules of the methods as a table in Markdown: module, name, value, unit, and why it is so large."""
     rows = ["| module | rule | value | unit | why |", "| --- | --- | ---: | --- | --- |"]
     for name in sorted(name for name in sys.modules if name.startswith(f"{package}.")):
-        for rule, field in rules_of(sys.modules[name]):
-            cells = (f"{field.default:g}", field.metadata["unit"], field.metadata["why"])
+        for rule, value, field in rules_of(sys.modules[name]):
+            cells = (f"{value:g}", field.metadata["unit"], field.metadata["why"])
             rows.append(f"| {name[len(package) + 1 :]} | {rule} | {' | '.join(cells)} |")
     return "\n".join(rows)

@@ -21,11 +21,11 @@ def rule(value: Any, unit: str, why: str) -> Any:
     return dataclasses.field(default=value, metadata={"unit": unit, "why": why})
 
 
-def rules_of(module: Any) -> Iterator[tuple[str, dataclasses.Field]]:
-    """Yield the name and the field of each rule of a module, those of a dataclass that it names in capitals."""
+def rules_of(module: Any) -> Iterator[tuple[str, Any, dataclasses.Field]]:
+    """Yield name, value and field of each rule of a module, those of a dataclass that it names in capitals."""
     for name, value in vars(module).items():
         is_own = dataclasses.is_dataclass(value) and type(value).__module__ == module.__name__
         if is_own and not isinstance(value, type):
             for field in dataclasses.fields(value):
                 if "why" in field.metadata:
-                    yield f"{name}.{field.name}", field
+                    yield f"{name}.{field.name}", getattr(value, field.name), field

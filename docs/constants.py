@@ -101,8 +101,8 @@ def constants_of(module: ModuleType) -> list[Constant]:
     lines = inspect.getsource(module).splitlines()
     file = Path(inspect.getfile(module)).resolve().relative_to(_ROOT).as_posix()
     found = [
-        (_line_of(lines, field.name), name, str(field.default), field.metadata["unit"], field.metadata["why"])
-        for name, field in rules_of(module)
+        (_line_of(lines, field.name), name, str(value), field.metadata["unit"], field.metadata["why"])
+        for name, value, field in rules_of(module)
     ]
     short = module.__name__.rsplit(".", 1)[1]
     return [

@@ -31,6 +31,9 @@ class CompletionRules:
 
 COMPLETION = CompletionRules()
 
+# Largest gap that is closed (m), the bound of the tunable.
+_MOST_GAP = 20.0
+
 
 @stage(
     "Complete buildings",
@@ -57,8 +60,8 @@ def complete_buildings(
             "Gaps in a roof up to this wide are filled where no ground is seen in them (gutters, skylights, ridges).",
             unit="m",
             low=0,
-            high=20,
-            automatic=f"{COMPLETION.gap:g} point spacings, at least {COMPLETION.least_gap:g} m.",
+            high=_MOST_GAP,
+            automatic=f"{COMPLETION.gap:g} point spacings, from {COMPLETION.least_gap:g} to {_MOST_GAP:g} m.",
         ),
     ] = None,
     roof_clearance: Annotated[
@@ -161,7 +164,7 @@ def complete_buildings(
     density = sampling.effective_density if density is None else density
     kind = sampling.kind(source)
     if gap is None:
-        gap = max(COMPLETION.gap / float(np.sqrt(density)), COMPLETION.least_gap)
+        gap = float(np.clip(COMPLETION.gap / np.sqrt(density), COMPLETION.least_gap, _MOST_GAP))
     monitor.resolved(density=density, gap=gap)
     result = np.where(classification == PointClass.BUILDING, np.uint8(PointClass.UNCLASSIFIED), classification)
     is_roof = classification == PointClass.BUILDING

@@ -36,6 +36,7 @@ class SurfaceRules:
     least_reach: float = rule(0.5, "m", "physics: leaves and twigs look smooth over less, roofs are planes over more")
     least_neighbors: int = rule(8, "points", "statistics: five degrees of freedom for a plane")
     most_neighbors: int = rule(100, "points", "half a meter around at 125 points per m²")
+    uneven: float = rule(2.0, "ratio", "of the density around the median point to the cloud's, from which it counts")
     least_roughness: float = rule(0.025, "m", "physics: relief of roof tiles, gravel and gutters")
     roughness_of_spacing: float = rule(0.065, "point spacings", "chosen: surfaces bend between points")
     on_plane: float = rule(2.33, "deviations", "statistics: 98 % of normally distributed points lie as near to a plane")
@@ -205,7 +206,7 @@ def _neighborhood(
 ) -> Union[Nearest, Wide]:
     """Return which points show the plane of a surface, see :meth:`SurfaceSample.neighborhood`."""
     reach = max(SURFACES.least_reach, SURFACES.reach * deviation)
-    expected = np.pi * reach**2 * max(own_density, density)
+    expected = np.pi * reach**2 * (own_density if own_density > SURFACES.uneven * density else density)
     count = min(max(int(np.ceil(min(expected, SURFACES.most_neighbors))), LEAST_NEIGHBORS), n_points)
     return Wide(count) if count < min(MOST_ACROSS_LINES, n_points) and on_lines(count) else Nearest(count)
 
