@@ -61,6 +61,7 @@ lint: $(VENV)/made ## ruff, mypy, spelling, and words that make text hard to rea
 	@$(PYTHON) scripts/words.py
 	@$(VENV)/bin/codespell algorithms provider tests scripts docs *.md *.txt *.toml Makefile
 	@$(PYTHON) scripts/metadata.py --check
+	@$(PYTHON) scripts/measured_tables.py --check
 
 bench: install $(VENV)/made ## time and memory of every stage (a table, and benchmarks/times.json)
 	@scripts/offscreen.sh $(VENV)/bin/python tests/benchmarks/benchmark.py $(if $(SIZES),--sizes $(SIZES)) $(if $(STAGES),--stages $(STAGES))

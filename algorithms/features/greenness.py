@@ -16,7 +16,7 @@ _BINS = 128
 # brown and red materials have -0.1 to 0.05.
 _LEAST_GAP = 0.1
 
-# Share of the leaves over a threshold less that of the roofs: two thirds of the ones and one third of the others.
+# Least difference of the shares of leaves and of roofs over the threshold, such as two thirds and one third.
 _LEAST_PARTED = 1 / 3
 
 # Share of the variance that lies between the two kinds. A single normal distribution has 0.64, cut in the middle.

@@ -42,7 +42,7 @@ class Polygons:
 
 
 def as_polygons(geometries: list) -> Polygons:
-    """Return polygons, each a list of closed rings (k, 2 or 3), as edges; rings are turned as they ought to be."""
+    """Return polygons, each a list of closed rings (k, 2 or 3), as edges, in the right direction."""
     edges = [np.concatenate([_edges(ring, i == 0) for i, ring in enumerate(rings)]) for rings in geometries]
     box = [np.stack([part.min(axis=(0, 1)), part.max(axis=(0, 1))]) for part in edges]
     first = np.cumsum([0, *map(len, edges)])
@@ -114,7 +114,7 @@ def meeting_boxes(first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, np
         return np.zeros(0, np.int64), np.zeros(0, np.int64)
     order = np.argsort(second[:, 0, 0], kind="stable")
     west = second[order, 0, 0]
-    # A box that begins farther west than the widest is wide ends before this one.
+    # A box that begins farther west than the greatest width of all ends before this one begins.
     widest = float((second[:, 1, 0] - second[:, 0, 0]).max())
     low = np.searchsorted(west, first[:, 0, 0] - widest)
     one, step = items(np.searchsorted(west, first[:, 1, 0], side="right") - low)

@@ -105,7 +105,7 @@ def _axis(plan: np.ndarray, height: np.ndarray, radius: float, top: float) -> An
     plan, part = plan[first], part[first]
     near = np.hypot(*(plan[:, None] - plan[None]).transpose(2, 0, 1)) <= radius
     filled = np.column_stack([(near & (part == number)).any(axis=1) for number in range(parts)])
-    # Of many positions in a tower, that with the most around it, and the middle of these.
+    # A tower has many such positions: those with the most points around them count, by their middle.
     best = int((filled.sum(axis=1) + near.mean(axis=1)).argmax())
     shares = [float(half.mean()) for half in np.array_split(filled[best], 2)]
     return plan[near[best]].mean(axis=0) if min(shares) >= _RULES.filled else None

@@ -92,7 +92,7 @@ def strands(xyz: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
 def _best_lines(one: np.ndarray, offset: np.ndarray, count: int, reach: float) -> tuple[np.ndarray, np.ndarray]:
     """Return how many neighbors (n,) are on the best line through each point, and its direction (n, 3), 1 m in plan."""
     distance = np.hypot(offset[:, 0], offset[:, 1])
-    # Neighbors above and below all lines are on none and beside none.
+    # Neighbors above or below all lines count neither as on a line nor as beside one.
     near = np.abs(offset[:, 2]) <= _RULES.steepest * distance + 1.5 * RULES.aside
     one, offset, distance = one[near], offset[near], distance[near]
     far = np.flatnonzero((distance >= reach / 3) & (np.abs(offset[:, 2]) <= _RULES.steepest * distance))
@@ -109,7 +109,7 @@ def _best_lines(one: np.ndarray, offset: np.ndarray, count: int, reach: float) -
         aside, off_height, _ = _off_line(offset[start[rows][which] + item], line[which])
         on_line = np.bincount(which, (aside <= RULES.aside) & (off_height <= RULES.aside), len(rows))
         in_gap = (aside > 1.5 * RULES.aside) & (aside <= 2.5 * RULES.aside) & (off_height <= 1.5 * RULES.aside)
-        # Parallel wires are farther away, surfaces go on.
+        # Parallel wires are farther away; surfaces have points in the gap.
         beside = np.bincount(which, in_gap, len(rows))
         score = np.where(beside <= on_line / 2, on_line - beside, 0).astype(np.int64)
         order = np.lexsort((-score, rows))

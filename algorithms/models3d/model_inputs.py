@@ -1,4 +1,4 @@
-"""What models of buildings rest on: classified points, footprints with an area, and how far points lie off planes."""
+"""Input of models of buildings: classified points, footprints with an area, and how far points lie off planes."""
 
 from __future__ import annotations
 

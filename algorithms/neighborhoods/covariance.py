@@ -20,10 +20,10 @@ from .nearest_blocks import PAIRS, Shapes, nearest_shapes, shapes_within
 # Neighbors that a thread works on between two reports: where they are gathered, 56 bytes each, they take 11 MB.
 _CHUNK_NEIGHBORS = 200_000
 
-# Points that a thread works on between two reports where radii hold who knows how many neighbors.
+# Points that a thread works on between two reports where radii hold an unknown number of neighbors.
 _CHUNK_POINTS = 20_000
 
-# Fewer points than this have no covariance worth the name.
+# Fewer points than this lie on a line or at one position: their covariance describes no surface.
 MIN_NEIGHBORS = 3
 
 # A neighborhood larger than this on average is a radius chosen by mistake: it would run for days.
@@ -34,7 +34,7 @@ class Neighborhood(Protocol):
     """Which points describe a point: :class:`Nearest`, :class:`Within`, the best number, or as many as are wide."""
 
     def check(self, xyz: np.ndarray, tree: Any) -> None:
-        """Raise ValueError when the cloud makes no sense with it."""
+        """Raise ValueError when the neighborhood does not suit the cloud."""
 
     def rows_per_chunk(self, n_points: int) -> int:
         """Return how many points are worked on at once."""
@@ -107,7 +107,7 @@ class Within:
     radius: float
 
     def check(self, xyz: np.ndarray, tree: Any) -> None:
-        """Raise ValueError when the radius holds far more points than a local feature can mean."""
+        """Raise ValueError when the radius holds far more points than are local."""
         sample = xyz[:: max(1, len(xyz) // 100)]
         mean = tree.query_ball_point(sample, self.radius, return_length=True).mean()
         if mean > _MAX_MEAN_NEIGHBORS:

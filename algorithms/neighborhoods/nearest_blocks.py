@@ -22,7 +22,7 @@ PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 # Candidates beyond those of a block on a plane: with three tenths more, 95 % of the points find all theirs among them.
 _SPARE = 1.3
 
-# Squared distances in one array (3 MB): as few as calls that cost little allow, for the sake of the caches.
+# Squared distances in one array (3 MB): chosen for the caches and for the cost of a call.
 _BATCH = 400_000
 
 # A covariance about the middle of a block loses the digits by which the spread is smaller than the second moment there.

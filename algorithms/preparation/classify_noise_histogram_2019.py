@@ -16,7 +16,7 @@ from .height_histograms import Histogram, own_histogram, pooled_histogram, with_
 # Points of a cell on average: enough that the highest and lowest meter of a scene hold some, whatever the density.
 _POINTS_PER_CELL = 4000
 
-# Least height of a bin, m, and in point spacings: the height of a storey's third, in which a roof has many points.
+# Least height of a bin, m, and in point spacings: a third of a storey, in which a roof has many points.
 _MIN_BIN_HEIGHT = 1.0
 _BIN_SPACINGS = 2.0
 

@@ -89,8 +89,8 @@ def filter_points(
 ):
     """Keep the points that are of some classes, between two heights above the ground, and in a range of any dimension.
 
-    A limit that is not set excludes nothing; points must be within all limits that are set. Limits belong to what they
-    include.
+    A limit that is not set excludes nothing; points must be within all limits that are set. Points at a limit
+    are kept.
 
     Parameters
     ----------

@@ -103,7 +103,7 @@ def _leads_on(raised: np.ndarray, beside: np.ndarray, surface: np.ndarray, decks
 
     cells = points(raised)
     part = connect(cells, 1.5 * decks.cell, DECK.same_level, Monitor())
-    # Ground is as near in height as in plan.
+    # Heights are stretched, so that the largest step of a road counts as much as the reach in plan.
     stretch = np.array([1.0, 1.0, decks.reach / DECK.same_level])
     distance, _ = spatial.cKDTree(points(beside) * stretch).query(cells * stretch, distance_upper_bound=decks.reach)
     touches = np.isfinite(distance)

@@ -49,7 +49,7 @@ class HeightField:
 
 
 def see_from_above(scene: Scene, unevenness: float, rng: np.random.Generator) -> HeightField:
-    """Return the surface of a scene, crowns as closed lumpy bodies, on ground as uneven (m) as is said."""
+    """Return the surface of a scene, crowns as closed lumpy bodies, on ground of the given unevenness (m)."""
     n = round(scene.size / CELL)
     middle = (np.arange(n) + 0.5) * CELL
     x, y = np.meshgrid(middle, middle)
@@ -67,9 +67,9 @@ def see_from_above(scene: Scene, unevenness: float, rng: np.random.Generator) ->
 
 
 def smooth_noise(shape: tuple[int, int], wavelength: float, rng: np.random.Generator) -> np.ndarray:
-    """Return a random field (rows, columns) of standard deviation 1 whose waves are about so long (m)."""
+    """Return a random field (rows, columns) of standard deviation 1 with waves of about the given length (m)."""
     sigma = wavelength / CELL / 4
-    # Coarse cells, drawn out: as smooth, and quick for long waves.
+    # Made on coarse cells and interpolated: as smooth, and faster for long waves.
     step = max(1, int(sigma))
     coarse = rng.standard_normal((shape[0] // step + 8, shape[1] // step + 8))
     smooth = ndimage.gaussian_filter(coarse, sigma / step)
@@ -107,7 +107,7 @@ def _add_crown(field: HeightField, crown: np.ndarray, lumps: np.ndarray) -> None
     x0, y0, z0, radius, half, _, number = crown
     reach = 1.2 * radius
     where, x, y = _window(field, np.array([x0 - reach, y0 - reach]), np.array([x0 + reach, y0 + reach]))
-    # Lumps are as large as the crown bears.
+    # Small crowns have small lumps.
     lump = lumps[where] * min(1.0, radius / 1.5)
     inside = 1 - np.hypot(x - x0, y - y0) ** 2 / (radius + 0.4 * lump) ** 2
     z = z0 + half * np.sqrt(np.maximum(inside, 0.0)) + lump

@@ -1,4 +1,4 @@
-"""A made-up village: streets with large plots, a house on most, a shed behind it, and what grows and parks beside."""
+"""A made-up village: streets with large plots, a house on most, a shed behind it, plants and parked cars."""
 
 from __future__ import annotations
 

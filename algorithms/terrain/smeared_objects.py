@@ -54,8 +54,8 @@ def on_smeared_objects(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -
     Notes
     -----
     The lowest ground points of cells are opened with a window. Planes of any slope and plateaus wider than the window
-    stay as they are. Sheds go, and so does the ring of points that have climbed the walls of a house, since no window
-    is centered on its roof. Ridges and dikes narrower than the window rise above the opened surface as well: objects
+    stay as they are. Sheds are removed, and so is the ring of ground points on the smeared walls of a house, since no
+    window is centered on its roof. Ridges and dikes narrower than the window rise above the opened surface as well: objects
     longer than a shed stay, but for such rings.
     """
     if not is_ground.any():
@@ -81,7 +81,7 @@ def on_smeared_objects(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -
 def _of_objects(above: np.ndarray, is_other: np.ndarray, size: float) -> np.ndarray:
     """Return which cells (rows, columns) of those ``above`` the surface are of small objects or beside large ones.
 
-    Large ones show by cells ``is_other`` (rows, columns) with points but without ground.
+    Cells of large ones are ``is_other`` (rows, columns): they have points, and no ground.
     """
     # Parts are joined over a cell, so that a crest is one where noise interrupts it.
     part, count = ndimage.label(ndimage.binary_dilation(above, _EIGHT), _EIGHT)

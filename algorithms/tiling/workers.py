@@ -1,4 +1,4 @@
-"""Workers: processes of this machine, or those of a Dask cluster that is there already."""
+"""Workers: processes of this machine, or those of a running Dask cluster."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from ..packages import ndimage
 # Side (m) of the cells in which a roof is compared with walls.
 _CELL = 0.25
 
-# Side (m) of the largest cells, which are taken where there would be more than the number that follows.
+# Side (m) of the largest cells, which are taken where smaller ones would be more than the most of one building.
 _LARGEST_CELL = 1.0
 
 # Most cells of one building.
