@@ -115,9 +115,18 @@ _LIST = re.compile("<(/?)[ou]l>(?:</li>)?")
 
 
 def with_picture(text: str, algorithm: str, folder: str, translate: Callable[[str], str] = str) -> str:
-    """Return a help text with the picture of an algorithm (id), where it has one, below the summary.
+    """Return a help text with the picture of an algorithm, where it has one, below the summary.
 
-    ``folder`` is the URL of the folder with the pictures.
+    Parameters
+    ----------
+    text : str
+        HTML, the summary in its first line.
+    algorithm : str
+        Id of the algorithm.
+    folder : str
+        URL of the folder with the pictures.
+    translate : callable
+        Gives the caption in the language of the user.
     """
     if algorithm not in captions():
         return text

@@ -238,7 +238,7 @@ class Simplification:
 
     def run(self, monitor: Monitor) -> np.ndarray:
         """Return the cells (cells,), bool, of the cheapest outline found."""
-        # The descent can end at a chord over a corner, so lines that cost more than one are also left out from the start.
+        # The descent can end at a chord over a corner: lines that cost more than one are also left out from the start.
         doubtful = np.flatnonzero(self.cells.line_costs(self.inside) > _CORNER_COST + _SKEW_COST)
         self._descend(self.is_open, monitor.part(0.0, 0.5))
         for done, line in enumerate(doubtful.tolist()):
