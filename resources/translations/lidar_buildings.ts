@@ -3364,7 +3364,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>A limit that is not set excludes nothing; points must be within all limits that are set. Limits belong to what they include.</source>
+        <source>A limit that is not set excludes nothing; points must be within all limits that are set. Points at a limit are kept.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -4552,7 +4552,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Counted three ways. Per point; per cell, by the topmost point, which is blind to walls (some references call them building, some don't); per object, where a building is found when at least half of it is. A layer shows which buildings were found, missed and invented.</source>
+        <source>Counted three ways. Per point; per cell, by the topmost point, which leaves walls out (some references call them building, some don't); per object, where a building is found when at least half of it is. A layer shows which buildings were found, missed and invented.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5528,7 +5528,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>In each window the normals of the points are plotted on the Gaussian sphere. The great circle along which they fill most of it gives the direction of an axis. The points of this circle are projected along the axis, and each votes along its normal, to both sides, for the center of a circle of every radius. The best circle is fitted by least squares, grown along its axis, and kept if its points look like a cylinder. They must be close to it, spread over enough of its circumference, without a bend, with little inside, and end in the air next to the visible arc, where a kerb goes on. Of cylinders in each other the one with most points is kept. Pieces of one pipe that a flange or the shadow of another object parts are put together, if one cylinder lies as close to the points of each as the cylinder of its own.</source>
+        <source>In each window the normals of the points are plotted on the Gaussian sphere. The great circle along which they fill most of it gives the direction of an axis. The points of this circle are projected along the axis, and each votes along its normal, to both sides, for the center of a circle of every radius. The best circle is fitted by least squares, grown along its axis, and kept if its points look like a cylinder. They must be close to it, spread over enough of its circumference, without a bend, with little inside, and end next to the visible arc, where the surface of a kerb goes on. Of cylinders in each other the one with most points is kept. Pieces of one pipe that a flange or the shadow of another object parts are put together, if one cylinder lies as close to the points of each as the cylinder of its own.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6824,7 +6824,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Planes grow over the points of each footprint. The lines in which they intersect, and those where one ends above another, divide the footprint into cells; each cell takes a plane, all together so that points and borders cost least. A building whose planes don't explain it gets the next simpler level, and says why.</source>
+        <source>Planes grow over the points of each footprint. The lines in which they intersect, and those where one ends above another, divide the footprint into cells; each cell takes a plane, all together so that points and borders cost least. A building whose planes don't explain it gets the next simpler level, with the reason.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
