@@ -1,4 +1,4 @@
-"""Freed memory, returned to the system."""
+"""Freed memory: shared by threads, and returned to the system."""
 
 from __future__ import annotations
 
@@ -6,10 +6,24 @@ import ctypes
 import sys
 from typing import Callable, Optional
 
+# The parameter of GNU's C library that is the most arenas (heaps) of a process, by its number in malloc.h.
+_MOST_ARENAS = -8
 
-def _trim() -> Optional[Callable[[int], int]]:
-    """Return the C library's function that returns freed memory; None where it has none."""
-    return getattr(ctypes.CDLL(None), "malloc_trim", None) if sys.platform.startswith("linux") else None
+
+def _of_libc(name: str) -> Optional[Callable[..., int]]:
+    """Return a function of the C library; None where it has none of that name."""
+    return getattr(ctypes.CDLL(None), name, None) if sys.platform.startswith("linux") else None
+
+
+def share_freed() -> None:
+    """Let threads take memory that others have freed, where the C library would give each an arena of its own.
+
+    An arena keeps what its thread has freed, so that each holds as much as its thread ever needed. Arrays are large and
+    few: threads hardly wait for each other. Arenas that there are already stay.
+    """
+    set_option = _of_libc("mallopt")
+    if set_option is not None:
+        set_option(_MOST_ARENAS, 1)
 
 
 def return_freed() -> None:
@@ -18,6 +32,6 @@ def return_freed() -> None:
     Memory that one stage has freed lies in pieces between memory in use. The large arrays of the next one don't fit
     into them, so that without this the process holds both.
     """
-    trim = _trim()
+    trim = _of_libc("malloc_trim")
     if trim is not None:
         trim(0)

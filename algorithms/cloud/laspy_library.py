@@ -10,6 +10,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any, cast
 
+from ..memory import share_freed
+
 # What laspy imports where it finds it, and is not needed here: pyproj, whose wheels bring another PROJ into QGIS, and
 # requests, which takes longer to import than laspy itself.
 _UNUSED = ("pyproj", "requests")
@@ -17,13 +19,14 @@ _UNUSED = ("pyproj", "requests")
 
 @cache
 def need_laspy() -> Any:
-    """Return laspy with its modules.
+    """Return laspy with its modules. The threads that decompress are a run's first: memory is shared from then on.
 
     Raises
     ------
     ValueError
         If it is not installed.
     """
+    share_freed()
     try:
         with _without(*_UNUSED):
             importlib.import_module("laspy.vlrs.known")

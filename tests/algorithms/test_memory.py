@@ -1,5 +1,7 @@
 """Freed memory goes back to the system."""
 
+import platform
+import subprocess
 import sys
 from pathlib import Path
 
@@ -28,3 +30,41 @@ def test_what_arrays_have_left_goes_back_to_the_system():
 def test_systems_without_such_a_function_do_without(monkeypatch):
     monkeypatch.setattr(memory.sys, "platform", "win32")
     memory.return_freed()
+    memory.share_freed()
+
+
+# Eight threads, one after the other, fill 16 MB with arrays too small to have pages of their own, and keep the last.
+TURNS = """
+import sys, threading
+sys.path.insert(0, {root!r})
+import conftest
+import numpy as np
+from lidar_buildings.algorithms import memory
+from lidar_buildings.tests.algorithms.test_memory import held
+{first}
+turn, ended, kept = [threading.Event() for _ in range(9)], threading.Event(), []
+turn[0].set()
+def work(number):
+    turn[number].wait()
+    arrays = [np.ones(10_000) for _ in range(200)]
+    kept.append(arrays[-1])
+    del arrays
+    turn[number + 1].set()
+    ended.wait()
+before = held()
+threads = [threading.Thread(target=work, args=(number,)) for number in range(8)]
+[thread.start() for thread in threads]
+turn[8].wait()
+print(held() - before)
+ended.set()
+"""
+
+
+@pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="other libraries have no arenas")
+def test_threads_share_what_others_have_freed():
+    taken = []
+    for first in ("", "memory.share_freed()"):
+        script = TURNS.format(root=str(Path(__file__).parents[2]), first=first)
+        done = subprocess.run([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True, check=True)
+        taken.append(int(done.stdout))
+    assert taken[1] < taken[0] / 3
