@@ -54,6 +54,8 @@ def cell_features(points: CellPoints, cells: SpaceCells, chosen: np.ndarray, aro
     around : sparse matrix
         Which cells touch each chosen one.
     """
+    # First, as it takes the most memory for the points.
+    columns = _columns(points, cells, chosen)
     own, block = cells.moments[chosen], around @ cells.moments
     count = own[:, 0]
     features = [_shapes(block), _shapes(own), np.log(block[:, :1]), np.log(own[:, :1])]
@@ -69,12 +71,7 @@ def cell_features(points: CellPoints, cells: SpaceCells, chosen: np.ndarray, aro
         mean, squares = around @ strength / block[:, 0], around @ square / block[:, 0]
         spread = np.sqrt(np.maximum(squares - mean**2, 0))
         features.append(np.column_stack([strength[chosen] / count, mean, spread]))
-    upward = np.argsort(points.xyz[:, 2], kind="stable")
-    first = np.empty(len(cells.count), np.int64)
-    first[cells.cell] = np.arange(len(cells.cell))
-    level = cells.centers[chosen, 2]
-    features.append(_columns(points, _COLUMN * cells.size, upward, first[chosen], level))
-    return np.column_stack(features)
+    return np.column_stack([*features, columns])
 
 
 def _shapes(moments: np.ndarray) -> np.ndarray:
@@ -92,19 +89,16 @@ def _shapes(moments: np.ndarray) -> np.ndarray:
     return np.column_stack([*shares, *measures, np.sqrt(total), np.sqrt(upright)])
 
 
-def _columns(points: CellPoints, side: float, upward: np.ndarray, rows: np.ndarray, level: np.ndarray) -> np.ndarray:
-    """Return the columns (k, 5) in plan, of a ``side`` (m), that cells are part of.
+def _columns(points: CellPoints, cells: SpaceCells, chosen: np.ndarray) -> np.ndarray:
+    """Return the columns (k, 5) in plan that the ``chosen`` cells (k,) are part of.
 
-    Share of ground, height of the topmost point, distances of the cell's ``level`` (k,) from the topmost and the lowest
-    point, and spread of elevations, m.
-
-    Parameters
-    ----------
-    upward : ndarray of shape (n,), int
-        Rows of all points, the lowest first.
-    rows : ndarray of shape (k,), int
-        A point of each cell.
+    Share of ground, height of the topmost point, distances of the middle of the cell's points from the topmost and the
+    lowest point, and spread of elevations, m.
     """
+    side, upward = _COLUMN * cells.size, np.argsort(points.xyz[:, 2], kind="stable")
+    first = np.empty(len(cells.count), np.int64)
+    first[cells.cell] = np.arange(len(cells.cell))
+    rows, level = first[chosen], cells.centers[chosen, 2]
     east, north = (lattice(points.xyz[:, axis], side) for axis in (0, 1))
     east, north = east - east.min(), north - north.min()
     values, column = distinct(north * (int(east.max()) + 1) + east)
