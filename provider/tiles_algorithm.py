@@ -29,10 +29,12 @@ from ..algorithms.report.page import Row, with_coordinates
 from ..algorithms.report.run_facts import StepFacts
 from ..algorithms.stage import FileContent, LayerFeatures, Raster
 from ..algorithms.tiling.mosaics import RasterMosaic
-from ..algorithms.tiling.run_in_tiles import SHOWN, TilesOutcome, run_in_tiles
+from ..algorithms.tiling.run_in_tiles import run_in_tiles
 from ..algorithms.tiling.settings import SETTINGS
 from ..algorithms.tiling.survey import Survey, crs_of_survey, files_of_survey
+from ..algorithms.tiling.tile_writing import SHOWN
 from ..algorithms.tiling.tiled_pipelines import TiledPipeline, tiled_pipeline_help
+from ..algorithms.tiling.tiled_run import TilesOutcome
 from ..algorithms.tiling.tiled_steps import files_of
 from ..algorithms.tiling.workers import Workers
 from .algorithm import CheckedAlgorithm

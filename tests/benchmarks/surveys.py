@@ -42,8 +42,9 @@ from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud  # no
 from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
 from lidar_buildings.algorithms.run import run_pipeline  # noqa: E402
 from lidar_buildings.algorithms.stage import Monitor  # noqa: E402
+from lidar_buildings.algorithms.tiling.block_plan import MOST_POINTS  # noqa: E402
 from lidar_buildings.algorithms.tiling.cutting import cut_into_tiles  # noqa: E402
-from lidar_buildings.algorithms.tiling.run_in_tiles import _MOST_POINTS, run_in_tiles  # noqa: E402
+from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles  # noqa: E402
 from lidar_buildings.algorithms.tiling.survey import open_survey  # noqa: E402
 from lidar_buildings.algorithms.tiling.tiled_steps import of_survey  # noqa: E402
 from lidar_buildings.algorithms.tiling.workers import Workers  # noqa: E402
@@ -253,7 +254,7 @@ def cost(n_tiles: int, seed: int = 0) -> list[Table]:
     facts = json.loads((FOLDER / "survey_tries.json").read_text())
     tries = np.array(facts["tries"])
     halo = tries[:, 0].min()
-    side = float(np.floor((np.sqrt(_MOST_POINTS / _DENSITY) - 2 * halo) / 50.0) * 50.0)
+    side = float(np.floor((np.sqrt(MOST_POINTS / _DENSITY) - 2 * halo) / 50.0) * 50.0)
     window = side + 2 * halo
     in_window, in_block, in_tile = (length**2 * _DENSITY for length in (window, side, 1000.0))
     # Every point of a window costs what those of a measured block did, windows that were worked on again among them.

@@ -1,0 +1,55 @@
+"""Which blocks a survey is worked on in: how large they are, and where."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .blocks import Block
+from .survey import Survey
+
+# A window has at most about this many points, so that a worker needs 1.8 GB (340 bytes per point). Two of them, one
+# with a window that was enlarged, need less than 4 GB with the main process.
+MOST_POINTS = 5_300_000
+
+# Sides of blocks are multiples of the step from the least to the greatest, m; smaller ones would work mostly on what
+# lies around them.
+_SIDE_STEP, _LEAST_SIDE, _MOST_SIDE = 50.0, 100.0, 1600.0
+
+# In dense clouds sides are multiples of a smaller step (m), and their least
+# value a multiple of the distance around a block: the block is then a seventh of its window.
+_DENSE_STEP, _LEAST_HALOS = 10.0, 1.25
+
+# Largest number of blocks, and least mean number of points of a block in a survey of more: otherwise a single point far
+# away makes the extent too large.
+_MANY_BLOCKS, _POINTS_PER_BLOCK = 10_000, 100
+
+
+def side_of_blocks(density: float, halo: float) -> float:
+    """Return the largest side of a block, m, whose window has room for its points."""
+    fits = np.sqrt(MOST_POINTS / density) - 2 * halo
+    if fits >= _LEAST_SIDE:
+        return float(min(np.floor(fits / _SIDE_STEP) * _SIDE_STEP, _MOST_SIDE))
+    least = max(np.ceil(_LEAST_HALOS * halo / _DENSE_STEP), 1.0) * _DENSE_STEP
+    return float(min(max(np.floor(fits / _DENSE_STEP) * _DENSE_STEP, least), _LEAST_SIDE))
+
+
+def blocks_of(survey: Survey, side: float) -> list[Block]:
+    """Return the blocks that files of the survey reach into, from south-west to north-east.
+
+    Raises
+    ------
+    ValueError
+        If there are many more than the points can fill.
+    """
+    lowest, highest = (np.floor(survey.boxes[:, end] / side) for end in (0, 1))
+    count = (highest - lowest + 1).prod(axis=1)
+    if count.sum() > max(_MANY_BLOCKS, len(survey) / _POINTS_PER_BLOCK):
+        file = survey.sources[int(np.argmax(count))].path.name
+        raise ValueError(
+            f"The {len(survey):,} points are spread over {count.sum():,.0f} blocks of {side:g} m, most of them in "
+            f"{file}; remove points that lie far off in plan."
+        )
+    found = set()
+    for low, high in zip(lowest.astype(int), highest.astype(int)):
+        found |= {(column, row) for row in range(low[1], high[1] + 1) for column in range(low[0], high[0] + 1)}
+    return [Block(column, row, side) for column, row in sorted(found, key=lambda position: position[::-1])]
