@@ -174,9 +174,7 @@ class Subdivision:
 
     def area(self, loop: list[int]) -> float:
         """Return the area (m²) within a ring of vertices."""
-        x0, y0 = self.vertices[loop[0]]
-        positions = [(self.vertices[v][0] - x0, self.vertices[v][1] - y0) for v in loop]
-        return 0.5 * sum(xa * yb - xb * ya for (xa, ya), (xb, yb) in zip(positions, [*positions[1:], positions[0]]))
+        return loop_area([self.vertices[v] for v in loop])
 
     def centers(self) -> np.ndarray:
         """Return the means of the vertices (cells, 2), m, which lie inside."""
@@ -204,3 +202,10 @@ def _crossings(side: list[int]) -> list[tuple[int, int]]:
             if side[j] and before * side[j] < 0:
                 found.append((i, i))
     return found
+
+
+def loop_area(positions: list[tuple[float, float]]) -> float:
+    """Return the area (m²) within a ring of few positions, negative when it runs clockwise."""
+    x0, y0 = positions[0]
+    offset = [(x - x0, y - y0) for x, y in positions]
+    return 0.5 * sum(xa * yb - xb * ya for (xa, ya), (xb, yb) in zip(offset, [*offset[1:], offset[0]]))

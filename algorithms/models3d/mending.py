@@ -11,8 +11,10 @@ from ..geometry.groups import components
 from .heights_around import RADIUS, HeightsAround
 from .roof_partition import FARTHEST, Partition
 from .roof_planes import planes_through
+from .solid_faces import build_solid
 from .solid_faults import faults_of
-from .solids import DECIMALS, ROOF, Levels, Solid, build_solid, turns_around
+from .solid_levels import Levels, turns_around
+from .solids import DECIMALS, ROOF, Solid
 
 # Rounds in which positions where too many walls meet are cleared, in which small parts and high cells get another
 # plane, and in which those with faults do.

@@ -1,0 +1,278 @@
+"""Closed solids of divided footprints: roofs on top, walls where heights differ, one level ground."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..geometry.points_in_polygons import are_within
+from ..geometry.rings import signed_area
+from .solid_levels import BASE, Levels, Position
+from .solids import GROUND, ROOF, WALL, Ring, Solid, edges_of, groups_of
+
+# A vertex with two edges that is off the line of their other ends by less than this (m) is superfluous.
+_SUPERFLUOUS = 0.0005
+
+# Walls whose corners are off their common plane by less than this (m) are one face.
+_STRAIGHT = 0.0005
+
+
+def build_solid(levels: Levels) -> tuple[Solid, list[list[int]]]:
+    """Return the solid between a level ground and the planes of cells, and the cells beside each of its faces.
+
+    Parameters
+    ----------
+    levels : Levels
+        The heights; cells get vertices where roofs cross.
+
+    Raises
+    ------
+    ValueError
+        If more than two faces would meet in an edge; see :func:`Levels.crowded`.
+    """
+    levels.part_crossing_roofs()
+    return _Builder(levels).solid()
+
+
+@dataclass(frozen=True)
+class _Wall:
+    """A wall: its ring, the vertices in plan from which and to which it runs, and the cells beside it."""
+
+    ring: Ring
+    start: int
+    end: int
+    cells: list[int]
+
+
+# Kind, plane, rings of positions, and cells of a face.
+_Built = tuple[str, int, list[Ring], list[int]]
+
+
+class _Builder:
+    """Makes the faces of a solid."""
+
+    def __init__(self, levels: Levels) -> None:
+        self.levels, self.cells, self.label = levels, levels.cells, levels.label
+        self.at: dict[int, list[int]] = defaultdict(list)
+        for number, (vertex, _) in {n: key for key, n in levels.number.items()}.items():
+            self.at[vertex].append(number)
+        for numbers in self.at.values():
+            numbers.sort(key=lambda n: levels.positions[n][2])
+        self.plan = np.array(levels.positions)[:, :2]
+
+    def solid(self) -> tuple[Solid, list[list[int]]]:
+        """Return the solid without superfluous vertices, and the cells beside each face."""
+        faces: list[_Built] = []
+        part = self._parts()
+        cells_of: dict[int, list[int]] = defaultdict(list)
+        for cell, root in part.items():
+            cells_of[root].append(cell)
+        for (root, plane), edges in self._roof_edges(part).items():
+            for rings in self._polygons(_rings(edges), upward=True):
+                faces.append((ROOF, plane, rings, cells_of[root]))
+        faces += [(WALL, -1, [ring], cells) for ring, cells in self._walls()]
+        for rings in self._polygons(_rings(self._ground_edges()), upward=False):
+            faces.append((GROUND, -1, rings, []))
+        return _compact(self.levels.positions, faces), [cells for *_, cells in faces]
+
+    def _roof_edges(self, part: dict[int, int]) -> dict[tuple[int, int], list[tuple[int, int]]]:
+        """Return the edges around each connected part of a plane, by (part, plane)."""
+        edges: dict[tuple[int, int], list[tuple[int, int]]] = defaultdict(list)
+        number = self.levels.number
+        for (u, v), cell in self.cells.cell_of.items():
+            plane = self.label[cell]
+            if plane >= 0 and self.levels.plane_beyond(u, v) != plane:
+                edges[part[cell], plane].append((number[u, plane], number[v, plane]))
+        return edges
+
+    def _parts(self) -> dict[int, int]:
+        """Return which connected part of equal planes each cell is in."""
+        pairs = []
+        for (u, v), cell in self.cells.cell_of.items():
+            if self.label[cell] >= 0 and self.levels.plane_beyond(u, v) == self.label[cell]:
+                pairs.append((cell, self.cells.cell_of[v, u]))
+        group = groups_of(pairs, len(self.cells))
+        return {cell: group[cell] for cell in range(len(group)) if self.label[cell] >= 0}
+
+    def _ground_edges(self) -> list[tuple[int, int]]:
+        number = self.levels.number
+        return [
+            (number[v, BASE], number[u, BASE])
+            for (u, v), cell in self.cells.cell_of.items()
+            if self.label[cell] >= 0 and self.levels.plane_beyond(u, v) == BASE
+        ]
+
+    def _walls(self) -> list[tuple[Ring, list[int]]]:
+        """Return the walls, those in line with each other as one, and the cells beside each."""
+        walls = []
+        for (u, v), cell in self.cells.cell_of.items():
+            plane = self.label[cell]
+            beyond = self.levels.plane_beyond(u, v)
+            if plane >= 0 and beyond != plane:
+                ring = self._wall(u, v, plane, beyond)
+                if ring:
+                    cells = [cell] if beyond == BASE else [cell, self.cells.cell_of[v, u]]
+                    walls.append(_Wall(ring, u, v, cells))
+        return self._joined(walls)
+
+    def _wall(self, u: int, v: int, plane: int, beyond: int) -> Ring:
+        """Return the wall that is seen from the right of an edge, empty where what lies there is as high."""
+        number, positions = self.levels.number, self.levels.positions
+        low_u, low_v, high_u, high_v = number[u, beyond], number[v, beyond], number[u, plane], number[v, plane]
+        if positions[low_u][2] > positions[high_u][2] or positions[low_v][2] > positions[high_v][2]:
+            return []
+        if low_u == high_u and low_v == high_v:
+            return []
+        up, down = self._between(v, low_v, high_v), self._between(u, low_u, high_u)[::-1]
+        return [*up, *down]
+
+    def _between(self, vertex: int, low: int, high: int) -> list[int]:
+        """Return the positions at a vertex from one up to another one."""
+        numbers = self.at[vertex]
+        return numbers[numbers.index(low) : numbers.index(high) + 1]
+
+    def _joined(self, walls: list[_Wall]) -> list[tuple[Ring, list[int]]]:
+        """Return walls with neighbors in one line joined, and the cells beside each."""
+        owner = {edge: i for i, wall in enumerate(walls) for edge in zip(wall.ring, [*wall.ring[1:], wall.ring[0]])}
+        pairs = []
+        for (a, b), i in owner.items():
+            j = owner.get((b, a))
+            if j is not None and j > i and self._is_upright(a, b) and self._are_in_line(walls[i], walls[j]):
+                pairs.append((i, j))
+        members: dict[int, list[int]] = defaultdict(list)
+        for i, group in enumerate(groups_of(pairs, len(walls))):
+            members[group].append(i)
+        joined: list[tuple[Ring, list[int]]] = []
+        for numbers in members.values():
+            of_group = [walls[i] for i in numbers]
+            rings = self._around(of_group) if len(numbers) > 1 and self._is_straight(of_group) else []
+            # A joint wall around an opening, or one that touches itself, stays in its parts.
+            if len(rings) == 1 and len(set(rings[0])) == len(rings[0]):
+                joined.append((rings[0], [cell for wall in of_group for cell in wall.cells]))
+            else:
+                joined += [(wall.ring, wall.cells) for wall in of_group]
+        return joined
+
+    @staticmethod
+    def _around(walls: list[_Wall]) -> list[Ring]:
+        """Return the rings around walls."""
+        edges = {edge for wall in walls for edge in zip(wall.ring, [*wall.ring[1:], wall.ring[0]])}
+        return _rings([(a, b) for a, b in edges if (b, a) not in edges])
+
+    def _are_in_line(self, one: _Wall, other: _Wall) -> bool:
+        """Return whether two walls face the same way in one line."""
+        (ax, ay), (bx, by) = (self._direction(wall) for wall in (one, other))
+        return ax * bx + ay * by > 0 and self._is_straight([one, other])
+
+    def _direction(self, wall: _Wall) -> tuple[float, float]:
+        (x0, y0), (x1, y1) = self.levels.plan[wall.start], self.levels.plan[wall.end]
+        return x1 - x0, y1 - y0
+
+    def _is_straight(self, walls: list[_Wall]) -> bool:
+        """Return whether the ends of walls lie in one line."""
+        xy = [self.levels.plan[end] for wall in walls for end in (wall.start, wall.end)]
+        start = max(xy, key=lambda end: math.dist(end, xy[0]))
+        x0, y0 = start
+        x1, y1 = max(xy, key=lambda end: math.dist(end, start))
+        x, y = x1 - x0, y1 - y0
+        most = _STRAIGHT * max(math.hypot(x, y), 1e-9)
+        return all(abs((px - x0) * y - (py - y0) * x) <= most for px, py in xy)
+
+    def _is_upright(self, a: int, b: int) -> bool:
+        return self.levels.positions[a][:2] == self.levels.positions[b][:2]
+
+    def _polygons(self, rings: list[Ring], upward: bool) -> list[list[Ring]]:
+        """Return the rings of one part: the exterior first, then its holes."""
+        plan = self.plan
+        areas = [signed_area(plan[[*ring, ring[0]]]) * (1 if upward else -1) for ring in rings]
+        outer = [i for i, area in enumerate(areas) if area > 0]
+        if len(outer) == 1:
+            return [[rings[outer[0]], *(ring for i, ring in enumerate(rings) if i != outer[0])]]
+        polygons = {i: [rings[i]] for i in sorted(outer, key=lambda i: areas[i])}
+        for i, ring in enumerate(rings):
+            if i in polygons:
+                continue
+            middle = plan[ring].mean(axis=0)[None]
+            for exterior, *_ in polygons.values():
+                if are_within(middle, edges_of(plan[exterior]))[0]:
+                    polygons[rings.index(exterior)].append(ring)
+                    break
+        return list(polygons.values())
+
+
+def _rings(edges: list[tuple[int, int]]) -> list[Ring]:
+    """Return the rings that directed edges make; where rings touch in a vertex they are parted."""
+    following: dict[int, list[int]] = defaultdict(list)
+    for a, b in edges:
+        following[a].append(b)
+    rings = []
+    while following:
+        path, position = [next(iter(following))], {}
+        position[path[0]] = 0
+        while True:
+            ways = following[path[-1]]
+            step = ways.pop()
+            if not ways:
+                del following[path[-1]]
+            if step in position:
+                # A loop within the path is a ring of its own.
+                at = position[step]
+                rings.append(path[at:])
+                for vertex in path[at + 1 :]:
+                    del position[vertex]
+                path = path[: at + 1]
+                if at == 0 and step not in following:
+                    break
+            else:
+                position[step] = len(path)
+                path.append(step)
+    return rings
+
+
+def _compact(positions: list[Position], faces: list[_Built]) -> Solid:
+    """Return the solid of faces without vertices on straight edges and without unused ones."""
+    beside: dict[int, set[int]] = defaultdict(set)
+    for _, _, rings, _ in faces:
+        for ring in rings:
+            for a, b in zip(ring, [*ring[1:], ring[0]]):
+                beside[a].add(b)
+                beside[b].add(a)
+    straight = _straight(positions, beside)
+    kept = sorted(set(beside) - straight)
+    number = {old: new for new, old in enumerate(kept)}
+    solid = Solid(np.array([positions[old] for old in kept]))
+    for kind, plane, rings, _ in faces:
+        solid.faces.append([[number[v] for v in ring if v in number] for ring in rings])
+        solid.kinds.append(kind)
+        solid.planes.append(plane)
+    return solid
+
+
+def _straight(positions: list[Position], beside: dict[int, set[int]]) -> set[int]:
+    """Return the vertices with two edges in one line; never two in a row, unless those about them are in line too."""
+    straight: set[int] = set()
+    links = {vertex: set(others) for vertex, others in beside.items()}
+    for vertex in list(links):
+        if len(links[vertex]) != 2:
+            continue
+        a, b = links[vertex]
+        if b in links[a]:
+            continue
+        if _is_between(positions[vertex], positions[a], positions[b]):
+            straight.add(vertex)
+            links[a].remove(vertex)
+            links[b].remove(vertex)
+            links[a].add(b)
+            links[b].add(a)
+            del links[vertex]
+    return straight
+
+
+def _is_between(position: Position, one: Position, other: Position) -> bool:
+    """Return whether a position lies in line with two others, from the first one toward the second one."""
+    (x, y, z), (a, b, c) = ([p - q for p, q in zip(end, one)] for end in (position, other))
+    across = math.hypot(y * c - z * b, z * a - x * c, x * b - y * a)
+    return across < _SUPERFLUOUS * max(math.hypot(a, b, c), 1e-12) and x * a + y * b + z * c > 0
