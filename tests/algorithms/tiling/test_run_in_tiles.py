@@ -15,7 +15,8 @@ from lidar_buildings.algorithms.run import run_pipeline
 from lidar_buildings.algorithms.stage import Cancelled, Layer, LayerFeatures, Monitor, stage
 from lidar_buildings.algorithms.stages import STAGES
 from lidar_buildings.algorithms.tiling import run_in_tiles as module
-from lidar_buildings.algorithms.tiling import survey_sampling
+from lidar_buildings.algorithms.tiling import survey_sampling, tile_writing
+from lidar_buildings.algorithms.tiling.block_plan import side_of_blocks
 from lidar_buildings.algorithms.tiling.run_in_tiles import can_be_tiled, run_in_tiles
 from lidar_buildings.algorithms.tiling.survey import Survey
 from lidar_buildings.algorithms.tiling.tiles import rows_of
@@ -199,7 +200,7 @@ def test_points_of_a_large_copc_file_that_no_block_has_are_told(points, tmp_path
     xyz, times, _ = points
     copc = tmp_path / "town.copc.laz"
     write_cloud(create_cloud({"xyz": xyz, "gps_time": times}, "EPSG:28992"), copc)
-    monkeypatch.setattr(module, "rows_of", lambda result, number: rows_of(result, number)[3:])
+    monkeypatch.setattr(tile_writing, "rows_of", lambda result, number: rows_of(result, number)[3:])
     outcome = run([copc], tmp_path / "result", pipeline=QUICK, largest_file=1000)
     assert outcome.failures == [
         "town.copc.laz has 12 points outside the bounds in its header; repair its header first."
@@ -446,7 +447,7 @@ def test_an_extent_takes_a_part_of_the_survey(tmp_path, points, largest):
 )
 def test_blocks_have_room_for_their_points(density, halo, side):
     """In a dense plant, where little is looked at around a block, it is smaller than 100 m."""
-    assert module._side(density, halo) == side
+    assert side_of_blocks(density, halo) == side
 
 
 def test_an_extent_without_points_is_refused(tmp_path, points):

@@ -13,8 +13,7 @@ from lidar_buildings.algorithms.cloud.files import read_cloud, write_cloud
 from lidar_buildings.algorithms.pipeline import Pipeline, Step
 from lidar_buildings.algorithms.pipelines import PIPELINES
 from lidar_buildings.algorithms.stage import Cancelled, Monitor
-from lidar_buildings.algorithms.tiling import run_in_tiles as module
-from lidar_buildings.algorithms.tiling import survey_sampling
+from lidar_buildings.algorithms.tiling import survey_sampling, tile_writing
 from lidar_buildings.algorithms.tiling.cutting import cut_into_tiles
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
 from lidar_buildings.algorithms.tiling.survey import open_survey
@@ -109,7 +108,7 @@ def test_writing_a_tile_stops_when_the_run_does(tmp_path, monkeypatch):
         task.stop.touch()
         return write(task)
 
-    monkeypatch.setattr(module, "write_tile", cancelled)
+    monkeypatch.setattr(tile_writing, "write_tile", cancelled)
     with pytest.raises(Cancelled):
         run([path], tmp_path / "out")
     assert not (tmp_path / "out" / "a.las").exists()
