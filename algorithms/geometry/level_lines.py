@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-# Corners of a cell (column, row), counterclockwise from the south-west, and the two ends of each of its sides, south,
-# east, north and west.
-_CORNERS = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
+# Ends of the sides of a cell, south, east, north and west: its corners, counterclockwise from the south-west.
 _SIDES = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
 
 

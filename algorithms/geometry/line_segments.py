@@ -48,20 +48,6 @@ def segments_meet(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) ->
     return any(_meet(a[low : low + step], b[low : low + step], c, d).any() for low in range(0, len(a), step))
 
 
-def meet_in_corners(starts: np.ndarray, ends: np.ndarray) -> bool:
-    """Return whether segments (n, 2), some of them there and back, have no points in common but their ends."""
-    step = max(1, _PAIRS_AT_ONCE // len(starts))
-    for low in range(0, len(starts), step):
-        a, b = starts[low : low + step], ends[low : low + step]
-        share = np.zeros((len(a), len(starts)), bool)
-        for one in (a, b):
-            for other in (starts, ends):
-                share |= (one[:, None] == other).all(axis=-1)
-        if (_meet(a, b, starts, ends) & ~share).any():
-            return False
-    return True
-
-
 def is_inside(point: np.ndarray, ring: np.ndarray) -> bool:
     """Return whether a point (2,) lies inside a ring."""
     return bool(are_inside(point[None], ring)[0])

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..geometry.cell_outlines import outline_cells
-from ..geometry.grid import connected_cells, grid_over
-from ..geometry.line_segments import is_valid
+from ..geometry.grid import grid_over
 from ..geometry.points_in_polygons import are_in_polygons
 from ..geometry.polygon_overlap import as_polygons, shared_areas
 from ..geometry.polygons import area_vector, axes_across
-from ..geometry.polylines import simplify_ring
 from ..geometry.rings import signed_area
 from ..stage import LayerFeatures, Monitor
+from .plane_polygons import outline_of_cells
 
 # A piece that lies in the largest one but for this part of it adds nothing.
 _WITHIN = 0.95
@@ -97,10 +95,4 @@ def _outline(flat: list) -> list[np.ndarray]:
     grid = grid_over(np.stack([low, high]), cell)
     every = np.arange(grid.rows * grid.columns)
     cells = every[are_in_polygons(grid.center(every), polygons, Monitor())]
-    count, group = connected_cells(grid, cells)
-    cells = cells[group == np.argmax(np.bincount(group, minlength=count))]
-    rings = outline_cells(grid, cells, np.zeros(len(cells), np.int64))[0]
-    simple = [simplify_ring(ring, cell) for ring in rings]
-    simple = [ring for ring in simple if len(ring) >= 4 and abs(signed_area(ring)) > cell**2]
-    is_sound = bool(simple) and signed_area(simple[0]) > 0 and all(signed_area(hole) < 0 for hole in simple[1:])
-    return simple if is_sound and is_valid(simple) else rings
+    return outline_of_cells(grid, cells, np.ones(len(cells)), 0.0)

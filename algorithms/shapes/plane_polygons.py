@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..geometry.cell_outlines import outline_cells
-from ..geometry.grid import connected_cells, grid_over
+from ..geometry.grid import Grid, connected_cells, grid_over
 from ..geometry.line_segments import is_valid
 from ..geometry.polylines import simplify_ring
 from ..geometry.rings import signed_area
@@ -82,12 +82,28 @@ def _outline(xyz: np.ndarray, center: np.ndarray, normal: np.ndarray, cell: floa
     positions = np.column_stack([(xyz - center) @ first, (xyz - center) @ second])
     grid = grid_over(positions, cell)
     cells, count = np.unique(grid.number(positions), return_counts=True)
+    return outline_of_cells(grid, cells, count, _OVERSHOOT * cell)
+
+
+def outline_of_cells(grid: Grid, cells: np.ndarray, count: np.ndarray, overshoot: float) -> list:
+    """Return the rings (m, 2) around the largest group of cells, simplified by a cell.
+
+    Parameters
+    ----------
+    grid : Grid
+        The cells.
+    cells : ndarray of shape (k,), int64
+        Numbers of those that are covered.
+    count : ndarray of shape (k,)
+        What each counts for the size of its group.
+    overshoot : float
+        By how much rings are drawn in, m.
+    """
     n_groups, group = connected_cells(grid, cells)
-    largest = int(np.argmax(np.bincount(group, count, n_groups)))
-    cells = cells[group == largest]
+    cells = cells[group == np.argmax(np.bincount(group, count, n_groups))]
     rings = outline_cells(grid, cells, np.zeros(len(cells), np.int64))[0]
-    simple = [_inset(simplify_ring(ring, cell), _OVERSHOOT * cell) for ring in rings]
-    simple = [ring for ring in simple if len(ring) >= 4 and abs(signed_area(ring)) > cell**2]
+    simple = [_inset(simplify_ring(ring, grid.size), overshoot) for ring in rings]
+    simple = [ring for ring in simple if len(ring) >= 4 and abs(signed_area(ring)) > grid.size**2]
     is_sound = bool(simple) and signed_area(simple[0]) > 0 and all(signed_area(hole) < 0 for hole in simple[1:])
     return simple if is_sound and is_valid(simple) else rings
 

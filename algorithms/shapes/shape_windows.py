@@ -8,9 +8,6 @@ import numpy as np
 
 from ..geometry.boxes import Boxes
 
-# Ratio of the largest to the least radius of a level.
-OCTAVE = 2.0
-
 # Side of a window and spacing of its points (times the least radius of the level).
 WINDOW, _THINNING = 4.0, 0.15
 

@@ -12,7 +12,6 @@ from lidar_buildings.algorithms.geometry.line_segments import (
     farthest,
     is_inside,
     is_valid,
-    meet_in_corners,
     segments_meet,
 )
 from lidar_buildings.tests.builders import L_SHAPE
@@ -96,13 +95,3 @@ def test_segments_that_meet():
     a, b = np.array([[0, 0], [10, 0]], float), np.array([[4, 0], [10, 4]], float)
     assert segments_meet(a, b, np.array([[2.0, -1]]), np.array([[2.0, 1]]))
     assert not segments_meet(a, b, np.array([[5.0, -1]]), np.array([[5.0, 1]]))
-
-
-def test_borders_meet_in_corners_only():
-    """Two squares that share a side, given once by each, and the same with a third line through both."""
-    starts = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [1, 1], [1, 0], [2, 0], [2, 1]], float)
-    ends = np.array([[1, 0], [1, 1], [0, 1], [0, 0], [1, 0], [2, 0], [2, 1], [1, 1]], float)
-    assert meet_in_corners(starts, ends)
-    assert not meet_in_corners(np.vstack([starts, [[0, 0]]]), np.vstack([ends, [[2, 0.5]]]))
-    # A corner on another's side is no corner of both.
-    assert not meet_in_corners(np.vstack([starts, [[0.5, 0]]]), np.vstack([ends, [[0.5, 0.5]]]))

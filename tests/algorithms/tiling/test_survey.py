@@ -102,7 +102,7 @@ def test_the_sampling_of_a_dense_survey_takes_no_more_points_than_that_of_a_smal
 
 def test_writing_a_tile_stops_when_the_run_does(tmp_path, monkeypatch):
     path = tile(tmp_path / "a.las", (0, 0))
-    write = module.write_tile
+    write = tile_writing.write_tile
 
     def cancelled(task):
         task.stop.touch()
