@@ -22,8 +22,8 @@ class _Rules:
     off: float = 0.5
     # Distance (m) that stays between an opening and the edge of its wall: thinner strips make no sound triangles.
     margin: float = 0.03
-    # An opening is cut to its wall if at least this share of its area remains.
-    kept: float = 0.8
+    # An opening is cut to its wall if at least this share of its area remains: across a bend, to the wall with most.
+    kept: float = 0.5
 
 
 _RULES = _Rules()

@@ -104,6 +104,12 @@ def test_openings_are_set_into_the_wall_before_them_and_cut_back_to_it():
     assert len(solid.faces[2]) == 3
 
 
+def test_an_opening_across_a_bend_is_set_into_the_wall_with_most_of_it():
+    solid, done = with_openings(box(), [Opening(1, "window", pane(9, 1, 10.5, 2))])
+    assert fault_of(solid) == ""
+    assert done[0].ring[:, 0].max() == pytest.approx(9.97)
+
+
 @pytest.mark.parametrize(
     "ring",
     [
