@@ -13,7 +13,7 @@ from .cylinder_search import LEAST_POINTS, CylinderSearch, Found
 from .joined_cylinders import joined, without_nested
 from .joined_pieces import whole_axis
 from .search_settings import MaxRadius, MinRadius, ShapeTolerance, reach_of_radius
-from .searched_points import WHOLE_CLOUD, SearchIn, Shape, Surroundings, search_shapes
+from .searched_points import WHOLE_CLOUD, SearchIn, SearchTunables, Shape, Surroundings, search_shapes
 from .surface_normals import NormalPoints
 
 _FIELDS = (
@@ -148,18 +148,8 @@ def detect_cylinders(
         apart = without_nested(apart)
         return joined(apart, positions, around.noise, around.spacing, max_gap)
 
-    found = search_shapes(
-        (xyz, classification, segment_id, shape),
-        Shape.CYLINDER,
-        search,
-        min_radius=min_radius,
-        max_radius=max_radius,
-        tolerance=tolerance,
-        n_neighbors=n_neighbors,
-        search_in=search_in,
-        sampling=sampling,
-        monitor=monitor,
-    )
+    tunables = SearchTunables(min_radius, max_radius, tolerance, n_neighbors, search_in)
+    found = search_shapes((xyz, classification, segment_id, shape), Shape.CYLINDER, search, tunables, sampling, monitor)
     ones = found.shapes
     axes = LayerFeatures(
         [one.ends + found.points.origin for one in ones],

@@ -7,7 +7,7 @@ from typing import Annotated, Optional
 from ..sampling.cloud_sampling import CloudSampling
 from ..stage import Field, Layer, LayerFeatures, Monitor, Param, stage
 from .search_settings import MaxRadius, MinRadius, ShapeTolerance, reach_of_radius
-from .searched_points import WHOLE_CLOUD, SearchIn, Shape, Surroundings, search_shapes
+from .searched_points import WHOLE_CLOUD, SearchIn, SearchTunables, Shape, Surroundings, search_shapes
 from .sphere_search import LEAST_POINTS, FoundSphere, SphereSearch
 from .surface_normals import NormalPoints
 
@@ -125,18 +125,8 @@ def detect_spheres(
             around.xyz, around.normals, around.noise, around.tolerance, min_seen, min_points, method == METHODS[0]
         ).find(low, high, monitor)
 
-    found = search_shapes(
-        (xyz, classification, segment_id, shape),
-        Shape.SPHERE,
-        search,
-        min_radius=min_radius,
-        max_radius=max_radius,
-        tolerance=tolerance,
-        n_neighbors=n_neighbors,
-        search_in=search_in,
-        sampling=sampling,
-        monitor=monitor,
-    )
+    tunables = SearchTunables(min_radius, max_radius, tolerance, n_neighbors, search_in)
+    found = search_shapes((xyz, classification, segment_id, shape), Shape.SPHERE, search, tunables, sampling, monitor)
     ones = found.shapes
     centers = LayerFeatures(
         [found.points.in_place(one.center, int(one.points[0])) for one in ones],

@@ -196,16 +196,22 @@ class SearchResult(Generic[F]):
     points: SearchedPoints  #: The points that were searched
 
 
+@dataclass(frozen=True)
+class SearchTunables:
+    """Tunables of all searches for shapes; None is automatic."""
+
+    min_radius: Optional[float]
+    max_radius: Optional[float]
+    tolerance: Optional[float]
+    n_neighbors: Optional[int]
+    search_in: str
+
+
 def search_shapes(
     cloud: tuple[np.ndarray, np.ndarray, Optional[np.ndarray], Optional[np.ndarray]],
     kind: Shape,
     search: Callable[[Surroundings, float, float, Monitor], list[F]],
-    *,
-    min_radius: Optional[float],
-    max_radius: Optional[float],
-    tolerance: Optional[float],
-    n_neighbors: Optional[int],
-    search_in: str,
+    tunables: SearchTunables,
     sampling: Optional[CloudSampling],
     monitor: Monitor,
 ) -> SearchResult[F]:
@@ -216,11 +222,13 @@ def search_shapes(
     cloud : tuple of ndarray
         Coordinates (n, 3), m, and classes (n,); segments and shapes (n,) found before, or None.
     kind : Shape
-        Settings of the search.
+        Kind of the shapes.
     search : callable
         Returns the shapes among points, for the least and the largest radius (m).
-    min_radius, max_radius, tolerance, n_neighbors, search_in, sampling
-        Tunables of the stages; None is automatic.
+    tunables : SearchTunables
+        Tunables of the stages.
+    sampling : CloudSampling, optional
+        How the cloud was sampled.
     monitor : Monitor
         Receives automatic values, a warning where nothing is found, and progress.
 
@@ -238,12 +246,12 @@ def search_shapes(
     sampling = sampling or CloudSampling.of(xyz, classification)
     spacing = 1 / float(np.sqrt(sampling.surface_density))
     noise = point_noise(sampling)
-    tolerance = 3 * noise if tolerance is None else tolerance
-    min_radius, max_radius = check_radii(min_radius, max_radius, noise, spacing, xyz)
-    n_neighbors = normal_points(sampling) if n_neighbors is None else n_neighbors
+    tolerance = 3 * noise if tunables.tolerance is None else tunables.tolerance
+    min_radius, max_radius = check_radii(tunables.min_radius, tunables.max_radius, noise, spacing, xyz)
+    n_neighbors = normal_points(sampling) if tunables.n_neighbors is None else tunables.n_neighbors
     monitor.resolved(tolerance=tolerance, min_radius=min_radius, max_radius=max_radius, n_neighbors=n_neighbors)
     normals = normals_of(xyz, n_neighbors, sampling, monitor.part(0, 0.2))
-    points = searched_points(xyz, classification, segment_id, shape, search_in, WINDOW * max_radius)
+    points = searched_points(xyz, classification, segment_id, shape, tunables.search_in, WINDOW * max_radius)
     label, found = np.zeros(len(points.rows), np.int64), []
     if len(points.rows):
         # A tolerance that is set implies the noise, too.
@@ -258,5 +266,5 @@ def search_shapes(
     inside = label > 0
     old, label[inside] = label[inside], by_first_point(label[inside]) + 1
     order = sorted(dict(zip(label[inside].tolist(), old.tolist())).items())
-    ids, shapes, first = named(points, label, kind, segment_id, shape, len(xyz), search_in)
+    ids, shapes, first = named(points, label, kind, segment_id, shape, len(xyz), tunables.search_in)
     return SearchResult(ids, shapes, [found[n - 1] for _, n in order], [n + first for n, _ in order], points)
