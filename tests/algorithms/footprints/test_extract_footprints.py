@@ -11,6 +11,7 @@ from lidar_buildings.algorithms.geometry.rings import signed_area
 from lidar_buildings.algorithms.packages import spatial
 from lidar_buildings.algorithms.stage import Monitor
 from lidar_buildings.tests.builders import roof
+from lidar_buildings.tests.monitors import Listening
 from lidar_buildings.tests.polygon_validity import assert_valid
 
 
@@ -256,6 +257,13 @@ def test_automatic_values_are_told(village):
     monitor = Monitor()
     extract_footprints(**village, monitor=monitor)
     assert 0.5 < monitor.values["tolerance"] < 0.8
+
+
+def test_progress_of_several_parts_never_goes_back(village):
+    monitor = Listening()
+    extract_footprints(**village, monitor=monitor)
+    assert monitor.heard == sorted(monitor.heard)
+    assert monitor.heard[-1] == pytest.approx(1)
 
 
 def test_what_lies_inside_the_edge_of_a_roof_is_under_it():
