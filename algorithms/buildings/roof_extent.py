@@ -20,9 +20,6 @@ class ImageRoofRules:
 
     least_width: float = rule(1.5, "m", "physics: narrower objects are walls, railings or hedges")
     half: float = rule(0.5, "share", "of a roof's height at its edge: a step is smeared evenly to both sides")
-    surface_share: float = rule(
-        0.5, "share", "fitted on a town of matched images: most of what is within the least width of a roof surface"
-    )
 
 
 @dataclass(frozen=True)
@@ -64,7 +61,7 @@ def amid_rough(surface: TopSurface, xyz: np.ndarray, segment_id: np.ndarray) -> 
     # Other programs number surfaces as they like.
     segments, of = np.unique(segment_id[on_top], return_inverse=True)
     mean = np.bincount(of, share) / np.bincount(of)
-    return np.isin(segment_id, segments[mean < IMAGE_ROOFS.surface_share])
+    return np.isin(segment_id, segments[mean < FREE.most])
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from .drawn_blocks import Drawing, Outlined, draw_block
 from .footprint_attributes import FIELDS, PointMeasures, footprint_attributes
 from .outline_pieces import Piece, blocks_of, find_pieces
 from .roof_points import edge_weights, find_non_building_points, find_roof_points, topmost
-from .row_houses import MAX_SPACING, Houses, split_row
+from .row_houses import ROWS, Houses, split_row
 from .soft_shares import Shares, find_shares
 
 # Distance (spacings) beyond which buildings have no effect on each other's outlines but for their directions.
@@ -154,7 +154,7 @@ def extract_footprints(
 
     Houses of a row are parted along straight lines from one side of a building to the other, in its main directions.
     Along such a line both roofs slope up from it, parallel roofs step by 0.4 m, any by 1 m, or a wall rises 0.3 m above
-    both. A row has at least two such lines side by side, 3.5 to 13 m apart, each seen on half of its length without low
+    both. A row has at least two such lines side by side, 3.5 to 22 m apart, each seen on half of its length without low
     parts; 30 % are enough for a further one. Two roofs may be one house. Low parts and pieces under 25 m² belong to
     one. At a step the lower house must have three quarters of the height of the higher one. Houses keep the number of
     their cluster.
@@ -182,7 +182,7 @@ def extract_footprints(
     sampling = sampling or CloudSampling.of(xyz, classification)
     # Not the spacing of the cloud: a roof stops every pulse once, while crowns and the ground under them return many.
     spacing = _rounded(sampling.shared(_ROOF_SPACING, lambda: point_spacing(xyz[building])))
-    if not merge_touching and spacing > MAX_SPACING:
+    if not merge_touching and spacing > ROWS.max_spacing:
         monitor.inform(
             f"Points are {spacing:.1f} m apart, too far to see where the houses of a row part; they are left in one."
         )

@@ -14,83 +14,52 @@ import numpy as np
 from ..geometry.groups import components, split_groups
 from ..geometry.line_segments import edge_distances, segments_meet
 from ..packages import ndimage, spatial
+from ..rules import rule
 from .soft_shares import Lattice
 
-# Step of the grid that heights are sampled on (m), at least the second figure (point spacings): finer than a fire wall
-# is thick, but no finer than the points.
-_STEP = 0.25
-_STEP_SPACINGS = 0.6
 
-# Length (m) over which heights are averaged along a line: several points, and less than a dormer is wide.
-_ALONG = 1.0
+@dataclass(frozen=True)
+class RowRules:
+    """What shows a party wall, and which walls are of a row."""
 
-# The roof beside a line is measured from here (m), beyond the wall itself ...
-_NEAR = 0.3
+    step: float = rule(0.25, "m", "physics: of the grid of heights, finer than a fire wall is thick")
+    step_spacings: float = rule(0.6, "point spacings", "least step of that grid, no finer than the points")
+    along: float = rule(1.0, "m", "physics: heights are averaged over it along a line; less than a dormer is wide")
+    near: float = rule(0.3, "m", "physics: from where the roof beside a line is measured, beyond the wall itself")
+    far: float = rule(1.6, "m", "physics: to where the roof is measured, before the ridge of the narrowest house")
+    rise: float = rule(0.25, "tangent", "physics: least slope of a roof that rises from a valley")
+    parallel: float = rule(0.35, "tangent", "physics: slopes of parallel roofs differ by less")
+    least_step: float = rule(
+        0.4, "m", "fitted on simulated rows: between parallel roofs; over the noise of airborne clouds"
+    )
+    parapet: float = rule(0.3, "m", "fitted on simulated rows: least height of a wall over both roofs")
+    rough: float = rule(0.25, "m", "physics: heights of roofs deviate less from a line; trees and machines more")
+    large_step: float = rule(1.0, "m", "physics: a step between any two roofs, that of half a storey")
+    steepest: float = rule(1.5, "tangent", "physics: 56°, of roofs beside a large step")
+    wide: float = rule(2.5, "m", "physics: where half of a step has to be left; a dormer ends before")
+    least_share: float = rule(0.75, "share", "of the higher house's height that the lower one has; wings are lower")
+    seen: float = rule(0.5, "share", "of a wall that shows a row: what is seen of it beside roofs")
+    glimpsed: float = rule(0.3, "share", "the same of a further one: hips hide valleys at their ends")
+    evident: float = rule(0.2, "m, or tangent", "mean strength of a wall; noise of matched images reaches 0.17")
+    high: float = rule(0.5, "share", "of the median height: lower parts are no roof of a row")
+    shortest: float = rule(4.0, "m", "physics: least depth of a house, the length of its walls")
+    narrowest: float = rule(3.5, "m", "physics: least width of a house")
+    largest: float = rule(22.0, "m", "physics: greatest width and depth of a house")
+    least_area: float = rule(25.0, "m²", "physics: smaller pieces that walls cut off are parts of a house next to them")
+    angle: float = rule(10.0, "°", "physics: between party walls of one row, which are nearly parallel")
+    same: float = rule(0.8, "m", "closer lines are the same wall")
+    strong: float = rule(0.5, "share", "of the greatest strength, from which the line that parts roofs best is chosen")
 
-# ... to here (m), before the ridge of a house of the least width.
-_FAR = 1.6
+    @property
+    def max_spacing(self) -> float:
+        """Spacing (m) up to which six samples of the grid fit in the roof beside a wall, so that noise makes no slope.
 
-# Spacing of points (m) up to which six samples of the grid fit in the roof beside a wall, so that noise makes no slope.
-# With four and five points per m² simulated single houses were split.
-MAX_SPACING = _FAR / (6 * _STEP_SPACINGS)
+        With four and five points per m² simulated single houses were split.
+        """
+        return self.far / (6 * self.step_spacings)
 
-# Least slope (tangent) of a roof that rises from a valley.
-_RISE = 0.25
 
-# Greatest difference of the slopes (tangents) of parallel roofs.
-_PARALLEL = 0.35
-
-# Least step (m) between two parallel roofs. This and the next two are above the noise of airborne clouds; fitted on
-# simulated rows.
-_LEAST_STEP = 0.4
-
-# Least step (m) between any two roofs.
-_LARGE_STEP = 1.0
-
-# Least height (m) of a wall over both roofs.
-_PARAPET = 0.3
-
-# Greatest deviation (m) of a roof's heights from a line: more is a tree or a roof with machines.
-_ROUGH = 0.25
-
-# Steepest roof (tangent) beside a large step: 56°.
-_STEEPEST = 1.5
-
-# Distance (m) from a step at which half of it has to be left: a dormer ends before.
-_WIDE = 2.5
-
-# Least share of the higher house's height that the lower one has beside their wall: lower parts are wings.
-_LEAST_SHARE = 0.75
-
-# A party wall shows that there is a row if at least this share of it is seen where there are roofs beside it, and if
-# its mean strength (m, or tangent) is this much. Noise on pitched roofs of matched images reaches 0.17.
-_SEEN, _EVIDENT = 0.5, 0.2
-
-# Least share that is seen of a further wall of such a row: hips hide the valley between two houses at its ends.
-_GLIMPSED = 0.3
-
-# Least height of such roofs, as a share of the median height.
-_HIGH = 0.5
-
-# Shortest and longest party wall (m): depths of houses.
-_SHORTEST = 4.0
-_DEEPEST = 22.0
-
-# Least and greatest distance to the next party wall (m): widths of houses.
-_NARROWEST = 3.5
-_WIDEST = 13.0
-
-# Least area of a house (m²); smaller pieces that party walls cut off are parts of a house next to them.
-_HOUSE = 25.0
-
-# Cosine of the greatest angle between party walls of one row: 10°.
-_NEARLY = 0.985
-
-# Lines closer than this (m) are the same wall.
-_SAME = 0.8
-
-# Among lines with at least this share of the greatest strength, the one that separates the roofs best is chosen.
-_STRONG = 0.5
+ROWS = RowRules()
 
 
 @dataclass(frozen=True)
@@ -129,11 +98,11 @@ def split_row(
     angles : ndarray of shape (k,)
         Its main directions, °.
     spacing : float
-        Mean distance between neighboring points, m. Nothing is split where it is greater than ``MAX_SPACING``.
+        Mean distance between neighboring points, m. Nothing is split where it is greater than ``ROWS.max_spacing``.
     """
     whole = Houses(np.zeros((0, 2, 2)), is_inside.astype(np.int64))
     known = np.isfinite(height)
-    if spacing > MAX_SPACING or is_inside.sum() * lattice.step**2 < 3 * _HOUSE or not known.any():
+    if spacing > ROWS.max_spacing or is_inside.sum() * lattice.step**2 < 3 * ROWS.least_area or not known.any():
         return whole
     found = [_lines(lattice, is_inside, plan[known], height[known], np.radians(angle), spacing) for angle in angles]
     return _parted(lattice, is_inside, found) or whole
@@ -146,7 +115,7 @@ def _lines(
 
     They run along a direction (rad) or square to it.
     """
-    step = max(_STEP, _STEP_SPACINGS * spacing)
+    step = max(ROWS.step, ROWS.step_spacings * spacing)
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     positions = lattice.in_plan(np.argwhere(is_inside)[:, ::-1]) @ turn
     low, high = positions.min(axis=0) - 2 * step, positions.max(axis=0) + 2 * step
@@ -154,7 +123,7 @@ def _lines(
     inside = _inside(lattice, is_inside, (u, v), turn)
     roof, seen = _averaged(plan @ turn, height, low, step, inside.shape)
     # Farther than the building on both sides, so that the line parts it where the outline has a notch, too.
-    beyond = _ALONG + spacing
+    beyond = ROWS.along + spacing
     one, other = _along_first_axis(roof, seen, inside, step), _along_first_axis(roof.T, seen.T, inside.T, step)
     across = v[one.column] + step * one.shift
     along_u = np.stack([[u[one.first] - beyond, across], [u[one.last - 1] + beyond, across]])
@@ -223,9 +192,9 @@ class _Runs:
 def _along_first_axis(roof: np.ndarray, seen: np.ndarray, is_inside: np.ndarray, step: float) -> _Runs:
     """Return what may be party walls along the first axis, one of those that lie side by side."""
     counted = is_inside & (seen > 0)
-    least = _HIGH * np.median(roof[counted]) if counted.any() else 0.0
+    least = ROWS.high * np.median(roof[counted]) if counted.any() else 0.0
     runs = _runs_of_party_walls(roof, seen, is_inside, least, step)
-    return runs.take(_distinct(runs, _SAME / step))
+    return runs.take(_distinct(runs, ROWS.same / step))
 
 
 def _runs_of_party_walls(roof: np.ndarray, seen: np.ndarray, is_inside: np.ndarray, least: float, step: float) -> _Runs:
@@ -244,15 +213,15 @@ def _runs_of_party_walls(roof: np.ndarray, seen: np.ndarray, is_inside: np.ndarr
     # Beside a wall above both roofs the misfit is that of the wall, and its least value says nothing.
     is_sharp = bend > here / 2
     shift = np.where(is_sharp, np.clip((before - after) / np.where(is_sharp, 2 * bend, 1.0), -0.5, 0.5), 0.0)
-    is_clear = (supported >= np.maximum(_SHORTEST, _SEEN * counted)) & (strength >= _EVIDENT * counted)
-    is_long = (length >= _SHORTEST) & (length <= _DEEPEST)
-    good = np.flatnonzero(is_long & (supported >= _GLIMPSED * np.maximum(_SHORTEST, counted)))
+    is_clear = (supported >= np.maximum(ROWS.shortest, ROWS.seen * counted)) & (strength >= ROWS.evident * counted)
+    is_long = (length >= ROWS.shortest) & (length <= ROWS.largest)
+    good = np.flatnonzero(is_long & (supported >= ROWS.glimpsed * np.maximum(ROWS.shortest, counted)))
     return _Runs(column, first, last, shift, strength, here, is_clear).take(good)
 
 
 def _evidence(roof: np.ndarray, seen: np.ndarray, step: float) -> tuple[np.ndarray, ...]:
     """Return the strength (m) of party walls along the first axis at samples, the height beside them, and misfits."""
-    size = 2 * round(_ALONG / 2 / step) + 1
+    size = 2 * round(ROWS.along / 2 / step) + 1
     weight = ndimage.uniform_filter1d(seen.astype(float), size, axis=0, mode="constant")
     roof = ndimage.uniform_filter1d(roof * seen, size, axis=0, mode="constant") / np.maximum(weight, 1e-9)
     # One point or more.
@@ -260,16 +229,18 @@ def _evidence(roof: np.ndarray, seen: np.ndarray, step: float) -> tuple[np.ndarr
     left, left_rise, left_rough, left_mean = _side(roof, is_known, step, -1)
     right, right_rise, right_rough, right_mean = _side(roof, is_known, step, 1)
     jump = np.abs(right - left)
-    is_valley = (left_rise > _RISE) & (right_rise > _RISE)
-    is_ridge = (left_rise < -_RISE) & (right_rise < -_RISE)
-    is_parallel = (jump > _LEAST_STEP) & (np.abs(left_rise + right_rise) < _PARALLEL)
-    is_large = (jump > _LARGE_STEP) & (np.maximum(np.abs(left_rise), np.abs(right_rise)) < _STEEPEST) & ~is_ridge
-    is_smooth = np.maximum(left_rough, right_rough) < _ROUGH
-    is_house = np.minimum(left_mean, right_mean) >= _LEAST_SHARE * np.maximum(left_mean, right_mean)
+    is_valley = (left_rise > ROWS.rise) & (right_rise > ROWS.rise)
+    is_ridge = (left_rise < -ROWS.rise) & (right_rise < -ROWS.rise)
+    is_parallel = (jump > ROWS.least_step) & (np.abs(left_rise + right_rise) < ROWS.parallel)
+    is_large = (
+        (jump > ROWS.large_step) & (np.maximum(np.abs(left_rise), np.abs(right_rise)) < ROWS.steepest) & ~is_ridge
+    )
+    is_smooth = np.maximum(left_rough, right_rough) < ROWS.rough
+    is_house = np.minimum(left_mean, right_mean) >= ROWS.least_share * np.maximum(left_mean, right_mean)
     above = _above(roof, (left, left_rise), (right, right_rise), step)
     is_step = (is_parallel | is_large) & is_smooth & is_house & _goes_on(roof, is_known, right - left, step)
-    is_parapet = (above > _PARAPET) & is_smooth
-    strength = np.where(is_step, np.minimum(jump, 2 * _LARGE_STEP), np.where(is_parapet, above, 0.0))
+    is_parapet = (above > ROWS.parapet) & is_smooth
+    strength = np.where(is_step, np.minimum(jump, 2 * ROWS.large_step), np.where(is_parapet, above, 0.0))
     strength = np.where(is_valley, np.minimum(left_rise, right_rise), strength)
     rough = [np.nan_to_num(_side(roof, is_known, step, sign, 0.0)[2]) for sign in (-1, 1)]
     return strength, np.nan_to_num(np.maximum(left_mean, right_mean)), rough[0] + rough[1]
@@ -287,17 +258,17 @@ def _above(roof: np.ndarray, left: tuple, right: tuple, step: float) -> np.ndarr
 
 def _goes_on(roof: np.ndarray, is_known: np.ndarray, jump: np.ndarray, step: float) -> np.ndarray:
     """Return where a step (m) to the right is still there farther from it, or nothing is seen of that."""
-    away = round(_WIDE / step)
+    away = round(ROWS.wide / step)
     known = np.pad(np.where(is_known, roof, np.nan), ((0, 0), (away, away)), constant_values=np.nan)
     farther = known[:, 2 * away :] - known[:, : -2 * away]
     return ~(farther * np.sign(jump) < np.abs(jump) / 2)
 
 
 def _side(
-    roof: np.ndarray, is_known: np.ndarray, step: float, sign: int, near: float = _NEAR
+    roof: np.ndarray, is_known: np.ndarray, step: float, sign: int, near: float = ROWS.near
 ) -> tuple[np.ndarray, ...]:
     """Return the line fitted to the roof on one side of each position: height here, rise outward, deviation, mean."""
-    offsets = np.arange(max(1, int(np.ceil(near / step))), int(_FAR / step) + 1)
+    offsets = np.arange(max(1, int(np.ceil(near / step))), int(ROWS.far / step) + 1)
     far = offsets * step
 
     def total(values: np.ndarray, factor: np.ndarray) -> np.ndarray:
@@ -340,7 +311,7 @@ def _distinct(runs: _Runs, same: float) -> np.ndarray:
         shared = np.minimum(last, last[best]) - np.maximum(first, first[best])
         beside = is_left & (2 * shared > last[best] - first[best])
         near = beside & (np.abs(column - column[best]) <= same)
-        strong = np.flatnonzero(near & (strength >= _STRONG * strength[best]))
+        strong = np.flatnonzero(near & (strength >= ROWS.strong * strength[best]))
         found.append(int(strong[np.argmin(runs.misfit[strong])]))
         is_left &= ~beside | (np.abs(column - column[found[-1]]) > same)
         is_left[best] = False
@@ -391,7 +362,7 @@ def _kept(ends: np.ndarray, crossed: list, pairs: np.ndarray, area: np.ndarray) 
         more = is_cut.copy()
         more[own] = True
         size = np.bincount(_pieces(pairs[~more], len(area)), area)
-        houses = int((size >= _HOUSE).sum())
+        houses = int((size >= ROWS.least_area).sum())
         # A wall beside a courtyard parts nothing before another one does on the other side.
         if houses > houses_before or len(size) == before:
             kept.append(wall)
@@ -409,7 +380,7 @@ def _without_small(piece: np.ndarray, pairs: np.ndarray, area: np.ndarray) -> np
         size = np.bincount(piece, area)
         beside = piece[pairs]
         beside = beside[beside[:, 0] != beside[:, 1]]
-        small = np.flatnonzero((size > 0) & (size < _HOUSE) & np.isin(np.arange(len(size)), beside))
+        small = np.flatnonzero((size > 0) & (size < ROWS.least_area) & np.isin(np.arange(len(size)), beside))
         if not len(small):
             return np.unique(piece, return_inverse=True)[1]
         own = beside == small[np.argmin(size[small])]
@@ -471,13 +442,13 @@ def _is_close(wall: np.ndarray, others: np.ndarray) -> bool:
     if segments_meet(wall[:1], wall[1:], starts, stops):
         return True
     from_wall, to_wall = edge_distances(wall, starts, stops), edge_distances(others.reshape(-1, 2), wall[:1], wall[1:])
-    return bool(min(from_wall.min(), to_wall.min()) < _NARROWEST)
+    return bool(min(from_wall.min(), to_wall.min()) < ROWS.narrowest)
 
 
 def _in_rows(ends: np.ndarray, is_clear: np.ndarray) -> np.ndarray:
     """Return which party walls (w,) are of a row: three houses or more, with two clear walls side by side."""
     length = np.hypot(*(ends[:, 1] - ends[:, 0]).T)
-    reach = _WIDEST + length.max(initial=0.0)
+    reach = ROWS.largest + length.max(initial=0.0)
     near = spatial.cKDTree(ends.mean(axis=1)).query_pairs(reach, output_type="ndarray")
     near = np.concatenate([near, near[:, ::-1]])
     one, other = near[_are_next(ends[near[:, 0]], ends[near[:, 1]])].T
@@ -496,6 +467,8 @@ def _are_next(walls: np.ndarray, others: np.ndarray) -> np.ndarray:
     along = np.sort(offset_x * x[:, None] + offset_y * y[:, None], axis=1)
     shared = np.minimum(along[:, 1], length) - np.maximum(along[:, 0], 0.0)
     apart = np.abs((x[:, None] * offset_y - y[:, None] * offset_x).mean(axis=1))
-    is_parallel = np.abs(x * other_step[:, 0] + y * other_step[:, 1]) >= _NEARLY * other_length
+    is_parallel = (
+        np.abs(x * other_step[:, 0] + y * other_step[:, 1]) >= float(np.cos(np.radians(ROWS.angle))) * other_length
+    )
     is_beside = 2 * shared >= np.minimum(length, other_length)
-    return is_parallel & is_beside & (apart >= _NARROWEST) & (apart <= _WIDEST)
+    return is_parallel & is_beside & (apart >= ROWS.narrowest) & (apart <= ROWS.largest)

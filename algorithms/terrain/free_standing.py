@@ -23,9 +23,7 @@ class FreeStandingRules:
     hall_step: float = rule(2.0, "m", "physics: steps around a segment wider than usual buildings; quays are lower")
     free_edge: float = rule(0.9, "share", "of its open edge with steps down; the rest is trees against its walls")
     open_edge: float = rule(0.4, "share", "of its edge, neither hidden behind higher surfaces nor rough")
-    most: float = rule(
-        0.5, "share", "most: of steps as high as asked for, of the edge of a part of a hall, of a machine"
-    )
+    most: float = rule(0.5, "share", "most of steps, of the edge of a part, of a region or of a machine, of a ring")
     least_cells: int = rule(4, "cells", "of a segment; smaller ones are undecided, as rough cells are")
 
 

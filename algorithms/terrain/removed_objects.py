@@ -16,7 +16,7 @@ from ..geometry.raster_opening import open_surface
 from ..packages import ndimage
 from ..rules import rule
 from ..stage import Monitor
-from .free_standing import smooth_segments
+from .free_standing import FREE, smooth_segments
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,6 @@ class RemovalRules:
         0.4, "share", "fitted on eight ISPRS samples: of the measured slope that may come on top of these"
     )
     join_slope: float = rule(0.3, "tangent", "physics: of a step at the edge of a region that joins the terrain")
-    joined: float = rule(0.5, "share", "most of its open edge, on which a region must join the terrain")
     level_share: float = rule(
         0.25, "share", "of a smooth part level with the terrain around, as of a bank beside a cut; objects are not"
     )
@@ -160,7 +159,7 @@ class _RegionEdges:
 
     def join_terrain(self) -> np.ndarray:
         """Return which regions join the terrain on enough of their edge."""
-        is_terrain = self.joined >= REMOVAL.joined * np.maximum(self.open, 1)
+        is_terrain = self.joined >= FREE.most * np.maximum(self.open, 1)
         is_terrain[0] = False
         return is_terrain
 

@@ -11,6 +11,7 @@ from ..geometry.raster_opening import open_surface
 from ..packages import ndimage
 from ..rules import rule
 from ..sampling.density import DENSITY
+from .free_standing import FREE
 
 
 @dataclass(frozen=True)
@@ -23,9 +24,6 @@ class SmearedRules:
     )
     height: float = rule(0.5, "m", "above the opened surface, from which points are of objects")
     length: float = rule(8.0, "m", "physics: of the longest shed with its smeared walls; crests and dikes are longer")
-    beside: float = rule(
-        0.5, "share", "of a longer ring beside other classes, from which it is the walls of a building"
-    )
     beyond: float = rule(0.8, "share", "of its radius that a window is centered beyond the end of the cloud at most")
 
 
@@ -91,4 +89,4 @@ def _of_objects(above: np.ndarray, is_other: np.ndarray, size: float) -> np.ndar
     to_other = ndimage.distance_transform_edt(~is_other) * size if is_other.any() else np.full(above.shape, np.inf)
     cells = np.bincount(part[above], minlength=count + 1)
     beside = np.bincount(part[above & (to_other <= SMEARED.width / 2)], minlength=count + 1)
-    return above & (is_short | (beside >= SMEARED.beside * np.maximum(cells, 1)))[part]
+    return above & (is_short | (beside >= FREE.most * np.maximum(cells, 1)))[part]
