@@ -8,6 +8,7 @@ run the main program again in each. Both are unsafe where the current folder hol
 from __future__ import annotations
 
 import os
+import pickle  # nosec B403 - only to send: what comes back is read by the connection
 import subprocess  # nosec B404 - no shell, see below
 import sys
 import tempfile
@@ -176,7 +177,7 @@ class _Process:
             If it ends before that.
         """
         try:
-            self._connection.send((PACKAGE, str(FOLDER), self._search_path, threads))
+            self._send((PACKAGE, str(FOLDER), self._search_path, threads))
             self._connection.recv()
         except (EOFError, ConnectionError):
             self._program.wait()
@@ -193,7 +194,7 @@ class _Process:
         EOFError, ConnectionError
             If the process ends before it has answered.
         """
-        self._connection.send((function, arguments))
+        self._send((function, arguments))
         returned, value, trace = self._connection.recv()
         if returned:
             return value
@@ -201,6 +202,13 @@ class _Process:
             # Of a file or a network drive, not of this connection.
             raise OSError(str(value))
         raise value from RuntimeError(trace)
+
+    def _send(self, message: tuple) -> None:
+        """Send as :meth:`Connection.send` does, but from bytes: its buffer can't be freed when the process has ended.
+
+        Python reports that whenever it collects garbage (github.com/python/cpython/issues/111331).
+        """
+        self._connection.send_bytes(pickle.dumps(message))
 
     def kill(self) -> None:
         """End the process at once, whatever it works on."""
