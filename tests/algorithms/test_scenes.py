@@ -43,3 +43,18 @@ def test_the_default_chain_finds_roofs_and_takes_nothing_else_for_one(name):
     assert (found[~is_building] == PointClass.BUILDING).sum() <= 2
     assert (found[true == PointClass.GROUND] == PointClass.GROUND).mean() > 0.95
     np.testing.assert_array_equal(found[np.isin(true, NOISE)], true[np.isin(true, NOISE)])
+
+
+# A step at the shore (m), and the share of the pulses that return from the water.
+@pytest.mark.parametrize(("step", "share"), [(0.5, 1.0), (2.5, 0.05), (4.0, 0.3), (4.0, 0.0)])
+def test_no_terrain_of_a_beach_that_is_half_water_is_called_building(step, share):
+    """The tile of 40 by 48 m shows what the sea and its own end cut off, higher than all around by up to a floor."""
+    rng = np.random.default_rng(0)
+    x, y = rng.uniform(0, [40, 48], (15 * 40 * 48, 2)).T
+    shore = 20 + 2 * np.sin(y / 5)
+    is_sand = x < shore
+    z = np.where(is_sand, step + 0.08 * (shore - x), 0.03 * np.sin(x / 2)) + rng.normal(0, 0.02, len(x))
+    kept = is_sand | (rng.random(len(x)) < share)
+    cloud = create_cloud({"xyz": np.column_stack([x, y, z])[kept]})
+    run_pipeline(PIPELINES["detect_buildings"], cloud)
+    assert not (cloud.get("classification") == PointClass.BUILDING).any()
