@@ -10,7 +10,6 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from ..geometry.rings import signed_area
-from ..geometry.subdivision import SNAP
 from ..packages import spatial
 from ..sampling.cloud_sampling import CloudSampling
 from ..sampling.density import point_spacing
@@ -42,6 +41,11 @@ _GROUND_PERCENTILE, _GROUND_STEP = 5.0, 2.0
 
 # Number of footprints without a model that a warning names.
 _NAMED = 5
+
+# Vertices of footprints nearer to each other than this (m) are one; those nearer to the line of their neighbors are
+# superfluous.
+_CLOSE = 0.01
+
 
 _Tolerance = Annotated[
     Optional[float],
@@ -247,16 +251,13 @@ def _outlines(footprints: LayerFeatures, id_field: str, monitor: Monitor) -> lis
 
 
 def _cleaned(ring: np.ndarray) -> np.ndarray:
-    """Return a closed ring without the vertices that are too close to another one or to the line of their neighbors.
-
-    Cuts pass that closely to vertices, too: what is nearer would become edges of a few centimeters.
-    """
+    """Return a closed ring without the vertices that are too close to another one or to the line of their neighbors."""
     kept = [ring[0]]
     for position, following in zip(ring[1:-1], ring[2:]):
-        is_apart = np.hypot(*(position - kept[-1])) >= SNAP and np.hypot(*(position - ring[0])) >= SNAP
-        if is_apart and _off_line(position, kept[-1], following) >= SNAP:
+        is_apart = np.hypot(*(position - kept[-1])) >= _CLOSE and np.hypot(*(position - ring[0])) >= _CLOSE
+        if is_apart and _off_line(position, kept[-1], following) >= _CLOSE:
             kept.append(position)
-    if len(kept) > 2 and _off_line(kept[0], kept[-1], kept[1]) < SNAP:
+    if len(kept) > 2 and _off_line(kept[0], kept[-1], kept[1]) < _CLOSE:
         kept.pop(0)
     return np.array([*kept, kept[0]])
 

@@ -214,15 +214,6 @@ def test_a_gable_with_a_lean_to_is_a_gable():
     assert layers["buildings"].columns["roof_type"] == ["gable"]
 
 
-def test_corners_of_footprints_4_cm_apart_are_one():
-    ring = np.array([[15, 16], [25, 16], [25, 20], [25.03, 20.03], [25.03, 24], [15, 24], [15, 16]], float)
-    x, y = np.mgrid[0:40:0.5, 0:40:0.5].reshape(2, -1)
-    is_house = (np.abs(x - 20) < 5) & (np.abs(y - 20) < 4)
-    xyz = np.column_stack([x, y, np.where(is_house, 5.0, 0.0)])
-    walls = reconstruct_roofs(xyz, np.where(is_house, 6, 2), footprints=LayerFeatures([[ring]], {}))[1]
-    assert len(walls) == 4
-
-
 def test_obj_is_closed():
     _, files, _ = reconstructed(*scene(SHAPES["dormer"]))
     lines = written(files, "obj", OBJ, offset=(85_000.0, 446_000.0, 0.0)).splitlines()
