@@ -527,7 +527,7 @@ def page(rows: list[dict[str, Any]]) -> str:
     of_rule = {row["rule"]: row for row in rows}
     mean, *others = ("mean change, %", "largest loss, %", "cloud of the loss", "largest gain, %", "cloud of the gain")
     whole = sorted((row for name, row in of_rule.items() if not name.endswith(_ENDS)), key=lambda row: row[mean])
-    moved = dict.fromkeys(name[: -len(end)] for name in of_rule for end in _ENDS if name.endswith(end))
+    moved = any(name.endswith(_ENDS) for name in of_rule)
     list(STAGES.values())  # Modules are imported when a stage is first asked for.
     return _PAGE.format(
         least_mean=LEAST_MEAN,
@@ -535,15 +535,16 @@ def page(rows: list[dict[str, Any]]) -> str:
         chance=CHANCE,
         rules=rules_table(),
         table=_in_markdown(("rule", mean, *others), [[row[one] for one in ("rule", mean, *others)] for row in whole]),
-        moved=_in_markdown(
-            ("constant", *(f"{end.strip()}, mean" for end in _ENDS), *others[:2]),
-            [
-                _moved_both_ways(name, of_rule, mean, others)
-                for name in sorted(moved)
-                if _matters(name, of_rule, others)
-            ],
-        ),
+        moved=_moved_table(of_rule, mean, others) if moved else "",
     )
+
+
+def _moved_table(of_rule: dict[str, dict[str, Any]], mean: str, others: list[str]) -> str:
+    """Return the part of the page on constants that were moved both ways."""
+    names = sorted({name[: -len(end)] for name in of_rule for end in _ENDS if name.endswith(end)})
+    rows = [_moved_both_ways(name, of_rule, mean, others) for name in names if _matters(name, of_rule, others)]
+    columns = ("constant", *(f"{end.strip()}, mean" for end in _ENDS), *others[:2])
+    return _MOVED.format(chance=CHANCE, table=_in_markdown(columns, rows))
 
 
 def _matters(name: str, of_rule: dict[str, dict[str, Any]], others: list[str]) -> bool:
@@ -564,6 +565,15 @@ def _in_markdown(columns: tuple[str, ...], rows: list[list[Any]]) -> str:
     return "\n".join(f"| {line} |" for line in (" | ".join(columns), " | ".join(["---"] * len(columns)), *lines))
 
 
+_MOVED = """
+## Constants moved by 20 %
+
+The same changes where one constant is a fifth smaller or larger, counts by one at least: on the clouds that
+were measured. Constants without a row change nothing there either way, by {chance:g} at most.
+
+{table}
+"""
+
 _PAGE = """# What each rule is worth
 
 *Detect buildings* is run with each rule left out, or with a constant moved by 20 % both ways, on real clouds with
@@ -579,14 +589,19 @@ Differences below about {chance:g} are chance: they also appear when a cloud is 
 
 {table}
 
-## Constants moved by 20 %
+Rules of little worth on these clouds stay for what the clouds do not show:
 
-The same changes where one constant is a fifth smaller or larger, counts by one at least: on two sparse samples of the
-filter test (11 and 53), St Barth thinned to 4 points per m², and Amsterdam. Constants without a row change nothing
-there either way, by {chance:g} at most.
-
+- *Isolated points under the ground*: 86 to 91 % of the points of multipath in simulated towns, which would be ground.
+  *Low points at one level*: the floor of a shaft in a deck, without which a whole block becomes ground.
+- *Groups in histograms*: lamps and wires on slopes are no noise.
+- *Three directions*: whether single bushes and roofs are seen depends less on where cells fall. In twelve positions the
+  mean error of the samples was 3.21 % and became 3.10 %.
+- *Banks*, *level regions*: sample 53, and the banks beside a simulated cut, of which 9 % was lost.
+- *Halls in parts*, *machines on halls*: half, and 2 %, of a simulated estate of halls becomes ground.
+- *Surfaces that go on into the ground*: simulated ramps and bridges.
+- *Wide in plan*: lines of points far apart; on zigzag lines F of Delft was 47 % and became 88 %.
+- *Crowns at walls*: trees that touch a flat roof. *Smeared walls*: the walls of a town in matched images.
 {moved}
-
 ## The constants
 
 Each constant of the methods whose module holds its rules in one table, with the reason for its value: physics,
