@@ -50,7 +50,7 @@ class Prices:
     #: Of an edge along the second main direction. With 1.0 the short side of a house whose front is askew followed the
     #: front.
     second: float = 0.5
-    other: float = 3.0  #: Of an edge along neither of them
+    other: float = 1.75  #: Of an edge along neither of them
     #: curved, other_curved: Of a ring with curved walls, and of each of its edges along neither direction, where that
     #: is less together
     curved: float = 15.0

@@ -5,8 +5,9 @@
 ``turned`` of the same when cells fall elsewhere, ``harder`` of the same with fewer points or more noise, ``uneven`` of
 the same with points on lines, in bands or in pairs,
 ``pieces`` of squares cut out of clouds, ``objects`` of real houses, trees, cars, fences and poles on simulated ground,
-``footprints`` of outlines, ``towns``, ``pits``, ``scenes``, ``villages``, ``places`` and ``confidence`` of simulated
-scenes, whose truth is exact, and ``maps`` of old maps with known differences.
+``footprints`` of outlines, ``outlines`` of how stable these are, beside Building-Regulariser's, ``towns``, ``pits``,
+``scenes``, ``villages``, ``places`` and ``confidence`` of simulated scenes, whose truth is exact, and ``maps`` of old
+maps with known differences.
 ``photos`` are real clouds of matched images, ``drone`` simulated ones, ``likeness`` compares the two.
 
 Each table comes as Markdown for people, as a JSON file for programs (in ``--output``), and those of real clouds as the
@@ -44,6 +45,7 @@ from lidar_buildings.tests.benchmarks.classes import classes  # noqa: E402
 from lidar_buildings.tests.benchmarks.drone import drone, photos  # noqa: E402
 from lidar_buildings.tests.benchmarks.drone_scenes import places as drone_places  # noqa: E402
 from lidar_buildings.tests.benchmarks.likeness import likeness  # noqa: E402
+from lidar_buildings.tests.benchmarks.outlines import outlines  # noqa: E402
 from lidar_buildings.tests.benchmarks.real_objects import CAR, FENCE, POLE, TREE, scene  # noqa: E402
 from lidar_buildings.tests.benchmarks.results import FOLDER, Table  # noqa: E402
 from lidar_buildings.tests.benchmarks.scenes import SCENES, estate, scanned  # noqa: E402
@@ -560,6 +562,7 @@ TABLES = {
             pieces,
             objects,
             footprints,
+            outlines,
             ground,
             noise,
             noise_apart,

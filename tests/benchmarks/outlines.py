@@ -1,0 +1,176 @@
+"""How stable, regular and near to the map outlines are, beside Building-Regulariser on the same traced rings."""
+
+from __future__ import annotations
+
+import functools
+import os
+import tempfile
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Callable
+
+import numpy as np
+
+from lidar_buildings.algorithms.cloud.cloud import Cloud
+from lidar_buildings.algorithms.cloud.files import read_cloud
+from lidar_buildings.algorithms.footprints.extract_footprints import extract_footprints
+from lidar_buildings.algorithms.geometry.rings import signed_area
+from lidar_buildings.algorithms.pipelines import PIPELINES
+from lidar_buildings.algorithms.quality.polygon_comparison import hausdorff, match_polygons, one_to_one, regularity
+from lidar_buildings.algorithms.stage import Monitor
+from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
+from lidar_buildings.algorithms.tiling.workers import Workers
+from lidar_buildings.tests.benchmarks.results import Table
+from lidar_buildings.tests.real.clouds import DELFT, detected, path_of, run_on, truth
+
+CLOUDS = (DELFT, "buildings/ahn3-delft-4", "buildings/ahn-amsterdam-1", "buildings/ign-stbarth")
+DIMENSIONS = ("classification", "cluster_id", "height_above_ground", "reason")
+
+# Smaller outlines (m²) are not compared.
+LEAST_AREA = 10.0
+
+# Simplification (m) of traced rings: much less than the distance of points.
+TRACED = 0.05
+
+# Sides (m) of the blocks that are compared with the whole, and the cloud.
+SIDES, IN_TILES = (100.0, 140.0), "buildings/ahn3-delft-4"
+
+# Least area (m²) of the houses of the map that are sought one by one.
+HOUSE = 20.0
+
+Drawing = Callable[[Cloud], list]
+
+
+def outlines() -> list[Table]:
+    """Print how far outlines move and how regular they are, how near to the map, and how alike in blocks."""
+    drawings = {"in blocks": functools.partial(drawn, merge_touching=True), "house by house": drawn}
+    if find_spec("buildingregulariser"):
+        drawings["Building-Regulariser"] = regularised
+    else:
+        print("\nBuilding-Regulariser is not there (pip install buildingregulariser), so its rows are left out.")
+    return [_stability(drawings), _of_map(drawings), _of_blocks()]
+
+
+def drawn(cloud: Cloud, **tunables: bool) -> list:
+    """Return the polygons of a cloud with classes, in map coordinates."""
+    arrays = {name: cloud.get(name) for name in DIMENSIONS if cloud.has(name)}
+    return _in_map(cloud, extract_footprints(cloud.get("xyz"), **arrays, **tunables).geometries)
+
+
+def regularised(cloud: Cloud) -> list:
+    """Return what Building-Regulariser makes of the traced rings."""
+    import geopandas
+    from buildingregulariser import regularize_geodataframe
+    from shapely.geometry import Polygon
+
+    traced = drawn(cloud, merge_touching=True, regularize=False, tolerance=TRACED)
+    frame = geopandas.GeoDataFrame(geometry=[Polygon(one[0], one[1:]) for one in traced], crs="EPSG:28992")
+    made = regularize_geodataframe(frame, num_cores=1).geometry
+    parts = [part for one in made for part in getattr(one, "geoms", [one])]
+    return [[np.array(ring.coords) for ring in (part.exterior, *part.interiors)] for part in parts if part.area > 0]
+
+
+def _in_map(cloud: Cloud, geometries: list) -> list:
+    return [[cloud.to_map(ring) for ring in rings] for rings in geometries]
+
+
+def _stability(drawings: dict[str, Drawing]) -> Table:
+    """Print how far outlines are from those of moved points and of nine tenths, and how regular they are."""
+    how = [f"{what}, {classes} classes" for what in ("moved", "90 %") for classes in ("fixed", "own")]
+    columns = [f"{one}: {measure}" for one in how for measure in ("IoU", "m")]
+    table = Table("outlines", "drawing", "outlines", *columns, "along", "sharp, %", "corners per 100 m")
+    pairs: dict[str, list] = {name: [] for name in drawings}
+    made: dict[str, list] = {name: [] for name in drawings}
+    for name in CLOUDS:
+        clouds = [detected(name).cloud, *_others(name)]
+        for drawing, draw in drawings.items():
+            one, *others = map(draw, clouds)
+            made[drawing] += one
+            pairs[drawing].append([_compared(one, other) for other in others])
+    for drawing, of_clouds in pairs.items():
+        figures = [float(np.median(np.concatenate(values))) for each in zip(*of_clouds) for values in zip(*each)]
+        regular = regularity(made[drawing])
+        measures = regular.along, 100 * regular.sharp, regular.per_100_m
+        table.add(drawing, sum(len(one[0][0]) for one in of_clouds), *figures, *measures, digits=3)
+    return table
+
+
+def _others(name: str) -> list[Cloud]:
+    """Return a cloud moved by 2 mm with the same classes and its own, and nine tenths of it with both."""
+    cloud, whole = detected(name).cloud, read_cloud(path_of(name))
+    rng = np.random.default_rng(1)
+    step = rng.normal(0, 0.002, cloud.get("xyz").shape)
+    kept = np.flatnonzero(rng.random(len(step)) < 0.9)
+    made = []
+    for one in (cloud.copy(), whole.copy()):
+        one.set("xyz", one.get("xyz") + step)
+        made.append(one)
+    made += [cloud.take(kept), whole.take(kept)]
+    for own in made[1::2]:
+        run_on(own)
+    return made
+
+
+def _compared(one: list, other: list) -> tuple[np.ndarray, np.ndarray]:
+    """Return IoU and Hausdorff distance (m) of outlines (n,) from those of another layer that they overlap most."""
+    one = [rings for rings in one if sum(map(signed_area, rings)) >= LEAST_AREA]
+    found = match_polygons(one, other, Monitor())
+    iou, distance = np.zeros(len(one)), np.full(len(one), np.inf)
+    iou[found.one] = found.iou
+    distance[found.one] = [hausdorff(one[i], other[j]) for i, j in zip(found.one, found.other)]
+    return iou, distance
+
+
+def _of_map(drawings: dict[str, Drawing]) -> Table:
+    """Print how far corners of Delft's map are from those of outlines, and how many houses are found one to one."""
+    os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
+    from qgis.core import QgsApplication
+
+    application = QgsApplication([], False)
+    application.initQgis()
+    from lidar_buildings.tests.real.base_map import base_map, corner_distances, polygon
+
+    columns = "houses found", "their corners, m", "blocks found", "their corners, m (blocks)", "one to one"
+    table = Table("outlines_of_map", "drawing", "classes", *columns, texts=2)
+    true = read_cloud(path_of(DELFT))
+    true.set("classification", truth(DELFT))
+    houses = [_rings(house) for house in base_map()[0] if house.area() >= HOUSE]
+    for classes, cloud in (("true", true), ("found", detected(DELFT).cloud)):
+        for drawing, draw in drawings.items():
+            made = draw(cloud)
+            polygons = [polygon(rings) for rings in made]
+            levels = [corner_distances(polygons, level) for level in base_map()]
+            cells = [value for count, off in levels for value in (count, float(np.median(off)))]
+            table.add(drawing, classes, *cells, one_to_one(made, houses, Monitor()), digits=2)
+    application.exitQgis()
+    return table
+
+
+def _rings(geometry) -> list:
+    return [np.array([(point.x(), point.y()) for point in ring]) for ring in geometry.asPolygon()]
+
+
+def _of_blocks() -> Table:
+    """Print how many polygons of a cloud come again, within 5 cm, in blocks."""
+    table = Table("outlines_in_blocks", "side, m", "polygons", "of the whole", "within 5 cm", "%")
+    whole = _in_map(detected(IN_TILES).cloud, detected(IN_TILES).layers["footprints"].geometries)
+    for side in SIDES:
+        made = in_blocks(path_of(IN_TILES), side)
+        table.add(f"{side:.0f}", len(made), len(whole), *_same(whole, made))
+    return table
+
+
+def in_blocks(path: Path, side: float) -> list:
+    """Return the footprints, in map coordinates, of *Detect buildings* in blocks of a side (m)."""
+    with tempfile.TemporaryDirectory() as folder:
+        detect = PIPELINES["detect_buildings"]
+        outcome = run_in_tiles(detect, [path], folder, workers=Workers(processes=1), block_side=side)
+    origin = outcome.survey.origin[:2]
+    return [[ring + origin for ring in rings] for rings in outcome.layers["footprints"].geometries]
+
+
+def _same(whole: list, made: list) -> tuple[int, float]:
+    """Return how many polygons of the whole come again within 5 cm, and their share in percent."""
+    found = match_polygons(whole, made, Monitor())
+    count = sum(hausdorff(whole[i], made[j]) <= 0.05 for i, j in zip(found.one, found.other))
+    return count, 100 * count / len(whole)
