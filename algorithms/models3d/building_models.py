@@ -109,6 +109,10 @@ def model_building(xyz: np.ndarray, is_low: np.ndarray, rings: list, base: float
                 solids, why = [replace(solid) for solid in model.solids["1.2"]], ""
             else:
                 solids, why = mended(partition, base, local, limits, settings.percentile)
+                if why and limits is not None and (plain := tops[level](top)[0]) is not None:
+                    # A high corner is better than a simpler level.
+                    partition = plain
+                    solids, why = mended(plain, base, local, None, settings.percentile)
             if not why:
                 above, label = _above_model(top, partition)
                 why = _worse(model, level, top, above)
