@@ -568,8 +568,9 @@ def _in_markdown(columns: tuple[str, ...], rows: list[list[Any]]) -> str:
 _MOVED = """
 ## Constants moved by 20 %
 
-The same changes where one constant is a fifth smaller or larger, counts by one at least: on few clouds:
-Amsterdam and sample 53 of the filter test. Constants without a row change nothing there either way, by {chance:g} at most.
+The same changes where one constant is a fifth smaller or larger, counts by one at least: on two clouds:
+Amsterdam and sample 53 of the filter test. Constants without a row change nothing there either way, by {chance:g} at
+most.
 
 {table}
 """
