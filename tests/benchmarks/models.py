@@ -77,7 +77,7 @@ def on_map() -> list[Table]:
     from osgeo import ogr
 
     found = detected(DELFT)
-    table = _table("models_on_the_map", "footprints")
+    table = _table("models_on_the_map", "map")
     polygons = []
     # The layer is gone with its source.
     source = ogr.Open(str(MAP))
