@@ -195,7 +195,9 @@ def _bounded_by_steps(segments: _Segments, is_free: np.ndarray, least_step: np.n
     # The more the end of the cloud cuts off, the higher the walls: four times as high where half of it is left.
     left = np.maximum(outline - segments.ends, 1)
     high = segments.edges.lengths(is_free, np.maximum(least_step, least * (outline / left) ** 2))
-    is_seen = np.minimum(lengths.open, left) >= FREE.open_edge * (lengths.whole + segments.ends)
+    # Machines are part of the edge, but not of the outline, of which the end of the cloud takes its share.
+    is_seen = lengths.open >= FREE.open_edge * lengths.whole
+    is_seen &= np.minimum(lengths.open, left) >= FREE.open_edge * outline
     is_high = (lengths.down > 0) & (high.down >= FREE.most * lengths.down)
     return is_seen & is_high & (lengths.down >= FREE.free_edge * lengths.open)
 

@@ -284,6 +284,14 @@ def test_the_more_of_a_building_is_cut_off_the_higher_its_walls_must_be(rows, co
             np.testing.assert_array_equal(find_free_standing(turned(surface), 1.0, USUAL)[0], expected)
 
 
+def test_machines_on_a_hall_that_is_cut_off_hide_nothing_of_its_walls():
+    surface = slope(80, 80)
+    hall = block(surface, slice(20, 80), slice(20, 80), 7.0)
+    for row, column in ((30, 30), (30, 50), (50, 30), (50, 50)):
+        surface[row : row + 6, column : column + 6] += 3.0
+    np.testing.assert_array_equal(find_free_standing(surface, 1.0, USUAL)[0], hall)
+
+
 @pytest.mark.parametrize(("apart", "is_object"), [(0.5, True), (2.0, False)])
 def test_the_walls_of_what_is_cut_off_are_steeper_than_slopes(apart, is_object):
     """Between points 2 m apart a rise of 5 m may be a bank of 68°."""
