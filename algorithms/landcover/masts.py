@@ -16,9 +16,8 @@ from .wire_spans import Span
 class _Rules:
     """What a mast is."""
 
-    #: search, arms: Distance (m) from where spans end within which their mast is looked for, and the same as a share of
-    #: the height of masts. Wires hang from arms, and end some meters before them where points are few.
-    search: float = 3.0
+    #: Distance from where spans end within which their mast is looked for, as a share of its height: wires hang from
+    #: arms, and end some meters before them where points are few
     arms: float = 0.2
     #: radius, spread: Radius (m) of poles with their fittings, and of towers as a share of their height
     radius: float = 0.6
@@ -55,7 +54,7 @@ def on_masts(xyz: np.ndarray, height: np.ndarray, is_wire: np.ndarray, spans: li
     ends = np.array([span.at(along) for span in spans for along in (span.start, span.end)])
     wires = np.flatnonzero(is_wire)
     over = height[wires[spatial.cKDTree(xyz[wires, :2]).query(ends[:, :2])[1]]]
-    reach = np.maximum(_RULES.search, _RULES.arms * over)
+    reach = _RULES.arms * over
     pairs = spatial.cKDTree(ends[:, :2]).query_pairs(2 * float(reach.max()), output_type="ndarray")
     near = np.hypot(*(ends[pairs[:, 0], :2] - ends[pairs[:, 1], :2]).T) <= reach[pairs[:, 0]] + reach[pairs[:, 1]]
     count, group = components(pairs[near, 0], pairs[near, 1], len(ends))
@@ -64,7 +63,7 @@ def on_masts(xyz: np.ndarray, height: np.ndarray, is_wire: np.ndarray, spans: li
     found = [np.zeros(0, np.int64)]
     for members in split_groups(group, count):
         top, middle = float(over[members].max()), ends[members, :2].mean(axis=0)
-        around = rows[tree.query_ball_point(middle, 2 * float(reach[members].max()) + _RULES.search)]
+        around = rows[tree.query_ball_point(middle, 2 * float(reach[members].max()))]
         found.append(around[_mast(xyz[around, :2] - middle, height[around], top, float(reach[members].max()))])
     return np.unique(np.concatenate(found))
 

@@ -38,7 +38,6 @@ class _Rules:
     smooth_share: float = 0.5  #: Least share of points on smooth surfaces: most points
     #: Least ratio of the height of poles to their extent in plan: lamps with an arm have 4, trees 1 to 2
     slenderness: float = 4.0
-    least_pole: float = 2.5  #: Least height (m) of poles
 
 
 _RULES = _Rules()
@@ -74,7 +73,7 @@ def find_solid_objects(
     # Half of the points of an object that is no candidate are never counted.
     is_solid = smooth >= np.maximum(_RULES.smooth_share * size, 1)
     rise = top - low
-    is_pole = has_area & (rise >= _RULES.least_pole) & (rise >= _RULES.slenderness * _extent(group, xyz, size))
+    is_pole = has_area & (rise >= _RULES.slenderness * _extent(group, xyz, size))
     return (is_solid | is_pole)[group]
 
 

@@ -11,7 +11,7 @@ from ..geometry.grid import raster_cells, refuse_sparse
 from ..packages import ndimage
 from ..stage import Monitor
 
-# How far from a point (m) others decide whether its surface is level.
+# How far from a point (m) others decide whether its surface is level, and whether a gap is one in the cloud.
 REACH = 10.0
 
 _EIGHT = np.ones((3, 3), bool)
@@ -30,7 +30,6 @@ class _Rules:
     half: float = 0.5
     #: Quantile of the cells by their pulses that is land in one flight line: others lie in two, fewer in water
     land: float = 0.25
-    half_width: float = 25.0  #: Largest gap that is no end of the cloud, half of it (m)
     #: Largest difference of height (m) on water within 10 m: waves, and the fall of rivers that are not torrents
     level: float = 0.15
     #: Width (cells) of its surroundings, and of the strip at its edges in which pulses from land count, too
@@ -87,7 +86,7 @@ def water_levels(
 
 def _sparse(pulses: np.ndarray, is_seen: np.ndarray, size: float) -> np.ndarray:
     """Return which cells inside the cloud are amid few pulses."""
-    inside = _without_gaps(is_seen, _RULES.half_width / size)
+    inside = _without_gaps(is_seen, REACH / size)
     side = 2 * round(_RULES.window / size / 2) + 1
     covered = ndimage.uniform_filter(inside.astype(float), side, mode="constant")
     density = ndimage.uniform_filter(pulses, side, mode="constant") / np.maximum(covered, 1 / side**2)

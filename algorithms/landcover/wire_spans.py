@@ -21,9 +21,8 @@ class _Rules:
     tries: int = 10
     trials: int = 40
     longest: float = 60.0  #: Distance (m) along the wire within which these points are
-    apart: float = 1.5  #: Least distance along the wire between two of these points (m): nearer ones give no curvature
     #: Points within this distance (m) of the plane of the wire are on it: the radius of the beam's footprint and the
-    #: swing of the wire
+    #: swing of the wire. Points of a trial are at least as far apart along it.
     aside: float = 0.3
     #: least_off, noises: And within the larger of this height (m) and this many standard deviations of the noise of the
     #: parabola
@@ -36,7 +35,6 @@ class _Rules:
     #: least_points, least_length: Least number of thinned points of a span and of all its points, and least length (m)
     least_points: int = 5
     least_length: float = 10.0
-    largest_gap: float = 0.4  #: Largest gap between neighboring points, as a share of the length
     beyond: float = 5.0  #: A span goes on where its parabola meets points within this distance (m) of its ends
     below: float = 2.0  #: Height (m) under the wire in which crowns and roofs have points
     #: Largest share of the length of a span (in parts of 1 m) that has points there or of buildings beside it: those of
@@ -110,7 +108,7 @@ class Surroundings:
         return span
 
     def is_free(self, span: Span) -> bool:
-        """Return whether a span has enough points without large gaps, none below it, and no building beside it."""
+        """Return whether a span has enough points, none below it, and no building beside it."""
         rows = self._near(0, span, 1.0)
         along, aside, above = span.local(self.xyz[rows])
         is_left, aside, inside = aside > 0, np.abs(aside), (along >= span.start) & (along <= span.end)
@@ -120,11 +118,10 @@ class Surroundings:
         beside = is_level & (aside > 1.5 * RULES.aside) & (aside <= 2.5 * RULES.aside)
         sheet = max((beside & is_left).sum(), (beside & ~is_left).sum())
         below = inside & (aside <= 2 * RULES.aside) & (above < -2 * self.off) & (above > -RULES.below)
-        stops = np.sort(np.concatenate([along[on_wire], [span.start, span.end]]))
         length = span.end - span.start
-        is_whole = on_wire.sum() >= RULES.least_points and np.diff(stops).max() <= RULES.largest_gap * length
         occupied = len(np.unique(np.floor(along[below]))) + self._edges(span)
-        return bool(is_whole and sheet <= on_wire.sum() / 4 and occupied <= RULES.most_below * length)
+        is_line = on_wire.sum() >= RULES.least_points and sheet <= on_wire.sum() / 4
+        return bool(is_line and occupied <= RULES.most_below * length)
 
     def _edges(self, span: Span) -> int:
         """Return along how much of a span (m) buildings are beside it."""
@@ -216,7 +213,7 @@ def _best_parabola(xyz: np.ndarray, off: float, reach: float, rng: np.random.Gen
     along = np.einsum("ijk,ik->ij", offset, direction)
     aside = np.abs(offset[..., 0] * direction[:, None, 1] - offset[..., 1] * direction[:, None, 0])
     to_middle = np.einsum("ij,ij->i", middle[:, :2] - first[:, :2], direction)
-    usable = (to_middle >= RULES.apart) & (length - to_middle >= RULES.apart)
+    usable = (to_middle >= RULES.aside) & (length - to_middle >= RULES.aside)
     # The parabola through (0, 0), (to_middle, rise) and (length, end), by divided differences.
     safe = np.where(usable, to_middle, 1.0)
     total = np.where(usable, length, 3.0)
