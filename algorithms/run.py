@@ -270,7 +270,7 @@ def _result(
     _clear(cloud, [name for name, values in made.dimensions.items() if values is not None], monitor)
     for name, values in made.dimensions.items():
         if values is not None:
-            cloud.set(name, _whole(cloud, name, values, points))
+            cloud.set(name, _of_all_points(cloud, name, values, points))
     return cloud
 
 
@@ -301,7 +301,7 @@ def _selected(stage: Stage, cloud: Cloud, selected: Optional[np.ndarray]) -> Clo
     return cloud.take(chosen)
 
 
-def _whole(cloud: Cloud, name: str, values: np.ndarray, used: Optional[np.ndarray]) -> np.ndarray:
+def _of_all_points(cloud: Cloud, name: str, values: np.ndarray, used: Optional[np.ndarray]) -> np.ndarray:
     """Return ``values`` of the points used as values of all points."""
     dtype = DIMENSIONS[name].dtype
     if used is None:

@@ -92,7 +92,7 @@ def test_each_commit_is_kept_once_and_compared_with_the_one_before(tmp_path):
         content = {"table": "times", "commit": commit, "changed": changed, "date": date, "rows": times(**seconds)}
         path = tmp_path / "times.json"
         path.write_text(json.dumps(content), encoding="utf-8")
-        return history.sentences(history.kept(path))
+        return history.sentences(history.keep_copy(path))
 
     assert run("a" * 40, "2026-01-01", ground=9.0) == ["No earlier results are kept to compare with."]
     run("a" * 40, "2026-01-02", ground=4.0)

@@ -134,7 +134,7 @@ def _by_house(
         if number not in houses or len(houses[number].walls) == 0:
             continue
         house = np.zeros(lattice.shape, np.int64)
-        _put(house, lattice, shares[number].lattice, houses[number].house)
+        _copy_overlap(house, lattice, shares[number].lattice, houses[number].house)
         nearest = ndimage.distance_transform_edt(house == 0, return_distances=False, return_indices=True)
         house = house[tuple(nearest)]
         flat = house.ravel()
@@ -174,7 +174,7 @@ def _shares_of(
     for at, number in enumerate(numbers, start=1):
         own = shares[number]
         rings = [ring for piece in pieces if piece.building == number for ring in piece.rings]
-        _put(share[at], lattice, own.lattice, np.where(_is_near(own, rings), own.share, 0.0))
+        _copy_overlap(share[at], lattice, own.lattice, np.where(_is_near(own, rings), own.share, 0.0))
     share[0] = 1 - share[1:].sum(axis=0)
     return lattice, share, numbers
 
@@ -192,7 +192,7 @@ def _is_near(own: Shares, rings: list[np.ndarray]) -> np.ndarray:
     return np.isin(part[tuple(nearest)], mine)
 
 
-def _put(target: np.ndarray, lattice: Lattice, inner: Lattice, values: np.ndarray) -> None:
+def _copy_overlap(target: np.ndarray, lattice: Lattice, inner: Lattice, values: np.ndarray) -> None:
     """Put values of one lattice into another where they overlap."""
     (column, row), (rows, columns) = np.subtract(inner.first, lattice.first).tolist(), lattice.shape
     low_row, low_column = max(row, 0), max(column, 0)

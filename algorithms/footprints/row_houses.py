@@ -338,7 +338,7 @@ def _parted(lattice: Lattice, is_inside: np.ndarray, found: list) -> Optional[Ho
     cell = _pieces(pairs[~is_crossed], len(middle))
     pairs, number = cell[pairs[is_crossed]], np.cumsum(is_crossed) - 1
     crossed, size = [number[own] for own in crossed], area * np.bincount(cell)
-    kept = _kept(ends, crossed, pairs, size)
+    kept = _chosen_walls(ends, crossed, pairs, size)
     kept = kept[_in_rows(ends[kept], is_clear[kept])]
     walls = ends[kept]
     is_cut = np.zeros(len(pairs), bool)
@@ -349,7 +349,7 @@ def _parted(lattice: Lattice, is_inside: np.ndarray, found: list) -> Optional[Ho
     return Houses(walls, house) if len(walls) else None
 
 
-def _kept(ends: np.ndarray, crossed: list, pairs: np.ndarray, area: np.ndarray) -> np.ndarray:
+def _chosen_walls(ends: np.ndarray, crossed: list, pairs: np.ndarray, area: np.ndarray) -> np.ndarray:
     """Return the party walls, of those that come first, that leave room between them and part two houses.
 
     ``crossed`` are the ``pairs`` of cells that each parts, ``area`` (m²) is that of the cells.

@@ -204,13 +204,13 @@ def _walls(models: list[NamedModel], segments: PlanSegments) -> LayerFeatures:
         for solid in _best_with_openings(one):
             for face in (face for face, kind in enumerate(solid.kinds) if kind == WALL):
                 geometries.append(face_rings(solid, face))
-                rows.append({**face_attributes(one, solid, face), "source": _source(solid, face, segments)})
+                rows.append({**face_attributes(one, solid, face), "source": _wall_source(solid, face, segments)})
     names = [*(field.name for field in WALL_FIELDS if field.name != "id"), "source"]
     columns = {name: [row[name] for row in rows] for name in names}
     return LayerFeatures(geometries, {"id": list(range(1, len(rows) + 1)), **columns})
 
 
-def _source(solid: Solid, face: int, segments: PlanSegments) -> str:
+def _wall_source(solid: Solid, face: int, segments: PlanSegments) -> str:
     """Return whether a wall was seen from the street."""
     ring = solid.vertices[solid.faces[face][0]][:, :2]
     middle = (ring.min(axis=0) + ring.max(axis=0)) / 2

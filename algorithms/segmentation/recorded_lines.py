@@ -77,16 +77,16 @@ def recorded_lines(xyz: np.ndarray, recording: Recording, gap: float) -> np.ndar
         starts[run_starts(recording.point_source_id)] = True
     if recording.has_times and recording.gps_time is not None:
         starts[1:] |= _is_long(np.diff(recording.gps_time), _PAUSE)
-    is_told = False
+    has_turns = False
     if _varies(recording.scan_direction_flag) and recording.scan_direction_flag is not None:
         starts[run_starts(recording.scan_direction_flag)] = True
-        is_told = True
+        has_turns = True
     if _varies(recording.edge_of_flight_line) and recording.edge_of_flight_line is not None:
         starts[1:] |= recording.edge_of_flight_line[:-1] > 0
     if _varies(recording.scan_angle) and recording.scan_angle is not None:
         starts |= _turns_by_angle(recording.scan_angle)
-        is_told = True
-    if not is_told:
+        has_turns = True
+    if not has_turns:
         starts |= _turns_back(xyz)
     return np.cumsum(starts) - 1
 

@@ -157,7 +157,7 @@ def segment_planes_ransac(
         in_voxel = VoxelPlanes(boxes, voxel_size, tolerance, max_planes, trials, seed)
         label = in_voxel.find(monitor.part(0, 0.6))
         planes, plane[used[boxes.order]] = joined_planes(boxes, label, tolerance, min_area, monitor.part(0.6, 1))
-    return _kept(plane, planes, min_slope, max_slope, normals, monitor)
+    return _within_slopes(plane, planes, min_slope, max_slope, normals, monitor)
 
 
 def _voxel_size(density: float, tolerance: float) -> float:
@@ -166,7 +166,7 @@ def _voxel_size(density: float, tolerance: float) -> float:
     return min(max(wide, _SMALLEST_VOXEL), _LARGEST_VOXEL)
 
 
-def _kept(
+def _within_slopes(
     plane: np.ndarray, planes: Optional[Planes], min_slope: float, max_slope: float, normals: bool, monitor: Monitor
 ) -> tuple[np.ndarray, Optional[np.ndarray]]:
     """Return ids of the planes (n,) with a slope in the range, and their normals (n, 3) if wanted."""

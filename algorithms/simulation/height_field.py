@@ -89,7 +89,7 @@ def _window(
     return (slice(first[1], last[1]), slice(first[0], last[0])), x, y
 
 
-def _put(field: HeightField, where: tuple, higher: np.ndarray, z: np.ndarray, classes, number: int) -> None:
+def _raise_cells(field: HeightField, where: tuple, higher: np.ndarray, z: np.ndarray, classes, number: int) -> None:
     field.top[where][higher] = z[higher]
     field.classification[where][higher] = np.broadcast_to(classes, higher.shape)[higher]
     field.object_id[where][higher] = number
@@ -100,7 +100,7 @@ def _add_solid(field: HeightField, solid: Solid) -> None:
     where, x, y = _window(field, corners.min(axis=0), corners.max(axis=0))
     z = solid.top(x, y)
     higher = solid.rect.contains(x, y) & (z > field.top[where])
-    _put(field, where, higher, z, solid.classification, solid.object_id)
+    _raise_cells(field, where, higher, z, solid.classification, solid.object_id)
 
 
 def _add_crown(field: HeightField, crown: np.ndarray, lumps: np.ndarray) -> None:
@@ -112,4 +112,4 @@ def _add_crown(field: HeightField, crown: np.ndarray, lumps: np.ndarray) -> None
     inside = 1 - np.hypot(x - x0, y - y0) ** 2 / (radius + 0.4 * lump) ** 2
     z = z0 + half * np.sqrt(np.maximum(inside, 0.0)) + lump
     higher = (inside > 0) & (z > field.top[where])
-    _put(field, where, higher, z, vegetation_class(z - field.ground[where]), int(number))
+    _raise_cells(field, where, higher, z, vegetation_class(z - field.ground[where]), int(number))

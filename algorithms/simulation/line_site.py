@@ -86,13 +86,13 @@ def _tower(scene: Scene, foot: np.ndarray, direction: float) -> None:
     frame = Rect(x, y, 1.0, 1.0, direction)
     for along in (-_LEG, _LEG):
         for across in (-_LEG, _LEG):
-            _put(scene, frame.part(along, across, 0.3, 0.3), ground - 1.0, ground + 0.5 * _TOWER, number)
-    _put(scene, frame.part(0.0, 0.0, 0.8, 0.8), ground + 0.5 * _TOWER, ground + _TOWER, number)
+            _add_tower(scene, frame.part(along, across, 0.3, 0.3), ground - 1.0, ground + 0.5 * _TOWER, number)
+    _add_tower(scene, frame.part(0.0, 0.0, 0.8, 0.8), ground + 0.5 * _TOWER, ground + _TOWER, number)
     for height in _ARMS:
-        _put(scene, frame.part(0.0, 0.0, 0.5, 2 * _ARM), ground + height - 0.4, ground + height, number)
+        _add_tower(scene, frame.part(0.0, 0.0, 0.5, 2 * _ARM), ground + height - 0.4, ground + height, number)
 
 
-def _put(scene: Scene, rect: Rect, bottom: float, top: float, number: int) -> None:
+def _add_tower(scene: Scene, rect: Rect, bottom: float, top: float, number: int) -> None:
     scene.solids.append(Solid(rect, flat(rect, top), bottom, PointClass.TRANSMISSION_TOWER, number))
 
 
@@ -104,7 +104,7 @@ def _low_voltage(scene: Scene, direction: float, rng: np.random.Generator) -> No
         if not _inside(scene, foot[None])[0]:
             continue
         x, y, ground = (float(value) for value in foot)
-        _put(scene, Rect(x, y, 0.3, 0.3, direction), ground - 1.0, ground + _POLE, scene.new_id())
+        _add_tower(scene, Rect(x, y, 0.3, 0.3, direction), ground - 1.0, ground + _POLE, scene.new_id())
         middle = foot - _HOUSE * across
         if i % 2 == 0 and _inside(scene, np.array([middle - 10.0, middle + 10.0])).all():
             eave = _house(scene, middle, direction, rng)

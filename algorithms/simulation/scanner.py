@@ -140,7 +140,7 @@ def scan(scene: Scene, survey: Survey, monitor: Optional[Monitor] = None) -> Sca
         pulses, time = _pulses(world.relief, block, survey.pattern, rng)
         first, last = np.searchsorted(noisy, firsts[i : i + 2])
         noise = _noise_echoes(world, pulses.take(noisy[first:last] - firsts[i]), heights[first:last])
-        echoes = _replaced(_heard(world, pulses, block.strip, survey.returns, rng), noise)
+        echoes = _replaced(_recorded_echoes(world, pulses, block.strip, survey.returns, rng), noise)
         # The noise of the range lies along the beam.
         ranges = echoes.range + survey.range_noise * rng.standard_normal(len(echoes))
         part = _recorded(echoes, time, block.strip, survey.returns, rng)
@@ -231,7 +231,7 @@ def _met(world: World, kind: str, beams: Beams, strip: _Strip) -> tuple[np.ndarr
     return in_boxes(beams.aim, near, far)
 
 
-def _heard(world: World, pulses: Beams, strip: _Strip, returns: bool, rng: np.random.Generator) -> Echoes:
+def _recorded_echoes(world: World, pulses: Beams, strip: _Strip, returns: bool, rng: np.random.Generator) -> Echoes:
     """Return the echoes of ``pulses`` that the scanner records, by pulse, then by range."""
     beam, solid = _met(world, "solids", pulses, strip)
     ends = world.surfaces(pulses, beam, solid)

@@ -123,7 +123,7 @@ def harder() -> list[Table]:
         found = score_against(true, "buildings", result)["points"]
         figures = [found[rate] for rate in ("completeness", "correctness", "F")]
         wrong = (result.classification == PointClass.BUILDING) & (true != PointClass.BUILDING)
-        table.add(name.split("/")[1], told(change), len(true), *figures, int(wrong.sum()), area_of(cloud, wrong))
+        table.add(name.split("/")[1], changes_cell(change), len(true), *figures, int(wrong.sum()), area_of(cloud, wrong))
     return [table]
 
 
@@ -179,7 +179,7 @@ def pieces() -> list[Table]:
     """
     table = Table("pieces", "cloud", "side, m", "pieces", *RATES)
     for name, side, every in PIECES:
-        whole, true = _whole(name)
+        whole, true = _cloud_and_classes(name)
         place = np.floor((whole.get("xyz")[:, :2] - whole.get("xyz")[:, :2].min(axis=0)) / side)
         square = np.unique(place, axis=0, return_inverse=True)[1].ravel()
         found = np.zeros(len(whole), np.uint8)
@@ -192,7 +192,7 @@ def pieces() -> list[Table]:
     return [table]
 
 
-def _whole(name: str) -> tuple[Cloud, np.ndarray]:
+def _cloud_and_classes(name: str) -> tuple[Cloud, np.ndarray]:
     """Return a cloud and its true classes."""
     if name == "halls":
         made = scanned(estate, False, 8.0)
@@ -207,7 +207,7 @@ def area_of(cloud: Cloud, chosen: np.ndarray) -> float:
     return len(np.unique(np.floor(cloud.get("xyz")[chosen, :2] / 0.5), axis=0)) * 0.25
 
 
-def told(changes: dict[str, Any]) -> str:
+def changes_cell(changes: dict[str, Any]) -> str:
     """Return what differs from the usual, as a cell of a table."""
     return ", ".join(f"{name} {value}" for name, value in changes.items()) or "as it comes"
 
@@ -397,7 +397,7 @@ def towns() -> list[Table]:
         cloud = run_stage(STAGES["simulate_town"], size=150.0, seed=3, **differs).cloud
         true = cloud.get("classification")
         cloud.set("classification", np.zeros(len(cloud), np.uint8))
-        table.add(told(differs), len(cloud), *_found(cloud, true))
+        table.add(changes_cell(differs), len(cloud), *_found(cloud, true))
     return [table]
 
 

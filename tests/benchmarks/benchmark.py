@@ -46,7 +46,7 @@ import conftest  # noqa: E402, F401 - registers the checkout as the package lida
 from lidar_buildings.algorithms.pipelines import PIPELINES  # noqa: E402
 from lidar_buildings.algorithms.stages import STAGES  # noqa: E402
 from lidar_buildings.algorithms.threads import n_threads  # noqa: E402
-from lidar_buildings.tests.benchmarks.history import FLOOR, kept, sentences  # noqa: E402
+from lidar_buildings.tests.benchmarks.history import FLOOR, keep_copy, sentences  # noqa: E402
 from lidar_buildings.tests.benchmarks.measured import PEERS  # noqa: E402
 from lidar_buildings.tests.benchmarks.results import FOLDER, machine, write  # noqa: E402
 
@@ -210,7 +210,7 @@ def main() -> None:
             bench.run(chosen.stages)
         rows += bench.rows
     path = write(chosen.output, "times", rows)
-    print("", *sentences(kept(path)), "", path, sep="\n")
+    print("", *sentences(keep_copy(path)), "", path, sep="\n")
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ FLOOR = "read + neighbors"
 NOTEWORTHY = 0.05
 
 
-def kept(results: Path) -> Path:
+def keep_copy(results: Path) -> Path:
     """Copy a file of results into the folder of the history beside it, and return the copy: one for each commit."""
     content = _content(results)
     name = content["commit"] or "without-git"

@@ -68,7 +68,7 @@ def vineyard() -> Scene:
         _house(hill, hut, 2.8, 25.0)
     for x in np.arange(12.0, SIDE, 12.0):
         for y in np.arange(4.0, SIDE, 8.0):
-            _put(hill, Rect(x + 1.7, y, 0.4, 8.0, 0.0), 0.7)
+            _add_box(hill, Rect(x + 1.7, y, 0.4, 8.0, 0.0), 0.7)
             for row in (3.5, 5.5, 7.5, 9.5):
                 vines = Rect(x + row, y, 8.0, 0.5, np.pi / 2)
                 if not hill.near_building(vines.corners(), 1.0).any():
@@ -111,8 +111,8 @@ def station() -> Scene:
     _house(rails, Rect(60.0, 108.0, 80.0, 14.0, 0.0), 10.0, 30.0)
     for y in (20.0, 48.0, 76.0):
         for x in (20.0, 46.0, 72.0, 98.0):
-            _put(rails, Rect(x, y, 25.0, 2.9, 0.0), 3.9)
-        _put(rails, Rect(60.0, y + 8.0, 116.0, 7.0, 0.0), 0.75)
+            _add_box(rails, Rect(x, y, 25.0, 2.9, 0.0), 3.9)
+        _add_box(rails, Rect(60.0, y + 8.0, 116.0, 7.0, 0.0), 0.75)
         _house(rails, Rect(60.0, y + 8.0, 80.0, 5.0, 0.0), 4.2)
     return rails
 
@@ -122,7 +122,7 @@ def port() -> Scene:
     quay = Scene(Relief(SIDE))
     for i, (x, y) in enumerate((x, y) for x in np.arange(15.0, 90.0, 12.6) for y in np.arange(10.0, 110.0, 2.6)):
         if i % 7:
-            _put(quay, Rect(x, y, 12.2, 2.44, 0.0), 2.59 * (1 + i % 4))
+            _add_box(quay, Rect(x, y, 12.2, 2.44, 0.0), 2.59 * (1 + i % 4))
     _house(quay, Rect(106.0, 60.0, 18.0, 60.0, 0.0), 9.0)
     return quay
 
@@ -168,7 +168,7 @@ def churches() -> Scene:
             foot = parts[0].at(1.5, across)
             plant_tree(parish, (*map(float, foot), float(parish.relief.ground(*foot))), eave - 3.0, rng)
     for x, y, length, height in ((60, 112, 30, 2.6), (100, 112, 20, 4.0), (60, 76, 8, 6.0), (60, 50, 14, 2.2)):
-        _put(parish, Rect(x, y, length, 0.4, 0.3), height)
+        _add_box(parish, Rect(x, y, length, 0.4, 0.3), height)
     return parish
 
 
@@ -202,11 +202,11 @@ def scanned(make: Callable[[], Scene], misfit: bool, density: float) -> Scan:
     made = scan(scene, Survey(density))
     made.xyz[:, 2] += MISFIT * (misfit & (made.point_source_id % 2 == 0))
     if isinstance(scene, Farmland):
-        _sow(scene.fields, made)
+        _grow_maize(scene.fields, made)
     return made
 
 
-def _sow(fields: tuple[Rect, ...], made: Scan) -> None:
+def _grow_maize(fields: tuple[Rect, ...], made: Scan) -> None:
     """Let maize grow in the fields."""
     rng = np.random.default_rng(0)
     in_field = np.any([field.contains(*made.xyz[:, :2].T) for field in fields], axis=0)
@@ -226,7 +226,7 @@ def _house(scene: Scene, rect: Rect, eave: float, pitch: float = 0.0, kind: str 
     scene.add_building(kind, rect.corners(), [site.solid(rect, tops)])
 
 
-def _put(scene: Scene, rect: Rect, height: float) -> None:
+def _add_box(scene: Scene, rect: Rect, height: float) -> None:
     """Put down a box that is no building."""
     ground = float(scene.relief.ground(rect.x, rect.y))
     top = flat(rect, ground + height)

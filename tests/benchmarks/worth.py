@@ -428,10 +428,10 @@ class Runs:
         key = str(scene)
         for name in scene.steps:
             key = hashlib.sha256((key + _digest(name)).encode()).hexdigest()
-            self.after.append(self._kept(cache_folder / f"{key}.npz", name))
+            self.after.append(self._cached_step(cache_folder / f"{key}.npz", name))
         self.score = scene.score(self.true, self.after[-1])
 
-    def _kept(self, path: Path, name: str) -> Cloud:
+    def _cached_step(self, path: Path, name: str) -> Cloud:
         """Return the cloud after a step, from the cache where it has been there before."""
         stage = _step(name).stage
         if not path.exists():
