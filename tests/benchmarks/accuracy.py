@@ -123,7 +123,8 @@ def harder() -> list[Table]:
         found = score_against(true, "buildings", result)["points"]
         figures = [found[rate] for rate in ("completeness", "correctness", "F")]
         wrong = (result.classification == PointClass.BUILDING) & (true != PointClass.BUILDING)
-        table.add(name.split("/")[1], changes_cell(change), len(true), *figures, int(wrong.sum()), area_of(cloud, wrong))
+        about = name.split("/")[1], changes_cell(change), len(true)
+        table.add(*about, *figures, int(wrong.sum()), area_of(cloud, wrong))
     return [table]
 
 

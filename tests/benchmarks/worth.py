@@ -92,11 +92,11 @@ class Scene:
     steps: tuple[str, ...] = STEPS
 
     def __str__(self) -> str:
-        told = [
+        changed = [
             *(f"{name} {value:g}" for name, value in self.changes.items()),
             *([f"{self.angle:g}°"] * (self.angle > 0)),
         ]
-        return " ".join([self.name.split("/")[1], *told])
+        return " ".join([self.name.split("/")[1], *changed])
 
     def read(self) -> tuple[Cloud, np.ndarray]:
         """Return the cloud and its true classes."""
@@ -298,13 +298,13 @@ def tunables() -> list[tuple[str, str, float]]:
 def rules() -> list[Rule]:
     """Return all rules: whole ones left out, then constants and tunables moved both ways."""
     moved = []
-    for factor, told in zip(MOVED, _ENDS):
+    for factor, ending in zip(MOVED, _ENDS):
         moved += [
-            Rule(f"{where}{'.' * bool(part)}{part}{told}", ((where, _with(value, part, factor)),))
+            Rule(f"{where}{'.' * bool(part)}{part}{ending}", ((where, _with(value, part, factor)),))
             for where, value, part in constants()
         ]
         moved += [
-            Rule(f"{step}_{name}{told}", tunables={step: {name: _with(value, "", factor)}})
+            Rule(f"{step}_{name}{ending}", tunables={step: {name: _with(value, "", factor)}})
             for step, name, value in tunables()
             if value
         ]
