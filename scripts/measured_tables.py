@@ -21,13 +21,14 @@ _BLOCK = re.compile(r"(<!-- measured: (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 
 
 class Column(NamedTuple):
-    """A column of a page: its heading, the figure in the file, its decimals, and in which row of a group it is."""
+    """A column of a page: heading, figure in the file, decimals, which row of a group, factor of the unit."""
 
     heading: str
     figure: str
     digits: int = 1
     where: tuple[tuple[str, Any], ...] = ()
     bold: bool = False
+    factor: float = 1.0
 
 
 class Row(NamedTuple):
@@ -93,6 +94,28 @@ _TOWNS = {
 }
 _UNEVEN = (("ahn3-delft", "Delft"), ("ahn-amsterdam-1", "Amsterdam"), ("ign-stbarth", "villas on a hillside"))
 _AT_4, _AT_12 = (("points per m²", 4),), (("points per m²", 12),)
+
+# Stages and composites in the file of times, and on the page.
+_TIMES = {
+    "read + neighbors": "reading, and one search for 16 neighbors",
+    "classify_noise_histogram": "Classify noise by height histogram",
+    "classify_ground_tin": "Classify ground points (TIN)",
+    "classify_bridges": "Classify bridges",
+    "compute_height_above_ground": "Height above ground",
+    "segment_roofs": "Segment roofs",
+    "classify_buildings": "Classify buildings",
+    "complete_buildings": "Complete buildings",
+    "refine_buildings": "Refine buildings",
+    "complete_ground": "Complete ground",
+    "classify_water": "Classify water",
+    "classify_wires": "Classify wires",
+    "classify_vegetation": "Classify vegetation",
+    "extract_footprints": "Extract footprints",
+    "detect_buildings": "*Detect buildings*",
+    "from file to file": "*Detect buildings*, from file to file",
+    "map_footprints": "*Map footprints*",
+    "model_buildings": "*Model buildings*",
+}
 
 TABLES = {
     "buildings": Shown(
@@ -268,6 +291,16 @@ TABLES = {
         ),
         "accuracy.py villages",
     ),
+    "times": Shown(
+        ("1.09 million points of a simulated town",),
+        (
+            Column("processor time, s", "cpu_seconds"),
+            Column("peak memory, MB", "peak_bytes", 0, factor=1e-6),
+            Column("beyond what the program needs, bytes per point", "bytes_per_point", 0),
+        ),
+        tuple(Row((label,), "times", (("name", name),)) for name, label in _TIMES.items()),
+        "make bench",
+    ),
 }
 
 
@@ -296,7 +329,7 @@ def _cell(rows: Sequence[dict[str, Any]], row: Row, column: Column) -> str:
         raise ValueError(f"{row.file}.json has {len(found)} rows with {wanted}; exactly one is needed.")
     if not found or column.figure in row.blank or found[0][column.figure] is None:
         return ""
-    text = f"{found[0][column.figure]:,.{column.digits}f}"
+    text = f"{found[0][column.figure] * column.factor:,.{column.digits}f}"
     return f"**{text}**" if column.bold else text
 
 

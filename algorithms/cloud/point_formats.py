@@ -50,7 +50,7 @@ class Layout:
 
     @cached_property
     def las(self) -> Any:
-        """PointFormat of laspy, all extra bytes as one field: it refuses names that files have twice, or of its own."""
+        """PointFormat of laspy, all extra bytes as one field: it refuses duplicate names and names of its own."""
         laspy = need_laspy()
         made = laspy.PointFormat(self.point_format)
         size = sum(field.dtype.itemsize for field in self.extras)

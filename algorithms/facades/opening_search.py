@@ -32,7 +32,7 @@ _ENCLOSED = 0.5
 # Share of the cells of an opening in which points behind the wall must be seen.
 _SEEN = 0.1
 
-# An opening higher than this (m) must have wall above it: the recessed part of a front has not.
+# An opening higher than this (m) must have wall above it: the recessed part of a front has none.
 _TALL = 4.0
 
 # Panes side by side with no more than this between them (m) are one window: a pier of wall is wider than a mullion.

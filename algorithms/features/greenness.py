@@ -1,4 +1,4 @@
-"""How green points are, whatever light falls on them, and from where on that is the green of plants."""
+"""How green points are in light and in shadow, and the threshold from which on they are plants."""
 
 from __future__ import annotations
 

@@ -252,7 +252,7 @@ class _Evidence:
 
 
 def _rounded(spacing: float) -> float:
-    """Return the spacing (m) in steps that small changes of the points don't reach, and no less than is worth it."""
+    """Return the spacing (m) rounded to a step, at least the least one: small changes of the points keep the step."""
     return max(_LEAST_SPACING, 2.0 ** (round(np.log2(spacing) * _STEPS_PER_OCTAVE) / _STEPS_PER_OCTAVE))
 
 
@@ -273,7 +273,7 @@ def _parts(
 ) -> list[_Part]:
     """Return the parts of building points that lie apart, with the points beside them that show where roofs end."""
     xyz, reason = measures.xyz, measures.reason
-    # In an order that is theirs, so that sums over points do not depend on that of the cloud.
+    # Sorted by cluster and coordinates, so that sums over points do not depend on the order of the cloud.
     order = np.lexsort((*xyz[building].T, cluster))
     building, cluster = building[order], cluster[order]
     is_attached = np.zeros(len(building), bool) if reason is None else np.isin(reason[building], ADDED)

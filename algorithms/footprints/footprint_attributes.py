@@ -28,7 +28,7 @@ FIELDS = (
     Field("ridge_height", float, "98th percentile of the roof's heights above ground", "m"),
     Field("height", float, "median of the roof's heights above ground", "m"),
     Field("max_height", float, "greatest height above ground", "m"),
-    Field("volume", float, "space between roof and ground: mean height of the roof's surface by area", "m³"),
+    Field("volume", float, "space between roof and ground: mean height of the roof's surface times area", "m³"),
     Field("points", int, "points of the building, walls among them"),
     Field("entropy", float, "mean entropy of the building's points' clusters"),
     Field("confidence", float, "0 unsure to 1 sure of being a building"),

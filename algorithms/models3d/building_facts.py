@@ -53,7 +53,7 @@ BUILDING_FIELDS = (
     Field("id", int, "number of the building, from 1"),
     Field("building", str, "footprint below it: its attribute id, or its number", of="footprints"),
     Field("level", str, "level of detail that it has: 1.2, 1.3 or 2.2"),
-    Field("reason", str, "why it has not the level that was wanted, empty where it has"),
+    Field("reason", str, "why it has a simpler level than was asked for, empty where it has that one"),
     Field("roof_type", str, "flat, stepped flat, shed, gable, hip, mansard, truncated (with a flat top) or other"),
     Field("ground", float, "elevation of its base, the lowest ground beside it", "m"),
     Field("eave_height", float, "lower quartile of the heights above the terrain at which its roof ends outside", "m"),

@@ -179,7 +179,7 @@ def reconstruct_roofs(
     solids of their own. A level that is farther from the points than a simpler one is left out. The ground is level,
     at the 5th percentile of the ground points nearest to the outline. Curved roofs become strips.
 
-    Other than in the publications, lines cut only the cells along which planes adjoin, so that the cost
+    Unlike in the publications, lines cut only the cells along which planes adjoin, so that the cost
     grows with the border of planes and not with the square of their number. A border costs its length and the
     wall that it needs, in the same unit as the roof that no plane explains: square meters.
 

@@ -41,7 +41,7 @@ _FACES = Layer(
             "status",
             str,
             f"{MATCHED}: most of its points lie on it; {INVENTED}: they don't; {UNSEEN}: it has no points; "
-            f"{MISSING}: a plane of the points that the model has not",
+            f"{MISSING}: a plane of the points that the model lacks",
         ),
         Field("points", int, "roof points above or below it"),
         Field("mean", float, "mean height of these above the face", "m"),
@@ -60,7 +60,7 @@ _BUILDINGS = Layer(
         Field("rms", float, "root mean square height of these above or below the model", "m"),
         Field("p95", float, "95th percentile of these heights", "m"),
         Field("faces", int, "faces of its roof"),
-        Field("missing", int, "planes of the points that the model has not"),
+        Field("missing", int, "planes of the points that the model lacks"),
         Field("invented", int, "faces that most of their points don't lie on"),
         Field("volume", float, "volume between its roof and the lowest of its points or of the ground beside it", "m³"),
     ),

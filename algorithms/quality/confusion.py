@@ -11,7 +11,7 @@ def confusion(true: np.ndarray, called: np.ndarray, count: int) -> np.ndarray:
 
 
 def class_rates(matrix: np.ndarray) -> dict[str, np.ndarray]:
-    """Return completeness, correctness, F and IoU of each class, percent (m,); NaN of nothing."""
+    """Return completeness, correctness, F and IoU of each class, percent (m,); NaN where there are no items."""
     hits, true, called = np.diag(matrix), matrix.sum(axis=1), matrix.sum(axis=0)
     return {
         "completeness": _percent(hits, true),
@@ -22,12 +22,12 @@ def class_rates(matrix: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def overall_accuracy(matrix: np.ndarray) -> float:
-    """Return the share (percent) of items whose class is right; NaN of none."""
+    """Return the share (percent) of items whose class is right; NaN without items."""
     return float(_percent(np.trace(matrix), matrix.sum()))
 
 
 def cohens_kappa(matrix: np.ndarray) -> float:
-    """Return the agreement (percent) beyond that by chance; NaN where chance alone gives all.
+    """Return the agreement (percent) beyond that by chance; NaN where chance alone explains all of it.
 
     References
     ----------

@@ -24,7 +24,7 @@ LEAST_RESOLUTION = HEIGHTS.least
 
 
 def rounding_deviation(elevation: np.ndarray) -> float:
-    """Return the standard deviation of what rounding took from heights or added to them.
+    """Return the standard deviation of the errors of rounded heights.
 
     Parameters
     ----------

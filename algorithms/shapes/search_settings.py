@@ -19,7 +19,7 @@ _RADIUS_DEVIATIONS = 6.0
 # Largest radius (m) that is searched for with nothing set: tanks have up to 20 m, and larger ones take more time.
 _LARGEST_RADIUS = 20.0
 
-# How far around a point of a shape is looked (of its radius) where a cloud is worked on in parts.
+# Distance around a point, as a share of the largest radius, that is read where a cloud is worked on in parts.
 _REACH = 0.5
 
 # Least ratio of the largest radius to the least, with nothing set.
@@ -102,11 +102,11 @@ def check_radii(
     Raises
     ------
     ValueError
-        If it is empty.
+        If the range is empty.
     """
     low = max(_RADIUS_SPACINGS * spacing, _RADIUS_DEVIATIONS * noise) if min_radius is None else min_radius
     extent = float(np.ptp(xyz, axis=0).max())
-    # A part of a cloud may hold few points, which are no mistake of anybody.
+    # The extent of a part of a cloud may be tiny: an automatic range is never empty, so that no error is raised.
     high = (
         max(min(_LARGEST_RADIUS, _SHARE_OF_EXTENT * extent), _LEAST_RANGE * low) if max_radius is None else max_radius
     )

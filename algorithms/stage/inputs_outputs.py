@@ -1,4 +1,4 @@
-"""What stages read and make beside points: layers, rasters and reports, as they are declared and as they are."""
+"""What stages read and make beside points: declarations and contents of layers, rasters, files and reports."""
 
 from __future__ import annotations
 

@@ -70,8 +70,8 @@ _SweepDistance = Annotated[
         unit="m",
         low=0,
         high=100,
-        automatic=f"{GROUND.sweep:g} times the roughness of the finished surface, or the surface noise where that is "
-        f"more; the last third at most {GROUND.sweep_bend:g} cells.",
+        automatic=f"{GROUND.sweep_noise:g} times the roughness of the finished surface, or the surface noise where "
+        f"that is more, and half as much again but at most {GROUND.sweep_bend:g} cells.",
         advanced=True,
     ),
 ]

@@ -1,4 +1,4 @@
-"""Objects on the lowest surface: what an opening by windows removes and what of it does not join the terrain.
+"""Objects on the lowest surface: cells that an opening by windows removes, without those that join the terrain.
 
 The opening after Pingel et al. (2013) removes cells that are higher than terrain of the local slope could be. Regions
 of removed cells come back if they go on into the terrain around without a step, as banks, spits and hilltops do.
@@ -61,7 +61,7 @@ class ObjectRemoval:
     def slope(self, monitor: Monitor) -> np.ndarray:
         """Return the slope of the terrain (rise over run), measured twice, each time without the objects before."""
         first = np.full(self.surface.shape, REMOVAL.flat_slope)
-        # Without free-standing objects, a low roof beside a higher one is as narrow as it is.
+        # Free-standing objects are left out, or a low roof and a higher one beside it were as wide as both together.
         removed = self.is_free_standing | (self.removed_by_opening(first, monitor.part(0, 0.5)) > 0)
         slope = self._slope_without(removed)
         return self._slope_without(self.objects(slope, monitor.part(0.5, 1)))
@@ -214,7 +214,7 @@ def _slope(surface: np.ndarray, cell_size: float) -> np.ndarray:
     axes = [axis for axis in (0, 1) if smooth.shape[axis] > 1]
     gradients = [np.gradient(smooth, cell_size, axis=axis) for axis in axes]
     squares = sum((gradient**2 for gradient in gradients), np.zeros_like(smooth))
-    # On crests, over twice the distance, it is the slope of the flanks.
+    # Crests have no slope of their own: means over twice the distance give them that of their flanks.
     return np.sqrt(ndimage.gaussian_filter(squares, 2 * REMOVAL.smoothing / cell_size, mode="nearest"))
 
 

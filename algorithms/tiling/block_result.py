@@ -1,4 +1,4 @@
-"""What came of a block of a survey: arrays and features in one file."""
+"""Results of a block of a survey: arrays and features in one file."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _LARGE = ("dimensions", "inside", "beside", "rasters")
 
 @dataclass
 class BlockResult:
-    """What came of a block."""
+    """Results of a block."""
 
     #: source, position, (n,): file, and position in it, of every record of the block
     source: np.ndarray
@@ -61,11 +61,10 @@ class BlockResult:
     lattices: dict[str, np.ndarray] = field(default_factory=dict)
     #: Features that have a part in the block, in meters from the survey's origin
     layers: dict[str, LayerFeatures] = field(default_factory=dict)
-    #: dict of str to (n,), bool: Of layers whose features can be put together from pieces which of them the edge of the
-    #: window may have cut off
+    #: dict of str to (n,), bool: by layer, for features that can be put together from pieces, whether the edge of the
+    #: window may have cut them off
     pieces: dict[str, np.ndarray] = field(default_factory=dict)
-    #: Of text files the records of items that belong to these features, with their names in the block, by their class:
-    #: files of one stage are written of the same items
+    #: By class of the items of text files: name in the block and record of each item that belongs to these features
     items: dict[str, list[tuple[str, dict[str, Any]]]] = field(default_factory=dict)
     seconds: dict[str, np.ndarray] = field(default_factory=dict)  #: dict of str to (): how long each step took
     #: dict of str to (): what automatic tunables took, and other values that steps found, by the names that they have
@@ -74,8 +73,8 @@ class BlockResult:
     #: messages, absent: Warnings, and sentences of steps that found nothing, each once
     messages: list[str] = field(default_factory=list)
     absent: list[str] = field(default_factory=list)
-    #: (k, 4): what each window that was tried cost: what lay around the block at most (m), points, and processor time
-    #: for reading and for the chain (s)
+    #: (k, 4): cost of each window that was tried: its widest margin around the block (m), its points, and the processor
+    #: time of reading and of the chain (s)
     tries: np.ndarray = field(default_factory=lambda: np.zeros((0, 4)))
 
     def write(self, path: Path) -> None:

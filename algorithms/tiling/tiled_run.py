@@ -1,4 +1,4 @@
-"""What a run in tiles is asked for, and what comes of it."""
+"""Settings and results of a run in tiles."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ TakeFile = Callable[[Survey, str, FileContent], None]
 
 @dataclass(frozen=True)
 class RunSettings:
-    """What a run is asked for: arguments of :func:`.run_in_tiles.run_in_tiles`, and where it keeps its work."""
+    """Arguments of :func:`.run_in_tiles.run_in_tiles`, and the folder of the work in progress."""
 
     pipeline: Pipeline
     folder: Path
@@ -73,8 +73,8 @@ class TilesOutcome:
 
     ``side`` is that of the blocks, m.
 
-    ``tries`` are those of all blocks, see :class:`.BlockResult`; ``seconds`` are those of each step in all blocks, and
-    ``values`` those that automatic tunables and others had in blocks, each once.
+    ``tries`` are those of all blocks, see :class:`.BlockResult`. ``seconds`` has the sum over the blocks for each step,
+    and ``values`` the different values of automatic tunables and others that blocks found.
     """
 
     survey: Survey

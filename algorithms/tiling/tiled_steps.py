@@ -46,7 +46,7 @@ def tunables_of(pipeline: Pipeline, tunables: dict) -> dict:
 
 
 def preparing(pipeline: Pipeline) -> list[Step]:
-    """Return the steps at the head of a composite after which its points are other ones, or other ones are noise."""
+    """Return the steps at the head of a composite that change which points there are, or which of them are noise."""
     steps = []
     for step in pipeline.steps:
         if step.stage.group != _PREPARATION:

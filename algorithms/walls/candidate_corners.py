@@ -1,4 +1,4 @@
-"""Candidate corners of a footprint: where two of the lines meet that its walls were looked for on."""
+"""Candidate corners of a footprint: the intersections of the lines along which its walls were looked for."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ TOO_SMALL = "too small"
 # Two positions nearer to each other than this (m) are one: more than rounding, less than any wall is thick.
 _SAME = 1e-6
 
-# Lines whose directions differ by less than this (sine) are parallel: walls that were made so differ by rounding only.
+# Lines whose directions differ by less than this (sine) are parallel: lines of one direction differ by rounding only.
 _PARALLEL = 1e-9
 
 

@@ -98,7 +98,7 @@ def classify_walls(
         float,
         Param(
             "Margin around roofs",
-            "How far the convex hull of a roof is grown; walls outside it belong to nobody.",
+            "How far the convex hull of a roof is grown; walls outside it belong to no roof.",
             unit="m",
             low=0,
             high=20,
