@@ -45,7 +45,7 @@ def check_vpc(folder: Optional[Path], given: Iterable[Path]) -> None:
     Raises
     ------
     ValueError
-        If it would.
+        If there is such an input.
     """
     if folder is None:
         return
@@ -84,7 +84,7 @@ def write_survey(
     try:
         write_vpc(tiles, path, to_degrees if crs.isValid() else None)
     except QgsCsException:
-        # With coordinates far outside of its system a survey lies nowhere on Earth.
+        # Coordinates far outside of the area of their system have no position in degrees.
         monitor.warn(
             f"Places in {path.name} are not in degrees: the coordinates lie outside of {crs.userFriendlyIdentifier()}; "
             "check the coordinate reference system of the input."

@@ -18,7 +18,7 @@ from ..segmentation.cluster_measures import (
 )
 from .cluster_decisions import Decisions
 
-# Of points that are not last returns: at the edges of roofs some pulses split.
+# Share of points that are not last returns up to which planar clusters may be edges of roofs, where some pulses split.
 _SPLIT_AT_EDGES = 0.3
 
 

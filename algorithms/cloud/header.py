@@ -224,7 +224,7 @@ def truncated(path: Path, how: str) -> ValueError:
 
 
 class _Reader:
-    """One reading of a header: the stream, the raw bytes and the length that all promises are held against.
+    """One reading of a header: the stream, the raw bytes, and the length against which all sizes are checked.
 
     What would make laspy read without end, or more than there is, is refused before laspy sees it.
     """
@@ -319,7 +319,7 @@ class _Reader:
         start = self.stream.tell()
         if start + size > end:
             name = user_id.split(b"\0")[0].decode("ascii", "replace")
-            # In damaged files it is anything, and would say nothing.
+            # In damaged files the name is often random bytes, which are of no use in a message.
             known = f"{name} {record_id} " if name.isascii() and name.isprintable() else ""
             raise truncated(self.path, f"a record {known}of {size} bytes runs past byte {end}")
         record = Vlr(user_id, record_id, None, description, reserved, self.path, start, size)

@@ -33,7 +33,7 @@ def connect(xyz: np.ndarray, plan_distance: float, height_distance: float, monit
     """
     if not len(xyz):
         return np.zeros(0, np.int32)
-    # A whisker smaller, so that even a box's diagonal is strictly less than the distance.
+    # Slightly smaller, so that even a box's diagonal is strictly less than the distance.
     side = np.array([plan_distance / np.sqrt(2), plan_distance / np.sqrt(2), height_distance]) * (1 - 1e-9)
     boxes = Boxes(xyz, side)
 

@@ -1,10 +1,10 @@
-"""Numbers that decide whether a position is in a sample: as good as random, and the same wherever it is asked for."""
+"""Numbers that decide whether a position is in a sample: as good as random, and the same in every run and block."""
 
 from __future__ import annotations
 
 import numpy as np
 
-# Large odd numbers mix the bits of coordinates; the high ones of the products are mixed well.
+# Large odd numbers mix the bits of coordinates; the high bits of the products are mixed best.
 _MIXERS = (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9)
 
 # Bits of the mixed number that are used.
@@ -12,7 +12,7 @@ _BITS = 24
 
 
 def mixed(positions: np.ndarray) -> np.ndarray:
-    """Return a number (n,), float64, from 0 to below 1, that positions (n, 2 or 3), int64, alone decide.
+    """Return a number (n,), float64, from 0 to below 1, that depends on positions (n, 2 or 3), int64, alone.
 
     Examples
     --------

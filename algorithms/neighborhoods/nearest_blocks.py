@@ -1,8 +1,8 @@
-"""Shapes of neighborhoods whose points nobody has to name.
+"""Shapes of neighborhoods, without lists of their points.
 
-A k-d tree finds the neighbors of one point after the other and sorts them. A covariance needs neither their names nor
-their order. So points that lie side by side, a block, share a list of candidates. All squared distances between the
-two are one matrix product, and what the candidates that are near enough add up to is another.
+A k-d tree finds the neighbors of one point after the other and sorts them. A covariance needs sums over them alone.
+So points that lie side by side, a block, share a list of candidates. All squared distances between the two are one
+matrix product, and the sums over the candidates that are near enough are another.
 """
 
 from __future__ import annotations

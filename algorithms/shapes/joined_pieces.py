@@ -12,7 +12,7 @@ from ..geometry.rings import signed_area
 from ..stage import LayerFeatures, Monitor
 from .plane_polygons import outline_of_cells
 
-# A piece that lies in the largest one but for this part of it adds nothing.
+# A piece of which this share lies in the largest one adds nothing to it.
 _WITHIN = 0.95
 
 # Size of the cells (m) of which the outline of several pieces of a plane is drawn, and their largest number, for which
@@ -21,7 +21,7 @@ _CELL, _MOST_CELLS = 0.1, 2_000_000
 
 
 def whole_axis(pieces: LayerFeatures, points: int) -> LayerFeatures:
-    """Return the cylinder that pieces with overlapping axes are of, from the farthest end to the farthest end.
+    """Return the cylinder of pieces with overlapping axes, from one farthest end to the other.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def whole_axis(pieces: LayerFeatures, points: int) -> LayerFeatures:
 
 
 def whole_plane(pieces: LayerFeatures, points: int) -> LayerFeatures:
-    """Return the plane that pieces which overlap in it are of, with the outline around all of them.
+    """Return the plane of pieces that overlap in it, with the outline around all of them.
 
     Where no piece goes beyond the largest, its polygon stays as it is; else the outline is drawn of cells of 0.1 m.
 

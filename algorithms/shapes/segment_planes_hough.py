@@ -164,7 +164,7 @@ def segment_planes_hough(
     The bins decide between accuracy and reliability. Small bins give parameters more exactly and separate planes that
     are nearly the same. But noise scatters the points of one plane over all bins that are smaller than it, until its
     maximum is no higher than that of planes that exist by chance. Bins as wide as the noise are the best balance, since
-    the parameters are determined by a least-squares fit to the points afterwards, and automatic bins are so.
+    the parameters are determined by a least-squares fit to the points afterwards, and the automatic bins are as wide.
 
     Parameters
     ----------
