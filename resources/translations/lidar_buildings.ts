@@ -812,7 +812,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Margin around roofs (m)&lt;/b&gt;: How far the convex hull of a roof is grown; walls outside it belong to nobody. &lt;i&gt;(at least 0 m and at most 20 m; default 0.3 m)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Margin around roofs (m)&lt;/b&gt;: How far the convex hull of a roof is grown; walls outside it belong to no roof. &lt;i&gt;(at least 0 m and at most 20 m; default 0.3 m)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -2008,7 +2008,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Sweep distance (m)&lt;/b&gt;: Points at most this far above or below the finished surface are ground too; 0 leaves its nodes only. Automatic: 6 times the roughness of the finished surface, or the surface noise where that is more; the last third at most 0.1 cells. &lt;i&gt;(at least 0 m and at most 100 m; default automatic)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Sweep distance (m)&lt;/b&gt;: Points at most this far above or below the finished surface are ground too; 0 leaves its nodes only. Automatic: 4 times the roughness of the finished surface, or the surface noise where that is more, and half as much again but at most 0.1 cells. &lt;i&gt;(at least 0 m and at most 100 m; default automatic)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -2852,7 +2852,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;i&gt;missing&lt;/i&gt;: planes of the points that the model has not</source>
+        <source>&lt;i&gt;missing&lt;/i&gt;: planes of the points that the model lacks</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3028,7 +3028,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;i&gt;reason&lt;/i&gt;: why it has not the level that was wanted, empty where it has</source>
+        <source>&lt;i&gt;reason&lt;/i&gt;: why it has a simpler level than was asked for, empty where it has that one</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3180,7 +3180,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;i&gt;status&lt;/i&gt;: matched: most of its points lie on it; invented: they don&amp;#x27;t; unseen: it has no points; missing: a plane of the points that the model has not</source>
+        <source>&lt;i&gt;status&lt;/i&gt;: matched: most of its points lie on it; invented: they don&amp;#x27;t; unseen: it has no points; missing: a plane of the points that the model lacks</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3204,7 +3204,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;i&gt;volume (m³)&lt;/i&gt;: space between roof and ground: mean height of the roof&amp;#x27;s surface by area</source>
+        <source>&lt;i&gt;volume (m³)&lt;/i&gt;: space between roof and ground: mean height of the roof&amp;#x27;s surface times area</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3792,15 +3792,15 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Automatic: 4 times the roughness of the finished surface, or the surface noise where that is more, and half as much again but at most 0.1 cells.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Automatic: 4.5 standard deviations: the surface noise and 0.05 point spacings.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
         <source>Automatic: 5 cells.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>Automatic: 6 times the roughness of the finished surface, or the surface noise where that is more; the last third at most 0.1 cells.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5416,7 +5416,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>How far the convex hull of a roof is grown; walls outside it belong to nobody.</source>
+        <source>How far the convex hull of a roof is grown; walls outside it belong to no roof.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5528,7 +5528,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>In each window the normals of the points are plotted on the Gaussian sphere. The great circle along which they fill most of it gives the direction of an axis. The points of this circle are projected along the axis, and each votes along its normal, to both sides, for the center of a circle of every radius. The best circle is fitted by least squares, grown along its axis, and kept if its points look like a cylinder. They must be close to it, spread over enough of its circumference, without a bend, with little inside, and end next to the visible arc, where the surface of a kerb goes on. Of cylinders in each other the one with most points is kept. Pieces of one pipe that a flange or the shadow of another object parts are put together, if one cylinder lies as close to the points of each as the cylinder of its own.</source>
+        <source>In each window the normals of the points are plotted on the Gaussian sphere. The great circle along which they fill most of it gives the direction of an axis. The points of this circle are projected along the axis, and each votes along its normal, to both sides, for the center of a circle of every radius. The best circle is fitted by least squares, grown along its axis, and kept if its points look like a cylinder. They must be close to it, spread over enough of its circumference, without a bend, with little inside, and end next to the visible arc, where the surface of a kerb goes on. Of cylinders inside others the one with most points is kept. Pieces of one pipe that a flange or the shadow of another object parts are put together, if one cylinder lies as close to the points of each as the cylinder of its own.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6521,10 +6521,6 @@
     </message>
     <message>
         <source>Other objects of a town that are no buildings.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>Other than in the publications, lines cut only the cells along which planes adjoin, so that the cost grows with the border of planes and not with the square of their number. A border costs its length and the wall that it needs, in the same unit as the roof that no plane explains: square meters.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8056,7 +8052,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>The bins decide between accuracy and reliability. Small bins give parameters more exactly and separate planes that are nearly the same. But noise scatters the points of one plane over all bins that are smaller than it, until its maximum is no higher than that of planes that exist by chance. Bins as wide as the noise are the best balance, since the parameters are determined by a least-squares fit to the points afterwards, and automatic bins are so.</source>
+        <source>The bins decide between accuracy and reliability. Small bins give parameters more exactly and separate planes that are nearly the same. But noise scatters the points of one plane over all bins that are smaller than it, until its maximum is no higher than that of planes that exist by chance. Bins as wide as the noise are the best balance, since the parameters are determined by a least-squares fit to the points afterwards, and the automatic bins are as wide.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8553,6 +8549,10 @@
     </message>
     <message>
         <source>Unevenness of the ground, waves and the roughness of crowns are those of two real clouds, a suburb and a beach. Open ground deviates from planes by 1 to 1.3 cm over 1 m and by 3 to 5 cm over 4 m.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Unlike in the publications, lines cut only the cells along which planes adjoin, so that the cost grows with the border of planes and not with the square of their number. A border costs its length and the wall that it needs, in the same unit as the roof that no plane explains: square meters.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
