@@ -21,7 +21,7 @@ from ..threads import made_ahead
 from .drawn_blocks import Drawing, Outlined, draw_block
 from .footprint_attributes import FIELDS, PointMeasures, footprint_attributes
 from .outline_pieces import Piece, blocks_of, find_pieces
-from .roof_points import edge_weights, evened, find_non_building_points, find_roof_points
+from .roof_points import edge_weights, find_non_building_points, find_roof_points, topmost
 from .row_houses import ROWS, Houses, split_row
 from .soft_shares import Shares, find_shares
 
@@ -319,10 +319,12 @@ def _apart(
 
 def _evidence_of(part: _Part, measures: PointMeasures, how: Drawing) -> _Evidence:
     """Return the shares, pieces and direction weights of the buildings of a part."""
-    roof, label = evened(measures.plan(part.roof), part.label, how.spacing)
-    beside, _ = evened(measures.plan(part.beside), np.zeros(len(part.beside), np.int64), how.spacing)
-    walls = measures.plan(np.setdiff1d(part.members, part.roof))
-    shares = find_shares(roof, edge_weights(roof, walls, how.spacing), label, beside, how.spacing)
+    top = topmost(measures.local(part.roof), part.label, how.spacing)
+    other = topmost(measures.local(part.beside), np.zeros(len(part.beside), np.int64), how.spacing)
+    roof, beside = measures.local(part.roof[top]), measures.plan(part.beside[other])
+    walls = np.setdiff1d(part.members, part.roof)
+    weight = edge_weights(roof, measures.local(walls), how.spacing)
+    shares = find_shares(roof[:, :2], weight, part.label[top], beside, how.spacing)
     pieces = [
         piece
         for number, own in shares.items()

@@ -27,7 +27,7 @@ _UPRIGHT = 3.0
 # Side (spacings) of the cells of which one point is taken for all: four fifths of evenly scattered points remain.
 _THINNED = 0.71
 
-# Weight of the position of a cell with points on a wall: half of the cell is roof. Two fifths of such cells have a
+# Weight of the highest point of a cell with points on a wall: half of the cell is roof. Two fifths of such cells have a
 # point of it, while nearly all of these have one.
 _AT_WALL = 0.43
 
@@ -80,43 +80,44 @@ def find_roof_points(xyz: np.ndarray, cluster: np.ndarray, is_attached: np.ndarr
     return is_roof
 
 
-def evened(plan: np.ndarray, cluster: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return one position (k, 2) for the points of each cluster in each cell of half a square spacing, and the cluster.
+def topmost(xyz: np.ndarray, cluster: np.ndarray, spacing: float) -> np.ndarray:
+    """Return the highest points (k,) of each cluster in each cell of half a square spacing, ascending.
 
-    Walls, and strips that overlap, have many points in little area: their mean in each cell shows where roofs are as
-    evenly as a roof alone does, and moves little with one of them.
+    Walls, and strips that overlap, have many points in little area: one for each cell shows where roofs are as evenly
+    as a roof alone does.
 
     Parameters
     ----------
-    plan : ndarray of shape (n, 2)
-        Easting and northing (m); cells begin at multiples of their size.
+    xyz : ndarray of shape (n, 3)
+        Coordinates (m); cells begin at multiples of their size.
     cluster : ndarray of shape (n,), int64
     spacing : float
         Mean distance of neighboring points (m).
     """
-    if not len(plan):
-        return plan, cluster
-    number = fixed_grid_over(plan, spacing * _THINNED).number(plan)
-    order = np.lexsort((cluster, number))
-    first = np.flatnonzero(np.diff(number[order], prepend=-1) | np.diff(cluster[order], prepend=-1))
-    count = np.diff(first, append=len(order))[:, None]
-    return np.add.reduceat(plan[order], first) / count, cluster[order[first]]
+    if not len(xyz):
+        return np.zeros(0, np.int64)
+    grid = fixed_grid_over(xyz, spacing * _THINNED)
+    order = np.lexsort((xyz[:, 2], cluster, grid.number(xyz)))
+    number = grid.number(xyz)[order]
+    is_last = np.ones(len(order), bool)
+    is_last[:-1] = (number[1:] != number[:-1]) | (cluster[order][1:] != cluster[order][:-1])
+    return np.sort(order[is_last])
 
 
-def edge_weights(roof: np.ndarray, walls: np.ndarray, spacing: float) -> np.ndarray:
-    """Return the weights (n,), 0 to 1, of the positions of cells: less where a wall below ends the roof.
+def edge_weights(top: np.ndarray, walls: np.ndarray, spacing: float) -> np.ndarray:
+    """Return the weights (n,), 0 to 1, of the highest points of cells: less where a wall below ends the roof.
 
     Parameters
     ----------
-    roof, walls : ndarray of shape (n, 2), (m, 2)
-        Positions that :func:`evened` gives, and points on walls, m.
+    top, walls : ndarray of shape (n, 3), (m, 3)
+        Points that :func:`topmost` has kept, and points on walls, m.
     spacing : float
         Mean distance of neighboring points (m).
     """
-    if not len(walls) or not len(roof):
-        return np.ones(len(roof))
-    grid = fixed_grid_over(np.concatenate([roof, walls]), spacing * _THINNED)
-    return np.where(find_cells(np.unique(grid.number(walls)), grid.number(roof))[1], _AT_WALL, 1.0)
+    if not len(walls) or not len(top):
+        return np.ones(len(top))
+    grid = fixed_grid_over(np.concatenate([top, walls]), spacing * _THINNED)
+    return np.where(find_cells(np.unique(grid.number(walls)), grid.number(top))[1], _AT_WALL, 1.0)
 
 
 def find_non_building_points(

@@ -20,7 +20,7 @@ from lidar_buildings.tests.real.clouds import WITH_BUILDINGS, WITHOUT_BUILDINGS,
 REACHED = {
     "buildings/ahn3-delft": (96.6, 76.9),
     "buildings/ahn3-delft-4": (96.2, 68.9),
-    "buildings/ign-stbarth": (91.0, 80.5),
+    "buildings/ign-stbarth": (90.9, 80.5),
     "buildings/ign-stbarth-4": (92.1, 78.0),
     "buildings/ahn-amsterdam-1": (98.3, 76.5),
     "buildings/ign-chalet": (95.8, 81.8),
@@ -82,7 +82,8 @@ def test_every_cloud_of_the_tables_is_held_to_its_figure():
 
 def test_the_documentation_tells_what_was_reached():
     page = (Path(__file__).resolve().parents[2] / "docs" / "accuracy.md").read_text(encoding="utf-8")
-    rows = re.findall(r"^\|.*\| \*\*([\d.]+)\*\* \| ([\d.]+)", page, re.MULTILINE)
+    table = page.partition("<!-- measured: buildings -->")[2].partition("<!-- end -->")[0]
+    rows = re.findall(r"^\|.*\| \*\*([\d.]+)\*\* \| ([\d.]+)", table, re.MULTILINE)
     assert [tuple(map(float, row)) for row in rows] == [REACHED[f"buildings/{name}"] for name in TOLD]
 
 

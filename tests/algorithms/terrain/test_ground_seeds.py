@@ -339,7 +339,7 @@ def test_a_point_is_terrain_where_more_directions_say_so_than_say_it_is_none(ver
     [((0, 0, 0), False), ((0, 1, 0), False), ((0, 0, 1), False), ((0, 1, 1), True), ((1, 0, 0), True), ((1,), True)],
 )
 def test_free_standing_cells_are_so_in_the_first_direction_or_in_all_others(free, stands, monkeypatch):
-    monkeypatch.setattr(module, "_TURNS", (0.0, 30.0, 60.0)[: len(free)])
+    monkeypatch.setattr(module, "_turns", lambda: np.array((0.0, 30.0, 60.0))[: len(free)])
     seeds, stands_free, _ = seeds_of_views(monkeypatch, [{"stands_free": one} for one in free])
     assert stands_free.all() == stands_free.any() == stands
     assert seeds.tolist() == ([] if stands else [1])
