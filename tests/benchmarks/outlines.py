@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import os
 import tempfile
-from importlib.util import find_spec
+from importlib import import_module
 from pathlib import Path
 from typing import Callable
 
@@ -44,11 +44,22 @@ Drawing = Callable[[Cloud], list]
 def outlines() -> list[Table]:
     """Print how far outlines move and how regular they are, how near to the map, and how alike in blocks."""
     drawings = {"in blocks": functools.partial(drawn, merge_touching=True), "house by house": drawn}
-    if find_spec("buildingregulariser"):
-        drawings["Building-Regulariser"] = regularised
+    missing = _why_not_regularised()
+    if missing:
+        print(f"\nThe rows of Building-Regulariser are left out, as it can't be imported: {missing}.")
+        print("Its versions ask for numpy 2; pip finds none beside numpy < 1.27.")
     else:
-        print("\nBuilding-Regulariser is not there (pip install buildingregulariser), so its rows are left out.")
+        drawings["Building-Regulariser"] = regularised
     return [_stability(drawings), _of_map(drawings), _of_blocks()]
+
+
+def _why_not_regularised() -> str:
+    """Return why Building-Regulariser can't be imported; nothing if it can."""
+    try:
+        import_module("buildingregulariser")
+    except ImportError as error:
+        return str(error)
+    return ""
 
 
 def drawn(cloud: Cloud, **tunables: bool) -> list:
