@@ -65,11 +65,13 @@ def samplings_of(
         part = monitor.part(0.3 + 0.7 * done / len(steps), 0.3 + 0.7 * (done + 1) / len(steps))
         alone = part_of(pipeline, [step])
         monitor.inform(f"Measured on parts of the survey: {step.stage.title}.")
-        if step in prepares:
+        # All parts, until the points are those that the others work on.
+        if any(later in prepares for later in steps[done:]):
             parts = [part.part(at / len(clouds), (at + 1) / len(clouds)) for at in range(len(clouds))]
             made = [_made(alone, cloud, before, tunables, heard) for cloud, heard in zip(clouds, parts)]
             clouds = [one for one in made if one is not None]
-            samplings[step.name] = _sampling_of(clouds, corner)
+            if step in prepares:
+                samplings[step.name] = _sampling_of(clouds, corner)
         elif clouds:
             clouds, measured = _measured(alone, _enough(clouds), before, tunables, part)
             before.of_whole.update(measured)

@@ -10,7 +10,7 @@ import numpy as np
 from ..pipeline import Pipeline, Step
 from ..stage import Layer, TextFile
 
-# Steps of this group at the head of a chain decide which points there are and which of them are noise.
+# Steps of this group decide which points there are and which of them are noise.
 _PREPARATION = "Preparation"
 
 
@@ -46,19 +46,21 @@ def tunables_of(pipeline: Pipeline, tunables: dict) -> dict:
 
 
 def preparing(pipeline: Pipeline) -> list[Step]:
-    """Return the steps at the head of a composite that change which points there are, or which of them are noise."""
+    """Return the steps that change which points there are, or which of them are noise, before any step that samples."""
     steps = []
     for step in pipeline.steps:
-        if step.stage.group != _PREPARATION:
+        if step.stage.group == _PREPARATION:
+            steps.append(step)
+        elif step.stage.samples:
             break
-        steps.append(step)
     return steps
 
 
 def measuring(pipeline: Pipeline) -> list[Step]:
     """Return the steps up to the last that prepares the points or measures values that parts take of the whole."""
-    last = max((at for at, step in enumerate(pipeline.steps, start=1) if step.stage.of_whole), default=0)
-    return list(pipeline.steps[: max(last, len(preparing(pipeline)))])
+    prepares = preparing(pipeline)
+    last = (at for at, step in enumerate(pipeline.steps, start=1) if step.stage.of_whole or step in prepares)
+    return list(pipeline.steps[: max(last, default=0)])
 
 
 def owners(pipeline: Pipeline) -> dict[str, tuple[str, str]]:

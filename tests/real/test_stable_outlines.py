@@ -1,4 +1,4 @@
-"""Outlines of two real clouds with fixed classes hold still when points move by 2 mm."""
+"""Outlines of real clouds hold still when points move by 2 mm with fixed classes, and when it is run in blocks."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,8 @@ import pytest
 from lidar_buildings.algorithms.footprints.extract_footprints import extract_footprints
 from lidar_buildings.algorithms.quality.polygon_comparison import hausdorff, match_polygons
 from lidar_buildings.algorithms.stage import Monitor
-from lidar_buildings.tests.real.clouds import detected
+from lidar_buildings.tests.benchmarks.outlines import in_blocks
+from lidar_buildings.tests.real.clouds import detected, path_of
 
 DIMENSIONS = ("classification", "cluster_id", "height_above_ground")
 
@@ -31,3 +32,15 @@ def test_points_moved_by_two_millimeters_hardly_move_outlines(name, least_iou, m
         distances += [hausdorff(one[i], other[j]) for i, j in zip(found.one, found.other)]
     assert np.median(iou) >= least_iou
     assert np.median(distances) <= most_distance
+
+
+@pytest.mark.parametrize("side", [60.0, 140.0])
+def test_outlines_of_blocks_are_those_of_the_whole(side):
+    """How the survey was sampled counted its noise points, which moved two of the ten outlines by 0.5 and 1.2 m."""
+    name = "buildings/ign-stbarth-4"
+    whole = detected(name)
+    one = [[whole.cloud.to_map(ring) for ring in rings] for rings in whole.layers["footprints"].geometries]
+    other = in_blocks(path_of(name), side)
+    found = match_polygons(one, other, Monitor())
+    assert len(found.one) == len(one) == len(other)
+    assert max(hausdorff(one[i], other[j]) for i, j in zip(found.one, found.other)) <= 0.01

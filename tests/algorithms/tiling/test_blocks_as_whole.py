@@ -12,7 +12,7 @@ from lidar_buildings.algorithms.stage import stage
 from lidar_buildings.algorithms.stages import STAGES
 from lidar_buildings.algorithms.tiling import survey_sampling
 from lidar_buildings.algorithms.tiling.run_in_tiles import run_in_tiles
-from lidar_buildings.algorithms.tiling.tiled_steps import of_survey
+from lidar_buildings.algorithms.tiling.tiled_steps import in_blocks, of_survey, preparing
 from lidar_buildings.algorithms.tiling.workers import Workers
 from lidar_buildings.tests.builders import crown, roof
 from lidar_buildings.tests.monitors import Listening
@@ -201,6 +201,15 @@ def keeping(given, function):
         return given[-1]
 
     return kept
+
+
+@pytest.mark.parametrize("name", ["detect_buildings", "model_terrain"])
+def test_steps_that_only_keep_classes_hide_none_that_prepares_the_points(name):
+    """Blocks counted noise in how the survey was sampled, once a step that keeps classes came first."""
+    steps = in_blocks(PIPELINES[name]).steps
+    assert [step.name for step in preparing(in_blocks(PIPELINES[name]))] == [
+        step.name for step in steps if step.stage.group == "Preparation"
+    ]
 
 
 def test_merging_is_no_part_of_a_survey():
