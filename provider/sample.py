@@ -53,7 +53,8 @@ def open_sample(iface: Any) -> None:
         QApplication.restoreOverrideCursor()
     iface.mapCanvas().zoomToFullExtent()
     iface.messageBar().pushInfo(
-        tr("Sample data"), tr("A simulated town without classes. Choose Plugins ▸ LiDAR Buildings ▸ Find buildings.")
+        tr("Sample data"),
+        tr("A simulated town without classes. Choose Plugins ▸ LiDAR Buildings ▸ Find buildings in this view…."),
     )
 
 

@@ -86,7 +86,7 @@ def write_survey(
     except QgsCsException:
         # Coordinates far outside of the area of their system have no position in degrees.
         monitor.warn(
-            f"Places in {path.name} are not in degrees: the coordinates lie outside of {crs.userFriendlyIdentifier()}; "
+            f"Positions in {path.name} are not in degrees: they lie outside of {crs.userFriendlyIdentifier()}; "
             "check the coordinate reference system of the input."
         )
         write_vpc(tiles, path)

@@ -3428,7 +3428,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>A simulated town without classes. Choose Plugins ▸ LiDAR Buildings ▸ Find buildings.</source>
+        <source>A simulated town without classes. Choose Plugins ▸ LiDAR Buildings ▸ Find buildings in this view….</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
