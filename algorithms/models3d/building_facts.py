@@ -210,7 +210,7 @@ def _eave(solids: Sequence[Solid]) -> float:
         start, end = corner, np.roll(corner, -1, axis=0)
         is_upper = np.minimum(start[:, 2], end[:, 2]) > ground
         length = np.hypot(*(end - start)[is_upper, :2].T)
-        # The quarters of an edge stand for its heights.
+        # The middles of the quarters of an edge have its heights.
         for share in (0.125, 0.375, 0.625, 0.875):
             edges.append(np.column_stack([(start + share * (end - start))[is_upper, 2], length / 4]))
     height, length = np.concatenate(edges)[np.argsort(np.concatenate(edges)[:, 0], kind="stable")].T

@@ -162,7 +162,7 @@ class BridgeRelief(Relief):
         return np.maximum(self.ground(x, y), self._level(x, y))
 
     def is_water(self, x, y) -> np.ndarray:
-        """Where water stands."""
+        """Return whether there is water at positions."""
         return self._level(x, y) > self.ground(x, y)
 
     def _level(self, x, y) -> np.ndarray:

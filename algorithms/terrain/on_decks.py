@@ -56,10 +56,10 @@ def on_decks(points: np.ndarray, deck: np.ndarray, least: float = -DECK.below) -
     known = np.isfinite(distance)
     rows, distance, nearest = rows[known], distance[known], nearest[known]
     level = deck[nearest, 2]
-    stands = points[rows, 2] >= level + least
-    beyond = np.flatnonzero(stands & (distance > near))
-    stands[beyond] = _has_deck_behind(points[rows[beyond], :2], deck[nearest[beyond], :2], tree)
-    return rows[stands], level[stands]
+    is_above = points[rows, 2] >= level + least
+    beyond = np.flatnonzero(is_above & (distance > near))
+    is_above[beyond] = _has_deck_behind(points[rows[beyond], :2], deck[nearest[beyond], :2], tree)
+    return rows[is_above], level[is_above]
 
 
 def on_bridges(xyz: np.ndarray, classification: np.ndarray) -> np.ndarray:

@@ -28,9 +28,12 @@ def test_what_arrays_have_left_goes_back_to_the_system():
 
 
 def test_systems_without_such_a_function_do_without(monkeypatch):
+    asked = []
+    monkeypatch.setattr(memory.ctypes, "CDLL", asked.append)
     monkeypatch.setattr(memory.sys, "platform", "win32")
     memory.return_freed()
     memory.share_freed()
+    assert not asked
 
 
 # Eight threads, one after the other, fill 16 MB with arrays too small to have pages of their own, and keep the last.
