@@ -284,9 +284,9 @@ class _Run:
                 f"{len(known)} of {len(blocks)} blocks were worked on before and are taken as they are."
             )
         todo = [number for number in range(len(blocks)) if number not in known]
-        tell = self._teller(len(todo), self.survey.expected * len(todo) / max(1, len(blocks)))
+        log_block = self._block_log(len(todo), self.survey.expected * len(todo) / max(1, len(blocks)))
         wanted, part = [tasks[number] for number in todo], self.monitor.part(SAMPLED, WORKED)
-        results, failed = run_all(executor, work_on_block, wanted, self.settings.stop, part, tell)
+        results, failed = run_all(executor, work_on_block, wanted, self.settings.stop, part, log_block)
         known.update({todo[at]: path for at, path in results.items()})
         done = [(blocks[number], known[number]) for number in sorted(known)]
         lost = [(blocks[todo[at]], failed[at]) for at in sorted(failed)]
@@ -314,12 +314,12 @@ class _Run:
             block, part, tuple(near), settings.pipeline.name, tunables, samplings, halo, result, settings.stop
         )
 
-    def _teller(self, blocks: int, points: float) -> Callable[[int], None]:
+    def _block_log(self, blocks: int, points: float) -> Callable[[int], None]:
         """Return a function that logs from time to time how many blocks are done, how fast, and the time left."""
         start = last = time.monotonic()
         done = 0
 
-        def tell(_: int) -> None:
+        def log_block(_: int) -> None:
             nonlocal done, last
             done += 1
             now = time.monotonic()
@@ -331,7 +331,7 @@ class _Run:
                     f"{_minutes((blocks - done) / pace)} left."
                 )
 
-        return tell
+        return log_block
 
     def _layers(self, blocks: WorkedOn, monitor: Monitor) -> tuple[dict[str, LayerFeatures], dict[str, np.ndarray]]:
         """Return each layer of the composite, of all blocks together, and block and number of the features kept."""

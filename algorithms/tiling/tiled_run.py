@@ -47,7 +47,7 @@ class RunSettings:
 
     @property
     def stop(self) -> Path:
-        """The file that tells workers to stop."""
+        """The file at which workers stop as soon as it exists."""
         return self.work / "stop"
 
 
