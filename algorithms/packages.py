@@ -11,7 +11,7 @@ import importlib
 import importlib.util
 from types import ModuleType
 
-# Import name -> name to install; the one list of what the plugin needs beside numpy.
+# Import name -> name to install; the only list of what the plugin needs besides numpy.
 REQUIRED = {"scipy": "scipy", "sklearn": "scikit-learn", "laspy": "laspy"}
 
 
@@ -19,7 +19,7 @@ class _Lazy(ModuleType):
     """A module that imports itself when one of its names is asked for."""
 
     def __getattr__(self, name: str):
-        # Python itself looks for dunders (doctest, inspect, copy); they are no use of the module.
+        # Python itself asks for dunder names (doctest, inspect, copy), which must not import the module.
         if name.startswith("__"):
             raise AttributeError(name)
         return getattr(importlib.import_module(self.__name__), name)

@@ -9,7 +9,7 @@ import os
 import sys
 from pathlib import Path
 
-# Qt shuffles the attributes of XML unless it is told not to, before it starts: each model would be a new file.
+# Qt shuffles the attributes of XML unless this is set before it starts: each model would be a new file.
 os.environ["QT_HASH_SEED"] = "0"
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "scripts")]

@@ -40,8 +40,8 @@ WIDTH = 640  # pixels
 # Share of the width that is left free on each side.
 MARGIN = 0.02
 
-# Eye-dome lighting: a pixel is darker by the depth (m) that it lies behind those around it, at distances of so many
-# pixels; the strength is chosen by eye.
+# Eye-dome lighting: a pixel is darker by its depth (m) behind pixels at these distances (pixels); the strength is
+# chosen by eye.
 LIGHTING_PIXELS, LIGHTING_STRENGTH = (1, 2), 0.6
 
 # Few different colors make small files.

@@ -5,7 +5,7 @@ The chart is on its help page::
 
     scripts/offscreen.sh .venv/bin/python scripts/hough_picture.py
 
-Planes in random directions among scattered points must be found; pairs of planes that lie close must be told apart.
+Planes in random directions among scattered points must be found; pairs of planes that lie close must be separated.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ COUNT, CLUTTER, SCENES = 9, 14.0, 4
 # memory.
 FIXED = {"slope_bin": 3.0, "tolerance": 2.3 * NOISE, "window_size": 4.0, "max_gap": 1.5, "min_area": 2.0}
 
-# Widths of bins, in deviations. A plane is found, or told apart, where this share of its points is one segment, and the
+# Widths of bins, in deviations. A plane is found, or separated, where this share of its points is one segment, and the
 # same share of the segment's points on planes is the plane's.
 WIDTHS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
 SAME = 0.7
@@ -130,7 +130,7 @@ def main() -> None:
     curves = {}
     for name, color, scene in (
         ("planes found among scattered points", "#004488", clutter),
-        (f"planes {APART:g} deviations apart told apart", "#bb5566", pairs),
+        (f"planes {APART:g} deviations apart, separated", "#bb5566", pairs),
     ):
         curves[name] = color, [share_found(scene, width) for width in WIDTHS]
         print(name, dict(zip(WIDTHS, curves[name][1])))

@@ -90,7 +90,7 @@ install_qgis() {
 }
 
 install_system() {
-    command -v apt-get >/dev/null || fail "This set-up knows Debian and Ubuntu only; README.md tells how to install elsewhere."
+    command -v apt-get >/dev/null || fail "This set-up knows Debian and Ubuntu only; README.md says how to install elsewhere."
     local missing
     missing=$(missing_packages)
     if [ -z "$missing" ]; then

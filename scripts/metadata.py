@@ -46,7 +46,7 @@ def main(arguments: list[str]) -> int:
     if before == after:
         return 0
     if "--check" in arguments:
-        print("metadata.txt doesn't tell what CHANGELOG.md does; run scripts/metadata.py and commit.", file=sys.stderr)
+        print("metadata.txt differs from CHANGELOG.md; run scripts/metadata.py and commit.", file=sys.stderr)
         return 1
     path.write_text(after, encoding="utf-8")
     print("metadata.txt: version and changelog filled in from CHANGELOG.md")

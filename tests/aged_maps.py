@@ -1,4 +1,4 @@
-"""Old maps made from footprints: everything that differs is known, so that a comparison has to tell it."""
+"""Old maps made from footprints, with known differences that a comparison must find."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from lidar_buildings.algorithms.geometry.rings import signed_area
 from lidar_buildings.algorithms.stage import LayerFeatures
 
-# How far (m) the wall of an annex that was added since stood inside of where it stands.
+# Distance (m) from the old wall to that of an annex that was added since.
 ANNEX = 4.5
 
 # A vertex that turns by less (°) may be no corner any more on a map with noise.

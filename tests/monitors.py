@@ -8,7 +8,7 @@ from lidar_buildings.algorithms.stage import Cancelled, Monitor
 
 
 class Listening(Monitor):
-    """Keeps the fractions it is told in ``heard``, and cancels the work from the first one that reaches ``stop_at``."""
+    """Keeps reported fractions in ``heard``, and cancels the work from the first one that reaches ``stop_at``."""
 
     def __init__(self, stop_at: float = math.inf) -> None:
         super().__init__()

@@ -63,7 +63,7 @@ class _Maker:
         self.add("bird", plan, self.surface_at(plan, 4.0) + self.rng.uniform(5, 100, n))
 
     def flock(self, n: int) -> None:
-        # What the border cuts can't be told from the edge of a tree beyond it.
+        # An object that the border cuts looks like the edge of a tree beyond it.
         middle = self.anywhere(1, 12.0)
         plan = middle + self.rng.normal(0, 3.0, (n, 2))
         over = self.surface_at(middle, 12.0) + self.rng.uniform(9, 90)

@@ -62,7 +62,7 @@ def test_a_row_has_as_many_cells_as_the_table_and_no_heading_comes_twice():
 @pytest.mark.parametrize(
     "script", ["accuracy.py", "benchmark.py", "models.py", "structure.py", "surveys.py", "worth.py"]
 )
-def test_every_script_starts_and_tells_where_its_results_go(script):
+def test_every_script_starts_and_says_where_its_results_go(script):
     done = subprocess.run([sys.executable, FOLDER / script, "--help"], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert "--output" in done.stdout

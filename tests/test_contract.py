@@ -384,7 +384,7 @@ def made_by(
     layers: dict[str, LayerFeatures] | None = None,
     **tunables: Any,
 ) -> tuple[StageResults, Monitor]:
-    """Run the stage's function on the scene and return what it made and what it told."""
+    """Run the stage's function on the scene and return what it made and what it reported."""
     monitor = Monitor()
     given = {**(layers or drawn(stage)), **QUICK.get(stage.name, {}), **tunables}
     return stage.unpack(stage.function(*arrays_of(stage, dimensions or scene()), **given, monitor=monitor)), monitor
@@ -450,7 +450,7 @@ def is_sentences(text: str) -> bool:
     return text == text.strip() and (text[0].isupper() or not text[0].isalpha()) and text.endswith(".")
 
 
-def test_sentence_case_is_told_apart():
+def test_sentence_case_is_recognized():
     assert is_sentence_case("Classify ground points of a TIN")
     assert not is_sentence_case("Classify Ground points")
     assert not is_sentence_case("classify ground points")
@@ -462,7 +462,7 @@ def test_ids_are_frozen():
 
 
 @each_stage
-def test_name_is_a_verb_and_tells_what_is_set(stage):
+def test_name_is_a_verb_and_shows_what_is_set(stage):
     verb = stage.name.split("_")[0]
     assert verb in VERBS
     # Points that are made of others have a class of theirs too.
@@ -541,7 +541,7 @@ def test_layers_and_measures_are_labeled(stage):
 
 
 @each_stage
-def test_docstring_tells_what_comes_in_and_goes_out(stage):
+def test_docstring_describes_what_comes_in_and_goes_out(stage):
     assert is_sentences(stage.summary)
     assert stage.section("Returns")
     for name in (*stage.reads, *stage.optional):
@@ -905,7 +905,7 @@ def assert_alike(stage: Stage, made: StageResults, expected: StageResults) -> No
 
 
 @each_with_input
-def test_place_on_earth_does_not_matter(stage):
+def test_position_on_earth_does_not_matter(stage):
     shift = (2.0**19, 2.0**22)  # powers of two: the differences stay exactly the same
     far = dict(scene())
     far["xyz"] = far["xyz"] + (*shift, 0.0)

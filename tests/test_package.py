@@ -165,7 +165,7 @@ def test_unpacked_zip_is_imported_under_its_name(made, tmp_path):
     assert done.returncode == 0, done.stderr
 
 
-def test_metadata_tells_what_the_changelog_does():
+def test_metadata_has_the_changelog():
     current = (ROOT / "metadata.txt").read_text(encoding="utf-8")
     filled = metadata.filled(current, (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"))
     assert filled == current, "run scripts/metadata.py"

@@ -21,7 +21,7 @@ from .cell_features import CellPoints, cell_features
 from .scene_learning import LabeledCells, learn_halves, predict, shared_by_surfaces
 from .space_cells import SpaceCells
 
-# What blocks of a survey take of the whole.
+# Name under which blocks of a survey find what was learned on the whole.
 _LEARNED = "building_likeness"
 
 # Classes that never become building.

@@ -42,7 +42,7 @@ class Cylinder:
 def across_axis(axis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return two unit vectors across an axis (3,) and each other."""
     x, y, z = axis
-    # Across the coordinate that the axis follows least.
+    # Perpendicular to the coordinate axis that makes the largest angle with it.
     least = int(np.argmin(np.abs(axis)))
     first = np.array([(0.0, z, -y), (-z, 0.0, x), (y, -x, 0.0)][least])
     first /= np.sqrt(first @ first)
@@ -113,7 +113,7 @@ def fit_sphere(xyz: np.ndarray, center: np.ndarray, radius: float) -> tuple[np.n
 def explained(residual: np.ndarray, patterns: np.ndarray) -> float:
     """Return the deviation (root mean square, m) that patterns (n, k) explain of residuals (n,), m, beyond chance.
 
-    Chance lets k patterns explain k of n parts of the variance.
+    By chance, k patterns explain the share k / n of the variance.
     """
     count, k = patterns.shape
     size, direction = np.linalg.eigh(patterns.T @ patterns)

@@ -247,7 +247,7 @@ def recorded(echoes: Echoes, left: np.ndarray, number: int, rng: np.random.Gener
     number : int
         Number of the scanner.
     rng : numpy.random.Generator
-        Source of chance.
+        Source of random numbers.
     """
     side = dot(echoes.direction, left[echoes.pulse])
     nadir = np.rad2deg(np.arccos(np.clip(-echoes.direction[:, 2], -1.0, 1.0)))

@@ -49,7 +49,7 @@ def build_plant(pipes: int, tanks: int, spheres: int, clutter: bool, rng: np.ran
     clutter : bool
         Whether there is clutter.
     rng : numpy.random.Generator
-        Source of chance.
+        Source of random numbers.
     """
     plant, bay = Plant(), 0
     left = pipes

@@ -33,7 +33,7 @@ def plant_trees(scene: Scene, per_hectare: float, forest: float, rng: np.random.
     forest : float
         Share that is forest.
     rng : numpy.random.Generator
-        Source of chance.
+        Source of random numbers.
     monitor : Monitor
         Receives the progress.
     """
@@ -110,7 +110,7 @@ def plant_tree(scene: Scene, foot: tuple[float, float, float], height: float, rn
     height : float
         Height, m.
     rng : numpy.random.Generator
-        Source of chance.
+        Source of random numbers.
     """
     x, y, ground = foot
     number = scene.new_id()

@@ -60,7 +60,7 @@ class Relief:
 
     @property
     def spread(self) -> float:
-        """Height (m) that the ground never leaves :meth:`plane` by."""
+        """Upper bound (m) of the vertical distance from the ground to :meth:`plane`."""
         return self.gradient * VALLEY + self.terrace_height + self.hills + _CHANNEL_DEPTH
 
     @property
@@ -84,7 +84,7 @@ class Relief:
         return z if self.river is None else np.where(self.is_water(x, y), self.water_level, z)
 
     def is_water(self, x, y) -> np.ndarray:
-        """Where the river is."""
+        """Whether positions are in the river."""
         if self.river is None:
             return np.zeros(np.shape(x), bool)
         # The channel's profile decides: over level ground it is below the water this far from the axis.
@@ -98,7 +98,7 @@ class Relief:
         return np.array([a, b, z - a * x - b * y])
 
     def _terrace(self, rise):
-        """Steep steps with treads that fall slightly, so that on the whole nothing is gained."""
+        """Height (m) of steep steps, whose treads fall slightly, so that the mean slope stays the same."""
         if not self.terrace_height:
             return 0.0
         riser = self.terrace_height / (min(1.0, _STEEPEST - self.gradient - 0.04 * self.hills))
@@ -109,7 +109,7 @@ class Relief:
         if not self.hills:
             return 0.0
         total = sum(np.sin(kx * across + ky * along + phase) for kx, ky, phase in self.waves)
-        # The valley floor is level, or the river would not be.
+        # The valley floor is level, as the river is.
         fade = 1.0 if self.river is None else np.minimum(np.abs(rise) / 60.0, 1.0)
         return self.hills / (2 * len(self.waves)) * total * fade
 
@@ -137,7 +137,7 @@ def make_relief(
     river : bool
         Whether there is a river.
     rng : numpy.random.Generator
-        Source of chance.
+        Source of random numbers.
 
     Returns
     -------

@@ -53,7 +53,7 @@ def build_home(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generat
     overhang : float
         Overhang of the eaves, m.
     rng : numpy.random.Generator
-        Source of chance.
+        Source of random numbers.
     """
     build = (_rectangle, _rectangle, _hip, _angle, _bend)[int(rng.integers(5))]
     return build(scene, plot, overhang, rng)
@@ -71,7 +71,7 @@ def build_shed(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generat
     overhang : float
         Overhang of the eaves, m.
     rng : numpy.random.Generator
-        Source of chance.
+        Source of random numbers.
     """
     long, wide = rng.uniform(3.0, 6.0), rng.uniform(2.6, 4.0)
     along, across = rng.choice((-1, 1)) * (plot.length - long - 3.0) / 2, (plot.width - wide - 3.0) / 2

@@ -216,7 +216,7 @@ class Cloth:
         return self._state.movable[self._positions] > 0
 
     def settle(self, steps: int, monitor: Monitor) -> int:
-        """Let the cloth fall until it hardly moves, at most ``steps`` times; return how often."""
+        """Let the cloth fall until it hardly moves, in at most ``steps`` steps; return their number."""
         done, is_level = 0, True
         while done < steps:
             count = 1 if is_level else min(_STEPS_AT_ONCE, steps - done)

@@ -146,7 +146,7 @@ def _from_roof(
     """Return lines for sides of the roof without a known wall: through the few points there, or as expected."""
     lines: list[WallLine] = []
     length = np.hypot(*(sides[:, 1] - sides[:, 0]).T)
-    # A long side meets more points than the rest of it beyond a notch, which would stand for it.
+    # A long side meets more points than its remainder beyond a notch, which would be taken for the whole side.
     for number in np.argsort(-length, kind="stable"):
         line = _expected(sides[number], float(overhangs[number]), seen)
         if not any(_is_eave_of(wall, line, _EAVE) for wall in [*seen, *lines]):

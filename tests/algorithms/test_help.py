@@ -44,7 +44,7 @@ def test_every_picture_has_a_caption_and_belongs_to_an_algorithm():
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in (HELP / "pictures").iterdir())
 
 
-def test_the_picture_stands_below_the_summary():
+def test_the_picture_is_below_the_summary():
     text = with_picture("<p>Find roofs.</p>\n<p>More.</p>", "segmentroofs", "file:///pictures")
     assert text.index("roofs.</p>") < text.index('<img src="file:///pictures/segmentroofs.png"') < text.index("More.")
     assert with_picture("<p>Nothing to see.</p>", "filterpoints", "pictures") == "<p>Nothing to see.</p>"

@@ -237,7 +237,7 @@ def test_the_steps_own_tunables_are_ones_that_their_stages_take():
             assert step.stage is STAGES[step.stage_name]
 
 
-# --- what is told meanwhile ------------------------------------------------------------------------------------------
+# --- messages and progress ------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", PIPELINES)
@@ -278,7 +278,7 @@ def test_the_structure_of_one_cloud_is_that_of_the_merged_ones(rng):
     assert not monitor.warnings
 
 
-def test_lines_surfaces_and_volumes_of_two_scanners_are_told_apart(rng):
+def test_lines_surfaces_and_volumes_of_two_scanners_are_separated(rng):
     """The best neighborhoods are smaller than 50 points, and 50 points give the smoother picture, as published."""
     kinds = {"ground": "PLANAR", "wall": "PLANAR", "wire": "LINEAR", "crown": "VOLUMETRIC"}
     shares, chosen = {}, {}

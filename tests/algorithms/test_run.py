@@ -395,7 +395,7 @@ def test_one_cloud_is_merged_with_nothing(cloud):
     assert (merged.get("point_source_id") == 1).all()
 
 
-def test_an_empty_cloud_is_told_by_its_number():
+def test_an_empty_cloud_is_reported_by_its_number():
     xyz, classes = np.zeros((2, 3)), np.zeros(2)
     with pytest.raises(ValueError, match=r"^The point cloud 2 has no points; choose another\.$"):
         merge_toy([xyz, xyz[:0]], [classes, classes[:0]])
@@ -417,7 +417,7 @@ def test_layers_reach_the_stage_and_rasters_come_back_by_name(cloud):
     assert report.values["spots"] == 3
 
 
-def test_a_missing_or_unknown_layer_is_told(cloud):
+def test_a_missing_or_unknown_layer_is_reported(cloud):
     with pytest.raises(ValueError, match=r"^Area \(area\) is missing; choose a layer\.$"):
         run_stage(rasterize_toy.stage, cloud, input_layers={"spots": SQUARE})
     with pytest.raises(ValueError, match=r"^rasterize_toy reads no layer 'hole'; it reads area, spots\.$"):

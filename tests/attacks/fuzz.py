@@ -88,7 +88,7 @@ class Victim:
 
     @property
     def is_late(self) -> bool:
-        """Whether it hangs: by the processor time that it took, where that is told; a loaded machine makes it wait."""
+        """Whether it hangs: by its processor time, where that is known, as a loaded machine makes it wait."""
         waited = time.monotonic() - self.since
         return waited > _START or (not self._is_new and waited > MOST_TIME and self._worked() > MOST_TIME)
 

@@ -186,7 +186,7 @@ def kill(
     _complete(kind, kind.older, cloud, folder)
     older = look()
     if set(newer) & set(older):
-        raise RuntimeError(f"The runs of {kind.algorithm} can't be told apart: {older}, {newer}")
+        raise RuntimeError(f"The runs of {kind.algorithm} can't be distinguished: {older}, {newer}")
     killed = 0
     while killed < kills:
         process = _run(kind, kind.newer, cloud, folder)

@@ -57,7 +57,7 @@ class Mutant:
 
     name: str
     files: dict[str, bytes] = field(repr=False)
-    told: str = ""
+    reported: str = ""
 
 
 # --- sound files ------------------------------------------------------------------------------------------------------

@@ -113,7 +113,7 @@ def _write(cloud: Cloud, path: Path) -> None:
 
 
 def _memory(kind: str) -> float:
-    """Return a figure of this process's memory, in MB: VmHWM (peak) or VmSize (address space); 0 where none is told."""
+    """Return a figure of this process's memory, in MB: VmHWM (peak) or VmSize (address space); 0 if unknown."""
     found = re.search(rf"{kind}:\s*([0-9]+)", _STATUS.read_text()) if _STATUS.exists() else None
     return int(found[1]) / 1024 if found else 0.0
 
@@ -131,7 +131,7 @@ def answer(seed: int, number: int, kinds: tuple[str, ...]) -> dict:
             outcome = "refused" if said else "read"
         except Exception:
             outcome, said = "fault", traceback.format_exc()
-    return {"number": number, "kind": made.told, "outcome": outcome, "said": said, "memory": _memory("VmHWM")}
+    return {"number": number, "kind": made.reported, "outcome": outcome, "said": said, "memory": _memory("VmHWM")}
 
 
 def main() -> None:

@@ -504,10 +504,10 @@ def maps() -> list[Table]:
         length = np.hypot(*moved.T)
         known = {**old.counts, "mean_dx": moved[:, 0].mean(), "mean_dy": moved[:, 1].mean()}
         known.update({"mean": length.mean(), "deviation": length.std()})
-        told = run_stage(
+        reported = run_stage(
             STAGES["compare_corners"], input_layers={"footprints": mapped_ones, "old_map": old.layer}
         ).report.values
-        for called, values in (("done", known), ("told", told)):
+        for called, values in (("true", known), ("reported", reported)):
             table.add(f"{density}, {100 * noise:.0f} cm", called, *(_plain(values[name]) for name in names))
     return [table]
 

@@ -55,7 +55,7 @@ TILE = Path(os.environ.get("LIDAR_BUILDINGS_DATA", ROOT.parent / "shared" / "dat
 # Seconds between two looks at the memory of all processes.
 _BETWEEN_LOOKS = 0.5
 
-# The survey that the cost is told of: points per m², and bytes per point of LAZ.
+# The survey whose cost is estimated: points per m², and bytes per point of LAZ.
 _DENSITY, _LAZ_BYTES = 20.0, 6.0
 
 # Seconds of a core to decompress a point, and to read it again, and write it compressed with its new dimensions: of the
@@ -329,7 +329,7 @@ def main() -> None:
     parser.add_argument("what", choices=["run", "workers", "tiles", "cost", "agree"])
     parser.add_argument("--millions", type=float, default=10.0, help="points of the survey")
     parser.add_argument("--processes", type=int, default=2)
-    parser.add_argument("--tiles", type=int, default=10_000, help="tiles of the survey whose cost is told")
+    parser.add_argument("--tiles", type=int, default=10_000, help="tiles of the survey whose cost is estimated")
     parser.add_argument("--output", type=Path, default=FOLDER)
     given = parser.parse_args()
     if given.what == "cost":

@@ -286,7 +286,7 @@ def test_bounds_are_refused_in_the_words_of_the_core(stage, algorithm, context, 
         assert (accepted, message) == (False, str(refused.value))
 
 
-def test_help_tells_everything(stage, algorithm):
+def test_help_is_complete(stage, algorithm):
     text = algorithm.shortHelpString()
     assert stage.summary.split()[0] in text
     for tunable in stage.tunables.values():
@@ -298,15 +298,15 @@ def test_help_tells_everything(stage, algorithm):
 
 
 @pytest.mark.parametrize("tiled", sorted(TILED_IDS))
-def test_help_of_tiled_composites_tells_their_own_outputs(tiled, provider):
+def test_help_of_tiled_composites_describes_their_own_outputs(tiled, provider):
     algorithm = provider.algorithm(tiled)
     text = algorithm.shortHelpString().split("<h3>Outputs</h3>")[1].split("<h3>")[0]
-    told = {name for names in re.findall("<b>([A-Z_, ]+)</b>", text) for name in names.split(", ")}
-    assert told == {definition.name() for definition in algorithm.outputDefinitions()} - {"VPC"}
+    reported = {name for names in re.findall("<b>([A-Z_, ]+)</b>", text) for name in names.split(", ")}
+    assert reported == {definition.name() for definition in algorithm.outputDefinitions()} - {"VPC"}
 
 
 @pytest.mark.parametrize("name", sorted({*TILED_IDS, CUT_INTO_TILES.id}))
-def test_help_of_surveys_tells_every_setting(name, provider):
+def test_help_of_surveys_describes_every_setting(name, provider):
     algorithm = provider.algorithm(name)
     text = html.unescape(algorithm.shortHelpString())
     for definition in algorithm.parameterDefinitions():
@@ -315,7 +315,7 @@ def test_help_of_surveys_tells_every_setting(name, provider):
 
 
 @pytest.mark.parametrize("name", PIPELINES)
-def test_composites_tell_their_steps(name, provider):
+def test_composites_show_their_steps(name, provider):
     pipeline = PIPELINES[name]
     text = pipeline_help(pipeline)
     assert all(step.stage.title in text for step in pipeline.steps)

@@ -49,7 +49,7 @@ def tiles(town, tmp_path):
     ],
 )
 def test_a_tile_of_a_virtual_cloud_is_never_an_output(provider, context, log, tiles, name, inputs, output):
-    """A model with a virtual cloud as input replaced a tile of it, and a report took the place of one."""
+    """A model with a virtual cloud as input replaced a tile of it, and a report replaced one."""
     vpc, (tile, _) = tiles
     before = digest(tile)
     given = {**dict.fromkeys(inputs, str(vpc)), output: str(tile)}
@@ -162,7 +162,7 @@ def test_errors_name_the_file_that_the_user_gave(provider, context, log, town_fi
 
 
 @pytest.mark.parametrize("name", ["toylift", "toychain"])
-def test_who_cancels_is_told_so_and_gets_no_error(provider, context, log, town_file, out, monkeypatch, name):
+def test_a_cancelled_run_logs_this_and_no_error(provider, context, log, town_file, out, monkeypatch, name):
     """The dialog said "Error encountered" and "Execution failed" to whoever pressed Cancel."""
 
     def cancelled(*args, **kwargs):

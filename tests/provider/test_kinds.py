@@ -461,7 +461,7 @@ def test_only_tif_is_written(provider, context, town_file, out):
         ({"FOOTPRINTS": "ogr:dbname='{out}/folder.gpkg' table=\"a\" (geom)"}, "folder.gpkg is a folder"),
     ],
 )
-def test_where_no_layer_can_be_written_is_told_before_the_work(provider, context, town_file, out, change, sentence):
+def test_where_no_layer_can_be_written_is_reported_before_the_work(provider, context, town_file, out, change, sentence):
     (out / "folder.gpkg").mkdir()
     given = {"INPUT": str(town_file), **{name: value.format(out=out) for name, value in change.items()}}
     assert sentence in refused(provider, "toyoutline", given, context)
@@ -476,7 +476,7 @@ def test_a_table_is_added_to_a_file(provider, context, log, town_file, out):
 
 
 @pytest.mark.parametrize(("name", "file"), [("OUTPUT", "a.laz"), ("PICTURE", "a.tif"), ("FOOTPRINTS", "a.gpkg")])
-def test_a_full_disk_is_told_before_the_work(provider, context, town_file, out, monkeypatch, name, file):
+def test_a_full_disk_is_reported_before_the_work(provider, context, town_file, out, monkeypatch, name, file):
     class Full:
         def __enter__(self):
             return self
@@ -494,13 +494,13 @@ def test_a_full_disk_is_told_before_the_work(provider, context, town_file, out, 
 
 
 @pytest.mark.skipif(os.name == "nt" or os.geteuid() == 0, reason="root writes everywhere")
-def test_a_read_only_folder_is_told_before_the_work(provider, context, town_file, out):
+def test_a_read_only_folder_is_reported_before_the_work(provider, context, town_file, out):
     out.chmod(0o500)
     given = {"INPUT": str(town_file), "FOOTPRINTS": str(out / "a.gpkg")}
     assert "its folder is read-only" in refused(provider, "toyoutline", given, context)
 
 
-def test_what_a_layers_format_says_is_told(provider, context, log, town_file, out, monkeypatch):
+def test_what_a_layers_format_says_is_reported(provider, context, log, town_file, out, monkeypatch):
     """A disk that fills up while features are written."""
 
     class Full:
@@ -560,7 +560,7 @@ def stop(progress, *_):
     return 0
 
 
-def test_gdals_own_words_are_told(town_file, tmp_path, monkeypatch):
+def test_gdals_own_words_are_reported(town_file, tmp_path, monkeypatch):
     before = gdal.GetUseExceptions()
     surface = RasterSurface(np.zeros((2, 2), np.float32), 0, 0, 1)
     place = place_of_cloud(read_cloud(town_file))

@@ -69,8 +69,8 @@ def test_an_old_map_in_degrees_is_compared_in_meters(village, provider, context,
     result = run("mapfootprints", given, context, log)
 
     assert gone > 0 < come
-    told = {name: result[f"COMPARISON_{name}"] for name in ("ALL_FOOTPRINTS", "FOUND", "MISSED", "NEW")}
-    assert told == {"ALL_FOOTPRINTS": len(true), "FOUND": len(true) - come, "MISSED": gone, "NEW": come}
+    reported = {name: result[f"COMPARISON_{name}"] for name in ("ALL_FOOTPRINTS", "FOUND", "MISSED", "NEW")}
+    assert reported == {"ALL_FOOTPRINTS": len(true), "FOUND": len(true) - come, "MISSED": gone, "NEW": come}
     # The map lies 0.3 m to the east and to the north, and its corners are off by 0.15 m in each direction.
     assert [result["COMPARISON_MEAN_DX"], result["COMPARISON_MEAN_DY"]] == pytest.approx([-0.3, -0.3], abs=0.1)
     assert 0.3 < result["COMPARISON_MEAN"] < 0.3 * math.sqrt(2) + 0.15

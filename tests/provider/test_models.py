@@ -457,7 +457,7 @@ def test_the_dialog_begins_with_what_the_composite_is_for(provider):
     assert all(name.endswith("_OUTPUT") for name in made[11:])
 
 
-def test_help_of_a_composite_tells_layers_and_what_is_kept():
+def test_help_of_a_composite_describes_layers_and_what_is_kept():
     text = pipeline_help(TOY_MAPPING)
     assert "<b>OLD</b>: Old map, a layer of polygons. What it was." in text
     assert "<b>EXTRA</b>: Extra, a layer of points; may be left empty. Anything." in text

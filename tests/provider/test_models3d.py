@@ -64,7 +64,7 @@ def test_coordinates_in_a_file_are_those_of_the_map(house, context, log, out):
     assert "OBJ" not in made
 
 
-def test_a_name_that_tells_no_format_is_refused(house, provider, context, out):
+def test_a_name_without_a_format_is_refused(house, provider, context, out):
     given = {**house, "BUILDINGS": "memory:", "CITYJSON": str(out / "m.gml")}
     accepted, message = provider.algorithm("reconstructroofs").create().checkParameterValues(given, context)
     assert not accepted

@@ -180,8 +180,8 @@ def test_another_python_that_comes_first_on_the_path_is_not_taken(monkeypatch, t
     other.chmod(0o755)
     monkeypatch.setattr(sys, "executable", str(other))
     asked = [dependencies.python(), "-c", "import sys; print(sys.version)"]
-    told = subprocess.run(asked, capture_output=True, text=True, check=True).stdout
-    assert told.strip() == sys.version
+    reported = subprocess.run(asked, capture_output=True, text=True, check=True).stdout
+    assert reported.strip() == sys.version
 
 
 def test_packages_are_looked_up_by_import(monkeypatch):

@@ -41,12 +41,12 @@ def test_a_path_goes_in_and_a_cloud_comes_out(provider, context, log, town_file,
     assert [path.name for path in out.iterdir()] == [name]
 
 
-def test_the_log_tells_automatic_values(provider, context, log, town_file, out):
+def test_the_log_has_automatic_values(provider, context, log, town_file, out):
     run("toylift", {"INPUT": str(town_file), "OUTPUT": str(out / "a.las")}, context, log)
     assert "Base, automatic: 10 m" in log.infos
 
 
-def test_the_log_tells_what_is_taken_of_an_earlier_run(provider, context, log, town_file, out):
+def test_the_log_has_what_is_taken_of_an_earlier_run(provider, context, log, town_file, out):
     run("toyoutline", {"INPUT": str(town_file), "FOOTPRINTS": str(out / "a.gpkg")}, context, log)
     assert not [one for one in log.infos if "earlier run" in one]
     run("toylift", {"INPUT": str(town_file), "OUTPUT": str(out / "a.las")}, context, log)
@@ -200,7 +200,7 @@ def wrong(**change):
         (wrong(OUTPUT="{out}/none/a.laz"), "does not exist; make it or choose another one."),
     ],
 )
-def test_what_is_wrong_is_told_in_one_sentence_before_and_in_the_run(
+def test_what_is_wrong_is_reported_in_one_sentence_before_and_in_the_run(
     provider, context, log, town_file, out, change, sentence
 ):
     parameters = {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz"), **change}
@@ -219,7 +219,7 @@ def test_what_is_wrong_is_told_in_one_sentence_before_and_in_the_run(
 
 
 @pytest.mark.parametrize("name", ["toylift", "toychain"])
-def test_a_name_that_is_no_parameter_is_told(provider, context, log, town_file, out, name):
+def test_a_name_that_is_no_parameter_is_reported(provider, context, log, town_file, out, name):
     """A slip on the command line would be a run with the default."""
     given = {"INPUT": str(town_file), "OUTPUT": str(out / "a.las"), "STEPP": 3}
     run(name, given, context, log)
@@ -265,21 +265,23 @@ def test_a_fault_keeps_its_traceback(provider, context, log, town_file, out):
     assert list(out.iterdir()) == []
 
 
-def test_too_little_memory_is_told_in_a_sentence(provider, context, log, town_file, out):
+def test_too_little_memory_is_reported_in_a_sentence(provider, context, log, town_file, out):
     given = {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz"), "KIND": "memory"}
     with pytest.raises(QgsProcessingException, match="^This needs more memory than there is; cut the cloud into tiles"):
         run("toytrouble", given, context, log)
     assert list(out.iterdir()) == []
 
 
-@pytest.mark.parametrize(("there", "told"), [(159_999.0, True), (160_000.0, False), (float("inf"), False)])
-def test_a_cloud_that_hardly_fits_into_memory_is_told(provider, context, log, town_file, out, monkeypatch, there, told):
+@pytest.mark.parametrize(("there", "reported"), [(159_999.0, True), (160_000.0, False), (float("inf"), False)])
+def test_a_cloud_that_hardly_fits_into_memory_is_reported(
+    provider, context, log, town_file, out, monkeypatch, there, reported
+):
     monkeypatch.setattr(memory, "installed_memory", lambda: there)
     run("toylift", {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz")}, context, log)
-    assert [warning.split(" may ")[0] for warning in log.warnings] == ["400 points"] * told
+    assert [warning.split(" may ")[0] for warning in log.warnings] == ["400 points"] * reported
 
 
-def test_it_is_told_before_the_cloud_is_read(provider, context, log, town_file, out, monkeypatch):
+def test_it_is_reported_before_the_cloud_is_read(provider, context, log, town_file, out, monkeypatch):
     def read(*arguments):
         raise MemoryError
 
@@ -385,7 +387,7 @@ def test_layers_are_named_after_what_they_are_of(provider, context, log, town_fi
     assert details.name == expected
 
 
-def test_missing_packages_are_told_everywhere(provider, context, log, town_file, out, monkeypatch):
+def test_missing_packages_are_reported_everywhere(provider, context, log, town_file, out, monkeypatch):
     monkeypatch.setattr(packages, "missing", lambda: ["lazrs"])
     algorithm = provider.algorithm("toylift").create()
     parameters = {"INPUT": str(town_file), "OUTPUT": str(out / "a.laz")}

@@ -109,7 +109,7 @@ def test_clouds_are_drawn_in_3d_as_on_the_map(cloud_file, context, log):
     assert layer.renderer3D().symbol().symbolType() == "classification"
 
 
-def test_footprints_stand_on_the_ground_in_3d(qgis_application):
+def test_footprints_lie_on_the_ground_in_3d(qgis_application):
     from qgis._3d import Qgs3D, QgsPolygon3DSymbol, QgsVectorLayer3DRenderer
 
     Qgs3D.initialize()
@@ -144,7 +144,7 @@ def test_footprints_are_labeled(qgis_application):
     assert layer.labelsEnabled()
 
 
-def test_a_feature_is_called_by_its_number_and_tells_all_where_the_mouse_rests(context, log):
+def test_a_feature_is_called_by_its_number_and_shows_all_where_the_mouse_rests(context, log):
     fields = (Field("id", int, "number"), Field("height", float, "height", "m"), Field("reason", str, "why"))
     layer = QgsVectorLayer("Polygon?field=id:int&field=height:double&field=reason:string", "f", "memory")
     Styler(None, fields).postProcessLayer(layer, context, log)
@@ -174,7 +174,7 @@ def test_every_kind_has_a_style(stem, field, kinds, qgis_application):
     assert {category.value() for category in layer.renderer().categories()} == kinds
 
 
-def test_walls_are_told_from_roofs_and_edges_by_their_quality(qgis_application):
+def test_walls_are_distinguished_from_roofs_and_edges_by_their_quality(qgis_application):
     layer = QgsVectorLayer("Polygon?field=source:string", "f", "memory")
     message, loaded = layer.loadNamedStyle(str(STYLES / "wall_footprints.qml"))
     assert loaded, message

@@ -143,7 +143,7 @@ def test_a_round_tower_is_a_few_chords(density, radius):
     assert np.mean([polygon(one.geometries[0]).hausdorffDistance(polygon([ring])) for one in found]) < 2 * density**-0.5
 
 
-def test_order_place_and_direction_change_nothing(rng):
+def test_order_position_and_direction_change_nothing(rng):
     houses = [[turned([(6 * i, 0), (6 * i + 6, 0), (6 * i + 6, 9 + i % 2), (6 * i, 9 + i % 2)], 25)] for i in range(4)]
     xyz, classification, cluster = scanned(houses, 8, rng)
     here = extract_footprints(xyz, classification, cluster)

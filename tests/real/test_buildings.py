@@ -49,7 +49,7 @@ BY_CHANCE = "buildings/ign-stbarth-4"
 
 SMALL = "buildings/ahn-amsterdam-1"
 
-# Dimensions that the chain writes or leaves, and those by which points are told apart.
+# Dimensions that the chain writes or leaves, and those that identify points.
 WRITTEN = (
     "classification",
     "height_above_ground",
@@ -80,7 +80,7 @@ def test_every_cloud_of_the_tables_is_held_to_its_figure():
     assert (tuple(REACHED), tuple(REACHED_WITHOUT_BUILDINGS)) == (WITH_BUILDINGS, WITHOUT_BUILDINGS)
 
 
-def test_the_documentation_tells_what_was_reached():
+def test_the_documentation_has_the_measured_values():
     page = (Path(__file__).resolve().parents[2] / "docs" / "accuracy.md").read_text(encoding="utf-8")
     table = page.partition("<!-- measured: buildings -->")[2].partition("<!-- end -->")[0]
     rows = re.findall(r"^\|.*\| \*\*([\d.]+)\*\* \| ([\d.]+)", table, re.MULTILINE)

@@ -44,7 +44,7 @@ def test_nothing_large_is_invented_on_the_beach():
     assert largest_false(result.cloud.get("xyz"), result.classification, truth(BEACH)) <= MOST_FALSE
 
 
-def test_matched_images_are_told_from_laser_scanners():
+def test_matched_images_are_distinguished_from_laser_scanners():
     assert all(sampling_of(read_cloud(path_of(name))).is_closed_surface() for name in WITH_IMAGES)
     for name in (*WITH_BUILDINGS, *WITHOUT_BUILDINGS):
         assert not sampling_of(read_cloud(path_of(name))).is_closed_surface()

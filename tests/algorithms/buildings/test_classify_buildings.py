@@ -204,7 +204,7 @@ def test_a_planar_cluster_with_ground_beneath_is_no_building(rng):
     assert (confidence[cluster_id == 2] <= 0.5).all()
 
 
-def test_returns_that_are_not_the_last_tell_penetration_too(rng):
+def test_returns_that_are_not_the_last_show_penetration_too(rng):
     """The same points, once returned in one piece and once the first of two."""
     xyz, cluster_id = clusters(roof(rng, 0, 0, 12, 12), roof(rng, 30, 0, 5, 5), crown(rng, 20, 40))
     single, several = np.ones(len(xyz), int), np.where(cluster_id == 2, 2, 1)
@@ -277,7 +277,7 @@ def test_a_smooth_spot_smaller_than_a_building_is_one_only_beside_another(rng):
 
 @pytest.mark.parametrize("east", [0.0, 13.7])
 def test_a_smooth_spot_amid_leaves_is_no_building_and_a_roof_beside_a_tree_is(rng, east):
-    """In a crown some points lie on a plane by chance: leaves stand all around them, and around no roof."""
+    """In a crown some points lie on a plane by chance: leaves surround them, but no roof."""
     wood = np.concatenate([crown(rng, x, y, 4, 6, 1500) for x in (0, 5) for y in (0, 5)])
     spot = roof(rng, 1, 1, 3, 3, elevation=8.5, density=12)
     roofs = [roof(rng, x, 0, 3, 3, elevation=2.5, density=12) for x in (30, 50)]

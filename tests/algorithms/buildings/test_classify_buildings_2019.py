@@ -177,7 +177,7 @@ def test_what_was_said_of_points_outside_clusters_stays(garden):
     np.testing.assert_array_equal(reason == Reason.INTO_GROUND, cluster_id == 0)
 
 
-def test_order_place_and_numbers_change_nothing(garden, rng):
+def test_order_position_and_numbers_change_nothing(garden, rng):
     xyz, cluster_id = garden
     found, entropy, cluster_entropy, confidence, *_ = classify_buildings_2019(
         xyz, ones(xyz), cluster_id, n_neighbors=24
@@ -191,7 +191,7 @@ def test_order_place_and_numbers_change_nothing(garden, rng):
         np.testing.assert_allclose(other[3], confidence[order], atol=1e-4)
 
 
-def test_the_report_tells_means_and_counts(garden):
+def test_the_report_shows_means_and_counts(garden):
     monitor = Monitor()
     report = classify_buildings_2019(*garden[:1], ones(garden[0]), garden[1], monitor=monitor)[-1]
     assert report.values == {

@@ -151,7 +151,7 @@ def test_a_tree_beside_the_house_is_left_out(scene):
 
 
 @pytest.mark.parametrize(("first", "crown_is_wall"), [(1, False), (3, True), (None, True)])
-def test_a_crown_that_touches_the_wall_is_told_from_it_by_the_pulses_that_pass(scene, first, crown_is_wall):
+def test_a_crown_that_touches_the_wall_is_distinguished_from_it_by_the_pulses_that_pass(scene, first, crown_is_wall):
     """Those on the other wall's balcony pass as well, but that is too narrow for a crown."""
     roof = scene.roof(10, 10, 20, 20, 5.0)
     west, east = scene.xyz[roof, 0].min(), scene.xyz[roof, 0].max()
@@ -298,7 +298,7 @@ def test_any_density(rng, density, least):
     assert (found[~np.isin(np.arange(len(found)), walls) & (scene.xyz[:, 2] == 0)] == 2).all()
 
 
-def test_order_and_place_change_nothing(scene, rng):
+def test_order_and_position_change_nothing(scene, rng):
     scene.roof(10, 10, 20, 22, gable)
     scene.roof(25, 5, 36, 14, 4.0)
     scene.box([10, 10, 0.6], [12, 22, 4], 60)
@@ -324,7 +324,7 @@ def test_twice_is_once(scene):
     np.testing.assert_array_equal(again[1], number)
 
 
-def test_density_is_told(scene):
+def test_density_is_reported(scene):
     monitor = Monitor()
     scene.complete(monitor=monitor)
     assert monitor.values["density"] == pytest.approx(10, rel=0.05)
@@ -381,7 +381,7 @@ def test_confidence_of_what_is_added_is_the_mean_of_its_own_roofs(scene):
     assert confidence[walls[1]] == pytest.approx(0.8)
 
 
-def test_what_is_no_building_after_all_is_told_why(scene):
+def test_what_is_no_building_after_all_is_reported_why(scene):
     small = scene.roof(5, 5, 6.5, 6.5, 4.0)
     low = scene.roof(30, 30, 38, 38, 5.0) & scene.within(33, 33, 34, 34)
     scene.xyz[low, 2] = 0.2

@@ -95,7 +95,7 @@ def test_a_strip_of_a_roof_comes_back_and_a_crown_ceases_to_be_a_building(villag
 
 
 def test_the_probability_is_that_of_the_truth(village):
-    """Roofs and crowns are told apart, also where their labels are wrong; the ground has none."""
+    """Roofs and crowns are separated, also where their labels are wrong; the ground gets no probability of building."""
     probability = village.refine()[0][4]
     assert probability.dtype == np.float32
     assert ((probability >= 0) & (probability <= 1)).all()

@@ -129,7 +129,7 @@ def test_walls_have_the_number_of_their_building(rng):
     ids=["van", "car", "too high", "shed", "garage", "short", "long"],
 )
 @pytest.mark.parametrize("turn", [0.0, 30.0])
-def test_vehicles_are_told_by_their_size(rng, width, length, height, is_vehicle, turn):
+def test_vehicles_are_reported_by_their_size(rng, width, length, height, is_vehicle, turn):
     cos, sin = np.cos(np.deg2rad(turn)), np.sin(np.deg2rad(turn))
 
     def body(x, y):

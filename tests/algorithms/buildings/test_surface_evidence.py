@@ -32,7 +32,7 @@ def test_surfaces_are_buildings_and_what_is_rough_is_none(parts):
     found = decided(parts, [0.9, 0.2])
     assert [Reason(number) for number in found.reasons] == [Reason.SURFACE, Reason.ROUGH]
     np.testing.assert_array_equal(found.is_building, [True, False])
-    # Nothing else stands around the roof.
+    # The roof is the only object.
     assert found.confidence[0] == 1.0
 
 
@@ -67,7 +67,7 @@ def green(bands, group, count, is_surface=None):
     return green_clusters(bands, evidence, np.ones(count, bool) if is_surface is None else is_surface)
 
 
-def test_green_clusters_are_told_from_all_other_colors():
+def test_green_clusters_are_distinguished_from_all_other_colors():
     group = np.repeat(np.arange(4), 100)
     is_green, least = green(colors((GREEN, GRAY, RED, GREEN), 100), group, 4)
     np.testing.assert_array_equal(is_green, [True, False, False, True])

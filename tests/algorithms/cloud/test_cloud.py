@@ -108,13 +108,13 @@ def heights(n):
     """Records of format 1 with the registered "height above ground": int16 in steps of 0.01, then 4 bytes of theirs."""
     records = random_records(1, RECORD_SIZES[1] + 6, n)
     records[:, 28:30] = np.arange(n, dtype="<i2").reshape(n, 1).view(np.uint8)
-    told = descriptor("height above ground", 4, options=1 | 8, no_data=struct.pack("<q", 7), scale=0.01)
-    return records, vlr("LASF_Spec", 4, told + descriptor("Theirs", 9))
+    reported = descriptor("height above ground", 4, options=1 | 8, no_data=struct.pack("<q", 7), scale=0.01)
+    return records, vlr("LASF_Spec", 4, reported + descriptor("Theirs", 9))
 
 
 def test_alias_is_read_with_its_scale_and_no_data(make_las):
-    records, told = heights(20)
-    cloud = read_cloud(make_las(records=records, point_format=1, extra=6, vlrs=(told,)))
+    records, reported = heights(20)
+    cloud = read_cloud(make_las(records=records, point_format=1, extra=6, vlrs=(reported,)))
     expected = np.arange(20) * 0.01
     expected[7] = np.nan
     assert cloud.has("height_above_ground")
@@ -122,8 +122,8 @@ def test_alias_is_read_with_its_scale_and_no_data(make_las):
 
 
 def test_setting_takes_the_place_of_the_alias(make_las, tmp_path, laspy):
-    records, told = heights(20)
-    cloud = read_cloud(make_las(records=records, point_format=1, extra=6, vlrs=(told,)))
+    records, reported = heights(20)
+    cloud = read_cloud(make_las(records=records, point_format=1, extra=6, vlrs=(reported,)))
     cloud.set("height_above_ground", np.linspace(0, 100, 20))
     write_cloud(cloud, tmp_path / "b.las")
     las = laspy.read(tmp_path / "b.las")
@@ -144,7 +144,7 @@ def test_setting_again_overwrites_in_place(town, tmp_path, laspy):
     np.testing.assert_array_equal(new["NormalY"], old["NormalY"])
 
 
-def test_withheld_points_are_told_and_kept(make_las, laspy):
+def test_withheld_points_are_reported_and_kept(make_las, laspy):
     for point_format in (3, 7):
         path = make_las(point_format=point_format, n=300)
         cloud = read_cloud(path)
@@ -222,7 +222,7 @@ def test_wkt_that_is_supplied_later_is_written_to_formats_that_need_it(make_las,
 
 
 @pytest.mark.parametrize("name", ["b.las", "b.laz", "b.copc.laz"])
-def test_progress_is_told_in_order(make_las, tmp_path, monkeypatch, name):
+def test_progress_is_reported_in_order(make_las, tmp_path, monkeypatch, name):
     monkeypatch.setattr("lidar_buildings.algorithms.cloud.points.AT_ONCE", 10)
     monkeypatch.setattr("lidar_buildings.algorithms.cloud.copc.AT_ONCE", 10)
 

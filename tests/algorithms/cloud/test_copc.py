@@ -68,7 +68,7 @@ def test_upper_nodes_show_one_point_per_cell(tree):
     assert corner < 0.05
 
 
-def test_info_tells_times_and_position(tree):
+def test_info_shows_times_and_position(tree):
     path, info, _, las, _ = tree
     assert (info.gps_min, info.gps_max) == (5, 9)
     assert path.read_bytes()[375 + 2 : 375 + 6] == b"copc"

@@ -1,4 +1,4 @@
-"""A box of a COPC file through its index: the same points as from the whole, from few chunks, or one sentence."""
+"""A box of a COPC file is read through its index, from few chunks, with the points of the whole file."""
 
 import shutil
 import struct

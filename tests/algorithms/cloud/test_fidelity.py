@@ -119,7 +119,7 @@ def test_new_dimensions_come_after_the_old_bytes(made, take_apart, tmp_path, poi
     assert new["evlrs"] == old["evlrs"]
 
 
-def test_bytes_that_no_descriptor_tells_of_are_kept_before_new_dimensions(make_las, take_apart, tmp_path, laspy):
+def test_bytes_that_no_descriptor_names_are_kept_before_new_dimensions(make_las, take_apart, tmp_path, laspy):
     path = make_las(point_format=1, minor=2, extra=3)
     cloud = read_cloud(path)
     cloud.set("cluster_id", np.arange(len(cloud)))
@@ -139,15 +139,17 @@ def test_waveforms_of_las_13_stay_where_the_header_says(make_las, take_apart, tm
 
 
 @pytest.mark.parametrize(
-    ("point_format", "encoding", "told"), [(9, 4, True), (4, 4, True), (9, 0, False), (6, 4, False)]
+    ("point_format", "encoding", "reported"), [(9, 4, True), (4, 4, True), (9, 0, False), (6, 4, False)]
 )
-def test_waveforms_in_a_file_of_their_own_are_told(make_las, take_apart, tmp_path, point_format, encoding, told):
+def test_waveforms_in_a_file_of_their_own_are_reported(
+    make_las, take_apart, tmp_path, point_format, encoding, reported
+):
     """The output kept its references, and lay beside no file to which they could refer, without a word."""
     path = make_las(point_format=point_format, minor=3 if point_format < 6 else 4, encoding=encoding)
     path.with_suffix(".wdp").write_bytes(b"waveforms")
     monitor = Monitor()
     write_cloud(read_cloud(path), tmp_path / "b.las", monitor)
-    assert any(".wdp), which is not copied; copy it beside" in sentence for sentence in monitor.warnings) == told
+    assert any(".wdp), which is not copied; copy it beside" in sentence for sentence in monitor.warnings) == reported
     assert take_apart(tmp_path / "b.las")["encoding"] == encoding
     assert not (tmp_path / "b.wdp").exists()
 

@@ -32,7 +32,7 @@ for path in sys.argv[1:]:
         said = str(error)
     print(json.dumps([said, int(re.search(r"VmHWM:\\s*([0-9]+)", Path("/proc/self/status").read_text())[1]) / 1024]))
 """
-pytestmark = pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="memory is measured as Linux tells it")
+pytestmark = pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="memory is read from Linux's /proc")
 
 
 @pytest.fixture(params=["old", "layered", "copc"])
@@ -183,7 +183,7 @@ def test_damage_in_the_chunk_table_and_the_heads_of_chunks(laz):
     assert len(readings(path, *hostile)) == 60
 
 
-def test_points_without_chunks_that_tell_of_layers(laz):
+def test_points_without_chunks_that_name_layers(laz):
     """Laszip ended the process with a segmentation fault."""
     raw, path = laz
     if raw[104] & 63 < 6:

@@ -1,4 +1,4 @@
-"""laspy is imported when it is needed, without what it does not need, and told of where it is missing."""
+"""laspy is imported when needed, without its optional packages; where it is missing, an error names it."""
 
 import subprocess
 import sys

@@ -262,7 +262,7 @@ def test_old_and_new_formats_of_one_system_keep_it(make_las, tmp_path, laspy):
     assert read_cloud(tmp_path / "u.las").wkt == wkt
 
 
-def test_a_cloud_of_each_kind_of_gps_time_is_told(make_las):
+def test_a_cloud_of_each_kind_of_gps_time_is_reported(make_las):
     monitor = Monitor()
     clouds = [read_cloud(make_las(name=f"{i}.las", encoding=i)) for i in range(2)]
     merge_records(clouds, None, monitor)

@@ -141,7 +141,7 @@ def test_tiles_of_different_crs_are_refused(make_las, make_vpc, wkt):
         read_cloud(make_vpc("one.las", "two.las"))
 
 
-def test_waveforms_and_gps_times_that_do_not_merge_are_told(make_las, make_vpc):
+def test_waveforms_and_gps_times_that_do_not_merge_are_reported(make_las, make_vpc):
     from lidar_buildings.tests.las_files import evlr
 
     packets = evlr("LASF_Spec", 65535, b"w" * 100)

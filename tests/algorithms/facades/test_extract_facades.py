@@ -82,7 +82,7 @@ def test_planes_are_those_of_a_singular_value_decomposition(corner):
         assert facades.columns["rms"][i] == pytest.approx(off[1][2] / np.sqrt(len(points)), rel=1e-6)
 
 
-def test_place_turn_and_order_change_nothing(corner, rng):
+def test_position_turn_and_order_change_nothing(corner, rng):
     xyz, classes = corner
     expected = extract_facades(xyz, classes)[1]
     order = rng.permutation(len(xyz))
@@ -254,7 +254,7 @@ def test_a_facade_narrower_than_its_tolerance_keeps_the_boundary_of_its_points(r
 
 
 def test_walls_are_found_among_the_facade_lines_of_a_vehicle_and_a_fence_before_them_is_not():
-    """A fence of 3 m stands 4 m before the fronts of a simulated street; it is nearer to the scanner on its side."""
+    """A fence 3 m high is 4 m before the fronts of a simulated street; it is nearer to the scanner on its side."""
     made = simulate_street.stage.unpack(
         simulate_street(length=20.0, line_rate=30.0, angular_step=0.5, clutter=False, seed=2)
     )

@@ -177,7 +177,7 @@ def test_openings_behind_a_wall_are_not_drawn(rng):
     np.testing.assert_allclose(boxes_of(openings), [WINDOWS[0]], atol=0.06)
 
 
-def test_place_turn_and_order_change_nothing(front, rng):
+def test_position_turn_and_order_change_nothing(front, rng):
     xyz, segment_id = front
     expected = extract_openings(xyz, segment_id)[1]
     order = rng.permutation(len(xyz))
@@ -193,10 +193,10 @@ def test_least_size_and_greatest_depth_decide(front):
     assert not len(extract_openings(*front, max_depth=0.05)[1])
 
 
-def test_clouds_without_facades_or_openings_are_told(rng):
+def test_clouds_without_facades_or_openings_are_reported(rng):
     level = street_floor(rng, 0, 0, 5, 5)
     points = wall(rng, (0, 0), (5, 0))
-    for xyz, told in (
+    for xyz, reported in (
         (level, "No segment is a vertical plane, so there are no facades; run 'Extract facades' first."),
         (
             points,
@@ -206,7 +206,7 @@ def test_clouds_without_facades_or_openings_are_told(rng):
     ):
         monitor = Monitor()
         assert not len(extract_openings(xyz, np.ones(len(xyz), np.int32), monitor=monitor)[1])
-        assert monitor.warnings == [told]
+        assert monitor.warnings == [reported]
 
 
 def test_points_that_a_cloud_holds_twice_change_no_window(rng):

@@ -40,7 +40,7 @@ def test_a_wall_with_nothing_before_it_shows_what_is_behind_its_windows(rng):
 
 
 def test_the_narrow_sides_of_a_bay_face_away_from_it(rng):
-    """Street and cars lie on both sides of each; the fronts tell, as the bay stands 0.8 m before the wall."""
+    """Street and cars lie on both sides of each; the bay, 0.8 m before the wall, shows which side is the front."""
     walls = [
         wall(rng, (0, 0), (4, 0)),
         wall(rng, (4, 0), (4, -0.8)),

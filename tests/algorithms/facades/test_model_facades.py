@@ -10,7 +10,7 @@ from lidar_buildings.tests.facades import street_floor, wall
 
 
 def test_a_front_becomes_a_polygon_with_its_windows(rng):
-    """A front of 8 m by 5 m with two windows of 1.2 m by 1.5 m, whose panes stand 0.15 m behind it."""
+    """A front of 8 m by 5 m with two windows of 1.2 m by 1.5 m, whose panes are 0.15 m behind it."""
     points, panes = wall(rng, (0, 0), (8, 0), density=200), wall(rng, (0, 0.15), (8, 0.15), density=200)
 
     def in_window(xyz):

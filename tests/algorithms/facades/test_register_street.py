@@ -44,7 +44,7 @@ def test_facades_and_openings_of_a_scan_are_moved_onto_the_block(scans):
         xyz, classes, street - off, np.zeros(len(street), np.uint8), outlines(0.2), monitor=monitor
     )
     found = np.array([report.values[name] for name in ("shift_x", "shift_y", "shift_z")])
-    # Along the street only the ends of the rows tell it.
+    # Along the street only the ends of the rows determine the shift.
     np.testing.assert_allclose(found, off, atol=0.15)
     assert report.values["residual"] < 0.15
     assert report.values["walls"] >= 3

@@ -21,7 +21,7 @@ def kinds_of(points, **tunables):
     return np.array(["none", *lines.columns["kind"]])[segment_id], lines
 
 
-def test_ground_facades_and_other_objects_are_told_apart(street):
+def test_ground_facades_and_other_objects_are_separated(street):
     kind, _ = kinds_of(street)
     ground, building = street["classification"] == 2, street["classification"] == 6
     assert np.mean(kind[ground] == "ground") > 0.9
@@ -89,7 +89,7 @@ def test_thresholds_decide(street):
     assert len(np.unique(kinds_of(street, line_duration=0.05)[1].columns["line"])) > 64
 
 
-def test_place_and_order_change_nothing(street, rng):
+def test_position_and_order_change_nothing(street, rng):
     order = rng.permutation(len(street["xyz"]))
     expected, _ = kinds_of(street)
     moved = {name: street[name][order] for name in ("xyz", "gps_time", "point_source_id")}

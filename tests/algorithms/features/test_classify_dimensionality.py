@@ -1,4 +1,4 @@
-"""The largest of three shares, and a wire, a roof and a crown that must be told apart."""
+"""The largest of three shares decides; a wire, a roof and a crown get different classes."""
 
 import numpy as np
 

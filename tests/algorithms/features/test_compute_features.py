@@ -67,7 +67,7 @@ def test_slope_wall_and_crown(gable):
 
 
 @pytest.mark.parametrize("neighborhood", ["nearest", "radius", "optimal"])
-def test_place_turn_and_scale_change_nothing(gable, neighborhood):
+def test_position_turn_and_scale_change_nothing(gable, neighborhood):
     turn = np.array([[0.6, -0.8, 0], [0.8, 0.6, 0], [0, 0, 1]])
     here = named(gable, neighborhood=neighborhood, radius=1.7, n_neighbors=15)
     there = named(3 * gable @ turn.T + [6e5, 5e6, 0], neighborhood=neighborhood, radius=5.1, n_neighbors=15)
@@ -165,7 +165,7 @@ def test_only_what_is_ticked_is_made(gable):
     assert made["linearity"].dtype == np.float32
 
 
-def test_the_count_alone_is_told_everywhere(gable):
+def test_the_count_alone_is_reported_everywhere(gable):
     xyz = np.concatenate([gable, [[500.0, 0, 0]]])
     monitor = Monitor()
     made = named(xyz, features=("optimal_neighbors",), neighborhood="radius", radius=20.0, monitor=monitor)
@@ -175,16 +175,17 @@ def test_the_count_alone_is_told_everywhere(gable):
 
 
 @pytest.mark.parametrize(
-    ("neighborhood", "told"), [({"n_neighbors": 6}, [6]), ({"n_neighbors": 5}, []), ({"neighborhood": "optimal"}, [10])]
+    ("neighborhood", "reported"),
+    [({"n_neighbors": 6}, [6]), ({"n_neighbors": 5}, []), ({"neighborhood": "optimal"}, [10])],
 )
-def test_a_cloud_smaller_than_its_neighborhoods_is_told(neighborhood, told):
+def test_a_cloud_smaller_than_its_neighborhoods_is_reported(neighborhood, reported):
     monitor = Monitor()
     points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 1]]
     compute_features(points, features=("planarity",), monitor=monitor, **neighborhood)
     assert monitor.warnings == [
         f"The cloud has fewer points (5) than a neighborhood asks for ({wanted}): all points have the features of the "
         "whole cloud."
-        for wanted in told
+        for wanted in reported
     ]
 
 
@@ -209,7 +210,7 @@ def test_lonely_points_are_undefined_and_reported(gable):
     assert monitor.warnings == ["1 of 1201 points have too few distinct neighbors: their features are undefined."]
 
 
-def test_automatic_radius_is_told(rng):
+def test_automatic_radius_is_reported(rng):
     monitor = Monitor()
     flat = np.column_stack([rng.uniform(0, 40, (16_000, 2)), np.zeros(16_000)])  # 10 points per m²
     compute_features(flat, neighborhood="radius", n_neighbors=31, monitor=monitor)

@@ -1,4 +1,4 @@
-"""Greenness tells plants from materials in any light, and stays silent where there are no two kinds."""
+"""Greenness separates plants from materials in any light, and gives no result where there are no two kinds."""
 
 from __future__ import annotations
 

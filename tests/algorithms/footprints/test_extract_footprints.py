@@ -54,7 +54,7 @@ def test_village(village, regularize):
     assert table["max_height"] == pytest.approx([7, 10], abs=0.1)
     assert table["ground_elevation"] == pytest.approx([-1, -1], abs=1e-5)
     # Flat roofs: eaves and ridges are where the roof is, and the space is that of a box.
-    # Points of the wall down to a meter under the eaves are not told from the roof, but from its eaves.
+    # Points of the wall down to a meter under the eaves count as points of the eaves.
     assert table["eave_height"] == pytest.approx([7, 10], abs=0.1)
     assert table["ridge_height"] == pytest.approx([7, 10], abs=0.1)
     assert table["volume"] == pytest.approx([7 * table["area"][0], 10 * table["area"][1]], rel=0.01)
@@ -198,7 +198,7 @@ def test_minimum_area(village):
     assert len(extract_footprints(**village, min_area=100.0)) == 1
 
 
-def test_place_changes_nothing(village):
+def test_position_changes_nothing(village):
     here = extract_footprints(**village)
     moved = {**village, "xyz": village["xyz"] + [600_000.0, 5_000_000.0, 300.0]}
     there = extract_footprints(**moved)
@@ -245,7 +245,7 @@ def test_no_building_gives_an_empty_layer(village):
     assert all(len(values) == 0 for values in found.columns.values())
 
 
-def test_buildings_without_a_number_are_told_from_none():
+def test_buildings_without_a_number_are_distinguished_from_none():
     monitor = Monitor()
     xyz, classes = np.random.default_rng(1).uniform(0, 9, (50, 3)), np.full(50, 6, np.uint8)
     found = extract_footprints(xyz, classes, np.zeros(50, np.int32), monitor=monitor)
@@ -253,7 +253,7 @@ def test_buildings_without_a_number_are_told_from_none():
     assert monitor.warnings == ["No point of class 6 (building) has a ClusterID, so there are no footprints."]
 
 
-def test_automatic_values_are_told(village):
+def test_automatic_values_are_reported(village):
     monitor = Monitor()
     extract_footprints(**village, monitor=monitor)
     assert 0.5 < monitor.values["tolerance"] < 0.8

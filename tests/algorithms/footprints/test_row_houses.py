@@ -156,7 +156,7 @@ def test_no_house_is_narrower_than_houses_are(rng):
 
 
 @pytest.mark.parametrize("elevation", [-300.0, 0.0, 3000.0])
-def test_without_heights_the_elevation_of_the_place_changes_nothing(rng, elevation):
+def test_without_heights_the_elevation_of_the_scene_changes_nothing(rng, elevation):
     """Shares of heights were shares of elevations: in the mountains a wing was a house, below sea level none was."""
     for roof, houses in ((with_wings, 1), (gables, 5)):
         xyz, classification, _ = row(rng, roof, 12)
@@ -192,7 +192,7 @@ def test_houses_are_the_same_in_any_order_and_place(rng):
 
 
 @pytest.mark.parametrize("spacing", [3.0, 1.4])
-def test_where_points_are_too_far_apart_to_see_roofs_this_is_told(rng, spacing):
+def test_where_points_are_too_far_apart_to_see_roofs_this_is_reported(rng, spacing):
     """From 2.7 m on, not one place of the grid was beside a wall, and the stage broke off."""
     plan = rng.uniform(0, 1, (round(4800 / spacing**2), 2)) * [80, 60]
     monitor = Monitor()
@@ -201,7 +201,7 @@ def test_where_points_are_too_far_apart_to_see_roofs_this_is_told(rng, spacing):
     assert "too far to see where the houses of a row part" in monitor.infos[-1]
 
 
-def test_a_long_row_tells_its_progress_and_can_be_cancelled(rng):
+def test_a_long_row_reports_its_progress_and_can_be_cancelled(rng):
     xyz, classification, _ = row(rng, steps, 10, houses=12)
     monitor = Listening()
     found = extract_footprints(xyz, classification, monitor=monitor)

@@ -91,7 +91,7 @@ def test_a_wall_and_a_stair():
     assert connect(steps * [0, 0, 1], 0.01, 0.3, Monitor()).max() == 0
 
 
-def test_one_point_many_at_one_place_and_none():
+def test_one_point_many_at_one_position_and_none():
     assert connect(np.zeros((1, 3)), 1.0, 1.0, Monitor()).tolist() == [0]
     assert connect(np.ones((5, 3)), 1.0, 1.0, Monitor()).tolist() == [0] * 5
     assert connect(np.zeros((0, 3)), 1.0, 1.0, Monitor()).shape == (0,)

@@ -149,7 +149,7 @@ def test_places_of_a_grid_some_twice_and_some_later(places, later):
     assert is_delaunay(mesh)
 
 
-def test_progress_is_told(plan):
+def test_progress_is_reported(plan):
     monitor = Listening()
     triangulate(plan, monitor)
     assert monitor.heard[-1] == 1.0

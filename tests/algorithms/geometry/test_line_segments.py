@@ -76,7 +76,7 @@ def test_distances_to_segments_by_hand():
 
 
 @pytest.mark.parametrize("at_once", [1, 20, 1000])
-def test_the_nearest_place_of_a_line_is_on_its_nearest_segment(at_once, rng, monkeypatch):
+def test_the_nearest_position_on_a_line_is_on_its_nearest_segment(at_once, rng, monkeypatch):
     monkeypatch.setattr(module, "_PAIRS_AT_ONCE", at_once)
     points, line = rng.uniform(-5, 25, (31, 2)), L_SHAPE
     share = np.linspace(0, 1, 2001)[:, None, None]

@@ -107,7 +107,7 @@ def test_a_regular_grid_of_nodes_is_its_own_surface(rng):
     np.testing.assert_allclose(TiledTin(nodes).elevation(places), places @ [0.3, -0.2], atol=1e-9)
 
 
-def test_of_nodes_at_one_place_the_lowest_counts(rng):
+def test_of_nodes_at_one_position_the_lowest_counts(rng):
     nodes = ground(rng, lambda plan: plan[:, 0] > -1, 2000)
     places = rng.uniform(0, SIDE, (1000, 2))
     expected = by_one_triangulation(nodes, places)
@@ -116,7 +116,7 @@ def test_of_nodes_at_one_place_the_lowest_counts(rng):
         np.testing.assert_allclose(TiledTin(both).elevation(places), expected, atol=1e-9)
 
 
-def test_order_and_place_change_nothing(rng):
+def test_order_and_position_change_nothing(rng):
     nodes = ground(rng, lambda plan: from_middle(plan) > 20)
     nodes[:, :2] = np.round(nodes[:, :2], 1)  # with twins, and many on one circle
     places = rng.uniform(0, SIDE, (2000, 2))
@@ -154,7 +154,7 @@ def test_no_places():
     assert TiledTin(np.zeros((1, 3))).elevation(np.zeros((0, 2))).shape == (0,)
 
 
-def test_progress_is_told_and_a_cancellation_ends_it(rng):
+def test_progress_is_reported_and_a_cancellation_ends_it(rng):
     monitor = Listening(stop_at=0.3)
     surface = TiledTin(ground(rng, lambda plan: plan[:, 0] > -1))
     with pytest.raises(Cancelled):

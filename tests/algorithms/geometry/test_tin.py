@@ -152,7 +152,7 @@ def test_nodes_on_a_line_have_no_circle():
     assert not np.isfinite(radius).any()
 
 
-def test_a_search_tells_how_far_it_is(nodes, monkeypatch):
+def test_a_search_reports_its_progress(nodes, monkeypatch):
     monkeypatch.setattr(module, "_CHUNK", 10)
     monitor = Listening()
     Tin(nodes).locate(nodes[:40], monitor)

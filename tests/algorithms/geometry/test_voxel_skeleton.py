@@ -28,7 +28,7 @@ def euler_number(grid):
 
 
 def topology(grid):
-    """Objects, components of the background, Euler number: together they tell the tunnels too."""
+    """Objects, components of the background, Euler number: together they determine the number of tunnels too."""
     objects = ndimage.label(grid, CUBE)[1]
     return objects, ndimage.label(~np.pad(grid, 1))[1], euler_number(grid)
 

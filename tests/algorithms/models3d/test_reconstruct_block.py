@@ -131,7 +131,7 @@ def test_of_two_openings_that_cross_the_first_is_set():
     assert [opening.number for opening in with_openings(box(), crossing)[1]] == [1]
 
 
-def test_layers_without_heights_are_told_and_the_footprints_stay():
+def test_layers_without_heights_are_reported_and_the_footprints_stay():
     air, layers = seen_from("airplane")
     flat = LayerFeatures([[ring[:, :2]] for (ring,) in layers["facades"].geometries], {})
     monitor = Monitor()

@@ -89,7 +89,7 @@ def test_faces_are_planar(rng):
         assert np.linalg.svd(places)[1][2] < 1e-9
 
 
-def test_place_turn_and_order_change_nothing(rng):
+def test_position_turn_and_order_change_nothing(rng):
     xyz, classes, plane = house(rng)
     order = rng.permutation(len(xyz))
     expected = vertices_of(gables_of(xyz, classes, plane))

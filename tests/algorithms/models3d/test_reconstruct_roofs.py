@@ -25,7 +25,7 @@ def scene(shape, density=12.0, seed=0, turn=0.0, origin=(0.0, 0.0)):
 
 
 def reconstructed(xyz, classes, footprints, **tunables):
-    """Return what the stage made, by name, and what it told."""
+    """Return the results of the stage by name, and its messages."""
     monitor = Monitor()
     made = reconstruct_roofs.stage.unpack(reconstruct_roofs(xyz, classes, footprints, monitor=monitor, **tunables))
     return made.layers, made.files, monitor
@@ -251,7 +251,7 @@ def test_footprints_without_points_or_area_are_counted():
         reconstructed(xyz, classes, LayerFeatures(geometries[2:], {"id": [3]}))
 
 
-def test_a_roof_below_the_ground_beside_it_has_no_model_and_the_reason_is_told():
+def test_a_roof_below_the_ground_beside_it_has_no_model_and_the_reason_is_reported():
     """Two footprints of one name: one is a house, the other lies on a hill of 20 m that is called building."""
     xyz, classes, footprints = scene(SHAPES["gable"])
     sunk = xyz + [100.0, 0.0, 0.0]

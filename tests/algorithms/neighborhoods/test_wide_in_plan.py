@@ -80,13 +80,13 @@ def test_a_line_alone_stays_one_and_ends_at_sixty():
     assert (found(Wide(80), line)[3] == 80).all()
 
 
-def test_points_at_one_place_are_no_error():
+def test_points_at_one_position_are_no_error():
     eigenvalues = neighborhood_eigenvalues(np.zeros((70, 3)), Wide(8))
     assert np.isnan(eigenvalues).all()
 
 
 def test_normals_of_a_roof_on_scan_lines(rng):
-    """A roof of 45° across lines 1.5 m apart: eight points of one line tell any plane through it."""
+    """A roof of 45° across lines 1.5 m apart: eight points of one line lie on any plane through it."""
     xyz = lines(rng, 1.5, 0.25, slope=1.0, noise=0.02)
     slopes = []
     for neighborhood in (Nearest(8), Wide(8)):

@@ -1,4 +1,4 @@
-"""Noise is found in scenes where it is known, and nothing that stands or hangs in them is lost."""
+"""Noise is found in scenes where it is known, and no object of these becomes noise, hanging wires included."""
 
 import numpy as np
 import pytest
@@ -61,7 +61,7 @@ def test_noise_is_found(rng, density, slope):
     assert (made[len(clean) :][off > 0] != 7).all()
 
 
-def test_place_and_point_order_change_nothing(rng):
+def test_position_and_point_order_change_nothing(rng):
     xyz = np.concatenate([scene(rng, 5), [[50, 50, -30], [60, 20, 90]]])
     made = classify_noise_histogram(xyz, np.ones(len(xyz), np.uint8))
     assert (made[-2:] == [7, 18]).all()
@@ -96,7 +96,7 @@ def test_more_frequency_never_finds_less(rng):
     noise = rng.uniform([0, 0, -60], [100, 100, 100], (400, 3))
     xyz = np.concatenate([clean, noise])
     found = [
-        # Of the histograms only: what they find no longer stands beside isolated points.
+        # The histograms alone, without the search for isolated points.
         np.isin(classify_noise_histogram(xyz, np.ones(len(xyz), np.uint8), min_frequency=f, isolated=False), (7, 18))
         for f in (2, 5, 10)
     ]
@@ -123,7 +123,7 @@ def test_a_lonely_cell_borrows_its_neighbors_range(rng):
 
 
 @pytest.mark.parametrize("xyz", [np.zeros((1, 3)), np.zeros((50, 3)), [[0, 0, 0], [0, 0, 9]]])
-def test_nothing_to_judge_by_is_told(xyz):
+def test_nothing_to_judge_by_is_reported(xyz):
     monitor = Monitor()
     made = classify_noise_histogram(np.asarray(xyz, float), np.full(len(xyz), 2), monitor=monitor)
     assert (made == 2).all()
@@ -137,7 +137,7 @@ def test_too_few_points_for_any_bin():
     assert monitor.warnings == ["No noise was found: no bin of the histograms has 5 points."]
 
 
-def test_automatic_values_are_told(rng):
+def test_automatic_values_are_reported(rng):
     monitor = Monitor()
     flat = np.column_stack([rng.uniform(0, 300, (90_000, 2)), np.zeros(90_000)])
     classify_noise_histogram(flat, np.ones(90_000, np.uint8), monitor=monitor)

@@ -80,7 +80,7 @@ def test_without_a_full_bin_nothing_is_found_and_the_log_says_so():
     assert monitor.warnings == ["No noise was found: no bin of the histograms has 5 points."]
 
 
-def test_order_and_place_change_nothing_and_automatic_values_are_told(field, rng):
+def test_order_and_position_change_nothing_and_automatic_values_are_reported(field, rng):
     xyz = np.concatenate([field, at(-3.5, 8.5, x=15.0)])
     monitor = Monitor()
     classes = classify_noise_histogram_2019(xyz, np.ones(len(xyz), np.uint8), monitor=monitor)

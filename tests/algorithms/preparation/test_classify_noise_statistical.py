@@ -28,7 +28,7 @@ def test_low_and_high(rng):
 
 
 @pytest.mark.parametrize("isolated", [False, True])
-def test_place_and_point_order_change_nothing(rng, isolated):
+def test_position_and_point_order_change_nothing(rng, isolated):
     xyz = np.concatenate([rng.uniform(0, 10, (500, 3)), rng.uniform(-40, 40, (10, 3))])
     made = classify_noise_statistical(xyz, np.ones(510, np.uint8), deviations=2.0, isolated=isolated)
     order = rng.permutation(510)
@@ -57,7 +57,7 @@ def test_known_noise_stays_and_is_not_counted(rng):
 
 
 @pytest.mark.parametrize("n", [1, 8])
-def test_too_few_points_are_told(n):
+def test_too_few_points_give_a_warning(n):
     monitor = Monitor()
     made = classify_noise_statistical(np.zeros((n, 3)), np.ones(n, np.uint8), monitor=monitor)
     assert (made == 1).all()
@@ -84,14 +84,14 @@ def test_sparse_parts_of_a_scene_stay_and_what_is_alone_goes(rng):
     assert (made[-3:] != 1).all()
 
 
-def test_points_on_one_place_in_plan_have_no_scene_to_be_apart_from():
+def test_points_at_one_position_in_plan_are_no_noise():
     xyz = np.zeros((50, 3))
     xyz[:, 2] = np.arange(50.0)
     assert (classify_noise_statistical(xyz, np.ones(50, np.uint8)) == 1).all()
 
 
 def test_a_sample_of_dense_parts_finds_the_same(rng, monkeypatch):
-    """Where points lie close together, the distances of a part of them stand for all; what is alone is looked at."""
+    """Of dense points a sample is measured, and its distances represent all; isolated points are all measured."""
     ground = np.column_stack([rng.uniform(0, 60, (40_000, 2)), rng.normal(0, 0.02, 40_000)])
     crowns = rng.normal([20.0, 20, 9], [4, 4, 1.5], (500, 3))
     stray = rng.uniform([-20, -20, -60], [80, 80, 90], (60, 3))
@@ -108,7 +108,7 @@ def test_a_sample_of_dense_parts_finds_the_same(rng, monkeypatch):
     assert limits[0] != limits[1]
 
 
-def test_piles_of_points_at_places_that_no_sample_meets(monkeypatch):
+def test_piles_of_points_at_positions_that_no_sample_meets(monkeypatch):
     monkeypatch.setattr(noise_statistical, "_SAMPLE", 4)
     xyz = np.repeat([[0.0, 10, 0], [10, 0, 0]], 200, axis=0)
     assert (classify_noise_statistical(xyz, np.ones(400, np.uint8)) == 1).all()

@@ -95,7 +95,7 @@ def test_the_order_of_the_points_changes_nothing(places, side, random):
 
 @settings(max_examples=60)
 @given(steps_of_points, st.sampled_from([1, 2, 5, 10, 25]))
-def test_the_place_of_the_cloud_changes_nothing(places, side):
+def test_the_position_of_the_cloud_changes_nothing(places, side):
     steps = np.array(places)
     here = downsample_voxels(points_at(steps), voxel_size=side / 100)
     there = downsample_voxels(points_at(steps + [60_000_000, 500_000_000, 0]), voxel_size=side / 100)
@@ -177,7 +177,7 @@ def test_equal_votes_give_the_lowest_class():
     assert made.tolist() == [2]
 
 
-def test_points_at_one_place_are_told_apart_by_time_then_by_return():
+def test_points_at_one_position_are_separated_by_time_then_by_return():
     xyz, time, number = np.ones((4, 3)), np.array([3.0, 2.0, np.nan, 2.0]), np.array([1, 2, 1, 1])
     assert downsample_voxels(xyz)[0].tolist() == [0]
     assert downsample_voxels(xyz, None, time + 1)[0].tolist() in ([1], [2])
@@ -185,7 +185,7 @@ def test_points_at_one_place_are_told_apart_by_time_then_by_return():
     assert downsample_voxels(xyz[[0, 1, 3]], None, time[[0, 1, 3]], number[[0, 1, 3]])[0].tolist() == [2]
 
 
-def test_all_points_at_one_place(rng):
+def test_all_points_at_one_position(rng):
     selected, center, majority, count = downsample_voxels(np.full((5000, 3), 4.2e6), np.full(5000, 5))
     assert (len(selected), center[0].tolist(), majority[0], count[0]) == (1, [4.2e6] * 3, 5, 5000)
 

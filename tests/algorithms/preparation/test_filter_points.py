@@ -61,20 +61,20 @@ def test_a_range_and_its_inverse_share_the_points(values, low, width):
     assert sorted([*inside, *outside]) == list(range(len(values)))
 
 
-def test_log_tells_the_range_of_what_is_not_limited():
+def test_log_shows_the_range_of_what_is_not_limited():
     monitor = Monitor()
     filter_points(XYZ, CLASSES, HEIGHTS, np.arange(6), dimension="Z", high=3.0, min_height=0.0, monitor=monitor)
     assert monitor.values == {"max_height": 2.6, "low": 0.0}
 
 
 def test_a_filter_without_limits_says_that_it_filters_nothing():
-    told = []
+    reported = []
     for limits in ({}, {"dimension": "Z"}, {"classes": "2"}, {"dimension": "Z", "low": 0.0}, {"max_height": 9.0}):
         monitor = Monitor()
         filter_points(XYZ, CLASSES, HEIGHTS, np.arange(6), monitor=monitor, **limits)
-        told.append(monitor.warnings)
+        reported.append(monitor.warnings)
     sentence = "No limit is set (no classes, heights or values of a dimension), so all points stay."
-    assert told == [[sentence], [sentence], [], [], []]
+    assert reported == [[sentence], [sentence], [], [], []]
 
 
 def test_limits_may_be_as_large_as_values_are():

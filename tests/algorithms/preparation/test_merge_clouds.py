@@ -106,7 +106,7 @@ def test_source_ids_from_before_are_kept(two):
     assert previous.dtype == np.uint16
 
 
-def test_what_was_done_is_told(two):
+def test_what_was_done_is_reported(two):
     monitor = Monitor()
     merged(two, "0 0 -90 0 0 0", monitor)
     assert monitor.values["rotation_of_cloud_2_in_degrees"] == pytest.approx(90)
@@ -192,25 +192,27 @@ def test_files_that_are_no_transforms_are_refused(tmp_path):
         read_transforms(str(letter), 2)
 
 
-def test_too_few_decimals_for_the_coordinates_are_told(rng):
+def test_too_few_decimals_for_the_coordinates_are_reported(rng):
     turn = Rotation.from_euler("z", 30, degrees=True).as_matrix()
     near, far = rng.uniform(0, 10, (20, 3)), rng.uniform(0, 10, (20, 3)) + [6e5, 5e6, 0]
     coarse, fine = (
         " ".join(f"{value:.{digits}f}" for value in matrix_of(turn, [0, 0, 0]).ravel()) for digits in (6, 10)
     )
-    told = []
+    reported = []
     for points, text in ((near, coarse), (far, fine), (far, coarse)):
         monitor = Monitor()
         merged([points, points], text, monitor)
-        told.append([warning for warning in monitor.warnings if "decimals" in warning])
-    assert told[:2] == [[], []]
-    assert told[2][0].startswith("The matrix of cloud 2 has too few decimals for its coordinates: the nearest rotation")
+        reported.append([warning for warning in monitor.warnings if "decimals" in warning])
+    assert reported[:2] == [[], []]
+    assert reported[2][0].startswith(
+        "The matrix of cloud 2 has too few decimals for its coordinates: the nearest rotation"
+    )
 
 
 # --- Clouds that lie apart
 
 
-def test_clouds_that_lie_apart_are_merged_and_told(two):
+def test_clouds_that_lie_apart_are_merged_and_reported(two):
     monitor = Monitor()
     xyz, *_ = merged([*two, two[0]], "; 0 0 0 1000 0 0", monitor)
     assert len(xyz) == 130
@@ -221,14 +223,14 @@ def test_clouds_that_lie_apart_are_merged_and_told(two):
     )
 
 
-def test_two_clouds_apart_from_each_other_are_told_in_one_sentence(two):
+def test_two_clouds_apart_from_each_other_are_reported_in_one_sentence(two):
     monitor = Monitor()
     merged(two, "0 0 0 1000 0 0", monitor)
     (warning,) = monitor.warnings
     assert "(cloud 1, 2)" in warning
 
 
-def test_neighboring_tiles_are_not_told(rng):
+def test_neighboring_tiles_are_not_reported(rng):
     monitor = Monitor()
     tile = np.concatenate([rng.uniform(0, 100, (500, 3)), [[0, 0, 0], [100, 100, 100]]])
     merged([tile, tile + [100, 0, 0], tile + [0, 100.5, 0]], "", monitor)

@@ -107,7 +107,7 @@ def test_order_changes_nothing_where_heights_are_equal(rng, height_step):
         assert (under_ground(xyz[order], spacing, Monitor()) == found[order]).all()
 
 
-def test_place_and_order_change_nothing(rng):
+def test_position_and_order_change_nothing(rng):
     town = noisy_town(density=4.0, size=80.0, seed=5)
     made = classify_noise_histogram(town.xyz, np.ones(len(town.xyz), np.uint8))
     order = rng.permutation(len(made))

@@ -139,7 +139,7 @@ def test_agrees_with_an_independent_scorer(rng, scorer, n, extent):
         assert values[f"objects_{name}"] == pytest.approx(expected["objects"][name]), name
 
 
-def test_order_and_place_change_nothing(rng):
+def test_order_and_position_change_nothing(rng):
     xyz, predicted, true = random_scene(rng, 4000, 40)
     here = assess_buildings(xyz, predicted, xyz, true)[1].values
     order = rng.permutation(len(xyz))
@@ -164,7 +164,7 @@ def test_only_ignored_points_are_refused():
         assess_buildings(xyz, np.full(36, 6), xyz, np.full(36, 7))
 
 
-def test_automatic_cell_size_is_told_and_page_has_the_figures():
+def test_automatic_cell_size_is_reported_and_page_has_the_figures():
     monitor = Monitor()
     xyz = np.concatenate([block(0, 0, 20, 0.0, step=1.0), block(5, 5, 4, 4.0, step=1.0)])
     true = np.where(xyz[:, 2] > 0, 6, 2)

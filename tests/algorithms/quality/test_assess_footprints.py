@@ -51,7 +51,7 @@ def test_a_moved_square(place):
     assert (values["shift_east"], values["shift_north"]) == pytest.approx((0.3, 0.4), abs=1e-6)
 
 
-def test_each_status_is_told():
+def test_each_status_is_reported():
     reference = [box(0, 0), box(20, 0), box(30, 0), box(50, 0), box(70, 0)]
     footprints = [box(0, 0), box(20, 0, width=20), box(50, 0, width=5), box(55, 0, width=5), box(90, 0)]
     found, values = assessed(footprints, reference)
@@ -120,7 +120,7 @@ def test_corners_farther_apart_than_the_tolerance_are_not_the_same():
     assert row["corner_distance"] == pytest.approx(0.15)
 
 
-def test_the_squareness_of_both_is_told():
+def test_the_squareness_of_both_is_reported():
     cut = [np.array([[0, 0], [10, 0], [10, 6], [6, 10], [0, 10], [0, 0]], float)]
     (row,), values = assessed([cut], [box(0, 0)])
     expected = 32 / (32 + np.hypot(4, 4))

@@ -37,7 +37,7 @@ def test_distances_are_those_of_the_noise():
     assert report.values["on_model"] == pytest.approx(100, abs=0.5)
 
 
-def test_a_model_that_lies_too_high_is_told_by_how_much():
+def test_a_model_that_lies_too_high_is_reported_by_how_much():
     faces, _, report, _ = assessed(faces=gable(0.5), noise=0.0)
     assert faces["mean"][:2] == pytest.approx([-0.5, -0.5], abs=1e-6)
     assert report.values["rms"] == pytest.approx(0.5, abs=1e-6)

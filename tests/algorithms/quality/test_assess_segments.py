@@ -16,7 +16,7 @@ def assess(found, true, **tunables):
     return assess_segments(line(len(found)), np.array(found), line(len(true)), np.array(true), **tunables).values
 
 
-def test_each_fate_is_told():
+def test_each_fate_is_reported():
     true = np.repeat([1, 2, 3, 4, 5, 0], 10)
     found = np.concatenate([np.full(10, 7), np.repeat([3, 4], 5), np.full(20, 9), np.zeros(10), np.full(10, 8)])
     values = assess(found, true)

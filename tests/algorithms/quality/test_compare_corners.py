@@ -49,7 +49,7 @@ def town(rng):
 
 @pytest.mark.parametrize("place", [0, 1])
 @pytest.mark.parametrize("shift", [(0.0, 0.0), (0.3, -0.2), (-1.6, 2.0)])
-def test_every_corner_is_found_and_every_distance_told(town, shift, place):
+def test_every_corner_is_found_and_every_distance_reported(town, shift, place):
     houses, offsets = town
     offsets = offsets + np.array(shift)
     new = [moved(ring, offset) for ring, offset in zip(houses, offsets)]
@@ -74,8 +74,8 @@ def test_every_corner_is_found_and_every_distance_told(town, shift, place):
     }
     assert report.values == pytest.approx(expected, abs=1e-6)
     assert set(report.values) == {measure.name for measure in compare_corners.stage.measures}
-    told = np.column_stack([arrows.columns["dx"], arrows.columns["dy"]])
-    np.testing.assert_allclose(told, offsets.reshape(-1, 2), atol=1e-8)
+    reported = np.column_stack([arrows.columns["dx"], arrows.columns["dy"]])
+    np.testing.assert_allclose(reported, offsets.reshape(-1, 2), atol=1e-8)
     for (start, end), row in zip(arrows.geometries, rows(arrows)):
         np.testing.assert_allclose(end - start, [row["dx"], row["dy"]], atol=1e-9)
         assert row["length"] == pytest.approx(np.hypot(row["dx"], row["dy"]))
@@ -83,7 +83,7 @@ def test_every_corner_is_found_and_every_distance_told(town, shift, place):
     np.testing.assert_allclose(buildings.columns["max_distance"], most, atol=1e-8)
 
 
-def test_missed_and_new_buildings_are_told():
+def test_missed_and_new_buildings_are_reported():
     old = [house(0, 0), house(30, 0), house(60, 0)]
     new = [moved(house(30, 0), [[0, 0.2], [0, 0.2], [0, -0.2], [0, -0.2]]), house(90, 0)]
     arrows, buildings, report = compare_corners(layer(*new), layer(*old))
@@ -283,7 +283,7 @@ def test_heights_of_the_layers_are_not_used():
 
 @pytest.mark.parametrize("away", [(1100.0, 0.0), (0.0, -1100.0), (-700.0, 800.0)])
 def test_a_map_of_another_place_is_refused(away):
-    """All its buildings would be told as gone, which nobody who reads the counts alone would doubt."""
+    """All its buildings would be counted as missed, which looks plausible in the counts alone."""
     footprints = layer(house(0, 0), house(30, 0))
     with pytest.raises(ValueError, match=r"^The footprints and the old map lie 1 km apart; choose a map of this area"):
         compare_corners(footprints, layer(house(0, 0) + away, house(30, 0) + away))
@@ -321,7 +321,7 @@ def test_polygons_without_area_are_left_out_and_counted():
     assert (report.values["all_footprints"], report.values["found"]) == (1, 1)
 
 
-def test_polygons_that_cross_themselves_are_told():
+def test_polygons_that_cross_themselves_are_reported():
     bow = np.array([[0, 0], [10, 9], [10, 0], [0, 8], [0, 0]], float)
     monitor = Monitor()
     compare_corners(layer(house(0, 0)), layer(bow, house(30, 0)), monitor=monitor)
@@ -359,9 +359,9 @@ def test_a_village_and_its_old_map(shift):
     *_, footprints, old_map = simulate_village(size=120.0, density=5.0, map_shift=shift, map_changes=0.2)
     _, buildings, report = compare_corners(footprints, old_map)
     state = dict(zip(map(str, old_map.columns["id"]), old_map.columns["state"]))
-    told = [row for row in rows(buildings) if row["status"] != NEW]
-    assert {state[row["building"]] for row in told if row["status"] == FOUND} == {"kept"}
-    assert {state[row["building"]] for row in told if row["status"] == MISSED} == {"demolished"}
+    reported = [row for row in rows(buildings) if row["status"] != NEW]
+    assert {state[row["building"]] for row in reported if row["status"] == FOUND} == {"kept"}
+    assert {state[row["building"]] for row in reported if row["status"] == MISSED} == {"demolished"}
     known = {str(number) for number in old_map.columns["building"]}
     new = {row["building"] for row in rows(buildings) if row["status"] == NEW}
     assert new == set(map(str, footprints.columns["id"])) - known
@@ -386,6 +386,6 @@ def test_what_was_done_to_footprints_to_make_a_map_of_them_comes_back(shift):
     lines = sorted(tuple(np.round([*line[0], *(line[1] - line[0])], 6)) for line in displacements.geometries)
     known = [(*place, *way) for places, ways in old.corners.values() for place, way in zip(places, ways)]
     np.testing.assert_allclose(lines, sorted(tuple(np.round(row, 6)) for row in known), atol=2e-6)
-    told = {row["building"]: row["status"] for row in rows(buildings) if row["status"] != NEW}
+    reported = {row["building"]: row["status"] for row in rows(buildings) if row["status"] != NEW}
     names = list(map(str, old.layer.columns["id"]))
-    assert told == dict(zip(names, [FOUND] * (len(names) - 2) + [MISSED] * 2))
+    assert reported == dict(zip(names, [FOUND] * (len(names) - 2) + [MISSED] * 2))

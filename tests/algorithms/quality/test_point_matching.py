@@ -21,7 +21,7 @@ def test_any_order(cloud, rng):
     assert (cloud[order][found] == cloud).all()
 
 
-def test_points_at_one_place_keep_their_order():
+def test_points_at_one_position_keep_their_order():
     xyz = np.array([[0.0, 0, 0], [1, 1, 1], [0, 0, 0]])
     assert match_points(xyz, xyz).tolist() == [0, 1, 2]
     assert match_points(xyz, np.array([[1.0, 1, 1], [0, 0, 0], [0, 0, 0]])).tolist() == [1, 0, 2]

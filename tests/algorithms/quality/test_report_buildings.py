@@ -60,7 +60,7 @@ def test_doubtful_buildings_come_least_sure_first_and_their_texts_are_escaped(fo
 
 def test_the_map_has_each_footprint_in_the_color_of_its_confidence(footprints, cloud):
     page = report_buildings(*cloud, footprints).html
-    # The surest are drawn first; the first point of a path tells them apart, and north is up.
+    # The buildings of the highest confidence are drawn first; their paths differ in the first point, and north is up.
     fills = re.findall(r'<path fill="(#\w+)" d="M([\d.]+),', page)
     assert [color for color, _ in fills] == ["#004488", "#ddaa33", "#bb5566"]
     west = [float(x) for _, x in fills]

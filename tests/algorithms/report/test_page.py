@@ -1,4 +1,4 @@
-"""The page stands alone and its map shows what happened where."""
+"""The page needs no other file, and its map shows each outcome at its position."""
 
 import base64
 import re

@@ -1,4 +1,4 @@
-"""Clouds that are one closed surface are told from those that are seen through."""
+"""Clouds that show one closed surface are distinguished from those whose pulses pass through crowns."""
 
 from __future__ import annotations
 

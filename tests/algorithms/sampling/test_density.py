@@ -39,12 +39,12 @@ def test_points_above_each_other_share_a_place(n_points):
 
 
 def test_a_wall_stored_to_centimeters(rng):
-    """Three meters of a wall that is 6 cm deep, a hundred points on each place that the file can tell."""
+    """Three meters of a wall that is 6 cm deep, with a hundred points at each position that the file can represent."""
     xyz = rng.uniform(0, [3, 0.06, 10], (180_000, 3)).round(2)
     assert point_density(xyz) == pytest.approx(180_000 / (3 * 0.06), rel=0.2)
 
 
-def test_points_at_one_place_are_refused():
+def test_points_at_one_position_are_refused():
     with pytest.raises(ValueError, match=r"no extent in plan \(points: 7\), so it has no density; choose"):
         point_density(np.column_stack([np.ones(7), np.ones(7), np.arange(7)]))
 

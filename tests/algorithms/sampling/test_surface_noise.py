@@ -85,7 +85,7 @@ def test_trees_over_two_thirds_of_the_ground_do_not_count(rng):
     assert surface_noise(np.concatenate([open_ground, crowns])) == pytest.approx(0.03, rel=0.35)
 
 
-def test_in_a_closed_forest_the_few_smooth_places_tell_the_noise(rng):
+def test_in_a_closed_forest_the_few_smooth_parts_show_the_noise(rng):
     """A tenth of the points lie on the ground: the smoothest fifth reaches into the crowns.
 
     The bound was 10 cm for a noise that was understated by the factor 0.773.
@@ -100,11 +100,11 @@ def test_a_handful_of_points_has_the_least_noise(count):
     assert surface_noise(np.arange(3.0 * count).reshape(-1, 3)) == 0.01
 
 
-def test_points_at_one_place_have_the_least_noise():
+def test_points_at_one_position_have_the_least_noise():
     assert surface_noise(np.zeros((50, 3))) == 0.01
 
 
-def test_order_and_place_change_nothing(rng):
+def test_order_and_position_change_nothing(rng):
     xyz = plane(rng, 0.04).round(3)
     expected = surface_noise(xyz)
     assert surface_noise(rng.permutation(xyz)) == pytest.approx(expected, rel=1e-9)
@@ -159,8 +159,8 @@ def test_a_cloud_without_width_is_looked_at_whole(stretch, rng, small_sample):
     assert len(sample) == len(sample.rows) == len(xyz)
 
 
-def test_a_cloud_on_few_places_is_looked_at_whole(rng, small_sample):
-    """Twenty masts of 500 points stand at so few places that chance would leave nearly all out."""
+def test_a_cloud_on_few_positions_is_looked_at_whole(rng, small_sample):
+    """Twenty masts of 500 points cover so few cells that a random sample would miss nearly all."""
     mast = np.column_stack([np.zeros((500, 2)), np.arange(500) / 50])
     xyz = (rng.uniform(0, 100, (20, 1, 3)) * [1, 1, 0] + mast).reshape(-1, 3)
     assert len(SurfaceSample(xyz)) == len(xyz)
@@ -241,7 +241,7 @@ def test_density_on_a_grid_by_hand():
     assert surface_density(wall) == surface_density(level)
 
 
-def test_points_at_one_place_have_no_density():
+def test_points_at_one_position_have_no_density():
     assert surface_density(np.full((20, 3), 7.0)) == np.inf
 
 

@@ -115,7 +115,7 @@ def test_ground_is_needed():
         classify_bridges(np.zeros((5, 3)), np.ones(5, np.uint8))
 
 
-def test_order_and_place_change_nothing():
+def test_order_and_position_change_nothing():
     xyz, part = canal(20.0)
     xyz = (xyz * 1024).round() / 1024
     made = classified(xyz, part)

@@ -107,7 +107,7 @@ def test_no_segments_no_bridges():
         np.testing.assert_array_equal(classify_ground_segments(xyz, classes, np.zeros(300, np.int32)), classes)
 
 
-def test_order_and_place_change_nothing():
+def test_order_and_position_change_nothing():
     xyz, part = valley()
     xyz = xyz.round(3)
     ones = np.ones(len(xyz), np.uint8)

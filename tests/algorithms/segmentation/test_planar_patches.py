@@ -140,7 +140,7 @@ def test_points_above_a_roof_are_not_on_it(rng):
     assert (np.delete(patch, np.arange(0, 1500, 50)) == roof).mean() > 0.97
 
 
-def test_order_place_and_direction_change_nothing(rng):
+def test_order_position_and_direction_change_nothing(rng):
     xyz, _ = gable(rng, 8, 0.02)
     patch = segment_patches(xyz, 8.0, 0.02, 75.0, Monitor())
     order = rng.permutation(len(xyz))

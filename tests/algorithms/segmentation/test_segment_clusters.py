@@ -53,7 +53,7 @@ def test_chunks_of_pairs_change_nothing(monkeypatch, rng):
 
 
 def test_a_border_point_goes_to_the_first_of_the_clusters_it_touches():
-    """Two rows of cores with one point between them, which sees one core of each and is none itself."""
+    """Two rows of core points with one point between them, which is near one core of each but is no core point."""
     y = np.array([0, 0.25, 0.5, 0.75, 1.75, 2.75, 3, 3.25, 3.5])
     xyz = np.column_stack([np.zeros(9), y, np.zeros(9)])
     assert dbscan(xyz, 1.0, 4, Monitor()).tolist() == [0, 0, 0, 0, 0, 1, 1, 1, 1]
@@ -122,7 +122,7 @@ def test_nothing_to_cluster_gives_no_id(rng):
     assert segment_clusters(rng.uniform(0, 9, (50, 3)), np.ones(50), radius=0.001, min_points=2).max() == 0
 
 
-def test_place_changes_nothing(rng):
+def test_position_changes_nothing(rng):
     xyz = rng.uniform(0, [20, 20, 3], (800, 3)).round(3)
     ids = segment_clusters(xyz, np.ones(800), radius=1.0, min_points=4)
     assert ids.max() > 5

@@ -166,7 +166,7 @@ def test_a_barrel_roof_is_cut_into_strips_that_hold_their_points(rng):
         assert np.abs(off).max() <= 2.5 * monitor.values["tolerance"]
 
 
-def test_seed_decides_and_order_place_and_chunks_do_not(monkeypatch, rng):
+def test_seed_decides_and_order_position_and_chunks_do_not(monkeypatch, rng):
     roof, _ = gable(rng)
     xyz = np.round(np.concatenate([roof, rng.uniform([0, 0, 4], [12, 8, 10], (800, 3))]) * 1024) / 1024
     ids = segment(xyz)
@@ -182,7 +182,7 @@ def test_seed_decides_and_order_place_and_chunks_do_not(monkeypatch, rng):
     assert any((segment(xyz, trials=3, seed=seed) != segment(xyz, trials=3)).any() for seed in range(2, 6))
 
 
-def test_many_points_at_one_place_and_lines_are_no_plane(rng):
+def test_many_points_at_one_position_and_lines_are_no_plane(rng):
     xyz = np.concatenate([np.zeros((500, 3)), np.column_stack([np.linspace(5, 30, 500), np.zeros((500, 2))])])
     monitor = Monitor()
     ids, _ = segment_planes_ransac(xyz, np.ones(1000), max_slope=90.0, monitor=monitor)

@@ -59,7 +59,7 @@ def same_groups(one, other):
 
 
 @pytest.mark.parametrize(
-    ("zigzag", "told"),
+    ("zigzag", "reported"),
     [
         (True, ("scan_direction_flag",)),
         (True, ("edge_of_flight_line", "scan_angle")),
@@ -70,12 +70,12 @@ def same_groups(one, other):
         (False, ()),
     ],
 )
-def test_lines_of_a_scanner_are_found_by_whatever_tells_them(zigzag, told):
+def test_lines_of_a_scanner_are_found_by_any_recorded_dimension(zigzag, reported):
     """With nothing but points and times, back and forth over level ground, a turn is seen to a point or two."""
     xyz, recorded, number, _ = scanned(lambda x, y: (0 * x, np.zeros(len(x), int)), zigzag)
-    recording = Recording(gps_time=recorded["gps_time"], **{name: recorded[name] for name in told})
+    recording = Recording(gps_time=recorded["gps_time"], **{name: recorded[name] for name in reported})
     line = recorded_lines(xyz, recording, gap=5.0)
-    if told or not zigzag:
+    if reported or not zigzag:
         np.testing.assert_array_equal(line, number)
     else:
         assert line.max() == number.max()
@@ -145,7 +145,7 @@ def test_a_dome_is_one_smooth_surface_and_many_planes():
         assert np.linalg.svd(points - points.mean(axis=0))[1][2] / np.sqrt(len(points)) < 0.06
 
 
-def test_without_times_the_order_of_points_is_taken_and_told():
+def test_without_times_the_order_of_points_is_taken_and_reported():
     xyz, recorded, _, _ = scanned()
     monitor = Monitor()
     ids = segment_recorded_lines(xyz, {}, monitor=monitor)
@@ -153,13 +153,13 @@ def test_without_times_the_order_of_points_is_taken_and_told():
     assert len(set(ids) - {0}) == 4
     same = segment_recorded_lines(xyz, {"gps_time": np.zeros(len(xyz))})
     np.testing.assert_array_equal(same, ids)
-    told = Monitor()
-    segment_recorded_lines(xyz, recorded, monitor=told)
-    assert not told.warnings
-    assert any("GPS time, scan direction, edge of flight line, scan angle" in info for info in told.infos)
+    reported = Monitor()
+    segment_recorded_lines(xyz, recorded, monitor=reported)
+    assert not reported.warnings
+    assert any("GPS time, scan direction, edge of flight line, scan angle" in info for info in reported.infos)
 
 
-def test_order_and_place_change_nothing_where_there_are_times():
+def test_order_and_position_change_nothing_where_there_are_times():
     xyz, recorded, _, _ = scanned()
     xyz = (xyz * 1024).round() / 1024
     ids = segment_recorded_lines(xyz, recorded)

@@ -188,7 +188,7 @@ def test_only_ground_gives_no_region(rng):
     assert not ids.any()
 
 
-def test_order_and_place_change_nothing(rng):
+def test_order_and_position_change_nothing(rng):
     xyz = rng.uniform(0, [20, 20, 3], (800, 3)).round(3)
     tunables = {"height_distance": 0.3, "min_area": 2.0}
     ids = segment_regions(xyz, np.ones(800), **tunables)

@@ -1,4 +1,4 @@
-"""Roofs are told from terrain, crowns and clutter in scenes whose truth is known by construction."""
+"""Roofs are separated from terrain, crowns and clutter in scenes whose truth is known by construction."""
 
 import numpy as np
 import pytest
@@ -79,7 +79,7 @@ def test_roofs_keep_their_numbers_as_clusters_and_the_rest_follows(rng):
 
 
 @pytest.mark.parametrize(("max_slope", "apart"), [(90.0, True), (75.0, False)])
-def test_a_wall_is_told_from_the_crown_that_touches_it_unless_it_is_too_steep(max_slope, apart, rng):
+def test_a_wall_is_distinguished_from_the_crown_that_touches_it_unless_it_is_too_steep(max_slope, apart, rng):
     """A wall 6 m wide, seen from 2 to 14 m above the ground, and a crown of 3 m radius that reaches it."""
     along, up = rng.uniform([0, 2], [6, 14], (700, 2)).T
     wall = np.column_stack([along + 10, rng.normal(10, 0.02, 700), up])
@@ -212,7 +212,7 @@ def test_a_few_points_do_no_harm(count, classification):
     assert not (classification == 7 and cluster.any())
 
 
-def test_order_and_place_change_nothing(rng):
+def test_order_and_position_change_nothing(rng):
     xyz, height, _ = village(rng, 5)
     xyz, height, _ = with_tree(rng, xyz, height, (4, 4))
     xyz = xyz.round(3)
@@ -226,7 +226,7 @@ def test_order_and_place_change_nothing(rng):
         assert len(set(zip(other[common].tolist(), of[common].tolist()))) == cluster.max() == other.max()
 
 
-def test_automatic_values_are_told(rng):
+def test_automatic_values_are_reported(rng):
     monitor = Monitor()
     xyz, height, _ = village(rng, 8, 0.04)
     segment_roofs(xyz, ones(xyz), height, monitor=monitor)

@@ -99,7 +99,7 @@ def test_slope_is_a_criterion_that_can_be_left_out(scene):
     assert len(np.unique(segment_scan_lines(xyz, distance=5.0))) >= 3
 
 
-def test_order_and_place_change_nothing(scene):
+def test_order_and_position_change_nothing(scene):
     xyz = scene[0].round(3)
     tunables = {"line_width": 1.0, "distance": 3.0, "max_step": 0.1}
     ids = segment_scan_lines(xyz, **tunables)

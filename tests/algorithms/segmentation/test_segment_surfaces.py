@@ -329,7 +329,7 @@ def test_memory_is_bounded_by_the_points(planarity, most, monkeypatch):
     assert (many - few) / 20_000 < most
 
 
-def test_order_place_and_turns_change_nothing(tile):
+def test_order_position_and_turns_change_nothing(tile):
     xyz, part = tile
     some = np.flatnonzero(xyz[:, 0] < 22)
     xyz = xyz[some].round(3)

@@ -99,7 +99,7 @@ def test_long_edges_and_small_planes_are_left_out(house):
     assert segment_tin_planes(level, max_edge=50.0, min_area=0.0).max() < segment_tin_planes(level, min_area=0.0).max()
 
 
-def test_order_and_place_change_nothing(house):
+def test_order_and_position_change_nothing(house):
     xyz = house[0].round(3)
     ids = segment_tin_planes(xyz, tolerance=0.05, max_edge=2.0)
     order = np.random.default_rng(0).permutation(len(xyz))

@@ -87,7 +87,7 @@ def test_a_segment_of_too_few_points_and_noise_have_no_id(rng):
     assert segment_voxels(xyz, classification, voxel_size=1.0)[0][-2:].tolist() == [2, 0]
 
 
-def test_order_and_place_change_nothing(rng):
+def test_order_and_position_change_nothing(rng):
     xyz = rng.uniform(0, [20, 20, 5], (600, 3)).round(3)
     ids, voxels = segment_voxels(xyz, voxel_size=1.0, neighbors="6")
     order = rng.permutation(600)

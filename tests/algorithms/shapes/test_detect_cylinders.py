@@ -149,7 +149,7 @@ def test_an_end_cap_parts_two_pipes(rng):
     assert len(detect(np.concatenate([xyz, cap]), max_radius=0.4)[2]) == 2
 
 
-def test_place_and_order_do_not_matter(rng):
+def test_position_and_order_do_not_matter(rng):
     xyz = np.round(pipe(rng, 0.3, 2.0, 0.05, 0.005, (1, 0.2, 0.1)) * 1024) / 1024
     expected, _, axes = detect(xyz, max_radius=1.0)
     far, _, far_axes = detect(xyz + EXACT_FAR, max_radius=1.0)
@@ -213,7 +213,7 @@ def test_an_empty_range_of_radii_is_refused(rng):
 
 
 def test_real_tanks_are_found_in_a_yard_and_nothing_else_is(rng):
-    """Plates that stand out by one to two deviations, ladders, stairs and sunk roofs: none of four was found."""
+    """Plates that protrude by one to two deviations, ladders, stairs and sunk roofs: of four tanks none was found."""
     farm = tank_farm(rng, tanks=((13.74, 0), (8.56, 26)))
     _, _, axes = detect(farm.xyz, min_radius=0.2)
     found = sorted(zip(axes.columns["radius"], [line[:, :2].mean(axis=0) for line in axes.geometries]), reverse=True)

@@ -1,4 +1,4 @@
-"""Spheres whose centers and radii are known, and things that are none."""
+"""Spheres whose centers and radii are known, and objects that are no spheres."""
 
 import numpy as np
 import pytest
@@ -76,7 +76,7 @@ def test_points_with_a_shape_keep_it(rng):
     assert set(ids[len(one) :]) <= {0, 6}
 
 
-def test_place_and_order_do_not_matter(rng):
+def test_position_and_order_do_not_matter(rng):
     xyz = np.round(ball(rng, 1.0, 0.1, 0.005) * 1024) / 1024
     expected, _, centers = detect(xyz, max_radius=2.0)
     far, _, far_centers = detect(xyz + EXACT_FAR, max_radius=2.0)

@@ -134,7 +134,7 @@ def test_segments_are_searched_one_by_one(method, rng):
 
 
 @each_method
-def test_place_and_order_do_not_matter(method, rng):
+def test_position_and_order_do_not_matter(method, rng):
     xyz = np.round(np.concatenate([gable(rng)[0], square(rng, 70) + [15, 0, 0]]) * 1024) / 1024
     expected, _, planes = segment(xyz, method=method)
     far, _, far_planes = segment(xyz + EXACT_FAR, method=method)
@@ -172,13 +172,13 @@ def test_a_cloud_without_planes_says_so(rng):
 
 
 def test_grouping_the_points_of_one_large_plane_can_be_canceled(rng):
-    """Progress was told once per plane, however many points it had."""
-    told: list[float] = []
+    """Progress was reported once per plane, however many points it had."""
+    reported: list[float] = []
     monitor = Monitor()
-    monitor.progress = told.append
+    monitor.progress = reported.append
     segment(square(rng, 0.0, size=20.0), monitor=monitor)
-    assert len([fraction for fraction in told if 0.8 < fraction < 1]) > 10
-    assert told == sorted(told)
+    assert len([fraction for fraction in reported if 0.8 < fraction < 1]) > 10
+    assert reported == sorted(reported)
 
 
 def test_a_part_of_a_cloud_has_the_planes_of_the_whole(rng):

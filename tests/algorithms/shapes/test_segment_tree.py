@@ -95,7 +95,7 @@ def test_points_of_the_layer_lie_in_the_wood(tree, found):
 
 
 def test_stems_of_several_trees_are_found_by_themselves(tree):
-    """Trees 4 m apart, whose crowns touch: each branch belongs to the tree over whose root it stands."""
+    """Trees 4 m apart, whose crowns touch: each branch belongs to the tree whose root is below it."""
     xyz, classification, truth, _ = tree
     both = np.concatenate([xyz, xyz + [4.0, 0.5, 0]])
     ids, layer = segment_tree(both, np.concatenate([classification, classification]))
@@ -116,7 +116,7 @@ def test_a_cloud_without_stems_says_so(rng):
         segment_tree(np.column_stack([np.arange(50.0)] * 3), np.ones(50, np.uint8))
 
 
-def test_place_and_order_do_not_matter(rng):
+def test_position_and_order_do_not_matter(rng):
     xyz, classification, *_ = simulate_tree(height=5.0, dbh=0.12, n_branches=3, density=1500.0)
     xyz = np.round(xyz * 1024) / 1024
     expected = segment_tree(xyz, classification)[0]
@@ -140,16 +140,16 @@ def test_the_ground_is_the_lowest_point_around_in_memory_of_the_points(rng):
 
 
 def test_the_search_for_stems_can_be_canceled(rng):
-    """Progress was told once, after the fits of all stems."""
+    """Progress was reported once, after the fits of all stems."""
     stems = np.repeat(np.arange(30.0), 40)
     angle = rng.uniform(0, 2 * np.pi, 1200)
     xyz = np.column_stack([stems + 0.1 * np.cos(angle), 0.1 * np.sin(angle), rng.uniform(1.0, 1.6, 1200)])
-    told: list[float] = []
+    reported: list[float] = []
     monitor = Monitor()
-    monitor.progress = told.append
+    monitor.progress = reported.append
     assert len(find_stems(xyz, np.zeros(1200), monitor)) == 30
-    assert len([fraction for fraction in told if fraction >= 0.3]) >= 30
-    assert told == sorted(told)
+    assert len([fraction for fraction in reported if fraction >= 0.3]) >= 30
+    assert reported == sorted(reported)
 
 
 def test_gaps_are_the_shortest_pairs_of_pieces_however_many_are_listed_at_once(rng, monkeypatch):

@@ -83,7 +83,7 @@ def test_points_lie_on_ground_and_solids_and_in_crowns():
     assert leaves.sum() > 500
 
 
-def test_nothing_stands_between_the_scanner_and_a_point():
+def test_nothing_is_between_the_scanner_and_a_point():
     """Steps along the beams stay outside of every solid and over the ground: not by rays, but point by point."""
     start, way, ranges, _ = exact()
     scene = site()
@@ -169,7 +169,7 @@ def test_ids_are_those_of_the_buildings():
     assert set(made["classification"]) == {1, 2, 4, 5, 6}
 
 
-def test_things_do_not_stand_in_each_other_or_in_the_way():
+def test_things_are_not_in_each_other_or_in_the_way():
     for seed in range(1, 6):
         scene = build_site(trees=22, slope=5.0, seed=seed)
         houses = [building.solids[0].rect for building in scene.buildings]
@@ -263,7 +263,7 @@ def test_points_come_by_time_and_have_one_return():
 
 
 def test_with_nothing_set_there_are_as_many_points_as_in_the_publication():
-    """1.44 and 5.29 million points of the two scanners; a twentieth of the lines tells."""
+    """1.44 and 5.29 million points of the two scanners; a twentieth of the lines is simulated."""
     made = dict(zip(NAMES, simulate_flight(line_rate=2.0)))
     counts = 20 * np.bincount(made["point_source_id"])[1:] / 1e6
     assert counts.sum() == pytest.approx(6.73, rel=0.05)
@@ -316,7 +316,7 @@ def test_too_many_pulses_are_refused():
         simulate_flight(duration=600.0, line_rate=200.0)
 
 
-def test_a_scanner_that_sees_nothing_is_told():
+def test_a_scanner_that_sees_nothing_is_reported():
     with pytest.raises(ValueError, match=r"Nothing is within 1 m of the scanner; raise the maximum range\."):
         simulate_flight(duration=5.0, line_rate=1.0, max_range=1.0, scanners="horizontal")
 

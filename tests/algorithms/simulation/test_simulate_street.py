@@ -61,7 +61,7 @@ def test_openings_lie_in_the_plane_of_their_facade_and_their_points_behind_it(st
     assert windows == pytest.approx([1.2] * len(windows))
 
 
-def test_lines_are_told_by_time_and_scanner(street):
+def test_lines_are_reported_by_time_and_scanner(street):
     points, *_ = street
     assert set(points["point_source_id"]) == {1, 2}
     assert (np.diff(points["gps_time"]) >= 0).all()

@@ -146,7 +146,7 @@ def test_strips_overlap_as_asked():
 
 @pytest.mark.parametrize("max_scan_angle", [10.0, 30.0])
 @pytest.mark.parametrize("slope", [0.0, 40.0])
-def test_scan_angle_stays_within_its_bound_and_tells_the_side(max_scan_angle, slope):
+def test_scan_angle_stays_within_its_bound_and_shows_the_side(max_scan_angle, slope):
     made = small(size=300.0, density=0.5, max_scan_angle=max_scan_angle, slope=slope)
     angle = np.abs(made["scan_angle"])
     assert 0.9 * max_scan_angle < angle.max() <= max_scan_angle + 0.1
@@ -181,7 +181,7 @@ def test_returns_of_a_pulse_are_complete_and_in_order():
     assert made.number_of_returns.max() == 5
     inner = np.flatnonzero(np.diff(made.pulse) == 0)
     gap = np.linalg.norm(made.xyz[inner + 1] - made.xyz[inner], axis=1)
-    # Echoes of a pulse are further apart than what the scanner tells apart, and never in the wrong order.
+    # Echoes of a pulse are further apart than the range resolution of the scanner, and never in the wrong order.
     assert gap.min() > 0.65
     assert (made.xyz[inner + 1, 2] < made.xyz[inner, 2]).all()
     assert (np.diff(made.gps_time) >= 0).all()

@@ -50,7 +50,7 @@ def test_points_of_a_building_lie_on_its_walls_or_on_the_roof_over_them():
         mine = made.owner[seen.object_id] == building.object_id
         is_wall = seen.object_id[mine] == building.object_id
         points, ring = xyz[mine], building.outline
-        # Gables show between the slabs of the roof; everything else of a wall stands on the outline.
+        # Gables show between the slabs of the roof; all other points of a wall lie on the outline.
         assert distance(ring, points[is_wall, :2]).max() < 1e-6
         roof = points[~is_wall]
         away = np.where(is_inside(roof[:, :2], [ring]), 0.0, distance(ring, roof[:, :2]))
@@ -103,7 +103,7 @@ def test_a_slab_has_an_inclined_underside():
 
 
 @pytest.mark.parametrize("kind", ["rectangle", "hip", "L", "bend", "shed"])
-def test_outlines_are_closed_counterclockwise_and_what_the_walls_stand_on(kind):
+def test_outlines_are_closed_counterclockwise_and_meet_the_walls(kind):
     made, _, _ = exact()
     for building in made.scene.buildings:
         if building.kind != kind:
@@ -133,7 +133,7 @@ def test_outlines_are_closed_counterclockwise_and_what_the_walls_stand_on(kind):
         np.testing.assert_array_equal(covered, is_inside(grid, [ring]))
 
 
-def test_buildings_stand_apart():
+def test_buildings_are_apart():
     made = build_village(VillagePlan(250.0, 2.0, buildings=15.0, trees=0.0, overhang=0.6, clutter=False, seed=5))
     places = np.random.default_rng(0).uniform(0, 250, (100_000, 2))
     assert len(made.scene.buildings) > 60
@@ -155,7 +155,7 @@ def test_holes_take_their_share(share):
     assert 1 - torn / whole == pytest.approx(share, rel=0.25)
 
 
-def test_returns_are_unknown_and_colors_tell_materials_apart():
+def test_returns_are_unknown_and_colors_separate_materials():
     made = small()
     assert not made["return_number"].any()
     assert not made["number_of_returns"].any()
@@ -248,14 +248,14 @@ def test_too_many_points_are_refused():
         simulate_village(size=1000.0, density=100.0)
 
 
-def test_a_village_without_houses_is_told_of():
-    """Seed 1 has no whole plot within 60 m; where nobody asks for houses, there is nothing to tell."""
-    told = {}
+def test_a_village_without_houses_is_reported():
+    """Seed 1 has no whole plot within 60 m; where no houses are asked for, no warning comes."""
+    reported = {}
     for size, buildings in ((60.0, 12.0), (60.0, 0.0), (80.0, 12.0)):
         monitor = Monitor()
         *_, footprints, _ = simulate_village(size=size, buildings=buildings, density=5.0, monitor=monitor)
-        told[size, buildings] = len(footprints) > 0, len(monitor.warnings)
-    assert told == {(60.0, 12.0): (False, 1), (60.0, 0.0): (False, 0), (80.0, 12.0): (True, 0)}
+        reported[size, buildings] = len(footprints) > 0, len(monitor.warnings)
+    assert reported == {(60.0, 12.0): (False, 1), (60.0, 0.0): (False, 0), (80.0, 12.0): (True, 0)}
 
 
 def test_it_can_be_cancelled():

@@ -200,7 +200,7 @@ def test_what_was_ground_before_and_is_not_found_becomes_unclassified(rng):
     assert (classify_ground_cloth(xyz, np.where(is_house, 6, 0))[is_house] == 6).mean() > 0.99
 
 
-def test_order_and_place_change_nothing(rng):
+def test_order_and_position_change_nothing(rng):
     xyz = np.round(scan(rng)[0] * 1024) / 1024
     found = is_ground(xyz)
     order = rng.permutation(len(xyz))

@@ -40,7 +40,7 @@ def test_a_terrace_is_ground_on_both_levels_up_to_its_step(rng):
 
 @pytest.mark.parametrize("step", [0.1, 0.3])
 def test_the_levels_of_rounded_heights_are_all_ground(step, rng):
-    """A slope of 3 %: most of the surface looks perfectly smooth, a step every so many meters."""
+    """A slope of 3 %: most of the surface looks perfectly smooth, with regular steps."""
     xyz, is_house = scan(rng, lambda x, y: 0.03 * x, HOUSES, density=8)
     xyz[:, 2] = np.round(xyz[:, 2] / step) * step
     assert max(errors(classify_ground_tin(xyz, unclassified(xyz)), is_house)) < 0.01
@@ -96,7 +96,7 @@ def test_a_bridge_over_a_valley_is_not_ground_and_the_valley_is(rng):
 
 
 @pytest.mark.parametrize("is_free", [True, False])
-def test_what_stands_free_does_not_join_the_surface_however_near_it_is(is_free, rng):
+def test_what_is_free_standing_does_not_join_the_surface_however_near_it_is(is_free, rng):
     """A platform 0.3 m over a field; of a roof such a step is what the surface would climb next."""
     plan = rng.uniform(0, 20, (2000, 2))
     on_top = np.abs(plan - 10).max(axis=1) < 4
@@ -108,7 +108,7 @@ def test_what_stands_free_does_not_join_the_surface_however_near_it_is(is_free, 
 
 
 def test_points_beside_nodes_of_their_facet_do_not_join(rng):
-    """They make slivers and tell nothing new: nearer than a quarter of the edge length there is none."""
+    """Close points make slivers and no new detail: no node is nearer to another than a quarter of the edge length."""
     points = rng.uniform(0, 20, (4000, 3)) * [1, 1, 0.01]
     corners = np.array([[x, y, 0.1] for x in range(0, 21, 4) for y in range(0, 21, 4)], float)
     rules = JoinRules(max_angle=45.0, max_distance=0.5, bend=0.0, edge_length=2.0)
@@ -196,7 +196,7 @@ def test_a_building_wider_than_the_largest_is_taken_for_a_hill(rng):
     assert errors(classify_ground_tin(xyz, unclassified(xyz), max_building_size=75), is_house)[1] == 0
 
 
-def test_order_and_place_change_nothing(rng):
+def test_order_and_position_change_nothing(rng):
     """True where no two points are equally low or equally good for a facet, which random ones never are."""
     xyz, _ = scan(rng, TERRAINS["bumpy"], HOUSES)
     found = classify_ground_tin(xyz, unclassified(xyz))
@@ -290,7 +290,7 @@ def test_values_given_by_hand_are_used(rng):
     [("nature", 20, 30), ("village", 40, 20), ("town", 60, 20), ("city", 120, 20), ("industry", 250, 20)],
 )
 def test_the_terrain_sets_building_size_and_angle(word, size, angle, rng):
-    """A word gives the same result as what it stands for, and finds a building of its size but not a larger one."""
+    """A kind of terrain gives the result of its size, and finds a building of that size but not a larger one."""
     xyz, _ = scan(rng, TERRAINS["slope"], HOUSES)
     monitor = Monitor()
     found = classify_ground_tin(xyz, unclassified(xyz), terrain=word, monitor=monitor)
@@ -377,7 +377,7 @@ def test_points_on_one_line_are_refused_also_when_the_file_rounds_them(digits):
         classify_ground_tin(line, unclassified(line))
 
 
-def test_points_at_one_place_are_refused():
+def test_points_at_one_position_are_refused():
     with pytest.raises(ValueError, match="one line or at one position"):
         classify_ground_tin(np.column_stack([np.full((9, 2), 7.0), np.arange(9)]), np.ones(9))
 

@@ -37,7 +37,7 @@ def test_lowest_seeds_keep_off_houses_smaller_than_their_cells(rng):
     assert missed < 0.01
 
 
-def test_place_and_order_change_nothing(rng):
+def test_position_and_order_change_nothing(rng):
     xyz, _ = scan(rng, TERRAINS["hill"], HOUSES)
     xyz = np.round(xyz * 1024) / 1024
     here = classify_ground_tin_2000(xyz, unclassified(xyz))
@@ -94,7 +94,7 @@ def test_a_hill_far_above_the_first_surface_is_reached(rng):
 
 @pytest.mark.parametrize(("noise", "spread"), [(0.02, 2.0), (0.2, 2.0), (0.02, 0.5)])
 def test_the_angle_is_estimated_from_the_nodes(noise, spread, rng):
-    """Nodes on a grid, so many meters apart: eight deviations of the angles under which their residuals appear."""
+    """Nodes on a grid of the given spacing (m): eight deviations of the angles under which their residuals appear."""
     x, y = np.meshgrid(np.arange(60.0), np.arange(60.0))
     nodes = np.column_stack([spread * x.ravel(), spread * y.ravel(), rng.normal(0, noise, x.size)])
     estimated = JoinRules(90.0, None, 0.0, 1.0, estimates_angle=True).angle(nodes)
@@ -114,7 +114,7 @@ def test_nothing_steeper_than_the_terrain_angle_joins(rng):
     assert shares[0] < 0.5 * shares[1]
 
 
-def test_last_values_are_told(rng):
+def test_last_values_are_reported(rng):
     xyz, _ = scan(rng, TERRAINS["level"], density=1)
     monitor = Monitor()
     classify_ground_tin_2000(xyz, unclassified(xyz), max_building_size=20.0, monitor=monitor)

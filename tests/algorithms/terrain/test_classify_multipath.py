@@ -94,7 +94,7 @@ def test_hollows_of_rough_ground_are_no_noise(rng):
     assert (classified(xyz) != 7).all()
 
 
-def test_order_and_place_change_nothing(rng):
+def test_order_and_position_change_nothing(rng):
     ground = terrain(rng, 8, 10)
     xyz = np.concatenate([ground, group(rng, 9, 0.5, 1.2, 10)])
     xyz = np.round(xyz * 1024) / 1024

@@ -80,7 +80,7 @@ def test_no_ground_is_refused():
         compute_height_above_ground(np.zeros((3, 3)), [1, 6, 7])
 
 
-def test_order_and_place_change_nothing(rng):
+def test_order_and_position_change_nothing(rng):
     xyz = rng.uniform(0, 50, (2000, 3))
     classification = np.where(rng.random(2000) < 0.4, 2, 1)
     height = compute_height_above_ground(xyz, classification)

@@ -1,4 +1,4 @@
-"""Free-standing segments are told from terrain by their edges alone: surfaces of which every cell is known."""
+"""Free-standing segments are separated from terrain by their edges alone, on surfaces whose every cell is known."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ def block(surface, rows, columns, height):
 
 @pytest.mark.parametrize("rise", [0.0, 0.1, 0.5])
 @pytest.mark.parametrize(("side", "height"), [(8, 7.0), (30, 20.0)])
-def test_a_house_stands_free_on_any_slope(rise, side, height):
+def test_a_house_is_free_standing_on_any_slope(rise, side, height):
     surface = slope(80, 80, rise)
     house = block(surface, slice(20, 20 + side), slice(20, 20 + side), height + rise * side)
     found, size = find_free_standing(surface, 1.0, USUAL)
@@ -133,8 +133,8 @@ def test_a_part_of_the_edge_may_lie_where_the_cloud_ends(rows, height, is_object
 
 
 @pytest.mark.parametrize(("low", "high"), [(0.0, 4.0), (12.0, 30.0)])
-def test_a_house_among_plants_stands_free_and_they_do_not(low, high, rng):
-    """All round it are shrubs, or trees along one of its sides: too rough to tell, lower or higher."""
+def test_a_house_among_plants_is_free_standing_and_they_are_not(low, high, rng):
+    """Shrubs all around, or trees along one side: too rough to decide whether they are lower or higher."""
     surface = slope(80, 80)
     plants = np.zeros(surface.shape, bool)
     plants[25:59, 25 : 59 if high < 8 else 34] = True
@@ -166,7 +166,7 @@ def test_a_house_with_a_penthouse_is_no_terrain(height):
     np.testing.assert_array_equal(find_free_standing(surface, 1.0, USUAL)[0], house)
 
 
-def test_houses_that_stand_by_themselves_are_no_parts_of_a_hall():
+def test_houses_that_are_by_themselves_are_no_parts_of_a_hall():
     """Two of 25 m by 50 m side by side, with a step of 1.5 m between, where halls of more than 30 m are ruled out."""
     surface = slope(100, 100)
     houses = block(surface, slice(20, 70), slice(20, 70), 6.0)
@@ -181,7 +181,7 @@ def cut_across(surface, row, columns, rng):
 
 
 def test_machines_right_across_a_roof_make_no_terrain_of_its_halves(rng):
-    """Each half goes on into the other without a step: they stand together or not at all, with the machines."""
+    """Each half goes on into the other without a step: both are free-standing, or neither, with the machines."""
     surface = slope(120, 120)
     hall = block(surface, slice(20, 100), slice(20, 90), 9.0)
     cut_across(surface, 58, slice(20, 90), rng)
@@ -190,7 +190,7 @@ def test_machines_right_across_a_roof_make_no_terrain_of_its_halves(rng):
     assert size == 70
 
 
-def test_a_hall_and_a_wing_hardly_lower_stand_as_one():
+def test_a_hall_and_a_wing_hardly_lower_are_one():
     """The step between them is not that of a hall, and the wing's own edge is half at the hall."""
     surface = slope(140, 140)
     hall = block(surface, slice(20, 100), slice(20, 90), 6.5)
@@ -225,7 +225,7 @@ def test_plants_at_the_walls_of_a_hall_do_not_rest_on_it(rng):
     found = find_free_standing(surface, 1.0, USUAL)[0]
     assert found[hall].all()
     assert not found[shrubs].any()
-    # Leaves as high as the eaves and next to them can't be told from the roof.
+    # Leaves as high as the eaves and next to them can't be separated from the roof.
     assert not found[trees][2 * 40 :].any()
 
 
@@ -237,7 +237,7 @@ def test_a_terrace_is_no_half_of_a_roof(rng):
     assert not find_free_standing(surface, 1.0, USUAL)[0][terrace].any()
 
 
-def test_houses_in_the_angle_of_a_hall_do_not_stand_on_it():
+def test_houses_in_the_angle_of_a_hall_are_not_on_it():
     surface = slope(140, 140)
     hall = np.zeros(surface.shape, bool)
     hall[10:130, 10:75] = hall[65:130, 10:130] = True
@@ -261,7 +261,7 @@ def test_terraces_and_hills_are_terrain():
     assert not find_free_standing(30.0 * np.exp(-((x - 50) ** 2 + (y - 50) ** 2) / 900), 1.0, USUAL)[0].any()
 
 
-def test_a_house_at_the_end_of_the_cloud_stands_free_on_its_other_sides():
+def test_a_house_at_the_end_of_the_cloud_is_free_standing_on_its_other_sides():
     surface = slope(60, 60)
     house = block(surface, slice(0, 14), slice(20, 34), 1.8)
     np.testing.assert_array_equal(find_free_standing(surface, 1.0, USUAL)[0], house)
@@ -321,7 +321,7 @@ def test_of_what_is_cut_off_two_fifths_of_the_whole_outline_must_be_seen(seen, i
 
 
 def test_a_square_open_to_the_end_of_the_cloud_is_terrain():
-    """Houses stand on it, and on one side, which is a third of its own edge, it steps down to a canal."""
+    """Houses are on it, and on one side, which is a third of its own edge, it steps down to a canal."""
     surface = slope(60, 60)
     square = block(surface, slice(20, 60), slice(0, 60), 2.5)
     houses = np.zeros(surface.shape, bool)
@@ -352,7 +352,7 @@ def test_turning_the_surface_turns_the_result(rng):
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 40), (40, 1)])
 def test_a_surface_of_one_row_or_one_cell_has_no_free_standing_segment(shape):
-    """Its edge is the edge of the cloud: a step on the way along it tells nothing of the sides."""
+    """Its edge is the edge of the cloud: a step along it says nothing of the sides."""
     surface = np.zeros(shape)
     surface.ravel()[15:25] = 6.0
     found, size = find_free_standing(surface, 1.0, USUAL)

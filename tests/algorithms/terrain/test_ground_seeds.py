@@ -195,7 +195,7 @@ def scene_with_plateau(rng, bank):
     return np.column_stack([plan, z + rng.normal(0, 0.02, len(plan))]), inward > 0
 
 
-def test_a_hall_larger_than_usual_is_found_as_it_stands_free(rng):
+def test_a_hall_larger_than_usual_is_found_as_it_is_free_standing(rng):
     xyz, is_hall = scene_with_plateau(rng, bank=0.0)
     seeds, stands_free, size = seeds_by_opening(xyz, 1.4, None, Monitor())
     assert not is_hall[seeds].any()
@@ -299,10 +299,10 @@ def test_a_point_far_off_is_refused_instead_of_filling_memory(rng):
         seeds_by_lowest(xyz, 1.0)
 
 
-def seeds_of_views(monkeypatch, told):
+def seeds_of_views(monkeypatch, reported):
     """Return the seeds of three points when the directions tell so; the middle one is the lowest of its cell."""
     usual = {"says_terrain": 1, "stands_free": 0, "size": 0.0}
-    views = {angle: {**usual, **one} for angle, one in zip((0.0, 30.0, 60.0), told)}
+    views = {angle: {**usual, **one} for angle, one in zip((0.0, 30.0, 60.0), reported)}
 
     def view(cells, largest, slope, monitor):
         now, n = views.pop(cells.angle), len(cells.xyz)

@@ -92,7 +92,7 @@ def test_automatic_cells_hold_about_four_points_and_are_round(rng, density, cell
     assert dtm.cell_size == monitor.values["cell_size"]
 
 
-def test_every_point_lies_in_the_raster_and_order_and_place_change_nothing(rng):
+def test_every_point_lies_in_the_raster_and_order_and_position_change_nothing(rng):
     xyz, classes = slope_with_house(rng)
     xyz = np.round(xyz * 1024) / 1024
     made = rasterize_terrain(xyz, classes, cell_size=0.75)
@@ -150,7 +150,7 @@ def test_cancel_gets_through(rng):
 
 @pytest.mark.parametrize("cell_size", [0.2, 0.3, 0.7])
 def test_points_that_touch_the_last_cell_are_in_a_cell(cell_size):
-    """A tenth of a micrometer below the side of a cell counts as on it, wherever that is told from."""
+    """A tenth of a micrometer below the side of a cell counts as on it, whichever origin coordinates have."""
     for last in range(40, 400, 7):
         side = last * cell_size - 1e-7
         xyz = np.array([[side - 5, side - 5, 1.0], [side, side - 5, 2], [side - 5, side, 3], [side, side, 4]])

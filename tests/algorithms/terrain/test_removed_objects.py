@@ -49,7 +49,7 @@ def test_what_joins_the_terrain_on_half_of_its_edge_comes_back(smooth, stays):
     np.testing.assert_array_equal(objects_of(surface, removed), removed & stays)
 
 
-def test_what_stands_free_stays_an_object_in_a_region_that_comes_back():
+def test_what_is_free_standing_stays_an_object_in_a_region_that_comes_back():
     """It has no wall there: removed by the same windows, it joins the region around."""
     surface, removed = removed_square(side=20)
     free = np.zeros(removed.shape, bool)

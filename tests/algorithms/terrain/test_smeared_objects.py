@@ -54,7 +54,7 @@ def test_terrain_stays(rng, terrain):
     assert not climbed(xyz)[~in_corner].any()
 
 
-def test_order_and_place_do_not_matter(rng):
+def test_order_and_position_do_not_matter(rng):
     xyz = seen_from_above(rng, box(10, 10, 13, 13, 2.1, smeared=0.5))[0]
     xyz = np.round(xyz * 2**10) / 2**10
     order, found = rng.permutation(len(xyz)), climbed(xyz)

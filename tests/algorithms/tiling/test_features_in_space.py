@@ -144,7 +144,7 @@ def joined(*layers, declared=PLANES, known=None):
     return join_features(blocks, made, none, np.zeros(3), Monitor(), declared, references)
 
 
-def test_walls_that_two_blocks_found_are_told_in_space():
+def test_walls_that_two_blocks_found_are_reported_in_space():
     """In plan they have no area. A pane 15 cm behind a wall and a storey above another are features of their own."""
     known = {}
     one = [(4, upright(6, 13, 5.0)), (7, upright(8, 9, 5.15)), (9, upright(6, 13, 5.0, 4.1, 8))]

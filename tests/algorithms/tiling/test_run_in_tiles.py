@@ -196,7 +196,7 @@ def test_a_large_copc_file_is_cut_by_its_index(points, tmp_path, monkeypatch, ex
     assert sorted(p.name for p in (tmp_path / "result").iterdir()) == sorted(p.name for p in outcome.tiles)
 
 
-def test_points_of_a_large_copc_file_that_no_block_has_are_told(points, tmp_path, monkeypatch):
+def test_points_of_a_large_copc_file_that_no_block_has_are_reported(points, tmp_path, monkeypatch):
     xyz, times, _ = points
     copc = tmp_path / "town.copc.laz"
     write_cloud(create_cloud({"xyz": xyz, "gps_time": times}, "EPSG:28992"), copc)

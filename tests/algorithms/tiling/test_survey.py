@@ -62,7 +62,7 @@ def test_a_file_taken_away_before_a_run_goes_on_gives_no_other_file_its_points(t
         np.testing.assert_array_equal(read_cloud(found).get("cluster_id"), read_cloud(made).get("cluster_id"))
 
 
-def test_heights_are_stored_in_the_unit_that_only_the_code_of_the_system_tells(tmp_path):
+def test_heights_are_stored_in_the_unit_that_only_the_code_of_the_system_shows(tmp_path):
     # GeoKeys of EPSG:2263 (US survey feet) name no unit.
     ground = np.full(500, 2, np.uint8)
     ground[::5] = 1
@@ -114,7 +114,7 @@ def test_writing_a_tile_stops_when_the_run_does(tmp_path, monkeypatch):
     assert not (tmp_path / "out" / "a.las").exists()
 
 
-def test_names_that_some_systems_take_for_one_are_told_apart(tmp_path):
+def test_names_that_some_systems_take_for_one_are_separated(tmp_path):
     folders = [tmp_path / one for one in ("one", "two")]
     for folder in folders:
         folder.mkdir()

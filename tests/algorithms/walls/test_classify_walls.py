@@ -83,7 +83,7 @@ def test_tunables_do_what_they_say(scene):
 
 
 def test_leaning_surfaces_are_no_walls(scene, rng):
-    """A roof slope of 45° that comes down beside the house is told apart by its normal."""
+    """A roof slope of 45° that comes down beside the house is recognized by its normal."""
     arrays, of = scene
     arrays["xyz"][of["wall"], 1] += arrays["xyz"][of["wall"], 2]
     x = arrays["xyz"][:, 0]
@@ -102,13 +102,13 @@ def test_missing_walls_are_said_where_there_are_roofs(scene):
     arrays, of = scene
     low = of["wall"] | of["other wall"] | of["bush"] | of["car"] | of["fence"] | of["base"] | of["upper wall"]
     warning = "No wall was seen under any roof, so footprints can show the outlines of roofs only."
-    for changed, told in (
+    for changed, reported in (
         ({name: values[~low] for name, values in arrays.items()}, [warning]),
         ({**arrays, "cluster_id": np.zeros_like(arrays["cluster_id"])}, []),
     ):
         monitor = Monitor()
         assert not classify_walls(**changed, monitor=monitor)[1].any()
-        assert monitor.warnings == told
+        assert monitor.warnings == reported
 
 
 def test_a_roof_on_one_line_has_no_walls(scene):

@@ -155,7 +155,7 @@ def test_right_angles_are_right_and_others_are_kept(rng):
     assert angles[1:3] == pytest.approx([90, 90], abs=1e-6)
 
 
-def test_an_unseen_wall_is_told_from_the_roof_and_says_so(rng):
+def test_an_unseen_wall_is_distinguished_from_the_roof_and_says_so(rng):
     arrays, true = building(rng, "rectangle", missing=(2,))
     footprints, edges = extract_wall_footprints(**arrays)[:2]
     assert errors(footprints, true).max() < 0.2
@@ -169,7 +169,7 @@ def test_an_unseen_wall_is_told_from_the_roof_and_says_so(rng):
     assert edges.geometries[unseen][:, 1] == pytest.approx([7, 7], abs=0.15)
 
 
-def test_a_footprint_that_rests_on_one_wall_is_told(rng):
+def test_a_footprint_that_rests_on_one_wall_is_reported(rng):
     monitor = Monitor()
     arrays, _ = building(rng, "rectangle", missing=(1, 2, 3))
     footprints, _ = extract_wall_footprints(**arrays, min_seen=0.1, monitor=monitor)[:2]
@@ -183,16 +183,16 @@ def test_a_footprint_that_rests_on_one_wall_is_told(rng):
     assert not monitor.warnings
 
 
-def test_edges_tell_how_precise_they_are(rng):
+def test_edges_show_how_precise_they_are(rng):
     """The precision of an edge is that of its points over the root of their number, as repeated scans confirm."""
-    offsets, told = [], []
+    offsets, reported = [], []
     for _ in range(30):
         arrays, _ = building(rng, "rectangle", per_meter=8, noise=0.05)
         _, edges = extract_wall_footprints(**arrays)[:2]
         south = int(np.argmin([line[:, 1].mean() for line in edges.geometries]))
         offsets.append(edges.geometries[south][:, 1].mean())
-        told.append(edges.columns["precision"][south])
-    assert np.std(offsets) == pytest.approx(np.mean(told), rel=0.5)
+        reported.append(edges.columns["precision"][south])
+    assert np.std(offsets) == pytest.approx(np.mean(reported), rel=0.5)
     assert abs(np.mean(offsets)) < 3 * np.std(offsets) / np.sqrt(30)
 
 
@@ -328,7 +328,7 @@ def test_a_long_row_across_the_grid_is_no_mistake(rng):
     assert np.hypot(*(corners[:, None] - ring).transpose(2, 0, 1)).min(axis=1).max() < 0.5
 
 
-def test_the_outline_of_one_building_tells_how_far_it_is_and_can_be_stopped(rng):
+def test_the_outline_of_one_building_reports_its_progress_and_can_be_stopped(rng):
     """One with sixty walls took two minutes in which nobody could stop it."""
     teeth = [(x + dx, 8 + dy) for x in (24, 12, 0) for dx, dy in ((12, 6), (6, 6), (6, 0), (0, 0))]
     arrays, _ = building(rng, ((0, 0), (36, 0), *teeth), per_meter=8, density=10)
@@ -416,7 +416,7 @@ def test_candidate_corners_are_the_intersections_of_all_lines(rng):
     assert report.values["candidates"] == len(corners)
 
 
-def test_candidate_corners_tell_why_a_footprint_has_none(rng):
+def test_candidate_corners_give_the_reason_why_a_footprint_has_none(rng):
     arrays, _ = building(rng, "L", missing=(1,))
     assert set(extract_wall_footprints(**arrays, min_seen=0.95)[2].columns["outcome"]) == {"outline of the roof"}
     assert set(extract_wall_footprints(**arrays, min_area=500.0)[2].columns["outcome"]) == {"too small"}

@@ -47,7 +47,7 @@ def test_a_courtyard_in_which_the_ground_is_seen_stays_open(rng):
     assert signed_area(rings[1]) == pytest.approx(-30, rel=0.1)
 
 
-def test_where_no_ground_is_seen_beside_the_roof_gaps_tell_nothing(rng):
+def test_where_no_ground_is_seen_beside_the_roof_gaps_show_nothing(rng):
     xyz, cluster_id = place(rng, holes=[(5, 5, 9, 9)])
     xyz, cluster_id = xyz[cluster_id == 1], cluster_id[cluster_id == 1]
     surroundings = Surroundings(xyz, cluster_id, CloudSampling.of(xyz))
