@@ -54,7 +54,7 @@ class _Maker:
         self.parts.append((points[np.isfinite(points).all(axis=1)], kind))
 
     def settle(self) -> None:
-        """Let noise keep its distance from what was added, too."""
+        """Count the added points as part of the scene, from which noise keeps its distance."""
         self.all = np.concatenate([self.xyz, *(points for points, _ in self.parts)])
         self.in_plan = cKDTree(self.all[:, :2])
 

@@ -132,7 +132,7 @@ class Keys:
 
 
 def find_keys(keys: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Return the position of each ``wanted`` key (k,) among ascending ``keys`` (m,), int64; -1 where it does not."""
+    """Return the position of each ``wanted`` key (k,) among ascending ``keys`` (m,), int64; -1 if absent."""
     if not len(keys):
         return np.full(len(wanted), -1)
     position = np.searchsorted(keys, wanted)
@@ -142,7 +142,7 @@ def find_keys(keys: np.ndarray, wanted: np.ndarray) -> np.ndarray:
 
 
 def locate_voxels(cells: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Return the position of each ``wanted`` voxel (k, 3) among sorted ``cells`` (m, 3), int64 (k,); -1: nowhere."""
+    """Return the position of each ``wanted`` voxel (k, 3) among sorted ``cells`` (m, 3), int64 (k,); -1 if absent."""
     box = Keys(np.concatenate([cells, wanted]))
     return find_keys(box.of(cells), box.of(wanted))
 

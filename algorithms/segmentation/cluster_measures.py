@@ -114,7 +114,7 @@ def _numbered(number_of_returns: Optional[np.ndarray]) -> bool:
 def grow_to_adjacent_clusters(
     xyz: np.ndarray, group: np.ndarray, strong: np.ndarray, weak: np.ndarray, density: float
 ) -> np.ndarray:
-    """Return the strong groups, and the weak ones that lie beside or over them or over weak ones that do.
+    """Return the strong groups, and the weak ones adjacent to them, directly or over other weak ones.
 
     Parameters
     ----------

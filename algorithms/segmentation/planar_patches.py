@@ -78,7 +78,7 @@ def segment_patches(
     points = np.column_stack([xyz - xyz[0], np.full(len(xyz), -1.0)])
     del xyz
     plane = _smoothest_plane(points, planes, ON_PLANE * off_plane, monitor.part(0.6, 0.8))
-    # Links take memory of their own: the other neighbors have done their part.
+    # The other neighbors are freed before links are found, which take memory of their own.
     planes.neighbors = _linked_neighbors(planes.neighbors)
     on_surface = (planes.deviation[plane] <= ON_PLANE * off_plane) & (plane >= 0)
     on_surface &= planes.planes[plane, 2] >= np.sin(np.radians(90 - max_slope))
@@ -123,7 +123,7 @@ def _smoothest_plane(points: np.ndarray, planes: _PointPlanes, reach: float, mon
         own, candidates = points[rows], planes.neighbors[rows]
         deviation = planes.deviation[candidates]
         left = np.arange(len(rows))
-        # The smoothest one holds most points; the others are held against all.
+        # The smoothest plane holds most points; only for the rest all planes are tested.
         for is_last in (False, True):
             if is_last:
                 off = np.einsum("ikj,ij->ik", planes.planes[candidates], own)

@@ -117,7 +117,7 @@ def classify_ground_cloth(
     -----
     Each particle of the cloth falls until it reaches the height of the point nearest to it in plan, and stays there. In
     each step neighbors draw each other to a common height, the more often the more rigid the cloth is. It ends when no
-    particle moves by 5 mm. All returns are used: in woods of which the scanner saw through the leaves, 'Classify ground
+    particle moves by 5 mm. All returns are used: in woods where pulses pass through the leaves, 'Classify ground
     points (TIN)' finds more. The paper leaves open gravity, damping, in which order neighbors draw each other,
     particles without a point, and from where the cloth falls. These and the defaults are as in the program that its
     authors published, with two differences. Of two points equally near to a particle the lower is taken, where the

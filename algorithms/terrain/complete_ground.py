@@ -35,7 +35,7 @@ def complete_ground(
     ] = 0.1,
     monitor=None,
 ):
-    """Add to the ground what lies on its surface and has no other class.
+    """Add to the ground the points on its surface that have no other class.
 
     A ground filter keeps a thin surface: where flight lines differ in height by a few centimeters, or grass is low, it
     takes one layer of points and leaves the other. Buildings, plants, water and other classes stay as they are.

@@ -1,4 +1,4 @@
-"""Small files that promise what they can't hold: refused in one sentence, or read right, in little memory."""
+"""Small files whose headers claim more than they hold: refused in one sentence, or read right, in little memory."""
 
 import importlib.util
 import io
@@ -364,7 +364,7 @@ def test_a_cloud_of_a_scale_below_zero_has_its_bounds(make_las, take_apart, tmp_
 
 
 def test_points_that_are_all_alike_are_read(tmp_path):
-    """They compress by more than anything else, and are no bomb."""
+    """Their ratio of compression is the highest possible, and must not be refused."""
     write_cloud(create_cloud({"xyz": np.zeros((1_000_000, 3))}), tmp_path / "alike.laz")
     assert (tmp_path / "alike.laz").stat().st_size < 20_000
     assert len(read_cloud(tmp_path / "alike.laz")) == 1_000_000

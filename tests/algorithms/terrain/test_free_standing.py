@@ -14,7 +14,7 @@ def slope(rows, columns, rise=0.0):
 
 
 def block(surface, rows, columns, height):
-    """Return which cells a block covers, after it was put on the surface: level, so high over its lowest place."""
+    """Return which cells a block covers, after it was put on the surface: level, ``height`` over its lowest cell."""
     here = np.zeros(surface.shape, bool)
     here[rows, columns] = True
     surface[here] = surface[here].min() + height

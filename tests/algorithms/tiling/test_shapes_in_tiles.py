@@ -73,7 +73,7 @@ def extents(layer, origin):
 
 @pytest.mark.parametrize(("name", "count", "off"), [("axes", 3, 0.01), ("centers", 1, 0.01), ("planes", 1, 0.15)])
 def test_shapes_are_those_of_the_whole_cloud_each_once(whole, tiled, name, count, off):
-    """Axes and centers within 1 cm; outlines of a plane within a cell of 0.1 m, of which they are drawn, and its inset.
+    """Axes and centers agree within 1 cm, outlines of planes within a cell of 0.1 m and the inset of outlines.
 
     No block sees a whole pipe or the whole plate.
     """
@@ -160,7 +160,7 @@ def axis(west, east, y, z=2.0):
 
 
 def test_pieces_of_a_pipe_become_one_and_pipes_beside_each_other_do_not():
-    """Three pieces of a pipe, one beside it, one in it as an insulated pipe is, and one behind a gap in its line."""
+    """Three pieces of a pipe, one beside it, one inside it (a pipe in its insulation), and one behind a gap in its line."""
     one = [(axis(0, 13, 5.0), 0.1), (axis(0, 13, 5.3), 0.1), (axis(0, 13, 5.0), 0.15)]
     two = [(axis(7, 23, 5.005), 0.1)]
     three = [(axis(17, 28, 5.0), 0.1), (axis(28.4, 29, 5.0), 0.1)]
