@@ -69,8 +69,8 @@ _PIPELINES = (
             "Noise, ground, bridges and heights first; then roof surfaces and clusters of everything else "
             "above the ground. A cluster is a building by its mean entropy, compared with that of planes and volumes, "
             "and by how much of the beam passes through it. Then walls are added, edges are corrected by a regression "
-            "learned from the buildings themselves, water, wires and vegetation get classes, and outlines are drawn. Distances and tolerances "
-            "follow the density and the noise of the cloud."
+            "learned from the buildings themselves, water, wires and vegetation get classes, and outlines are drawn. "
+            "Distances and tolerances follow the density and the noise of the cloud."
         ),
         references=_SANTOS,
         steps=(

@@ -66,7 +66,7 @@ def classify_noise_histogram_2019(
     """Find points far above or below the scene by the cell histogram filter.
 
     The heights of each cell make a histogram. From both ends inward, bins with fewer points than the minimum frequency
-    are noise, up to the first bin that has at least as many: low noise (class 7) below it and high noise (class 18) above it.
+    are noise, up to the first bin that has at least as many: low noise (class 7) below, high noise (class 18) above it.
 
     Parameters
     ----------
