@@ -1216,7 +1216,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Near ground&lt;/b&gt; (Complete ground): Add to the ground what lies on its surface and has no other class.</source>
+        <source>&lt;b&gt;Near ground&lt;/b&gt; (Complete ground): Add to the ground the points on its surface that have no other class.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3504,7 +3504,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Add to the ground what lies on its surface and has no other class.</source>
+        <source>Add to the ground the points on its surface that have no other class.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -4792,7 +4792,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Each particle of the cloth falls until it reaches the height of the point nearest to it in plan, and stays there. In each step neighbors draw each other to a common height, the more often the more rigid the cloth is. It ends when no particle moves by 5 mm. All returns are used: in woods of which the scanner saw through the leaves, 'Classify ground points (TIN)' finds more. The paper leaves open gravity, damping, in which order neighbors draw each other, particles without a point, and from where the cloth falls. These and the defaults are as in the program that its authors published, with two differences. Of two points equally near to a particle the lower is taken, where the program takes the first in the file, so that the order of points has no influence. Particles at the corners of the cloud are let down as all others are, where the program leaves some of them out. Particles more than 20 grid cells from any point, with none in their row and column, take the height of the nearest point, where the program searches on over the links.</source>
+        <source>Each particle of the cloth falls until it reaches the height of the point nearest to it in plan, and stays there. In each step neighbors draw each other to a common height, the more often the more rigid the cloth is. It ends when no particle moves by 5 mm. All returns are used: in woods where pulses pass through the leaves, 'Classify ground points (TIN)' finds more. The paper leaves open gravity, damping, in which order neighbors draw each other, particles without a point, and from where the cloth falls. These and the defaults are as in the program that its authors published, with two differences. Of two points equally near to a particle the lower is taken, where the program takes the first in the file, so that the order of points has no influence. Particles at the corners of the cloud are let down as all others are, where the program leaves some of them out. Particles more than 20 grid cells from any point, with none in their row and column, take the height of the nearest point, where the program searches on over the links.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6396,7 +6396,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Noise, ground, bridges and heights first; then roof surfaces and clusters of everything else above the ground. A cluster is a building by its mean entropy, compared with that of planes and volumes, and by how much of the beam passes through it. Then come walls, edges corrected by what all buildings of the cloud look like, water, wires, vegetation among the rest, and outlines. Distances and tolerances follow the density and the noise of the cloud.</source>
+        <source>Noise, ground, bridges and heights first; then roof surfaces and clusters of everything else above the ground. A cluster is a building by its mean entropy, compared with that of planes and volumes, and by how much of the beam passes through it. Then walls are added, edges are corrected by a regression learned from the buildings themselves, water, wires and vegetation get classes, and outlines are drawn. Distances and tolerances follow the density and the noise of the cloud.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8136,7 +8136,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>The heights of each cell make a histogram. From both ends inward, bins with fewer points than the minimum frequency are noise, up to the first bin that has as many: low noise (class 7) below it and high noise (class 18) above it.</source>
+        <source>The heights of each cell make a histogram. From both ends inward, bins with fewer points than the minimum frequency are noise, up to the first bin that has at least as many: low noise (class 7) below it and high noise (class 18) above it.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
