@@ -8136,7 +8136,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>The heights of each cell make a histogram. From both ends inward, bins with fewer points than the minimum frequency are noise, up to the first bin that has at least as many: low noise (class 7) below it and high noise (class 18) above it.</source>
+        <source>The heights of each cell make a histogram. From both ends inward, bins with fewer points than the minimum frequency are noise, up to the first bin that has at least as many: low noise (class 7) below, high noise (class 18) above it.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
