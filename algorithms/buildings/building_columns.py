@@ -8,6 +8,7 @@ import numpy as np
 
 from ..packages import ndimage
 from ..rules import rule
+from ..sampling.kinds import SCENE
 from ..segmentation.top_surface import TOP
 
 _EIGHT = np.ones((3, 3), bool)
@@ -17,7 +18,6 @@ _EIGHT = np.ones((3, 3), bool)
 class ColumnRules:
     """Which cells belong to a roof, and which adjoin it."""
 
-    least_cell: float = rule(0.5, "m", "physics: eaves are as wide")
     wall_reach: float = rule(1.0, "m", "physics: eaves reach out by up to this, and roof surfaces end before them")
     sparse_share: float = rule(0.3, "share", "chimneys and dormers cover less of the cells around, crowns more")
     bush_share: float = rule(0.33, "share", "of the roof's height, up to which points beside a roof may be bushes")
@@ -42,7 +42,7 @@ class ColumnPoints:
 
 def column_size(density: float) -> float:
     """Return the side (m) of the cells that buildings are counted in, at a density (points/m²)."""
-    return max(COLUMNS.least_cell, TOP.cell / float(np.sqrt(density)))
+    return max(SCENE.least_cell, TOP.cell / float(np.sqrt(density)))
 
 
 class Columns:

@@ -12,9 +12,6 @@ from ..neighborhoods.covariance import dimensionality, shannon_entropy, smallest
 from ..sampling.height_resolution import LEAST_RESOLUTION
 from .space_cells import SpaceCells, covariances
 
-# Side of the columns in plan (cells), as far as the cells around reach.
-_COLUMN = 3
-
 
 @dataclass(frozen=True)
 class CellPoints:
@@ -95,7 +92,8 @@ def _columns(points: CellPoints, cells: SpaceCells, chosen: np.ndarray) -> np.nd
     Share of ground, height of the topmost point, distances of the middle of the cell's points from the topmost and the
     lowest point, and spread of elevations, m.
     """
-    side, upward = _COLUMN * cells.size, np.argsort(points.xyz[:, 2], kind="stable")
+    # As wide in plan as a cell with those around it.
+    side, upward = 3 * cells.size, np.argsort(points.xyz[:, 2], kind="stable")
     first = np.empty(len(cells.count), np.int64)
     first[cells.cell] = np.arange(len(cells.cell))
     rows, level = first[chosen], cells.centers[chosen, 2]

@@ -13,7 +13,7 @@ from ..geometry.grid import raster_cells, refuse_sparse
 from ..params import MinBuildingArea, PointDensity, PointSource
 from ..rules import rule
 from ..sampling.cloud_sampling import CloudSampling
-from ..sampling.kinds import IMAGES, LASER
+from ..sampling.kinds import IMAGES, LASER, SCENE
 from ..segmentation.top_surface import TopSurface
 from ..stage import Param, stage
 from .building_columns import ColumnPoints, Columns, column_size
@@ -30,9 +30,6 @@ class CompletionRules:
 
 
 COMPLETION = CompletionRules()
-
-# Largest gap that is closed (m), the bound of the tunable.
-_MOST_GAP = 20.0
 
 
 @stage(
@@ -60,8 +57,9 @@ def complete_buildings(
             "Gaps in a roof up to this wide are filled where no ground is seen in them (gutters, skylights, ridges).",
             unit="m",
             low=0,
-            high=_MOST_GAP,
-            automatic=f"{COMPLETION.gap:g} point spacings, from {COMPLETION.least_gap:g} to {_MOST_GAP:g} m.",
+            high=2 * SCENE.ground_within,
+            automatic=f"{COMPLETION.gap:g} point spacings, from {COMPLETION.least_gap:g} to "
+            f"{2 * SCENE.ground_within:g} m.",
         ),
     ] = None,
     roof_clearance: Annotated[
@@ -164,7 +162,8 @@ def complete_buildings(
     density = sampling.effective_density if density is None else density
     kind = sampling.kind(source)
     if gap is None:
-        gap = float(np.clip(COMPLETION.gap / np.sqrt(density), COMPLETION.least_gap, _MOST_GAP))
+        # In the middle of wider gaps ground is seen.
+        gap = float(np.clip(COMPLETION.gap / np.sqrt(density), COMPLETION.least_gap, 2 * SCENE.ground_within))
     monitor.resolved(density=density, gap=gap)
     result = np.where(classification == PointClass.BUILDING, np.uint8(PointClass.UNCLASSIFIED), classification)
     is_roof = classification == PointClass.BUILDING

@@ -13,7 +13,6 @@ from ..rules import rule
 class _Rules:
     """How the regression is fitted."""
 
-    ridge: float = rule(1.0, "samples", "statistics: features that say the same get no weights that cancel")
     steps: int = rule(20, "steps", "numerics: Newton's method converges in 6 to 9")
     digits: int = rule(6, "decimals", "numerics: of weights; last bits change none, smaller steps end the fit")
     block: int = rule(64, "rows", "numerics: products this small are computed by one thread, in one order")
@@ -36,7 +35,8 @@ class LogisticRegression:
         mean, scale = features.mean(axis=0), features.std(axis=0)
         scale = np.where(scale > 0, scale, 1.0)
         terms = _terms(features, mean, scale)
-        penalty = np.full(terms.shape[1], _RULES.ridge)
+        # Weights are expected to be of the standard normal distribution: features that say the same do not cancel.
+        penalty = np.ones(terms.shape[1])
         # The constant is free; the little that is left keeps a single class from an infinite one.
         penalty[0] = 10.0**-_RULES.digits
         weights = np.zeros(terms.shape[1])

@@ -14,7 +14,7 @@ from ..packages import ndimage
 from ..params import PointDensity, PointSource
 from ..rules import rule
 from ..sampling.cloud_sampling import CloudSampling, not_noise
-from ..sampling.kinds import LASER
+from ..sampling.kinds import IMAGES, LASER
 from ..stage import Monitor, Param, stage
 from .building_columns import column_size
 from .cell_features import CellPoints, cell_features
@@ -35,7 +35,6 @@ class _Rules:
     cell_spacings: float = rule(
         4.0, "point spacings", "fitted: side of a cell, 16 points of a roof; 3 and 6 gain 0.1 less"
     )
-    raised: float = rule(0.2, "m", "physics: lower points are the roughness of the ground")
     edge: float = rule(2.0, "m", "fitted: from a building's edge points change; 3 m gain the same, 5 m 0.1 less")
     becomes: float = rule(0.7, "probability", "fitted: over it a point becomes building; over 0.8 gains 0.1 less")
     ceases: float = rule(
@@ -210,7 +209,7 @@ class _Scene:
     def is_raised(self) -> np.ndarray:
         """Which points are learned, and may be of buildings."""
         never = np.isin(self.classification, _NEVER)
-        return (self.height > _RULES.raised) & ~never
+        return (self.height > IMAGES.foot) & ~never
 
     def labeled(
         self,

@@ -19,7 +19,6 @@ class ImageRoofRules:
     """Roofs and vehicles in clouds of matched images."""
 
     least_width: float = rule(1.5, "m", "physics: narrower objects are walls, railings or hedges")
-    half: float = rule(0.5, "share", "of a roof's height at its edge: a step is smeared evenly to both sides")
 
 
 @dataclass(frozen=True)
@@ -91,7 +90,8 @@ class RoofExtent:
         if not core.any():
             return core
         nearest = ndimage.distance_transform_edt(~core, return_distances=False, return_indices=True)
-        is_edge = self.surface.height >= IMAGE_ROOFS.half * self.surface.height[tuple(nearest)]
+        # A step is smeared evenly to both sides.
+        is_edge = self.surface.height >= 0.5 * self.surface.height[tuple(nearest)]
         steps = max(1, round(MATCHING.rounded / self.surface.size))
         cross = ndimage.generate_binary_structure(2, 1)
         grown = ndimage.binary_dilation(core, cross, steps, mask=core | is_edge)

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..geometry.grid import lattice
 from ..rules import rule
+from ..sampling.surface_noise import SURFACES
 from ..stage import Monitor
 from ..threads import ROWS_AT_ONCE, in_chunks
 from .logistic_regression import LogisticRegression
@@ -20,8 +21,6 @@ class _Rules:
     """How a scene is learned; fitted on seven real airborne clouds."""
 
     half: float = rule(10.0, "m", "physics: side of the squares of the two halves, that of a small house")
-    sample: int = rule(10_000, "cells", "fitted: learned at most; with 25,000 or all the gain is the same")
-    least_buildings: int = rule(2, "buildings", "statistics: fewer have no other of their kind to learn from")
     surface_share: float = rule(0.3, "", "fitted: what points of a roof surface take from its mean; 0 gains 0.13 less")
 
 
@@ -55,7 +54,7 @@ class LabeledCells:
         mark = np.zeros(len(self.cells.count))
         mark[self.cells.cell[is_building]] = 1.0 + np.abs(east[cluster_id[is_building]])
         table = np.column_stack([self.half, mark[self.chosen], self.label, self.features])
-        return _spread(table, RULES.sample)
+        return _spread(table, SURFACES.sample)
 
     def smooth(self, likely: np.ndarray) -> np.ndarray:
         """Return probabilities (k,) halfway to the mean of the cells around, which count by their raised points."""
@@ -69,11 +68,12 @@ def learn_halves(sample: np.ndarray) -> tuple[float, ...]:
     Empty where it has fewer than two buildings, or a half has only points of one kind.
     """
     marks = np.unique(sample[:, 1])
-    sample = _spread(sample, RULES.sample)
+    sample = _spread(sample, SURFACES.sample)
     half, label = sample[:, 0], sample[:, 2]
     halves = [half == number for number in (0, 1)]
     has_both = all(rows.any() and 0 < label[rows].mean() < 1 for rows in halves)
-    if (marks > 0).sum() < RULES.least_buildings or not has_both:
+    # A single building has no other of its kind to learn from.
+    if (marks > 0).sum() < 2 or not has_both:
         return ()
     fitted = [LogisticRegression.fit(sample[rows, 3:], label[rows]) for rows in halves]
     return tuple(np.concatenate([part for one in fitted for part in (one.mean, one.scale, one.weights)]).tolist())

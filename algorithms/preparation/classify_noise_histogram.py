@@ -13,6 +13,7 @@ from ..packages import spatial
 from ..params import MinFrequency
 from ..rules import rule
 from ..sampling.cloud_sampling import CloudSampling
+from ..sampling.kinds import SCENE
 from ..stage import Monitor, Param, stage
 from .height_histograms import Histogram, pooled_histogram, with_borrowed_ranges
 from .points_under_ground import UNDER_GROUND, under_ground
@@ -24,7 +25,6 @@ class HistogramRules:
 
     points_per_cell: int = rule(450, "points", "statistics: with the cells around, some 4000 points make a histogram")
     gap: int = rule(2, "bins", "physics: empty ones; chimneys, treetops and rock faces leave no such gap")
-    group: int = rule(3, "points", "physics: close together they are a lamp or a wire; birds are single points")
     group_reach: float = rule(3.0, "point spacings", "within which points of a group lie, and a meter at least")
 
 
@@ -37,7 +37,7 @@ HISTOGRAM = HistogramRules()
     tags="noise,outliers,birds,low points,high points,multipath,histogram,clean,denoise,lasnoise",
     writes=("classification",),
     # Cells, which borrow the histograms of those around, are as wide.
-    reach=UNDER_GROUND.around,
+    reach=SCENE.ground_within,
 )
 def classify_noise_histogram(
     xyz,
@@ -232,7 +232,7 @@ def _scene_range(
 
 
 def _in_group(points: np.ndarray, radius: float) -> np.ndarray:
-    """Return which points have at least ``HISTOGRAM.group`` points, themselves among them, within ``radius`` (m)."""
-    if len(points) < HISTOGRAM.group:
+    """Return which points have at least three points, themselves among them, within ``radius`` (m)."""
+    if len(points) < UNDER_GROUND.few:
         return np.zeros(len(points), bool)
-    return spatial.cKDTree(points).query(points, HISTOGRAM.group)[0][:, -1] <= radius
+    return spatial.cKDTree(points).query(points, UNDER_GROUND.few)[0][:, -1] <= radius

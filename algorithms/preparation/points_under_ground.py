@@ -16,6 +16,7 @@ from ..geometry.groups import ordered
 from ..packages import spatial
 from ..rules import rule
 from ..sampling.density import DENSITY
+from ..sampling.kinds import SCENE
 from ..stage import Monitor
 from ..threads import ROWS_AT_ONCE, in_chunks
 
@@ -25,8 +26,7 @@ class UnderGroundRules:
     """Points under the ground, and which of them are a floor."""
 
     depth: float = rule(0.45, "m", "physics: less differ ground, grass and ruts from cell to cell, and floors")
-    around: float = rule(10.0, "m", "physics: cells in each of which some ground is seen, even among trees")
-    few: int = rule(3, "points", "of a group under the ground; more at one level within half a cell are a floor")
+    few: int = rule(3, "points", "physics: at one height are a lamp or a wire, and under the ground more are a floor")
 
 
 UNDER_GROUND = UnderGroundRules()
@@ -50,7 +50,7 @@ def under_ground(xyz: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarra
     order = _by_cell_and_height(which, xyz)
     n_points = np.bincount(which)
     start = np.cumsum(n_points) - n_points
-    size = max(UNDER_GROUND.around, 8 * cell)
+    size = max(SCENE.ground_within, 8 * cell)
 
     found, is_floor = np.zeros((2, len(xyz)), bool)
     n_found = np.zeros(len(cells), np.int64)
@@ -78,7 +78,7 @@ def under_ground(xyz: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarra
         found[rows] = True
         low = np.flatnonzero(found)
         # Points of a floor that is seen here and there lie apart.
-        is_floor[low] = _at_level(xyz[low], xyz[low], UNDER_GROUND.around / 2) > UNDER_GROUND.few
+        is_floor[low] = _at_level(xyz[low], xyz[low], SCENE.ground_within / 2) > UNDER_GROUND.few
         found &= ~is_floor
         n_found = np.bincount(which[found], minlength=len(cells))
         near = near_cells(grid, cells, which[rows])

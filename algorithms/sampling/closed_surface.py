@@ -8,17 +8,15 @@ import numpy as np
 
 from ..geometry.grid import find_cells, grid_over
 from ..rules import rule
+from .kinds import LASER
 
 
 @dataclass(frozen=True)
 class ClosedSurfaceRules:
     """Where a cloud is seen through."""
 
-    least_cell: float = rule(0.75, "m", "of cells in which depth is looked for, at least")
+    least_spacing: float = rule(0.25, "m", "of points on the surface seen from above, at least; details are smaller")
     cell: float = rule(3.0, "point spacings", "statistics: nine points share a cell")
-    deep: float = rule(
-        2.0, "m", "physics: points farther apart in height are an edge, a wall, or a crown that is seen through"
-    )
 
 
 CLOSED = ClosedSurfaceRules()
@@ -41,12 +39,12 @@ def seen_through_share(xyz: np.ndarray, spacing: float) -> float:
         along lines, and few have eight such neighbors. Crowns that pulses pass make them deep over areas. Measured:
         0 to 0.011 on image-matched clouds, 0.023 to 0.53 on airborne laser clouds with trees.
     """
-    grid = grid_over(xyz, max(CLOSED.least_cell, CLOSED.cell * spacing))
+    grid = grid_over(xyz, CLOSED.cell * max(CLOSED.least_spacing, spacing))
     number = grid.number(xyz)
     order = np.argsort(number, kind="stable")
     cells, start = np.unique(number[order], return_index=True)
     z = xyz[order, 2]
-    deep = cells[np.maximum.reduceat(z, start) - np.minimum.reduceat(z, start) > CLOSED.deep]
+    deep = cells[np.maximum.reduceat(z, start) - np.minimum.reduceat(z, start) > LASER.lowest_roof]
     is_inner = np.ones(len(deep), bool)
     for step in grid.around:
         is_inner &= find_cells(deep, deep + step)[1]

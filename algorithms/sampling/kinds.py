@@ -20,9 +20,12 @@ class CloudKind:
 
     is_surface: bool
     lowest_roof: float = rule(2.0, "m", "physics: mean height of the lowest roof; cars are lower")
-    raised: float = rule(1.5, "m", "physics: lower points are of kerbs, bonnets of cars and low plants")
-
     foot: float = rule(0.5, "m", "physics: lower points are of the ground, of plants, kerbs and steps")
+
+    @property
+    def raised(self) -> float:
+        """Height (m) from which points may be of a roof, whose edge is lower than its mean by as much as a foot."""
+        return self.lowest_roof - self.foot
 
     def choose(self, laser: Choice, images: Choice) -> Choice:
         """Return the one of two methods that is for clouds of this kind."""
@@ -36,9 +39,19 @@ class MatchingRules:
     rounded: float = rule(0.7, "m", "physics: images are matched by windows as large, which round edges of roofs")
 
 
+@dataclass(frozen=True)
+class SceneRules:
+    """What any cloud shows of a scene."""
+
+    ground_within: float = rule(10.0, "m", "physics: distance within which some ground is seen, even among trees")
+    least_cell: float = rule(
+        0.5, "m", "of cells of roofs and ground, at least: eaves are as wide, terrain models are delivered at it"
+    )
+
+
 LASER = CloudKind(is_surface=False)
 
 # Sheds and carports of 2 m have rounded edges, which lower the mean over their surface; cars differ by shape.
 # Walls are seen down to their feet, and ground is smooth.
-IMAGES = CloudKind(is_surface=True, lowest_roof=1.2, raised=1.0, foot=0.2)
-MATCHING = MatchingRules()
+IMAGES = CloudKind(is_surface=True, lowest_roof=1.2, foot=0.2)
+MATCHING, SCENE = MatchingRules(), SceneRules()

@@ -24,7 +24,7 @@ from .density import point_spacing
 class SurfaceRules:
     """What shows the noise of surfaces, and how rough roofs and walls are."""
 
-    sample: int = rule(20_000, "points", "statistics: quantiles of as many are good to a percent")
+    sample: int = rule(20_000, "points, or cells", "statistics: quantiles of as many are good to a percent")
     square: float = rule(18.0, "point spacings", "side of the squares in plan from which the sample is taken")
     middle: float = rule(0.4, "share", "of that side; the 60 points nearest to a point there are in its square, too")
     least_of_sample: float = rule(0.25, "share", "of the sample; with less, the cloud is taken whole")

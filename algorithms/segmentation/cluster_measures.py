@@ -11,6 +11,7 @@ import numpy as np
 from ..geometry.grid import Grid, distinct, find_cells, fixed_grid_over, lattice
 from ..rules import rule
 from ..sampling.density import DENSITY
+from ..terrain.free_standing import FREE
 
 
 @dataclass(frozen=True)
@@ -18,7 +19,6 @@ class MeasureRules:
     """How clusters are counted in cells."""
 
     least_cell: float = rule(0.3, "m", "side of the cells in which areas are counted, at least")
-    beneath: float = rule(1.0, "m", "physics: points deeper below a group lie under it and not on it")
 
 
 MEASURES = MeasureRules()
@@ -198,5 +198,5 @@ def _columns(xyz: np.ndarray, group: np.ndarray, size: float) -> tuple[np.ndarra
     for nth in range(groups_there.max()):
         some = np.flatnonzero(groups_there > nth)
         pair = first[some] + nth
-        beneath += np.bincount(pair[xyz[some, 2] < bottom[pair] - MEASURES.beneath], minlength=len(pairs))
+        beneath += np.bincount(pair[xyz[some, 2] < bottom[pair] - FREE.step], minlength=len(pairs))
     return owner, np.bincount(which), beneath

@@ -25,7 +25,6 @@ class PatchRules:
         3.5, "deviations", "statistics: points and planes of a surface, each with their own error"
     )
     same_direction: float = rule(15.0, "°", "between normals of one surface, whose errors are a few degrees")
-    links: int = rule(8, "points", "neighbors among which links are looked for, on both sides of scan lines")
 
 
 PATCHES = PatchRules()
@@ -141,9 +140,9 @@ def _smoothest_plane(points: np.ndarray, planes: _PointPlanes, reach: float, mon
 
 
 def _linked_neighbors(neighbors: np.ndarray) -> np.ndarray:
-    """Return those of the neighbors (n, k) of points, nearest first, that links are looked for among."""
+    """Return those of the neighbors (n, k), nearest first, that links are looked for among: as many as show a plane."""
     # Spread over the ranks, so that links cross from one scan line to the next.
-    ranks = np.unique(np.linspace(1, neighbors.shape[1] - 1, PATCHES.links - 1).astype(int))
+    ranks = np.unique(np.linspace(1, neighbors.shape[1] - 1, LEAST_NEIGHBORS - 1).astype(int))
     return neighbors[:, ranks]
 
 

@@ -30,7 +30,6 @@ class RoofSurfaceRules:
     """Criteria of a roof surface."""
 
     low_share: float = rule(0.1, "share", "of low points, from which a surface goes on into the ground: a ramp")
-    dense: float = rule(10.0, "points/m²", "with fewer, planes reach farther than half a meter")
     farther: float = rule(0.12, "point spacings", "fitted on thinned clouds of two towns: deviation from these planes")
 
 
@@ -197,7 +196,9 @@ class _Planes:
     @property
     def off_plane(self) -> float:
         """How far points of a roof lie off the planes of their neighbors (one standard deviation), m."""
-        farther = np.sqrt(max(0.0, 1 / self.density - 1 / SURFACE.dense))
+        # With fewer points per m² the nearest ones that show a plane reach farther than half a meter.
+        dense = LEAST_NEIGHBORS / (np.pi * SURFACES.least_reach**2)
+        farther = np.sqrt(max(0.0, 1 / self.density - 1 / dense))
         return float(np.hypot(plane_roughness(self.noise, self.density), SURFACE.farther * farther))
 
 

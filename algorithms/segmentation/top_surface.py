@@ -9,6 +9,7 @@ import numpy as np
 from ..geometry.grid import fixed_grid_over, raster_cells, refuse_sparse
 from ..packages import ndimage
 from ..rules import rule
+from ..sampling.closed_surface import CLOSED
 
 
 @dataclass(frozen=True)
@@ -16,7 +17,6 @@ class TopSurfaceRules:
     """The surface seen from above, in cells."""
 
     cell: float = rule(1.2, "point spacings", "statistics: cells hold a point nearly everywhere")
-    least_cell: float = rule(0.25, "m", "the same, at least")
     filled: float = rule(2.0, "cells", "up to which empty cells take the height of the nearest one")
 
 
@@ -48,7 +48,7 @@ class TopSurface:
     """
 
     def __init__(self, xyz: np.ndarray, height: np.ndarray, counted: np.ndarray, density: float) -> None:
-        self.size = max(TOP.least_cell, TOP.cell / float(np.sqrt(density)))
+        self.size = max(CLOSED.least_spacing, TOP.cell / float(np.sqrt(density)))
         refuse_sparse(xyz, self.size)
         margin = 4
         self.cell = row, column = raster_cells(xyz, self.size, margin)

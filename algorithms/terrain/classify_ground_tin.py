@@ -37,8 +37,14 @@ GROUND = GroundRules()
 # Name of what parts of a cloud take of the whole: the roughness (m) of the finished surface.
 _ROUGHNESS = "surface_roughness"
 
-# The kinds of terrain: shorter side of the largest building, m.
-_TERRAINS = {"nature": 20.0, "village": 40.0, "town": USUAL_BUILDING, "city": 2 * USUAL_BUILDING, "industry": 250.0}
+# The kinds of terrain: the largest building of each is twice as wide as that of the one before.
+_TERRAINS = ("nature", "village", "town", "city", "industry")
+
+
+def _largest_building(terrain: str) -> float:
+    """Return the shorter side (m) of the largest building of a kind of terrain."""
+    return USUAL_BUILDING * 2.0 ** (_TERRAINS.index(terrain) - _TERRAINS.index("town"))
+
 
 # The granularities: least cell, m; cells are the point spacing wide where that is more, half of it where fine.
 _GRANULARITIES = {"coarse": 2.0, "medium": 1.0, "fine": 1.0, "extra fine": 0.5}
@@ -135,9 +141,10 @@ def classify_ground_tin(
         Optional[str],
         Param(
             "Terrain",
-            "Kind of terrain and of its buildings: it sets the maximum building size (20, 40, 60, 120, 250 m) and the "
-            "iteration angle (30° in nature, else 20°) where these are automatic.",
-            choices=tuple(_TERRAINS),
+            "Kind of terrain and of its buildings: it sets the maximum building size "
+            f"({', '.join(f'{_largest_building(kind):g}' for kind in _TERRAINS)} m) and the iteration angle "
+            f"({GROUND.angle_in_nature:g}° in nature, else {GROUND.angle:g}°) where these are automatic.",
+            choices=_TERRAINS,
             automatic="the smallest kind from town on that has room for the largest building found.",
         ),
     ] = None,
@@ -249,7 +256,7 @@ def classify_ground_tin(
     points, last = xyz[usable], last_returns(return_number, number_of_returns, usable)
     granularity, cell_size = _cell(granularity, cell_size, spacing)
     edge_length = 2 * cell_size if edge_length is None else edge_length
-    size = _TERRAINS.get(terrain or "") if max_building_size is None else max_building_size
+    size = _largest_building(terrain) if max_building_size is None and terrain else max_building_size
     usual_angle = GROUND.angle_in_nature if terrain == "nature" else GROUND.angle
     angle = usual_angle if iteration_angle is None else iteration_angle
 
@@ -287,8 +294,8 @@ def _cell(granularity: Optional[str], cell_size: Optional[float], spacing: float
 
 def _terrain(size: float) -> str:
     """Return the kind of terrain whose largest building has room for ``size`` (m), from town on."""
-    kinds = list(_TERRAINS)[list(_TERRAINS).index("town") :]
-    return next((kind for kind in kinds if size <= _TERRAINS[kind]), kinds[-1])
+    kinds = _TERRAINS[_TERRAINS.index("town") :]
+    return next((kind for kind in kinds if size <= _largest_building(kind)), kinds[-1])
 
 
 def sweep(

@@ -7,15 +7,9 @@ import numpy as np
 from ..cloud.asprs import PointClass
 from ..geometry.grid import distinct, fixed_grid_over
 from ..geometry.tiled_tin import TiledTin
+from ..sampling.kinds import SCENE
 from ..stage import stage
 from .on_decks import on_decks
-
-# Half the width of a usual building: how far the ground points are whose triangle a point is in (m).
-_REACH = 10.0
-
-# Side of the cells whose ground points are one node of the surface, their mean (m): terrain models are delivered at it.
-# In a cloud of 15 points per m² heights differ by 1 cm on the average from those over all points.
-_CELL = 0.5
 
 
 @stage(
@@ -23,7 +17,7 @@ _CELL = 0.5
     group="Terrain",
     tags="normalize,normalise,normalization,nDSM,HAG,height,terrain,TIN,lasheight",
     writes=("height_above_ground",),
-    reach=_REACH,
+    reach=SCENE.ground_within,
 )
 def compute_height_above_ground(xyz, classification, *, monitor=None):
     """Measure how high each point lies above the ground points around it.
@@ -93,7 +87,7 @@ def compute_height_above_ground(xyz, classification, *, monitor=None):
 
 def _means(ground: np.ndarray) -> np.ndarray:
     """Return the mean (m, 3) of the ground points (n, 3) in each cell."""
-    _, cell = distinct(fixed_grid_over(ground, _CELL).number(ground))
+    _, cell = distinct(fixed_grid_over(ground, SCENE.least_cell).number(ground))
     count, corner = np.bincount(cell), ground.min(axis=0)
     # Sums of small numbers keep their digits.
     return np.column_stack([np.bincount(cell, column) / count for column in (ground - corner).T]) + corner

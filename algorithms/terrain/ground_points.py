@@ -10,9 +10,7 @@ from ..cloud.asprs import NOISE, PointClass
 from ..geometry.grid import grid_over
 from ..geometry.tin import PLANE_POINTS
 from ..sampling.height_resolution import LEAST_RESOLUTION
-
-# Side of the squares by which points are ordered, in point spacings: a few hundred points each, which fit a cache.
-_SQUARE_SPACINGS = 10.0
+from ..sampling.surface_noise import SURFACES
 
 
 def usable_points(xyz: np.ndarray, classification: np.ndarray) -> np.ndarray:
@@ -36,9 +34,10 @@ def usable_points(xyz: np.ndarray, classification: np.ndarray) -> np.ndarray:
 def in_plan_order(xyz: np.ndarray, usable: np.ndarray, spacing: float) -> np.ndarray:
     """Return the indices ``usable`` sorted by squares in plan: points near in plan are near in memory then.
 
-    Triangulation and searches are faster, far more so where the order was random. ``spacing`` is that of the points, m.
+    Triangulation and searches are faster, far more so where the order was random. Some 300 points share a square, which
+    fit a cache; ``spacing`` is theirs, m.
     """
-    squares = grid_over(xyz[usable], _SQUARE_SPACINGS * spacing)
+    squares = grid_over(xyz[usable], SURFACES.square * spacing)
     return usable[np.argsort(squares.number(xyz[usable]), kind="stable")]
 
 

@@ -11,7 +11,7 @@ from ..geometry.grid import lattice, plan_box, refuse_sparse, turned_in_plan
 from ..geometry.raster_opening import open_surface
 from ..packages import ndimage
 from ..rules import rule
-from ..sampling.kinds import MATCHING
+from ..sampling.kinds import MATCHING, SCENE
 from ..stage import Monitor
 from ..threads import made_ahead
 from .free_standing import find_free_standing
@@ -23,9 +23,7 @@ class SeedRules:
     """Which lowest points are seeds of the ground."""
 
     pit_slope: float = rule(5.0, "tangent", "physics: sides of pits of multipath, 5 m deep in a cell of 1 m")
-    pit_reach: float = rule(10.0, "m", "radius of the surroundings in which cells as deep as a pit are counted")
     pit_share: float = rule(0.1, "share", "physics: more pulses reach the ground of dense forest")
-    pit_steps: int = rule(10, "cells", "up to which each cell is examined; beyond, as many steps")
     most_turned: float = rule(2.5, "ratio", "of the box of a turned cloud to its own; narrow strips have more")
     grids: int = rule(3, "grids of cells", "turned, decide together: on bushes it matters which points share a cell")
 
@@ -253,9 +251,8 @@ def _pits(height: np.ndarray, cell_size: float, monitor: Monitor) -> np.ndarray:
     surface = nearest_known(height, np.isinf(height))
     pits = (surface + open_surface(-surface, 1) < -depth) & np.isfinite(height)
     row, column = np.nonzero(pits)
-    reach = max(1, round(SEEDS.pit_reach / cell_size))
-    step = -(-reach // SEEDS.pit_steps)
-    offsets = step * np.arange(-(reach // step), reach // step + 1)
+    reach = max(1, round(SCENE.ground_within / cell_size))
+    offsets = np.arange(-reach, reach + 1)
     around = np.pad(height, reach, constant_values=np.inf)
     level = height[row, column] + depth
     n_deep, n_known = np.zeros((2, len(row)))

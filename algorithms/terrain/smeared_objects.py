@@ -11,6 +11,7 @@ from ..geometry.raster_opening import open_surface
 from ..packages import ndimage
 from ..rules import rule
 from ..sampling.density import DENSITY
+from ..sampling.kinds import LASER, SCENE
 from .free_standing import FREE
 
 
@@ -18,11 +19,9 @@ from .free_standing import FREE
 class SmearedRules:
     """Small objects with smeared walls in matched images."""
 
-    least_cell: float = rule(0.5, "m", "side of the cells of the surface, at least")
     width: float = rule(
         4.5, "m", "physics: narrower raised surfaces are objects: a shed of 3 m, walls smeared over 0.7 m"
     )
-    height: float = rule(0.5, "m", "above the opened surface, from which points are of objects")
     length: float = rule(8.0, "m", "physics: of the longest shed with its smeared walls; crests and dikes are longer")
     beyond: float = rule(0.8, "share", "of its radius that a window is centered beyond the end of the cloud at most")
 
@@ -58,7 +57,7 @@ def on_smeared_objects(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -
     """
     if not is_ground.any():
         return np.zeros(len(xyz), bool)
-    size = max(SMEARED.least_cell, DENSITY.filled_cell * spacing)
+    size = max(SCENE.least_cell, DENSITY.filled_cell * spacing)
     refuse_sparse(xyz, size)
     radius = max(1, round(SMEARED.width / 2 / size))
     row, column = raster_cells(xyz, size, radius + 1)
@@ -70,7 +69,7 @@ def on_smeared_objects(xyz: np.ndarray, is_ground: np.ndarray, spacing: float) -
     opened = open_surface(lowest, radius, is_far | (is_occupied & ~has_ground))
     # Slopes rise within a cell, to no more than the next one has.
     highest = ndimage.maximum_filter(np.where(has_ground, opened, -np.inf), 3)
-    is_above = is_ground & (xyz[:, 2] > highest[row, column] + SMEARED.height)
+    is_above = is_ground & (xyz[:, 2] > highest[row, column] + LASER.foot)
     above = np.zeros(lowest.shape, bool)
     above[row[is_above], column[is_above]] = True
     return is_above & _of_objects(above, is_occupied & ~has_ground, size)[row, column]

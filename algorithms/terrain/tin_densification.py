@@ -12,6 +12,7 @@ from ..geometry.tin import Tin, node_residuals, robust_deviation
 from ..packages import spatial
 from ..rules import rule
 from ..sampling.height_resolution import LEAST_RESOLUTION
+from ..sampling.surface_noise import SURFACES
 from ..stage import Monitor
 
 
@@ -28,9 +29,6 @@ class DensificationRules:
 
 
 DENSIFICATION = DensificationRules()
-
-# Nodes whose residuals show the roughness of a surface, about: a median of these is good to 2 %.
-_SAMPLE = 5_000
 
 
 @dataclass(frozen=True)
@@ -128,7 +126,7 @@ class Surface:
 def surface_roughness(nodes: np.ndarray, least: float) -> float:
     """Return the robust standard deviation of nodes (m, 3) across their surface, m, at least ``least``."""
     # Three nodes or fewer have no neighbors to differ from.
-    residuals = node_residuals(nodes, most=_SAMPLE) if len(nodes) > 3 else np.zeros(1)
+    residuals = node_residuals(nodes, most=SURFACES.sample) if len(nodes) > 3 else np.zeros(1)
     return robust_deviation(residuals, least)
 
 

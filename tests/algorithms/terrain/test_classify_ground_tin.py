@@ -287,7 +287,7 @@ def test_values_given_by_hand_are_used(rng):
 
 @pytest.mark.parametrize(
     ("word", "size", "angle"),
-    [("nature", 20, 30), ("village", 40, 20), ("town", 60, 20), ("city", 120, 20), ("industry", 250, 20)],
+    [("nature", 15, 30), ("village", 30, 20), ("town", 60, 20), ("city", 120, 20), ("industry", 240, 20)],
 )
 def test_the_terrain_sets_building_size_and_angle(word, size, angle, rng):
     """A kind of terrain gives the result of its size, and finds a building of that size but not a larger one."""
