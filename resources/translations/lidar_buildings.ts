@@ -2056,7 +2056,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Terrain&lt;/b&gt;: Kind of terrain and of its buildings: it sets the maximum building size (20, 40, 60, 120, 250 m) and the iteration angle (30° in nature, else 20°) where these are automatic. Automatic: the smallest kind from town on that has room for the largest building found. &lt;i&gt;(one of nature, village, town, city, industry; default automatic)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Terrain&lt;/b&gt;: Kind of terrain and of its buildings: it sets the maximum building size (15, 30, 60, 120, 240 m) and the iteration angle (30° in nature, else 20°) where these are automatic. Automatic: the smallest kind from town on that has room for the largest building found. &lt;i&gt;(one of nature, village, town, city, industry; default automatic)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5692,7 +5692,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Kind of terrain and of its buildings: it sets the maximum building size (20, 40, 60, 120, 250 m) and the iteration angle (30° in nature, else 20°) where these are automatic.</source>
+        <source>Kind of terrain and of its buildings: it sets the maximum building size (15, 30, 60, 120, 240 m) and the iteration angle (30° in nature, else 20°) where these are automatic.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
