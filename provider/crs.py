@@ -20,13 +20,7 @@ _DISTANCES_UNKNOWN = (Qgis.DistanceUnit.Unknown, Qgis.DistanceUnit.Degrees)
 
 
 def crs_units(epsg: int) -> Optional[tuple[float, float, bool]]:
-    """Look an EPSG code up.
-
-    Returns
-    -------
-    (float, float, bool) or None
-        Meters per horizontal unit, meters per vertical unit, whether it is geographic; None if unknown.
-    """
+    """Return meters per horizontal and vertical unit of an EPSG code, and whether it is geographic; None if unknown."""
     crs = QgsCoordinateReferenceSystem.fromEpsgId(epsg)
     if not crs.isValid():
         return None

@@ -180,10 +180,8 @@ def _check_file(path: Path) -> None:
 class Run:
     """The outputs of a run while it is writing them: in working folders, each beside its target.
 
-    Attributes
-    ----------
-    parameters : dict
-        Those of the run, with outputs in the working folders. Tables of databases and layers in memory stay.
+    ``parameters`` are those of the run, with outputs in the working folders. Tables of databases and layers in memory
+    stay.
     """
 
     def __init__(self, definitions: list, parameters: dict, context: QgsProcessingContext, files: ResultFiles) -> None:
@@ -275,19 +273,8 @@ def through_memory(
 ) -> Iterator[tuple[dict, Callable[[str], str]]]:
     """Let a layer that is to be a file be made in memory, and write the file when the block ends well.
 
-    Parameters
-    ----------
-    parameters : dict
-        Of the run.
-    name : str
-        The layer's parameter. Layers in memory and tables of databases are made where they are to be.
-    context : QgsProcessingContext
-        Of the run; what it is to load is named by the file.
-
-    Yields
-    ------
-    tuple of dict and callable
-        Parameters for the block, and what turns a path in memory into that of the file.
+    ``name`` is the layer's parameter; layers in memory and tables of databases are made where they are to be. Yields
+    the parameters for the block, and a function that turns a path in memory into that of the file.
 
     Raises
     ------

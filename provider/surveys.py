@@ -33,14 +33,9 @@ def place_of_survey(survey: Survey) -> Place:
 
 
 def check_vpc(folder: Optional[Path], given: Iterable[Path]) -> None:
-    """Refuse a folder of tiles whose virtual point cloud would take the place of one that is read.
+    """Refuse a folder of tiles, None for a temporary one, whose virtual point cloud would replace one that is read.
 
-    Parameters
-    ----------
-    folder : Path or None
-        Where the tiles go; None for a temporary one.
-    given : iterable of Path
-        Files and folders that the survey is made of; virtual point clouds in a folder are read with it.
+    ``given`` are the files and folders of the survey; virtual point clouds in a folder are read with it.
 
     Raises
     ------

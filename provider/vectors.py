@@ -74,14 +74,7 @@ def qgis_features(
 ) -> Iterator[QgsFeature]:
     """Yield the features of a layer, in the coordinates of the cloud's CRS.
 
-    Parameters
-    ----------
-    layer : Layer
-        What the features are.
-    features : LayerFeatures
-        Their geometries, in local meters, and columns.
-    to_map : callable
-        Turns local meters (m, 2 or 3) into map coordinates.
+    ``to_map`` turns local meters (m, 2 or 3) into map coordinates.
     """
     fields = fields_of(layer, features)
     make = _GEOMETRIES[layer.geometry]

@@ -20,15 +20,9 @@ PLAIN = 35.0
 class AgedMap:
     """A map as it was before: its layer, what a comparison has to count, and what became of each corner.
 
-    Attributes
-    ----------
-    layer : LayerFeatures
-        Polygons with ``id``: that of the footprint, or one of no footprint where the building is gone.
-    counts : dict
-        Values of the comparison's report by name.
-    corners : dict
-        For every footprint in the map: where its corners are on the map (k, 2) (m), and how they have moved since
-        (k, 2) (m).
+    ``layer`` has polygons with ``id``, the footprint's or one of no footprint where the building is gone; ``counts``
+    are values of the comparison's report by name. ``corners`` has for every footprint in the map where its corners are
+    (k, 2), and how they have moved since (k, 2), m.
     """
 
     layer: LayerFeatures

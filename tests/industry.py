@@ -52,16 +52,11 @@ def bent(rng: np.random.Generator, radius: float, bend: float, spacing: float, n
 
 @dataclass(frozen=True)
 class Comparison:
-    """Cylinders that were found, beside the true ones.
+    """Cylinders that were found, against the true ones.
 
-    Attributes
-    ----------
-    is_found : ndarray of shape (m,), bool
-        True cylinders on which one was found with a radius within 5 % and an axis within a quarter of the radius.
-    error : ndarray of shape (k,)
-        Relative errors of the radii of those that were found.
-    invented : list of int
-        Numbers of cylinders that belong to no true one in this sense.
+    ``is_found`` (m,): true cylinders on which one was found with a radius within 5 % and an axis within a quarter of
+    the radius; ``error`` (k,): relative errors of their radii; ``invented``: numbers of cylinders that belong to no
+    true one.
     """
 
     is_found: np.ndarray

@@ -27,18 +27,10 @@ APART = 8.0
 
 @dataclass(frozen=True)
 class Scene:
-    """A cloud whose pits are known.
+    """A cloud whose pits are known, by arrays (n,) for its points.
 
-    Attributes
-    ----------
-    cloud : Cloud
-        The points.
-    group : ndarray of shape (n,), int
-        The group of multipath points that each point is one of, from 1; 0 for none.
-    pit : ndarray of shape (n,), int
-        The true pit that each point is the floor of, from 1; 0 for none.
-    is_ground : ndarray of shape (n,), bool
-        Which points are ground, the floors of pits among them.
+    ``group`` is the group of multipath points of each, from 1, ``pit`` the true pit whose floor it is on, from 1; 0 for
+    none. ``is_ground`` says which are ground, the floors of pits among them.
     """
 
     cloud: object

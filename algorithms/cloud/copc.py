@@ -49,19 +49,10 @@ class Octree:
 
 
 def build_octree(points: np.ndarray, header: Header, monitor: Monitor) -> Octree:
-    """Sort points into the nodes of an octree, coarse samples above, the rest below.
+    """Sort points (n,), records of the header's scale and offset, into the nodes of an octree, coarse samples above.
 
-    Each node takes one point, drawn by lot, of every occupied cell of its grid,
-    and passes the others on to its children; with 65 536 points or fewer it takes all.
-
-    Parameters
-    ----------
-    points : structured array, (n,)
-        With X, Y, Z.
-    header : Header
-        Gives their scale and offset.
-    monitor : Monitor
-        Receives progress.
+    Each node takes one point, drawn by lot, of every occupied cell of its grid, and passes the others on to its
+    children; with 65 536 points or fewer it takes all.
     """
     low, side = _cube(points, header)
     codes = np.empty(len(points), np.uint64)

@@ -6,14 +6,9 @@ _LONGEST = 60
 
 
 def shown(text: str, longest: int = _LONGEST) -> str:
-    """Return a text that a file holds as a sentence may show it: printable, in one line, cut where it is long.
+    """Return a text as a sentence may show it: printable, in one line, at most ``longest`` characters.
 
-    Parameters
-    ----------
-    text : str
-        Anything; in damaged files it holds control characters and halves of characters.
-    longest : int
-        Characters that are kept.
+    In damaged files texts hold control characters and halves of characters.
     """
     printable = "".join(one if one.isprintable() else " " for one in text[: 2 * longest])
     line = " ".join(printable.split())

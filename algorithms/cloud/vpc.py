@@ -250,16 +250,10 @@ def check_tiles(paths: list[Path], headers: list[Header]) -> None:
 
 
 def merged_header(headers: list[Header], what: str, monitor: Monitor) -> Header:
-    """Return the header of all points of several files, or of clouds, as one: with the finest scale and all fields.
+    """Return one header for all points of several files or clouds: with the finest scale and all fields.
 
-    Parameters
-    ----------
-    headers : list of Header
-        With true bounds, in one coordinate system.
-    what : str
-        What a sentence to the user calls them: "tiles".
-    monitor : Monitor
-        Receives warnings about what can't be merged.
+    The headers have true bounds, in one coordinate system; ``what`` is their name in sentences to the user ("tiles").
+    The monitor receives warnings about what can't be merged.
 
     Raises
     ------

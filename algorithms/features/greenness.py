@@ -41,17 +41,11 @@ def greenness(red: np.ndarray, green: np.ndarray, blue: np.ndarray) -> np.ndarra
 
 
 def greenness_between(plants: np.ndarray, roofs: np.ndarray) -> Optional[float]:
-    """Return the greenness that parts points known by their shape; None where it does not part them.
+    """Return the greenness that separates points known by their shape; None where it does not separate them.
 
-    Parameters
-    ----------
-    plants, roofs : ndarray of shape (n,), (m,)
-        Greenness of points most of which are leaves, and of points most of which are roofs; NaN where unknown.
-
-    Returns
-    -------
-    float or None
-        The middle between the two medians, so that dry crowns, hardly green, are distinguished from roofs, too.
+    ``plants`` (n,) are points most of which are leaves, ``roofs`` (m,) points most of which are roofs; NaN where
+    unknown. It is the middle between the two medians, so that dry crowns, hardly green, are distinguished from roofs,
+    too.
     """
     plants, roofs = (values[np.isfinite(values)] for values in (plants, roofs))
     if not len(plants) or not len(roofs):
@@ -63,15 +57,8 @@ def greenness_between(plants: np.ndarray, roofs: np.ndarray) -> Optional[float]:
 def plant_greenness(values: np.ndarray) -> Optional[float]:
     """Return the greenness from which on points of a scene are plants; None where it does not separate two kinds.
 
-    Parameters
-    ----------
-    values : ndarray of shape (n,)
-        Greenness of the points of the scene, NaN where unknown.
-
-    Returns
-    -------
-    float or None
-        The middle between the means of the two kinds that the threshold with the largest variance between them makes.
+    Of values (n,), NaN where unknown, it is the middle between the means of the two kinds that the threshold with the
+    largest variance between them makes.
 
     References
     ----------

@@ -254,19 +254,10 @@ def symmetric_eigenvalues(covariances: np.ndarray) -> np.ndarray:
 
 
 def smallest_eigenvectors(covariances: np.ndarray, eigenvalues: np.ndarray) -> np.ndarray:
-    """Return the unit eigenvectors of the smallest eigenvalues, turned upward.
+    """Return the unit eigenvectors (m, 3), n_z >= 0, of the smallest eigenvalues.
 
-    Parameters
-    ----------
-    covariances : ndarray of shape (m, 6)
-        xx, yy, zz, xy, xz, yz of each matrix.
-    eigenvalues : ndarray of shape (m, 3)
-        Those of the matrices, largest first; NaN gives NaN.
-
-    Returns
-    -------
-    ndarray of shape (m, 3), float64
-        Normals, n_z >= 0. On a line, where every direction across it would do, one of them.
+    Covariances (m, 6) are xx, yy, zz, xy, xz, yz; eigenvalues (m, 3) are largest first, and NaN gives NaN. On a line,
+    where every direction across it would do, it is one of them.
     """
     # In units of l1, so that neither small nor large neighborhoods leave the range of floats.
     largest = np.where(eigenvalues[:, 0] > 0, eigenvalues[:, 0], np.nan)

@@ -91,13 +91,7 @@ class Optimal:
 
 
 class Ties:
-    """Which neighbors are equally far from their point.
-
-    Parameters
-    ----------
-    squares : ndarray of shape (k, m), float64
-        Squared distances (m²) of the k neighbors of m points, ascending.
-    """
+    """Which neighbors are equally far from their point, by squared distances (k, m), m², of k neighbors, ascending."""
 
     def __init__(self, squares: np.ndarray) -> None:
         self._is_tied = np.zeros((len(squares) + 1, squares.shape[1]), bool)

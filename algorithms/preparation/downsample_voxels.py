@@ -216,22 +216,12 @@ def _nearest(
     times: tuple[Optional[np.ndarray], ...],
     rows: np.ndarray,
 ) -> np.ndarray:
-    """Return, for each voxel, the position of the point nearest to the center.
+    """Return, for each of k voxels, the position of the point nearest to the center.
 
-    Parameters
-    ----------
-    position : ndarray of shape (m, 3), int64
-        Of the points, by voxel.
-    total : ndarray of shape (k, 3), int64
-        Sum of the positions of each voxel.
-    which : ndarray of shape (m,)
-        Voxel of each point.
-    touch : float
-        Difference of distances (steps) below which points are equally near: it comes from rounding.
-    times : tuple
-        Further dimensions (n,) of the cloud, or None, by which points at one position are ordered.
-    rows : ndarray of shape (m,)
-        Where in the cloud the points are.
+    Of m points these are ``position`` (m, 3), int64, by voxel, their voxels ``which`` (m,) and their ``rows`` in the
+    cloud (m,); ``total`` (k, 3) is the sum of the positions of each voxel. Distances that differ by less than ``touch``
+    (steps) are equal but for rounding. ``times`` are dimensions (n,) of the cloud, or None, that order points at one
+    position.
     """
     count = np.bincount(which)[which]
     # Whole numbers: the two points of a pair are equally near to the last bit.

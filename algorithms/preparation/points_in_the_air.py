@@ -79,17 +79,7 @@ def link_length(spacing: float) -> float:
 
 
 def in_the_air(xyz: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarray:
-    """Return which points (n,) are loose objects in the open air, apart from the scene below them.
-
-    Parameters
-    ----------
-    xyz : ndarray of shape (n, 3)
-        Coordinates (m).
-    spacing : float
-        Point spacing (m).
-    monitor : Monitor
-        Receives progress.
-    """
+    """Return which points (n, 3), m, of a spacing (m) are loose objects in the air, apart from the scene below them."""
     link = link_length(spacing)
     component = _components(xyz, link)
     is_loose = (_loose(xyz, component, spacing, monitor) & ~_is_cut(xyz, component, link))[component]

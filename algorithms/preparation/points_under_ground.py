@@ -33,17 +33,7 @@ UNDER_GROUND = UnderGroundRules()
 
 
 def under_ground(xyz: np.ndarray, spacing: float, monitor: Monitor) -> np.ndarray:
-    """Return which points (n,) lie under the ground, alone or few together.
-
-    Parameters
-    ----------
-    xyz : ndarray of shape (n, 3)
-        Coordinates (m).
-    spacing : float
-        Point spacing (m).
-    monitor : Monitor
-        Receives progress.
-    """
+    """Return which points (n, 3), m, of a spacing (m) lie under the ground, alone or few together."""
     cell = float(np.sqrt(DENSITY.points_per_cell)) * spacing
     grid = fixed_grid_over(xyz, cell)
     cells, which = distinct(grid.number(xyz))

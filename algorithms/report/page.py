@@ -131,16 +131,9 @@ def draw_table(title: str, head: list[str], rows: list[list[str]]) -> str:
 
 
 def draw_map(xyz: np.ndarray, outcome: np.ndarray, names: tuple[str, str, str, str]) -> str:
-    """Return the HTML of a map, north up, of what came of the topmost point of each pixel.
+    """Return the HTML of a map, north up, of the outcome of the topmost point of each pixel.
 
-    Parameters
-    ----------
-    xyz : ndarray of shape (n, 3)
-        Coordinates (m).
-    outcome : ndarray of shape (n,)
-        REST, HIT, MISS or FALSE.
-    names : tuple of str
-        What the legend calls these four.
+    ``xyz`` (n, 3) is in m, ``outcome`` (n,) REST, HIT, MISS or FALSE; ``names`` are those of these four in the legend.
     """
     low, high = plan_box(xyz)
     extent = high - low

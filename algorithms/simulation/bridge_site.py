@@ -84,13 +84,15 @@ class Lot:
 
     def local(self, x, y) -> tuple[np.ndarray, np.ndarray]:
         """Return positions (m) across and along the obstacle."""
-        cos, sin = np.cos(self.turn), np.sin(self.turn)
-        return (x - self.x) * cos + (y - self.y) * sin, (y - self.y) * cos - (x - self.x) * sin
+        return self._frame.local(x, y)
 
     def rect(self, across: float, along: float, length: float, width: float, turn: float = 0.0) -> Rect:
         """Return a rectangle by its middle in the lot, its length across the obstacle but for a further turn (rad)."""
-        frame = Rect(self.x, self.y, 1.0, 1.0, self.turn)
-        return frame.part(across, along, length, width, turn)
+        return self._frame.part(across, along, length, width, turn)
+
+    @property
+    def _frame(self) -> Rect:
+        return Rect(self.x, self.y, 1.0, 1.0, self.turn)
 
     def height(self, x, y) -> np.ndarray:
         """Return the elevation (m) of the land, of the bottom under water."""
@@ -203,10 +205,8 @@ def build_site(kinds: tuple[str, ...], angle: float, cars: bool, trees: bool, se
         Kinds of crossings, a lot for each.
     angle : float
         Angle of the decks to the shortest way across, °.
-    cars : bool
-        Whether there are cars on the decks.
-    trees : bool
-        Whether there are trees.
+    cars, trees : bool
+        Whether there are cars on the decks, and trees.
     seed : int
         The same seed makes the same.
 
@@ -245,9 +245,8 @@ def _bridge(scene: Scene, lot: Lot, cars: bool) -> list[Deck]:
         rect = frame.part(0.0, at + width / 2, lot.span + 2 * _SEAT, width)
         at += width + 1.5
         number = scene.new_id()
-        scene.solids.append(
-            Solid(rect, _deck_top(rect, top, made.arch), top - _THICKNESS, PointClass.BRIDGE_DECK, number)
-        )
+        deck_top = _deck_top(rect, top, made.arch)
+        scene.solids.append(Solid(rect, deck_top, top - _THICKNESS, PointClass.BRIDGE_DECK, number))
         for side in (-1, 1):
             rail = rect.part(0.0, side * (width - _PARAPET_WIDTH) / 2, rect.length, _PARAPET_WIDTH)
             tops = _deck_top(rail, top + _PARAPET, made.arch)
@@ -255,7 +254,7 @@ def _bridge(scene: Scene, lot: Lot, cars: bool) -> list[Deck]:
         if rect.length > 40:
             for share in (-0.2, 0.2):
                 pier = rect.part(share * rect.length, 0.0, 1.2, width - 2.0)
-                scene.solids.append(Solid(pier, flat(pier, top - _THICKNESS), -20.0, PointClass.UNCLASSIFIED, number))
+                scene.add_box(pier, -20.0, top - _THICKNESS, PointClass.UNCLASSIFIED, number)
         if cars and width > 4 and not made.arch:
             _cars(scene, rect, top)
         decks.append(Deck(number, lot.kind, float(np.degrees(lot.skew)), rect))
@@ -282,7 +281,7 @@ def _cars(scene: Scene, deck: Rect, top: float) -> None:
     for side in (-1, 1):
         for along in np.arange(-deck.length / 2 + 5 + 3 * side, deck.length / 2 - 4, _CARS):
             car = deck.part(float(along), side * deck.width / 4, length, width)
-            scene.solids.append(Solid(car, flat(car, top + height), top, PointClass.UNCLASSIFIED, scene.new_id()))
+            scene.add_box(car, top, top + height, PointClass.UNCLASSIFIED)
 
 
 def _quays(scene: Scene, lot: Lot) -> None:
@@ -291,10 +290,10 @@ def _quays(scene: Scene, lot: Lot) -> None:
     long = LOT - 2 * (_MARGIN + _FADE)
     for side in (-1, 1):
         quay = lot.rect(side * (made.half_width + 1.5), 0.0, 3.0, long)
-        scene.solids.append(Solid(quay, flat(quay, 0.0), -made.depth - 1, PointClass.GROUND, 0))
+        scene.add_box(quay, -made.depth - 1, 0.0, PointClass.GROUND, 0)
     if not made.decks:
         jetty = lot.rect(-made.half_width / 2, 0.0, made.half_width + 2, 6.0)
-        scene.solids.append(Solid(jetty, flat(jetty, 0.0), -made.depth - 1, PointClass.GROUND, 0))
+        scene.add_box(jetty, -made.depth - 1, 0.0, PointClass.GROUND, 0)
 
 
 def _trees(scene: Scene, lot: Lot, rng: np.random.Generator) -> None:

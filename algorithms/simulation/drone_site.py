@@ -116,5 +116,4 @@ def _add_van(scene: Scene, rng: np.random.Generator) -> None:
         park_car(scene, rect.part(0.0, 0.0, 4.3, 1.8))
         return
     ground = float(scene.relief.ground(rect.x, rect.y))
-    top = flat(rect, ground + rng.uniform(*_VAN_HEIGHT))
-    scene.solids.append(Solid(rect, top, ground - 1.0, PointClass.UNCLASSIFIED, scene.new_id()))
+    scene.add_box(rect, ground - 1.0, ground + rng.uniform(*_VAN_HEIGHT), PointClass.UNCLASSIFIED)

@@ -9,7 +9,7 @@ from ..stage import Monitor
 from .plants import plant_trees
 from .relief import Relief
 from .scene import Scene
-from .solids import Rect, Solid, flat, gable
+from .solids import Rect, Solid, gable
 
 # Height of a tower (m), of its three pairs of arms, length of an arm on each side, and half the distance of its legs.
 _TOWER, _ARMS, _ARM, _LEG = 30.0, (29.0, 25.0, 21.0), 5.0, 1.6
@@ -32,16 +32,12 @@ def build_line_site(size: float, span: float, angle: float, trees: float, forest
 
     Parameters
     ----------
-    size : float
-        Side of the square, m.
-    span : float
-        Distance between towers, m.
+    size, span : float
+        Side of the square, and distance between towers, m.
     angle : float
         Direction of the lines from east, °.
-    trees : float
-        Trees per hectare.
-    forest : float
-        Share that is forest.
+    trees, forest : float
+        Trees per hectare, and share that is forest.
     seed : int
         The same seed makes the same.
     """
@@ -57,8 +53,7 @@ def build_line_site(size: float, span: float, angle: float, trees: float, forest
 def _line(scene: Scene, direction: float, aside: float, distance: float) -> np.ndarray:
     """Return the feet (n, 3) of the masts of a line that passes the middle of the site at ``aside`` (m)."""
     along = np.arange(-scene.size, scene.size, distance)
-    cos, sin = np.cos(direction), np.sin(direction)
-    x, y = scene.size / 2 + along * cos - aside * sin, scene.size / 2 + along * sin + aside * cos
+    x, y = Rect(scene.size / 2, scene.size / 2, 0.0, 0.0, direction).at(along, aside)
     return np.column_stack([x, y, scene.relief.ground(x, y)])
 
 
@@ -93,7 +88,7 @@ def _tower(scene: Scene, foot: np.ndarray, direction: float) -> None:
 
 
 def _add_tower(scene: Scene, rect: Rect, bottom: float, top: float, number: int) -> None:
-    scene.solids.append(Solid(rect, flat(rect, top), bottom, PointClass.TRANSMISSION_TOWER, number))
+    scene.add_box(rect, bottom, top, PointClass.TRANSMISSION_TOWER, number)
 
 
 def _low_voltage(scene: Scene, direction: float, rng: np.random.Generator) -> None:

@@ -8,20 +8,7 @@ from ..geometry.groups import items, run_starts
 
 
 def in_boxes(points: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return all (point, box) with the point in the box, on the plane.
-
-    Parameters
-    ----------
-    points : ndarray of shape (n, 2)
-        Points.
-    low, high : ndarray of shape (m, 2)
-        Corners of the boxes.
-
-    Returns
-    -------
-    point, box : ndarray of shape (k,), int
-        Numbers of points and boxes.
-    """
+    """Return the numbers (k,) of points (n, 2), and of boxes (m, 2) to (m, 2), with the point in the box."""
     if not len(points) or not len(low):
         return np.zeros(0, np.int64), np.zeros(0, np.int64)
     first, last = points.min(axis=0), points.max(axis=0)

@@ -40,12 +40,8 @@ def build_plant(pipes: int, tanks: int, spheres: int, clutter: bool, rng: np.ran
 
     Parameters
     ----------
-    pipes : int
-        Number of straight pipes.
-    tanks : int
-        Number of tanks.
-    spheres : int
-        Number of spherical vessels.
+    pipes, tanks, spheres : int
+        Numbers of straight pipes, of tanks and of spherical vessels.
     clutter : bool
         Whether there is clutter.
     rng : numpy.random.Generator

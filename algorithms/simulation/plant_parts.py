@@ -35,10 +35,8 @@ def cylinder(kind: str, start: np.ndarray, end: np.ndarray, radius: float) -> Pa
     ----------
     kind : str
         Kind of the part.
-    start : ndarray of shape (3,)
-        Middle of one end, m.
-    end : ndarray of shape (3,)
-        Middle of the other end, m.
+    start, end : ndarray of shape (3,)
+        Middles of both ends, m.
     radius : float
         Radius, m.
     """
@@ -67,10 +65,8 @@ def disk(kind: str, center: np.ndarray, normal: np.ndarray, inner: float, outer:
         Center, m.
     normal : ndarray of shape (3,)
         Unit normal.
-    inner : float
-        Inner radius, m.
-    outer : float
-        Outer radius, m.
+    inner, outer : float
+        Radii, m.
     """
     first, second = across_axis(normal)
 
@@ -129,12 +125,8 @@ def plate(kind: str, corner: np.ndarray, first: np.ndarray, second: np.ndarray) 
     ----------
     kind : str
         Kind of the part.
-    corner : ndarray of shape (3,)
-        A corner, m.
-    first : ndarray of shape (3,)
-        One edge from it, m.
-    second : ndarray of shape (3,)
-        The other edge, m.
+    corner, first, second : ndarray of shape (3,)
+        A corner, and the two edges from it, m.
     """
     across = np.cross(first, second)
     area = float(np.linalg.norm(across))
@@ -155,14 +147,10 @@ def beam(start: np.ndarray, end: np.ndarray, height: float, width: float, up: np
 
     Parameters
     ----------
-    start : ndarray of shape (3,)
-        Middle of one end, m.
-    end : ndarray of shape (3,)
-        Middle of the other end, m.
-    height : float
-        Height of the profile, m.
-    width : float
-        Width of the flanges, m.
+    start, end : ndarray of shape (3,)
+        Middles of both ends, m.
+    height, width : float
+        Height of the profile and width of the flanges, m.
     up : ndarray of shape (3,)
         Direction of the web.
     """
@@ -179,12 +167,8 @@ def grating(corner: np.ndarray, first: np.ndarray, second: np.ndarray, mesh: flo
 
     Parameters
     ----------
-    corner : ndarray of shape (3,)
-        A corner, m.
-    first : ndarray of shape (3,)
-        One edge from it, m.
-    second : ndarray of shape (3,)
-        The other edge, m.
+    corner, first, second : ndarray of shape (3,)
+        A corner, and the two edges from it, m.
     mesh : float
         Distance between the bars, m.
     """

@@ -7,7 +7,7 @@ import numpy as np
 from ..cloud.asprs import PointClass
 from ..stage import Monitor
 from .scene import Scene
-from .solids import Rect, Solid, flat
+from .solids import Rect
 
 # Share of the trees outside the forest that grow in clumps, and the number in a clump.
 _CLUMP_SHARE = 0.4
@@ -28,10 +28,8 @@ def plant_trees(scene: Scene, per_hectare: float, forest: float, rng: np.random.
     ----------
     scene : Scene
         Receives the objects.
-    per_hectare : float
-        Trees per hectare outside the forest.
-    forest : float
-        Share that is forest.
+    per_hectare, forest : float
+        Trees per hectare outside the forest, and share that is forest.
     rng : numpy.random.Generator
         Source of random numbers.
     monitor : Monitor
@@ -119,8 +117,7 @@ def plant_tree(scene: Scene, foot: tuple[float, float, float], height: float, rn
     else:
         _broadleaf(scene, foot, height, number, rng)
     stem = Rect(x, y, 0.03 * height, 0.03 * height, 0.0)
-    top = flat(stem, ground + 0.6 * height)
-    scene.solids.append(Solid(stem, top, ground - 1.0, PointClass.HIGH_VEGETATION, number))
+    scene.add_box(stem, ground - 1.0, ground + 0.6 * height, PointClass.HIGH_VEGETATION, number)
 
 
 def _plant_bush(scene: Scene, foot: tuple[float, float, float], rng: np.random.Generator) -> None:

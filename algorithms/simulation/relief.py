@@ -7,6 +7,8 @@ from typing import Optional
 
 import numpy as np
 
+from .solids import Rect
+
 # Half width of the level valley floor and of the channel in it, and its depth: a small regulated river.
 VALLEY = 16.0
 CHANNEL = 9.6
@@ -40,14 +42,15 @@ class Relief:
 
     def local(self, x, y) -> tuple[np.ndarray, np.ndarray]:
         """Return positions across and along the town (m) of points (m)."""
-        dx, dy = x - self.size / 2, y - self.size / 2
-        cos, sin = np.cos(self.angle), np.sin(self.angle)
-        return dx * cos + dy * sin, dy * cos - dx * sin
+        return self._frame.local(x, y)
 
     def world(self, across, along) -> tuple[np.ndarray, np.ndarray]:
         """Return the points (m) at positions across and along the town (m)."""
-        cos, sin = np.cos(self.angle), np.sin(self.angle)
-        return self.size / 2 + across * cos - along * sin, self.size / 2 + across * sin + along * cos
+        return self._frame.at(across, along)
+
+    @property
+    def _frame(self) -> Rect:
+        return Rect(self.size / 2, self.size / 2, self.size, self.size, self.angle)
 
     def plane(self, x, y) -> np.ndarray:
         """Elevation (m) of the plane that the ground follows on the whole."""
@@ -126,14 +129,10 @@ def make_relief(
 
     Parameters
     ----------
-    size : float
-        Side of the square, m.
+    size, hills, terrace_height : float
+        Side of the square, height from hollows to hills, and rise of the terraces, m.
     slope : float
         Slope of the ground, °.
-    hills : float
-        Height from hollows to hills, m.
-    terrace_height : float
-        Rise of the terraces, m.
     river : bool
         Whether there is a river.
     rng : numpy.random.Generator

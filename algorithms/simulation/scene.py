@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
+from typing import Optional
 
 import numpy as np
 
 from ..stage import LayerFeatures
 from .pairs import in_boxes
 from .relief import CHANNEL, Relief
-from .solids import Rect, Solid, rectangles
+from .solids import Rect, Solid, flat, rectangles
 
 
 @dataclass(frozen=True)
@@ -78,6 +79,11 @@ class Scene:
         """Return the id of one more object."""
         self.objects += 1
         return self.objects
+
+    def add_box(self, rect: Rect, bottom: float, top: float, classification: int, number: Optional[int] = None) -> None:
+        """Add a solid with a level top between two elevations (m), of an object of its own without ``number``."""
+        number = self.new_id() if number is None else number
+        self.solids.append(Solid(rect, flat(rect, top), bottom, classification, number))
 
     def add_building(self, kind: str, outline: np.ndarray, solids: list[Solid]) -> None:
         """Add a building made of ``solids``, which carry its id; ``outline`` (m, 2) is open."""

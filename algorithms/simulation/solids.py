@@ -81,16 +81,12 @@ def inclined(rect: Rect, along: float, across: float, z: float, rise_along: floa
     ----------
     rect : Rect
         The rectangle.
-    along : float
-        Position along it, m from its middle.
-    across : float
-        Position across it, m from its middle.
+    along, across : float
+        Position along and across it, m from its middle.
     z : float
         Elevation there, m.
-    rise_along : float
-        Rise along it, m per m.
-    rise_across : float
-        Rise across it, m per m.
+    rise_along, rise_across : float
+        Rise along and across it, m per m.
     """
     cos, sin = np.cos(rect.angle), np.sin(rect.angle)
     a, b = rise_along * cos - rise_across * sin, rise_along * sin + rise_across * cos

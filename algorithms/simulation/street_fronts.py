@@ -8,7 +8,7 @@ import numpy as np
 
 from ..cloud.asprs import PointClass
 from .scene import Scene
-from .solids import Rect, Solid, flat, gable
+from .solids import Rect, Solid, gable
 
 KINDS = ("plain", "recess", "bay", "curved", "balconies")
 
@@ -295,8 +295,7 @@ def _block(
 ) -> None:
     """Put a box that is part of a wall."""
     if along[1] - along[0] > 1e-6 and top - bottom > 1e-6:
-        rect = line.rect(along, inward)
-        scene.solids.append(Solid(rect, flat(rect, top), bottom, PointClass.BUILDING, number))
+        scene.add_box(line.rect(along, inward), bottom, top, PointClass.BUILDING, number)
 
 
 def draw_pitch(rng: np.random.Generator) -> float:

@@ -10,7 +10,7 @@ from ..cloud.asprs import PointClass
 from .plants import plant_tree
 from .relief import Relief
 from .scene import Scene
-from .solids import Rect, Solid, flat
+from .solids import Rect
 from .street_fronts import KINDS, Front, Line, Truth, between, draw_pitch
 from .town_layout import park_car
 
@@ -105,6 +105,4 @@ def _put_clutter(scene: Scene, street: Rect, side: int, rng: np.random.Generator
 def _put_post(scene: Scene, street: Rect, along: float, across: float, size: tuple[float, float]) -> None:
     rect = street.part(along, across, size[0], size[0])
     ground = float(scene.relief.plane(rect.x, rect.y))
-    scene.solids.append(
-        Solid(rect, flat(rect, ground + size[1]), ground - 0.5, PointClass.UNCLASSIFIED, scene.new_id())
-    )
+    scene.add_box(rect, ground - 0.5, ground + size[1], PointClass.UNCLASSIFIED)

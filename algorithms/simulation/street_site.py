@@ -37,21 +37,9 @@ _TREE_HEIGHTS = (6.0, 11.0)
 
 
 def build_site(trees: int, slope: float, seed: int) -> Scene:
-    """Make up a site.
+    """Make up a site with a number of ``trees`` on a plane of a ``slope`` (°), the same for the same arguments.
 
-    Parameters
-    ----------
-    trees : int
-        How many there are.
-    slope : float
-        Of the ground (°), which is a plane.
-    seed : int
-        For trees, balconies and the direction of the slope.
-
-    Returns
-    -------
-    Scene
-        The same for the same arguments.
+    The seed is that of trees, balconies and the direction of the slope.
     """
     rng = np.random.default_rng([seed, 2])
     angle = float(rng.uniform(0.0, 2 * np.pi))
@@ -90,8 +78,7 @@ def _build_house(scene: Scene, rect: Rect, eave: float, has_gable: bool, rng: np
 
 def _put_lamp(scene: Scene, rect: Rect) -> None:
     ground = float(scene.relief.ground(rect.x, rect.y))
-    top = flat(rect, ground + _LAMP[1])
-    scene.solids.append(Solid(rect, top, ground - 1.0, PointClass.UNCLASSIFIED, scene.new_id()))
+    scene.add_box(rect, ground - 1.0, ground + _LAMP[1], PointClass.UNCLASSIFIED)
 
 
 def _tree_positions(count: int, rng: np.random.Generator) -> list[tuple[float, float]]:

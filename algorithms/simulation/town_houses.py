@@ -98,14 +98,19 @@ def _angled_house(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:
     side = rng.choice((-1.0, 1.0))
     long = main.width / 2 + reach
     wing = main.part(side * (main.length - wide) / 2, long / 2, long, wide, np.pi / 2)
+    solids = [site.solid(main, gable(main, eave, pitch)), site.solid(wing, gable(wing, eave, pitch))]
+    solids.append(_chimney(site, main, eave + pitch * main.width / 2, rng))
+    scene.add_building("L", l_outline(main, (wide, reach), side), solids)
+
+
+def l_outline(main: Rect, size: tuple[float, float], side: float) -> np.ndarray:
+    """Return the outline (6, 2), m, of a house with a wing of a ``size`` (width, length beyond) at an end (1 or -1)."""
+    wide, reach = size
     a, c, inner = main.length / 2, main.width / 2, main.length / 2 - wide
     ring = [(-a, -c), (a, -c), (a, c + reach), (inner, c + reach), (inner, c), (-a, c)]
     # Mirrored for a wing on the other end; the order keeps the ring counterclockwise.
     ring = ring if side > 0 else [(-along, across) for along, across in reversed(ring)]
-    outline = np.array([main.at(along, across) for along, across in ring])
-    solids = [site.solid(main, gable(main, eave, pitch)), site.solid(wing, gable(wing, eave, pitch))]
-    solids.append(_chimney(site, main, eave + pitch * main.width / 2, rng))
-    scene.add_building("L", outline, solids)
+    return np.array([main.at(along, across) for along, across in ring])
 
 
 def _row(scene: Scene, plot: Rect, rng: np.random.Generator) -> None:

@@ -13,7 +13,7 @@ from ..stage import Monitor
 from .plants import in_forest, plant_hedge, plant_trees
 from .relief import VALLEY, make_relief
 from .scene import Scene
-from .solids import Rect, Solid, flat, inclined
+from .solids import Rect, Solid, inclined
 from .town_houses import build_hall, build_house
 
 # Streets are this far apart, with two rows of plots between them (m).
@@ -112,10 +112,10 @@ def _build_bridges(scene: Scene, river: float) -> None:
         if np.abs(deck.corners() - scene.size / 2).max() > scene.size / 2:
             continue
         number, top = scene.new_id(), 0.15
-        scene.solids.append(Solid(deck, flat(deck, top), top - 0.9, PointClass.BRIDGE_DECK, number))
+        scene.add_box(deck, top - 0.9, top, PointClass.BRIDGE_DECK, number)
         for side in (-1, 1):
             rail = deck.part(0.0, side * 2.9, deck.length, 0.2)
-            scene.solids.append(Solid(rail, flat(rail, top + 1.0), top - 0.9, PointClass.UNCLASSIFIED, number))
+            scene.add_box(rail, top - 0.9, top + 1.0, PointClass.UNCLASSIFIED, number)
 
 
 def _clutter(scene: Scene, plots: list[Rect], rng: np.random.Generator, monitor: Monitor) -> None:
@@ -165,8 +165,7 @@ def _string_wires(scene: Scene) -> None:
     feet = np.column_stack([x, y, relief.ground(x, y)])[inside]
     for foot in feet:
         pole = Rect(float(foot[0]), float(foot[1]), 0.3, 0.3, relief.angle)
-        top = flat(pole, foot[2] + height)
-        scene.solids.append(Solid(pole, top, foot[2] - 1.0, PointClass.TRANSMISSION_TOWER, scene.new_id()))
+        scene.add_box(pole, foot[2] - 1.0, foot[2] + height, PointClass.TRANSMISSION_TOWER)
     number, share = scene.new_id(), np.linspace(0.0, 1.0, 9)[:, None]
     for start, end in zip(feet, feet[1:]):
         for offset in (-0.9, 0.0, 0.9):

@@ -7,7 +7,7 @@ import numpy as np
 from ..cloud.asprs import PointClass
 from .scene import Scene
 from .solids import Rect, Solid, flat, gable, inclined, lean_to
-from .town_houses import Site
+from .town_houses import Site, l_outline
 
 # Roofs are this thick (m); walls end in the middle of them.
 _THICKNESS = 0.2
@@ -46,10 +46,8 @@ def build_home(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generat
 
     Parameters
     ----------
-    scene : Scene
-        Receives the objects.
-    plot : Rect
-        The plot.
+    scene, plot : Scene, Rect
+        Receives the objects; the plot.
     overhang : float
         Overhang of the eaves, m.
     rng : numpy.random.Generator
@@ -64,10 +62,8 @@ def build_shed(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generat
 
     Parameters
     ----------
-    scene : Scene
-        Receives the objects.
-    plot : Rect
-        The plot.
+    scene, plot : Scene, Rect
+        Receives the objects; the plot.
     overhang : float
         Overhang of the eaves, m.
     rng : numpy.random.Generator
@@ -131,17 +127,13 @@ def _angle(scene: Scene, plot: Rect, overhang: float, rng: np.random.Generator) 
     main, (eave, pitch) = _placed(plot, rng, (11.0, 13.0), (6.5, 7.5)), _roof(rng)
     home = Home(scene, main, eave)
     wide, reach, side = rng.uniform(4.5, 5.5), rng.uniform(3.0, 5.0), rng.choice((-1.0, 1.0))
-    a, c, inner = main.length / 2, main.width / 2, main.length / 2 - wide
+    a, c = main.length / 2, main.width / 2
     # From beside the middle of the house, so that no end of the wing's roof comes out in front.
     start = min(2 * overhang, c)
     wing = main.part(side * (a - wide / 2), (start + c + reach) / 2, c + reach - start, wide, np.pi / 2)
-    ring = [(-a, -c), (a, -c), (a, c + reach), (inner, c + reach), (inner, c), (-a, c)]
-    # Mirrored for a wing on the other end; the order keeps the ring counterclockwise.
-    ring = ring if side > 0 else [(-along, across) for along, across in reversed(ring)]
-    outline = np.array([main.at(along, across) for along, across in ring])
     level = home.floor + eave
     solids = home.wing(main, level, pitch, overhang, _WHOLE) + home.wing(wing, level, pitch, overhang, _WHOLE)
-    scene.add_building("L", outline, solids)
+    scene.add_building("L", l_outline(main, (wide, reach), side), solids)
     return home.roof_id
 
 

@@ -61,13 +61,7 @@ HEADER = f"{'':28s} {'points':>11s} {'s':>8s} {'cpu':>8s} {'ratio':>7s} {'peak M
 
 
 class Bench:
-    """The measurements on one town.
-
-    Attributes
-    ----------
-    rows : list of dict
-        Everything that was measured, with its name.
-    """
+    """The measurements on one town: ``rows`` has everything that was measured, with its name."""
 
     def __init__(self, millions: float, cache: Path, states: Path) -> None:
         self.millions = millions

@@ -34,20 +34,10 @@ _CELL = 0.1
 
 @dataclass(frozen=True)
 class Matching:
-    """How dense matching errs.
+    """How dense matching errs, by standard deviations (m) and the share of sides of buildings that are ``missing``.
 
-    Attributes
-    ----------
-    rounding : float
-        Standard deviation (m) of the window that smooths steps of the surface: it rounds eaves and ridges.
-    waves : float
-        Standard deviation (m) of waves of some meters.
-    noise : float
-        Standard deviation (m) of single points.
-    smear : float
-        Standard deviation (m) of points of walls across them.
-    missing : float
-        Share of the sides of buildings of which nothing is matched.
+    ``rounding`` is that of the window that smooths steps, eaves and ridges, ``waves`` that of waves of some meters,
+    ``noise`` that of single points, and ``smear`` that of points of walls across them.
     """
 
     rounding: float = 0.15

@@ -20,21 +20,10 @@ PACKAGES = ("numpy", "scipy", "scikit-learn", "laspy", "lazrs")
 
 
 class Table:
-    """A table that prints each row as soon as it is known.
+    """A table that prints each row as soon as it is known; ``rows`` has the figures by heading, not rounded.
 
-    Parameters
-    ----------
-    name : str
-        Name of the table and of its file, without extension.
-    *columns : str
-        Headings, each with its unit; they are the keys of the figures in the file.
-    texts : int
-        How many of the first columns hold text, which is aligned to the left.
-
-    Attributes
-    ----------
-    rows : list of dict
-        The figures as they are, not rounded, by heading.
+    ``name`` is that of its file, without extension; ``columns`` are headings with units, the keys of the figures in the
+    file. The first columns, as many as ``texts`` says, hold text and are aligned to the left.
     """
 
     def __init__(self, name: str, *columns: str, texts: int = 1) -> None:

@@ -140,16 +140,10 @@ SCENES = (
 
 @dataclass(frozen=True)
 class Rule:
-    """A change of the chain.
+    """A change of the chain: its ``name`` says which rule, and how it is changed.
 
-    Attributes
-    ----------
-    name : str
-        The rule, and how it is changed.
-    patches : tuple of (str, Any)
-        What takes the place of an attribute, each as "module:name" or "module:Class.name".
-    tunables : mapping of str to dict
-        What is given to steps, by their names.
+    ``patches`` are new values of attributes named "module:name" or "module:Class.name", ``tunables`` those of steps by
+    name.
     """
 
     name: str
