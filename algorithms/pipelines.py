@@ -121,7 +121,7 @@ _PIPELINES = (
             "entropy per cluster and two means. Where the papers give no value (cells of the histograms, thresholds "
             "of the TIN, distances of the regions), it follows the density and the noise of the cloud. The Notes of "
             "each step say how. 'Thresholds' takes the values of the paper's table 2 instead. The outlines are this "
-            "project's. 'Detect buildings' finds more and errs less."
+            "project's. 'Detect buildings' finds more buildings with fewer errors."
         ),
         references=_SANTOS,
         steps=(
@@ -282,7 +282,7 @@ _PIPELINES = (
             "bridges and fly-overs, raised on both sides and joined at both ends, become bridge deck (17). The "
             "rasters are made of the rest. Large halls are removed whole. In towns and forests, where walls and "
             "leaves join roofs and crowns to the terrain, 'Classify ground points (TIN)' before 'Classify bridges' "
-            "errs less."
+            "makes fewer errors."
         ),
         references=_VOSSELMAN,
         steps=(

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Show what LiDAR Buildings does: find the buildings of a simulated town, or of a tile, and draw them.
 
-Started by ``make demo``. It speaks to the plugin as a user does, through ``qgis_process``, and leaves in ``demo/``
+Started by ``make demo``. It runs the plugin as a user does, through ``qgis_process``, and writes into ``demo/``
 the classified cloud, the footprints, a quality page and a picture.
 """
 
@@ -20,7 +20,7 @@ FIGURES = ("completeness", "correctness", "f", "quality")
 
 
 def main(arguments: list[str]) -> None:
-    """Run the chain and print what came of it."""
+    """Run the chain and print the result."""
     DEMO.mkdir(exist_ok=True)
     tile = Path(arguments[0]).resolve() if arguments else simulated_town()
     cloud, footprints, picture = DEMO / "buildings.copc.laz", DEMO / "footprints.gpkg", DEMO / "buildings.png"

@@ -18,7 +18,7 @@ PLAIN = 35.0
 
 @dataclass(frozen=True)
 class AgedMap:
-    """A map as it was before: its layer, what a comparison has to count, and what became of each corner.
+    """A map as it was before: its layer, the counts that a comparison must give, and the displacement of each corner.
 
     ``layer`` has polygons with ``id``, the footprint's or one of no footprint where the building is gone; ``counts``
     are values of the comparison's report by name. ``corners`` has for every footprint in the map where its corners are

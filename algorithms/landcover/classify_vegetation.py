@@ -126,7 +126,7 @@ def classify_vegetation(
 
     Notes
     -----
-    Buildings come first: what 'Complete buildings' leaves over above the ground is nearly all vegetation. An object is
+    Run it after 'Complete buildings': nearly all other points above the ground are vegetation then. An object is
     a group of points that are connected in plan and height. It is solid if it is no higher than 3.5 m and less than a
     fifth of its pulses had several returns. Half of its points must lie within the roughness of roofs and walls to the
     plane of their neighborhood. It is a pole if it is four times as high as its extent in plan. In thin clouds few cars

@@ -71,7 +71,7 @@ BUILDING_FIELDS = (
         f"2: a simpler level, or over {CHECKS.poor:.0%} of the roof points off; 1: over {CHECKS.doubtful:.0%} off, or "
         f"points on less than {CHECKS.covered:.0%} of the area; 0: sound",
     ),
-    Field("confidence", float, "sureness of the model: explained times covered, 0 to 1"),
+    Field("confidence", float, "confidence in the model: explained times covered, 0 to 1"),
     Field("points", int, "points over its footprint"),
 )
 ROOF_FIELDS = (

@@ -74,8 +74,8 @@ def downsample_voxels(
 ):
     """Leave one point in every occupied voxel: the center of gravity of its points.
 
-    Evens out the density of scans, where near and twice seen surfaces have many times the points of others, and makes
-    clouds smaller. Everything but position, class and count comes from the point nearest to the center.
+    Evens out the density of scans, where surfaces that are near or scanned twice have many times the points of others,
+    and makes clouds smaller. Everything but position, class and count comes from the point nearest to the center.
 
     Parameters
     ----------

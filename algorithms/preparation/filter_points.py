@@ -38,7 +38,7 @@ def filter_points(
         Optional[float],
         Param(
             "Minimum height",
-            "Keep points at least so high above the ground: 0.3 m takes ground and grass away.",
+            "Keep points at least this high above the ground: 0.3 m removes ground and grass.",
             unit="m",
             low=-10_000,
             high=10_000,

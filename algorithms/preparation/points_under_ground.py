@@ -25,7 +25,7 @@ from ..threads import ROWS_AT_ONCE, in_chunks
 class UnderGroundRules:
     """Points under the ground, and which of them are a floor."""
 
-    depth: float = rule(0.45, "m", "physics: less differ ground, grass and ruts from cell to cell, and floors")
+    depth: float = rule(0.45, "m", "physics: ground, grass, ruts and floors differ by less from cell to cell")
     few: int = rule(3, "points", "physics: at one height are a lamp or a wire, and under the ground more are a floor")
 
 

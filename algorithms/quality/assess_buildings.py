@@ -42,7 +42,7 @@ _MEASURES = (
 # Side of cells (m) where there are more points per m² than the third figure, and elsewhere.
 _FINE, _COARSE, _DENSE = 0.5, 1.0, 6.0
 
-# What an object of the layer is, by what came of it.
+# What an object of the layer is, by its outcome.
 FOUND, MISSED, INVENTED, MISSED_PART, INVENTED_PART = "found", "missed", "invented", "missed part", "invented part"
 _OBJECTS = Layer(
     "objects",

@@ -156,7 +156,7 @@ def assess_footprints(
     The best counterpart is the footprint with the greatest IoU. Hausdorff distances are measured every 0.1 m along
     both outlines, courtyards included. A corner is a vertex where the outline turns by 20° or more; corners are matched
     one to one, the nearest first, if they face the same way to 60°. Squareness counts edges within 3° of two directions
-    of the building's own. Positions are compared as they are: no shift between the layers is taken off.
+    of the building's own. Positions are compared as they are: no shift between the layers is removed.
 
     References
     ----------

@@ -107,7 +107,7 @@ def compare_corners(
         Optional[float],
         Param(
             "Tolerance",
-            "Corners farther apart, when the shift between the maps is taken off, are not the same corner.",
+            "Corners farther apart, after the shift between the maps is removed, are not the same corner.",
             unit="m",
             low=0,
             high=100,

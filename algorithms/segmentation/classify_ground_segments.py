@@ -85,10 +85,10 @@ def classify_ground_segments(
     Notes
     -----
     Decks are looked for among all points of the bare earth, as the paper does, in eight directions instead of four.
-    That beams do not pass through them, and that both ends are joined, is asked for in addition: crowns that hang over
-    the terrain are raised, too. Of the bare earth only the points near the lowest of their cell are ground. In towns
-    and forests roofs and crowns hang together with the terrain by pieces of walls and leaves: there a ground filter is
-    due before; its ground points are then the terrain. For ground of a filter alone there is 'Classify bridges'.
+    Unlike in the paper, beams must not pass through them and both ends must be joined, since crowns over the terrain
+    are raised, too. Of the bare earth only the points near the lowest of their cell are ground. In towns and forests
+    roofs and crowns are connected with the terrain by pieces of walls and leaves. Run a ground filter first there; its
+    ground points are then the terrain. 'Classify bridges' works on the ground of a filter alone.
 
     References
     ----------

@@ -18,7 +18,7 @@ _GAP_PRICE = 3.0
 # Thickness of a slice (voxels): thinner ones don't define a position, thicker ones hold two forks.
 _SLICE = 3.0
 
-# The lowest part of a stem, in which its root is looked for, reaches so high above the breast (m).
+# The lowest part of a stem, in which its root is looked for, reaches this high above breast height (m).
 _SAME_STEM = 0.5
 
 # A branch leads from its base to its tip without too many turns: its chord over its length. Paths through leaves and
@@ -38,7 +38,7 @@ _BUCKLING = 95.0
 # Share of that height that trees do not exceed: forest spruces a hundred diameters high, of 30 cm, reach 0.7 of it.
 _SLENDER = 0.75
 
-# Branches leave their stem at least so high over its root (m): lower points are grass.
+# Branches leave their stem at least this high over its root (m): lower points are grass.
 _CLEAR = 0.5
 
 

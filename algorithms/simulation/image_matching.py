@@ -33,7 +33,7 @@ _FULL_LEAF_NOISE = 2.0
 # The sun: its azimuth from east, counterclockwise, and its elevation (rad), and how far shadows are looked for (m).
 _SUN, _SHADOW_REACH = (np.radians(130.0), np.radians(38.0)), 25.0
 
-# Light of the sky alone, as a share of sunlight, with the blue of it.
+# Light of the sky alone (red, green, blue), as a share of sunlight.
 _SHADE = np.array([0.38, 0.42, 0.5])
 
 # Brightness (red, green, blue, of 255) of materials. Roofs and cars come in several, one each, bright and dark.
@@ -80,7 +80,7 @@ def match(field: HeightField, rounding: float, waves: float, rng: np.random.Gene
     colors = _lit(field, _materials(field, rng), rng)
     top = _rounded(field.top, rounding, rng)
     shared = sum(share * smooth_noise(shape, length, rng) for length, share in _WAVES)
-    # Where there is little texture, matching wanders more.
+    # Where there is little texture, errors of matching are larger.
     top = top + waves * shared / np.sqrt(sum(share**2 for _, share in _WAVES)) * _by_texture(field)
     top += _leaf_noise(field, rng)
     fails = _fails(field, colors, rng)

@@ -41,7 +41,7 @@ def simulate_power_line(
     """Scan made-up power lines from the air, and the true class of every point.
 
     A transmission line on towers of 30 m carries six conductors and a guard wire; a line of low voltage on poles of 9 m
-    carries three wires and one to every second pole's house. Trees and a forest grow under both.
+    carries three wires, and one to a house at every second pole. Trees and a forest grow under both.
 
     Returns
     -------

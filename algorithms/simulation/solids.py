@@ -2,8 +2,7 @@
 
 Houses, dormers, chimneys, cars, walls and bridge decks are all one shape, a rectangle on the map with vertical sides. A
 plane is its underside (level but for the slabs of roofs), and the lowest of up to four planes its top. Such a solid is
-convex, so that a beam meets it in closed form: it enters where it has crossed the last of the faces that it comes from
-the outside of.
+convex, so that a beam meets it in closed form: it enters at its last crossing of a face from the outside.
 """
 
 from __future__ import annotations

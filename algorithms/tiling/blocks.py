@@ -1,4 +1,4 @@
-"""One block of a survey: the chain run on its points and those around, and what came of it kept in a file."""
+"""One block of a survey: the chain run on its points and those around, and its results kept in a file."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ class StoppableMonitor(Monitor):
 
 
 def work_on_block(task: BlockTask) -> Path:
-    """Run the chain on a block and its surroundings; return the file of what came of it.
+    """Run the chain on a block and its surroundings; return the file of its results.
 
     The window is enlarged on the sides on which it cuts off a feature that has a part in the block, or on all sides
     where it holds hardly any points.

@@ -92,7 +92,7 @@ def _gaps(lines: list[WallLine], number: np.ndarray, position: np.ndarray) -> np
 
 
 def _outcomes(outline: WallOutline, first: np.ndarray, second: np.ndarray, position: np.ndarray) -> list[str]:
-    """Return what became of each position where the lines of two numbers meet."""
+    """Return the outcome of each position where the lines of two numbers meet."""
     edges = [edge for ring in outline.rings for edge in ring]
     starts, ends = (np.array([getattr(edge, end) for edge in edges]) for end in ("start", "end"))
     used = np.array([_carries(line, edges) for line in outline.lines])

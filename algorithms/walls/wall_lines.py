@@ -83,7 +83,7 @@ class WallLine:
         return len(self.points) > 0
 
     def excess(self, noise: float) -> float:
-        """Return the deviation (m) that is left when what noise of a standard deviation (m) makes is taken off."""
+        """Return the deviation (m) that remains when the part due to noise of a standard deviation (m) is removed."""
         chance = 1 + _CERTAIN * np.sqrt(2 / max(len(self.points), 1))
         return float(np.sqrt(max(self.deviation**2 - chance * noise**2, 0.0)))
 

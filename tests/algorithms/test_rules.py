@@ -1,4 +1,4 @@
-"""Every rule of a method has a unit and a reason, and stands in one table."""
+"""Every rule of a method has a unit and a reason, and is listed in one table."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ def corpus(folder: Path, seed: int) -> None:
 
 
 def read(data: bytes) -> None:
-    """Read a file of these bytes; whatever is no sentence ends the search."""
+    """Read a file of these bytes; any error other than a sentence for users ends the search."""
     if not data:
         return
     with TemporaryDirectory() as folder:

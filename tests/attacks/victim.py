@@ -119,7 +119,7 @@ def _memory(kind: str) -> float:
 
 
 def answer(seed: int, number: int, kinds: tuple[str, ...]) -> dict:
-    """Make a mutant, read it, and return what came of it."""
+    """Make a mutant, read it, and return the outcome."""
     if _CLEAR.exists():
         _CLEAR.write_text(_RESET)
     made = mutant(seed, number, kinds)

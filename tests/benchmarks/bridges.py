@@ -59,7 +59,7 @@ def decks(chain: str, xyz: np.ndarray, true: np.ndarray) -> np.ndarray:
 
 
 def figure(found: np.ndarray, true: np.ndarray) -> float:
-    """Return F (%) of decks, of a scene without any the number of points that are called so."""
+    """Return F (%) of decks; in a scene without any, the number of points that are called deck."""
     if not true.any():
         return float(found.sum())
     return 200 * float((found & true).sum()) / float(found.sum() + true.sum())

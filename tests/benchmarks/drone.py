@@ -18,7 +18,7 @@ from lidar_buildings.tests.real.clouds import WITH_IMAGES, detected, path_of, ru
 
 from .results import Table
 
-# Simulated sites: what is not as by default.
+# Simulated sites: tunables that differ from the defaults.
 SITES: dict[str, dict[str, Any]] = {
     "as by default": {"size": 110.0},
     "another": {"size": 110.0, "seed": 2},

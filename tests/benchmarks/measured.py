@@ -178,7 +178,7 @@ def _peak() -> int:
 
 
 if __name__ == "__main__":
-    # Whatever else speaks meanwhile, speaks to the error stream.
+    # All other output of the process goes to the error stream.
     with contextlib.redirect_stdout(sys.stderr):
         answer = main(json.loads(sys.argv[1]))
     print(json.dumps(answer))

@@ -37,7 +37,7 @@ class Farmland(Scene):
 
 @dataclass(frozen=True)
 class Steps(Relief):
-    """A slope whose rise is gathered in steps so high (m), at even distances."""
+    """A slope whose rise is gathered in steps of this height (m), at even distances."""
 
     step: float = 0.0
 

@@ -28,7 +28,7 @@ def parts(rng):
     return roof(rng, 0, 0), crown(rng, 40, 40)
 
 
-def test_surfaces_are_buildings_and_what_is_rough_is_none(parts):
+def test_smooth_clusters_are_buildings_and_rough_ones_are_not(parts):
     found = decided(parts, [0.9, 0.2])
     assert [Reason(number) for number in found.reasons] == [Reason.SURFACE, Reason.ROUGH]
     np.testing.assert_array_equal(found.is_building, [True, False])
@@ -36,7 +36,7 @@ def test_surfaces_are_buildings_and_what_is_rough_is_none(parts):
     assert found.confidence[0] == 1.0
 
 
-def test_a_smooth_spot_amid_leaves_is_none(rng):
+def test_a_smooth_spot_amid_leaves_is_no_building(rng):
     leaves = crown(rng, 5, 5, 4.0, 6.0, 3000)
     spot = roof(rng, 4, 4, 2.5, 2.5, 8.0)
     found = decided((leaves, spot), [0.1, 1.0])

@@ -120,7 +120,7 @@ def test_what_goes_on_into_the_ground_is_no_roof(rng):
     assert reason.dtype == np.uint8
 
 
-def test_a_bridge_on_scan_lines_is_none(rng):
+def test_a_bridge_on_scan_lines_is_no_roof(rng):
     """A deck 8 m wide over a river 40 m wide and 4 m deep, on lines 1.2 m apart, across which it hangs together."""
     x, y = rng.uniform([-60, -40], [60, 40], (115_200, 2)).T
     x = np.round(x / 1.2) * 1.2 + rng.normal(0, 0.03, len(x))

@@ -76,7 +76,7 @@ def test_a_stem_too_slender_to_stand_is_no_stem(tree, rng):
     assert layer.columns["dbh"][0] == pytest.approx(0.2, abs=0.01)
 
 
-def test_branches_are_found_and_leaves_are_none(tree, found):
+def test_branches_are_found_and_leaves_are_no_branches(tree, found):
     xyz, classification, truth, branches = tree
     ids = found[0]
     assert right_length(ids, truth, branches) > 0.75
@@ -125,7 +125,7 @@ def test_position_and_order_do_not_matter(rng):
     np.testing.assert_array_equal(segment_tree(xyz[order], classification[order])[0], expected[order])
 
 
-def test_the_ground_is_the_lowest_point_around_in_memory_of_the_points(rng):
+def test_the_ground_is_the_lowest_point_around_and_memory_follows_the_points(rng):
     """A point 1000 km away took a raster of a million by a million cells."""
     near = rng.uniform(0, [9.0, 7.0, 3.0], (400, 3))
     xyz = np.concatenate([near, [[1e6, 1e6, -5.0]]])

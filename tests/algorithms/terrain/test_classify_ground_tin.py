@@ -299,7 +299,7 @@ def test_the_terrain_sets_building_size_and_angle(word, size, angle, rng):
     np.testing.assert_array_equal(found, same)
 
 
-def test_in_nature_a_large_building_is_a_hill_and_in_a_town_it_is_none(rng):
+def test_in_nature_a_large_building_is_a_hill_and_in_a_town_it_is_not(rng):
     xyz, is_house = scan(rng, TERRAINS["level"], [(20, 20, 60, 60, 5)])
     assert errors(classify_ground_tin(xyz, unclassified(xyz), terrain="nature"), is_house)[1] > 0.9
     assert errors(classify_ground_tin(xyz, unclassified(xyz), terrain="town"), is_house)[1] == 0

@@ -329,7 +329,7 @@ def seeds_of_views(monkeypatch, reported):
         ((-1, 0, 0), False),
     ],
 )
-def test_a_point_is_terrain_where_more_directions_say_so_than_say_it_is_none(verdicts, is_seed, monkeypatch):
+def test_a_point_is_terrain_by_the_majority_of_directions(verdicts, is_seed, monkeypatch):
     seeds, *_ = seeds_of_views(monkeypatch, [{"says_terrain": verdict} for verdict in verdicts])
     assert seeds.tolist() == ([1] if is_seed else [])
 

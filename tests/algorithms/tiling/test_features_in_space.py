@@ -18,7 +18,7 @@ FACADES = PIPELINES["model_facades"]
 # Edges of blocks run through the fronts below, and along one of them.
 SIDE = 20.0
 CORNER = np.array([600_000.0, 5_000_000.0, 0.0])
-# Fronts that face each other across a street of 12 m: west, east and where they stand (m). The first is longer than a
+# Fronts on both sides of a street of 12 m: west, east and position across it (m). The first is longer than a
 # block with the points around it.
 FRONTS = ((3, 50, 12), (4, 22, 24), (24, 33, 26.3))
 WINDOWS = ((10, 12), (19, 21), (39, 41), (45, 47))

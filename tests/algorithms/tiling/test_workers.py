@@ -116,7 +116,7 @@ def test_a_cluster_gives_what_this_machine_gives_though_a_worker_is_killed(tile,
 @pytest.mark.skipif(os.name == "nt", reason="a script is no program on Windows")
 @pytest.mark.parametrize("name", ["python3", "qgis.bin"])
 def test_processes_are_started_with_the_interpreter_that_runs(tmp_path, monkeypatch, name):
-    """In QGIS Python takes the first one on the PATH for itself, or QGIS; processes then failed to import numpy."""
+    """In QGIS, ``sys.executable`` is QGIS or the first Python on the PATH; processes then failed to import numpy."""
     other = tmp_path / name
     other.write_text("#!/bin/sh\necho 3.9.1 /opt/other/lib/python3.9/os.py\n")
     other.chmod(0o755)

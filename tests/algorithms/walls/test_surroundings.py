@@ -1,4 +1,4 @@
-"""Gaps, bites, courtyards and party walls of roofs that stand on ground that is seen all around."""
+"""Gaps, bites, courtyards and party walls of roofs with visible ground all around."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ from lidar_buildings.algorithms.walls.surroundings import Surroundings, without_
 DENSITY = 60.0
 
 
-def place(rng, holes=(), courts=(), other=None):
+def site(rng, holes=(), courts=(), other=None):
     """Return the cloud of a flat roof 20 m by 14 m in a field: nothing is seen in holes, the ground in courts."""
     xy = rng.uniform(-8, (28, 22), (round(36 * 30 * DENSITY), 2))
     within = lambda box: ((xy >= box[:2]) & (xy < box[2:])).all(axis=1)  # noqa: E731
@@ -31,7 +31,7 @@ def footprint(xyz, cluster_id):
 
 def test_gaps_and_bites_where_nothing_is_seen_are_roof(rng):
     holes = [(5, 5, 7.5, 8), (0, 3, 1.5, 5), (12, 12, 14, 14), (9, 4, 9.6, 4.6)]
-    found = footprint(*place(rng, holes))
+    found = footprint(*site(rng, holes))
     assert len(found) == 1
     (ring,) = found.geometries[0]
     true = np.array([(0, 0), (20, 0), (20, 14), (0, 14), (0, 0)], float)
@@ -41,21 +41,21 @@ def test_gaps_and_bites_where_nothing_is_seen_are_roof(rng):
 
 
 def test_a_courtyard_in_which_the_ground_is_seen_stays_open(rng):
-    found = footprint(*place(rng, holes=[(14, 2, 17, 5)], courts=[(5, 5, 11, 10)]))
+    found = footprint(*site(rng, holes=[(14, 2, 17, 5)], courts=[(5, 5, 11, 10)]))
     (rings,) = found.geometries
     assert len(rings) == 2
     assert signed_area(rings[1]) == pytest.approx(-30, rel=0.1)
 
 
 def test_where_no_ground_is_seen_beside_the_roof_gaps_show_nothing(rng):
-    xyz, cluster_id = place(rng, holes=[(5, 5, 9, 9)])
+    xyz, cluster_id = site(rng, holes=[(5, 5, 9, 9)])
     xyz, cluster_id = xyz[cluster_id == 1], cluster_id[cluster_id == 1]
     surroundings = Surroundings(xyz, cluster_id, CloudSampling.of(xyz))
     assert len(surroundings.gaps(xyz, 0.13)) == 0
 
 
 def test_a_side_is_a_party_wall_where_another_roof_begins(rng):
-    xyz, cluster_id = place(rng, other=(20, -2, 28, 10))
+    xyz, cluster_id = site(rng, other=(20, -2, 28, 10))
     surroundings = Surroundings(xyz, cluster_id, CloudSampling.of(xyz))
     corners = np.array([(0, 0), (20, 0), (20, 14), (0, 14), (0, 0)], float)
     sides = np.stack([corners[:-1], corners[1:]], axis=1)
