@@ -184,10 +184,9 @@ _PIPELINES = (
         tags="cadastre,land registry,wall,footprint,corner,drone,UAV,photogrammetry,map,update,change detection,Hrutka",
         summary="Map the walls of buildings from a drone's point cloud, and compare them with the old map.",
         description=(
-            "Noise is removed and one point left per voxel; progressive TIN densification finds the ground, which "
-            "flat roofs of any size are kept out of, and bridge decks lie over its gaps. A terrain model is made of "
-            "it; planes high above it are roofs, "
-            "and low upright surfaces below them are their walls. Footprints are the outlines of walls, "
+            "Noise is removed and one point left per voxel. Progressive TIN densification finds the ground, without "
+            "flat roofs of any size, and bridge decks are found over its gaps. The ground becomes a terrain model. "
+            "Planes high above it are roofs, and low upright surfaces below them are their walls. Footprints are the outlines of walls, "
             "without the eaves, with a quality for every edge. Where too little of the walls was seen, as in most "
             "airborne clouds, they are outlines of roofs, and their attributes say so. "
             "Where an old map is given, its corners are compared with the new ones. The terrain and the cloud of every "

@@ -13,11 +13,11 @@ from ..geometry.groups import members
 
 @dataclass(frozen=True)
 class _Rules:
-    """What the span of a wire is."""
+    """Criteria for the span of a wire, and its search."""
 
     #: tries, trials: Points from which a span is looked for along their direction, and parabolas through three points
-    #: that are tried from each. Half of the points there are of one span, an eighth of the trials good. As many wrong
-    #: spans in a row end the search in a strand, those of crowns are many, and a span goes on as many times.
+    #: that are tried from each. If half of the points belong to one span, an eighth of the trials is right. After
+    #: ``tries`` wrong spans in a row, as in crowns, the search in a strand ends; a span is extended as often at most.
     tries: int = 10
     trials: int = 40
     longest: float = 60.0  #: Distance (m) along the wire within which these points are

@@ -39,7 +39,7 @@ _MEASURES = (
     Measure("cell_size", "Cell size", "m"),
 )
 
-# Side of cells (m) where there are more points per m² than the third figure, and elsewhere.
+# Side of cells (m) in clouds of more than _DENSE points per m², and in all others.
 _FINE, _COARSE, _DENSE = 0.5, 1.0, 6.0
 
 # What an object of the layer is, by its outcome.

@@ -196,4 +196,4 @@ def _charts(facts: _Facts) -> str:
         for title, values, axis in charts
         if np.isfinite(values).any()
     ]
-    return "\n".join(["<h2>How large they are, and how sure</h2>", *drawn]) if drawn else ""
+    return "\n".join(["<h2>Sizes and confidence</h2>", *drawn]) if drawn else ""

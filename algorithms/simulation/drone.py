@@ -23,14 +23,14 @@ FIELD = 270.0
 _NEAREST = 0.1
 
 # The drone starts in the street, this far from the middle of the site, its scanners over the ground (m).
-_PLACE = (0.8, 3.0)
+_START = (0.8, 3.0)
 _STANDING = 0.4
 
 # Shares of the time in which it climbs and comes down; between, it turns once.
 _CLIMB, _LANDING = 0.2, 0.2
 
-# What wind and control leave: how far it is off its way (m), and out of level and heading (°), at most, and the periods
-# (s) of that. It comes and goes within two seconds of take-off and landing.
+# Largest deviations by wind and control: from the path (m), from level and from the heading (°), and their periods (s).
+# They grow within two seconds after take-off, and fade within two seconds before landing.
 _DRIFT, _TILT, _YAW = 0.3, 2.0, 0.5
 _PERIODS = (3.1, 5.3, 11.7)
 _SETTLING = 2.0
@@ -44,7 +44,7 @@ _BLOCK, _BLOCK_TIME = 50_000, 1.0
 
 @dataclass(frozen=True)
 class Flight:
-    """Where a drone is and how it hangs at any time: it climbs, turns once and lands."""
+    """Position and attitude of a drone over time: it climbs, turns once and lands."""
 
     foot: np.ndarray  #: (3,): where its scanners are before it takes off (m)
     climb: float  #: How far it climbs (m)
@@ -89,7 +89,7 @@ def plan_flight(scene: Scene, height: float, duration: float, seed: int) -> Flig
     seed : int
         The same seed makes the same.
     """
-    x, y = (SIZE / 2 + part for part in _PLACE)
+    x, y = (SIZE / 2 + part for part in _START)
     foot = np.array([x, y, float(scene.relief.ground(x, y)) + _STANDING])
     phases = np.random.default_rng([seed, 3]).uniform(0.0, 2 * np.pi, (6, len(_PERIODS)))
     return Flight(foot, height - _STANDING, duration, phases)
@@ -150,7 +150,7 @@ def _half_widths(elevation: np.ndarray, radius: np.ndarray, distance: np.ndarray
 
 @dataclass(frozen=True)
 class LineScan:
-    """What scanners do that turn a mirror, and record the first echo."""
+    """Settings of scanners that turn a mirror and record the first echo."""
 
     line_rate: float  #: Lines per second
     angular_step: float  #: Angle between pulses, °
@@ -236,7 +236,7 @@ def first_met(world: Surroundings, beams: Beams, rng: np.random.Generator) -> Ec
 
 
 def recorded(echoes: Echoes, left: np.ndarray, number: int, rng: np.random.Generator) -> dict[str, np.ndarray]:
-    """Return the dimensions of echoes but place and time.
+    """Return the dimensions of echoes except position and time.
 
     Parameters
     ----------

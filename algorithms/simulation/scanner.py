@@ -295,7 +295,7 @@ def _replaced(echoes: Echoes, noise: Echoes) -> Echoes:
 def _recorded(
     echoes: Echoes, time: np.ndarray, strip: _Strip, returns: bool, rng: np.random.Generator
 ) -> dict[str, np.ndarray]:
-    """Return the dimensions of the echoes of a block but their place, ``pulse`` from 0."""
+    """Return the dimensions of the echoes of a block except their position, ``pulse`` from 0."""
     pulse, n = echoes.pulse, len(echoes)
     count = np.bincount(pulse, minlength=len(time))[pulse]
     _, dy, dz = echoes.direction.T

@@ -95,12 +95,12 @@ def simulate_flight(
     -----
     The scanners are those of the publication: 40 lines per second, a beam every 0.25° in all directions but a quarter
     of the circle, behind the horizontal one and above the vertical one. They reach 30 m, with 3 cm of noise along the
-    beam. The drone sways by up to 0.3 m and 2°, and where it is is known exactly: points lie on things but for the
-    range noise. With nothing set there are 6.7 million points in 320,000 voxels of 0.1 m, about as many as in the
+    beam. The drone sways by up to 0.3 m and 2°. Its position is known exactly: points lie on surfaces but for
+    the range noise. With nothing set there are 6.7 million points in 320,000 voxels of 0.1 m, about as many as in the
     publication.
 
     Not simulated: parts of the drone in view, errors of the position, edges that mix two surfaces in one echo, windows,
-    and surfaces too dark or too slanted to answer.
+    and surfaces too dark or too slanted to return an echo.
 
     References
     ----------
