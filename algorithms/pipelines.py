@@ -186,12 +186,12 @@ _PIPELINES = (
         description=(
             "Noise is removed and one point left per voxel. Progressive TIN densification finds the ground, without "
             "flat roofs of any size, and bridge decks are found over its gaps. The ground becomes a terrain model. "
-            "Planes high above it are roofs, and low upright surfaces below them are their walls. Footprints are the outlines of walls, "
-            "without the eaves, with a quality for every edge. Where too little of the walls was seen, as in most "
-            "airborne clouds, they are outlines of roofs, and their attributes say so. "
-            "Where an old map is given, its corners are compared with the new ones. The terrain and the cloud of every "
-            "step can be kept. The paper's ground filter, a cloth, settles on large flat roofs; to use it, open the "
-            "model and put 'Classify ground points (cloth)' in the place of the ground step."
+            "Planes high above it are roofs, and low upright surfaces below them are their walls. Footprints are the "
+            "outlines of walls, without the eaves, with a quality for every edge. Where too little of the walls was "
+            "seen, as in most airborne clouds, they are outlines of roofs, and their attributes say so. Where an old "
+            "map is given, its corners are compared with the new ones. The terrain and the cloud of every step can be "
+            "kept. The paper's ground filter, a cloth, settles on large flat roofs; to use it, open the model and put "
+            "'Classify ground points (cloth)' in the place of the ground step."
         ),
         references=_HRUTKA,
         steps=(
