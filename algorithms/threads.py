@@ -24,7 +24,7 @@ _SEARCHED = 5_000
 # Rows that a thread works on at once: their values stay in the processor's caches.
 ROWS_AT_ONCE = 20_000
 
-# Seconds between two looks at whether the user wants to stop.
+# Seconds between two checks for a cancellation by the user.
 _BETWEEN_LOOKS = 0.2
 
 # Threads set for a process that shares the machine with others of its kind.

@@ -1,4 +1,4 @@
-"""The only folder that knows QGIS: it turns every stage and pipeline into a Processing algorithm."""
+"""The only folder that imports QGIS: it turns every stage and pipeline into a Processing algorithm."""
 
 # Prefix of all algorithm ids; frozen, saved models depend on it.
 PROVIDER_ID = "lidarbuildings"

@@ -1,4 +1,4 @@
-"""Coordinate reference systems, which only QGIS knows."""
+"""Coordinate reference systems, looked up in QGIS."""
 
 from __future__ import annotations
 

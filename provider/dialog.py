@@ -150,7 +150,7 @@ class GroupedPanel(ParametersPanel):
                     if isinstance(spin, QAbstractSpinBox) and spin.specialValueText():
                         spin.setSpecialValueText(word)
                 if widget.metaObject().className() == "QgsExtentWidget":
-                    # Python knows it as a plain widget.
+                    # In Python it has the type of a plain widget.
                     extent = sip.cast(widget, QgsExtentWidget)
                     extent.setNullValueAllowed(True, word)
                     extent.clear()

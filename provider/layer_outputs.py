@@ -1,4 +1,4 @@
-"""Layers that algorithms make, written where the user wants them."""
+"""Layers that algorithms make, written to the outputs that the user chose."""
 
 from __future__ import annotations
 

@@ -69,7 +69,7 @@ def _number(tunable: Tunable) -> QgsProcessingParameterDefinition:
     definition = QgsProcessingParameterNumber(
         parameter_name(tunable), label(tunable), _NUMBERS[tunable.type], tunable.default, tunable.is_automatic
     )
-    # QGIS knows inclusive bounds only: the dialog takes an open bound too, the core refuses it.
+    # QGIS has inclusive bounds only: the dialog takes an open bound too, the core refuses it.
     if tunable.param.low is not None:
         definition.setMinimum(tunable.param.low)
     if tunable.param.high is not None:

@@ -144,7 +144,7 @@ class PipelineAlgorithm(CheckedAlgorithm, QgsProcessingModelAlgorithm):
             mended.setName(output.name.upper())
             if mended.name() != OUTPUT:
                 mended.setFlags(mended.flags() | Qgis.ProcessingParameterFlag.Optional)
-                # Who wants what the result comes from asks for it.
+                # Results of steps in between are made on request only.
                 mended.setCreateByDefault(_rank(output) < _FROM_BETWEEN)
         return mended
 
@@ -174,7 +174,7 @@ class PipelineAlgorithm(CheckedAlgorithm, QgsProcessingModelAlgorithm):
         return self.shown(pipeline_help(self.pipeline))
 
     def asPythonCommand(self, parameters: dict, context: QgsProcessingContext) -> str:  # noqa: N802
-        """Return the call that the dialog copies; of a model as such QGIS knows none."""
+        """Return the call that the dialog copies; QGIS gives none for models."""
         return QgsProcessingAlgorithm.asPythonCommand(self, parameters, context)
 
     def check(self, parameters: dict, context: QgsProcessingContext) -> None:

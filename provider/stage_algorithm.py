@@ -121,7 +121,7 @@ class StageAlgorithm(CheckedAlgorithm, QgsProcessingAlgorithm):
         if stage.makes_cloud:
             cloud = QgsProcessingParameterPointCloudDestination(OUTPUT, cloud_title([stage]))
             self.addParameter(with_help(cloud, tr("A .las, .laz or .copc.laz file.")))
-        # Who wants the cloud or the numbers may do without the layers.
+        # Layers are optional where there is a cloud, a report or a file.
         optional = bool(stage.makes_cloud or stage.measures or stage.files)
         for layer in stage.layers:
             sink = QgsProcessingParameterFeatureSink(

@@ -181,7 +181,7 @@ def _kept(styler: Styler) -> Styler:
 
 
 def load_from(context: QgsProcessingContext, final: Callable[[str], str]) -> None:
-    """Have QGIS load results from where they are now: ``final`` turns a path that it knows into the present one."""
+    """Have QGIS load results from where they are now: ``final`` turns the path of a result into its present one."""
     layers = context.layersToLoadOnCompletion()
     # QGIS deletes the post processor of a result that it is no longer to load: the one in its place gets a copy.
     stylers = {path: details.postProcessor().copy() for path, details in layers.items() if details.postProcessor()}

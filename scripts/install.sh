@@ -49,7 +49,7 @@ missing_packages() {
 
 candidate() { apt-cache policy qgis | sed -n 's/^ *Candidate: *//p'; }
 
-# Whether apt knows the suite and has a new enough QGIS from it.
+# Whether the suite is a source of apt and has a new enough QGIS.
 has_qgis_in() {
     local versions version origin
     versions=$(apt-cache madison qgis | tr -d ' ')

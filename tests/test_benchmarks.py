@@ -38,7 +38,7 @@ def test_a_table_is_markdown_for_people_and_json_for_programs(tmp_path, capsys):
 
 
 def test_what_is_no_number_is_null(tmp_path):
-    """JSON knows no NaN, and other programs refuse the file."""
+    """JSON has no NaN, and other programs refuse a file with it."""
     table = Table("empty", "of", "mean", texts=1)
     table.add("none", float("nan"))
     assert json.loads(table.write(tmp_path).read_text(encoding="utf-8"))["rows"] == [{"of": "none", "mean": None}]

@@ -154,7 +154,7 @@ def _nodes(codes: np.ndarray, levels: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 def copc_header(header: Header) -> Header:
-    """Return ``header`` as COPC wants it: LAS 1.4, the info record first, nothing about waveforms and old orders."""
+    """Return ``header`` in the form of COPC: LAS 1.4, the info record first, nothing about waveforms and old orders."""
     kept = header.without(LASZIP, COPC_INFO, COPC_HIERARCHY, WAVEFORMS, _LAX)
     encoding = kept.encoding & ~_WAVEFORM_BITS | (WKT_BIT if has_wkt(kept) else 0)
     info = Vlr(*COPC_INFO, bytes(INFO.size), description=b"COPC info")

@@ -24,7 +24,7 @@ _OLD_RETURNS, _RETURNS = slice(111, 131), slice(255, 375)
 _VLR = struct.Struct("<2s16sHH32s")
 _EVLR = struct.Struct("<2s16sHQ32s")
 SIZES = {0: 227, 1: 227, 2: 227, 3: 235, 4: 375}
-# The first minor version of LAS that has a point format; laspy knows none before 1.1.
+# The first minor version of LAS that has a point format; laspy supports versions from 1.1 on.
 _FIRST_MINOR = {0: 1, 1: 1, 2: 2, 3: 2, 4: 3, 5: 3}
 
 WKT_BIT = 16

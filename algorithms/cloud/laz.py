@@ -139,7 +139,7 @@ class _Laz:
 
 
 class _OneChunk(io.RawIOBase):
-    """The points of a LAZ file of before 2011 with what lazrs wants around them: one chunk has no table."""
+    """The points of a LAZ file of before 2011 as lazrs reads them: one chunk without a table."""
 
     def __init__(self, stream: BinaryIO, header: Header, record: bytes) -> None:
         super().__init__()

@@ -41,7 +41,7 @@ svg.view { border: 1px solid #ccc; margin-right: 1em }
 @media print { body { max-width: none; margin: 0; padding: 0; font-size: 10pt } h2, h3 { break-after: avoid } }
 """
 
-# Where a page says of what it is, and with which parameters: who runs a chain knows these, no stage does.
+# Positions in a page for its input and its parameters, which the caller of a chain adds, as no stage has them.
 _FIRST, _LAST = "<!-- run -->", "<!-- parameters -->"
 
 # A position in meters from the origin of a run, see :func:`position`.

@@ -18,7 +18,7 @@ from ..stage import Cancelled, Monitor
 from ..threads import n_threads
 from .processes import FOLDER, PACKAGE, CannotStart, Processes, WorkerEnded
 
-# Seconds between two looks at whether the user wants to stop.
+# Seconds between two checks for a cancellation by the user.
 _BETWEEN_LOOKS = 0.5
 
 # Seconds that a scheduler has to answer.

@@ -293,7 +293,7 @@ def _spread(figures: np.ndarray) -> tuple[float, float, float]:
 
 def footprints() -> list[Table]:
     """Print how many corners outlines have, and how far those of Delft are from its class 6 and from its map."""
-    # QGIS reads the map, and wants no screen for that.
+    # QGIS reads the map, without a screen.
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
     from qgis.core import QgsApplication
 

@@ -61,7 +61,7 @@ def circumstances() -> dict[str, Any]:
     return {
         "version": general["general"]["version"],
         "commit": _git("rev-parse", "HEAD"),
-        # Whether files that git knows differ from the commit; None without git.
+        # Whether tracked files differ from the commit; None without git.
         "changed": None if _git("rev-parse", "HEAD") is None else bool(_git("status", "--porcelain", "-uno")),
         "date": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"),
         "machine": machine(),

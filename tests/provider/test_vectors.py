@@ -84,7 +84,7 @@ def test_positions_among_the_attributes_are_in_map_coordinates():
 
 
 def test_other_columns_are_fields_of_their_type():
-    """Attributes of a map that a stage keeps, of which it knows nothing before the run."""
+    """Attributes of a map that a stage keeps, which are not declared before the run."""
     layer = Layer("things", "Things", "Polygon", FIELDS)
     square = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]], float)
     columns = {"id": [1, 2], "height": [1.0, 2.0], "word": ["a", "b"]}

@@ -308,7 +308,7 @@ def test_tiles_without_returns_are_worked_on(make_las, tmp_path):
 
 
 def test_points_outside_the_bounds_of_their_header_are_not_lost_in_silence(tmp_path):
-    # The second one reaches into a block that its header knows nothing of.
+    # The second one reaches into a block outside the bounds in its header.
     paths = [tile(tmp_path / "a.las", (0, 0), (20, 20)), tile(tmp_path / "b.las", (60, 0), (140, 20), seed=1)]
     raw = bytearray(paths[1].read_bytes())
     # The greatest easting.

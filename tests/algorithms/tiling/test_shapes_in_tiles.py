@@ -182,7 +182,7 @@ def test_pieces_that_share_more_than_half_are_still_pieces_of_one_pipe():
 
 
 def test_pipes_that_were_seen_whole_stay_as_they_are():
-    """Two of one line with a gap of 0.2 m, which another block has not seen; a piece of one gives way to the whole."""
+    """Two in line with a gap of 0.2 m, which another block has not seen; a piece of one is replaced by the whole."""
     one = [(axis(2, 6, 5.0), 0.1), (axis(6.2, 9, 5.0), 0.1), (axis(7.5, 13, 2.0), 0.1)]
     two = [(axis(2.5, 8.5, 5.0), 0.1), (axis(7.5, 14, 2.001), 0.1)]
     axes, known = joined("axes", one, two)
