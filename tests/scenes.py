@@ -50,29 +50,19 @@ class _Maker:
 
     def done(self) -> Scene:
         """Return the scene, points in random order."""
-        n = len(self.x)
-        count, numbers, sources, heights, classes = (
-            np.ones(n, int),
-            np.ones(n, int),
-            [np.arange(n)],
-            [self.z],
-            [self.classes],
-        )
-        added = []
-        for at, z, classification in self.extra:
-            count[at], numbers[at] = 2, 2
-            sources.append(at)
-            heights.append(z)
-            classes.append(np.full(len(at), classification, np.uint8))
-            added.append(np.ones(len(at), int))
-        source, order = np.concatenate(sources), self.rng.permutation(sum(len(part) for part in sources))
-        z = np.concatenate(heights)
+        n, number = len(self.x), np.ones(len(self.x), int)
+        for at, _, _ in self.extra:
+            number[at] = 2
+        source = np.concatenate([np.arange(n), *(at for at, _, _ in self.extra)])
+        order = self.rng.permutation(len(source))
+        z = np.concatenate([self.z, *(heights for _, heights, _ in self.extra)])
         z = z + self.range_noise * self.rng.standard_normal(len(z))
+        classes = [self.classes, *(np.full(len(at), one, np.uint8) for at, _, one in self.extra)]
         return Scene(
             np.column_stack([self.x[source], self.y[source], z])[order],
             np.concatenate(classes)[order],
-            np.concatenate([numbers, *added])[order].astype(np.uint8),
-            count[source][order].astype(np.uint8),
+            np.append(number, np.ones(len(source) - n, int))[order].astype(np.uint8),
+            number[source][order].astype(np.uint8),
         )
 
 
