@@ -1008,7 +1008,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Minimum height (m)&lt;/b&gt;: Keep points at least so high above the ground: 0.3 m takes ground and grass away. Empty: no limit; the log gives the range of the cloud. &lt;i&gt;(at least -10,000 m and at most 10,000 m; default none)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Minimum height (m)&lt;/b&gt;: Keep points at least this high above the ground: 0.3 m removes ground and grass. Empty: no limit; the log gives the range of the cloud. &lt;i&gt;(at least -10,000 m and at most 10,000 m; default none)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -2072,7 +2072,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;b&gt;Tolerance (m)&lt;/b&gt;: Corners farther apart, when the shift between the maps is taken off, are not the same corner. Automatic: three times the median distance of nearest corners that are not so by chance, 1 to 3 m. &lt;i&gt;(greater than 0 m and at most 100 m; default automatic)&lt;/i&gt;</source>
+        <source>&lt;b&gt;Tolerance (m)&lt;/b&gt;: Corners farther apart, after the shift between the maps is removed, are not the same corner. Automatic: three times the median distance of nearest corners that are not so by chance, 1 to 3 m. &lt;i&gt;(greater than 0 m and at most 100 m; default automatic)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -2404,7 +2404,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>&lt;i&gt;confidence&lt;/i&gt;: sureness of the model: explained times covered, 0 to 1</source>
+        <source>&lt;i&gt;confidence&lt;/i&gt;: confidence in the model: explained times covered, 0 to 1</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3472,7 +3472,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>A transmission line on towers of 30 m carries six conductors and a guard wire; a line of low voltage on poles of 9 m carries three wires and one to every second pole's house. Trees and a forest grow under both.</source>
+        <source>A transmission line on towers of 30 m carries six conductors and a guard wire; a line of low voltage on poles of 9 m carries three wires, and one to a house at every second pole. Trees and a forest grow under both.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -3992,6 +3992,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Bins are examined from both ends of a histogram only, so that sparse points of a facade, between ground and roof, stay. Parts adjoining the scene stay too (chimneys, masts, treetops, slopes), and so do three high points close together (a lamp, a wire). A cell whose surroundings have no full bin borrows the range of the nearest one that has.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Block</source>
         <translation type="unfinished"></translation>
     </message>
@@ -4049,10 +4053,6 @@
     </message>
     <message>
         <source>Buildings changed in outline</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>Buildings come first: what 'Complete buildings' leaves over above the ground is nearly all vegetation. An object is a group of points that are connected in plan and height. It is solid if it is no higher than 3.5 m and less than a fifth of its pulses had several returns. Half of its points must lie within the roughness of roofs and walls to the plane of their neighborhood. It is a pole if it is four times as high as its extent in plan. In thin clouds few cars are recognized: there are too few points for a plane. Objects that touch a plant are vegetation with it.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -4520,7 +4520,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Corners farther apart, when the shift between the maps is taken off, are not the same corner.</source>
+        <source>Corners farther apart, after the shift between the maps is removed, are not the same corner.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -4580,7 +4580,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Decks are looked for among all points of the bare earth, as the paper does, in eight directions instead of four. That beams do not pass through them, and that both ends are joined, is asked for in addition: crowns that hang over the terrain are raised, too. Of the bare earth only the points near the lowest of their cell are ground. In towns and forests roofs and crowns hang together with the terrain by pieces of walls and leaves: there a ground filter is due before; its ground points are then the terrain. For ground of a filter alone there is 'Classify bridges'.</source>
+        <source>Decks are looked for among all points of the bare earth, as the paper does, in eight directions instead of four. Unlike in the paper, beams must not pass through them and both ends must be joined, since crowns over the terrain are raised, too. Of the bare earth only the points near the lowest of their cell are ground. In towns and forests roofs and crowns are connected with the terrain by pieces of walls and leaves. Run a ground filter first there; its ground points are then the terrain. 'Classify bridges' works on the ground of a filter alone.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -4852,7 +4852,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Evens out the density of scans, where near and twice seen surfaces have many times the points of others, and makes clouds smaller. Everything but position, class and count comes from the point nearest to the center.</source>
+        <source>Evens out the density of scans, where surfaces that are near or scanned twice have many times the points of others, and makes clouds smaller. Everything but position, class and count comes from the point nearest to the center.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5636,7 +5636,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Keep points at least so high above the ground: 0.3 m takes ground and grass away.</source>
+        <source>Keep points at least this high above the ground: 0.3 m removes ground and grass.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6372,11 +6372,11 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Noise first; then pieces of artificial scan lines in several directions are merged to segments. Segments that are higher than their surroundings are objects, the others bare earth, of which bridges and fly-overs, raised on both sides and joined at both ends, become bridge deck (17). The rasters are made of the rest. Large halls are removed whole. In towns and forests, where walls and leaves join roofs and crowns to the terrain, 'Classify ground points (TIN)' before 'Classify bridges' errs less.</source>
+        <source>Noise first; then pieces of artificial scan lines in several directions are merged to segments. Segments that are higher than their surroundings are objects, the others bare earth, of which bridges and fly-overs, raised on both sides and joined at both ends, become bridge deck (17). The rasters are made of the rest. Large halls are removed whole. In towns and forests, where walls and leaves join roofs and crowns to the terrain, 'Classify ground points (TIN)' before 'Classify bridges' makes fewer errors.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Noise is removed and one point left per voxel; progressive TIN densification finds the ground, which flat roofs of any size are kept out of, and bridge decks lie over its gaps. A terrain model is made of it; planes high above it are roofs, and low upright surfaces below them are their walls. Footprints are the outlines of walls, without the eaves, with a quality for every edge. Where too little of the walls was seen, as in most airborne clouds, they are outlines of roofs, and their attributes say so. Where an old map is given, its corners are compared with the new ones. The terrain and the cloud of every step can be kept. The paper's ground filter, a cloth, settles on large flat roofs; to use it, open the model and put 'Classify ground points (cloth)' in the place of the ground step.</source>
+        <source>Noise is removed and one point left per voxel. Progressive TIN densification finds the ground, without flat roofs of any size, and bridge decks are found over its gaps. The ground becomes a terrain model. Planes high above it are roofs, and low upright surfaces below them are their walls. Footprints are the outlines of walls, without the eaves, with a quality for every edge. Where too little of the walls was seen, as in most airborne clouds, they are outlines of roofs, and their attributes say so. Where an old map is given, its corners are compared with the new ones. The terrain and the cloud of every step can be kept. The paper's ground filter, a cloth, settles on large flat roofs; to use it, open the model and put 'Classify ground points (cloth)' in the place of the ground step.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -6408,7 +6408,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Not simulated: parts of the drone in view, errors of the position, edges that mix two surfaces in one echo, windows, and surfaces too dark or too slanted to answer.</source>
+        <source>Not simulated: parts of the drone in view, errors of the position, edges that mix two surfaces in one echo, windows, and surfaces too dark or too slanted to return an echo.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -7356,6 +7356,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>Run it after 'Complete buildings': nearly all other points above the ground are vegetation then. An object is a group of points that are connected in plan and height. It is solid if it is no higher than 3.5 m and less than a fifth of its pulses had several returns. Half of its points must lie within the roughness of roofs and walls to the plane of their neighborhood. It is a pole if it is four times as high as its extent in plan. In thin clouds few cars are recognized: there are too few points for a plane. Objects that touch a plant are vegetation with it.</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>Run this command? It installs Python packages for QGIS alone, from the Python Package Index.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -8044,7 +8048,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>The best counterpart is the footprint with the greatest IoU. Hausdorff distances are measured every 0.1 m along both outlines, courtyards included. A corner is a vertex where the outline turns by 20° or more; corners are matched one to one, the nearest first, if they face the same way to 60°. Squareness counts edges within 3° of two directions of the building's own. Positions are compared as they are: no shift between the layers is taken off.</source>
+        <source>The best counterpart is the footprint with the greatest IoU. Hausdorff distances are measured every 0.1 m along both outlines, courtyards included. A corner is a vertex where the outline turns by 20° or more; corners are matched one to one, the nearest first, if they face the same way to 60°. Squareness counts edges within 3° of two directions of the building's own. Positions are compared as they are: no shift between the layers is removed.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8140,10 +8144,6 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>The histograms are walked in from both ends only: few points on a facade, between ground and roof, stay. What adjoins the scene stays too (chimneys, masts, treetops, slopes), and so do three high points close together (a lamp, a wire). A cell whose surroundings have no full bin borrows the range of the nearest one that has.</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <source>The kinds of terrain are this stage's own. The steps of lasground by the same names are smaller. 'Classify ground points (TIN, as published 2000)' starts from the seeds of the paper, and has none of the additions.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -8232,7 +8232,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>The published chain without this project's additions: cell histogram filter, progressive TIN densification from the lowest point of each cell of the largest building's size, region growing, mean entropy per cluster and two means. Where the papers give no value (cells of the histograms, thresholds of the TIN, distances of the regions), it follows the density and the noise of the cloud. The Notes of each step say how. 'Thresholds' takes the values of the paper's table 2 instead. The outlines are this project's. 'Detect buildings' finds more and errs less.</source>
+        <source>The published chain without this project's additions: cell histogram filter, progressive TIN densification from the lowest point of each cell of the largest building's size, region growing, mean entropy per cluster and two means. Where the papers give no value (cells of the histograms, thresholds of the TIN, distances of the regions), it follows the density and the noise of the cloud. The Notes of each step say how. 'Thresholds' takes the values of the paper's table 2 instead. The outlines are this project's. 'Detect buildings' finds more buildings with fewer errors.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8252,7 +8252,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>The scanners are those of the publication: 40 lines per second, a beam every 0.25° in all directions but a quarter of the circle, behind the horizontal one and above the vertical one. They reach 30 m, with 3 cm of noise along the beam. The drone sways by up to 0.3 m and 2°, and where it is is known exactly: points lie on things but for the range noise. With nothing set there are 6.7 million points in 320,000 voxels of 0.1 m, about as many as in the publication.</source>
+        <source>The scanners are those of the publication: 40 lines per second, a beam every 0.25° in all directions but a quarter of the circle, behind the horizontal one and above the vertical one. They reach 30 m, with 3 cm of noise along the beam. The drone sways by up to 0.3 m and 2°. Its position is known exactly: points lie on surfaces but for the range noise. With nothing set there are 6.7 million points in 320,000 voxels of 0.1 m, about as many as in the publication.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
