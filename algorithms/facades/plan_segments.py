@@ -39,6 +39,14 @@ class PlanSegments:
         x, y = self.way.T
         return np.column_stack([y, -x])
 
+    def across(self, step: int) -> np.ndarray:
+        """Return how far (k,), m, the segment before (-1) or after (1) each one of its ring goes across it."""
+        beside = np.arange(len(self)) + step
+        for owner in np.unique(self.owner):
+            own = np.flatnonzero(self.owner == owner)
+            beside[own] = np.roll(own, -step)
+        return np.abs(((self.end - self.start)[beside] * self.normal).sum(axis=1))
+
     def moved(self, shift: np.ndarray) -> PlanSegments:
         """Return the segments moved by a vector (2,), m."""
         return PlanSegments(self.start + shift, self.end + shift, self.owner)
@@ -47,7 +55,8 @@ class PlanSegments:
 def facade_segments(facades: LayerFeatures) -> PlanSegments:
     """Return the segment of each polygon with heights that is not level, at the middle of its height.
 
-    Polygons run counterclockwise seen from outside, as "Extract facades" draws them.
+    Polygons run counterclockwise seen from outside, as "Extract facades" draws them. A wall ends where it does over
+    most of its height: a car before its foot or leaves at its top do not make it longer.
     """
     ends = []
     for number, rings in enumerate(facades.geometries):
@@ -62,10 +71,24 @@ def facade_segments(facades: LayerFeatures) -> PlanSegments:
         middle = (ring[:, 2].min() + ring[:, 2].max()) / 2
         # The foot of the perpendicular from the first vertex, carried up or down the plane to the middle.
         base = ring[0, :2] - normal[:2] / across**2 * normal[2] * (middle - ring[0, 2])
-        position = (ring[:, :2] - base) @ along
-        ends.append((base + position.min() * along, base + position.max() * along, number))
+        low, high = _ends((ring[:, :2] - base) @ along, ring[:, 2])
+        ends.append((base + low * along, base + high * along, number))
     start, end, owner = zip(*ends) if ends else ((), (), ())
     return PlanSegments(np.array(start).reshape(-1, 2), np.array(end).reshape(-1, 2), np.array(owner, int))
+
+
+def _ends(position: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """Return the first and the last position (2,), m, of a closed ring (m,) in the median over its height ``z`` (m,)."""
+    levels = np.unique(z)
+    middle, height = (levels[1:] + levels[:-1]) / 2, np.diff(levels)
+    crosses = (z[:-1] > middle[:, None]) != (z[1:] > middle[:, None])
+    rise = np.where(z[1:] == z[:-1], 1.0, z[1:] - z[:-1])
+    at = position[:-1] + (middle[:, None] - z[:-1]) / rise * np.diff(position)
+    found = []
+    for ends in (np.where(crosses, at, np.inf).min(axis=1), np.where(crosses, at, -np.inf).max(axis=1)):
+        order = np.argsort(ends, kind="stable")
+        found.append(ends[order][np.searchsorted(np.cumsum(height[order]), height.sum() / 2)])
+    return np.array(found)
 
 
 def outline_segments(footprints: LayerFeatures) -> PlanSegments:

@@ -88,8 +88,9 @@ def register(
     -----
     A wall and an outline that run the same way give the shift across them, but for the overhang of the eaves. That is
     one unknown for all: walls of both sides of a street separate it from the shift. Ends of walls and corners of
-    outlines give the shift along, but for the overhang of gables, another unknown. A search on a grid finds which are
-    common, least squares in narrowing rounds their shift. The ground then gives the shift in height.
+    outlines give the shift along, but for the overhang of gables, another unknown; an end counts as the edge that the
+    outline has across it is long. A search on a grid finds which are common, least squares in narrowing rounds their
+    shift. The ground then gives the shift in height.
     """
     long = walls.length >= _RULES.shortest
     walls = PlanSegments(walls.start[long], walls.end[long], walls.owner[long])
@@ -122,10 +123,15 @@ def _shift_in_plan(
 
 @dataclass(frozen=True)
 class _Beside:
-    """Edges of outlines near each wall that run the same way: both ends (walls, m, 2), m, and which (walls, m) are."""
+    """Edges of outlines near each wall that run the same way.
+
+    Both ends (walls, m, 2), m, how long (m) the edges across are that they meet there (walls, m), and which are edges.
+    """
 
     start: np.ndarray
     end: np.ndarray
+    before: np.ndarray
+    after: np.ndarray
     is_edge: np.ndarray
 
 
@@ -141,7 +147,8 @@ def _beside(walls: PlanSegments, outlines: PlanSegments, max_shift: float) -> _B
     is_edge = np.arange(max(1, int(count.max()))) < count[:, None]
     edge = np.zeros(is_edge.shape, int)
     edge[is_edge] = np.concatenate(found)
-    return _Beside(outlines.start[edge], outlines.end[edge], is_edge)
+    before, after = (outlines.across(step) for step in (-1, 1))
+    return _Beside(outlines.start[edge], outlines.end[edge], before[edge], after[edge], is_edge)
 
 
 def _searched(walls: PlanSegments, beside: _Beside, max_shift: float) -> np.ndarray:
@@ -195,10 +202,12 @@ def _common(walls: PlanSegments, beside: _Beside, plan: np.ndarray, near: float)
     equations = [(*walls.normal[k], 1.0, 0.0, across[k, best[k]], np.sqrt(walls.length[k])) for k in rows]
     for k in rows:
         # Under gables that overhang, an outline goes on beyond both ends of a wall.
-        for along, outward in ((left[k], -1.0), (right[k], 1.0)):
+        for along, outward, depth in ((left[k], -1.0, beside.before[k]), (right[k], 1.0, beside.after[k])):
             off_end = np.where(np.abs(across[k] - plan[2]) <= near, np.abs(along - outward * plan[3]), np.inf)
-            if off_end.min() <= near:
-                equations.append((*walls.way[k], 0.0, outward, along[off_end.argmin()], 1.0))
+            end = off_end.argmin()
+            if off_end[end] <= near:
+                # The longer the edge that the outline has there, the better its position: sides of bays are poor.
+                equations.append((*walls.way[k], 0.0, outward, along[end], depth[end]))
     table = np.array(equations).reshape(-1, 6)
     coefficients, values = table[:, :4], table[:, 4] + table[:, :2] @ plan[:2]
     return _Common(coefficients, values, table[:, 5], len(rows))

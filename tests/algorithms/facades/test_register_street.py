@@ -72,6 +72,28 @@ def test_walls_of_one_side_say_nothing_of_the_shift_along_them():
     assert (found.walls, found.ends) == (1, 0)
 
 
+def test_sides_of_a_bay_that_the_air_shows_displaced_hardly_move_the_scan():
+    """A row of 30 by 10 m whose bay, 3 m wide and 1 m deep, the outline has 0.2 m too far east."""
+    bay = np.array([[10.0, 0.0], [10.0, -1.0], [13.0, -1.0], [13.0, 0.0]])
+    back = np.array([[30.0, 0.0], [30.0, 10.0], [0.0, 10.0], [0.0, 0.0]])
+    ring = np.concatenate([back[-1:], bay + [0.2, 0.0], back])
+    front = np.concatenate([back[-1:], bay, back[:1]])
+    rows = np.array([0, 2, 4])
+    walls = PlanSegments(front[rows], front[rows + 1], np.arange(3))
+    level = np.random.default_rng(1).uniform((0, -5, 0), (30, 0, 0), (2000, 3))
+    found = register(walls, outline_segments(LayerFeatures([[ring]], {})), level, level, 3.0)
+    # Ends of the same weight would move it by 0.15 m.
+    assert abs(found.shift[0]) < 0.04
+
+
+def test_what_stands_before_the_foot_of_a_wall_does_not_make_it_longer():
+    """A wall of 10 by 6 m with a car beside its foot and a tree at its top: 1.5 and 1 m high, 2 m long."""
+    ring = np.array([[0, 0], [12, 0], [12, 1.5], [10, 1.5], [10, 6], [-2, 6], [-2, 5], [0, 5], [0, 0]], float)
+    wall = facade_segments(LayerFeatures([[np.column_stack([ring[:, 0], np.full(len(ring), 3.0), ring[:, 1]])]], {}))
+    np.testing.assert_allclose(wall.start, [[0.0, 3.0]], atol=1e-9)
+    np.testing.assert_allclose(wall.end, [[10.0, 3.0]], atol=1e-9)
+
+
 def test_a_scan_of_another_street_is_not_moved_and_clouds_without_ground_are_refused(scans):
     xyz, classes, street, _ = scans
     far = LayerFeatures([[ring + 500.0 for ring in rings] for rings in outlines().geometries], {})
