@@ -84,17 +84,6 @@ MinFrequency = Annotated[
     ),
 ]
 
-SplitHeight = Annotated[
-    float,
-    Param(
-        "Split height",
-        "Height above the ground that parts roofs, which are looked for above it, from walls, which are below.",
-        unit="m",
-        low=0.5,
-        high=100,
-    ),
-]
-
 SurfaceNoise = Annotated[
     Optional[float],
     Param(

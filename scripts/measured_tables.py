@@ -291,6 +291,32 @@ TABLES = {
         ),
         "accuracy.py villages",
     ),
+    "facade_fronts": Shown(
+        ("front", "openings"),
+        (
+            Column("seen", "true", 0),
+            Column("found", "found", 0),
+            Column("of the right kind", "kind right", 0),
+            Column("invented on the front", "invented", 0),
+            Column("edges off, median, cm", "edges off, median, cm"),
+            Column("90 % within, cm", "90th percentile, cm"),
+        ),
+        tuple(
+            Row((front, f"{kind}s"), "facade_fronts", (("front", name), ("element", kind)))
+            for name, front in (("nuist-facade-1", "first"), ("nuist-facade-3", "second"))
+            for kind in ("window", "door")
+        ),
+        "facades.py fronts",
+    ),
+    "flight_dimensionality": Shown(
+        ("neighborhood",),
+        tuple(Column(kind, f"{kind}, %", 1, (("points", "all"),)) for kind in ("linear", "planar", "volumetric")),
+        (
+            Row(("50 neighbors, %",), "flight_dimensionality", (("neighborhood", "k = 50"),)),
+            Row(("the best number for each point, %",), "flight_dimensionality", (("neighborhood", "k_opt"),)),
+        ),
+        "structure.py flight --part 0.1",
+    ),
     "times": Shown(
         ("1.09 million points of a simulated town",),
         (

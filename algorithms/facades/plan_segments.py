@@ -78,7 +78,7 @@ def facade_segments(facades: LayerFeatures) -> PlanSegments:
 
 
 def _ends(position: np.ndarray, z: np.ndarray) -> np.ndarray:
-    """Return the first and the last position (2,), m, of a closed ring (m,) in the median over its height ``z`` (m,)."""
+    """Return the first and last position (2,) of a closed ring (m,), in the median over its height ``z`` (m,), m."""
     levels = np.unique(z)
     middle, height = (levels[1:] + levels[:-1]) / 2, np.diff(levels)
     crosses = (z[:-1] > middle[:, None]) != (z[1:] > middle[:, None])

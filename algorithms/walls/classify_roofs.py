@@ -7,7 +7,7 @@ from typing import Annotated, Optional
 import numpy as np
 
 from ..cloud.asprs import NOISE, PointClass
-from ..params import MinBuildingArea, PointDensity, PointSource, SplitHeight
+from ..params import MinBuildingArea, PointDensity, PointSource
 from ..sampling.cloud_sampling import CloudSampling
 from ..segmentation.cluster_measures import plan_areas
 from ..segmentation.segment_clusters import dbscan, points_at_corner
@@ -38,7 +38,10 @@ def classify_roofs(
     height_above_ground,
     segment_id,
     *,
-    split_height: SplitHeight = 2.5,
+    min_height: Annotated[
+        float,
+        Param("Minimum height", "Height above the ground over which half of a roof lies.", unit="m", low=0.5, high=100),
+    ] = 2.0,
     min_area: MinBuildingArea = 6.0,
     gap: Annotated[
         Optional[float],
@@ -89,9 +92,10 @@ def classify_roofs(
 
     The clusters are those of DBSCAN with the gap as radius and a quarter of the points that a level roof has within it.
     A cluster that one larger cluster surrounds on more than three fifths of its border, seen from above, belongs to it:
-    stair houses and penthouses on flat roofs, skylights in them. The paper takes the points above the height; here a
-    plane is taken whole, down to eaves that are lower, if half of it is above. Numbers follow the westernmost points of
-    clusters, not the order of points.
+    stair houses and penthouses on flat roofs, skylights in them. The paper takes the points above the height; here
+    a plane is taken whole, down to eaves that are lower, if half of it is above. That height is 2 m and not the 2.5
+    m up to which "Classify walls" looks for walls, so that lean-tos are roofs and walls have as many points.
+    Numbers follow the westernmost points of clusters, not the order of points.
 
     References
     ----------
@@ -114,14 +118,14 @@ def classify_roofs(
     if gap is None:
         gap = float(np.clip(_GAP_SPACINGS / np.sqrt(density), _LEAST_GAP, _MOST_GAP))
     monitor.resolved(density=density, gap=gap)
-    is_roof = _is_on_roof(segment_id, height_above_ground, split_height) & ~np.isin(classification, NOISE)
+    is_roof = _is_on_roof(segment_id, height_above_ground, min_height) & ~np.isin(classification, NOISE)
     roof = np.flatnonzero(is_roof)
     result = np.where(classification == PointClass.BUILDING, np.uint8(PointClass.UNCLASSIFIED), classification)
     cluster_id = np.zeros(len(xyz), np.int32)
     cluster_id[roof] = _clusters(xyz[roof], gap, min_area, density, monitor.part(0, 0.5))
     if sampling.is_closed_surface(source) and cluster_id.any():
         bent = bent_roofs(xyz, classification, height_above_ground, cluster_id, sampling, monitor.part(0.5, 0.9))
-        is_bent = _is_on_roof(bent, height_above_ground, split_height) & (cluster_id == 0)
+        is_bent = _is_on_roof(bent, height_above_ground, min_height) & (cluster_id == 0)
         cluster_id = with_bent_roofs(xyz, cluster_id, is_bent, gap, min_area, density, monitor.part(0.9, 0.95))
         # A plane whose building was only found with its bent parts is surrounded by these, from close by.
         cluster_id = join_stacked(xyz, cluster_id - 1, gap / 2) + 1
@@ -130,17 +134,17 @@ def classify_roofs(
     result[cluster_id > 0] = PointClass.BUILDING
     if not cluster_id.any():
         monitor.none_found(
-            f"No plane of {min_area:g} m² lies {split_height:g} m or more above the ground, so no roof was found; "
+            f"No plane of {min_area:g} m² lies {min_height:g} m or more above the ground, so no roof was found; "
             "check that the cloud shows the ground beside the buildings."
         )
     return result.astype(np.uint8), cluster_id
 
 
-def _is_on_roof(segment_id: np.ndarray, height: np.ndarray, split_height: float) -> np.ndarray:
-    """Return which points (n,) are of planes that lie above the split height, by half of their points at least."""
+def _is_on_roof(segment_id: np.ndarray, height: np.ndarray, min_height: float) -> np.ndarray:
+    """Return which points (n,) are of planes that lie above a height (m), by half of their points at least."""
     # Other programs number segments as they like, and use -1 for points of no segment.
     number, segment = np.unique(segment_id, return_inverse=True)
-    high = np.bincount(segment, height >= split_height)
+    high = np.bincount(segment, height >= min_height)
     on_roof = (2 * high >= np.bincount(segment)) & (number > 0)
     return on_roof[segment]
 

@@ -18,7 +18,7 @@ from ..neighborhoods.covariance import (
     smallest_eigenvectors,
 )
 from ..packages import spatial
-from ..params import SplitHeight, SurfaceNoise
+from ..params import SurfaceNoise
 from ..sampling.cloud_sampling import CloudSampling
 from ..sampling.surface_noise import ON_PLANE, SURFACES, plane_roughness, surface_density
 from ..segmentation.candidate_points import NO_OBJECTS
@@ -59,7 +59,12 @@ def classify_walls(
     min_height: Annotated[
         float, Param("Minimum height", "Lower points may be ground, kerbs and plants.", unit="m", low=0, high=10)
     ] = 0.3,
-    split_height: SplitHeight = 2.5,
+    max_height: Annotated[
+        float,
+        Param(
+            "Maximum height", "Walls are looked for up to this height above the ground.", unit="m", low=0.5, high=100
+        ),
+    ] = 2.5,
     max_tilt: Annotated[
         float, Param("Maximum tilt", "Angle of a wall's normal to the horizontal.", unit="°", low=0, high=90)
     ] = 30.0,
@@ -133,7 +138,7 @@ def classify_walls(
     Raises
     ------
     ValueError
-        If the minimum height is above the split height.
+        If the minimum height is above the maximum height.
 
     Notes
     -----
@@ -157,16 +162,16 @@ def classify_walls(
     >>> int(roof.max())
     0
     """
-    if min_height > split_height:
+    if min_height > max_height:
         raise ValueError(
-            f"The minimum height of walls ({min_height:g} m) is above the split height ({split_height:g} m); lower it."
+            f"The minimum height of walls ({min_height:g} m) is above the maximum height ({max_height:g} m); lower it."
         )
     sampling = sampling or CloudSampling.of(xyz, classification)
     noise = sampling.noise if noise is None else noise
     roughness = plane_roughness(noise, sampling.surface_density)
     monitor.progress(0.2)
     wall_of = np.zeros(len(xyz), np.int32)
-    is_low = (height_above_ground >= min_height) & (height_above_ground < split_height)
+    is_low = (height_above_ground >= min_height) & (height_above_ground < max_height)
     low = np.flatnonzero(is_low & (cluster_id == 0) & ~np.isin(classification, NO_OBJECTS))
     owner = _owners(xyz[low, :2], xyz[:, :2], cluster_id, margin)
     low, owner = low[owner > 0], owner[owner > 0]

@@ -38,7 +38,7 @@ def scene(rng):
     }, np.repeat(np.arange(7), sizes)
 
 
-def test_planes_above_the_split_height_that_lie_together_are_buildings(scene):
+def test_planes_above_the_least_height_that_lie_together_are_buildings(scene):
     arrays, part = scene
     classification, cluster_id = classify_roofs(**arrays)
     # From west to east; the car, the small plane and points on no plane are none.
@@ -62,8 +62,8 @@ def test_tunables_do_what_they_say(scene):
     def found(**tunables):
         return [int(i) for i in range(6) if classify_roofs(**arrays, **tunables)[1][part == i].any()]
 
-    assert found(split_height=1.0) == [0, 1, 2, 3]
-    assert found(split_height=2.7) == [0, 1]
+    assert found(min_height=1.0) == [0, 1, 2, 3]
+    assert found(min_height=2.7) == [0, 1]
     assert found(min_area=1.0) == [0, 1, 2, 4]
     assert found(min_area=50.0) == [0, 1]
     joined = classify_roofs(**arrays, gap=12.0)[1]
@@ -71,9 +71,9 @@ def test_tunables_do_what_they_say(scene):
 
 
 def test_a_roof_goes_down_to_its_eaves(rng):
-    """A slope from 2 to 4 m above the ground is a roof as a whole, one from 1 to 3.4 m is none: more of it is low."""
-    for low, found in ((2.0, True), (1.0, False)):
-        roof = plane(rng, 0, 0, 10, 4, low, 0.5 if found else 0.6)
+    """Slopes from 2 to 4 m and from 1 to 3.4 m above the ground are roofs as a whole, one from 0.4 to 2.8 m is none."""
+    for low, slope, found in ((2.0, 0.5, True), (1.0, 0.6, True), (0.4, 0.6, False)):
+        roof = plane(rng, 0, 0, 10, 4, low, slope)
         height = roof[:, 2].astype(np.float32)
         _, cluster_id = classify_roofs(roof, np.ones(len(roof), np.uint8), height, np.ones(len(roof), np.int32))
         assert cluster_id.all() if found else not cluster_id.any()
@@ -111,4 +111,4 @@ def test_without_planes_nothing_is_a_roof_and_the_log_says_so(scene):
     )
     assert not cluster_id.any()
     assert PointClass.BUILDING not in classification
-    assert "No plane of 6 m² lies 2.5 m or more above the ground" in monitor.warnings[0]
+    assert "No plane of 6 m² lies 2 m or more above the ground" in monitor.warnings[0]

@@ -71,7 +71,7 @@ def test_tunables_do_what_they_say(scene):
     def share(kind, **tunables):
         return np.mean(classify_walls(**arrays, **tunables)[1][of[kind]] > 0)
 
-    assert share("upper wall", split_height=3.1) > 0.7
+    assert share("upper wall", max_height=3.1) > 0.7
     assert share("base", min_height=0.0, margin=0.5) > 0.7
     assert share("fence", margin=2.5) > 0.7
     assert share("car", max_tilt=90.0, margin=1.0) > 0.7
@@ -118,5 +118,5 @@ def test_a_roof_on_one_line_has_no_walls(scene):
 
 
 def test_heights_the_wrong_way_round_are_refused(scene):
-    with pytest.raises(ValueError, match=r"minimum height of walls \(3 m\) is above the split height \(2.5 m\)"):
+    with pytest.raises(ValueError, match=r"minimum height of walls \(3 m\) is above the maximum height \(2.5 m\)"):
         classify_walls(**scene[0], min_height=3.0)
