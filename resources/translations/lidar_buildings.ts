@@ -868,6 +868,10 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
+        <source>&lt;b&gt;Maximum height (m)&lt;/b&gt;: Walls are looked for up to this height above the ground. &lt;i&gt;(at least 0.5 m and at most 100 m; default 2.5 m)&lt;/i&gt;</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
         <source>&lt;b&gt;Maximum nearest points&lt;/b&gt;: Largest neighborhood that is tried by the neighborhood 'optimal'; time grows with it. &lt;i&gt;(at least 3 and at most 1,000; default 100)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
@@ -1001,6 +1005,10 @@
     </message>
     <message>
         <source>&lt;b&gt;Minimum height (m)&lt;/b&gt;: Height above the ground of the lowest wires. &lt;i&gt;(at least 1 m and at most 100 m; default 4 m)&lt;/i&gt;</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>&lt;b&gt;Minimum height (m)&lt;/b&gt;: Height above the ground over which half of a roof lies. &lt;i&gt;(at least 0.5 m and at most 100 m; default 2 m)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -1945,10 +1953,6 @@
     </message>
     <message>
         <source>&lt;b&gt;Spheres&lt;/b&gt;: Spherical vessels with diameters of 1 to 3 m. &lt;i&gt;(at least 0 and at most 50; default 4)&lt;/i&gt;</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
-        <source>&lt;b&gt;Split height (m)&lt;/b&gt;: Height above the ground that parts roofs, which are looked for above it, from walls, which are below. &lt;i&gt;(at least 0.5 m and at most 100 m; default 2.5 m)&lt;/i&gt;</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -5296,7 +5300,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Height above the ground that parts roofs, which are looked for above it, from walls, which are below.</source>
+        <source>Height above the ground over which half of a roof lies.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -7856,10 +7860,6 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>Split height</source>
-        <translation type="unfinished"></translation>
-    </message>
-    <message>
         <source>Split recorded scan lines into straight pieces and merge those of adjacent lines to planes or smooth surfaces.</source>
         <translation type="unfinished"></translation>
     </message>
@@ -8092,7 +8092,7 @@
         <translation type="unfinished"></translation>
     </message>
     <message>
-        <source>The clusters are those of DBSCAN with the gap as radius and a quarter of the points that a level roof has within it. A cluster that one larger cluster surrounds on more than three fifths of its border, seen from above, belongs to it: stair houses and penthouses on flat roofs, skylights in them. The paper takes the points above the height; here a plane is taken whole, down to eaves that are lower, if half of it is above. Numbers follow the westernmost points of clusters, not the order of points.</source>
+        <source>The clusters are those of DBSCAN with the gap as radius and a quarter of the points that a level roof has within it. A cluster that one larger cluster surrounds on more than three fifths of its border, seen from above, belongs to it: stair houses and penthouses on flat roofs, skylights in them. The paper takes the points above the height; here a plane is taken whole, down to eaves that are lower, if half of it is above. That height is 2 m and not the 2.5 m up to which "Classify walls" looks for walls, so that lean-tos are roofs and walls have as many points. Numbers follow the westernmost points of clusters, not the order of points.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
@@ -8673,6 +8673,10 @@
     </message>
     <message>
         <source>Walls</source>
+        <translation type="unfinished"></translation>
+    </message>
+    <message>
+        <source>Walls are looked for up to this height above the ground.</source>
         <translation type="unfinished"></translation>
     </message>
     <message>
