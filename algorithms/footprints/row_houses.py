@@ -271,10 +271,15 @@ def _side(
     offsets = np.arange(max(1, int(np.ceil(near / step))), int(ROWS.far / step) + 1)
     far = offsets * step
 
+    # The kernel reaches from the position itself to one side only.
+    length = int(offsets[-1]) + 1
+    origin = (length - 1) // 2 if sign < 0 else -(length // 2)
+
     def total(values: np.ndarray, factor: np.ndarray) -> np.ndarray:
-        kernel = np.zeros(2 * offsets[-1] + 1)
-        kernel[offsets[-1] + sign * offsets] = factor
-        return ndimage.correlate1d(values * is_known, kernel, axis=1, mode="constant")
+        kernel = np.zeros(length)
+        kernel[offsets] = factor
+        kernel = kernel if sign > 0 else kernel[::-1]
+        return ndimage.correlate1d(values * is_known, kernel, axis=1, mode="constant", origin=origin)
 
     one = np.ones(len(far))
     n, x, xx = (total(np.ones(roof.shape), factor) for factor in (one, far, far**2))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Optional
 
 import numpy as np
 
@@ -46,6 +47,9 @@ class Subdivision:
         self.is_closed: list[bool] = [False]
         self._boxes: list[tuple[float, float, float, float]] = [(x0, y0, x1, y1)]
         self._xy = xy
+        # Measured when first asked for, and again after a change: areas by cell, and the edges.
+        self._areas: dict[int, float] = {}
+        self._edges: Optional[tuple[np.ndarray, np.ndarray]] = None
 
     def __len__(self) -> int:
         return len(self.loops)
@@ -56,6 +60,7 @@ class Subdivision:
         copy.vertices, copy.loops = list(self.vertices), [list(loop) for loop in self.loops]
         copy.members, copy.cell_of = list(self.members), dict(self.cell_of)
         copy.is_closed, copy._boxes, copy._xy = list(self.is_closed), list(self._boxes), self._xy
+        copy._areas, copy._edges = dict(self._areas), self._edges
         return copy
 
     def close(self, is_closed: np.ndarray) -> None:
@@ -123,13 +128,14 @@ class Subdivision:
 
     def insert(self, u: int, v: int, position: tuple[float, float]) -> int:
         """Put a vertex on the edge from ``u`` to ``v`` of the cells on both sides; return its number."""
-        new = len(self.vertices)
+        new, self._edges = len(self.vertices), None
         self.vertices.append(position)
         for start, end in ((u, v), (v, u)):
             cell = self.cell_of.pop((start, end), None)
             if cell is not None:
                 loop = self.loops[cell]
                 loop.insert(loop.index(start) + 1, new)
+                self._areas.pop(cell, None)
                 self.cell_of[start, new] = self.cell_of[new, end] = cell
         return new
 
@@ -144,7 +150,8 @@ class Subdivision:
         beyond = [ux * (self.vertices[v][1] - y0) - uy * (self.vertices[v][0] - x0) for v in first]
         if max(beyond) < -min(beyond):
             first, second = second, first
-        new = len(self.loops)
+        new, self._edges = len(self.loops), None
+        self._areas.pop(cell, None)
         self.loops[cell] = first
         self.loops.append(second)
         self.is_closed.append(False)
@@ -170,7 +177,10 @@ class Subdivision:
 
     def areas(self) -> np.ndarray:
         """Return the areas (cells,), m²."""
-        return np.array([self.area(loop) for loop in self.loops])
+        for cell in range(len(self.loops)):
+            if cell not in self._areas:
+                self._areas[cell] = self.area(self.loops[cell])
+        return np.array([self._areas[cell] for cell in range(len(self.loops))])
 
     def area(self, loop: list[int]) -> float:
         """Return the area (m²) within a ring of vertices."""
@@ -183,9 +193,13 @@ class Subdivision:
 
     def edges(self) -> tuple[np.ndarray, np.ndarray]:
         """Return each edge between two cells once: its vertices (m, 2), and the cells to its left and right (m, 2)."""
-        pairs = [(u, v, cell, self.cell_of[v, u]) for (u, v), cell in self.cell_of.items() if (v, u) in self.cell_of]
-        table = np.array([pair for pair in pairs if pair[2] < pair[3]], int).reshape(-1, 4)
-        return table[:, :2], table[:, 2:]
+        if self._edges is None:
+            pairs = [
+                (u, v, cell, self.cell_of[v, u]) for (u, v), cell in self.cell_of.items() if (v, u) in self.cell_of
+            ]
+            table = np.array([pair for pair in pairs if pair[2] < pair[3]], int).reshape(-1, 4)
+            self._edges = table[:, :2], table[:, 2:]
+        return self._edges
 
 
 def _crossings(side: list[int]) -> list[tuple[int, int]]:

@@ -178,5 +178,5 @@ def png(image: np.ndarray, colors: Iterable[Iterable[int]] = _COLORS) -> bytes:
     lines = np.concatenate([np.zeros((height, 1), np.uint8), image], axis=1).tobytes()
     header = struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0)
     palette = bytes(value for color in colors for value in color)
-    parts = (b"IHDR", header), (b"PLTE", palette), (b"IDAT", zlib.compress(lines, 9)), (b"IEND", b"")
+    parts = (b"IHDR", header), (b"PLTE", palette), (b"IDAT", zlib.compress(lines)), (b"IEND", b"")
     return b"\x89PNG\r\n\x1a\n" + b"".join(chunk(kind, data) for kind, data in parts)
