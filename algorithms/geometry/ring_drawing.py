@@ -191,9 +191,10 @@ class _Chain:
         self.sums = np.concatenate([none, np.cumsum(across, axis=0)])
         self.squares = np.concatenate([none, np.cumsum(across**2, axis=0)])
         x, y = (self.middles - origin).T
-        self.moments = np.concatenate(
-            [np.zeros((1, 5)), np.cumsum(np.column_stack([x, y, x * x, y * y, x * y]), axis=0)]
-        )
+        # Sums of one kind lie side by side: numpy is slow on rows of a few numbers.
+        self.moments = np.zeros((5, len(x) + 1))
+        np.cumsum([x, y, x * x, y * y, x * y], axis=1, out=self.moments[:, 1:])
+        self.columns = np.ascontiguousarray(self.vertices.T)
         self.along = (self.vertices - origin) @ fixed.T
 
     def sure_corner(self) -> tuple[int, int]:
@@ -225,28 +226,29 @@ class _Chain:
         cost, begun = np.full((2, length + 1, len(start)), np.inf)
         came, turned = np.zeros((2, length + 1, len(start)), np.int64)
         begun[0] = start
-        every, starts = np.arange(len(start)), _Starts()
+        every, starts, turn_to = np.arange(len(start)), _Starts(), np.ascontiguousarray(self.ways.turn.T)
         for low in range(_SHORTEST, length + 1, _SHORTEST):
             at = (low - _SHORTEST) % _AT_ONCE
             if at == 0:
                 batch = np.arange(low, min(low + _AT_ONCE, length + 1))
                 starts.extend(batch)
                 allowed, least = self._run_costs(starts.samples, batch)
-            ends = batch[at : at + _SHORTEST]
-            rows, columns = starts.rows(at), slice(at, at + len(ends))
-            firsts, of = starts.samples[rows], np.arange(len(ends))[:, None]
+            n_ends = min(_SHORTEST, len(batch) - at)
+            rows, ends = starts.rows(at), slice(low, low + n_ends)
+            firsts, of = starts.samples[rows], np.arange(n_ends)[:, None]
             before = begun[firsts]
-            total = before[:, None] + allowed[rows, columns]
-            best = total.argmin(axis=0)
-            cost[ends] = reached = total[best, of, every]
+            total = allowed[at : at + n_ends].take(rows, axis=1)
+            total += before
+            best = total.argmin(axis=1)
+            cost[ends] = reached = total[of, best, every]
             came[ends] = firsts[best]
-            turns = reached[:, :, None] + self.ways.turn
-            turned[ends] = way = turns.argmin(axis=1)
-            begun[ends] = begins = turns[of, way, every]
+            turns = reached[:, None, :] + turn_to
+            turned[ends] = way = turns.argmin(axis=2)
+            begun[ends] = begins = turns[of, every, way]
             # A run from the last of these on costs no more: runs that are farther off begin there.
-            last = len(ends) - 1
-            is_behind = self._is_no_less(before, [cost[rows, at + last] for cost in least], begins[last])
-            starts.leave_out(rows[is_behind & (ends[last] - firsts >= _SHORTEST)])
+            last = n_ends - 1
+            is_behind = self._is_no_less(before, [costs[at + last].take(rows, axis=0) for costs in least], begins[last])
+            starts.leave_out(rows[is_behind & (low + last - firsts >= _SHORTEST)])
         whole = cost[length] + end
         return float(whole.min()), self._traced(whole, came, turned)
 
@@ -261,10 +263,10 @@ class _Chain:
         return is_fixed & (before[:, n_fixed:] + free[:, None] >= begins[n_fixed:]).all(axis=1)
 
     def _run_costs(self, firsts: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
-        """Return what runs from samples (a,) to samples (b,) cost by each way (a, b, k), infinite where they can't be.
+        """Return what runs from samples (a,) to samples (b,) cost by each way (b, a, k), infinite where they can't be.
 
         Of all other ways, only the one nearest to the line that fits best can be. What the runs cost, whether they can
-        be or not, follows for each main way (a, b, m) and for the others (a, b).
+        be or not, follows for each main way (b, a, m) and for the others (b, a).
         """
         fixed, is_run = self._fixed_costs(firsts, ends)
         free, way, is_free_run = self._free_costs(firsts, ends)
@@ -275,24 +277,24 @@ class _Chain:
         return allowed, (fixed, free)
 
     def _fixed_costs(self, firsts: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return what runs from samples (a,) to samples (b,) by each main way cost (a, b, k), and which can be."""
-        count = (ends - firsts[:, None])[..., None]
-        sums = self.sums[ends] - self.sums[firsts][:, None]
-        squares = self.squares[ends] - self.squares[firsts][:, None]
-        along = self.along[ends] - self.along[firsts][:, None]
+        """Return what runs from samples (a,) to samples (b,) by each main way cost (b, a, k), and which can be."""
+        count = (ends[:, None] - firsts)[..., None]
+        sums = self.sums[ends, None] - self.sums[firsts]
+        squares = self.squares[ends, None] - self.squares[firsts]
+        along = self.along[ends, None] - self.along[firsts]
         is_run = (along >= _ADVANCE * self.step * count) & (count >= _SHORTEST)
         return self.step * (squares - sums**2 / np.maximum(count, 1)), is_run
 
     def _free_costs(self, firsts: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return what runs along the lines that fit best cost (a, b), by which of the other ways, and which can be."""
-        count = np.maximum(ends - firsts[:, None], 1)
-        x, y, xx, yy, xy = np.moveaxis(self.moments[ends] - self.moments[firsts][:, None], -1, 0)
+        """Return what runs along the lines that fit best cost (b, a), by which of the other ways, and which can be."""
+        count = np.maximum(ends[:, None] - firsts, 1)
+        x, y, xx, yy, xy = self.moments[:, ends, None] - self.moments[:, None, firsts]
         xx, yy, xy = xx - x * x / count, yy - y * y / count, xy - x * y / count
         least = np.maximum((xx + yy) / 2 - np.hypot((xx - yy) / 2, xy), 0.0)
         angle = np.degrees(np.arctan2(2 * xy, xx - yy)) / 2
-        east, north = np.moveaxis(self.vertices[ends] - self.vertices[firsts][:, None], -1, 0)
+        east, north = self.columns[:, ends, None] - self.columns[:, None, firsts]
         along = east * np.cos(np.radians(angle)) + north * np.sin(np.radians(angle))
-        is_run = (np.abs(along) >= _ADVANCE * self.step * count) & (ends - firsts[:, None] >= _SHORTEST)
+        is_run = (np.abs(along) >= _ADVANCE * self.step * count) & (ends[:, None] - firsts >= _SHORTEST)
         n_free = round(360 / _FAN)
         way = np.rint((angle + 180 * (along < 0) - self.ways.angle[self.ways.n_fixed]) / _FAN).astype(np.int64) % n_free
         return self.step * least, self.ways.n_fixed + way, is_run
