@@ -42,9 +42,14 @@ class _PointPlanes:
 
 
 def segment_patches(
-    xyz: np.ndarray, neighborhood: Union[Nearest, Wide], off_plane: float, max_slope: float, monitor: Monitor
+    xyz: np.ndarray,
+    used: np.ndarray,
+    neighborhood: Union[Nearest, Wide],
+    off_plane: float,
+    max_slope: float,
+    monitor: Monitor,
 ) -> np.ndarray:
-    """Group points that lie on smooth surfaces.
+    """Group those of some points that lie on smooth surfaces.
 
     Each point takes the smoothest plane among those of its neighbors that hold it, so that points at edges and ridges
     belong to the surface beside them and not to a plane across the edge. Points whose planes agree then make one patch.
@@ -53,6 +58,8 @@ def segment_patches(
     ----------
     xyz : ndarray of shape (n, 3), float64
         Points (m).
+    used : ndarray of shape (u,), int64
+        Rows of the points that are grouped.
     neighborhood : Nearest or Wide
         The points that show the plane of a surface.
     off_plane : float
@@ -64,17 +71,18 @@ def segment_patches(
 
     Returns
     -------
-    patch : ndarray of shape (n,), int32
-        Patch of each point from 0, -1 where it lies on no smooth surface.
+    patch : ndarray of shape (u,), int32
+        Patch of each of them from 0, -1 where it lies on no smooth surface.
     """
-    if len(xyz) < LEAST_NEIGHBORS:
-        return np.full(len(xyz), -1, np.int32)
+    if len(used) < LEAST_NEIGHBORS:
+        return np.full(len(used), -1, np.int32)
     # Points that are near each other follow each other, so that values of neighbors are in the processor's caches.
-    order = spatial.cKDTree(xyz, balanced_tree=False).indices.astype(np.int32)
-    neighborhood = replace(neighborhood, count=min(neighborhood.count, len(xyz)))
-    xyz = xyz.take(order, axis=0)
+    order = spatial.cKDTree(xyz.take(used, axis=0), balanced_tree=False).indices.astype(np.int32)
+    neighborhood = replace(neighborhood, count=min(neighborhood.count, len(used)))
+    xyz = xyz.take(used[order], axis=0)
     planes = _local_planes(xyz, neighborhood, monitor.part(0, 0.6))
-    points = np.column_stack([xyz - xyz[0], np.full(len(xyz), -1.0)])
+    points = np.full((len(xyz), 4), -1.0)
+    np.subtract(xyz, xyz[0], out=points[:, :3])
     del xyz
     plane = _smoothest_plane(points, planes, ON_PLANE * off_plane, monitor.part(0.6, 0.8))
     # The other neighbors are freed before links are found, which take memory of their own.

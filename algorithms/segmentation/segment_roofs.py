@@ -154,9 +154,7 @@ def segment_roofs(
     used = np.flatnonzero(is_used)
     patch = np.full(len(xyz), -1, np.int32)
     find_patches = kind.choose(_patches_of_scan, _patches_of_images)
-    patch[used] = find_patches(
-        xyz.take(used, axis=0), sampling, _Planes(density, noise, max_slope), monitor.part(0, 0.75)
-    )
+    patch[used] = find_patches(xyz, used, sampling, _Planes(density, noise, max_slope), monitor.part(0, 0.75))
 
     # 2. Those that are high and large enough, and do not go on into the ground.
     patches = _Patches(xyz, patch, height_above_ground, density, kind.foot)
@@ -202,24 +200,28 @@ class _Planes:
         return float(np.hypot(plane_roughness(self.noise, self.density), SURFACE.farther * farther))
 
 
-def _patches_of_scan(xyz: np.ndarray, sampling: CloudSampling, planes: _Planes, monitor: Monitor) -> np.ndarray:
-    """Return the patch (n,) from 0, -1 for no one, of the points of a laser scan."""
+def _patches_of_scan(
+    xyz: np.ndarray, used: np.ndarray, sampling: CloudSampling, planes: _Planes, monitor: Monitor
+) -> np.ndarray:
+    """Return the patch (u,) from 0, -1 for no one, of the ``used`` rows of the points (n, 3) of a laser scan."""
     around = sampling.neighborhood(planes.density, planes.off_plane)
-    return segment_patches(xyz, around, planes.off_plane, planes.max_slope, monitor)
+    return segment_patches(xyz, used, around, planes.off_plane, planes.max_slope, monitor)
 
 
-def _patches_of_images(xyz: np.ndarray, sampling: CloudSampling, planes: _Planes, monitor: Monitor) -> np.ndarray:
-    """Return what :func:`_patches_of_scan` does, for the surface (n, 3) that matched images show."""
-    if not len(xyz):
+def _patches_of_images(
+    xyz: np.ndarray, used: np.ndarray, sampling: CloudSampling, planes: _Planes, monitor: Monitor
+) -> np.ndarray:
+    """Return what :func:`_patches_of_scan` does, for the surface that matched images show."""
+    if not len(used):
         return np.zeros(0, np.int32)
     rules = IMAGE_SURFACE
-    highest, under = highest_of_cells(xyz, rules.cell)
+    highest, under = highest_of_cells(xyz.take(used, axis=0), rules.cell)
     # Of cells that hold points at random, with the density's number on the average, these have one.
     kept = -np.expm1(-planes.density * rules.cell**2) / rules.cell**2
     count = max(LEAST_NEIGHBORS, round(np.pi * SURFACES.least_reach**2 * kept))
     # Matched points share the error of their window, which is as large as their own.
     deviation = float(np.sqrt(2)) * planes.off_plane
-    return segment_patches(xyz[highest], Nearest(count), deviation, planes.max_slope, monitor)[under]
+    return segment_patches(xyz, used[highest], Nearest(count), deviation, planes.max_slope, monitor)[under]
 
 
 def _clusters(

@@ -14,7 +14,7 @@ from lidar_buildings.tests.monitors import Listening
 def segment_patches(xyz, density, off_plane, max_slope, monitor):
     """Return the patches of points with the neighborhood that they ask for."""
     around = CloudSampling.of(xyz).neighborhood(density, off_plane) if len(xyz) else Nearest(8)
-    return module.segment_patches(xyz, around, off_plane, max_slope, monitor)
+    return module.segment_patches(xyz, np.arange(len(xyz)), around, off_plane, max_slope, monitor)
 
 
 def gable(rng, density, noise, slope=40.0):
