@@ -26,9 +26,6 @@ class _Rules:
 
 RULES = _Rules()
 
-# Cells whose probability a thread finds at once: each takes 1 kB, its features several times over.
-_PREDICTED = 4_000
-
 
 @dataclass(frozen=True)
 class LabeledCells:
@@ -92,7 +89,8 @@ def predict(learned: tuple[float, ...], features: np.ndarray, half: np.ndarray) 
         def work(rows: np.ndarray, regression: LogisticRegression = regression) -> None:
             likely[rows] = regression.predict(features[rows])
 
-        in_chunks(work, np.flatnonzero(half != number), _PREDICTED, Monitor())
+        # As many numbers at once as in rows of coordinates.
+        in_chunks(work, np.flatnonzero(half != number), max(1, ROWS_AT_ONCE * 3 // count), Monitor())
     return likely
 
 
