@@ -7,6 +7,7 @@ from typing import Callable, Optional
 import numpy as np
 
 from ..packages import csgraph, sparse
+from .groups import run_starts
 
 # Costs become whole numbers of 32 bits for the flow, to these precisions of cuts and of labels. Those of a cell's edges
 # and its own are added there: none may be more than a fifth of what fits.
@@ -132,12 +133,19 @@ def cheapest_cut(
     columns = np.concatenate([right, left, cells, to_source, to_sink, cells])
     costs = np.concatenate([cost, cost if back is None else back, if_outside, np.zeros(n), if_inside, np.zeros(n)])
     capacity = np.rint(np.minimum(costs * steps, _LARGEST)).astype(np.int32)
-    graph = sparse.csr_matrix((capacity, (rows, columns)), shape=(n + 2, n + 2))
-    flow = csgraph.maximum_flow(graph, source, sink).flow
-    has_room = graph.data > flow.data
-    starts = np.concatenate([[0], np.cumsum(has_room)])[graph.indptr]
-    residual = sparse.csr_matrix((np.ones(starts[-1], np.int8), graph.indices[has_room], starts), shape=graph.shape)
-    reached = csgraph.breadth_first_order(residual, source, return_predecessors=False)
+    # The rows of the matrix by hand: most cuts have few cells, and for these scipy's checks take longer than the flow.
+    key = rows * (n + 2) + columns
+    order = np.argsort(key, kind="stable")
+    first = run_starts(key[order])
+    start, end = np.divmod(key[order[first]], n + 2)
+    total = np.add.reduceat(capacity[order], first, dtype=np.int32)
+    row_starts = np.searchsorted(start, np.arange(n + 3)).astype(np.int32)
+    graph = sparse.csr_matrix((total, end.astype(np.int32), row_starts), (n + 2, n + 2))
+    has_room = total > csgraph.maximum_flow(graph, source, sink).flow.data
+    start, end = start[has_room], end[has_room]
     inside = np.zeros(n + 2, bool)
-    inside[reached] = True
+    inside[source] = True
+    # All that edges with room lead to from the source.
+    while (leads_on := inside[start] & ~inside[end]).any():
+        inside[end[leads_on]] = True
     return inside[:n]
