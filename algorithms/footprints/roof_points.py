@@ -9,7 +9,8 @@ import numpy as np
 from ..cloud.asprs import NOISE, PointClass
 from ..geometry.grid import find_cells, fixed_grid_over, grid_over
 from ..packages import spatial
-from ..threads import n_threads
+from ..stage import Monitor
+from ..threads import ROWS_AT_ONCE, in_chunks, n_threads
 
 # Height (m) of another point of the building steeply above one that is no part of the roof: more than roofs are rough.
 _STEP = 0.4
@@ -73,10 +74,15 @@ def find_roof_points(xyz: np.ndarray, cluster: np.ndarray, is_attached: np.ndarr
     is_roof = np.ones(len(xyz), bool)
     step = np.where(is_attached, max(_ATTACHED_STEP, _STEP_SPACINGS * spacing), _STEP)
     steepest = np.where(is_attached, 0.0, _UPRIGHT)
-    for offset in (0, *grid.around):
-        position, found = find_cells(cells, cell + offset)
-        x, y, rise = (top[position[found]] - xyz[found]).T
-        is_roof[found] &= rise <= np.maximum(step[found], steepest[found] * np.hypot(x, y))
+
+    def work(rows: np.ndarray) -> None:
+        for offset in (0, *grid.around):
+            position, found = find_cells(cells, cell[rows] + offset)
+            own = rows[found]
+            x, y, rise = (top[position[found]] - xyz[own]).T
+            is_roof[own] &= rise <= np.maximum(step[own], steepest[own] * np.hypot(x, y))
+
+    in_chunks(work, np.arange(len(xyz)), ROWS_AT_ONCE, Monitor())
     return is_roof
 
 
