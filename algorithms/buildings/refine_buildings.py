@@ -176,8 +176,6 @@ def refine_buildings(
     likely = labeled.smooth(predict(learned, labeled.features, labeled.half))
     probability = np.full(len(xyz), np.nan)
     probability[used] = shared_by_surfaces(scene.of_points(labeled, likely), _of(segment_id, used))
-    # The next step needs the memory that the cells take.
-    del labeled, likely
     monitor.progress(0.9)
 
     # 3. Points near edges that strongly contradict their class.

@@ -188,8 +188,9 @@ class Subdivision:
 
     def centers(self) -> np.ndarray:
         """Return the means of the vertices (cells, 2), m, which lie inside."""
-        positions = np.array(self.vertices)
-        return np.array([positions[loop].mean(axis=0) for loop in self.loops])
+        count = [len(loop) for loop in self.loops]
+        cell, corner = np.repeat(np.arange(len(count)), count), np.array(self.vertices)[np.concatenate(self.loops)]
+        return np.column_stack([np.bincount(cell, along) for along in corner.T]) / np.array(count)[:, None]
 
     def edges(self) -> tuple[np.ndarray, np.ndarray]:
         """Return each edge between two cells once: its vertices (m, 2), and the cells to its left and right (m, 2)."""
