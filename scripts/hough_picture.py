@@ -28,14 +28,14 @@ from lidar_buildings.provider.paths import PICTURES  # noqa: E402
 # Standard deviation of points from their plane, spacing of points and side of a plane, m.
 NOISE, SPACING, SIDE = 0.03, 0.3, 3.0
 
-# Between the planes of a pair, in deviations.
+# Distance between the planes of a pair, in standard deviations of the noise.
 APART = 8.0
 
 # Planes or pairs of a scene, scattered points to each point of a plane, scenes.
 COUNT, CLUTTER, SCENES = 9, 14.0, 4
 
-# What else decides, the same for all widths. With smaller slope bins the space of the smallest widths does not fit into
-# memory.
+# Other parameters of the stage, the same for all widths. With smaller slope bins the space of the smallest widths does
+# not fit into memory.
 FIXED = {"slope_bin": 3.0, "tolerance": 2.3 * NOISE, "window_size": 4.0, "max_gap": 1.5, "min_area": 2.0}
 
 # Widths of bins, in deviations. A plane is found, or separated, where this share of its points is one segment, and the

@@ -1,4 +1,4 @@
-"""Every stage keeps what it declares and what the house promises; a new stage is held to it by being in STAGES."""
+"""Every stage in STAGES is tested against its declaration and the conventions of the project."""
 
 from __future__ import annotations
 
@@ -878,7 +878,7 @@ def test_same_input_gives_the_same_result(stage):
 def test_progress_grows_from_0_to_1(stage):
     listener = Listening()
     stage.function(*arrays_of(stage, scene()), **drawn(stage), **QUICK.get(stage.name, {}), monitor=listener)
-    assert listener.heard, "a stage that tells nothing can't be stopped"
+    assert listener.heard, "a stage without progress can't be stopped"
     assert all(0 <= fraction <= 1 for fraction in listener.heard)
     assert all(before <= after + 1e-9 for before, after in zip(listener.heard, listener.heard[1:]))
 

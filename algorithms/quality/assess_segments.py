@@ -51,9 +51,7 @@ def assess_segments(
     ] = 0.8,
     min_points: Annotated[
         int,
-        Param(
-            "Minimum points", "Smaller segments, of the input and of the reference, count as none.", low=1, high=10**9
-        ),
+        Param("Minimum points", "Smaller segments, of the input and of the reference, are ignored.", low=1, high=10**9),
     ] = 1,
     monitor=None,
 ):
@@ -87,7 +85,7 @@ def assess_segments(
 
     Notes
     -----
-    Points in segments of the reference are counted by what became of their segment: of a correct one those that both
+    Points in segments of the reference are counted by the outcome of their segment; of a correct one, those that both
     have. Points in noise segments are those of no segment of the reference or a missed one, per point that has a
     segment in the input. Where a segment could be counted as correct or as a part of a set, the paper takes what
     overlaps more on average; here it counts as correct.

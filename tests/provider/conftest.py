@@ -62,7 +62,7 @@ def provider(qgis_application, tmp_path_factory):
     yield provider
     registry.removeProvider(provider)
     patch.undo()
-    # What is garbage by now would be taken away after QGIS, which some of its objects don't survive.
+    # Collect garbage now: some objects can't be deleted after QGIS has ended.
     gc.collect()
 
 
@@ -81,7 +81,7 @@ def context(provider):
 
 @pytest.fixture
 def log():
-    """A feedback that keeps what it hears."""
+    """A feedback that keeps its messages."""
     from qgis.core import QgsProcessingFeedback
 
     class Log(QgsProcessingFeedback):

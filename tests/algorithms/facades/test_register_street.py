@@ -1,4 +1,4 @@
-"""Street scans that are off by a known vector: it is found, with what it rests on."""
+"""Street scans that are off by a known vector, which is found with the number of its observations."""
 
 import numpy as np
 import pytest

@@ -88,8 +88,8 @@ def test_the_surface_given_is_left_alone(rng):
     np.testing.assert_array_equal(surface, before)
 
 
-def test_plates_rest_on_what_is_there_alone():
-    """Beside what is absent a low shelf is as narrow as it is, and a valley between two such stays."""
+def test_plates_rest_on_cells_that_are_not_absent():
+    """Next to absent cells a low shelf is not widened by them, and a valley between two such shelves stays."""
     surface = np.zeros((30, 60))
     absent = np.zeros(surface.shape, bool)
     absent[5:25, 10:20] = absent[5:25, 30:40] = True
@@ -104,7 +104,7 @@ def test_plates_rest_on_what_is_there_alone():
 @pytest.mark.parametrize("radius", [1, 3, 4, 5])
 @pytest.mark.parametrize("level", [-50.0, 50.0])
 def test_inside_it_is_the_highest_plate_over_a_cell_that_no_cell_is_below(radius, level, rng):
-    """By definition, cell by cell: what is absent neither holds a plate up nor has one centered over it."""
+    """By definition, cell by cell: absent cells neither hold a plate up nor have one centered over them."""
     surface = level + rng.normal(size=(5 * radius + 12, 5 * radius + 9))
     absent = rng.random(surface.shape) < 0.3
     steps = np.argwhere(plate(radius)) - radius
@@ -127,7 +127,7 @@ def test_inside_it_is_the_highest_plate_over_a_cell_that_no_cell_is_below(radius
 
 @pytest.mark.parametrize("radius", RADII)
 def test_the_level_of_a_surface_is_that_of_its_opening(radius, rng):
-    """Also at the border, where plates hang over: what is beyond it holds none up."""
+    """Also at the border, where plates reach beyond it: cells outside hold no plate up."""
     surface = np.round(rng.normal(0, 9, (40, 30)))
     absent = rng.random(surface.shape) < 0.2
     for level in (-512.0, 512.0):
