@@ -1,4 +1,4 @@
-"""Chains of stages in memory: what they find, how their tunables are named, what they tell, how they stop."""
+"""Chains of stages in memory: results, names of tunables, messages, cancellation."""
 
 import os
 import subprocess

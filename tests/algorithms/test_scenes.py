@@ -1,4 +1,4 @@
-"""Scenes made by hand, whose truth is a formula: they fit together, and the default chain sees what they are."""
+"""Scenes made by hand, whose truth is a formula: their arrays agree, and the chain finds their buildings only."""
 
 import numpy as np
 import pytest
@@ -48,7 +48,7 @@ def test_the_default_chain_finds_roofs_and_takes_nothing_else_for_one(name):
 # A step at the shore (m), and the share of the pulses that return from the water.
 @pytest.mark.parametrize(("step", "share"), [(0.5, 1.0), (2.5, 0.05), (4.0, 0.3), (4.0, 0.0)])
 def test_no_terrain_of_a_beach_that_is_half_water_is_called_building(step, share):
-    """The tile of 40 by 48 m shows what the sea and its own end cut off, higher than all around by up to a floor."""
+    """A tile of 40 by 48 m whose beach ends at the sea and at the border, up to a storey higher than the sea."""
     rng = np.random.default_rng(0)
     x, y = rng.uniform(0, [40, 48], (15 * 40 * 48, 2)).T
     shore = 20 + 2 * np.sin(y / 5)

@@ -111,7 +111,7 @@ class Victim:
         return {"number": self.number, "kind": "", "outcome": "fault", "said": said, "memory": 0.0}
 
     def end(self) -> str:
-        """End the process; return the end of what it said of its errors."""
+        """End the process; return the last part of its error stream."""
         self._selector.unregister(self._process.stdout)
         self._process.kill()
         self._process.wait()
@@ -173,7 +173,7 @@ def _note(result: Result, answer: dict[str, Any], seconds: float, seed: int, kin
 
 
 def keep(finding: dict[str, Any], folder: Path) -> Path:
-    """Write the files of a finding and what they brought about to a folder, and return it."""
+    """Write the files of a finding and its error to a folder, and return it."""
     number, seed, kinds = finding["number"], finding["seed"], finding["kinds"]
     place = folder / f"{seed}-{number}-{finding['kind']}"
     place.mkdir(parents=True, exist_ok=True)
@@ -185,7 +185,7 @@ def keep(finding: dict[str, Any], folder: Path) -> Path:
 
 
 def cause(finding: dict[str, Any]) -> str:
-    """Return the last line of what was said, without numbers: findings of one cause have the same."""
+    """Return the last line of an error without numbers, which is the same for findings of one cause."""
     lines = [line.strip() for line in finding["said"].splitlines() if line.strip()]
     where = [line for line in lines if line.startswith("File ") and "tests/attacks" not in line]
     place = re.sub(r'File ".*/(\w+/\w+\.py)", line (\d+).*', r"\1:\2 ", where[-1]) if where else ""

@@ -45,7 +45,7 @@ GEOKEYS = (1, 1, 0, 4, 1024, 0, 1, 1, 3072, 0, 1, 32767, 3076, 0, 1, 9002, 3077,
 
 @dataclass(frozen=True)
 class Place:
-    """A number of a file: where it stands, and its code in :mod:`struct`."""
+    """A number of a file: its position, and its code in :mod:`struct`."""
 
     at: int
     code: str
@@ -222,7 +222,7 @@ def _flips(rng: np.random.Generator, raw: bytes, _: bytes) -> bytes:
 
 
 def _cut(rng: np.random.Generator, raw: bytes, sound: bytes) -> bytes:
-    """End the file too early, anywhere or at a number, or let it go on."""
+    """End the file too early, anywhere or at a number, or append bytes."""
     if rng.random() < 0.2:
         return raw + (
             rng.bytes(int(rng.integers(1, 2000))) if rng.random() < 0.5 else bytes(int(rng.integers(1, 2000)))

@@ -493,7 +493,7 @@ def places() -> list[Table]:
 
 
 def maps() -> list[Table]:
-    """Print what Compare corners tells of old maps made of mapped footprints, beside what was done to them."""
+    """Print the report of Compare corners on old maps made of mapped footprints, and their known changes."""
     names = ("old_buildings", "found", "missed", "new", "corners", "matched", "mean_dx", "mean_dy", "mean", "deviation")
     table = Table("maps", "points/m², noise", "of", *names, texts=2)
     for density, noise, seed in VILLAGES:

@@ -179,7 +179,7 @@ def _fingerprint() -> str:
 
 
 def options() -> argparse.Namespace:
-    """Return what the command line says."""
+    """Return the arguments of the command line."""
     names = list(dict.fromkeys(["simulate_town", *STAGES, *PIPELINES, "write", "files"]))
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter, allow_abbrev=False

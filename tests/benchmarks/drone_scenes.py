@@ -106,7 +106,7 @@ def campus() -> Scene:
 
 @dataclass(frozen=True)
 class Terraced(Relief):
-    """A slope in which each house stands on a level of its own, cut into the slope and filled up below."""
+    """A slope in which each house has a level of its own, cut into the slope and filled up below."""
 
     levels: tuple[tuple[Rect, float], ...] = ()
 

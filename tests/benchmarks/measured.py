@@ -39,7 +39,7 @@ _PEAK_UNIT = 1 if sys.platform == "darwin" else 1024
 
 
 def main(job: dict[str, Any]) -> dict[str, Any]:
-    """Measure what the job says.
+    """Run and measure a job.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def main(job: dict[str, Any]) -> dict[str, Any]:
 
 
 def _work(job: dict[str, Any], cloud: Cloud) -> Callable[[], Any]:
-    """Return what is to be timed, with everything that it needs at hand."""
+    """Return the function to be timed, with its inputs loaded."""
     what = job["what"]
     if what == "neighbors":
         return lambda: query_all(cloud.get("xyz"))

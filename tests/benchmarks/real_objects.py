@@ -78,7 +78,7 @@ def _founded(house: np.ndarray, center: np.ndarray, slope: float) -> np.ndarray:
 def _beside(
     thing: np.ndarray, house: np.ndarray, number: int, center: np.ndarray, slope: float, rng: np.random.Generator
 ) -> np.ndarray:
-    """Return a thing beside the house at ``center``: four numbers on a side each, the fifth on that of the first."""
+    """Return an object beside the house at ``center``: numbers 0 to 3 on one side each, number 4 on that of 0."""
     half, own = np.ptp(house[:, :2], axis=0) / 2, np.ptp(thing[:, :2], axis=0) / 2
     axis, side = number % 2, 1 if number // 2 % 2 else -1
     apart = TOUCHING if number in (0, BESIDE.index(FENCE)) else rng.uniform(*APART)

@@ -198,7 +198,7 @@ def timed(work: Callable[[], Cloud]) -> tuple[tuple[float, float], Cloud]:
 
 
 def main() -> None:
-    """Print what is asked for."""
+    """Print the tables that the command line names."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument(
         "parts", nargs="*", choices=["flight", "voxels", "plant", "surfaces", []], help="which tables (all)"

@@ -250,7 +250,7 @@ def simulate(jobs: list[Job], cores: int, storage: float) -> tuple[float, float]
 
 
 def cost(n_tiles: int, seed: int = 0) -> list[Table]:
-    """Tell what a survey of tiles of 1 km² costs, from the block times of the last ``run``."""
+    """Estimate the cost of a survey of tiles of 1 km² from the block times of the last ``run``."""
     facts = json.loads((FOLDER / "survey_tries.json").read_text())
     tries = np.array(facts["tries"])
     halo = tries[:, 0].min()

@@ -116,7 +116,7 @@ def plant(part: float) -> Table:
 
 
 def main() -> None:
-    """Run what the command line asks for."""
+    """Run the measurements that the command line names."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("what", nargs="*", choices=["street", "plant", []], default=[])
     parser.add_argument("--part", type=float, default=1.0)

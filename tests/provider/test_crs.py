@@ -128,7 +128,7 @@ def test_results_of_every_kind_keep_their_crs(in_desktop, cloud, out):
 
 
 def test_a_system_of_a_thread_that_is_gone_is_made_again(wait_for_threads, monkeypatch):
-    """QGIS may go on giving it to others."""
+    """QGIS may pass it on to others."""
     kept = []
     thread = Thread(target=lambda: kept.append(QgsCoordinateReferenceSystem.fromWkt(RD_NEW)))
     thread.start()

@@ -1,4 +1,4 @@
-"""The plugin comes and goes without a trace."""
+"""The plugin is loaded and unloaded, and leaves nothing behind."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Surveys in tiles through Processing: what goes in, where it comes out, and what is said where it can't."""
+"""Surveys in tiles through Processing: inputs, outputs and errors."""
 
 import json
 import re

@@ -131,7 +131,7 @@ def test_houses_with_a_gap_stay_apart_and_do_not_overlap(rng):
 
 @pytest.mark.parametrize(("density", "radius"), [(15, 5), (40, 4), (40, 7)])
 def test_a_round_tower_is_a_few_chords(density, radius):
-    """Walls closer to what was traced have right angles by chance: along these it would be a stair of 20 corners."""
+    """Walls closer to the traced outline have right angles by chance: along these it would be a stair of 20 corners."""
     angle = np.deg2rad(np.arange(0, 360, 5))
     ring = radius * np.column_stack([np.cos(angle), np.sin(angle)])
     draws = [scanned([[ring]], density, np.random.default_rng(seed)) for seed in range(10)]

@@ -1,4 +1,4 @@
-"""Real clouds with their truth, what the stages and chains make of them, and the scores."""
+"""Real clouds with their truth, the results of stages and chains on them, and the scores."""
 
 from __future__ import annotations
 

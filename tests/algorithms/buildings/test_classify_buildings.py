@@ -33,7 +33,7 @@ def garden(garden, lawn):
 
 
 def test_gaps_between_scan_lines_count_in_the_density(rng):
-    """On lines 2 m apart points are dense where they lie, by which the paper goes."""
+    """On lines 2 m apart points are dense along each line, and the paper's neighborhoods follow that density."""
     xyz, cluster_id = clusters(roof(rng, 0, 0, 30, 30, 0.0, 8), roof(rng, 10, 10))
     xyz[:, 1] = 2 * np.round(xyz[:, 1] / 2)
     for classify, density in ((classify_buildings, effective_density), (classify_buildings_2019, point_density)):

@@ -1,4 +1,4 @@
-"""A scene whose classes are right but in a few spots: what the rest of it shows corrects these."""
+"""A scene whose classes are wrong in a few spots, which the rest of the scene corrects."""
 
 import numpy as np
 import pytest
@@ -105,7 +105,7 @@ def test_the_probability_is_that_of_the_truth(village):
 
 
 def test_only_points_near_the_edge_of_a_building_change(village):
-    """What looks like a roof, 5 m from any house, stays what it is."""
+    """An object that looks like a roof, 5 m from any house, keeps its class."""
     far = np.array([8.0, 21.0])
     apart = roof(np.random.default_rng(3), *far, 6.0, 6.0, EAVE, DENSITY)
     for name, value in (("truth", 5), ("classification", 1), ("number_of_returns", 1), ("return_number", 1)):

@@ -61,7 +61,7 @@ def colors(kinds, count):
 
 
 def green(bands, group, count, is_surface=None):
-    """Return what is found for clusters without extent: none is large."""
+    """Return the decisions on clusters without extent, of which none is large."""
     xyz = np.zeros((len(group), 3))
     evidence = ClusterEvidence(xyz, group, np.arange(count), 6.0, 4.0, None, None)
     return green_clusters(bands, evidence, np.ones(count, bool) if is_surface is None else is_surface)

@@ -1,4 +1,4 @@
-"""Made LAS files: written and taken apart here byte by byte, by code that shares nothing with what is tested."""
+"""Made LAS files: written and taken apart here byte by byte, by code that is independent of the tested code."""
 
 import os
 import struct

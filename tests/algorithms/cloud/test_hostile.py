@@ -37,7 +37,7 @@ pytestmark = pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="
 
 @pytest.fixture(params=["old", "layered", "copc"])
 def laz(request, make_las, tmp_path):
-    """A sound file of a few kB of each way to compress, as bytes, with a name for what is made of it."""
+    """A sound file of a few kB for each way to compress, as bytes, with a path for files made from it."""
     source = make_las(point_format=3 if request.param == "old" else 7, n=POINTS)
     path = tmp_path / ("sound.copc.laz" if request.param == "copc" else "sound.laz")
     write_cloud(read_cloud(source), path)

@@ -137,7 +137,7 @@ def test_what_jakteristics_says(gable):
 
 
 def test_what_pgeof_says(gable):
-    """It takes square roots of the eigenvalues, adds a millimeter to what it divides by, and has zero for undefined."""
+    """It takes square roots of the eigenvalues, adds a millimeter to divisors, and has zero for undefined."""
     pgeof = pytest.importorskip("pgeof")
     neighbors = cKDTree(gable).query(gable, k=20)[1].astype(np.uint32)
     starts = np.arange(len(gable) + 1, dtype=np.uint32) * 20

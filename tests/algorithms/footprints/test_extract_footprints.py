@@ -1,4 +1,4 @@
-"""Footprints of simulated houses: where they are, what they say, and that they are valid."""
+"""Footprints of simulated houses: positions, attributes and validity."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Triangulations made in tiles and mended, against those made at once, and against what a Delaunay triangulation is."""
+"""Triangulations made in tiles and mended, against those made at once, and against the definition of Delaunay."""
 
 import numpy as np
 import pytest

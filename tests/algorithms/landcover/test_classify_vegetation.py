@@ -1,4 +1,4 @@
-"""Vegetation: its heights, what is no plant, and what never changes."""
+"""Vegetation: its heights, objects that are no plants, and classes that never change."""
 
 import numpy as np
 import pytest

@@ -21,7 +21,7 @@ def within(xyz, radius, extents=True):
 
 
 def weights(xyz, point, count):
-    """Return how much each point counts among the nearest: what is equally far shares what is left."""
+    """Return the weight of each point among the nearest: equally far points share the remaining weight."""
     distances = np.linalg.norm(xyz - point, axis=1)
     last = np.sort(distances)[count - 1]
     equal = np.abs(distances - last) <= 5e-8 * last

@@ -99,7 +99,7 @@ def test_normals_of_a_roof_on_scan_lines(rng):
 
 
 def test_lines_through_a_crown_are_volumes(rng):
-    """Seen along its own line, a crown is an upright plane: scattering is what lies across."""
+    """On one scan line alone, a crown is an upright plane; points across the line show its scattering."""
     crown = rng.uniform(0, [12, 12, 8], (40_000, 3))
     crown = crown[np.abs(crown[:, 1] % 1.5 - 0.75) < 0.04]
     flat = [

@@ -63,7 +63,7 @@ def test_a_matrix_does_the_same_as_its_angles(seed, offset):
 @settings(max_examples=50)
 @given(st.integers(0, 2**32 - 1))
 def test_distances_stay_whatever_the_decimals(seed):
-    """A matrix of four decimals is no rotation; what is made of it is one."""
+    """A matrix of four decimals is no exact rotation; the nearest rotation replaces it."""
     rotation = Rotation.random(random_state=seed)
     points = np.random.default_rng(seed).uniform(-50, 50, (20, 3))
     rounded = " ".join(f"{value:.4f}" for value in matrix_of(rotation.as_matrix(), [1, 2, 3]).ravel())

@@ -1,4 +1,4 @@
-"""Charts say what the numbers say, read back from the drawing."""
+"""Charts show the numbers, read back from the drawing."""
 
 import re
 import xml.etree.ElementTree as ET

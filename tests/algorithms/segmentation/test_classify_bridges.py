@@ -1,4 +1,4 @@
-"""Bridges in classified ground: kinds and angles, what looks like one, roofs, and what they need."""
+"""Bridges in classified ground: kinds and angles, objects that look like bridges, roofs, and missing inputs."""
 
 import numpy as np
 import pytest

@@ -63,7 +63,7 @@ def test_areas_do_not_depend_on_a_point_far_away():
 
 @pytest.mark.parametrize(("depth", "expected"), [(0.9, 0.0), (1.1, 2 / 5)])
 def test_penetration_by_hand(depth, expected):
-    """Of five cells of a group two have points of no or another group at that depth; one point of ten goes on."""
+    """Of five cells of a group two have other points at that depth; one point of ten is not a last return."""
     group = np.repeat([1, 1, -1, 0], [5, 5, 1, 1])
     own = at_cells(0, 1, 2, 3, 4)
     xyz = np.concatenate([own, own + [0, 0, 2], at_cells(1, z=5 - depth), at_cells(3, z=5 - depth)])

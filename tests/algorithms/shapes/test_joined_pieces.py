@@ -1,4 +1,4 @@
-"""Pieces of pipes and planes, put together to what they are pieces of."""
+"""Pieces of pipes and planes, put together to whole pipes and planes."""
 
 import numpy as np
 import pytest

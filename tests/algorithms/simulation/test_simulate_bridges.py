@@ -1,4 +1,4 @@
-"""Simulated bridges: decks where they are said to be, over what they cross, and none where nothing crosses."""
+"""Simulated bridges: decks have the declared positions and cross their obstacles; other kinds have none."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The simulated site is what it says: truth on the right surfaces, and errors of the size that was asked for."""
+"""The simulated site agrees with its truth: points on the right surfaces, with errors of the given size."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The simulated flight is what it says: a point is the first thing on its beam, and of what it is said to be."""
+"""The simulated flight agrees with its truth: a point is the first object on its beam, and has its class."""
 
 from __future__ import annotations
 

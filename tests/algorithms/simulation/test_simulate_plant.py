@@ -1,4 +1,4 @@
-"""The simulated plant is what it says it is."""
+"""The simulated plant agrees with its truth."""
 
 import numpy as np
 import pytest

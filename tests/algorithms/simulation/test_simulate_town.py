@@ -1,4 +1,4 @@
-"""The simulated town is what it says: every point lies on what it is said to be of."""
+"""The simulated town agrees with its truth: every point lies on the object of its class."""
 
 from __future__ import annotations
 

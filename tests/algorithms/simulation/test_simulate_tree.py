@@ -1,4 +1,4 @@
-"""The simulated tree is what it says it is."""
+"""The simulated tree agrees with its truth."""
 
 import numpy as np
 

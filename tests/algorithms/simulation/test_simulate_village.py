@@ -1,4 +1,4 @@
-"""The simulated village is what it says: points lie on its roofs, walls and ground, and its maps err as asked."""
+"""The simulated village agrees with its truth: points lie on roofs, walls and ground; maps have the given errors."""
 
 from __future__ import annotations
 

@@ -53,7 +53,7 @@ def test_the_levels_of_rounded_heights_are_all_ground(step, rng):
 )
 @pytest.mark.parametrize("density", [1.5, 8])
 def test_a_hall_that_the_end_of_the_cloud_cuts_off_is_no_ground(houses, density, rng):
-    """Windows of its size don't fit in what is left of it."""
+    """Windows of the size of the building don't fit into the part of it inside the cloud."""
     xyz, is_hall = scan(rng, TERRAINS["level"], houses, density)
     missed, wrong = errors(classify_ground_tin(xyz, unclassified(xyz)), is_hall)
     assert wrong == 0
@@ -97,7 +97,7 @@ def test_a_bridge_over_a_valley_is_not_ground_and_the_valley_is(rng):
 
 @pytest.mark.parametrize("is_free", [True, False])
 def test_what_is_free_standing_does_not_join_the_surface_however_near_it_is(is_free, rng):
-    """A platform 0.3 m over a field; of a roof such a step is what the surface would climb next."""
+    """A platform 0.3 m over a field: a step that the surface would climb if it were not free-standing."""
     plan = rng.uniform(0, 20, (2000, 2))
     on_top = np.abs(plan - 10).max(axis=1) < 4
     points = np.column_stack([plan, np.where(on_top, 0.3, 0.0)])
@@ -353,7 +353,7 @@ def test_low_noise_does_not_become_ground(rng):
 
 @pytest.mark.parametrize("side", [0.9, 1.5, 2.5])
 def test_a_cloud_of_few_cells_is_ground_as_far_as_it_is_level(side, rng):
-    """Three nodes have no neighbors by which to measure the roughness, and what lies on them was left out."""
+    """Three nodes have no neighbors by which to measure the roughness; points on their facet were left out."""
     xyz = rng.uniform(0, side, (300, 3)) * [1, 1, 0.02]
     xyz[:30, 2] += 1.0
     found = classify_ground_tin(xyz, unclassified(xyz))

@@ -229,7 +229,7 @@ def test_a_low_house_with_a_large_roof_on_a_slope_is_no_bank(rng):
 
 
 def test_a_garage_built_into_the_slope_beside_a_high_building_is_no_terrain(rng):
-    """Its roof meets the slope uphill, so that it doesn't stand free, and with the building it is as wide as a hill."""
+    """Its roof meets the slope uphill, so that it is not free-standing, and with the slope it is as wide as a hill."""
     plan = even(90, 90) + rng.uniform(-0.3, 0.3, (len(even(90, 90)), 2))
     terrain = 0.08 * plan[:, 1]
     z, is_roof = raise_roofs(plan, terrain, (25, 25, 15, 40, 12.0), (40, 30, 5, 30, 0.08 * 60))

@@ -1,4 +1,4 @@
-"""What windows remove from a surface, what of it comes back, and the slope of what is left."""
+"""Objects that windows remove from a surface, terrain that is restored, and the slope of the remaining surface."""
 
 import numpy as np
 import pytest

@@ -280,7 +280,7 @@ def test_tunables_do_what_they_say(rng):
 
 
 def test_a_recess_under_the_roof_is_inside(rng):
-    """Loggias and porches: what lies deeper under a roof than it juts out elsewhere, whatever walls stand there."""
+    """Loggias and porches deeper under a roof than its overhang elsewhere are inside, whatever walls they have."""
     shape = ((0, 0), (3, 0), (3, 2), (8, 2), (8, 0), (10, 0), (10, 7), (0, 7))
     recess, _ = building(rng, shape, per_meter=20)
     covered, true = building(rng, "rectangle")
