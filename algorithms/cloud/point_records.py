@@ -29,7 +29,7 @@ def unit_factor(dimension: Dimension, units: Units) -> float:
     """Return meters (or square meters) per unit of a stored dimension.
 
     Heights are stored in the vertical unit of the file and areas in its squared
-    horizontal unit, so that QGIS and PDAL, which know one unit only, agree.
+    horizontal unit, so that QGIS and PDAL, which have one unit for a file, agree.
     """
     return {"m": units.vertical, "m²": units.horizontal**2}.get("" if dimension.standard else dimension.unit, 1.0)
 

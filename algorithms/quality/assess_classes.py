@@ -207,7 +207,7 @@ def _table(matrix: np.ndarray, names: list[str], rates: dict[str, np.ndarray]) -
 
 
 def _outcome(called: np.ndarray, true: np.ndarray, is_right: np.ndarray) -> np.ndarray:
-    """Return what came of each point (n,), as the map shows it."""
+    """Return the outcome of each point (n,), as the map shows it."""
     taken, lost = called == PointClass.GROUND, true == PointClass.GROUND
     return np.select([is_right, taken, lost], [REST, HIT, MISS], FALSE).astype(np.uint8)
 

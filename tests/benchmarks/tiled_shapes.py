@@ -8,7 +8,7 @@
     tiled_shapes.py --output folder   where the JSON files go (benchmarks)
 
 The row "cells moved" is the whole cloud with one point more, off its corner, so that cells begin elsewhere: what
-differs there depends on where cells fall, not on tiles. Times are processor time; only their ratios tell.
+differs there depends on where cells fall, not on tiles. Times are processor time; compare their ratios only.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ COLUMNS = ("features", "of the whole", "within 1 cm", "within 10 cm", "areas or 
 
 
 def as_cloud(xyz: np.ndarray, classification: np.ndarray) -> Cloud:
-    """Return a cloud with times, which tell its points apart."""
+    """Return a cloud with times, which identify its points."""
     times = np.arange(len(xyz)) * 1e-5
     return create_cloud({"xyz": xyz, "classification": classification, "gps_time": times}, "EPSG:25832")
 
